@@ -1,0 +1,193 @@
+//! The hinge design vector g of (7).
+
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// Geometry of the ligament left between the tip of a main cut and a secondary cut; (7).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HingeDesign {
+    /// Material left between the tip O and the secondary cut (mm).
+    pub w_lig: f64,
+    /// Angle between the secondary and the main cut, measured into the material (rad), in (0, pi).
+    pub alpha: f64,
+    /// Radius of the hole drilled about O, as a multiple of `w_lig`; the paper cuts 0.16.
+    pub fillet_ratio: f64,
+    /// Width the cutting tool removes along the main cut (mm).
+    pub kerf: f64,
+    /// Radius of the half-disc of sheet assigned to the hinge (mm).
+    pub r_win: f64,
+}
+
+/// A hinge design that cannot be cut, with the inequality it violates.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum InvalidDesign {
+    #[error("{name} = {value} is not a finite number")]
+    NotFinite { name: &'static str, value: f64 },
+    #[error(
+        "w_lig = {0} mm violates {MIN_W_LIG} <= w_lig <= {MAX_W_LIG}: lengths are in mm{hint}",
+        hint = unit_slip(*.0)
+    )]
+    LigamentWidth(f64),
+    #[error("alpha = {deg:.4} deg violates 0 < alpha < 180", deg = .0.to_degrees())]
+    CutAngle(f64),
+    #[error("fillet_ratio = {0} violates 0 < fillet_ratio < 1 (the hole would cut the ligament)")]
+    Fillet(f64),
+    #[error(
+        "kerf = {kerf} mm violates 0 < kerf < 2 fillet_ratio w_lig = {limit} mm \
+         (the cut must end in its hole)"
+    )]
+    Kerf { kerf: f64, limit: f64 },
+    #[error("r_win = {r_win} mm violates r_win > {factor} w_lig = {limit} mm", factor = MIN_WINDOW)]
+    Window { r_win: f64, limit: f64 },
+}
+
+/// Narrowest and widest ligament accepted (mm): far outside any sheet that is cut by hand or
+/// machine, so that a value in metres or in micrometres is caught.
+const MIN_W_LIG: f64 = 0.5;
+const MAX_W_LIG: f64 = 500.0;
+/// The window must contain the tip region that is meshed around O, of radius 2.2 w_lig.
+const MIN_WINDOW: f64 = 2.5;
+
+fn unit_slip(w_lig: f64) -> String {
+    if (MIN_W_LIG..=MAX_W_LIG).contains(&(1e3 * w_lig)) {
+        format!("; did you mean {} mm?", 1e3 * w_lig)
+    } else {
+        String::new()
+    }
+}
+
+impl HingeDesign {
+    /// The tip O of the main cut in the hinge frame (mm).
+    pub fn tip(&self) -> [f64; 2] {
+        [0.0, -self.w_lig]
+    }
+
+    /// Unit vector along the main cut, from O into the material.
+    pub fn main_cut(&self) -> [f64; 2] {
+        [self.alpha.cos(), -self.alpha.sin()]
+    }
+
+    /// Radius of the hole drilled about O (mm).
+    pub fn fillet_radius(&self) -> f64 {
+        self.fillet_ratio * self.w_lig
+    }
+
+    /// The design seen after reflecting x.
+    pub fn mirrored(&self) -> Self {
+        Self {
+            alpha: PI - self.alpha,
+            ..*self
+        }
+    }
+
+    /// Refuses what cannot be cut, naming the violated inequality.
+    pub fn validate(&self) -> Result<(), InvalidDesign> {
+        for (name, value) in [
+            ("w_lig", self.w_lig),
+            ("alpha", self.alpha),
+            ("fillet_ratio", self.fillet_ratio),
+            ("kerf", self.kerf),
+            ("r_win", self.r_win),
+        ] {
+            if !value.is_finite() {
+                return Err(InvalidDesign::NotFinite { name, value });
+            }
+        }
+        if !(MIN_W_LIG..=MAX_W_LIG).contains(&self.w_lig) {
+            return Err(InvalidDesign::LigamentWidth(self.w_lig));
+        }
+        if self.alpha <= 0.0 || self.alpha >= PI {
+            return Err(InvalidDesign::CutAngle(self.alpha));
+        }
+        if self.fillet_ratio <= 0.0 || self.fillet_ratio >= 1.0 {
+            return Err(InvalidDesign::Fillet(self.fillet_ratio));
+        }
+        let limit = 2.0 * self.fillet_radius();
+        if self.kerf <= 0.0 || self.kerf >= limit {
+            let kerf = self.kerf;
+            return Err(InvalidDesign::Kerf { kerf, limit });
+        }
+        let limit = MIN_WINDOW * self.w_lig;
+        if self.r_win <= limit {
+            let r_win = self.r_win;
+            return Err(InvalidDesign::Window { r_win, limit });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PAPER: HingeDesign = HingeDesign {
+        w_lig: 18.0,
+        alpha: PI / 2.0,
+        fillet_ratio: 0.16,
+        kerf: 0.2,
+        r_win: 100.0,
+    };
+
+    #[test]
+    fn the_papers_hinge_is_accepted_and_mirrors_onto_itself_twice() {
+        PAPER.validate().unwrap();
+        let oblique = HingeDesign {
+            alpha: 1.0,
+            ..PAPER
+        };
+        assert_eq!(oblique.mirrored().alpha, PI - 1.0);
+        assert!((oblique.mirrored().mirrored().alpha - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn metres_for_millimetres_are_named() {
+        let message = HingeDesign {
+            w_lig: 0.018,
+            ..PAPER
+        }
+        .validate()
+        .unwrap_err()
+        .to_string();
+        assert!(message.contains("did you mean 18 mm"), "{message}");
+    }
+
+    #[test]
+    fn every_violated_inequality_is_named() {
+        let cases = [
+            (
+                HingeDesign {
+                    alpha: 0.0,
+                    ..PAPER
+                },
+                "0 < alpha",
+            ),
+            (
+                HingeDesign {
+                    fillet_ratio: 1.0,
+                    ..PAPER
+                },
+                "fillet_ratio < 1",
+            ),
+            (HingeDesign { kerf: 6.0, ..PAPER }, "kerf < 2 fillet_ratio"),
+            (
+                HingeDesign {
+                    r_win: 40.0,
+                    ..PAPER
+                },
+                "r_win > 2.5 w_lig",
+            ),
+            (
+                HingeDesign {
+                    r_win: f64::NAN,
+                    ..PAPER
+                },
+                "finite",
+            ),
+        ];
+        for (design, expected) in cases {
+            let message = design.validate().unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+}

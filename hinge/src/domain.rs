@@ -1,0 +1,98 @@
+//! The box of hinge states that the database covers.
+
+use crate::{HingeDeformation, HingeDesign};
+use serde::{Deserialize, Serialize};
+
+/// Closed intervals [least, greatest] of the states a surrogate was trained on; section 2.4.
+///
+/// It comes from the data and travels with the weights.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainingDomain {
+    pub eta_a: [f64; 2],
+    pub eta_s: [f64; 2],
+    /// rad
+    pub theta: [f64; 2],
+    /// mm
+    pub w_lig: [f64; 2],
+    /// rad
+    pub alpha: [f64; 2],
+}
+
+impl TrainingDomain {
+    /// Whether the state of one hinge lies in the box.
+    pub fn contains(&self, design: &HingeDesign, deformation: &HingeDeformation) -> bool {
+        let [eta_a, eta_s] = deformation.eta(design.w_lig);
+        [
+            (self.eta_a, eta_a),
+            (self.eta_s, eta_s),
+            (self.theta, deformation.theta),
+            (self.w_lig, design.w_lig),
+            (self.alpha, design.alpha),
+        ]
+        .iter()
+        .all(|([least, greatest], value)| (least..=greatest).contains(&value))
+    }
+
+    /// The smallest box that holds every state; `None` if there is none.
+    pub fn covering<'a>(
+        states: impl IntoIterator<Item = (&'a HingeDesign, &'a HingeDeformation)>,
+    ) -> Option<Self> {
+        let mut domain: Option<Self> = None;
+        for (design, deformation) in states {
+            let [eta_a, eta_s] = deformation.eta(design.w_lig);
+            let point = Self {
+                eta_a: [eta_a; 2],
+                eta_s: [eta_s; 2],
+                theta: [deformation.theta; 2],
+                w_lig: [design.w_lig; 2],
+                alpha: [design.alpha; 2],
+            };
+            domain = Some(domain.map_or(point, |box_| box_.joined(&point)));
+        }
+        domain
+    }
+
+    /// The smallest box that holds both.
+    fn joined(&self, other: &Self) -> Self {
+        let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        Self {
+            eta_a: join(self.eta_a, other.eta_a),
+            eta_s: join(self.eta_s, other.eta_s),
+            theta: join(self.theta, other.theta),
+            w_lig: join(self.w_lig, other.w_lig),
+            alpha: join(self.alpha, other.alpha),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_covering_box_is_tight_and_holds_its_states() {
+        let narrow = HingeDesign {
+            w_lig: 5.0,
+            alpha: 1.0,
+            fillet_ratio: 0.16,
+            kerf: 0.2,
+            r_win: 100.0,
+        };
+        let wide = HingeDesign {
+            w_lig: 25.0,
+            alpha: 2.0,
+            ..narrow
+        };
+        let states = [
+            (narrow, HingeDeformation::from_eta(-0.5, 0.1, 0.2, 5.0)),
+            (wide, HingeDeformation::from_eta(0.25, -0.3, 1.2, 25.0)),
+        ];
+        let domain = TrainingDomain::covering(states.iter().map(|(g, e)| (g, e))).unwrap();
+        assert_eq!(domain.eta_a, [-0.5, 0.25]);
+        assert_eq!(domain.theta, [0.2, 1.2]);
+        assert!(states.iter().all(|(g, e)| domain.contains(g, e)));
+        assert!(!domain.contains(&wide, &HingeDeformation::from_eta(0.0, 0.0, 1.3, 25.0)));
+        assert!(TrainingDomain::covering([]).is_none());
+    }
+}
