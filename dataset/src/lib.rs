@@ -1,1 +1,33 @@
+//! The hinge database: every converged increment of every window solve, as one table.
+//!
+//! A database is `X.parquet` with its manifest `X.json`: hash, counts, units, training domain,
+//! rejected rows and the split. It is collected once ([`Database::collect`]), never repaired, and
+//! refuses rows that do not belong together.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `rows` | one row: design, sample, provenance |
+//! | `schema` | the columns |
+//! | `gates` | which rows are rejected, and why |
+//! | `split` | training, validation and test by geometry |
+//! | `mirror` | the mirror image of a row |
+//! | `manifest` | what stands beside the Parquet file |
+//! | `parquet` | reading and writing |
+//! | `summary` | counts and ranges, to print |
 
+mod database;
+mod gates;
+mod manifest;
+mod mirror;
+mod parquet;
+mod rows;
+mod schema;
+mod split;
+mod summary;
+
+pub use database::{Database, DatasetError};
+pub use gates::{Gates, Rejection};
+pub use manifest::{FORMAT_VERSION, Manifest};
+pub use mirror::with_mirrored;
+pub use rows::Row;
+pub use split::{Part, Split, SplitPlan};

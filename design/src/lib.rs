@@ -1,1 +1,36 @@
+//! The sheet: cut pattern, equilibrium, adjoint gradient, objective, optimiser, fabrication.
 
+pub mod actuation;
+mod adam;
+mod adjoint;
+mod canvas;
+pub mod chamfer;
+pub mod check;
+pub mod design_vector;
+pub mod drawing;
+pub mod equilibrium;
+pub mod fabrication;
+pub mod files;
+pub mod gradient;
+pub mod grid;
+pub mod hinge_law;
+pub mod ideal_deployment;
+pub mod inverse_design;
+pub mod kinematics;
+pub mod localisation;
+mod newton;
+pub mod objective;
+pub mod outline_error;
+mod panel_vectors;
+pub mod path_functionals;
+pub mod pattern;
+mod plane;
+pub mod report;
+pub mod results;
+pub mod scene;
+pub mod sheet;
+pub mod smooth_extrema;
+mod tangent;
+pub mod target;
+pub mod topology;
+pub mod window;

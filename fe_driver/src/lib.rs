@@ -1,1 +1,37 @@
+//! Window solves with CalculiX, one or a campaign of thousands.
+//!
+//! A *ray* drives one hinge design from the undeformed state straight to a deformation (a, s,
+//! theta); every converged increment is a sample (W, grad W, D) of section 2.4. [`solve_window`]
+//! solves one ray; a [`Campaign`] samples a box of designs and rays, [`plan`] says what is left to
+//! do, [`run`] does it, [`finished_jobs`] hands out the samples.
 
+mod campaign;
+mod ccx;
+mod dat;
+mod deck;
+mod doctor;
+mod failure;
+mod finished;
+mod job;
+mod ledger;
+mod plan;
+mod ray;
+mod response;
+mod run;
+mod sampling;
+mod window_solve;
+
+pub use campaign::{Campaign, CampaignError};
+pub use ccx::{CCX, Ccx, CcxRun};
+pub use dat::DatError;
+pub use deck::{StepControl, deck};
+pub use doctor::{Diagnosis, doctor};
+pub use failure::{FailureKind, Rung};
+pub use finished::{FinishedJob, finished_jobs};
+pub use job::{FileError, JobSpec, ToolVersions};
+pub use ledger::{Status, Tally, status};
+pub use plan::{Plan, plan};
+pub use ray::Ray;
+pub use run::{Progress, run};
+pub use sampling::{CommonDesign, RayBox};
+pub use window_solve::{SolveError, Tools, WindowProblem, WindowSolution, solve_window};

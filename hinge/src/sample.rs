@@ -36,7 +36,10 @@ pub struct HingeSample {
     pub d_peak: f64,
     /// Largest out-of-plane displacement (mm).
     pub uz_max: f64,
-    /// |w - w_work| over the largest w of the ray so far.
+    /// |w - w_work| over the largest w of the ray.
+    ///
+    /// Not over the row's own w: the trapezoidal work of the first increment, in which the
+    /// ligament buckles, is off by a quarter of an energy that hardly counts.
     pub energy_residual: f64,
 }
 

@@ -1,0 +1,17 @@
+# Two commands: `make demo` runs the main job, `make test` passes all tests.
+# Both first install what is missing.
+
+.PHONY: demo test lint tools
+
+demo: tools
+	cargo run --release --locked -- demo
+
+test: tools
+	cargo test --release --locked --workspace
+
+lint:
+	cargo fmt --all --check
+	cargo clippy --release --locked --workspace --all-targets -- -D warnings
+
+tools:
+	scripts/install-tools

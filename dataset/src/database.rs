@@ -1,0 +1,195 @@
+//! A database: rows that belong together, their Parquet file and its manifest.
+
+use crate::gates::{Gates, Rejection};
+use crate::manifest::{FORMAT_VERSION, Manifest};
+use crate::rows::Row;
+use crate::split::{Part, SplitPlan};
+use crate::{parquet, schema};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Why rows do not make a database, or a database could not be read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum DatasetError {
+    #[error("no rows ({rejected} were rejected); run the campaign before collecting it")]
+    NoRows { rejected: usize },
+    #[error(
+        "job {job}: {column} = {found}, but other rows have {expected}; \
+         collect each in a database of its own"
+    )]
+    Mixed {
+        job: String,
+        column: &'static str,
+        expected: String,
+        found: String,
+    },
+    #[error("job {job}: lambda = {lambda} occurs twice; was the job collected twice?")]
+    Duplicate { job: String, lambda: f64 },
+    #[error(
+        "{found} geometries cannot be split into training, validation and test: \
+         at least 3 are needed"
+    )]
+    TooFewGeometries { found: usize },
+    #[error(
+        "the shares validation = {validation} and test = {test} must each be above 0 and below 0.5"
+    )]
+    Shares { validation: f64, test: f64 },
+    #[error("column `{column}` has no value in row {index}")]
+    Gap { column: &'static str, index: usize },
+    #[error("job {job}, lambda = {lambda}: a number of the row is not finite")]
+    NotFinite { job: String, lambda: f64 },
+    #[error("cannot read {path}: {source}", path = .path.display())]
+    Read {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    #[error("cannot write {path}: {source}", path = .path.display())]
+    Write {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    #[error(
+        "{path} exists; choose another name, or say that it shall be replaced",
+        path = .path.display()
+    )]
+    Exists { path: PathBuf },
+    #[error("{path} is no manifest of a database: {source}", path = .path.display())]
+    Manifest {
+        path: PathBuf,
+        source: serde_json::Error,
+    },
+    #[error(
+        "{path} has the format version {found}, this program reads {FORMAT_VERSION}; \
+         collect the campaign again",
+        path = .path.display()
+    )]
+    UnknownVersion { path: PathBuf, found: u64 },
+    #[error(
+        "{path} is not the file its manifest describes (BLAKE3 {found}, not {expected}); \
+         copy the two files together, or collect the campaign again",
+        path = .path.display()
+    )]
+    Hash {
+        path: PathBuf,
+        expected: String,
+        found: String,
+    },
+    #[error("{path}: {source}", path = .path.display())]
+    In {
+        path: PathBuf,
+        source: Box<DatasetError>,
+    },
+    #[error("the table is not that of a database: {0}")]
+    Table(#[from] polars::error::PolarsError),
+}
+
+/// Rows in the order of job and lambda, with the Parquet file that holds them and its manifest.
+#[derive(Clone, Debug)]
+pub struct Database {
+    pub(crate) rows: Vec<Row>,
+    pub(crate) parquet: Vec<u8>,
+    pub(crate) manifest: Manifest,
+}
+
+impl Database {
+    /// Drops what the gates reject, counting it, and splits the rest by geometry.
+    ///
+    /// Refuses rows of different materials, tiers or hinge constants.
+    pub fn collect(rows: Vec<Row>, gates: &Gates, plan: &SplitPlan) -> Result<Self, DatasetError> {
+        let mut rejected: BTreeMap<Rejection, usize> = BTreeMap::new();
+        let mut rows: Vec<Row> = rows
+            .into_iter()
+            .filter(|row| match gates.rejection(row) {
+                Some(reason) => {
+                    *rejected.entry(reason).or_default() += 1;
+                    false
+                }
+                None => true,
+            })
+            .collect();
+        rows.sort_by(|left, right| {
+            let by_lambda = || left.sample.lambda.total_cmp(&right.sample.lambda);
+            left.job.cmp(&right.job).then_with(by_lambda)
+        });
+        refuse_mixed(&rows)?;
+        refuse_duplicates(&rows)?;
+        let parquet = parquet::encode(schema::to_frame(&rows)?)?;
+        let hash = parquet::hash(&parquet);
+        let manifest = Manifest::new(&rows, hash, gates, rejected, plan)?;
+        Ok(Self {
+            rows,
+            parquet,
+            manifest,
+        })
+    }
+
+    /// Reads `X.parquet` and the manifest `X.json` beside it, which must describe it.
+    pub fn read(path: &Path) -> Result<Self, DatasetError> {
+        parquet::read(path)
+    }
+
+    /// Writes `X.parquet` and the manifest `X.json` beside it, each beside its place and renamed.
+    ///
+    /// An existing file is an error unless it is to be replaced.
+    pub fn write(&self, path: &Path, replace: bool) -> Result<(), DatasetError> {
+        parquet::write(self, path, replace)
+    }
+
+    /// All accepted rows.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// What the database says about itself.
+    pub fn manifest(&self) -> &Manifest {
+        &self.manifest
+    }
+
+    /// The rows of one part of the split.
+    pub fn part(&self, part: Part) -> Vec<Row> {
+        let jobs = self.manifest.split.jobs(part);
+        let rows = self.rows.iter().filter(|row| jobs.contains(&row.job));
+        rows.cloned().collect()
+    }
+}
+
+/// What all rows must share: a surrogate knows none of it.
+fn refuse_mixed(rows: &[Row]) -> Result<(), DatasetError> {
+    let shared = |row: &Row| {
+        [
+            ("material", row.material.clone()),
+            ("tier", row.tier.clone()),
+            ("fillet_ratio", row.design.fillet_ratio.to_string()),
+            ("kerf", format!("{} mm", row.design.kerf)),
+            ("r_win", format!("{} mm", row.design.r_win)),
+        ]
+    };
+    let Some(first) = rows.first().map(shared) else {
+        return Ok(());
+    };
+    for row in rows {
+        for ((column, expected), (_, found)) in first.iter().zip(shared(row)) {
+            if *expected != found {
+                return Err(DatasetError::Mixed {
+                    job: row.job.clone(),
+                    column,
+                    expected: expected.clone(),
+                    found,
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// `rows` are in the order of job and lambda.
+fn refuse_duplicates(rows: &[Row]) -> Result<(), DatasetError> {
+    let key = |row: &Row| (row.job.clone(), row.sample.lambda);
+    match rows.windows(2).find(|pair| key(&pair[0]) == key(&pair[1])) {
+        Some(pair) => Err(DatasetError::Duplicate {
+            job: pair[0].job.clone(),
+            lambda: pair[0].sample.lambda,
+        }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,85 @@
+//! Which rows are too bad to learn from; nothing is repaired.
+
+use crate::rows::Row;
+use serde::{Deserialize, Serialize};
+
+/// Limits that a row must keep.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Gates {
+    /// Greatest accepted [`hinge::HingeSample::energy_residual`]: the solver's energy against
+    /// the work of its reactions.
+    pub energy_residual_max: f64,
+}
+
+impl Default for Gates {
+    /// Converged rays stay under 1e-3; ten times that is another disease than the quadrature's.
+    fn default() -> Self {
+        Self {
+            energy_residual_max: 0.01,
+        }
+    }
+}
+
+/// Why a row was rejected; the first reason that applies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Rejection {
+    /// A number is not finite.
+    NotFinite,
+    /// The design cannot be cut; see [`hinge::HingeDesign::validate`].
+    InvalidDesign,
+    /// W < 0 or D < 0.
+    Negative,
+    /// The energy and the work of the reactions disagree.
+    EnergyResidual,
+}
+
+impl Gates {
+    /// Why `row` is rejected, if it is.
+    pub fn rejection(&self, row: &Row) -> Option<Rejection> {
+        let sample = &row.sample;
+        if !row.is_finite() {
+            Some(Rejection::NotFinite)
+        } else if row.design.validate().is_err() {
+            Some(Rejection::InvalidDesign)
+        } else if sample.w < 0.0 || sample.d < 0.0 {
+            Some(Rejection::Negative)
+        } else if sample.energy_residual > self.energy_residual_max {
+            Some(Rejection::EnergyResidual)
+        } else {
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rows::tests::row;
+
+    #[test]
+    fn each_gate_closes_on_its_own_row() {
+        let gates = Gates::default();
+        assert_eq!(gates.rejection(&row(0, 0.5)), None);
+        type Change = fn(&mut Row);
+        let with = |change: Change| {
+            let mut row = row(0, 0.5);
+            change(&mut row);
+            gates.rejection(&row)
+        };
+        let cases: [(Change, Rejection); 5] = [
+            (|row| row.sample.f_s = f64::NAN, Rejection::NotFinite),
+            (|row| row.design.alpha = 4.0, Rejection::InvalidDesign),
+            (|row| row.sample.w = -1e-9, Rejection::Negative),
+            (|row| row.sample.d = -1e-9, Rejection::Negative),
+            (
+                |row| row.sample.energy_residual = 0.021,
+                Rejection::EnergyResidual,
+            ),
+        ];
+        for (change, expected) in cases {
+            assert_eq!(with(change), Some(expected));
+        }
+    }
+}

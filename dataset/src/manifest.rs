@@ -1,0 +1,103 @@
+//! What stands in `X.json` beside `X.parquet`.
+
+use crate::database::DatasetError;
+use crate::gates::{Gates, Rejection};
+use crate::rows::Row;
+use crate::schema;
+use crate::split::{Split, SplitPlan, geometry};
+use hinge::TrainingDomain;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Version of the database that this crate reads and writes.
+pub const FORMAT_VERSION: u32 = 1;
+
+/// Everything about a database but its rows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    pub format_version: u32,
+    /// BLAKE3 of the Parquet file.
+    pub hash: String,
+    /// Unit of each column that has one.
+    pub units: BTreeMap<String, String>,
+    pub rows: usize,
+    /// Jobs with at least one row.
+    pub rays: usize,
+    /// Rays that stopped before their end.
+    pub partial_rays: usize,
+    /// Different (w_lig, alpha) up to mirroring.
+    pub geometries: usize,
+    /// CPU time of all rays (s).
+    pub cpu_s: f64,
+    pub gates: Gates,
+    /// Number of rejected rows by reason.
+    pub rejected: BTreeMap<Rejection, usize>,
+    pub material: String,
+    pub tier: String,
+    /// Hinge constants that all rows share.
+    pub fillet_ratio: f64,
+    /// mm
+    pub kerf: f64,
+    /// mm
+    pub r_win: f64,
+    /// Versions of the tools that made the rows.
+    pub gmsh: BTreeSet<String>,
+    pub ccx: BTreeSet<String>,
+    /// The box of states in the rows.
+    pub domain: TrainingDomain,
+    pub split_plan: SplitPlan,
+    /// BLAKE3 of the split.
+    pub split_hash: String,
+    pub split: Split,
+}
+
+impl Manifest {
+    /// Describes accepted rows, whose Parquet file has the given hash.
+    pub(crate) fn new(
+        rows: &[Row],
+        hash: String,
+        gates: &Gates,
+        rejected: BTreeMap<Rejection, usize>,
+        plan: &SplitPlan,
+    ) -> Result<Self, DatasetError> {
+        let no_rows = DatasetError::NoRows {
+            rejected: rejected.values().sum(),
+        };
+        let states: Vec<_> = rows
+            .iter()
+            .map(|row| (row.design, row.sample.deformation()))
+            .collect();
+        let domain = TrainingDomain::covering(states.iter().map(|(g, eps)| (g, eps)));
+        let (Some(first), Some(domain)) = (rows.first(), domain) else {
+            return Err(no_rows);
+        };
+        let rays: BTreeMap<&str, &Row> = rows.iter().map(|row| (row.job.as_str(), row)).collect();
+        let split = Split::deal(rows, plan)?;
+        Ok(Self {
+            format_version: FORMAT_VERSION,
+            hash,
+            units: schema::units()
+                .map(|(name, unit)| (name.to_owned(), unit.to_owned()))
+                .collect(),
+            rows: rows.len(),
+            rays: rays.len(),
+            partial_rays: rays.values().filter(|row| row.partial).count(),
+            geometries: rows.iter().map(geometry).collect::<BTreeSet<_>>().len(),
+            cpu_s: rays.values().map(|row| row.cpu_s).sum(),
+            gates: *gates,
+            rejected,
+            material: first.material.clone(),
+            tier: first.tier.clone(),
+            fillet_ratio: first.design.fillet_ratio,
+            kerf: first.design.kerf,
+            r_win: first.design.r_win,
+            gmsh: rows.iter().map(|row| row.gmsh.clone()).collect(),
+            ccx: rows.iter().map(|row| row.ccx.clone()).collect(),
+            domain,
+            split_plan: *plan,
+            split_hash: split.hash(),
+            split,
+        })
+    }
+}

@@ -1,0 +1,89 @@
+//! One row of the database: one converged increment and where it came from.
+
+use hinge::{HingeDesign, HingeSample};
+
+/// A sample of (eps, g) -> (W, grad W, D) with its provenance; section 2.4.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Id of the job (one geometry, one ray) that solved it.
+    pub job: String,
+    pub design: HingeDesign,
+    pub sample: HingeSample,
+    /// Whether the ray stopped before its end.
+    pub partial: bool,
+    /// Name of the sheet material.
+    pub material: String,
+    /// Tier of the window mesh.
+    pub tier: String,
+    /// Version of gmsh.
+    pub gmsh: String,
+    /// Version of ccx.
+    pub ccx: String,
+    /// CPU time of the whole ray (s), repeated in each of its rows.
+    pub cpu_s: f64,
+}
+
+impl Row {
+    /// (eta_a, eta_s) of (13).
+    pub fn eta(&self) -> [f64; 2] {
+        self.sample.deformation().eta(self.design.w_lig)
+    }
+
+    /// Whether every number of the row is finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        crate::schema::NUMBERS
+            .iter()
+            .all(|column| (column.get)(self).is_finite())
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A row of the quadratic energy 10 (a^2 + s^2) + 50 theta^2 of the job `index`, at `lambda`.
+    pub fn row(index: usize, lambda: f64) -> Row {
+        let x = index as f64;
+        let [a, s, theta] = [0.3 * (1.7 * x).sin(), 0.2 * (2.9 * x).cos(), 1.0].map(|v| v * lambda);
+        Row {
+            job: format!("job-{index:03}"),
+            design: HingeDesign {
+                w_lig: 15.0 + 8.0 * (0.9 * x).sin(),
+                alpha: 1.1 + 0.4 * (1.3 * x).sin(),
+                fillet_ratio: 0.16,
+                kerf: 0.2,
+                r_win: 100.0,
+            },
+            sample: HingeSample {
+                lambda,
+                a,
+                s,
+                theta,
+                w: 10.0 * (a * a + s * s) + 50.0 * theta * theta,
+                w_work: 10.0 * (a * a + s * s) + 50.0 * theta * theta,
+                w_elastic: 5.0 * lambda * lambda,
+                f_a: 20.0 * a,
+                f_s: 20.0 * s,
+                m_theta: 100.0 * theta,
+                plastic_integral: lambda,
+                d: 0.01 * lambda,
+                d_window: 1e-4 * lambda,
+                d_peak: 0.1 * lambda,
+                uz_max: 20.0 * lambda.sqrt(),
+                energy_residual: 1e-3,
+            },
+            partial: index == 1,
+            material: "film".into(),
+            tier: "default".into(),
+            gmsh: "4.8.4".into(),
+            ccx: "2.20".into(),
+            cpu_s: 10.0,
+        }
+    }
+
+    /// Ten increments of each of `jobs` jobs.
+    pub fn rows(jobs: usize) -> Vec<Row> {
+        let increments = |index| (1..=10).map(move |k| row(index, 0.1 * f64::from(k)));
+        (0..jobs).flat_map(increments).collect()
+    }
+}

@@ -1,0 +1,165 @@
+//! The columns of the database and their units.
+
+use crate::database::DatasetError;
+use crate::rows::Row;
+use hinge::{HingeDesign, HingeSample};
+use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
+
+/// A column of numbers that a row holds.
+pub(crate) struct Number {
+    pub name: &'static str,
+    pub unit: &'static str,
+    pub get: fn(&Row) -> f64,
+    set: fn(&mut Row, f64),
+}
+
+/// A column of text that a row holds.
+struct Text {
+    name: &'static str,
+    get: fn(&Row) -> &str,
+    set: fn(&mut Row, String),
+}
+
+macro_rules! numbers {
+    ($($name:literal [$unit:literal] = $first:ident $(. $rest:ident)*;)*) => {
+        [$(Number {
+            name: $name,
+            unit: $unit,
+            get: |row| row.$first $(.$rest)*,
+            set: |row, value| row.$first $(.$rest)* = value,
+        }),*]
+    };
+}
+
+macro_rules! texts {
+    ($($name:ident)*) => {
+        [$(Text {
+            name: stringify!($name),
+            get: |row| &row.$name,
+            set: |row, value| row.$name = value,
+        }),*]
+    };
+}
+
+pub(crate) const NUMBERS: [Number; 22] = numbers! {
+    "w_lig" ["mm"] = design.w_lig;
+    "alpha" ["rad"] = design.alpha;
+    "fillet_ratio" [""] = design.fillet_ratio;
+    "kerf" ["mm"] = design.kerf;
+    "r_win" ["mm"] = design.r_win;
+    "lambda" [""] = sample.lambda;
+    "a" ["mm"] = sample.a;
+    "s" ["mm"] = sample.s;
+    "theta" ["rad"] = sample.theta;
+    "W" ["N mm"] = sample.w;
+    "W_work" ["N mm"] = sample.w_work;
+    "W_elastic" ["N mm"] = sample.w_elastic;
+    "F_a" ["N"] = sample.f_a;
+    "F_s" ["N"] = sample.f_s;
+    "M_theta" ["N mm"] = sample.m_theta;
+    "plastic_integral" ["mm^3"] = sample.plastic_integral;
+    "D" [""] = sample.d;
+    "D_window" [""] = sample.d_window;
+    "D_peak" [""] = sample.d_peak;
+    "uz_max" ["mm"] = sample.uz_max;
+    "energy_residual" [""] = sample.energy_residual;
+    "cpu_s" ["s"] = cpu_s;
+};
+
+const TEXTS: [Text; 5] = texts! { job material tier gmsh ccx };
+
+/// The ratios of (13), written for whoever reads the table and computed again when it is read.
+const RATIOS: [&str; 2] = ["eta_a", "eta_s"];
+
+const PARTIAL: &str = "partial";
+
+/// The unit of every column that has one.
+pub(crate) fn units() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let columns = NUMBERS.iter().map(|column| (column.name, column.unit));
+    columns.filter(|(_, unit)| !unit.is_empty())
+}
+
+/// The table of `rows`.
+pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {
+    let mut columns: Vec<Column> = Vec::new();
+    for column in &TEXTS {
+        let values: Vec<&str> = rows.iter().map(column.get).collect();
+        columns.push(Series::new(column.name.into(), values).into_column());
+    }
+    for column in &NUMBERS {
+        let values: Vec<f64> = rows.iter().map(column.get).collect();
+        columns.push(Series::new(column.name.into(), values).into_column());
+    }
+    for (index, name) in RATIOS.into_iter().enumerate() {
+        let values: Vec<f64> = rows.iter().map(|row| row.eta()[index]).collect();
+        columns.push(Series::new(name.into(), values).into_column());
+    }
+    let partial: Vec<bool> = rows.iter().map(|row| row.partial).collect();
+    columns.push(Series::new(PARTIAL.into(), partial).into_column());
+    Ok(DataFrame::new(rows.len(), columns)?)
+}
+
+/// The rows of a table; every column must be there, of its type, without gaps,
+/// and every number finite.
+pub(crate) fn from_frame(frame: &DataFrame) -> Result<Vec<Row>, DatasetError> {
+    let mut rows = vec![blank(); frame.height()];
+    for column in &TEXTS {
+        let series = frame.column(column.name)?;
+        fill(
+            &mut rows,
+            column.name,
+            series.str()?.iter(),
+            |row, value: &str| {
+                (column.set)(row, value.to_owned());
+            },
+        )?;
+    }
+    for column in &NUMBERS {
+        let series = frame.column(column.name)?;
+        fill(&mut rows, column.name, series.f64()?.iter(), column.set)?;
+    }
+    let partial = frame.column(PARTIAL)?.bool()?.iter();
+    fill(&mut rows, PARTIAL, partial, |row, value| {
+        row.partial = value
+    })?;
+    match rows.iter().find(|row| !row.is_finite()) {
+        Some(row) => Err(DatasetError::NotFinite {
+            job: row.job.clone(),
+            lambda: row.sample.lambda,
+        }),
+        None => Ok(rows),
+    }
+}
+
+fn fill<T>(
+    rows: &mut [Row],
+    column: &'static str,
+    values: impl IntoIterator<Item = Option<T>>,
+    set: impl Fn(&mut Row, T),
+) -> Result<(), DatasetError> {
+    for (index, (row, value)) in rows.iter_mut().zip(values).enumerate() {
+        set(row, value.ok_or(DatasetError::Gap { column, index })?);
+    }
+    Ok(())
+}
+
+/// A row to fill.
+fn blank() -> Row {
+    Row {
+        job: String::new(),
+        design: HingeDesign {
+            w_lig: 0.0,
+            alpha: 0.0,
+            fillet_ratio: 0.0,
+            kerf: 0.0,
+            r_win: 0.0,
+        },
+        sample: HingeSample::default(),
+        partial: false,
+        material: String::new(),
+        tier: String::new(),
+        gmsh: String::new(),
+        ccx: String::new(),
+        cpu_s: 0.0,
+    }
+}

@@ -1,0 +1,190 @@
+//! Training, validation and test, split by hinge geometry.
+//!
+//! All rays of one (w_lig, alpha) and of its mirror image fall into the same part, so that the
+//! test asks about geometries that training never saw.
+
+use crate::database::DatasetError;
+use crate::rows::Row;
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::PI;
+
+/// How geometries are dealt out.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SplitPlan {
+    pub seed: u64,
+    /// Share of the geometries that chooses the checkpoint, in (0, 1/2).
+    pub validation: f64,
+    /// Share of the geometries that published errors are measured on, in (0, 1/2).
+    pub test: f64,
+}
+
+impl Default for SplitPlan {
+    fn default() -> Self {
+        Self {
+            seed: 0,
+            validation: 0.1,
+            test: 0.1,
+        }
+    }
+}
+
+/// A part of the database.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    Training,
+    Validation,
+    Test,
+}
+
+/// The jobs of each part, in the order of their ids.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Split {
+    pub training: BTreeSet<String>,
+    pub validation: BTreeSet<String>,
+    pub test: BTreeSet<String>,
+}
+
+impl Split {
+    /// Deals the geometries of `rows`; every part gets at least one.
+    pub(crate) fn deal(rows: &[Row], plan: &SplitPlan) -> Result<Self, DatasetError> {
+        let SplitPlan {
+            validation, test, ..
+        } = *plan;
+        if ![validation, test]
+            .iter()
+            .all(|share| (0.0..0.5).contains(share) && *share > 0.0)
+        {
+            return Err(DatasetError::Shares { validation, test });
+        }
+        let mut jobs: BTreeMap<[i64; 2], BTreeSet<String>> = BTreeMap::new();
+        for row in rows {
+            jobs.entry(geometry(row))
+                .or_default()
+                .insert(row.job.clone());
+        }
+        let mut geometries: Vec<BTreeSet<String>> = jobs.into_values().collect();
+        let count = geometries.len();
+        if count < 3 {
+            return Err(DatasetError::TooFewGeometries { found: count });
+        }
+        geometries.shuffle(&mut ChaCha8Rng::seed_from_u64(plan.seed));
+        // Rounding leaves every part at least one geometry.
+        let share =
+            |share: f64| ((share * count as f64).round() as usize).clamp(1, (count - 1) / 2);
+        let mut take = |count: usize| geometries.drain(..count).flatten().collect();
+        Ok(Self {
+            validation: take(share(validation)),
+            test: take(share(test)),
+            training: geometries.into_iter().flatten().collect(),
+        })
+    }
+
+    /// BLAKE3 of the three lists of jobs.
+    pub(crate) fn hash(&self) -> String {
+        let mut hasher = blake3::Hasher::new();
+        for (part, jobs) in [&self.training, &self.validation, &self.test]
+            .iter()
+            .enumerate()
+        {
+            for job in *jobs {
+                hasher.update(format!("{part} {job}\n").as_bytes());
+            }
+        }
+        hasher.finalize().to_hex().to_string()
+    }
+
+    /// The ids of the jobs of one part.
+    pub fn jobs(&self, part: Part) -> &BTreeSet<String> {
+        match part {
+            Part::Training => &self.training,
+            Part::Validation => &self.validation,
+            Part::Test => &self.test,
+        }
+    }
+}
+
+/// (w_lig, alpha) up to mirroring, in units of 1e-9 that hide the rounding of pi - alpha.
+pub(crate) fn geometry(row: &Row) -> [i64; 2] {
+    let alpha = row.design.alpha.min(PI - row.design.alpha);
+    [row.design.w_lig, alpha].map(|value| (1e9 * value).round() as i64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mirror::with_mirrored;
+    use crate::rows::tests::rows;
+
+    fn deal(rows: &[Row], seed: u64) -> Split {
+        let plan = SplitPlan {
+            seed,
+            validation: 0.2,
+            test: 0.3,
+        };
+        Split::deal(rows, &plan).unwrap()
+    }
+
+    #[test]
+    fn parts_are_disjoint_complete_and_of_the_shares_asked_for() {
+        let split = deal(&rows(20), 7);
+        let counts =
+            [Part::Training, Part::Validation, Part::Test].map(|part| split.jobs(part).len());
+        assert_eq!(counts, [10, 4, 6]);
+        let all: BTreeSet<_> = split
+            .training
+            .iter()
+            .chain(&split.validation)
+            .chain(&split.test)
+            .collect();
+        assert_eq!(all.len(), 20);
+    }
+
+    #[test]
+    fn the_seed_decides() {
+        let rows = rows(20);
+        assert_eq!(deal(&rows, 7), deal(&rows, 7));
+        assert_ne!(deal(&rows, 7), deal(&rows, 8));
+    }
+
+    #[test]
+    fn rays_and_mirror_images_of_a_geometry_stay_together() {
+        let mut images = with_mirrored(&rows(10)).split_off(100);
+        for image in &mut images {
+            image.job.push_str("-image");
+        }
+        let all: Vec<Row> = rows(10).into_iter().chain(images).collect();
+        let split = deal(&all, 3);
+        for part in [Part::Training, Part::Validation, Part::Test] {
+            for job in split.jobs(part) {
+                let twin = job
+                    .strip_suffix("-image")
+                    .map_or(format!("{job}-image"), Into::into);
+                assert!(split.jobs(part).contains(&twin), "{job}");
+            }
+        }
+    }
+
+    #[test]
+    fn too_few_geometries_and_impossible_shares_are_refused() {
+        let plan = SplitPlan::default();
+        let error = Split::deal(&rows(2), &plan).unwrap_err();
+        assert!(matches!(error, DatasetError::TooFewGeometries { found: 2 }));
+        let three = Split::deal(&rows(3), &plan).unwrap();
+        assert_eq!(three.training.len(), 1);
+        for (validation, test) in [(0.0, 0.1), (0.1, 0.5), (0.1, f64::NAN)] {
+            let plan = SplitPlan {
+                validation,
+                test,
+                ..plan
+            };
+            let error = Split::deal(&rows(9), &plan).unwrap_err();
+            assert!(matches!(error, DatasetError::Shares { .. }));
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! From rows to files and back, and everything that is refused on the way.
+
+use dataset::{Database, DatasetError, Gates, Part, Rejection, Row, SplitPlan};
+use hinge::{HingeDesign, HingeSample};
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+type Change = fn(&mut Row);
+
+fn row(job: usize, lambda: f64) -> Row {
+    Row {
+        job: format!("job-{job:02}"),
+        design: HingeDesign {
+            w_lig: 5.0 + job as f64,
+            alpha: 0.8 + 0.05 * job as f64,
+            fillet_ratio: 0.16,
+            kerf: 0.2,
+            r_win: 100.0,
+        },
+        sample: HingeSample {
+            lambda,
+            a: 0.1 * lambda,
+            s: -0.2 * lambda,
+            theta: lambda,
+            w: 50.0 * lambda * lambda + 1.0 / 3.0,
+            m_theta: 100.0 * lambda,
+            d: 0.01 * lambda,
+            ..HingeSample::default()
+        },
+        partial: job == 2,
+        material: "film".into(),
+        tier: "default".into(),
+        gmsh: "4.8.4".into(),
+        ccx: "2.20".into(),
+        cpu_s: 9.5,
+    }
+}
+
+/// Five increments of each of ten jobs, in no useful order.
+fn rows() -> Vec<Row> {
+    let lambdas = [0.6, 0.2, 1.0, 0.4, 0.8];
+    let increments = |job| lambdas.map(|lambda| row(job, lambda));
+    (0..10).rev().flat_map(increments).collect()
+}
+
+fn collect(rows: Vec<Row>) -> Result<Database, DatasetError> {
+    Database::collect(rows, &Gates::default(), &SplitPlan::default())
+}
+
+fn written() -> (TempDir, PathBuf, Database) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("film.parquet");
+    let database = collect(rows()).unwrap();
+    database.write(&path, false).unwrap();
+    (folder, path, database)
+}
+
+fn files(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn what_is_written_is_read_back_bit_by_bit() {
+    let (folder, path, database) = written();
+    let read = Database::read(&path).unwrap();
+    assert_eq!(read.rows(), database.rows());
+    assert_eq!(read.manifest(), database.manifest());
+    assert_eq!(read.rows().len(), 50);
+    assert_eq!(files(folder.path()), ["film.json", "film.parquet"]);
+    let manifest = read.manifest();
+    assert_eq!(
+        (manifest.rays, manifest.partial_rays, manifest.geometries),
+        (10, 1, 10)
+    );
+    assert_eq!(manifest.domain.w_lig, [5.0, 14.0]);
+    assert_eq!(manifest.cpu_s, 95.0);
+    assert_eq!(manifest.units["F_a"], "N");
+}
+
+#[test]
+fn rows_come_in_the_order_of_job_and_lambda_and_give_the_same_file() {
+    let database = collect(rows()).unwrap();
+    let mut shuffled = rows();
+    shuffled.reverse();
+    let again = collect(shuffled).unwrap();
+    assert_eq!(database.manifest().hash, again.manifest().hash);
+    let lambdas: Vec<f64> = database.rows()[..5]
+        .iter()
+        .map(|row| row.sample.lambda)
+        .collect();
+    assert_eq!(lambdas, [0.2, 0.4, 0.6, 0.8, 1.0]);
+}
+
+#[test]
+fn the_parts_hold_every_row_once() {
+    let database = collect(rows()).unwrap();
+    let parts = [Part::Training, Part::Validation, Part::Test].map(|part| database.part(part));
+    assert_eq!(parts.each_ref().map(Vec::len), [40, 5, 5]);
+    let mut all: Vec<Row> = parts.into_iter().flatten().collect();
+    all.sort_by(|a, b| a.job.cmp(&b.job));
+    assert_eq!(all, database.rows());
+}
+
+#[test]
+fn rejected_rows_are_counted_and_printed() {
+    let mut rows = rows();
+    rows[3].sample.w = -1.0;
+    rows[4].sample.energy_residual = 0.5;
+    rows[5].sample.energy_residual = 0.5;
+    rows[6].sample.m_theta = f64::NAN;
+    let database = collect(rows).unwrap();
+    assert_eq!(database.rows().len(), 46);
+    let rejected: Vec<_> = database.manifest().rejected.iter().collect();
+    assert_eq!(
+        rejected,
+        [
+            (&Rejection::NotFinite, &1),
+            (&Rejection::Negative, &1),
+            (&Rejection::EnergyResidual, &2)
+        ]
+    );
+    let summary = database.to_string();
+    assert!(
+        summary.contains("rejected 2 rows: EnergyResidual"),
+        "{summary}"
+    );
+    assert!(
+        summary.contains("46 rows of 10 rays (1 partial)"),
+        "{summary}"
+    );
+}
+
+#[test]
+fn an_empty_database_is_refused() {
+    assert!(matches!(
+        collect(vec![]),
+        Err(DatasetError::NoRows { rejected: 0 })
+    ));
+    let bad = vec![Row {
+        cpu_s: f64::NAN,
+        ..row(0, 1.0)
+    }];
+    assert!(matches!(
+        collect(bad),
+        Err(DatasetError::NoRows { rejected: 1 })
+    ));
+}
+
+#[test]
+fn rows_that_do_not_belong_together_are_refused() {
+    let changes: [(Change, &str); 5] = [
+        (|row| row.material = "steel".into(), "material"),
+        (|row| row.tier = "tiny".into(), "tier"),
+        (|row| row.design.fillet_ratio = 0.2, "fillet_ratio"),
+        (|row| row.design.kerf = 0.1, "kerf"),
+        (|row| row.design.r_win = 70.0, "r_win"),
+    ];
+    for (change, expected) in changes {
+        let mut rows = rows();
+        change(&mut rows[0]);
+        match collect(rows).unwrap_err() {
+            DatasetError::Mixed { column, job, .. } => {
+                assert_eq!((column, job.as_str()), (expected, "job-09"));
+            }
+            other => panic!("{other}"),
+        }
+    }
+    let twice = rows().into_iter().chain([row(3, 0.4)]).collect();
+    let error = collect(twice).unwrap_err();
+    assert!(
+        matches!(error, DatasetError::Duplicate { lambda: 0.4, .. }),
+        "{error}"
+    );
+}
+
+#[test]
+fn an_existing_database_is_replaced_only_when_told() {
+    let (_folder, path, database) = written();
+    let error = database.write(&path, false).unwrap_err();
+    assert!(matches!(error, DatasetError::Exists { .. }), "{error}");
+    database.write(&path, true).unwrap();
+}
+
+#[test]
+fn a_file_that_is_not_its_manifests_is_refused() {
+    let (_folder, path, _) = written();
+    let mut bytes = std::fs::read(&path).unwrap();
+    bytes[100] ^= 1;
+    std::fs::write(&path, bytes).unwrap();
+    let error = Database::read(&path).unwrap_err();
+    assert!(matches!(error, DatasetError::Hash { .. }), "{error}");
+}
+
+#[test]
+fn a_missing_malformed_or_later_manifest_is_refused() {
+    let (_folder, path, _) = written();
+    let manifest = path.with_extension("json");
+    let text = std::fs::read_to_string(&manifest).unwrap();
+    let later = text.replace("\"format_version\": 1", "\"format_version\": 9");
+    std::fs::write(&manifest, later).unwrap();
+    let error = Database::read(&path).unwrap_err();
+    assert!(
+        matches!(error, DatasetError::UnknownVersion { found: 9, .. }),
+        "{error}"
+    );
+    std::fs::write(&manifest, &text[..100]).unwrap();
+    assert!(matches!(
+        Database::read(&path),
+        Err(DatasetError::Manifest { .. })
+    ));
+    std::fs::remove_file(&manifest).unwrap();
+    assert!(matches!(
+        Database::read(&path),
+        Err(DatasetError::Read { .. })
+    ));
+}

@@ -1,0 +1,218 @@
+//! One design step: equilibria at ten load factors, and with them the gradient, by size of the sheet
+//! (linear law, k_a / k_theta = 1e4); and twenty equilibria of a 3 x 3 sheet with a learned hinge.
+//!
+//! A strip of panels in the west is clamped, the panel in the middle of the east edge is pulled.
+
+use design::actuation::{Dof, Load, Support};
+use design::chamfer::Chamfer;
+use design::design_vector::{DesignVector, WidthChart};
+use design::equilibrium::{EquilibriumSolver, SolverSettings, Status};
+use design::gradient::{DesignProblem, Mechanics, Model};
+use design::grid::Grid;
+use design::hinge_law::{HingeLaw, LinearLaw, SurrogateLaw};
+use design::objective::{Objective, OutlinePoints};
+use design::path_functionals::PerFunctional;
+use design::pattern::Outline;
+use design::sheet::{Centroid, CutProcess, HingePoint, SheetOptions};
+use divan::{Bencher, black_box};
+use hinge::TrainingDomain;
+use surrogate::{Card, FEATURE_NAMES, HingeConstants, Layer, Surrogate, Tensor, TestErrors};
+
+fn main() {
+    divan::main();
+}
+
+const SIZES: [(usize, usize); 3] = [(3, 3), (7, 7), (15, 10)];
+
+/// A sheet with panels of 1 x 1 and the linear law.
+fn linear((m, n): (usize, usize)) -> (DesignProblem, DesignVector) {
+    let law = LinearLaw::uniform([1e4, 1e4, 1.0], Grid { m, n }.hinge_count()).unwrap();
+    problem(
+        Grid { m, n },
+        1.0,
+        law,
+        HingePoint::Corner,
+        4.0 * n as f64,
+        10,
+    )
+}
+
+fn problem(
+    grid: Grid,
+    pitch: f64,
+    law: impl HingeLaw + 'static,
+    hinge_point: HingePoint,
+    pull: f64,
+    steps: usize,
+) -> (DesignProblem, DesignVector) {
+    let west = grid.m * (grid.n / 2);
+    let supports = Dof::ALL.map(|dof| Support {
+        panel: west,
+        dof,
+        value: 0.0,
+    });
+    let load = Load {
+        panel: west + grid.m - 1,
+        dof: Dof::UX,
+        value: pull,
+    };
+    let settings = SolverSettings::default();
+    let outline = Outline::rectangle(pitch * grid.m as f64, pitch * grid.n as f64);
+    let target = (0..500).map(|i| {
+        let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 500.0).sin_cos();
+        [pitch * grid.m as f64 * cos, pitch * grid.n as f64 * sin]
+    });
+    let problem = DesignProblem {
+        grid,
+        outline,
+        widths: WidthChart {
+            w_minus: 0.08 * pitch,
+            w_plus: 0.24 * pitch,
+        },
+        options: SheetOptions {
+            hinge_point,
+            centroid: Centroid::Area,
+            process: CutProcess {
+                fillet_ratio: 0.16,
+                kerf: 0.2,
+                r_win: 100.0,
+            },
+        },
+        model: Model::Equilibrium(Mechanics {
+            law: Box::new(law),
+            contact: None,
+            solver: EquilibriumSolver::new(grid, &supports, &[load], steps, settings).unwrap(),
+        }),
+        objective: Objective {
+            target: target.collect(),
+            chamfer: Chamfer {
+                coverage_weight: 0.5,
+                smoothing: 0.0,
+            },
+            outline: OutlinePoints::Free,
+            centred: true,
+            weights: PerFunctional {
+                damage: 1.0,
+                compression: 0.1,
+                shear: 0.1,
+            },
+            temperatures: PerFunctional {
+                damage: 0.1,
+                compression: 0.02,
+                shear: 0.02,
+            },
+        },
+    };
+    // Off the symmetric pattern, whose hinges are all alike.
+    let mut design = DesignVector::uniform(grid);
+    let wave = (0..).map(|i: i32| 0.5 * f64::from(i * i).sin());
+    design
+        .pattern
+        .z
+        .iter_mut()
+        .zip(wave)
+        .for_each(|(z, wave)| *z = wave);
+    (problem, design)
+}
+
+/// A network of three hidden layers of 64 units with weights of the size that training starts from.
+fn learned() -> SurrogateLaw {
+    let layers = |widths: &[usize]| -> Vec<Layer> {
+        let pairs = widths.windows(2);
+        pairs
+            .map(|pair| {
+                let (inputs, outputs) = (pair[0], pair[1]);
+                let size = (2.0 / inputs as f64).sqrt();
+                let wave = |i: usize| size * ((i * i) as f64).sin();
+                Layer {
+                    weight: Tensor {
+                        shape: vec![outputs, inputs],
+                        values: (0..outputs * inputs).map(wave).collect(),
+                    },
+                    bias: Tensor {
+                        shape: vec![outputs],
+                        values: vec![0.1; outputs],
+                    },
+                }
+            })
+            .collect()
+    };
+    let card = Card {
+        format_version: surrogate::FORMAT_VERSION,
+        units: surrogate::UNITS.into(),
+        features: FEATURE_NAMES.map(String::from).to_vec(),
+        standardisation: surrogate::Standardisation {
+            mean: [0.0, 0.0, 0.6, 18.0_f64.ln(), 1.57],
+            std: [0.2, 0.2, 0.4, 0.45, 0.45],
+        },
+        energy_scale: 85.0,
+        damage_scale: 0.01,
+        domain: TrainingDomain {
+            eta_a: [-0.5, 0.5],
+            eta_s: [-0.5, 0.5],
+            theta: [-0.2, 1.4],
+            w_lig: [5.0, 25.0],
+            alpha: [0.5, 2.6],
+        },
+        hinge: HingeConstants {
+            fillet_ratio: 0.16,
+            kerf: 0.2,
+            r_win: 100.0,
+        },
+        material: "none".into(),
+        tier: "none".into(),
+        dataset_hash: "none".into(),
+        split_hash: "none".into(),
+        training: Default::default(),
+        test_errors: TestErrors::default(),
+    };
+    let chi = layers(&[5, 64, 64, 64, 32]);
+    SurrogateLaw::new(Surrogate::from_parts(chi, layers(&[5, 64, 1]), card).unwrap())
+}
+
+fn assert_equilibria(problem: &DesignProblem, design: &DesignVector) {
+    let deployment = problem.deploy(design).unwrap();
+    let iterations: usize = deployment.path.iter().map(|step| step.iterations).sum();
+    let last = deployment.final_step();
+    let open = last
+        .deformations
+        .iter()
+        .map(|d| d.theta.abs())
+        .fold(0.0, f64::max);
+    eprintln!(
+        "{} x {}: {iterations} Newton iterations, opening {open:.2} rad, inside {:.2}, {:?}",
+        problem.grid.m,
+        problem.grid.n,
+        deployment.share_inside(),
+        last.status
+    );
+    assert_ne!(last.status, Status::Diverged);
+}
+
+#[divan::bench(args = SIZES)]
+fn equilibria_linear(bencher: Bencher, size: (usize, usize)) {
+    let (problem, design) = linear(size);
+    assert_equilibria(&problem, &design);
+    bencher.bench(|| problem.deploy(black_box(&design)).unwrap());
+}
+
+#[divan::bench(args = SIZES)]
+fn equilibria_and_gradient_linear(bencher: Bencher, size: (usize, usize)) {
+    let (problem, design) = linear(size);
+    bencher.bench(|| problem.evaluate(black_box(&design)).unwrap());
+}
+
+#[divan::bench]
+fn equilibria_learned(bencher: Bencher) {
+    let grid = Grid { m: 3, n: 3 };
+    let (problem, design) = problem(grid, 100.0, learned(), HingePoint::CutTip, 150.0, 20);
+    assert_equilibria(&problem, &design);
+    bencher.bench(|| problem.deploy(black_box(&design)).unwrap());
+}
+
+#[divan::bench]
+fn equilibria_and_gradient_learned(bencher: Bencher) {
+    let grid = Grid { m: 3, n: 3 };
+    let (problem, design) = problem(grid, 100.0, learned(), HingePoint::CutTip, 150.0, 20);
+    bencher.bench(|| problem.evaluate(black_box(&design)).unwrap());
+}

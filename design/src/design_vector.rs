@@ -1,0 +1,82 @@
+//! The design vector theta = (z, ell, omega) of (1) in unconstrained coordinates, and the chart of
+//! the ligament widths, w_lig = w_minus + (w_plus - w_minus) sigma(omega).
+
+use crate::grid::Grid;
+use crate::pattern::{PatternCoordinates, logistic};
+use serde::{Deserialize, Serialize};
+
+/// Everything the optimiser sets, or a gradient in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DesignVector {
+    /// (z, ell): the cut pattern.
+    pub pattern: PatternCoordinates,
+    /// The ligament widths, one logit per hinge.
+    pub omega: Vec<f64>,
+    /// The angle of the ideal deployment (rad), where it is designed too.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub opening: Option<f64>,
+}
+
+impl DesignVector {
+    /// r = 1/2, evenly spaced outline cuts, widths in the middle of their chart.
+    pub fn uniform(grid: Grid) -> Self {
+        Self {
+            pattern: PatternCoordinates::uniform(grid),
+            omega: vec![0.0; grid.hinge_count()],
+            opening: None,
+        }
+    }
+
+    /// All coordinates in one row: z, ell of the bottom, right, top, left edge, omega, opening.
+    pub fn to_flat(&self) -> Vec<f64> {
+        self.blocks().flatten().copied().collect()
+    }
+
+    /// The design of the same sheet with the coordinates of a row as [`to_flat`](Self::to_flat)
+    /// writes it; missing coordinates keep their values.
+    pub fn with_flat(&self, flat: &[f64]) -> Self {
+        let mut design = self.clone();
+        let mut values = flat.iter();
+        let edges = design.pattern.ell.iter_mut().flatten();
+        let coordinates = design.pattern.z.iter_mut().chain(edges);
+        for coordinate in coordinates
+            .chain(&mut design.omega)
+            .chain(&mut design.opening)
+        {
+            if let Some(&value) = values.next() {
+                *coordinate = value;
+            }
+        }
+        design
+    }
+
+    fn blocks(&self) -> impl Iterator<Item = &[f64]> {
+        std::iter::once(self.pattern.z.as_slice())
+            .chain(self.pattern.ell.iter().map(Vec::as_slice))
+            .chain([self.omega.as_slice(), self.opening.as_slice()])
+    }
+}
+
+/// The interval of admissible ligament widths (mm).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WidthChart {
+    /// Narrowest ligament (mm).
+    pub w_minus: f64,
+    /// Widest ligament (mm).
+    pub w_plus: f64,
+}
+
+impl WidthChart {
+    /// w_lig (mm).
+    pub fn width(&self, omega: f64) -> f64 {
+        self.w_minus + (self.w_plus - self.w_minus) * logistic(omega)
+    }
+
+    /// dw_lig/domega (mm).
+    pub fn slope(&self, omega: f64) -> f64 {
+        let sigma = logistic(omega);
+        (self.w_plus - self.w_minus) * sigma * (1.0 - sigma)
+    }
+}

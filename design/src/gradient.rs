@@ -1,0 +1,252 @@
+//! theta -> pattern -> sheet -> equilibria -> objective, and the gradient back along the same chain:
+//! lines 2-7 of Algorithm 1.
+
+use crate::adjoint::adjoint;
+use crate::design_vector::{DesignVector, WidthChart};
+use crate::equilibrium::{EquilibriumError, EquilibriumSolver, HingedSheet, LoadStep, Status};
+use crate::grid::Grid;
+use crate::hinge_law::{Contact, HingeLaw, PreparedLaw};
+use crate::ideal_deployment::{ideal_deployment, ideal_deployment_pullback};
+use crate::kinematics::{deployed, deployed_pullback};
+use crate::objective::{Judgement, Objective, Terms};
+use crate::pattern::{CutPattern, Outline, PatternError};
+use crate::plane::add;
+use crate::sheet::{Sheet, SheetError, SheetGradient, SheetOptions};
+use crate::topology::PanelCorner;
+
+/// Why a design has no value.
+#[derive(Debug, thiserror::Error)]
+pub enum DesignError {
+    #[error(transparent)]
+    Pattern(#[from] PatternError),
+    #[error(transparent)]
+    Sheet(#[from] SheetError),
+    #[error(transparent)]
+    Equilibrium(#[from] EquilibriumError),
+    #[error("w_minus = {w_minus} mm, w_plus = {w_plus} mm violates 0 < w_minus < w_plus")]
+    WidthChart { w_minus: f64, w_plus: f64 },
+    #[error("the target has no points")]
+    EmptyTarget,
+    #[error("an opening of {0} rad is not a finite number")]
+    Opening(f64),
+    #[error(
+        "no equilibrium beyond load factor {reached:.4} (relative residual {residual:.1e}): reduce \
+         the load, widen the ligaments or support the sheet differently"
+    )]
+    NoEquilibrium { reached: f64, residual: f64 },
+    #[error(
+        "the tangent is singular at load factor {load_factor:.4}: the gradient does not exist there"
+    )]
+    SingularTangent { load_factor: f64 },
+}
+
+/// Hinge law, supports and loads.
+pub struct Mechanics {
+    pub law: Box<dyn HingeLaw>,
+    pub contact: Option<Contact>,
+    pub solver: EquilibriumSolver,
+}
+
+/// How a deployed state follows from a sheet.
+pub enum Model {
+    /// Hinges are pins that all open by this angle (rad), unless the design has its own opening:
+    /// neither equilibrium nor hinge energy.
+    Ideal { opening: f64 },
+    /// Equilibria under load.
+    Equilibrium(Mechanics),
+}
+
+/// A design problem: everything that is fixed before the design begins.
+pub struct DesignProblem {
+    pub grid: Grid,
+    pub outline: Outline,
+    pub widths: WidthChart,
+    pub options: SheetOptions,
+    pub model: Model,
+    pub objective: Objective,
+}
+
+/// A design, deployed.
+pub struct Deployment {
+    pub pattern: CutPattern,
+    pub sheet: Sheet,
+    /// One entry per load step; a single one for the ideal deployment.
+    pub path: Vec<LoadStep>,
+}
+
+/// A design, judged.
+pub struct Evaluation {
+    /// L of (16).
+    pub loss: f64,
+    pub terms: Terms,
+    /// dL/dtheta
+    pub gradient: DesignVector,
+    pub deployment: Deployment,
+    /// Greatest componentwise backward error of the adjoint solves.
+    pub adjoint_residual: f64,
+}
+
+impl Deployment {
+    /// The state at full load.
+    pub fn final_step(&self) -> &LoadStep {
+        self.path.last().expect("a path has at least one step")
+    }
+
+    /// Share of the hinge states of the path that the hinge law was made for.
+    pub fn share_inside(&self) -> f64 {
+        let inside = || self.path.iter().flat_map(|step| &step.inside);
+        inside().filter(|inside| **inside).count() as f64 / inside().count() as f64
+    }
+}
+
+impl DesignProblem {
+    /// Lines 2-5 of Algorithm 1. A path that diverges ends early; see [`LoadStep::status`].
+    pub fn deploy(&self, design: &DesignVector) -> Result<Deployment, DesignError> {
+        let WidthChart { w_minus, w_plus } = self.widths;
+        if !(w_minus > 0.0 && w_minus < w_plus && w_plus.is_finite()) {
+            return Err(DesignError::WidthChart { w_minus, w_plus });
+        }
+        let pattern = CutPattern::new(self.grid, self.outline, &design.pattern)?;
+        let w_lig: Vec<f64> = (design.omega.iter())
+            .map(|&omega| self.widths.width(omega))
+            .collect();
+        let sheet = Sheet::new(&pattern, &w_lig, self.options)?;
+        let path = match &self.model {
+            Model::Ideal { opening } => {
+                let theta = design.opening.unwrap_or(*opening);
+                if !theta.is_finite() {
+                    return Err(DesignError::Opening(theta));
+                }
+                vec![LoadStep::ideal(&sheet, ideal_deployment(&sheet, theta))]
+            }
+            Model::Equilibrium(mechanics) => {
+                let law = mechanics.law.prepare(&sheet.designs());
+                mechanics.solver.path(mechanics.hinged(&sheet, &*law))
+            }
+        };
+        Ok(Deployment {
+            pattern,
+            sheet,
+            path,
+        })
+    }
+
+    /// L(theta) and its gradient.
+    pub fn evaluate(&self, design: &DesignVector) -> Result<Evaluation, DesignError> {
+        let deployment = self.deploy(design)?;
+        let outline = self.objective.outline.of(&deployment.sheet);
+        let judgement = self.judge(&deployment, &outline)?;
+        let (sheet, last) = (&deployment.sheet, deployment.final_step());
+        let mut by_sheet = SheetGradient::zeros(self.grid);
+        let by_last = outline_pullback(sheet, last, &outline, &judgement.by_outline, &mut by_sheet);
+        let (mut by_opening, mut adjoint_residual) = (None, 0.0);
+        match &self.model {
+            Model::Ideal { opening } => {
+                let theta = design.opening.unwrap_or(*opening);
+                let slope = ideal_deployment_pullback(sheet, theta, &by_last, &mut by_sheet);
+                by_opening = design.opening.map(|_| slope);
+            }
+            Model::Equilibrium(mechanics) => {
+                let law = mechanics.law.prepare(&sheet.designs());
+                adjoint_residual = adjoint(
+                    &mechanics.solver,
+                    mechanics.hinged(sheet, &*law),
+                    &deployment.path,
+                    &judgement.by_path,
+                    by_last,
+                    &mut by_sheet,
+                )?;
+            }
+        }
+        let (by_points, by_width) = sheet.pullback(&by_sheet);
+        let gradient = DesignVector {
+            pattern: deployment.pattern.pullback(&by_points),
+            omega: std::iter::zip(&design.omega, by_width)
+                .map(|(&omega, by_width)| by_width * self.widths.slope(omega))
+                .collect(),
+            opening: by_opening,
+        };
+        Ok(Evaluation {
+            loss: judgement.loss,
+            terms: judgement.terms,
+            gradient,
+            deployment,
+            adjoint_residual,
+        })
+    }
+
+    /// L(theta) without its gradient.
+    pub fn loss(&self, design: &DesignVector) -> Result<f64, DesignError> {
+        let deployment = self.deploy(design)?;
+        let outline = self.objective.outline.of(&deployment.sheet);
+        Ok(self.judge(&deployment, &outline)?.loss)
+    }
+
+    fn judge(
+        &self,
+        deployment: &Deployment,
+        outline: &[PanelCorner],
+    ) -> Result<Judgement, DesignError> {
+        if self.objective.target.is_empty() {
+            return Err(DesignError::EmptyTarget);
+        }
+        let (sheet, last) = (&deployment.sheet, deployment.final_step());
+        if last.status == Status::Diverged {
+            return Err(DesignError::NoEquilibrium {
+                reached: last.load_factor,
+                residual: last.residual,
+            });
+        }
+        let points: Vec<[f64; 2]> = outline
+            .iter()
+            .map(|&(panel, corner)| {
+                let flat = sheet.panels[panel].corners[corner];
+                deployed(&sheet.panels[panel], last.configuration[panel], flat)
+            })
+            .collect();
+        let damage_scale = match &self.model {
+            Model::Ideal { .. } => None,
+            Model::Equilibrium(mechanics) => mechanics.law.damage_scale(),
+        };
+        // Without a damage there is nothing to scale.
+        let scale = damage_scale.unwrap_or(1.0);
+        Ok(self
+            .objective
+            .judge(&points, sheet, &deployment.path, scale))
+    }
+}
+
+impl Mechanics {
+    fn hinged<'a>(&'a self, sheet: &'a Sheet, law: &'a dyn PreparedLaw) -> HingedSheet<'a> {
+        HingedSheet {
+            sheet,
+            law,
+            contact: self.contact.as_ref(),
+        }
+    }
+}
+
+/// The gradient in the last configuration of a function of the deployed outline points; what it
+/// reads of the flat sheet is added to `by_sheet`.
+fn outline_pullback(
+    sheet: &Sheet,
+    last: &LoadStep,
+    outline: &[PanelCorner],
+    by_outline: &[[f64; 2]],
+    by_sheet: &mut SheetGradient,
+) -> Vec<[f64; 3]> {
+    let mut by_last = vec![[0.0; 3]; sheet.panels.len()];
+    for (&(panel, corner), &gradient) in std::iter::zip(outline, by_outline) {
+        let flat = sheet.panels[panel].corners[corner];
+        let (by_motion, by_flat, by_centroid) = deployed_pullback(
+            &sheet.panels[panel],
+            last.configuration[panel],
+            flat,
+            gradient,
+        );
+        (0..3).for_each(|c| by_last[panel][c] += by_motion[c]);
+        add(&mut by_sheet.corners[panel][corner], by_flat);
+        add(&mut by_sheet.centroids[panel], by_centroid);
+    }
+    by_last
+}

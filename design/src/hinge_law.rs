@@ -1,0 +1,47 @@
+//! The stored energy of a hinge as a function of its deformation and design (9), behind one trait.
+//!
+//! | law | energy | needs |
+//! |---|---|---|
+//! | [`LinearLaw`] | (11), three springs | constants |
+//! | [`SurrogateLaw`] | (14), with a barrier around the training domain | weights |
+//!
+//! A law is first prepared for the hinges of one sheet and then evaluated for all of them at once.
+
+mod contact;
+mod linear;
+mod surrogate;
+
+pub use ::surrogate::{HingeDamage, HingeEnergy, Order};
+pub use contact::{Contact, InvalidContact};
+pub use linear::{InvalidStiffness, LinearLaw};
+pub use surrogate::SurrogateLaw;
+
+use hinge::{HingeDeformation, HingeDesign};
+
+/// A stored-energy function of the hinge deformation, for any hinge design.
+pub trait HingeLaw: Send + Sync {
+    /// Does once what depends on the designs alone.
+    fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a>;
+
+    /// D_s of (17), for a law that predicts damage.
+    fn damage_scale(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// A hinge law for the hinges of one sheet. Each method takes one deformation per hinge.
+pub trait PreparedLaw {
+    /// Energies with their derivatives up to `order`. Beyond a law's reach the energy may be
+    /// infinite; it is never NaN for finite deformations.
+    fn energies(&self, deformations: &[HingeDeformation], order: Order) -> Vec<HingeEnergy>;
+
+    /// The predicted damage (12); empty for a law that predicts none.
+    fn damage(&self, _deformations: &[HingeDeformation]) -> Vec<HingeDamage> {
+        Vec::new()
+    }
+
+    /// Which hinges are in a state that the law was made for.
+    fn inside(&self, deformations: &[HingeDeformation]) -> Vec<bool> {
+        vec![true; deformations.len()]
+    }
+}

@@ -1,0 +1,89 @@
+//! The linear hinge law (11): W = (k_a a^2 + k_s s^2 + k_theta theta^2) / 2.
+
+use super::{HingeEnergy, HingeLaw, Order, PreparedLaw};
+use hinge::{HingeDeformation, HingeDesign};
+
+/// Three uncoupled springs per hinge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinearLaw {
+    /// (k_a, k_s, k_theta) per hinge (N/mm, N/mm, N mm).
+    stiffness: Vec<[f64; 3]>,
+}
+
+/// A spring constant that stores no energy.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "hinge {hinge}: {name} = {value} is not positive and finite; give k_a and k_s in N/mm and \
+     k_theta in N mm"
+)]
+pub struct InvalidStiffness {
+    pub hinge: usize,
+    pub name: &'static str,
+    pub value: f64,
+}
+
+impl LinearLaw {
+    /// One triple (k_a, k_s, k_theta) per hinge (N/mm, N/mm, N mm).
+    pub fn new(stiffness: Vec<[f64; 3]>) -> Result<Self, InvalidStiffness> {
+        for (hinge, constants) in stiffness.iter().enumerate() {
+            for (name, &value) in std::iter::zip(["k_a", "k_s", "k_theta"], constants) {
+                if !(value > 0.0 && value.is_finite()) {
+                    return Err(InvalidStiffness { hinge, name, value });
+                }
+            }
+        }
+        Ok(Self { stiffness })
+    }
+
+    /// The same constants at every one of `hinges` hinges.
+    pub fn uniform(stiffness: [f64; 3], hinges: usize) -> Result<Self, InvalidStiffness> {
+        Self::new(vec![stiffness; hinges])
+    }
+}
+
+impl HingeLaw for LinearLaw {
+    /// # Panics
+    /// If there is not one triple of constants for each hinge.
+    fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a> {
+        assert_eq!(self.stiffness.len(), designs.len(), "one triple per hinge");
+        Box::new(self)
+    }
+}
+
+impl PreparedLaw for &LinearLaw {
+    fn energies(&self, deformations: &[HingeDeformation], _order: Order) -> Vec<HingeEnergy> {
+        std::iter::zip(deformations, &self.stiffness)
+            .map(|(deformation, constants)| spring(deformation.to_array(), constants))
+            .collect()
+    }
+}
+
+fn spring(deformation: [f64; 3], constants: &[f64; 3]) -> HingeEnergy {
+    let mut energy = HingeEnergy::default();
+    for c in 0..3 {
+        energy.forces[c] = constants[c] * deformation[c];
+        energy.tangent[c][c] = constants[c];
+        energy.w += 0.5 * energy.forces[c] * deformation[c];
+    }
+    energy
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn energies_forces_and_tangents_of_three_springs() {
+        let energy = spring([0.1, -0.2, 0.5], &[100.0, 60.0, 2.0]);
+        assert!((energy.w - (0.5 + 1.2 + 0.25)).abs() < 1e-15);
+        assert_eq!(energy.forces, [10.0, -12.0, 1.0]);
+        assert_eq!(energy.tangent[1], [0.0, 60.0, 0.0]);
+    }
+
+    #[test]
+    fn constants_that_store_nothing_are_named() {
+        let error = LinearLaw::new(vec![[1.0; 3], [1.0, 0.0, 1.0]]).unwrap_err();
+        assert_eq!((error.hinge, error.name), (1, "k_s"));
+        assert!(LinearLaw::uniform([1.0, 1.0, f64::NAN], 3).is_err());
+    }
+}

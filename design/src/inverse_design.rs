@@ -1,0 +1,368 @@
+//! The outer loop, Algorithm 1: Adam on theta = (z, ell, omega), one value and gradient a step.
+//!
+//! A design whose sheet finds no equilibrium ends nothing: the step from the last design that had
+//! one is halved until there is one again. The state is saved in the run folder about once a second
+//! and at the end, and a run takes up there: steps depend on nothing but the scene, the files it names
+//! and the state, so a run that was stopped follows the trajectory of one that was not.
+
+use crate::adam::Adam;
+use crate::design_vector::DesignVector;
+use crate::files;
+use crate::gradient::{DesignError, DesignProblem, Evaluation};
+use crate::outline_error::outline_error;
+use crate::scene::{Scene, SceneConfig, SceneError};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// How often the step is halved before the run gives up.
+const MAX_HALVINGS: u32 = 12;
+const SAVE_EVERY: Duration = Duration::from_secs(1);
+const STATE_FILE: &str = "state.json";
+
+/// What one step found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StepRecord {
+    /// 0 is the start.
+    pub step: usize,
+    /// L of (16) (mm^2).
+    pub loss: f64,
+    /// Root mean square distance of the deployed outline to the target (mm).
+    pub outline_error: f64,
+    /// The Chamfer distance, coverage included (mm^2).
+    pub chamfer: f64,
+    /// (17)-(19), unweighted.
+    pub damage: f64,
+    pub compression: f64,
+    pub shear: f64,
+    /// Share of the hinge states of the path that the hinge law was made for.
+    pub share_inside: f64,
+    /// How often the step was halved, and why.
+    pub halvings: u32,
+    pub setback: Option<String>,
+}
+
+/// Why a run ended.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Ended {
+    /// All steps were made.
+    Completed,
+    /// It was asked to stop; the next run continues.
+    Stopped,
+    /// No step from the last design, however small, leads to a design with an equilibrium.
+    Stuck { reason: String },
+}
+
+/// A finished run.
+pub struct Designed {
+    pub ended: Ended,
+    pub history: Vec<StepRecord>,
+    /// The design of the least loss.
+    pub design: DesignVector,
+    pub start: Evaluation,
+    pub best: Evaluation,
+}
+
+/// Why there is no run.
+#[derive(Debug, thiserror::Error)]
+pub enum InverseDesignError {
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error("the start of the search cannot be evaluated: {0}")]
+    Start(DesignError),
+    #[error("the best design of the run cannot be evaluated again: {0}")]
+    Best(DesignError),
+    #[error("the run folder: cannot use {path}: {source}", path = .path.display())]
+    Folder {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    #[error(
+        "{path} is not the state of a run ({source}); remove it to start afresh",
+        path = .path.display()
+    )]
+    State {
+        path: PathBuf,
+        source: serde_json::Error,
+    },
+    #[error(
+        "{path} holds a design of another size than the scene's; remove it to start afresh",
+        path = .path.display()
+    )]
+    OtherSize { path: PathBuf },
+    #[error(
+        "{path} belongs to a run of another scene; remove it to start afresh, or give the scene \
+         another `output`",
+        path = .path.display()
+    )]
+    OtherScene { path: PathBuf },
+}
+
+/// Everything that the next step depends on.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct State {
+    scene: SceneConfig,
+    /// The last design that was evaluated.
+    design: DesignVector,
+    /// What Adam proposes next.
+    proposal: DesignVector,
+    adam: Adam,
+    best: DesignVector,
+    history: Vec<StepRecord>,
+}
+
+/// Runs the search of a scene in its run folder, from the state there if there is one.
+///
+/// `progress` hears of every step as it is made; the run stops after the step during which `stop`
+/// becomes true.
+pub fn inverse_design(
+    scene: &Scene,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(&StepRecord),
+) -> Result<Designed, InverseDesignError> {
+    let problem = scene.problem()?;
+    let folder = scene.output();
+    std::fs::create_dir_all(&folder).map_err(|source| InverseDesignError::Folder {
+        path: folder.clone(),
+        source,
+    })?;
+    let path = folder.join(STATE_FILE);
+    let start = problem
+        .evaluate(&scene.start())
+        .map_err(InverseDesignError::Start)?;
+    let mut state = match State::read(&path, scene)? {
+        Some(state) => state,
+        None => {
+            let mut state = State::new(scene);
+            let design = scene.start();
+            progress(state.accept(scene, design, &start, Setback::default()));
+            state
+        }
+    };
+
+    let mut saved = Instant::now();
+    let ended = loop {
+        if state.history.len() > scene.config.optimiser.steps {
+            break Ended::Completed;
+        }
+        if stop.load(Ordering::Relaxed) {
+            break Ended::Stopped;
+        }
+        match evaluate_or_back_off(&problem, &state.design, state.proposal.clone()) {
+            Ok((design, evaluation, setback)) => {
+                progress(state.accept(scene, design, &evaluation, setback));
+            }
+            Err(reason) => break Ended::Stuck { reason },
+        }
+        if saved.elapsed() > SAVE_EVERY {
+            state.write(&path)?;
+            saved = Instant::now();
+        }
+    };
+    state.write(&path)?;
+    let best = problem
+        .evaluate(&state.best)
+        .map_err(InverseDesignError::Best)?;
+    Ok(Designed {
+        ended,
+        history: state.history,
+        design: state.best,
+        start,
+        best,
+    })
+}
+
+/// What kept a step from its full length.
+#[derive(Default)]
+struct Setback {
+    halvings: u32,
+    reason: Option<String>,
+}
+
+/// Evaluates the proposal, or the nearest point halfway back to `good` that has a finite loss.
+fn evaluate_or_back_off(
+    problem: &DesignProblem,
+    good: &DesignVector,
+    mut proposal: DesignVector,
+) -> Result<(DesignVector, Evaluation, Setback), String> {
+    let mut setback = Setback::default();
+    loop {
+        let reason = match problem.evaluate(&proposal) {
+            Ok(evaluation) if is_finite(&evaluation) => return Ok((proposal, evaluation, setback)),
+            Ok(_) => "the loss or its gradient is not finite".to_owned(),
+            Err(error) => error.to_string(),
+        };
+        if setback.halvings == MAX_HALVINGS {
+            return Err(reason);
+        }
+        setback.halvings += 1;
+        setback.reason.get_or_insert(reason);
+        let halfway: Vec<f64> = std::iter::zip(good.to_flat(), proposal.to_flat())
+            .map(|(good, proposed)| 0.5 * (good + proposed))
+            .collect();
+        proposal = proposal.with_flat(&halfway);
+    }
+}
+
+fn is_finite(evaluation: &Evaluation) -> bool {
+    evaluation.loss.is_finite() && evaluation.gradient.to_flat().iter().all(|g| g.is_finite())
+}
+
+impl State {
+    fn new(scene: &Scene) -> Self {
+        let design = scene.start();
+        Self {
+            scene: scene.config.clone(),
+            adam: Adam::new(design.to_flat().len(), scene.config.optimiser.learning_rate),
+            proposal: design.clone(),
+            best: design.clone(),
+            design,
+            history: Vec::new(),
+        }
+    }
+
+    /// Takes an evaluated design as the current one and proposes the next.
+    fn accept(
+        &mut self,
+        scene: &Scene,
+        design: DesignVector,
+        evaluation: &Evaluation,
+        setback: Setback,
+    ) -> &StepRecord {
+        let least = self
+            .history
+            .iter()
+            .map(|record| record.loss)
+            .fold(f64::INFINITY, f64::min);
+        if evaluation.loss < least {
+            self.best = design.clone();
+        }
+        let increment = self.adam.increment(&evaluation.gradient.to_flat());
+        let proposal: Vec<f64> = std::iter::zip(design.to_flat(), increment)
+            .map(|(coordinate, increment)| coordinate + increment)
+            .collect();
+        self.proposal = design.with_flat(&proposal);
+        self.design = design;
+        let path = &evaluation.terms.path;
+        self.history.push(StepRecord {
+            step: self.history.len(),
+            loss: evaluation.loss,
+            outline_error: outline_error(scene, &evaluation.deployment),
+            chamfer: evaluation.terms.chamfer,
+            damage: path.damage,
+            compression: path.compression,
+            shear: path.shear,
+            share_inside: evaluation.deployment.share_inside(),
+            halvings: setback.halvings,
+            setback: setback.reason,
+        });
+        &self.history[self.history.len() - 1]
+    }
+
+    /// The state of an earlier run of the same scene, which may since ask for more steps.
+    fn read(path: &Path, scene: &Scene) -> Result<Option<Self>, InverseDesignError> {
+        let text = match std::fs::read_to_string(path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(source) => {
+                let path = path.to_owned();
+                return Err(InverseDesignError::Folder { path, source });
+            }
+        };
+        let mut state: Self =
+            serde_json::from_str(&text).map_err(|source| InverseDesignError::State {
+                path: path.to_owned(),
+                source,
+            })?;
+        state.scene.optimiser.steps = scene.config.optimiser.steps;
+        if state.scene != scene.config {
+            let path = path.to_owned();
+            return Err(InverseDesignError::OtherScene { path });
+        }
+        let n = scene.start().to_flat().len();
+        let designs = [&state.design, &state.proposal, &state.best];
+        let same_size = designs.iter().all(|design| design.to_flat().len() == n);
+        if !same_size || state.adam.len() != n || state.history.is_empty() {
+            let path = path.to_owned();
+            return Err(InverseDesignError::OtherSize { path });
+        }
+        Ok(Some(state))
+    }
+
+    fn write(&self, path: &Path) -> Result<(), InverseDesignError> {
+        serde_json::to_vec_pretty(self)
+            .map_err(std::io::Error::from)
+            .and_then(|text| files::write(path, &text))
+            .map_err(|source| InverseDesignError::Folder {
+                path: path.to_owned(),
+                source,
+            })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chamfer::Chamfer;
+    use crate::design_vector::WidthChart;
+    use crate::gradient::Model;
+    use crate::grid::Grid;
+    use crate::objective::{Objective, OutlinePoints};
+    use crate::path_functionals::PerFunctional;
+    use crate::pattern::Outline;
+    use crate::sheet::{Centroid, CutProcess, HingePoint, SheetOptions};
+
+    fn problem(grid: Grid) -> DesignProblem {
+        DesignProblem {
+            grid,
+            outline: Outline::rectangle(2.0, 2.0),
+            widths: WidthChart {
+                w_minus: 0.05,
+                w_plus: 0.1,
+            },
+            options: SheetOptions {
+                hinge_point: HingePoint::Corner,
+                centroid: Centroid::Area,
+                process: CutProcess {
+                    fillet_ratio: 0.16,
+                    kerf: 0.01,
+                    r_win: 0.3,
+                },
+            },
+            model: Model::Ideal { opening: 0.5 },
+            objective: Objective {
+                target: vec![[3.0, 3.0]],
+                chamfer: Chamfer {
+                    coverage_weight: 0.5,
+                    smoothing: 0.0,
+                },
+                outline: OutlinePoints::Free,
+                centred: false,
+                weights: PerFunctional::default(),
+                temperatures: PerFunctional::default(),
+            },
+        }
+    }
+
+    #[test]
+    fn a_proposal_without_value_is_halved_until_it_has_one_or_no_more() {
+        let grid = Grid { m: 2, n: 2 };
+        let good = DesignVector::uniform(grid);
+        let proposed = |z: f64| {
+            let mut proposal = good.clone();
+            proposal.pattern.z.fill(z);
+            evaluate_or_back_off(&problem(grid), &good, proposal)
+        };
+        let (design, _, setback) = proposed(1.0).unwrap();
+        assert_eq!((design.pattern.z[0], setback.halvings), (1.0, 0));
+        // The logistic chart rounds to 1 near z = 37.
+        let (design, _, setback) = proposed(100.0).unwrap();
+        assert_eq!((design.pattern.z[0], setback.halvings), (25.0, 2));
+        assert!(setback.reason.unwrap().contains("two cuts collide"));
+        assert!(proposed(1e9).err().unwrap().contains("two cuts collide"));
+    }
+}

@@ -1,0 +1,241 @@
+//! The hinge deformation (8) as a function of the motions of its two panels, with first and second
+//! derivatives.
+//!
+//! With O the point where the hinge is attached, rho = e^(-i beta)(O - c) its arm from a panel's
+//! centroid in the cut frame (beta: the angle of e_sec), phibar and theta the mean and relative
+//! rotation and Delta = (c_l + u_l) - (c_k + u_k), in complex numbers
+//!
+//! ```text
+//! a + i s = e^(-i(beta + phibar)) Delta + e^(i theta/2) rho_l - e^(-i theta/2) rho_k
+//! ```
+//!
+//! which depends on four numbers of the six: y = (Delta u_x, Delta u_y, phibar, theta). It is summed
+//! from terms that vanish one by one in the flat sheet, so that small motions keep their digits.
+
+use crate::plane::{I, complex, cross, dot, point, turn, turn_less_one};
+use crate::sheet::{Panel, Sheet};
+use faer::c64;
+use hinge::HingeDeformation;
+use surrogate::HingeEnergy;
+
+/// A rigid motion (u_x, u_y, phi) of every panel away from the flat sheet (mm, mm, rad).
+pub type Configuration = Vec<[f64; 3]>;
+
+/// The deployed position of a point of a panel that moves by `motion`.
+pub fn deployed(panel: &Panel, motion: [f64; 3], flat: [f64; 2]) -> [f64; 2] {
+    let [u_x, u_y, phi] = motion;
+    let centroid = complex(panel.centroid);
+    point(c64::new(u_x, u_y) + centroid + turn(phi) * (complex(flat) - centroid))
+}
+
+/// The deployed corners SW, SE, NE, NW of every panel (mm).
+pub fn deployed_corners(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<[[f64; 2]; 4]> {
+    std::iter::zip(&sheet.panels, configuration)
+        .map(|(panel, &motion)| panel.corners.map(|corner| deployed(panel, motion, corner)))
+        .collect()
+}
+
+/// The gradient in (motion, flat point, centroid) of a function whose gradient in the deployed
+/// position of the point is given.
+pub(crate) fn deployed_pullback(
+    panel: &Panel,
+    motion: [f64; 3],
+    flat: [f64; 2],
+    gradient: [f64; 2],
+) -> ([f64; 3], c64, c64) {
+    let force = complex(gradient);
+    let spin = turn(motion[2]);
+    let arm = spin * (complex(flat) - complex(panel.centroid));
+    let by_flat = force * spin.conj();
+    (
+        [force.re, force.im, cross(arm, force)],
+        by_flat,
+        force - by_flat,
+    )
+}
+
+/// The deformation (8) of every hinge.
+pub fn hinge_deformations(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<HingeDeformation> {
+    (0..sheet.hinges.len())
+        .map(|h| HingeMotion::new(sheet, h, configuration).deformation())
+        .collect()
+}
+
+/// A hinge in the middle of a motion: the terms of (8) that its derivatives are made of.
+#[derive(Clone, Copy, Debug)]
+pub struct HingeMotion {
+    /// Relative rotation (rad).
+    theta: f64,
+    /// a + i s
+    translation: c64,
+    /// e^(-i beta), the flat sheet seen from the cut frame.
+    frame: c64,
+    /// e^(i theta/2)
+    half: c64,
+    /// e^(-i(beta + phibar))
+    mean: c64,
+    /// mean Delta
+    separation: c64,
+    /// half rho_l
+    arm_b: c64,
+    /// rho_k / half
+    arm_a: c64,
+}
+
+/// The gradient of a scalar in what (8) reads from the flat sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HingeGeometryGradient {
+    pub attachment: [f64; 2],
+    pub centroid_a: [f64; 2],
+    pub centroid_b: [f64; 2],
+    /// In the angle of e_sec.
+    pub frame_angle: f64,
+}
+
+impl HingeMotion {
+    pub fn new(sheet: &Sheet, hinge: usize, configuration: &[[f64; 3]]) -> Self {
+        let hinge = &sheet.hinges[hinge];
+        let (a, b) = (hinge.panel_a(), hinge.panel_b());
+        let (c_a, c_b) = (
+            complex(sheet.panels[a].centroid),
+            complex(sheet.panels[b].centroid),
+        );
+        let ([ax, ay, phi_a], [bx, by, phi_b]) = (configuration[a], configuration[b]);
+        let (theta, phibar) = (phi_b - phi_a, 0.5 * (phi_a + phi_b));
+        let (frame, half) = (complex(hinge.e_sec).conj(), turn(0.5 * theta));
+        let mean = frame * turn(-phibar);
+        let attachment = complex(hinge.attachment);
+        let (rho_a, rho_b) = (frame * (attachment - c_a), frame * (attachment - c_b));
+        let (shift, offset) = (c64::new(bx - ax, by - ay), c_b - c_a);
+        Self {
+            theta,
+            translation: mean * shift
+                + frame * turn_less_one(-phibar) * offset
+                + turn_less_one(0.5 * theta) * rho_b
+                - turn_less_one(-0.5 * theta) * rho_a,
+            frame,
+            half,
+            mean,
+            separation: mean * (shift + offset),
+            arm_b: half * rho_b,
+            arm_a: half.conj() * rho_a,
+        }
+    }
+
+    pub fn deformation(&self) -> HingeDeformation {
+        HingeDeformation {
+            a: self.translation.re,
+            s: self.translation.im,
+            theta: self.theta,
+        }
+    }
+
+    /// d(a + i s)/dy for y = (Delta u_x, Delta u_y, phibar, theta).
+    fn translation_rates(&self) -> [c64; 4] {
+        [
+            self.mean,
+            I * self.mean,
+            -I * self.separation,
+            0.5 * I * (self.arm_a + self.arm_b),
+        ]
+    }
+
+    /// The generalised forces on panels A and B, (F_x, F_y, M) each, of a gradient in (a, s, theta).
+    pub fn forces(&self, gradient: [f64; 3]) -> [f64; 6] {
+        let [f_a, f_s, m_theta] = gradient;
+        let force = c64::new(f_a, f_s);
+        let mut by_y = self.translation_rates().map(|rate| dot(force, rate));
+        by_y[3] += m_theta;
+        let [x, y, mean, relative] = by_y;
+        [-x, -y, 0.5 * mean - relative, x, y, 0.5 * mean + relative]
+    }
+
+    /// The rate of (a, s, theta) under a motion of panels A and B.
+    pub fn rates(&self, motion: [f64; 6]) -> [f64; 3] {
+        let y = relative_motion(motion);
+        let translation: c64 = std::iter::zip(self.translation_rates(), y)
+            .map(|(rate, y)| rate * y)
+            .sum();
+        [translation.re, translation.im, y[3]]
+    }
+
+    /// The 6 x 6 tangent of the energy in the motions of panels A and B: J^T K J + f . d2(eps).
+    pub fn stiffness(&self, energy: &HingeEnergy) -> [[f64; 6]; 6] {
+        let rates = self.translation_rates();
+        let jacobian = [
+            rates.map(|rate| rate.re),
+            rates.map(|rate| rate.im),
+            [0.0, 0.0, 0.0, 1.0],
+        ];
+        let mut by_y: [[f64; 4]; 4] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                (0..3)
+                    .flat_map(|p| (0..3).map(move |q| (p, q)))
+                    .map(|(p, q)| jacobian[p][i] * energy.tangent[p][q] * jacobian[q][j])
+                    .sum()
+            })
+        });
+        let force = c64::new(energy.forces[0], energy.forces[1]);
+        for (axis, mean) in [self.mean, I * self.mean].into_iter().enumerate() {
+            let mixed = dot(force, -I * mean);
+            by_y[axis][2] += mixed;
+            by_y[2][axis] += mixed;
+        }
+        by_y[2][2] -= dot(force, self.separation);
+        by_y[3][3] -= 0.25 * dot(force, self.arm_b - self.arm_a);
+        congruence(&by_y)
+    }
+
+    /// The gradient of `weights . (a, s, theta)` in the flat geometry.
+    pub fn geometry_gradient(&self, weights: [f64; 3]) -> HingeGeometryGradient {
+        let force = c64::new(weights[0], weights[1]);
+        let back = force * self.frame.conj();
+        HingeGeometryGradient {
+            attachment: point(back * (self.half - self.half.conj()).conj()),
+            centroid_a: point(force * (self.frame * self.half.conj() - self.mean).conj()),
+            centroid_b: point(force * (self.mean - self.frame * self.half).conj()),
+            frame_angle: cross(force, self.translation),
+        }
+    }
+
+    /// The gradient of `forces . rates(motion)` in the flat geometry, at fixed `forces`.
+    pub fn rates_geometry_gradient(
+        &self,
+        forces: [f64; 3],
+        motion: [f64; 6],
+    ) -> HingeGeometryGradient {
+        let force = c64::new(forces[0], forces[1]);
+        let [_, _, mean, relative] = relative_motion(motion);
+        let [a, s, _] = self.rates(motion);
+        let (spin, open) = (-I * mean * self.mean, 0.5 * I * relative * self.frame);
+        HingeGeometryGradient {
+            attachment: point(force * (open * (self.half + self.half.conj())).conj()),
+            centroid_a: point(force * (-spin - open * self.half.conj()).conj()),
+            centroid_b: point(force * (spin - open * self.half).conj()),
+            frame_angle: cross(force, c64::new(a, s)),
+        }
+    }
+}
+
+/// y = (Delta u_x, Delta u_y, phibar, theta) of a motion of panels A and B.
+fn relative_motion([ax, ay, phi_a, bx, by, phi_b]: [f64; 6]) -> [f64; 4] {
+    [bx - ax, by - ay, 0.5 * (phi_a + phi_b), phi_b - phi_a]
+}
+
+/// T^T K T with T the map of [`relative_motion`].
+fn congruence(by_y: &[[f64; 4]; 4]) -> [[f64; 6]; 6] {
+    let columns: [[f64; 4]; 6] = std::array::from_fn(|j| {
+        let mut unit = [0.0; 6];
+        unit[j] = 1.0;
+        relative_motion(unit)
+    });
+    let product = columns
+        .map(|column| by_y.map(|row| std::iter::zip(row, column).map(|(k, t)| k * t).sum::<f64>()));
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            std::iter::zip(columns[i], product[j])
+                .map(|(t, k)| t * k)
+                .sum()
+        })
+    })
+}

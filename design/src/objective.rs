@@ -1,0 +1,130 @@
+//! The design objective (16): the Chamfer distance of the deployed outline to the target, and
+//! functionals of the deformation path of the hinges.
+
+use crate::chamfer::Chamfer;
+use crate::equilibrium::LoadStep;
+use crate::path_functionals::{HingePath, PathFunctionals, PerFunctional};
+use crate::sheet::Sheet;
+use crate::topology::PanelCorner;
+use serde::{Deserialize, Serialize};
+
+/// Which panel corners on the outline make the point set P of (16).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OutlinePoints {
+    /// Those that belong to no hinge.
+    #[default]
+    Free,
+    All,
+}
+
+impl OutlinePoints {
+    /// P, counter-clockwise from the south-west.
+    pub fn of(self, sheet: &Sheet) -> Vec<PanelCorner> {
+        match self {
+            Self::Free => sheet.free_outline_corners(),
+            Self::All => sheet.outline_corners(),
+        }
+    }
+}
+
+/// What a design is judged by.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Objective {
+    /// T (mm); not empty.
+    pub target: Vec<[f64; 2]>,
+    pub chamfer: Chamfer,
+    pub outline: OutlinePoints,
+    /// Whether P is moved so that its mean is the origin; the target should be centred then.
+    pub centred: bool,
+    /// w_j of the functionals of the path.
+    pub weights: PerFunctional,
+    /// Temperatures of the path extrema.
+    pub temperatures: PerFunctional,
+}
+
+/// The unweighted terms of the objective.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Terms {
+    /// mm^2
+    pub chamfer: f64,
+    pub path: PerFunctional,
+}
+
+/// The objective and its partial derivatives at a deployment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judgement {
+    /// L of (16).
+    pub loss: f64,
+    pub terms: Terms,
+    /// Gradient in the deployed positions of P.
+    pub by_outline: Vec<[f64; 2]>,
+    /// Gradient in (a, s, theta, w_lig, alpha) per hinge and load step.
+    pub by_path: Vec<Vec<[f64; 5]>>,
+}
+
+impl Objective {
+    /// Judges a path whose last configuration puts the points P at `outline` (mm); `damage_scale` is
+    /// D_s of (17).
+    pub fn judge(
+        &self,
+        outline: &[[f64; 2]],
+        sheet: &Sheet,
+        path: &[LoadStep],
+        damage_scale: f64,
+    ) -> Judgement {
+        let origin = if self.centred {
+            mean(outline)
+        } else {
+            [0.0; 2]
+        };
+        let points: Vec<[f64; 2]> = outline
+            .iter()
+            .map(|point| [point[0] - origin[0], point[1] - origin[1]])
+            .collect();
+        let (chamfer, mut by_outline) = self.chamfer.evaluate(&points, &self.target);
+        if self.centred {
+            let [x, y] = mean(&by_outline);
+            for gradient in &mut by_outline {
+                gradient[0] -= x;
+                gradient[1] -= y;
+            }
+        }
+        let functionals = PathFunctionals {
+            weights: self.weights,
+            temperatures: self.temperatures,
+            damage_scale,
+        };
+        let (values, by_path) = functionals.evaluate(&hinge_paths(sheet, path));
+        Judgement {
+            loss: chamfer + functionals.weighted(&values),
+            terms: Terms {
+                chamfer,
+                path: values,
+            },
+            by_outline,
+            by_path,
+        }
+    }
+}
+
+/// The path of every hinge.
+fn hinge_paths(sheet: &Sheet, path: &[LoadStep]) -> Vec<HingePath> {
+    let hinges = sheet.hinges.iter().enumerate();
+    hinges
+        .map(|(h, hinge)| HingePath {
+            w_lig: hinge.w_lig,
+            deformations: path.iter().map(|step| step.deformations[h]).collect(),
+            damage: (path.iter())
+                .filter_map(|step| step.damage.get(h).copied())
+                .collect(),
+        })
+        .collect()
+}
+
+fn mean(points: &[[f64; 2]]) -> [f64; 2] {
+    let sum = points.iter().fold([0.0; 2], |sum, point| {
+        [sum[0] + point[0], sum[1] + point[1]]
+    });
+    sum.map(|component| component / points.len() as f64)
+}

@@ -1,0 +1,231 @@
+//! What a design run says at its end: the objective before and after, every hinge, what to mind.
+
+mod warning;
+
+pub use warning::{Concern, Warning};
+
+use crate::fabrication::{CutLines, FabricationError};
+use crate::gradient::{Deployment, Evaluation};
+use crate::inverse_design::{Designed, Ended};
+use crate::localisation::gamma;
+use crate::outline_error::outline_error;
+use crate::scene::Scene;
+use crate::sheet::{Hinge, Sheet};
+use crate::window::edges;
+use serde::Serialize;
+use std::fmt;
+
+/// The report of a run, for people (`Display`) and programs (JSON).
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    pub title: String,
+    pub ended: Ended,
+    /// Steps made, the start not counted.
+    pub steps: usize,
+    /// Steps that had to be halved.
+    pub setbacks: usize,
+    pub before: Scores,
+    /// Of the best design.
+    pub after: Scores,
+    pub hinges: Vec<HingeRow>,
+    pub warnings: Vec<Warning>,
+}
+
+/// The objective of one design.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Scores {
+    /// L of (16) (mm^2).
+    pub loss: f64,
+    /// Root mean square distance of the deployed outline to the target (mm).
+    pub outline_error: f64,
+    /// The Chamfer distance, coverage included (mm^2).
+    pub chamfer: f64,
+    /// (17)-(19), unweighted.
+    pub damage: f64,
+    pub compression: f64,
+    pub shear: f64,
+    /// Share of the hinge states of the path that the hinge law was made for.
+    pub share_inside: f64,
+}
+
+/// One hinge of the best design, deployed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct HingeRow {
+    pub hinge: usize,
+    /// A and B.
+    pub panels: [usize; 2],
+    /// mm
+    pub w_lig: f64,
+    pub alpha_deg: f64,
+    pub theta_deg: f64,
+    pub eta_a: f64,
+    pub eta_s: f64,
+    /// Greatest predicted damage (12) along the path; none where the hinge law predicts none.
+    pub damage: Option<f64>,
+    /// Whether the hinge law was made for every state of the path.
+    pub inside: bool,
+    /// (21), with the shortest edge of the two panels.
+    pub gamma: f64,
+}
+
+impl Report {
+    /// Of a run of `scene`, whose best design has the given cut lines.
+    pub fn new(
+        scene: &Scene,
+        designed: &Designed,
+        cuts: &Result<CutLines, FabricationError>,
+    ) -> Self {
+        let deployment = &designed.best.deployment;
+        let damage = greatest_damage(scene, deployment);
+        let hinges: Vec<HingeRow> = (0..deployment.sheet.hinges.len())
+            .map(|h| {
+                HingeRow::new(
+                    scene,
+                    deployment,
+                    h,
+                    damage.as_ref().map(|damage| damage[h]),
+                )
+            })
+            .collect();
+        Self {
+            title: scene.config.title.clone(),
+            ended: designed.ended.clone(),
+            steps: designed.history.len() - 1,
+            setbacks: designed
+                .history
+                .iter()
+                .filter(|record| record.halvings > 0)
+                .count(),
+            before: Scores::of(scene, &designed.start),
+            after: Scores::of(scene, &designed.best),
+            warnings: warning::all(scene, deployment, cuts, &hinges),
+            hinges,
+        }
+    }
+}
+
+impl Scores {
+    fn of(scene: &Scene, evaluation: &Evaluation) -> Self {
+        let terms = &evaluation.terms;
+        Self {
+            loss: evaluation.loss,
+            outline_error: outline_error(scene, &evaluation.deployment),
+            chamfer: terms.chamfer,
+            damage: terms.path.damage,
+            compression: terms.path.compression,
+            shear: terms.path.shear,
+            share_inside: evaluation.deployment.share_inside(),
+        }
+    }
+}
+
+impl HingeRow {
+    fn new(scene: &Scene, deployment: &Deployment, h: usize, damage: Option<f64>) -> Self {
+        let sheet = &deployment.sheet;
+        let hinge = &sheet.hinges[h];
+        let last = deployment.final_step().deformations[h];
+        let [eta_a, eta_s] = last.eta(hinge.w_lig);
+        Self {
+            hinge: h,
+            panels: [hinge.panel_a(), hinge.panel_b()],
+            w_lig: hinge.w_lig,
+            alpha_deg: hinge.alpha.to_degrees(),
+            theta_deg: last.theta.to_degrees(),
+            eta_a,
+            eta_s,
+            damage,
+            inside: deployment.path.iter().all(|step| step.inside[h]),
+            gamma: gamma(&scene.material, hinge.w_lig, shortest_edge(sheet, hinge)),
+        }
+    }
+}
+
+/// The shortest edge of the two panels of a hinge (mm).
+fn shortest_edge(sheet: &Sheet, hinge: &Hinge) -> f64 {
+    [hinge.panel_a(), hinge.panel_b()]
+        .iter()
+        .flat_map(|&panel| edges(&sheet.panels[panel].corners))
+        .map(|(p, q)| f64::hypot(q[0] - p[0], q[1] - p[1]))
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// The greatest damage of each hinge along the path, if the hinge law predicts any.
+fn greatest_damage(scene: &Scene, deployment: &Deployment) -> Option<Vec<f64>> {
+    let surrogate = scene.surrogate()?;
+    let designs = deployment.sheet.designs();
+    let mut greatest = vec![0.0; designs.len()];
+    for step in &deployment.path {
+        for (greatest, damage) in greatest
+            .iter_mut()
+            .zip(surrogate.damage(&designs, &step.deformations))
+        {
+            *greatest = f64::max(*greatest, damage.d);
+        }
+    }
+    Some(greatest)
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { before, after, .. } = self;
+        writeln!(f, "{}", self.title)?;
+        match &self.ended {
+            Ended::Completed => writeln!(f, "{} steps", self.steps)?,
+            Ended::Stopped => {
+                writeln!(f, "stopped after {} steps; run again to go on", self.steps)?
+            }
+            Ended::Stuck { reason } => writeln!(f, "stuck after {} steps: {reason}", self.steps)?,
+        }
+        writeln!(f, "\n{:<24}{:>12}{:>12}", "", "start", "best")?;
+        for (name, before, after) in [
+            (
+                "outline error (mm)",
+                before.outline_error,
+                after.outline_error,
+            ),
+            ("Chamfer (mm^2)", before.chamfer, after.chamfer),
+            ("compression", before.compression, after.compression),
+            ("shear", before.shear, after.shear),
+            ("damage", before.damage, after.damage),
+            ("loss (mm^2)", before.loss, after.loss),
+            (
+                "inside domain (%)",
+                100.0 * before.share_inside,
+                100.0 * after.share_inside,
+            ),
+        ] {
+            writeln!(f, "{name:<24}{before:>12.4}{after:>12.4}")?;
+        }
+        writeln!(
+            f,
+            "\nhinge  panels    w_lig  alpha  theta   eta_a   eta_s       D  domain    Gamma\n\
+             {:>20} {:>6} {:>6}",
+            "mm", "deg", "deg"
+        )?;
+        for row in &self.hinges {
+            let panels = format!("{}-{}", row.panels[0], row.panels[1]);
+            let damage = row
+                .damage
+                .map_or("-".into(), |damage| format!("{damage:.4}"));
+            writeln!(
+                f,
+                "{:>5}  {panels:>6} {:>8.2} {:>6.1} {:>6.1} {:>7.3} {:>7.3} {damage:>7}  {:<6} {:>8.3e}",
+                row.hinge,
+                row.w_lig,
+                row.alpha_deg,
+                row.theta_deg,
+                row.eta_a,
+                row.eta_s,
+                if row.inside { "inside" } else { "left" },
+                row.gamma,
+            )?;
+        }
+        if self.warnings.is_empty() {
+            return writeln!(f, "\nno warnings");
+        }
+        writeln!(f, "\nwarnings")?;
+        self.warnings
+            .iter()
+            .try_for_each(|warning| writeln!(f, "- {warning}"))
+    }
+}

@@ -1,0 +1,190 @@
+//! What the values of a scene may be.
+//!
+//! The ranges are wider than any sheet that is cut and narrower than a slip of a factor 1000.
+
+use super::{HingeModel, SceneConfig};
+use crate::target::Target;
+use hinge::HingeDesign;
+use std::f64::consts::FRAC_PI_2;
+
+/// Checks everything that needs no other file; the error says which key, which limit and, where a
+/// factor of 1000 would mend it, which unit was probably meant.
+pub(super) fn config(scene: &SceneConfig) -> Result<(), String> {
+    sheet(scene)?;
+    ligament(scene)?;
+    supports(scene)?;
+    loads(scene)?;
+    search(scene)
+}
+
+/// A target of a quite different size than the sheet is a slip of units.
+pub(super) fn target(target: &Target, size: [f64; 2]) -> Result<(), String> {
+    let perimeter = 2.0 * (size[0] + size[1]);
+    within(
+        "length of the target outline",
+        target.length(),
+        [0.2 * perimeter, 5.0 * perimeter],
+        "mm",
+    )
+}
+
+fn sheet(scene: &SceneConfig) -> Result<(), String> {
+    for side in scene.sheet.size {
+        within("sheet.size", side, [20.0, 2e4], "mm")?;
+    }
+    let [columns, rows] = scene.sheet.panels;
+    if columns < 2 || rows < 2 || columns.saturating_mul(rows) > 100_000 {
+        return Err(format!(
+            "sheet.panels = [{columns}, {rows}] violates 2 <= columns, 2 <= rows and \
+             columns * rows <= 100000"
+        ));
+    }
+    Ok(())
+}
+
+fn ligament(scene: &SceneConfig) -> Result<(), String> {
+    let (ligament, process) = (&scene.ligament, &scene.process);
+    let [least, greatest] = ligament.range;
+    for w_lig in [least, greatest] {
+        let design = HingeDesign {
+            w_lig,
+            alpha: FRAC_PI_2,
+            fillet_ratio: process.fillet_ratio,
+            kerf: process.kerf,
+            r_win: process.r_win,
+        };
+        design.validate().map_err(|error| {
+            format!("ligament.range and process, at w_lig = {w_lig} mm: {error}")
+        })?;
+    }
+    if least >= greatest {
+        return Err(format!(
+            "ligament.range = [{least}, {greatest}] mm violates least < greatest"
+        ));
+    }
+    if !(ligament.start > least && ligament.start < greatest) {
+        return Err(format!(
+            "ligament.start = {} mm violates {least} < start < {greatest} mm (ligament.range)",
+            ligament.start
+        ));
+    }
+    Ok(())
+}
+
+fn supports(scene: &SceneConfig) -> Result<(), String> {
+    if scene.supports.is_empty() && scene.hinge != HingeModel::Pin {
+        return Err("supports: a sheet that is held nowhere has no equilibrium".into());
+    }
+    for (i, support) in scene.supports.iter().enumerate() {
+        panel(scene, &format!("supports[{i}]"), support.panel)?;
+        if scene.supports[..i]
+            .iter()
+            .any(|other| other.panel == support.panel)
+        {
+            return Err(format!(
+                "supports[{i}].panel = {:?} is supported twice",
+                support.panel
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn loads(scene: &SceneConfig) -> Result<(), String> {
+    for (i, load) in scene.loads.iter().enumerate() {
+        let key = format!("loads[{i}]");
+        panel(scene, &key, load.panel)?;
+        for force in load.force {
+            within(&format!("{key}.force"), force, [-1e5, 1e5], "N")?;
+        }
+        within(&format!("{key}.couple"), load.couple, [-1e8, 1e8], "N mm")?;
+        let support = scene
+            .supports
+            .iter()
+            .find(|support| support.panel == load.panel);
+        let values = [load.force[0], load.force[1], load.couple];
+        let held = support.map_or([false; 3], |support| support.kind.holds());
+        if held
+            .iter()
+            .zip(values)
+            .any(|(held, value)| *held && value != 0.0)
+        {
+            return Err(format!(
+                "{key}: panel {:?} is held against this load by its support, which would do no work",
+                load.panel
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn search(scene: &SceneConfig) -> Result<(), String> {
+    counted("load_steps", scene.load_steps, 10_000)?;
+    let objective = &scene.objective;
+    counted(
+        "objective.target_points",
+        objective.target_points,
+        1_000_000,
+    )?;
+    for (key, weight) in [
+        ("objective.coverage", objective.coverage),
+        ("objective.damage", objective.damage),
+        ("objective.compression", objective.compression),
+        ("objective.shear", objective.shear),
+    ] {
+        within(key, weight, [0.0, 1e9], "")?;
+    }
+    let optimiser = &scene.optimiser;
+    counted("optimiser.steps", optimiser.steps, 10_000_000)?;
+    within(
+        "optimiser.learning_rate",
+        optimiser.learning_rate,
+        [1e-9, 10.0],
+        "",
+    )?;
+    within(
+        "optimiser.start_noise",
+        optimiser.start_noise,
+        [0.0, 10.0],
+        "",
+    )
+}
+
+fn panel(scene: &SceneConfig, key: &str, [column, row]: [usize; 2]) -> Result<(), String> {
+    let [columns, rows] = scene.sheet.panels;
+    if column < columns && row < rows {
+        return Ok(());
+    }
+    Err(format!(
+        "{key}.panel = [{column}, {row}] violates column < {columns} and row < {rows} \
+         (panels are counted from [0, 0] at the lower left)"
+    ))
+}
+
+fn counted(key: &str, value: usize, greatest: usize) -> Result<(), String> {
+    if (1..=greatest).contains(&value) {
+        return Ok(());
+    }
+    Err(format!("{key} = {value} violates 1 <= {key} <= {greatest}"))
+}
+
+pub(super) fn within(
+    key: &str,
+    value: f64,
+    [least, greatest]: [f64; 2],
+    unit: &str,
+) -> Result<(), String> {
+    let range = least..=greatest;
+    if range.contains(&value) {
+        return Ok(());
+    }
+    let slip = [1e3, 1e-3].map(|factor| factor * value);
+    let hint = slip
+        .iter()
+        .find(|meant| !unit.is_empty() && range.contains(meant))
+        .map(|meant| format!("; did you mean {meant} {unit}?"))
+        .unwrap_or_default();
+    Err(format!(
+        "{key} = {value} {unit} violates {least} <= {key} <= {greatest} {unit}{hint}"
+    ))
+}

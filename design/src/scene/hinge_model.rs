@@ -1,0 +1,186 @@
+//! The hinge law that a scene names, loaded with what it needs and nothing else.
+
+use super::checks::within;
+use super::{SceneConfig, SceneError};
+use crate::hinge_law::{Contact, LinearLaw};
+use hinge::SheetMaterial;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use surrogate::Surrogate;
+
+/// Stiffness of the contact of panel edges over k_theta, and the void angle (rad) beyond which they
+/// cannot be pressed; the text of (11) leaves both open. The learned law needs no contact: its domain
+/// ends near the closed sheet.
+const CONTACT_STIFFNESS: f64 = 10.0;
+const CONTACT_WALL: f64 = -0.1;
+
+/// The hinge law of a scene; each reads the section of its own name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum HingeModel {
+    /// None: pins that all open alike, without equilibrium; section 3.1.
+    Pin,
+    /// Three uncoupled springs, (11).
+    Linear,
+    /// The learned energy, (14).
+    Surrogate,
+}
+
+/// The ideal deployment.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PinConfig {
+    /// The opening that the search starts from (deg); it is designed too.
+    pub opening_deg: f64,
+}
+
+/// k_a, k_s (N/mm) and k_theta (N mm/rad) of (11).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LinearConstants {
+    pub k_a: f64,
+    pub k_s: f64,
+    pub k_theta: f64,
+}
+
+/// The weights of (14).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SurrogateFile {
+    pub weights: PathBuf,
+}
+
+/// A [`HingeModel`] with its constants or its weights.
+#[derive(Clone, Debug)]
+pub(super) enum LoadedHinge {
+    /// The opening at the start (rad).
+    Pin {
+        opening: f64,
+    },
+    Linear {
+        law: LinearLaw,
+        contact: Contact,
+    },
+    Surrogate(Box<Surrogate>),
+}
+
+impl LoadedHinge {
+    /// Loads the law of a scene at `path`.
+    pub(super) fn load(
+        config: &SceneConfig,
+        material: &SheetMaterial,
+        path: &Path,
+    ) -> Result<Self, SceneError> {
+        let refuse = |reason| SceneError::Value {
+            path: path.to_owned(),
+            reason,
+        };
+        let missing = |section: &str| {
+            refuse(format!(
+                "hinge = \"{section}\" needs the section [{section}]"
+            ))
+        };
+        match config.hinge {
+            HingeModel::Pin => {
+                let pin = config.pin.ok_or_else(|| missing("pin"))?;
+                pinned(config, pin).map_err(refuse)
+            }
+            HingeModel::Linear => {
+                let constants = config.linear.ok_or_else(|| missing("linear"))?;
+                linear(config, constants).map_err(refuse)
+            }
+            HingeModel::Surrogate => {
+                let file = config
+                    .surrogate
+                    .as_ref()
+                    .ok_or_else(|| missing("surrogate"))?;
+                let weights = super::beside(path, &file.weights);
+                if !weights.is_file() {
+                    return Err(refuse(format!(
+                        "surrogate.weights: there is no file {}; train one, or design with \
+                         hinge = \"linear\"",
+                        weights.display()
+                    )));
+                }
+                let surrogate = Surrogate::load(&weights)?;
+                same_hinge(config, material, &surrogate).map_err(|reason| {
+                    refuse(format!(
+                        "the weights {} are for {reason}",
+                        weights.display()
+                    ))
+                })?;
+                Ok(Self::Surrogate(Box::new(surrogate)))
+            }
+        }
+    }
+}
+
+/// Only the learned law predicts damage.
+fn no_damage(config: &SceneConfig) -> Result<(), String> {
+    if config.objective.damage == 0.0 {
+        return Ok(());
+    }
+    Err(
+        "objective.damage: only the learned hinge law predicts damage; use \
+         hinge = \"surrogate\" or damage = 0"
+            .into(),
+    )
+}
+
+fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, String> {
+    no_damage(config)?;
+    within("pin.opening_deg", pin.opening_deg, [-180.0, 180.0], "deg")?;
+    if !(config.supports.is_empty() && config.loads.is_empty()) {
+        return Err(
+            "supports, loads: hinge = \"pin\" solves no equilibrium; remove them, or choose \
+             hinge = \"linear\""
+                .into(),
+        );
+    }
+    let opening = pin.opening_deg.to_radians();
+    Ok(LoadedHinge::Pin { opening })
+}
+
+fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHinge, String> {
+    no_damage(config)?;
+    let LinearConstants { k_a, k_s, k_theta } = constants;
+    within("linear.k_a", k_a, [1e-3, 1e6], "N/mm")?;
+    within("linear.k_s", k_s, [1e-3, 1e6], "N/mm")?;
+    within("linear.k_theta", k_theta, [1e-3, 1e9], "N mm/rad")?;
+    let law = LinearLaw::uniform([k_a, k_s, k_theta], config.sheet.grid().hinge_count())
+        .map_err(|error| error.to_string())?;
+    let contact = Contact::new(CONTACT_STIFFNESS * k_theta, CONTACT_WALL, 0.0)
+        .map_err(|error| error.to_string())?;
+    Ok(LoadedHinge::Linear { law, contact })
+}
+
+/// A surrogate holds for the material and the hinge constants it was trained with alone.
+fn same_hinge(
+    config: &SceneConfig,
+    material: &SheetMaterial,
+    surrogate: &Surrogate,
+) -> Result<(), String> {
+    let (card, process) = (surrogate.card(), config.process);
+    if card.material != material.name {
+        return Err(format!(
+            "the material `{}`, the scene's is `{}`",
+            card.material, material.name
+        ));
+    }
+    for (key, trained, found) in [
+        (
+            "fillet_ratio",
+            card.hinge.fillet_ratio,
+            process.fillet_ratio,
+        ),
+        ("kerf", card.hinge.kerf, process.kerf),
+        ("r_win", card.hinge.r_win, process.r_win),
+    ] {
+        if trained != found {
+            return Err(format!(
+                "{key} = {trained}, the scene has process.{key} = {found}"
+            ));
+        }
+    }
+    Ok(())
+}

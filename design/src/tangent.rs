@@ -1,0 +1,288 @@
+//! The sparse symmetric tangent H of (20): assembly from hinges and LDL^T, with the symbolic analysis
+//! done once per topology and set of supports.
+
+use crate::grid::Grid;
+use crate::topology::hinge_sites;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
+use faer::mat::MatMut;
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky, supernodal::SupernodalLdltRef,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
+use faer::{Conj, Par, Side};
+use std::collections::BTreeSet;
+
+/// Free degrees of freedom from which the supernodal factorisation is the faster one (measured).
+const SUPERNODAL_FROM: usize = 400;
+
+/// A pivot this small beside its diagonal entry is lost in rounding.
+const LEAST_PIVOT_RATIO: f64 = 1e-13;
+
+/// Sparsity of the tangent over the free degrees of freedom, lower triangle by columns.
+#[derive(Debug)]
+pub(crate) struct TangentPattern {
+    matrix: SymbolicSparseColMat<usize>,
+    cholesky: SymbolicCholesky<usize>,
+    /// Where the entries of each hinge's 6 x 6 block go; none for supported or upper entries.
+    slots: Vec<[[Option<usize>; 6]; 6]>,
+    /// Where the diagonal entries are.
+    diagonal: Vec<usize>,
+}
+
+/// LDL^T of a tangent.
+#[derive(Clone, Debug)]
+pub(crate) struct Factor {
+    values: Vec<f64>,
+    /// Pivots that are not positive beyond rounding: the number of unstable directions.
+    pub negative_pivots: usize,
+    /// Smallest pivot over its diagonal entry: how close to singular.
+    pub pivot_ratio: f64,
+}
+
+impl TangentPattern {
+    /// `free[3 k + d]` numbers the free degrees of freedom of panel k, in any order from 0.
+    pub fn new(grid: Grid, free: &[Option<usize>]) -> Self {
+        let dimension = free.iter().flatten().count();
+        let numbers: Vec<[Option<usize>; 6]> = hinge_sites(grid)
+            .iter()
+            .map(|site| std::array::from_fn(|d| free[3 * [site.a.0, site.b.0][d / 3] + d % 3]))
+            .collect();
+        // The diagonal is always there, for the shift.
+        let mut columns: Vec<BTreeSet<usize>> = (0..dimension).map(|i| [i].into()).collect();
+        for numbers in &numbers {
+            for &column in numbers.iter().flatten() {
+                let lower = numbers.iter().flatten().filter(|&&row| row >= column);
+                columns[column].extend(lower);
+            }
+        }
+        let mut starts = vec![0];
+        let mut rows = Vec::new();
+        for column in &columns {
+            rows.extend(column.iter().copied());
+            starts.push(rows.len());
+        }
+        let slot = |row: usize, column: usize| {
+            let range = starts[column]..starts[column + 1];
+            let offset = rows[range.clone()].binary_search(&row).ok()?;
+            Some(range.start + offset)
+        };
+        let slots = numbers
+            .iter()
+            .map(|numbers| {
+                std::array::from_fn(|i| std::array::from_fn(|j| slot(numbers[i]?, numbers[j]?)))
+            })
+            .collect();
+        let diagonal = starts[..dimension].to_vec();
+        let matrix = SymbolicSparseColMat::new_checked(dimension, dimension, starts, None, rows);
+        let cholesky = factorize_symbolic_cholesky(
+            matrix.as_ref(),
+            Side::Lower,
+            SymmetricOrdering::Amd,
+            CholeskySymbolicParams {
+                supernodal_flop_ratio_threshold: if dimension < SUPERNODAL_FROM {
+                    SupernodalThreshold::FORCE_SIMPLICIAL
+                } else {
+                    SupernodalThreshold::FORCE_SUPERNODAL
+                },
+                ..Default::default()
+            },
+        )
+        .expect("indices fit in usize and the factor in memory");
+        Self {
+            matrix,
+            cholesky,
+            slots,
+            diagonal,
+        }
+    }
+
+    /// The lower triangle of H from the 6 x 6 blocks of the hinges.
+    pub fn assemble(&self, blocks: impl Iterator<Item = [[f64; 6]; 6]>) -> Vec<f64> {
+        let mut values = vec![0.0; self.matrix.row_idx().len()];
+        for (slots, block) in std::iter::zip(&self.slots, blocks) {
+            for (slots, entries) in std::iter::zip(slots, block) {
+                for (slot, entry) in std::iter::zip(slots, entries) {
+                    if let Some(slot) = slot {
+                        values[*slot] += entry;
+                    }
+                }
+            }
+        }
+        values
+    }
+
+    /// The diagonal of H.
+    pub fn diagonal(&self, values: &[f64]) -> Vec<f64> {
+        self.diagonal.iter().map(|&slot| values[slot]).collect()
+    }
+
+    /// H + shift, for a diagonal shift.
+    pub fn shifted(&self, values: &[f64], shift: impl Iterator<Item = f64>) -> Vec<f64> {
+        let mut values = values.to_vec();
+        for (&slot, shift) in std::iter::zip(&self.diagonal, shift) {
+            values[slot] += shift;
+        }
+        values
+    }
+
+    /// H x, and |H| |x| for the rounding errors of it.
+    pub fn product(&self, values: &[f64], x: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let (mut product, mut bound) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+        let mut add = |row: usize, term: f64| {
+            product[row] += term;
+            bound[row] += term.abs();
+        };
+        let (starts, rows) = (self.matrix.col_ptr(), self.matrix.row_idx());
+        for column in 0..x.len() {
+            for slot in starts[column]..starts[column + 1] {
+                let row = rows[slot];
+                add(row, values[slot] * x[column]);
+                if row != column {
+                    add(column, values[slot] * x[row]);
+                }
+            }
+        }
+        (product, bound)
+    }
+
+    /// LDL^T; `None` if a pivot vanishes or is not finite.
+    pub fn factorise(&self, values: &[f64]) -> Option<Factor> {
+        let mut factor = vec![0.0; self.cholesky.len_val()];
+        let scratch = self
+            .cholesky
+            .factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
+        self.cholesky
+            .factorize_numeric_ldlt(
+                &mut factor,
+                SparseColMatRef::new(self.matrix.as_ref(), values),
+                Side::Lower,
+                LdltRegularization::default(),
+                Par::Seq,
+                MemStack::new(&mut MemBuffer::new(scratch)),
+                Default::default(),
+            )
+            .ok()?;
+        let ratios = self.pivot_ratios(values, &factor);
+        if ratios
+            .iter()
+            .any(|ratio| !ratio.is_finite() || *ratio == 0.0)
+        {
+            return None;
+        }
+        Some(Factor {
+            negative_pivots: ratios
+                .iter()
+                .filter(|ratio| **ratio <= LEAST_PIVOT_RATIO)
+                .count(),
+            pivot_ratio: ratios.iter().copied().fold(1.0, f64::min),
+            values: factor,
+        })
+    }
+
+    /// Each pivot of D over the diagonal entry of H it began as, in the order of elimination.
+    fn pivot_ratios(&self, values: &[f64], factor: &[f64]) -> Vec<f64> {
+        let pivots: Vec<f64> = match self.cholesky.raw() {
+            SymbolicCholeskyRaw::Simplicial(symbolic) => {
+                let starts = &symbolic.col_ptr()[..symbolic.ncols()];
+                starts.iter().map(|&start| factor[start]).collect()
+            }
+            SymbolicCholeskyRaw::Supernodal(symbolic) => {
+                let ldlt = SupernodalLdltRef::new(symbolic, factor);
+                (0..symbolic.n_supernodes())
+                    .flat_map(|s| {
+                        let block = ldlt.supernode(s).val();
+                        (0..block.ncols()).map(move |j| block[(j, j)])
+                    })
+                    .collect()
+            }
+        };
+        let diagonal = self.diagonal(values);
+        pivots
+            .iter()
+            .enumerate()
+            .map(|(i, pivot)| {
+                let row = self.cholesky.perm().map_or(i, |perm| perm.arrays().0[i]);
+                pivot / diagonal[row].abs()
+            })
+            .collect()
+    }
+
+    /// Solves with the factor, in place.
+    pub fn solve(&self, factor: &Factor, rhs: &mut [f64]) {
+        let scratch = self.cholesky.solve_in_place_scratch::<f64>(1, Par::Seq);
+        let rows = rhs.len();
+        LdltRef::new(&self.cholesky, &factor.values).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(rhs, rows, 1),
+            Par::Seq,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A small sheet is factored column by column, a large one by supernodes.
+    const GRIDS: [Grid; 2] = [Grid { m: 3, n: 3 }, Grid { m: 12, n: 12 }];
+
+    /// Clamped in panel 0.
+    fn pattern(grid: Grid) -> TangentPattern {
+        let free = |i: usize| i.checked_sub(3);
+        let pattern = TangentPattern::new(
+            grid,
+            &(0..3 * grid.panel_count()).map(free).collect::<Vec<_>>(),
+        );
+        let large = pattern.diagonal.len() >= SUPERNODAL_FROM;
+        assert_eq!(large, grid.m == 12);
+        pattern
+    }
+
+    /// A positive definite matrix: a full block v v^T of each hinge and a diagonal.
+    fn positive(pattern: &TangentPattern) -> Vec<f64> {
+        let blocks = (0..pattern.slots.len()).map(|h| {
+            let v: [f64; 6] = std::array::from_fn(|d| ((7 * h + d * d) as f64).sin());
+            v.map(|row| v.map(|column| row * column))
+        });
+        let values = pattern.assemble(blocks);
+        pattern.shifted(&values, std::iter::repeat(0.1))
+    }
+
+    #[test]
+    fn solutions_satisfy_their_equations() {
+        for pattern in GRIDS.map(pattern) {
+            let values = positive(&pattern);
+            let factor = pattern.factorise(&values).unwrap();
+            assert_eq!(factor.negative_pivots, 0);
+            let rhs: Vec<f64> = (0..pattern.diagonal.len())
+                .map(|i| (i as f64).cos())
+                .collect();
+            let mut solution = rhs.clone();
+            pattern.solve(&factor, &mut solution);
+            let (product, _) = pattern.product(&values, &solution);
+            assert!(std::iter::zip(product, rhs).all(|(p, b)| (p - b).abs() < 1e-12));
+        }
+    }
+
+    #[test]
+    fn negative_pivots_are_counted_and_zero_ones_refused() {
+        for pattern in GRIDS.map(pattern) {
+            let dimension = pattern.diagonal.len();
+            let opposite: Vec<f64> = positive(&pattern).iter().map(|value| -value).collect();
+            assert_eq!(
+                pattern.factorise(&opposite).unwrap().negative_pivots,
+                dimension
+            );
+            let zero = vec![0.0; opposite.len()];
+            let signs = (0..dimension).map(|i| if i % 5 == 2 { -1.0 } else { 2.0 });
+            let signed = pattern.factorise(&pattern.shifted(&zero, signs)).unwrap();
+            assert_eq!(signed.negative_pivots, (dimension + 2) / 5);
+            assert!(pattern.factorise(&zero).is_none());
+            assert!(pattern.factorise(&vec![f64::NAN; zero.len()]).is_none());
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! The half-disc of sheet assigned to a hinge: the domain its energy was condensed on.
+//!
+//! Its flat side lies along the secondary cut, centred on the foot of the perpendicular from the
+//! tip O. Energies of hinges add up only while windows are disjoint and stay within the two panels
+//! they join.
+
+use crate::sheet::{Hinge, Panel, Sheet};
+use std::f64::consts::PI;
+
+/// A hinge's window in the flat sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// Foot of the perpendicular from O on the secondary cut: the origin of the hinge frame (mm).
+    pub foot: [f64; 2],
+    /// Unit vector along the secondary cut.
+    pub e_sec: [f64; 2],
+    /// mm
+    pub radius: f64,
+}
+
+/// Points along the arc: the polygon stays within 0.03% of the radius.
+const ARC: usize = 64;
+/// Windows that only touch, as those on the two flanks of one cut do, are disjoint.
+const TOUCH: f64 = 1e-6;
+
+impl Window {
+    pub fn new(hinge: &Hinge, r_win: f64) -> Self {
+        let [x, y] = hinge.e_sec;
+        let foot = [
+            hinge.tip[0] - hinge.w_lig * y,
+            hinge.tip[1] + hinge.w_lig * x,
+        ];
+        Self {
+            foot,
+            e_sec: hinge.e_sec,
+            radius: r_win,
+        }
+    }
+
+    /// The windows of a sheet, hinge by hinge.
+    pub fn of_sheet(sheet: &Sheet) -> Vec<Self> {
+        let r_win = sheet.options.process.r_win;
+        sheet
+            .hinges
+            .iter()
+            .map(|hinge| Self::new(hinge, r_win))
+            .collect()
+    }
+
+    /// The point at hinge-frame coordinates (x, y) (mm).
+    pub fn point(&self, x: f64, y: f64) -> [f64; 2] {
+        let [c, s] = self.e_sec;
+        [self.foot[0] + c * x - s * y, self.foot[1] + s * x + c * y]
+    }
+
+    /// The half-disc as a convex polygon, from -x through the material to +x (mm).
+    pub fn polygon(&self) -> Vec<[f64; 2]> {
+        (0..=ARC)
+            .map(|i| {
+                let (sin, cos) = (PI * i as f64 / ARC as f64).sin_cos();
+                self.point(-self.radius * cos, -self.radius * sin)
+            })
+            .collect()
+    }
+
+    /// The part of the half-disc in a panel, as a convex polygon (mm).
+    pub fn inside(&self, panel: &Panel) -> Vec<[f64; 2]> {
+        edges(&panel.corners).fold(self.polygon(), |part, (p, q)| {
+            let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
+            clip(&part, |[x, y]| dy * (x - p[0]) - dx * (y - p[1]))
+        })
+    }
+
+    /// Signed distance of a point above the flat side, away from the material (mm).
+    fn height(&self, [x, y]: [f64; 2]) -> f64 {
+        let [c, s] = self.e_sec;
+        c * (y - self.foot[1]) - s * (x - self.foot[0])
+    }
+
+    /// Whether two windows share material.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let touch = TOUCH * self.radius.max(other.radius);
+        let apart = f64::hypot(other.foot[0] - self.foot[0], other.foot[1] - self.foot[1]);
+        if apart >= self.radius + other.radius - touch {
+            return false;
+        }
+        let shared = clip(&self.polygon(), |point| other.height(point) + touch);
+        distance_to_polygon(other.foot, &shared) < other.radius - touch
+    }
+
+    /// Whether the arc lies in the two panels, but for its ends on the secondary cut.
+    pub fn within(&self, a: &Panel, b: &Panel) -> bool {
+        let arc = self.polygon();
+        arc[1..ARC]
+            .iter()
+            .all(|&point| contains(&a.corners, point) || contains(&b.corners, point))
+    }
+}
+
+/// The part of a convex polygon where `height`, which is linear, is negative.
+fn clip(polygon: &[[f64; 2]], height: impl Fn([f64; 2]) -> f64) -> Vec<[f64; 2]> {
+    let mut kept = Vec::new();
+    for (p, q) in edges(polygon) {
+        let (below_p, below_q) = (height(p), height(q));
+        if below_p <= 0.0 {
+            kept.push(p);
+        }
+        if (below_p <= 0.0) != (below_q <= 0.0) {
+            let f = below_p / (below_p - below_q);
+            kept.push([p[0] + f * (q[0] - p[0]), p[1] + f * (q[1] - p[1])]);
+        }
+    }
+    kept
+}
+
+/// Whether a convex counter-clockwise polygon contains a point, its border included.
+fn contains(polygon: &[[f64; 2]], point: [f64; 2]) -> bool {
+    edges(polygon).all(|(p, q)| {
+        let (d, e) = (
+            [q[0] - p[0], q[1] - p[1]],
+            [point[0] - p[0], point[1] - p[1]],
+        );
+        let rounding = 1e-9 * (d[0] * d[0] + d[1] * d[1]);
+        d[0] * e[1] - d[1] * e[0] >= -rounding
+    })
+}
+
+/// Distance from a point to a convex counter-clockwise polygon; infinite if it is empty (mm).
+fn distance_to_polygon(point: [f64; 2], polygon: &[[f64; 2]]) -> f64 {
+    if !polygon.is_empty() && contains(polygon, point) {
+        return 0.0;
+    }
+    edges(polygon)
+        .map(|(p, q)| distance_to_segment(point, p, q))
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Distance from a point to the segment from `a` to `b` (mm).
+pub(crate) fn distance_to_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+    let (d, e) = (
+        [b[0] - a[0], b[1] - a[1]],
+        [point[0] - a[0], point[1] - a[1]],
+    );
+    let square = d[0] * d[0] + d[1] * d[1];
+    let along = if square > 0.0 {
+        ((d[0] * e[0] + d[1] * e[1]) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    f64::hypot(e[0] - along * d[0], e[1] - along * d[1])
+}
+
+/// The edges of a closed polygon.
+pub(crate) fn edges(polygon: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
+    (0..polygon.len()).map(|i| (polygon[i], polygon[(i + 1) % polygon.len()]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn window(foot: [f64; 2], angle_deg: f64) -> Window {
+        let (sin, cos) = f64::to_radians(angle_deg).sin_cos();
+        Window {
+            foot,
+            e_sec: [cos, sin],
+            radius: 100.0,
+        }
+    }
+
+    #[test]
+    fn the_material_is_below_the_secondary_cut() {
+        let turned = window([10.0, 20.0], 90.0);
+        let lowest = turned.polygon()[ARC / 2];
+        assert!((lowest[0] - 110.0).abs() < 1e-9 && (lowest[1] - 20.0).abs() < 1e-9);
+        assert!((turned.height(lowest) + 100.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn windows_on_the_two_flanks_of_a_cut_only_touch() {
+        let south = window([0.0, 0.0], 0.0);
+        for shift in [0.0, 30.0, -150.0] {
+            let north = window([shift, 0.0], 180.0);
+            assert!(
+                !south.overlaps(&north) && !north.overlaps(&south),
+                "{shift}"
+            );
+        }
+    }
+
+    #[test]
+    fn half_discs_overlap_exactly_when_they_share_area() {
+        let window_at = |x, y, angle| window([x, y], angle);
+        let below = window([0.0, 0.0], 0.0);
+        // (other window, whether it shares area with the half-disc below the x axis)
+        let cases = [
+            (window_at(199.0, 0.0, 0.0), true),
+            (window_at(200.0, 0.0, 0.0), false),
+            (window_at(0.0, -99.0, 0.0), true),
+            // The discs share area, the half-discs do not.
+            (window_at(-120.0, -120.0, 0.0), false),
+            (window_at(-60.0, -160.0, 180.0), true),
+            // A disc that reaches over the flat side without material there.
+            (window_at(0.0, 50.0, 180.0), false),
+            (window_at(0.0, 50.0, 0.0), true),
+        ];
+        for (other, expected) in cases {
+            assert_eq!(below.overlaps(&other), expected, "{other:?}");
+            assert_eq!(other.overlaps(&below), expected, "{other:?}");
+        }
+    }
+
+    #[test]
+    fn a_window_that_reaches_beyond_its_panels_is_seen() {
+        let panel = |x: f64, width: f64| Panel {
+            corners: [[x, -300.0], [x + width, -300.0], [x + width, 0.0], [x, 0.0]],
+            centroid: [x + width / 2.0, -150.0],
+        };
+        let below = window([0.0, 0.0], 0.0);
+        assert!(below.within(&panel(-300.0, 300.0), &panel(0.0, 300.0)));
+        assert!(!below.within(&panel(-300.0, 300.0), &panel(0.0, 90.0)));
+    }
+
+    #[test]
+    fn distances_to_a_segment() {
+        let (a, b) = ([0.0, 0.0], [10.0, 0.0]);
+        assert_eq!(distance_to_segment([5.0, 3.0], a, b), 3.0);
+        assert_eq!(distance_to_segment([13.0, 4.0], a, b), 5.0);
+        assert_eq!(distance_to_segment([3.0, 4.0], a, a), 5.0);
+    }
+}

@@ -1,0 +1,284 @@
+//! The cut lines of the uniform 3 x 3 sheet against numbers worked out by hand, of irregular sheets
+//! against the rule that no cut enters a ligament, and of both file formats against themselves.
+//!
+//! The uniform sheet of 400 mm panels, 18 mm ligaments, the four interior slits drawn:
+//!
+//! ```text
+//!  1200 +-----+--o--+--|--+      Every interior slit runs over two panels, 800 mm less a ligament
+//!       |     |     |  |  |      at each end; every slit that is open on the outline over one.
+//!   800 |--o  |  -------- o      o: a hinge on the outline, |: a slit open on it
+//! ```
+
+use design::fabrication::{CutLines, FabricationError, write_dxf, write_svg};
+use design::grid::Grid;
+use design::pattern::{CutPattern, Outline, PatternCoordinates};
+use design::sheet::{Centroid, CutProcess, HingePoint, Sheet, SheetOptions};
+use dxf::entities::EntityType;
+use hinge::SheetMaterial;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+const W_LIG: f64 = 18.0;
+const FILLET_RATIO: f64 = 0.16;
+const KERF: f64 = 0.2;
+
+fn material() -> SheetMaterial {
+    SheetMaterial {
+        name: "film".into(),
+        thickness: 0.5,
+        young: 3000.0,
+        poisson: 0.4,
+        density_kg_m3: 1390.0,
+        fracture_strain: 1.784,
+        plastic: vec![[44.0, 0.0]],
+    }
+}
+
+fn sheet(grid: Grid, coordinates: &PatternCoordinates, w_lig: f64) -> (CutPattern, Sheet) {
+    let [width, height] = [grid.m, grid.n].map(|panels| 400.0 * panels as f64);
+    let pattern = CutPattern::new(grid, Outline::rectangle(width, height), coordinates).unwrap();
+    let options = SheetOptions {
+        hinge_point: HingePoint::CutTip,
+        centroid: Centroid::Area,
+        process: CutProcess {
+            fillet_ratio: FILLET_RATIO,
+            kerf: KERF,
+            r_win: 100.0,
+        },
+    };
+    let widths = vec![w_lig; grid.hinge_count()];
+    let sheet = Sheet::new(&pattern, &widths, options).unwrap();
+    (pattern, sheet)
+}
+
+fn uniform(w_lig: f64) -> (CutPattern, Sheet) {
+    let grid = Grid { m: 3, n: 3 };
+    sheet(grid, &PatternCoordinates::uniform(grid), w_lig)
+}
+
+fn uniform_cuts() -> CutLines {
+    let (pattern, sheet) = uniform(W_LIG);
+    CutLines::new(&pattern, &sheet, &material()).unwrap()
+}
+
+fn irregular(grid: Grid, seed: u64) -> (CutPattern, Sheet) {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut coordinates = PatternCoordinates::uniform(grid);
+    for logit in coordinates
+        .z
+        .iter_mut()
+        .chain(coordinates.ell.iter_mut().flatten())
+    {
+        *logit = random.random_range(-0.4..0.4);
+    }
+    sheet(grid, &coordinates, W_LIG)
+}
+
+fn length([a, b]: [[f64; 2]; 2]) -> f64 {
+    f64::hypot(b[0] - a[0], b[1] - a[1])
+}
+
+/// Distance from a point to the segment between two others.
+fn distance(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
+    let d = [b[0] - a[0], b[1] - a[1]];
+    let f = ((p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+    let f = f.clamp(0.0, 1.0);
+    length([p, [a[0] + f * d[0], a[1] + f * d[1]]])
+}
+
+#[test]
+fn the_uniform_sheet_has_eight_slits_and_twelve_holes_where_they_belong() {
+    let cuts = uniform_cuts();
+    assert_eq!(cuts.slits.len(), 8);
+    assert_eq!(cuts.holes.len(), 12);
+
+    let mut lengths: Vec<f64> = cuts.slits.iter().map(|slit| length(slit.ends)).collect();
+    lengths.sort_by(f64::total_cmp);
+    for (found, expected) in lengths.iter().zip([[382.0; 4], [764.0; 4]].as_flattened()) {
+        assert!((found - expected).abs() < 1e-9, "{lengths:?}");
+    }
+    let by_hand = [
+        // C_10 rises from the outline to the flank of C_11; C_11 runs from the left edge to C_21.
+        [[400.0, 382.0], [400.0, 0.0]],
+        [[18.0, 400.0], [782.0, 400.0]],
+        [[800.0, 18.0], [800.0, 782.0]],
+    ];
+    for expected in by_hand {
+        let found = cuts.slits.iter().any(|slit| {
+            let [a, b] = slit.ends;
+            let same = |p: [f64; 2], q: [f64; 2]| length([p, q]) < 1e-9;
+            (same(a, expected[0]) && same(b, expected[1]))
+                || (same(a, expected[1]) && same(b, expected[0]))
+        });
+        assert!(found, "{expected:?} is missing from {:?}", cuts.slits);
+    }
+    for hole in &cuts.holes {
+        assert!((hole.radius - 2.88).abs() < 1e-12);
+        assert!((cuts.tool_radius(hole) - 2.78).abs() < 1e-12);
+    }
+    let outline = cuts.tool_outline();
+    assert!((outline[0][0] + 0.1).abs() < 1e-12 && (outline[2][1] - 1200.1).abs() < 1e-9);
+}
+
+#[test]
+fn every_slit_ends_in_the_hole_of_its_hinge_or_on_the_outline() {
+    for (m, n) in [(2, 2), (3, 3), (2, 5), (4, 3), (6, 5)] {
+        let grid = Grid { m, n };
+        let (pattern, sheet) = irregular(grid, (10 * m + n) as u64);
+        let cuts = CutLines::new(&pattern, &sheet, &material()).unwrap();
+        let mut visits = vec![0; cuts.holes.len()];
+        for slit in &cuts.slits {
+            for (end, hinge) in slit.ends.iter().zip(slit.hinges) {
+                match hinge {
+                    Some(hinge) => {
+                        visits[hinge] += 1;
+                        assert_eq!(*end, sheet.hinges[hinge].tip);
+                        let corner = sheet.hinges[hinge].corner;
+                        let ligament = W_LIG / sheet.hinges[hinge].alpha.sin();
+                        assert!((length([*end, corner]) - ligament).abs() < 1e-9);
+                    }
+                    None => {
+                        let [x, y] = *end;
+                        let [width, height] = [m, n].map(|panels| 400.0 * panels as f64);
+                        let gap = [x, y, width - x, height - y].map(f64::abs);
+                        assert!(gap.into_iter().fold(f64::MAX, f64::min) < 1e-9);
+                    }
+                }
+            }
+        }
+        assert!(
+            visits.iter().all(|&count| count == 1),
+            "{m} x {n}: {visits:?}"
+        );
+        // One slit per interior cut and one per cut that is open on the outline.
+        let open = cuts
+            .slits
+            .iter()
+            .filter(|slit| slit.hinges[1].is_none())
+            .count();
+        assert_eq!(cuts.slits.len() - open, grid.aspect_ratio_count());
+        assert_eq!(2 * (cuts.slits.len() - open) + open, grid.hinge_count());
+    }
+}
+
+#[test]
+fn no_cut_enters_a_ligament() {
+    let grid = Grid { m: 3, n: 3 };
+    let sheets = (0..20)
+        .map(|seed| irregular(grid, seed))
+        .chain([uniform(W_LIG)]);
+    for (pattern, sheet) in sheets {
+        let cuts = CutLines::new(&pattern, &sheet, &material()).unwrap();
+        for (h, hole) in cuts.holes.iter().enumerate() {
+            let others = cuts
+                .slits
+                .iter()
+                .filter(|slit| !slit.hinges.contains(&Some(h)));
+            let nearest = others
+                .map(|slit| distance(hole.centre, slit.ends))
+                .fold(f64::INFINITY, f64::min);
+            let left = nearest.min(cuts.clearance(h)) - hole.radius;
+            let designed = (1.0 - FILLET_RATIO) * W_LIG;
+            assert!(
+                left >= designed - 1e-9,
+                "hinge {h}: {left} of {designed} mm"
+            );
+        }
+        for (i, slit) in cuts.slits.iter().enumerate() {
+            for other in &cuts.slits[..i] {
+                let gap = [0, 1]
+                    .map(|end| {
+                        f64::min(
+                            distance(slit.ends[end], other.ends),
+                            distance(other.ends[end], slit.ends),
+                        )
+                    })
+                    .into_iter()
+                    .fold(f64::INFINITY, f64::min);
+                assert!(gap >= W_LIG - 1e-9, "{gap}: {slit:?} {other:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn ligaments_that_eat_a_slit_are_refused() {
+    let (pattern, sheet) = uniform(398.0);
+    let error = CutLines::new(&pattern, &sheet, &material()).unwrap_err();
+    assert!(
+        matches!(error, FabricationError::SlitVanishes { .. }),
+        "{error}"
+    );
+    let (pattern, sheet) = uniform(0.6);
+    let error = CutLines::new(&pattern, &sheet, &material()).unwrap_err();
+    assert!(
+        matches!(error, FabricationError::HoleTooSmall { .. }),
+        "{error}"
+    );
+}
+
+#[test]
+fn the_dxf_reads_back_in_millimetres_on_its_layers_and_is_the_same_each_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let [path, again] = ["a.dxf", "b.dxf"].map(|name| folder.path().join(name));
+    let cuts = uniform_cuts();
+    write_dxf(&path, &cuts).unwrap();
+    write_dxf(&again, &cuts).unwrap();
+    assert!(std::fs::read(&path).unwrap() == std::fs::read(again).unwrap());
+
+    let drawing = dxf::Drawing::load_file(&path).unwrap();
+    assert_eq!(
+        drawing.header.default_drawing_units,
+        dxf::enums::Units::Millimeters
+    );
+    let (mut slits, mut holes, mut outlines, mut texts) = (0, 0, 0, 0);
+    for entity in drawing.entities() {
+        let layer = entity.common.layer.as_str();
+        match &entity.specific {
+            EntityType::Line(line) => {
+                let slit = &cuts.slits[slits];
+                assert!((line.p1.x - slit.ends[0][0]).abs() < 1e-9);
+                assert!((line.p2.y - slit.ends[1][1]).abs() < 1e-9);
+                assert_eq!(layer, "CUT");
+                slits += 1;
+            }
+            EntityType::Circle(circle) => {
+                assert!((circle.radius - 2.78).abs() < 1e-9);
+                assert!((circle.center.x - cuts.holes[holes].centre[0]).abs() < 1e-9);
+                assert_eq!(layer, "HOLES");
+                holes += 1;
+            }
+            EntityType::LwPolyline(polyline) => {
+                assert!(polyline.is_closed() && polyline.vertices.len() == 4);
+                assert!((polyline.vertices[2].x - 1200.1).abs() < 1e-9);
+                assert_eq!(layer, "OUTLINE");
+                outlines += 1;
+            }
+            EntityType::Text(text) => {
+                assert!(!text.value.is_empty());
+                assert_eq!(layer, "ANNOTATION");
+                texts += 1;
+            }
+            other => panic!("unexpected {other:?}"),
+        }
+    }
+    assert_eq!((slits, holes, outlines, texts), (8, 12, 1, 13));
+}
+
+#[test]
+fn the_svg_is_at_one_to_one_with_the_same_layers() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cut.svg");
+    write_svg(&path, &uniform_cuts()).unwrap();
+    let svg = std::fs::read_to_string(&path).unwrap();
+    for layer in ["CUT", "HOLES", "OUTLINE", "ANNOTATION"] {
+        assert!(svg.contains(&format!("<g id=\"{layer}\"")), "{layer}");
+    }
+    assert_eq!(svg.matches("<line ").count(), 8);
+    assert_eq!(svg.matches("<circle ").count(), 12);
+    // The page is as many millimetres wide as it is user units.
+    let attribute = |name: &str| svg.split(name).nth(1).unwrap().split('"').next().unwrap();
+    let width = attribute(" width=\"").strip_suffix("mm").unwrap();
+    assert_eq!(attribute("viewBox=\"").split(' ').nth(2).unwrap(), width);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}

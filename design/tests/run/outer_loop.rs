@@ -1,0 +1,92 @@
+//! The outer loop on a linear 3 x 3 sheet: it descends, it resumes to the same trajectory, it
+//! survives designs without value.
+
+use super::{SCENE, read, run, with};
+use design::inverse_design::{Ended, StepRecord, inverse_design};
+use std::sync::atomic::AtomicBool;
+
+#[test]
+fn the_loss_falls_and_the_best_design_is_returned() {
+    let folder = tempfile::tempdir().unwrap();
+    let designed = run(&read(folder.path(), SCENE), None).unwrap();
+    assert_eq!(designed.ended, Ended::Completed);
+    assert_eq!(designed.history.len(), 26);
+    let first = &designed.history[0];
+    assert_eq!(first.loss, designed.start.loss);
+    assert!(
+        designed.best.loss < 0.8 * first.loss,
+        "{} {}",
+        designed.best.loss,
+        first.loss
+    );
+    let least = designed
+        .history
+        .iter()
+        .map(|record| record.loss)
+        .fold(f64::MAX, f64::min);
+    assert_eq!(least, designed.best.loss);
+}
+
+#[test]
+fn a_stopped_run_resumes_to_the_same_trajectory() {
+    let [whole, parts] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    let uninterrupted = run(&read(whole.path(), SCENE), None).unwrap();
+    let scene = read(parts.path(), SCENE);
+    let stopped = run(&scene, Some(9)).unwrap();
+    assert_eq!(stopped.ended, Ended::Stopped);
+    assert_eq!(stopped.history.len(), 10);
+    let resumed = run(&scene, None).unwrap();
+    assert_eq!(resumed.history, uninterrupted.history);
+    assert_eq!(resumed.design, uninterrupted.design);
+    // A finished run is not run again.
+    let mut steps = 0;
+    inverse_design(&scene, &AtomicBool::new(false), &mut |_| steps += 1).unwrap();
+    assert_eq!(steps, 0);
+}
+
+#[test]
+fn more_steps_may_be_asked_for_but_not_another_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let run_with = |changes: &[_]| run(&read(folder.path(), &with(changes)), None);
+    run_with(&[("steps = 25", "steps = 2")]).unwrap();
+    let longer = run_with(&[("steps = 25", "steps = 4")]).unwrap();
+    assert_eq!(longer.history.len(), 5);
+    let harder = [("steps = 25", "steps = 4"), ("[2.0, 0.0]", "[3.0, 0.0]")];
+    let error = run_with(&harder).err().unwrap().to_string();
+    assert!(error.contains("another scene"), "{error}");
+    let path = folder.path().join("run/state.json");
+    let state = std::fs::read_to_string(&path).unwrap();
+    let mut state: serde_json::Value = serde_json::from_str(&state).unwrap();
+    state["scene"]["optimiser"]["steps"] = 25.into();
+    state["adam"]["mean"] = serde_json::json!([0.0]);
+    std::fs::write(&path, state.to_string()).unwrap();
+    let error = run_with(&[]).err().unwrap().to_string();
+    assert!(error.contains("another size"), "{error}");
+    std::fs::write(&path, "{").unwrap();
+    let error = run_with(&[]).err().unwrap().to_string();
+    assert!(error.contains("remove it to start afresh"), "{error}");
+}
+
+#[test]
+fn a_step_into_designs_without_value_is_halved_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    // A rate that sends the charts to their ends: cuts collide there.
+    let wild = with(&[("learning_rate = 0.03", "learning_rate = 9.0")]);
+    let designed = run(&read(folder.path(), &wild), None).unwrap();
+    let set_back = |record: &&StepRecord| record.halvings > 0;
+    let reason = designed
+        .history
+        .iter()
+        .find(set_back)
+        .unwrap()
+        .setback
+        .as_ref();
+    assert!(!reason.unwrap().is_empty());
+    assert!(designed.best.loss <= designed.start.loss);
+    assert!(
+        designed
+            .history
+            .iter()
+            .all(|record| record.loss.is_finite())
+    );
+}

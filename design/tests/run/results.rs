@@ -1,0 +1,143 @@
+//! What a run leaves in its folder, and what its report warns of.
+
+use super::{SCENE, read, run, with};
+use design::report::{Concern, Report};
+use design::results::write_results;
+
+fn report(changes: &[(&str, &str)]) -> (tempfile::TempDir, Report) {
+    let folder = tempfile::tempdir().unwrap();
+    // Cut lines of an earlier design.
+    std::fs::create_dir(folder.path().join("run")).unwrap();
+    std::fs::write(folder.path().join("run/cut.dxf"), "stale").unwrap();
+    let scene = read(folder.path(), &with(changes));
+    let designed = run(&scene, None).unwrap();
+    let report = write_results(&scene, &designed).unwrap();
+    (folder, report)
+}
+
+fn hinges(report: &Report, concern: Concern) -> Option<usize> {
+    let mut found = report
+        .warnings
+        .iter()
+        .filter(|warning| warning.concern == concern);
+    found.next().map(|warning| warning.hinges.len())
+}
+
+#[test]
+fn a_sound_design_leaves_everything_and_no_warning() {
+    let (folder, report) = report(&[]);
+    assert_eq!(report.warnings, []);
+    assert_eq!((report.steps, report.hinges.len()), (25, 12));
+    assert!(report.after.loss < report.before.loss);
+    assert!(report.after.outline_error < report.before.outline_error);
+    assert!(
+        report
+            .hinges
+            .iter()
+            .all(|row| row.damage.is_none() && row.inside)
+    );
+    let run = folder.path().join("run");
+    let mut names: Vec<_> = std::fs::read_dir(&run)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    assert_eq!(
+        names,
+        [
+            "cut.dxf",
+            "cut.svg",
+            "deployed-start.svg",
+            "deployed.svg",
+            "flat.svg",
+            "report.json",
+            "report.txt",
+            "state.json"
+        ]
+    );
+    let json = std::fs::read_to_string(run.join("report.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["hinges"][3]["w_lig"], report.hinges[3].w_lig);
+    let text = std::fs::read_to_string(run.join("report.txt")).unwrap();
+    assert!(
+        text.contains("25 steps") && text.contains("no warnings"),
+        "{text}"
+    );
+}
+
+#[test]
+fn the_pictures_show_every_panel_hinge_and_slit() {
+    let (folder, _) = report(&[("steps = 25", "steps = 1")]);
+    let read = |name: &str| std::fs::read_to_string(folder.path().join("run").join(name)).unwrap();
+    let flat = read("flat.svg");
+    // Page, nine panels, two halves of twelve windows, the outline.
+    assert_eq!(flat.matches("<polygon ").count(), 1 + 9 + 24 + 1);
+    // Eight slits, twelve ligaments, the scale bar and its two ends.
+    assert_eq!(flat.matches("<line ").count(), 8 + 12 + 3);
+    assert_eq!(flat.matches("<circle ").count(), 12);
+    let deployed = read("deployed.svg");
+    assert!(deployed.contains(">2 N</text>") && deployed.contains("stroke-dasharray"));
+    assert!(deployed.contains(">200 mm</text>") && deployed.contains(">Test sheet</text>"));
+    assert!(!deployed.contains("NaN") && !flat.contains("NaN"));
+}
+
+#[test]
+fn panels_too_small_for_their_windows_are_named() {
+    let small = [
+        ("[1200.0, 1200.0]", "[390.0, 390.0]"),
+        ("[700.0, 550.0]", "[220.0, 190.0]"),
+        ("radius = 750.0", "radius = 240.0"),
+        ("start_noise = 0.05", "start_noise = 0.0"),
+        ("steps = 25", "steps = 1"),
+    ];
+    let (_, report) = report(&small);
+    // Panels of about 130 mm: windows of 100 mm stay inside but meet those of the next hinge.
+    assert!(
+        hinges(&report, Concern::WindowsOverlap).is_some(),
+        "{report}"
+    );
+    assert_eq!(hinges(&report, Concern::PanelsTilt), None);
+    assert!(
+        report
+            .to_string()
+            .contains("windows of 100 mm radius overlap"),
+        "{report}"
+    );
+}
+
+#[test]
+fn a_thick_stiff_sheet_whose_panels_tilt_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = read(folder.path(), SCENE);
+    let steel = super::FILM
+        .replace("0.5\n", "3.0\n")
+        .replace("3000.0", "210000.0");
+    std::fs::write(folder.path().join("film.toml"), steel).unwrap();
+    let steel = design::scene::Scene::read(&folder.path().join("scene.toml")).unwrap();
+    let designed = run(&scene, None).unwrap();
+    assert_eq!(
+        hinges(
+            &write_results(&scene, &designed).unwrap(),
+            Concern::PanelsTilt
+        ),
+        None
+    );
+    let report = write_results(&steel, &designed).unwrap();
+    assert_eq!(hinges(&report, Concern::PanelsTilt), Some(12));
+}
+
+#[test]
+fn ligaments_wider_than_their_slits_cannot_be_cut_and_the_report_says_so() {
+    let (folder, report) = report(&[
+        ("[1200.0, 1200.0]", "[390.0, 390.0]"),
+        ("[700.0, 550.0]", "[220.0, 190.0]"),
+        ("radius = 750.0", "radius = 240.0"),
+        ("start = 18.0", "start = 125.0"),
+        ("range = [10.0, 26.0]", "range = [10.0, 140.0]"),
+        ("r_win = 100.0", "r_win = 400.0"),
+        ("steps = 25", "steps = 1"),
+    ]);
+    assert_eq!(hinges(&report, Concern::CannotBeCut), Some(0));
+    assert!(!folder.path().join("run/cut.dxf").exists());
+    assert!(folder.path().join("run/deployed.svg").exists());
+}

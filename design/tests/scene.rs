@@ -1,0 +1,142 @@
+//! Scenes that are shipped are read; scenes that cannot be say which key is wrong and why.
+
+use design::scene::Scene;
+use std::path::{Path, PathBuf};
+
+fn shipped(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../configs/scenes")
+        .join(name)
+}
+
+/// The message for a copy of a shipped scene with one text replaced.
+fn refusal(name: &str, text: &str, replacement: &str) -> String {
+    let scene = std::fs::read_to_string(shipped(name)).unwrap();
+    assert!(scene.contains(text), "{text} is not in {name}");
+    let folder = tempfile::tempdir().unwrap();
+    let materials = folder.path().join("materials");
+    std::fs::create_dir_all(&materials).unwrap();
+    let film = "pet-0.5mm.toml";
+    let source = shipped("../materials").join(film);
+    std::fs::copy(source, materials.join(film)).unwrap();
+    let path = folder.path().join("scenes").join(name);
+    std::fs::create_dir_all(folder.path().join("scenes")).unwrap();
+    std::fs::write(&path, scene.replacen(text, replacement, 1)).unwrap();
+    Scene::read(&path).unwrap_err().to_string()
+}
+
+#[test]
+fn the_linear_scene_is_read_and_needs_no_weights() {
+    let scene = Scene::read(&shipped("linear-7x7.toml")).unwrap();
+    assert!(scene.surrogate().is_none());
+    assert_eq!(scene.target.points().len(), 500);
+    assert_eq!(scene.material.thickness, 0.5);
+    assert!(scene.output().ends_with("runs/linear-7x7"));
+}
+
+#[test]
+fn an_unknown_key_names_its_line_and_the_key_that_was_meant() {
+    let message = refusal("linear-7x7.toml", "fillet_ratio", "filet_ratio");
+    assert!(message.contains("linear-7x7.toml:"), "{message}");
+    assert!(
+        message.contains("`filet_ratio`; did you mean `fillet_ratio`?"),
+        "{message}"
+    );
+}
+
+#[test]
+fn slips_of_units_and_signs_are_named() {
+    let cases = [
+        (
+            "size = [2800.0, 2800.0]",
+            "size = [2.8, 2.8]",
+            "did you mean 2800 mm",
+        ),
+        ("start = 18.0", "start = 0.018", "ligament.start"),
+        (
+            "range = [10.0, 26.0]",
+            "range = [0.010, 0.026]",
+            "did you mean 10 mm",
+        ),
+        (
+            "range = [10.0, 26.0]",
+            "range = [26.0, 10.0]",
+            "least < greatest",
+        ),
+        ("kerf = 0.2", "kerf = -0.2", "0 < kerf"),
+        ("r_win = 70.0", "r_win = 0.1", "r_win > 2.5 w_lig"),
+        ("k_theta = 300.0", "k_theta = -300.0", "linear.k_theta"),
+        ("k_a = 400.0", "k_a = 4e8", "did you mean 400000 N/mm"),
+        (
+            "force = [40.0, 0.0]",
+            "force = [nan, 0.0]",
+            "loads[0].force",
+        ),
+        ("radius = 2268.0", "radius = 2.268", "did you mean 14250"),
+        ("radius = 2268.0", "radius = -2268.0", "0 < circle.radius"),
+        (
+            "learning_rate = 0.05",
+            "learning_rate = 0.0",
+            "optimiser.learning_rate",
+        ),
+        ("load_steps = 10", "load_steps = 0", "1 <= load_steps"),
+    ];
+    for (text, replacement, expected) in cases {
+        let message = refusal("linear-7x7.toml", text, replacement);
+        assert!(message.contains(expected), "{replacement}: {message}");
+        assert!(message.contains("linear-7x7.toml"), "{message}");
+    }
+}
+
+#[test]
+fn panels_and_supports_that_cannot_be_are_named() {
+    let cases = [
+        (
+            "panel = [6, 3]",
+            "panel = [7, 3]",
+            "loads[0].panel = [7, 3] violates column < 7",
+        ),
+        ("panel = [6, 3]", "panel = [3, 3]", "held against this load"),
+        ("panels = [7, 7]", "panels = [1, 7]", "2 <= columns"),
+        ("kind = \"clamp\"", "kind = \"glue\"", "glue"),
+    ];
+    for (text, replacement, expected) in cases {
+        let message = refusal("linear-7x7.toml", text, replacement);
+        assert!(message.contains(expected), "{replacement}: {message}");
+    }
+}
+
+#[test]
+fn a_hinge_law_without_what_it_needs_is_refused() {
+    let message = refusal("pet-3x3.toml", "size =", "size =");
+    assert!(
+        message.contains("surrogate.weights: there is no file"),
+        "{message}"
+    );
+    let message = refusal("pet-3x3.toml", "[surrogate]\nweights", "[ignored]\nweights");
+    assert!(message.contains("unknown key `ignored`"), "{message}");
+    let message = refusal(
+        "pet-3x3.toml",
+        "hinge = \"surrogate\"",
+        "hinge = \"linear\"",
+    );
+    assert!(message.contains("needs the section [linear]"), "{message}");
+    let message = refusal(
+        "linear-7x7.toml",
+        "hinge = \"linear\"",
+        "hinge = \"surrogate\"",
+    );
+    assert!(
+        message.contains("needs the section [surrogate]"),
+        "{message}"
+    );
+    let message = refusal(
+        "linear-7x7.toml",
+        "coverage = 0.5",
+        "coverage = 0.5\ndamage = 1.0",
+    );
+    assert!(
+        message.contains("only the learned hinge law predicts damage"),
+        "{message}"
+    );
+}

@@ -1,0 +1,93 @@
+//! Reading the reference cases, which an independent implementation computed in float64.
+
+use design::actuation::{Dof, Load, Support};
+use design::grid::Grid;
+use design::pattern::{CutPattern, Outline, PatternCoordinates};
+use design::sheet::{Centroid, CutProcess, HingePoint, Sheet, SheetOptions};
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+/// What a window needs besides w_lig and alpha; no case reads it.
+pub const PROCESS: CutProcess = CutProcess {
+    fillet_ratio: 0.16,
+    kerf: 0.2,
+    r_win: 100.0,
+};
+
+pub const AT_CORNER: SheetOptions = SheetOptions {
+    hinge_point: HingePoint::Corner,
+    centroid: Centroid::Area,
+    process: PROCESS,
+};
+
+pub fn case(name: &str) -> Value {
+    let path = format!("{}/tests/cases/{name}.json", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).expect("the case is part of the repository");
+    serde_json::from_str(&text).expect("the case is valid JSON")
+}
+
+pub fn get<T: DeserializeOwned>(value: &Value, key: &str) -> T {
+    T::deserialize(&value[key]).unwrap_or_else(|error| panic!("{key}: {error}"))
+}
+
+pub fn grid(case: &Value) -> Grid {
+    Grid {
+        m: get(case, "M"),
+        n: get(case, "N"),
+    }
+}
+
+pub fn outline(case: &Value) -> Outline {
+    Outline {
+        corners: get(case, "outline_corners"),
+    }
+}
+
+pub fn coordinates(case: &Value) -> PatternCoordinates {
+    PatternCoordinates {
+        z: get(case, "z"),
+        ell: get(case, "ell"),
+    }
+}
+
+pub fn pattern(case: &Value) -> CutPattern {
+    CutPattern::new(grid(case), outline(case), &coordinates(case)).unwrap()
+}
+
+/// The sheet of a pattern case, with equal ligaments.
+pub fn sheet(case: &Value) -> Sheet {
+    let pattern = pattern(case);
+    Sheet::new(&pattern, &vec![0.1; pattern.grid.hinge_count()], AT_CORNER).unwrap()
+}
+
+fn dof(entry: &Value) -> Dof {
+    Dof::ALL[get::<usize>(entry, "dof")]
+}
+
+pub fn supports(case: &Value) -> Vec<Support> {
+    let entries: Vec<Value> = get(case, "supports");
+    let support = |entry: &Value| Support {
+        panel: get(entry, "panel"),
+        dof: dof(entry),
+        value: entry["value"].as_f64().unwrap_or(0.0),
+    };
+    entries.iter().map(support).collect()
+}
+
+pub fn loads(case: &Value) -> Vec<Load> {
+    let entries: Vec<Value> = get(case, "loads");
+    let load = |entry: &Value| Load {
+        panel: get(entry, "panel"),
+        dof: dof(entry),
+        value: get(entry, "value"),
+    };
+    entries.iter().map(load).collect()
+}
+
+/// Greatest difference between the numbers of two arrays of the same shape.
+pub fn difference<const N: usize>(found: &[[f64; N]], expected: &[[f64; N]]) -> f64 {
+    assert_eq!(found.len(), expected.len());
+    std::iter::zip(found.as_flattened(), expected.as_flattened())
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+}

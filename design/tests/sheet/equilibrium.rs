@@ -1,0 +1,62 @@
+//! An equilibrium path with its energies against an independent implementation.
+
+use crate::cases::{self, case, difference, get};
+use design::equilibrium::{EquilibriumSolver, HingedSheet, SolverSettings, Status};
+use design::hinge_law::{HingeLaw, LinearLaw};
+use design::kinematics::deployed_corners;
+
+#[test]
+fn a_clamped_and_pulled_sheet() {
+    let case = case("e0_3x3_clamp_pull");
+    let sheet = cases::sheet(&cases::case(&get::<String>(&case, "pattern")));
+    let [k_a, k_s, k_theta]: [Vec<f64>; 3] = ["k_a", "k_s", "k_theta"].map(|key| get(&case, key));
+    let stiffness: Vec<[f64; 3]> = (0..sheet.hinges.len())
+        .map(|h| [k_a[h], k_s[h], k_theta[h]])
+        .collect();
+    let law = LinearLaw::new(stiffness.clone()).unwrap();
+    let solver = EquilibriumSolver::new(
+        sheet.grid,
+        &cases::supports(&case),
+        &cases::loads(&case),
+        get(&case, "nsteps"),
+        SolverSettings::default(),
+    )
+    .unwrap();
+    let law = law.prepare(&sheet.designs());
+    let path = solver.path(HingedSheet {
+        sheet: &sheet,
+        law: &*law,
+        contact: None,
+    });
+
+    let load_factors: Vec<f64> = get(&case, "load_factors");
+    let configurations: Vec<Vec<[f64; 3]>> = get(&case, "path_q");
+    let potentials: Vec<f64> = get(&case, "path_Pi");
+    let stored: Vec<f64> = get(&case, "path_U");
+    assert_eq!(path.len(), load_factors.len());
+    for (i, step) in path.iter().enumerate() {
+        assert_eq!(step.status, Status::Converged);
+        assert_eq!(step.load_factor, load_factors[i]);
+        assert_eq!(step.negative_pivots, 0);
+        assert!(step.residual < 1e-10);
+        assert!(difference(&step.configuration, &configurations[i]) < 1e-8);
+        assert!((step.potential - potentials[i]).abs() < 1e-10);
+        assert!((step.energies.iter().sum::<f64>() - stored[i]).abs() < 1e-9);
+    }
+
+    let last = path.last().unwrap();
+    let deformations: Vec<[f64; 3]> = last.deformations.iter().map(|d| d.to_array()).collect();
+    assert!(difference(&deformations, &get::<Vec<_>>(&case, "hinge_deformation")) < 1e-8);
+    for (c, part) in ["axial", "shear", "rotation"].into_iter().enumerate() {
+        let energy: f64 = std::iter::zip(&deformations, &stiffness)
+            .map(|(deformation, k)| 0.5 * k[c] * deformation[c] * deformation[c])
+            .sum();
+        assert!(
+            (energy - get::<f64>(&case["energy_parts"], part)).abs() < 1e-9,
+            "{part}"
+        );
+    }
+    let corners: Vec<[[f64; 2]; 4]> = get(&case, "deformed_corners");
+    let found = deployed_corners(&sheet, &last.configuration);
+    assert!(difference(found.as_flattened(), corners.as_flattened()) < 1e-8);
+}

@@ -1,0 +1,412 @@
+//! Where designs, loads and hinge laws go wrong: every answer is an error or a status, never NaN.
+
+use crate::cases::{self, AT_CORNER, case};
+use crate::closed_forms::{clamp, opening_moments, path};
+use crate::random::Random;
+use design::actuation::{Dof, Load, Support};
+use design::equilibrium::{
+    EquilibriumError, EquilibriumSolver, HingedSheet, LoadStep, SolverSettings, Status,
+};
+use design::grid::{Endpoint, Grid};
+use design::hinge_law::{Contact, HingeEnergy, HingeLaw, LinearLaw, Order, PreparedLaw};
+use design::ideal_deployment::ideal_deployment;
+use design::kinematics::deployed;
+use design::pattern::{CutPattern, Outline, PatternCoordinates, PatternError};
+use design::sheet::Sheet;
+use hinge::{HingeDeformation, HingeDesign};
+
+/// k_a a^2/2 + k_s s^2/2 + any function of theta with two derivatives.
+#[derive(Clone, Copy)]
+struct Rotational(fn(f64) -> [f64; 3]);
+
+impl HingeLaw for Rotational {
+    fn prepare<'a>(&'a self, _designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a> {
+        Box::new(*self)
+    }
+}
+
+impl PreparedLaw for Rotational {
+    fn energies(&self, deformations: &[HingeDeformation], _order: Order) -> Vec<HingeEnergy> {
+        let energy = |&HingeDeformation { a, s, theta }: &HingeDeformation| {
+            let [w, m, k] = (self.0)(theta);
+            HingeEnergy {
+                w: 50.0 * (a * a + s * s) + w,
+                forces: [100.0 * a, 100.0 * s, m],
+                tangent: [[100.0, 0.0, 0.0], [0.0, 100.0, 0.0], [0.0, 0.0, k]],
+                ..HingeEnergy::default()
+            }
+        };
+        deformations.iter().map(energy).collect()
+    }
+}
+
+fn assert_finite(path: &[LoadStep]) {
+    for step in path {
+        let numbers = step
+            .configuration
+            .as_flattened()
+            .iter()
+            .chain(&step.energies);
+        assert!(
+            numbers
+                .chain([&step.potential])
+                .all(|value| value.is_finite())
+        );
+        assert!(!step.residual.is_nan() && !step.pivot_ratio.is_nan());
+        if !matches!(step.status, Status::Diverged | Status::Almost) {
+            assert!(
+                step.residual <= 1e-10 && step.negative_pivots == 0,
+                "{:?}",
+                step.status
+            );
+        }
+    }
+}
+
+fn pull(value: f64) -> Load {
+    Load {
+        panel: 5,
+        dof: Dof::UX,
+        value,
+    }
+}
+
+#[test]
+fn no_load_leaves_the_sheet_flat() {
+    let sheet = cases::sheet(&case("p1_3x3_random"));
+    let law = LinearLaw::uniform([90.0, 40.0, 0.8], 12).unwrap();
+    for step in path(&sheet, &law, &clamp(3), &[], 3) {
+        assert_eq!((step.status, step.iterations), (Status::Converged, 0));
+        assert_eq!(step.configuration, vec![[0.0; 3]; 9]);
+    }
+}
+
+#[test]
+fn loads_of_any_size_and_sense_end_in_a_status() {
+    let sheet = cases::sheet(&case("p1_3x3_random"));
+    for stiffness in [[90.0, 40.0, 0.8], [1e4, 1e4, 1.0], [1.0, 1.0, 1e-6]] {
+        let law = LinearLaw::uniform(stiffness, 12).unwrap();
+        for force in [1e-12, -0.3, 3.0, -30.0, 1e4, -1e9] {
+            assert_finite(&path(&sheet, &law, &clamp(3), &[pull(force)], 5));
+        }
+    }
+}
+
+#[test]
+fn a_load_that_no_wall_can_carry_diverges_and_keeps_the_last_equilibrium() {
+    let sheet = cases::sheet(&case("p0_3x3_uniform"));
+    let law = LinearLaw::uniform([100.0, 100.0, 1.0], 12).unwrap();
+    let loads = opening_moments(&sheet, 4, -1e18);
+    let settings = SolverSettings::default();
+    let solver = EquilibriumSolver::new(sheet.grid, &clamp(4), &loads, 4, settings).unwrap();
+    let path = solver.path(HingedSheet {
+        sheet: &sheet,
+        law: &*law.prepare(&sheet.designs()),
+        contact: Some(&Contact::new(1.0, -0.2, -0.01).unwrap()),
+    });
+    assert_finite(&path);
+    let last = path.last().unwrap();
+    assert_eq!(last.status, Status::Diverged);
+    assert!(last.load_factor < 1.0 && last.residual > 1e-10);
+    assert!(
+        last.deformations
+            .iter()
+            .all(|deformation| deformation.theta > -0.2)
+    );
+}
+
+#[test]
+fn contact_carries_a_load_that_closes_the_sheet() {
+    let sheet = cases::sheet(&case("p0_3x3_uniform"));
+    let law = LinearLaw::uniform([100.0, 100.0, 1.0], 12).unwrap();
+    let contact = Contact::new(10.0, -0.2, -0.01).unwrap();
+    let loads = opening_moments(&sheet, 4, -5.0);
+    let settings = SolverSettings::default();
+    let solver = EquilibriumSolver::new(sheet.grid, &clamp(4), &loads, 5, settings).unwrap();
+    let path = solver.path(HingedSheet {
+        sheet: &sheet,
+        law: &*law.prepare(&sheet.designs()),
+        contact: Some(&contact),
+    });
+    for step in &path {
+        assert_eq!(step.status, Status::Converged);
+        for deformation in &step.deformations {
+            let mut energy = [HingeEnergy::default()];
+            contact.add(&mut energy, &[*deformation]);
+            let moment = deformation.theta + energy[0].forces[2];
+            assert!((moment + 5.0 * step.load_factor).abs() < 1e-8);
+            assert!(deformation.theta > -0.2);
+        }
+    }
+}
+
+/// A learned energy is a small difference of greater numbers: its forces are exact, its value is not.
+#[test]
+fn an_energy_with_few_digits_converges_by_its_forces() {
+    let law = Rotational(|theta| {
+        let stored = 0.5 * theta * theta;
+        [(stored + 1.0) - 1.0, theta, 1.0]
+    });
+    let sheet = cases::sheet(&case("p1_3x3_random"));
+    for step in path(&sheet, &law, &clamp(3), &[pull(1e-2)], 5) {
+        assert_eq!(step.status, Status::Converged);
+        assert!(step.iterations <= 6);
+    }
+}
+
+/// W = theta^4/4 - theta_0^2 theta^2/2 makes the flat sheet an equilibrium that is no minimum.
+#[test]
+fn an_unstable_flat_sheet_is_left_for_a_minimum() {
+    let law = Rotational(|theta| {
+        let rest: f64 = 0.8 * 0.8;
+        let square = theta * theta;
+        [
+            0.25 * square * square - 0.5 * rest * square,
+            theta * (square - rest),
+            3.0 * square - rest,
+        ]
+    });
+    let sheet = cases::sheet(&case("p0_3x3_uniform"));
+    let path = path(&sheet, &law, &clamp(4), &[], 2);
+    assert_finite(&path);
+    assert_eq!(path[0].status, Status::LimitPoint);
+    assert_eq!(path[1].status, Status::Converged);
+    assert!(path[1].potential < -0.1);
+}
+
+/// W = theta^2 (theta - 1)^2 resists opening by at most M_max = sqrt(3)/9, then snaps to theta > 1.
+#[test]
+fn a_snapping_sheet_reports_its_limit_point() {
+    let law = Rotational(|theta| {
+        [
+            theta * theta * (theta - 1.0).powi(2),
+            2.0 * theta * (theta - 1.0) * (2.0 * theta - 1.0),
+            12.0 * theta * theta - 12.0 * theta + 2.0,
+        ]
+    });
+    let sheet = cases::sheet(&case("p1_3x3_random"));
+    let greatest = 3.0_f64.sqrt() / 9.0;
+    let loads = opening_moments(&sheet, 4, 1.5 * greatest);
+    let path = path(&sheet, &law, &clamp(4), &loads, 6);
+    assert_finite(&path);
+    for (i, step) in path.iter().enumerate() {
+        let before = 1.5 * step.load_factor < 1.0 - 1e-9;
+        let snaps = i == 4;
+        let expected = if snaps {
+            Status::LimitPoint
+        } else {
+            Status::Converged
+        };
+        if i != 3 {
+            assert_eq!(step.status, expected, "step {i}");
+            assert_eq!(step.deformations.iter().all(|d| d.theta < 0.5), before);
+        }
+    }
+}
+
+#[test]
+fn a_sheet_without_any_stiffness_is_called_singular_or_diverged() {
+    let law = Rotational(|_| [0.0; 3]);
+    let sheet = cases::sheet(&case("p1_3x3_random"));
+    let unloaded = path(&sheet, &law, &clamp(3), &[], 1);
+    assert_eq!(unloaded[0].status, Status::Almost);
+    assert_finite(&unloaded);
+    let turned = path(&sheet, &law, &clamp(4), &opening_moments(&sheet, 4, 1.0), 2);
+    assert_eq!(turned.last().unwrap().status, Status::Diverged);
+    assert_finite(&turned);
+}
+
+#[test]
+fn a_sheet_held_everywhere_stays_where_it_is_held() {
+    let sheet = cases::sheet(&case("p1_3x3_random"));
+    let law = LinearLaw::uniform([90.0, 40.0, 0.8], 12).unwrap();
+    let everywhere: Vec<Support> = (0..9).flat_map(clamp).collect();
+    let path = path(&sheet, &law, &everywhere, &[], 2);
+    assert!(path.iter().all(|step| step.status == Status::Converged));
+    assert_finite(&path);
+}
+
+#[test]
+fn impossible_supports_and_loads_are_named() {
+    let grid = Grid { m: 3, n: 3 };
+    let settings = SolverSettings::default();
+    let new = |supports: &[Support], loads: &[Load], steps| {
+        EquilibriumSolver::new(grid, supports, loads, steps, settings).unwrap_err()
+    };
+    let support = |panel, dof, value| Support { panel, dof, value };
+    assert_eq!(
+        new(&clamp(3), &[pull(1.0)], 0),
+        EquilibriumError::NoSteps(0)
+    );
+    assert_eq!(new(&[], &[pull(1.0)], 1), EquilibriumError::Unsupported);
+    let sliding = [0, 1, 2].map(|panel| support(panel, Dof::UX, 0.0));
+    assert_eq!(new(&sliding, &[], 1), EquilibriumError::Unsupported);
+    assert!(matches!(
+        new(&clamp(9), &[], 1),
+        EquilibriumError::NoSuchPanel {
+            panel: 9,
+            panels: 9,
+            ..
+        }
+    ));
+    assert!(matches!(
+        new(&clamp(5), &[pull(1.0)], 1),
+        EquilibriumError::LoadOnSupport { panel: 5, .. }
+    ));
+    assert!(matches!(
+        new(&clamp(3), &[pull(f64::NAN)], 1),
+        EquilibriumError::NotFinite { panel: 5, .. }
+    ));
+    let twice = [clamp(3).as_slice(), &clamp(3)].concat();
+    assert!(matches!(
+        new(&twice, &[], 1),
+        EquilibriumError::SupportedTwice { panel: 3, .. }
+    ));
+    let hasty = SolverSettings {
+        tolerance: 0.0,
+        ..settings
+    };
+    assert_eq!(
+        EquilibriumSolver::new(grid, &clamp(3), &[], 1, hasty).unwrap_err(),
+        EquilibriumError::Settings(hasty)
+    );
+    // A pin and a roller hold the sheet.
+    let statically = [(0, Dof::UX), (0, Dof::UY), (2, Dof::UY)];
+    let statically = statically.map(|(panel, dof)| support(panel, dof, 0.0));
+    assert!(EquilibriumSolver::new(grid, &statically, &[], 1, settings).is_ok());
+}
+
+#[test]
+fn impossible_patterns_are_named() {
+    let grid = Grid { m: 3, n: 4 };
+    let outline = Outline::rectangle(3.0, 4.0);
+    let uniform = PatternCoordinates::uniform(grid);
+    let new = |grid, outline, change: fn(&mut PatternCoordinates)| {
+        let mut coordinates = uniform.clone();
+        change(&mut coordinates);
+        CutPattern::new(grid, outline, &coordinates).unwrap_err()
+    };
+    let keep: fn(&mut PatternCoordinates) = |_| {};
+    assert!(matches!(
+        new(Grid { m: 1, n: 4 }, outline, keep),
+        PatternError::TooFewPanels { .. }
+    ));
+    assert!(matches!(
+        new(Grid { m: 4, n: 4 }, outline, keep),
+        PatternError::Count { .. }
+    ));
+    let mut clockwise = outline;
+    clockwise.corners.reverse();
+    assert!(matches!(
+        new(grid, clockwise, keep),
+        PatternError::Outline { .. }
+    ));
+    let mut endless = outline;
+    endless.corners[1][0] = f64::NAN;
+    assert!(matches!(
+        new(grid, endless, keep),
+        PatternError::Outline { .. }
+    ));
+    assert!(matches!(
+        new(grid, outline, |c| c.z[2] = f64::NAN),
+        PatternError::NotFinite { .. }
+    ));
+    assert!(matches!(
+        new(grid, outline, |c| c.z[2] = 50.0),
+        PatternError::Collision { .. }
+    ));
+    assert!(matches!(
+        new(grid, outline, |c| c.ell[1][0] = 900.0),
+        PatternError::Collision { .. }
+    ));
+    assert!(matches!(
+        Sheet::new(
+            &CutPattern::new(grid, outline, &uniform).unwrap(),
+            &[0.1; 3],
+            AT_CORNER
+        ),
+        Err(design::sheet::SheetError::WidthCount {
+            found: 3,
+            expected: 17
+        })
+    ));
+}
+
+/// Panels tile the outline and every void opens as a parallelogram, for any r and tau.
+#[test]
+fn random_patterns_of_every_small_size_tile_and_deploy() {
+    let mut random = Random::new(17);
+    let outlines = [
+        Outline::rectangle(2.0, 1.5),
+        Outline {
+            corners: [[0.0, 0.0], [3.2, -0.3], [2.7, 2.9], [-0.4, 3.3]],
+        },
+    ];
+    for m in 2..=6 {
+        for n in 2..=6 {
+            for outline in outlines {
+                let grid = Grid { m, n };
+                let mut coordinates = PatternCoordinates::uniform(grid);
+                let edges = coordinates.ell.iter_mut().flatten();
+                coordinates
+                    .z
+                    .iter_mut()
+                    .chain(edges)
+                    .for_each(|x| *x = random.number(2.5));
+                let pattern = CutPattern::new(grid, outline, &coordinates).unwrap();
+                let widths = vec![0.02; grid.hinge_count()];
+                let sheet = Sheet::new(&pattern, &widths, AT_CORNER).unwrap();
+                let area: f64 = sheet.panels.iter().map(|panel| panel.area()).sum();
+                assert!((area / shoelace(&outline.corners) - 1.0).abs() < 1e-13);
+                assert_voids_open_as_parallelograms(&sheet, 1.0 + random.number(0.9));
+            }
+        }
+    }
+}
+
+fn assert_voids_open_as_parallelograms(sheet: &Sheet, theta: f64) {
+    let q = ideal_deployment(sheet, theta);
+    // The deployed position of a hinge, the same from both of its panels.
+    let place = |vertex: [usize; 2], endpoint: Endpoint| {
+        let at = |hinge: &&design::sheet::Hinge| {
+            hinge.site.vertex == vertex && hinge.site.endpoint == endpoint
+        };
+        let hinge = sheet.hinges.iter().find(at)?;
+        let seen_from = |k: usize| deployed(&sheet.panels[k], q[k], hinge.corner);
+        let (a, b) = (seen_from(hinge.panel_a()), seen_from(hinge.panel_b()));
+        assert!(cases::difference(&[a], &[b]) < 1e-12);
+        Some(a)
+    };
+    let mut voids = 0;
+    for j in 1..sheet.grid.n {
+        for i in 1..sheet.grid.m {
+            let [a, b] = if (i + j) % 2 == 0 {
+                [
+                    place([i - 1, j], Endpoint::X),
+                    place([i + 1, j], Endpoint::XPrime),
+                ]
+            } else {
+                [
+                    place([i, j - 1], Endpoint::XPrime),
+                    place([i, j + 1], Endpoint::X),
+                ]
+            };
+            let sides = [place([i, j], Endpoint::X), place([i, j], Endpoint::XPrime)];
+            if let (Some(a), Some(b), [Some(x), Some(x_prime)]) = (a, b, sides) {
+                let sum = |p: [f64; 2], q: [f64; 2]| [p[0] + q[0], p[1] + q[1]];
+                assert!(cases::difference(&[sum(a, b)], &[sum(x, x_prime)]) < 1e-12);
+                voids += 1;
+            }
+        }
+    }
+    assert!(voids > 0 || sheet.grid.m.min(sheet.grid.n) < 4);
+}
+
+fn shoelace(corners: &[[f64; 2]; 4]) -> f64 {
+    (0..4)
+        .map(|k| {
+            let ([x, y], [u, v]) = (corners[k], corners[(k + 1) % 4]);
+            0.5 * (x * v - u * y)
+        })
+        .sum()
+}

@@ -1,0 +1,91 @@
+//! Objective and gradient against an independent implementation.
+
+use crate::cases::{self, AT_CORNER, case, difference, get};
+use design::chamfer::Chamfer;
+use design::design_vector::{DesignVector, WidthChart};
+use design::equilibrium::{EquilibriumSolver, SolverSettings};
+use design::gradient::{DesignProblem, Mechanics, Model};
+use design::hinge_law::LinearLaw;
+use design::objective::{Objective, OutlinePoints};
+use design::path_functionals::PerFunctional;
+use serde_json::Value;
+
+fn per_functional(value: &Value) -> PerFunctional {
+    PerFunctional {
+        damage: get(value, "damage"),
+        compression: get(value, "comp"),
+        shear: get(value, "shear"),
+    }
+}
+
+#[test]
+fn a_pulled_sheet_with_path_functionals() {
+    let case = case("g0_3x3_linear_path");
+    let theta = &case["theta"];
+    let design = DesignVector {
+        pattern: cases::coordinates(theta),
+        omega: get(theta, "omega"),
+        opening: None,
+    };
+    let [w_minus, w_plus] = get(theta, "w_minus_plus");
+    let grid = cases::grid(&case);
+    let law = LinearLaw::uniform(get(&case, "k_a_k_s_k_theta"), grid.hinge_count()).unwrap();
+    let problem = DesignProblem {
+        grid,
+        outline: cases::outline(&case),
+        widths: WidthChart { w_minus, w_plus },
+        options: AT_CORNER,
+        model: Model::Equilibrium(Mechanics {
+            law: Box::new(law),
+            contact: None,
+            solver: EquilibriumSolver::new(
+                grid,
+                &cases::supports(&case),
+                &cases::loads(&case),
+                get(&case, "nsteps"),
+                SolverSettings::default(),
+            )
+            .unwrap(),
+        }),
+        objective: Objective {
+            target: get(&case, "target"),
+            chamfer: Chamfer {
+                coverage_weight: get(&case, "w_cov"),
+                smoothing: 0.0,
+            },
+            outline: OutlinePoints::All,
+            centred: false,
+            weights: per_functional(&case["weights"]),
+            temperatures: per_functional(&case["softmax_temperature"]),
+        },
+    };
+    let evaluation = problem.evaluate(&design).unwrap();
+
+    let sheet = &evaluation.deployment.sheet;
+    for (h, hinge) in sheet.hinges.iter().enumerate() {
+        assert!((hinge.w_lig - get::<Vec<f64>>(&case, "w_lig")[h]).abs() < 1e-14);
+        assert!((hinge.alpha - get::<Vec<f64>>(&case, "alpha")[h]).abs() < 1e-12);
+    }
+    let configurations: Vec<Vec<[f64; 3]>> = get(&case, "q_path");
+    for (step, expected) in std::iter::zip(&evaluation.deployment.path, &configurations) {
+        assert!(difference(&step.configuration, expected) < 1e-8);
+    }
+
+    let close = |found: f64, expected: f64| (found - expected).abs() <= 1e-6 * expected.abs();
+    assert!(close(evaluation.loss, get(&case, "loss")));
+    let terms = &case["terms"];
+    assert!(close(evaluation.terms.chamfer, get(terms, "chamfer")));
+    assert!(close(evaluation.terms.path.compression, get(terms, "comp")));
+    assert!(close(evaluation.terms.path.shear, get(terms, "shear")));
+    assert_eq!(evaluation.terms.path.damage, 0.0);
+
+    let expected = DesignVector {
+        pattern: cases::coordinates(&case["grad"]),
+        omega: get(&case["grad"], "omega"),
+        opening: None,
+    };
+    for (found, expected) in std::iter::zip(evaluation.gradient.to_flat(), expected.to_flat()) {
+        assert!(close(found, expected), "{found} {expected}");
+    }
+    assert!(evaluation.adjoint_residual < 1e-14);
+}

@@ -1,0 +1,186 @@
+//! (8) and its derivatives: differences, objectivity, and the relation between its two reference
+//! points.
+
+use crate::cases::{AT_CORNER, case, pattern};
+use crate::random::Random;
+use design::check::central_slope;
+use design::hinge_law::HingeEnergy;
+use design::kinematics::{Configuration, HingeGeometryGradient, HingeMotion, hinge_deformations};
+use design::sheet::{HingePoint, Sheet, SheetOptions};
+
+fn sheet(hinge_point: HingePoint) -> Sheet {
+    let pattern = pattern(&case("p1_3x3_random"));
+    let options = SheetOptions {
+        hinge_point,
+        ..AT_CORNER
+    };
+    let widths = Random::new(1).numbers(pattern.grid.hinge_count(), 0.05);
+    let widths: Vec<f64> = widths.iter().map(|w| 0.1 + w).collect();
+    Sheet::new(&pattern, &widths, options).unwrap()
+}
+
+fn deformation(sheet: &Sheet, hinge: usize, configuration: &[[f64; 3]]) -> [f64; 3] {
+    HingeMotion::new(sheet, hinge, configuration)
+        .deformation()
+        .to_array()
+}
+
+/// The configuration with the motions of the two panels of a hinge replaced.
+fn with_motion(sheet: &Sheet, hinge: usize, q: &Configuration, motion: &[f64]) -> Configuration {
+    let mut q = q.clone();
+    q[sheet.hinges[hinge].panel_a()].copy_from_slice(&motion[..3]);
+    q[sheet.hinges[hinge].panel_b()].copy_from_slice(&motion[3..]);
+    q
+}
+
+fn motion_of(sheet: &Sheet, hinge: usize, q: &Configuration) -> [f64; 6] {
+    let [a, b] = [sheet.hinges[hinge].panel_a(), sheet.hinges[hinge].panel_b()].map(|k| q[k]);
+    [a[0], a[1], a[2], b[0], b[1], b[2]]
+}
+
+fn unit<const N: usize>(i: usize) -> [f64; N] {
+    std::array::from_fn(|j| f64::from(i == j))
+}
+
+fn assert_close(found: f64, expected: f64) {
+    assert!(
+        (found - expected).abs() < 1e-8 * (1.0 + expected.abs()),
+        "{found} instead of {expected}"
+    );
+}
+
+#[test]
+fn first_and_second_derivatives_in_the_panel_motions() {
+    let sheet = sheet(HingePoint::CutTip);
+    let mut random = Random::new(2);
+    let q = random.arrays(sheet.panels.len(), 0.7);
+    for h in 0..sheet.hinges.len() {
+        let x = motion_of(&sheet, h, &q);
+        let motion = HingeMotion::new(&sheet, h, &q);
+        // W = f . eps + eps . K eps / 2 with a full K.
+        let linear: [f64; 3] = random.arrays(1, 1.0)[0];
+        let root: [[f64; 3]; 3] = std::array::from_fn(|_| random.arrays(1, 1.0)[0]);
+        let tangent: [[f64; 3]; 3] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| (0..3).map(|k| root[i][k] * root[j][k]).sum())
+        });
+        let forces_at = |eps: [f64; 3]| -> [f64; 3] {
+            std::array::from_fn(|i| linear[i] + (0..3).map(|j| tangent[i][j] * eps[j]).sum::<f64>())
+        };
+        let panel_forces = |x: &[f64]| {
+            let q = with_motion(&sheet, h, &q, x);
+            let motion = HingeMotion::new(&sheet, h, &q);
+            motion.forces(forces_at(motion.deformation().to_array()))
+        };
+        let energy = HingeEnergy {
+            forces: forces_at(motion.deformation().to_array()),
+            tangent,
+            ..HingeEnergy::default()
+        };
+        for (i, row) in motion.stiffness(&energy).into_iter().enumerate() {
+            for (c, rate) in motion.rates(unit(i)).into_iter().enumerate() {
+                let slope = |x: &[f64]| deformation(&sheet, h, &with_motion(&sheet, h, &q, x))[c];
+                assert_close(rate, central_slope(slope, &x, &unit::<6>(i), 1e-6));
+                assert_close(motion.forces(unit(c))[i], rate);
+            }
+            for (j, entry) in row.into_iter().enumerate() {
+                let slope = central_slope(|x| panel_forces(x)[i], &x, &unit::<6>(j), 1e-6);
+                assert_close(entry, slope);
+            }
+        }
+    }
+}
+
+#[test]
+fn derivatives_in_the_flat_geometry() {
+    let flat = sheet(HingePoint::CutTip);
+    let mut random = Random::new(3);
+    let q = random.arrays(flat.panels.len(), 0.7);
+    for h in 0..flat.hinges.len() {
+        // x: attachment point, two centroids, angle of e_sec.
+        let (a, b) = (flat.hinges[h].panel_a(), flat.hinges[h].panel_b());
+        let moved = |x: &[f64]| {
+            let mut sheet = flat.clone();
+            sheet.hinges[h].attachment = [x[0], x[1]];
+            sheet.panels[a].centroid = [x[2], x[3]];
+            sheet.panels[b].centroid = [x[4], x[5]];
+            sheet.hinges[h].e_sec = [x[6].cos(), x[6].sin()];
+            sheet
+        };
+        let [e_x, e_y] = flat.hinges[h].e_sec;
+        let mut x = [0.0; 7];
+        x[..2].copy_from_slice(&flat.hinges[h].attachment);
+        x[2..4].copy_from_slice(&flat.panels[a].centroid);
+        x[4..6].copy_from_slice(&flat.panels[b].centroid);
+        x[6] = e_y.atan2(e_x);
+        let (weights, virtual_motion) = (random.arrays(1, 1.0)[0], random.arrays(1, 1.0)[0]);
+        let weighted = |eps: [f64; 3]| -> f64 {
+            std::iter::zip(weights, eps)
+                .map(|(w, e): (f64, f64)| w * e)
+                .sum()
+        };
+        let motion = HingeMotion::new(&flat, h, &q);
+        let by_deformation = flattened(motion.geometry_gradient(weights));
+        let by_rates = flattened(motion.rates_geometry_gradient(weights, virtual_motion));
+        for i in 0..7 {
+            let value = |x: &[f64]| weighted(deformation(&moved(x), h, &q));
+            assert_close(
+                by_deformation[i],
+                central_slope(value, &x, &unit::<7>(i), 1e-6),
+            );
+            let value =
+                |x: &[f64]| weighted(HingeMotion::new(&moved(x), h, &q).rates(virtual_motion));
+            assert_close(by_rates[i], central_slope(value, &x, &unit::<7>(i), 1e-6));
+        }
+    }
+}
+
+fn flattened(gradient: HingeGeometryGradient) -> [f64; 7] {
+    let [ox, oy] = gradient.attachment;
+    let ([ax, ay], [bx, by]) = (gradient.centroid_a, gradient.centroid_b);
+    [ox, oy, ax, ay, bx, by, gradient.frame_angle]
+}
+
+#[test]
+fn a_rigid_motion_of_the_whole_sheet_deforms_no_hinge() {
+    let sheet = sheet(HingePoint::CutTip);
+    let q: Configuration = Random::new(4).arrays(sheet.panels.len(), 0.5);
+    for (shift, angle) in [([3.0, -2.0], 0.0), ([0.0, 0.0], 2.5), ([-1.0, 4.0], -1.1)] {
+        let (sin, cos) = f64::sin_cos(angle);
+        let turned: Configuration = std::iter::zip(&sheet.panels, &q)
+            .map(|(panel, [u_x, u_y, phi])| {
+                let [c_x, c_y] = panel.centroid;
+                let (x, y) = (c_x + u_x, c_y + u_y);
+                [
+                    cos * x - sin * y + shift[0] - c_x,
+                    sin * x + cos * y + shift[1] - c_y,
+                    phi + angle,
+                ]
+            })
+            .collect();
+        let pairs = std::iter::zip(
+            hinge_deformations(&sheet, &q),
+            hinge_deformations(&sheet, &turned),
+        );
+        for (before, after) in pairs {
+            for (before, after) in std::iter::zip(before.to_array(), after.to_array()) {
+                assert!((before - after).abs() < 2e-13);
+            }
+        }
+    }
+}
+
+#[test]
+fn tip_and_corner_measure_the_same_motion() {
+    let (at_corner, at_tip) = (sheet(HingePoint::Corner), sheet(HingePoint::CutTip));
+    let q = Random::new(5).arrays(at_corner.panels.len(), 0.6);
+    let pairs = std::iter::zip(
+        hinge_deformations(&at_corner, &q),
+        hinge_deformations(&at_tip, &q),
+    );
+    for (hinge, (corner, tip)) in std::iter::zip(&at_tip.hinges, pairs) {
+        let opening = 2.0 * hinge.w_lig * (0.5 * corner.theta).sin();
+        assert!((tip.a - corner.a - opening).abs() < 1e-13);
+        assert!((tip.s - corner.s - opening / hinge.alpha.tan()).abs() < 1e-13);
+        assert_eq!(tip.theta, corner.theta);
+    }
+}

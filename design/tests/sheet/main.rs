@@ -1,0 +1,13 @@
+//! The chain from cut pattern to design gradient: reference cases, closed forms, Taylor tests,
+//! extremes.
+
+mod cases;
+mod closed_forms;
+mod equilibrium;
+mod extremes;
+mod gradient;
+mod kinematics;
+mod pattern;
+mod pullbacks;
+mod random;
+mod taylor;

@@ -1,0 +1,153 @@
+//! Vector-Jacobian products of pattern, sheet and ideal deployment against differences.
+
+use crate::cases::{AT_CORNER, case, coordinates, grid, outline};
+use crate::random::Random;
+use design::check::central_slope;
+use design::design_vector::{DesignVector, WidthChart};
+use design::ideal_deployment::{ideal_deployment, ideal_deployment_pullback};
+use design::pattern::{CutPattern, Outline};
+use design::sheet::{Centroid, HingePoint, Sheet, SheetGradient, SheetOptions};
+
+const WIDTHS: WidthChart = WidthChart {
+    w_minus: 0.05,
+    w_plus: 0.25,
+};
+
+/// An outline without parallel edges.
+const TAPERED: Outline = Outline {
+    corners: [[0.0, 0.0], [3.2, -0.3], [2.7, 2.9], [-0.4, 3.3]],
+};
+
+fn start() -> DesignVector {
+    let case = case("p1_3x3_random");
+    DesignVector {
+        pattern: coordinates(&case),
+        omega: Random::new(1).numbers(grid(&case).hinge_count(), 1.0),
+        opening: None,
+    }
+}
+
+fn cut(design: &DesignVector, outline: Outline, options: SheetOptions) -> (CutPattern, Sheet) {
+    let grid = grid(&case("p1_3x3_random"));
+    let pattern = CutPattern::new(grid, outline, &design.pattern).unwrap();
+    let widths: Vec<f64> = design
+        .omega
+        .iter()
+        .map(|&omega| WIDTHS.width(omega))
+        .collect();
+    let sheet = Sheet::new(&pattern, &widths, options).unwrap();
+    (pattern, sheet)
+}
+
+/// The gradient in the design from one in the sheet.
+fn pulled_back(
+    pattern: &CutPattern,
+    sheet: &Sheet,
+    gradient: &SheetGradient,
+    design: &DesignVector,
+) -> DesignVector {
+    let (by_points, by_width) = sheet.pullback(gradient);
+    DesignVector {
+        pattern: pattern.pullback(&by_points),
+        omega: std::iter::zip(&design.omega, by_width)
+            .map(|(&omega, by_width)| by_width * WIDTHS.slope(omega))
+            .collect(),
+        opening: None,
+    }
+}
+
+fn assert_gradient(value: impl Fn(&DesignVector) -> f64, at: &DesignVector, found: &DesignVector) {
+    let (x, found) = (at.to_flat(), found.to_flat());
+    for (i, found) in found.into_iter().enumerate() {
+        let unit: Vec<f64> = (0..x.len()).map(|j| f64::from(i == j)).collect();
+        let slope = central_slope(|x| value(&at.with_flat(x)), &x, &unit, 1e-5);
+        assert!(
+            (found - slope).abs() < 1e-7 * (1.0 + slope.abs()),
+            "coordinate {i}: {found} instead of {slope}"
+        );
+    }
+}
+
+#[test]
+fn everything_the_sheet_offers_is_pulled_back_to_the_design() {
+    let design = start();
+    let given = outline(&case("p1_3x3_random"));
+    for hinge_point in [HingePoint::Corner, HingePoint::CutTip] {
+        for centroid in [Centroid::Area, Centroid::Vertices] {
+            for outline in [given, TAPERED] {
+                let options = SheetOptions {
+                    hinge_point,
+                    centroid,
+                    ..AT_CORNER
+                };
+                let (pattern, sheet) = cut(&design, outline, options);
+                let weights = random_weights(&sheet);
+                let value =
+                    |design: &DesignVector| weighted(&cut(design, outline, options).1, &weights);
+                assert_gradient(
+                    value,
+                    &design,
+                    &pulled_back(&pattern, &sheet, &weights, &design),
+                );
+            }
+        }
+    }
+}
+
+fn random_weights(sheet: &Sheet) -> SheetGradient {
+    let mut random = Random::new(7);
+    let (panels, hinges) = (sheet.panels.len(), sheet.hinges.len());
+    SheetGradient {
+        corners: (0..panels)
+            .map(|_| std::array::from_fn(|_| random.arrays(1, 1.0)[0]))
+            .collect(),
+        centroids: random.arrays(panels, 1.0),
+        attachments: random.arrays(hinges, 1.0),
+        frame_angles: random.numbers(hinges, 1.0),
+        alphas: random.numbers(hinges, 1.0),
+        widths: random.numbers(hinges, 1.0),
+    }
+}
+
+fn weighted(sheet: &Sheet, weights: &SheetGradient) -> f64 {
+    let product = |a: &[f64], b: &[f64]| -> f64 { std::iter::zip(a, b).map(|(a, b)| a * b).sum() };
+    let mut sum = 0.0;
+    for (k, panel) in sheet.panels.iter().enumerate() {
+        sum += product(
+            panel.corners.as_flattened(),
+            weights.corners[k].as_flattened(),
+        );
+        sum += product(&panel.centroid, &weights.centroids[k]);
+    }
+    for (h, hinge) in sheet.hinges.iter().enumerate() {
+        sum += product(&hinge.attachment, &weights.attachments[h]);
+        sum += weights.frame_angles[h] * hinge.e_sec[1].atan2(hinge.e_sec[0]);
+        sum += weights.alphas[h] * hinge.alpha + weights.widths[h] * hinge.w_lig;
+    }
+    sum
+}
+
+#[test]
+fn the_ideal_deployment_is_pulled_back_to_the_design_and_the_opening() {
+    let design = DesignVector {
+        opening: Some(0.9),
+        ..start()
+    };
+    let given = outline(&case("p1_3x3_random"));
+    let weights: Vec<[f64; 3]> = Random::new(8).arrays(9, 1.0);
+    let value = |design: &DesignVector| {
+        let (_, sheet) = cut(design, given, AT_CORNER);
+        let configuration = ideal_deployment(&sheet, design.opening.unwrap());
+        std::iter::zip(configuration.as_flattened(), weights.as_flattened())
+            .map(|(q, w)| q * w)
+            .sum()
+    };
+    let (pattern, sheet) = cut(&design, given, AT_CORNER);
+    let mut by_sheet = SheetGradient::zeros(sheet.grid);
+    let by_opening = ideal_deployment_pullback(&sheet, 0.9, &weights, &mut by_sheet);
+    let found = DesignVector {
+        opening: Some(by_opening),
+        ..pulled_back(&pattern, &sheet, &by_sheet, &design)
+    };
+    assert_gradient(value, &design, &found);
+}

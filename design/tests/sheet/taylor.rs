@@ -1,0 +1,189 @@
+//! The whole gradient, theta to L, by its Taylor remainders in each block of the design vector.
+
+use crate::cases::PROCESS;
+use crate::random::Random;
+use design::actuation::{Dof, Load, Support};
+use design::chamfer::Chamfer;
+use design::check::TaylorRemainders;
+use design::design_vector::{DesignVector, WidthChart};
+use design::equilibrium::{EquilibriumSolver, SolverSettings, Status};
+use design::gradient::{DesignProblem, Mechanics, Model};
+use design::grid::Grid;
+use design::hinge_law::{Contact, HingeLaw, LinearLaw, SurrogateLaw};
+use design::objective::{Objective, OutlinePoints};
+use design::path_functionals::PerFunctional;
+use design::pattern::{Outline, PatternCoordinates};
+use design::sheet::{Centroid, HingePoint, SheetOptions};
+use std::path::Path;
+use surrogate::Surrogate;
+
+const GRID: Grid = Grid { m: 3, n: 3 };
+/// Side of the sheet (mm).
+const SIDE: f64 = 300.0;
+
+fn tiny() -> SurrogateLaw {
+    let weights = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/cases/chi_tiny.safetensors"
+    );
+    SurrogateLaw::new(Surrogate::load(Path::new(weights)).unwrap())
+}
+
+/// Clamped in the middle of the west edge and turned in a corner; in the middle of the east edge
+/// pulled or moved.
+fn mechanics(law: impl HingeLaw + 'static, moment: f64, east: East) -> Model {
+    let support = |panel, dof, value| Support { panel, dof, value };
+    let load = |panel, dof, value| Load { panel, dof, value };
+    let mut supports = Dof::ALL.map(|dof| support(3, dof, 0.0)).to_vec();
+    let mut loads = vec![load(8, Dof::Phi, moment)];
+    match east {
+        East::Pulled(force) => loads.push(load(5, Dof::UX, force)),
+        East::Moved(way) => supports.push(support(5, Dof::UX, way)),
+    }
+    Model::Equilibrium(Mechanics {
+        law: Box::new(law),
+        contact: Some(Contact::new(10.0, -0.2, 0.0).unwrap()),
+        solver: EquilibriumSolver::new(GRID, &supports, &loads, 4, SolverSettings::default())
+            .unwrap(),
+    })
+}
+
+enum East {
+    /// N
+    Pulled(f64),
+    /// mm
+    Moved(f64),
+}
+
+fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
+    let target = (0..60).map(|i| {
+        let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 60.0).sin_cos();
+        [0.6 * SIDE * cos, 0.45 * SIDE * sin]
+    });
+    DesignProblem {
+        grid: GRID,
+        outline: Outline::rectangle(SIDE, SIDE),
+        widths: WidthChart {
+            w_minus: 8.0,
+            w_plus: 24.0,
+        },
+        options: SheetOptions {
+            hinge_point,
+            centroid: Centroid::Area,
+            process: PROCESS,
+        },
+        model,
+        objective: Objective {
+            target: target.collect(),
+            chamfer: Chamfer {
+                coverage_weight: 0.5,
+                smoothing: 500.0,
+            },
+            outline: OutlinePoints::Free,
+            centred: true,
+            weights: PerFunctional {
+                damage: 300.0,
+                compression: 1e4,
+                shear: 1e4,
+            },
+            temperatures: PerFunctional {
+                damage: 0.1,
+                compression: 0.02,
+                shear: 0.02,
+            },
+        },
+    }
+}
+
+fn start() -> DesignVector {
+    let mut random = Random::new(11);
+    DesignVector {
+        pattern: PatternCoordinates {
+            z: random.numbers(4, 0.5),
+            ell: std::array::from_fn(|_| random.numbers(3, 0.3)),
+        },
+        omega: random.numbers(12, 1.0),
+        opening: None,
+    }
+}
+
+/// Asserts order 2 along a random direction in each block (z, ell, omega, opening).
+fn assert_order_two(problem: &DesignProblem, design: &DesignVector) {
+    let evaluation = problem.evaluate(design).unwrap();
+    for step in &evaluation.deployment.path {
+        assert!(
+            matches!(step.status, Status::Converged | Status::LeftDomain),
+            "{step:?}"
+        );
+        assert!(step.residual < 1e-10 && step.negative_pivots == 0);
+    }
+    assert!(evaluation.adjoint_residual < 1e-14);
+    let (x, gradient) = (design.to_flat(), evaluation.gradient.to_flat());
+    let (z, ell) = (
+        design.pattern.z.len(),
+        design.pattern.ell.iter().flatten().count(),
+    );
+    let blocks = [
+        ("z", 0..z),
+        ("ell", z..z + ell),
+        ("omega", z + ell..z + ell + design.omega.len()),
+        ("opening", z + ell + design.omega.len()..x.len()),
+    ];
+    for (name, block) in blocks.into_iter().filter(|(_, block)| !block.is_empty()) {
+        let slope = gradient[block.clone()]
+            .iter()
+            .map(|g| g.abs())
+            .fold(0.0, f64::max);
+        if slope == 0.0 {
+            let ideal = matches!(problem.model, Model::Ideal { .. });
+            assert!(ideal && name == "omega", "{name} has no gradient");
+            continue;
+        }
+        let mut direction = vec![0.0; x.len()];
+        let values = Random::new(13).numbers(block.len(), 1.0);
+        direction[block].copy_from_slice(&values);
+        let loss = |x: &[f64]| problem.loss(&design.with_flat(x));
+        let remainders = TaylorRemainders::of(loss, &x, &gradient, &direction, 2e-3, 4).unwrap();
+        let orders = remainders.orders();
+        assert!(
+            orders.iter().all(|order| (1.9..2.1).contains(order)),
+            "{name}: {remainders:?} {orders:?}"
+        );
+    }
+}
+
+#[test]
+fn ideal_deployment() {
+    let design = DesignVector {
+        opening: Some(1.0),
+        ..start()
+    };
+    assert_order_two(
+        &problem(Model::Ideal { opening: 0.0 }, HingePoint::Corner),
+        &design,
+    );
+}
+
+fn springs() -> LinearLaw {
+    LinearLaw::uniform([20.0, 12.0, 1500.0], GRID.hinge_count()).unwrap()
+}
+
+#[test]
+fn linear_law_at_the_corner_and_at_the_tip() {
+    for hinge_point in [HingePoint::Corner, HingePoint::CutTip] {
+        let model = mechanics(springs(), 240.0, East::Pulled(12.0));
+        assert_order_two(&problem(model, hinge_point), &start());
+    }
+}
+
+#[test]
+fn linear_law_with_a_moving_support() {
+    let model = mechanics(springs(), 240.0, East::Moved(40.0));
+    assert_order_two(&problem(model, HingePoint::Corner), &start());
+}
+
+#[test]
+fn surrogate_law_at_the_tip() {
+    let model = mechanics(tiny(), 40.0, East::Pulled(2.0));
+    assert_order_two(&problem(model, HingePoint::CutTip), &start());
+}

@@ -1,0 +1,60 @@
+//! The samples of a campaign, for the database.
+
+use crate::campaign::CampaignError;
+use crate::job::ToolVersions;
+use crate::ledger::CampaignFolder;
+use crate::ray::Ray;
+use hinge::HingeSample;
+use mesher::Tier;
+use std::path::Path;
+
+/// A job whose samples belong in the database.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FinishedJob {
+    pub id: String,
+    pub ray: Ray,
+    /// Name of the sheet material.
+    pub material: String,
+    /// Tier the samples were solved with: the asked one, or a finer one after a failure.
+    pub tier: Tier,
+    pub tools: ToolVersions,
+    /// One a converged increment.
+    pub samples: Vec<HingeSample>,
+    /// Of the solver, over all attempts (s).
+    pub cpu_seconds: f64,
+    /// Whether the samples end before the ray does.
+    pub partial: bool,
+}
+
+/// The jobs of the campaign in `folder` that are closed and have samples, in the campaign's order.
+///
+/// Stale jobs are left out. Neither gmsh nor ccx need be installed.
+pub fn finished_jobs(
+    folder: &Path,
+) -> Result<impl Iterator<Item = Result<FinishedJob, CampaignError>>, CampaignError> {
+    let folder = CampaignFolder(folder.to_owned());
+    let jobs = folder.index()?.jobs;
+    Ok(jobs
+        .into_iter()
+        .filter_map(move |id| finished(&folder, id).transpose()))
+}
+
+fn finished(folder: &CampaignFolder, id: String) -> Result<Option<FinishedJob>, CampaignError> {
+    let job = folder.job(&id);
+    let (Some(spec), Some(record)) = (job.spec()?, job.record()?) else {
+        return Ok(None);
+    };
+    if !record.is_closed() || record.rows == 0 {
+        return Ok(None);
+    }
+    Ok(Some(FinishedJob {
+        id,
+        ray: spec.problem.ray,
+        samples: job.samples(&record)?,
+        material: spec.problem.material.name,
+        tier: record.tier,
+        tools: spec.tools,
+        cpu_seconds: record.cpu_seconds,
+        partial: record.is_partial(),
+    }))
+}

@@ -1,0 +1,167 @@
+//! From printed frames to hinge samples: energy, work, forces, damage.
+
+use crate::dat::Frame;
+use crate::ray::{PanelMotion, Ray, rotated};
+use hinge::{HingeDeformation, HingeForces, HingeSample, SheetMaterial};
+use mesher::WindowMesh;
+use std::f64::consts::PI;
+
+/// Share of the window's volume that strains less than the peak reported by D_peak.
+const PEAK_SHARE: f64 = 0.999;
+
+/// One sample a frame, in the order of the frames.
+pub(crate) fn samples(
+    mesh: &WindowMesh,
+    ray: &Ray,
+    material: &SheetMaterial,
+    frames: &[Frame],
+) -> Vec<HingeSample> {
+    let mut before = (HingeDeformation::default(), HingeForces::default());
+    let energies = frames.iter().map(|frame| frame.energy.abs());
+    let largest_w = energies.fold(f64::MIN_POSITIVE, f64::max);
+    let mut w_work = 0.0;
+    frames
+        .iter()
+        .map(|frame| {
+            let deformation = ray.end.at(frame.lambda);
+            let forces = arc_forces(mesh, &deformation, &frame.reactions);
+            w_work += trapezoid(before, (deformation, forces));
+            before = (deformation, forces);
+            let damage = Damage::of(mesh, material, &frame.peeq);
+            HingeSample {
+                lambda: frame.lambda,
+                a: deformation.a,
+                s: deformation.s,
+                theta: deformation.theta,
+                w: frame.energy,
+                w_work,
+                w_elastic: elastic_energy(mesh, material, &frame.stress),
+                f_a: forces.f_a,
+                f_s: forces.f_s,
+                m_theta: forces.m_theta,
+                plastic_integral: damage.plastic_integral,
+                d: damage.d,
+                d_window: damage.d_window,
+                d_peak: damage.d_peak,
+                uz_max: frame.uz.iter().fold(0.0, |most, uz| uz.abs().max(most)),
+                energy_residual: (frame.energy - w_work).abs() / largest_w,
+            }
+        })
+        .collect()
+}
+
+/// The forces conjugate to (a, s, theta): the resultant of arc B's reactions, and their moment
+/// about where O on panel B has moved to.
+fn arc_forces(
+    mesh: &WindowMesh,
+    deformation: &HingeDeformation,
+    reactions: &[(usize, [f64; 3])],
+) -> HingeForces {
+    let tip = mesh.design.tip();
+    let (mut force, mut moment) = ([0.0; 2], 0.0);
+    for (node, [fx, fy, _]) in reactions {
+        let [x, y, _] = mesh.nodes[*node];
+        let arm = rotated([x - tip[0], y - tip[1]], deformation.theta);
+        force[0] += fx;
+        force[1] += fy;
+        moment += arm[0] * fy - arm[1] * fx;
+    }
+    PanelMotion::of(deformation).forces(force, moment)
+}
+
+/// Work between two states: the mean force times the change of deformation.
+fn trapezoid(
+    (from, force_from): (HingeDeformation, HingeForces),
+    (to, force_to): (HingeDeformation, HingeForces),
+) -> f64 {
+    0.5 * (force_from.f_a + force_to.f_a) * (to.a - from.a)
+        + 0.5 * (force_from.f_s + force_to.f_s) * (to.s - from.s)
+        + 0.5 * (force_from.m_theta + force_to.m_theta) * (to.theta - from.theta)
+}
+
+/// Integral of sigma : C^-1 : sigma / 2 over the window (N mm); elastic strains are small.
+fn elastic_energy(mesh: &WindowMesh, material: &SheetMaterial, stress: &[[f64; 6]]) -> f64 {
+    let (young, poisson) = (material.young, material.poisson);
+    mesh.gauss_volumes
+        .iter()
+        .flatten()
+        .zip(stress)
+        .map(|(volume, [xx, yy, zz, xy, xz, yz])| {
+            let trace = xx + yy + zz;
+            let square = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz);
+            volume * ((1.0 + poisson) * square - poisson * trace * trace) / (2.0 * young)
+        })
+        .sum()
+}
+
+/// Measures of accumulated plastic strain; see the fields of [`HingeSample`].
+struct Damage {
+    plastic_integral: f64,
+    d: f64,
+    d_window: f64,
+    d_peak: f64,
+}
+
+impl Damage {
+    fn of(mesh: &WindowMesh, material: &SheetMaterial, peeq: &[f64]) -> Self {
+        let mut points: Vec<_> = peeq
+            .iter()
+            .copied()
+            .zip(mesh.gauss_volumes.iter().flatten().copied())
+            .collect();
+        points.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let volume = mesh.volume();
+        let plastic_integral = points.iter().map(|(strain, volume)| strain * volume).sum();
+        let ligament = 0.5 * PI * mesh.design.w_lig.powi(2) * mesh.thickness;
+        let fracture = material.fracture_strain;
+        Self {
+            plastic_integral,
+            d: plastic_integral / (fracture * ligament),
+            d_window: plastic_integral / (fracture * volume),
+            d_peak: percentile(&points, PEAK_SHARE * volume) / fracture,
+        }
+    }
+}
+
+/// The least value such that the points up to it weigh `weight`; points are sorted.
+fn percentile(points: &[(f64, f64)], weight: f64) -> f64 {
+    let mut sum = 0.0;
+    let reached = points.iter().find(|(_, own)| {
+        sum += own;
+        sum >= weight
+    });
+    reached.or(points.last()).map_or(0.0, |(value, _)| *value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_percentile_counts_weights() {
+        let points = [(0.0, 98.0), (0.1, 1.5), (0.4, 0.5)];
+        assert_eq!(percentile(&points, 99.0), 0.1);
+        assert_eq!(percentile(&points, 99.9), 0.4);
+        assert_eq!(percentile(&points, 101.0), 0.4);
+        assert_eq!(percentile(&[], 1.0), 0.0);
+    }
+
+    #[test]
+    fn the_trapezoid_is_exact_for_a_linear_force() {
+        let state = |x: f64| {
+            let forces = HingeForces {
+                f_a: 3.0 * x,
+                f_s: 2.0 * x,
+                m_theta: 7.0 * x,
+            };
+            let deformation = HingeDeformation {
+                a: x,
+                s: 2.0 * x,
+                theta: 0.5 * x,
+            };
+            (deformation, forces)
+        };
+        let work = trapezoid(state(0.0), state(0.3)) + trapezoid(state(0.3), state(1.0));
+        assert!((work - 0.5 * (3.0 + 4.0 + 3.5)).abs() < 1e-14);
+    }
+}

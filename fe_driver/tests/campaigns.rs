@@ -1,0 +1,163 @@
+//! Campaigns that are really run: interrupted, resumed, refused, gone stale.
+
+mod common;
+
+use common::{configs, fake_ccx};
+use fe_driver::{
+    Campaign, CampaignError, Ccx, FailureKind, FinishedJob, ToolVersions, Tools, finished_jobs,
+    plan, run, status,
+};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The first rays of the demo, and only a little rotation.
+fn campaign(count: usize) -> Campaign {
+    let mut campaign = Campaign::load(&configs().join("campaigns/demo.toml")).unwrap();
+    campaign.count = count;
+    campaign.rays.theta_deg = [4.0, 8.0];
+    campaign
+}
+
+fn jobs(folder: &Path) -> Vec<FinishedJob> {
+    finished_jobs(folder)
+        .unwrap()
+        .collect::<Result<_, _>>()
+        .unwrap()
+}
+
+fn run_to_end(campaign: &Campaign, folder: &Path, tools: &Tools) {
+    let never = AtomicBool::new(false);
+    let progress = run(campaign, folder, tools, 2, &never, &mut |_| {}).unwrap();
+    assert_eq!(progress.tally.to_run(), 0);
+}
+
+#[test]
+fn an_interrupted_campaign_is_resumed_to_the_same_rows() {
+    let (whole, parts) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let campaign = campaign(3);
+    let tools = Tools::find().unwrap();
+    run_to_end(&campaign, whole.path(), &tools);
+
+    // Stopped as soon as one job is closed, with another in flight.
+    let stop = AtomicBool::new(false);
+    let progress = run(&campaign, parts.path(), &tools, 2, &stop, &mut |progress| {
+        stop.store(progress.tally.closed() > 0, Ordering::Relaxed);
+    });
+    let closed = progress.unwrap().tally.closed();
+    assert!((1..3).contains(&closed), "{closed}");
+    let versions = ToolVersions::of(&tools);
+    let left = plan(&campaign, parts.path(), &versions).unwrap();
+    assert_eq!((left.tally.complete, left.tally.open), (closed, 3 - closed));
+    let done_before = jobs(parts.path());
+
+    run_to_end(&campaign, parts.path(), &tools);
+    let resumed = jobs(parts.path());
+    assert_eq!(resumed.len(), 3);
+    for (a, b) in resumed.iter().zip(jobs(whole.path())) {
+        assert_eq!((&a.id, &a.samples, a.partial), (&b.id, &b.samples, false));
+        assert_eq!(a.samples.last().unwrap().lambda, 1.0);
+    }
+    // What was finished was not run again.
+    assert!(done_before.iter().all(|job| resumed.contains(job)));
+
+    let status = status(parts.path()).unwrap();
+    assert_eq!((status.name.as_str(), status.tally.complete), ("demo", 3));
+    assert_eq!(
+        status.tally.rows,
+        resumed.iter().map(|job| job.samples.len()).sum::<usize>()
+    );
+    // A success keeps its deck and log, and nothing bulky.
+    let folder = parts.path().join("jobs").join(&resumed[0].id);
+    let mut names: Vec<_> = folder
+        .read_dir()
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort_unstable();
+    assert_eq!(
+        names,
+        [
+            "job.json",
+            "result.json",
+            "rows.csv",
+            "window.inp",
+            "window.log"
+        ]
+    );
+
+    // A changed setting makes jobs stale, and says which.
+    let mut changed = campaign.clone();
+    changed.material.young += 1.0;
+    let after = plan(&changed, parts.path(), &versions).unwrap();
+    assert_eq!(after.tally.open, 3);
+    assert_eq!(
+        after.stale.into_iter().collect::<Vec<_>>(),
+        [("material".to_owned(), 3)]
+    );
+
+    // Another campaign does not touch the folder.
+    changed.name = "other".into();
+    let refused = plan(&changed, parts.path(), &versions).unwrap_err();
+    assert!(matches!(&refused, CampaignError::OtherCampaign { found, .. } if found == "demo"));
+}
+
+#[test]
+fn a_failing_solver_climbs_the_ladder_and_is_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = fake_ccx(folder.path(), "echo '*ERROR: too small'; exit 201");
+    let tools = Tools {
+        ccx: Ccx::at(&program).unwrap(),
+        ..Tools::find().unwrap()
+    };
+    run_to_end(&campaign(1), folder.path(), &tools);
+    let status = status(folder.path()).unwrap();
+    assert_eq!(status.tally.failed, 1);
+    assert_eq!(status.tally.failures[&FailureKind::Diverged], 1);
+    assert!(jobs(folder.path()).is_empty());
+    // As asked, with shorter increments, on a finer mesh; each with a start and an end.
+    let events = std::fs::read_to_string(folder.path().join("events.jsonl")).unwrap();
+    assert_eq!(events.lines().count(), 6);
+    assert!(events.lines().next_back().unwrap().contains("finer-tier"));
+}
+
+#[test]
+fn a_solver_that_vanishes_ends_the_run_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = fake_ccx(folder.path(), "");
+    let tools = Tools {
+        ccx: Ccx::at(&program).unwrap(),
+        ..Tools::find().unwrap()
+    };
+    std::fs::remove_file(&program).unwrap();
+    let never = AtomicBool::new(false);
+    let error = run(&campaign(5), folder.path(), &tools, 1, &never, &mut |_| {}).unwrap_err();
+    assert!(matches!(error, CampaignError::Halted { .. }), "{error}");
+    assert_eq!(status(folder.path()).unwrap().tally.open, 5);
+}
+
+#[test]
+fn two_runs_do_not_share_a_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let lock = std::fs::File::create(folder.path().join("lock")).unwrap();
+    lock.lock().unwrap();
+    let never = AtomicBool::new(false);
+    let tools = Tools::find().unwrap();
+    let error = run(&campaign(1), folder.path(), &tools, 1, &never, &mut |_| {}).unwrap_err();
+    assert!(matches!(error, CampaignError::Locked(_)), "{error}");
+}
+
+#[test]
+fn rows_that_were_edited_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    run_to_end(&campaign(1), folder.path(), &Tools::find().unwrap());
+    let id = jobs(folder.path())[0].id.clone();
+    let rows = folder.path().join("jobs").join(id).join("rows.csv");
+    let text = std::fs::read_to_string(&rows).unwrap();
+    std::fs::write(&rows, text.replacen('3', "4", 1)).unwrap();
+    let error = finished_jobs(folder.path())
+        .unwrap()
+        .next()
+        .unwrap()
+        .unwrap_err();
+    assert!(error.to_string().contains("rows.csv"), "{error}");
+}

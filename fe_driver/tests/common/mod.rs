@@ -1,0 +1,57 @@
+//! What the tests share: the shipped film, the paper's hinge, a problem to solve, fake solvers.
+#![allow(dead_code)] // every test program uses a part
+
+use fe_driver::{Ray, StepControl, WindowProblem};
+use hinge::{HingeDeformation, HingeDesign, SheetMaterial};
+use mesher::Tier;
+use std::io::ErrorKind;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+pub fn configs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs")
+}
+
+pub fn film() -> SheetMaterial {
+    hinge::config::read(&configs().join("materials/pet-0.5mm.toml")).unwrap()
+}
+
+/// The paper's hinge at the cut angle `alpha_deg`.
+pub fn design(alpha_deg: f64) -> HingeDesign {
+    HingeDesign {
+        w_lig: 18.0,
+        alpha: alpha_deg.to_radians(),
+        fillet_ratio: 0.16,
+        kerf: 0.2,
+        r_win: 100.0,
+    }
+}
+
+/// A ray of the paper's hinge on the coarsest mesh.
+pub fn problem(alpha_deg: f64, eta: [f64; 2], theta_deg: f64) -> WindowProblem {
+    WindowProblem {
+        ray: Ray {
+            design: design(alpha_deg),
+            end: HingeDeformation::from_eta(eta[0], eta[1], theta_deg.to_radians(), 18.0),
+        },
+        material: film(),
+        tier: Tier::Tiny,
+        step: StepControl::default(),
+    }
+}
+
+/// An executable script in `folder` that answers like ccx and then does `body`.
+pub fn fake_ccx(folder: &Path, body: &str) -> PathBuf {
+    let path = folder.join("fake-ccx");
+    let script = format!(
+        "#!/bin/sh\nif [ \"$1\" = -v ]; then echo 'This is Version 2.20'; exit; fi\n{body}\n"
+    );
+    std::fs::write(&path, script).unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+    // A child that another test has just forked may hold the script open for writing.
+    while let Err(error) = Command::new(&path).arg("-v").output() {
+        assert_eq!(error.kind(), ErrorKind::ExecutableFileBusy, "{error}");
+    }
+    path
+}

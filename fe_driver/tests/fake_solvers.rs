@@ -1,0 +1,109 @@
+//! Solvers that die, hang, lie or write half of it: typed errors, and nothing left running.
+
+mod common;
+
+use common::{fake_ccx, problem};
+use fe_driver::{Ccx, FailureKind, SolveError, Tools, WindowSolution, solve_window};
+use mesher::Gmsh;
+use mesher::tool::ToolError;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+fn solve(body: &str, folder: &Path, limit: Duration) -> Result<WindowSolution, SolveError> {
+    let tools = Tools {
+        gmsh: Gmsh::find().unwrap(),
+        ccx: Ccx::at(&fake_ccx(folder, body)).unwrap(),
+    };
+    let problem = problem(90.0, [0.0, 0.0], 8.0);
+    solve_window(&problem, &tools, folder, limit, &AtomicBool::new(false))
+}
+
+fn failure(body: &str) -> (SolveError, FailureKind) {
+    let folder = tempfile::tempdir().unwrap();
+    let error = solve(body, folder.path(), Duration::from_secs(60)).unwrap_err();
+    let kind = FailureKind::of(&error).unwrap();
+    (error, kind)
+}
+
+#[test]
+fn a_solver_that_fails_tells_the_end_of_its_log() {
+    let (error, kind) = failure("echo '*ERROR: increment size smaller than minimum'; exit 201");
+    assert_eq!(kind, FailureKind::Diverged);
+    assert!(
+        error.to_string().contains("smaller than minimum"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_solver_that_claims_success_without_output_is_not_believed() {
+    let (_, kind) = failure("echo 'Job finished'");
+    assert_eq!(kind, FailureKind::OutputTruncated);
+}
+
+#[test]
+fn a_solver_that_writes_rubbish_is_not_believed() {
+    let (error, kind) = failure("echo 'rubbish' > window.dat; echo 'Job finished'");
+    assert_eq!(kind, FailureKind::OutputTruncated);
+    assert!(error.to_string().contains("line 1"), "{error}");
+}
+
+#[test]
+fn a_killed_solver_is_told_apart() {
+    let (_, kind) = failure("kill -9 $$");
+    assert_eq!(kind, FailureKind::Killed);
+}
+
+#[test]
+fn a_hanging_solver_is_ended_with_its_children() {
+    let folder = tempfile::tempdir().unwrap();
+    let body = "sleep 1000 & echo $! > child; trap '' TERM; while true; do sleep 1; done";
+    let limit = Duration::from_millis(300);
+    let error = solve(body, folder.path(), limit).unwrap_err();
+    assert!(
+        matches!(error, SolveError::Solver(ToolError::TimedOut { .. })),
+        "{error}"
+    );
+    let child = std::fs::read_to_string(folder.path().join("child")).unwrap();
+    let stat = Path::new("/proc").join(child.trim()).join("stat");
+    let running = || std::fs::read_to_string(&stat).is_ok_and(|stat| !stat.contains(") Z"));
+    let deadline = Instant::now() + Duration::from_secs(5);
+    while running() && Instant::now() < deadline {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    assert!(!running());
+}
+
+#[test]
+fn what_an_earlier_solve_left_is_not_taken_for_a_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let limit = Duration::from_secs(120);
+    let real = Ccx::find().unwrap().0.program;
+    solve(
+        &format!("exec {} \"$@\"", real.display()),
+        folder.path(),
+        limit,
+    )
+    .unwrap();
+    let error = solve("echo 'Job finished'", folder.path(), limit).unwrap_err();
+    assert!(matches!(error, SolveError::Truncated { .. }), "{error}");
+}
+
+/// A real solve whose output is cut: the complete increments before the cut are kept.
+#[test]
+fn a_truncated_output_keeps_its_complete_increments() {
+    let folder = tempfile::tempdir().unwrap();
+    let real = Ccx::find().unwrap().0.program;
+    let body = format!(
+        "{} \"$@\" || exit\nhead -c 300000 window.dat > cut && mv cut window.dat",
+        real.display()
+    );
+    let solution = solve(&body, folder.path(), Duration::from_secs(120)).unwrap();
+    let reached = solution.samples.last().unwrap().lambda;
+    assert!(0.0 < reached && reached < 1.0);
+    assert!(matches!(
+        solution.stopped,
+        Some(SolveError::Truncated { lambda }) if lambda == reached
+    ));
+}

@@ -1,0 +1,58 @@
+//! gmsh: from a script to a second-order plane mesh.
+
+use crate::tool::{Tool, ToolError, ToolKind};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+/// How gmsh is found.
+pub static GMSH: ToolKind = ToolKind {
+    name: "gmsh",
+    variable: "KIRIGAMI_GMSH",
+    version_flag: "--version",
+    install: "apt-get install gmsh",
+};
+
+/// A window takes gmsh milliseconds: longer than this is a hang.
+const LIMIT: Duration = Duration::from_secs(60);
+
+/// The gmsh program.
+#[derive(Clone, Debug)]
+pub struct Gmsh(pub Tool);
+
+impl Gmsh {
+    /// Found by `KIRIGAMI_GMSH` or on PATH.
+    pub fn find() -> Result<Self, ToolError> {
+        Tool::find(&GMSH).map(Self)
+    }
+
+    /// The program at a path.
+    pub fn at(program: &Path) -> Result<Self, ToolError> {
+        Tool::at(&GMSH, program).map(Self)
+    }
+
+    /// Meshes `folder/window.geo` with 8-node quadrilaterals, to `folder/window.msh`.
+    pub(crate) fn mesh(&self, folder: &Path) -> Result<(), ToolError> {
+        let log = folder.join("gmsh.log");
+        let arguments = [
+            "-2",
+            "-order",
+            "2",
+            "-setnumber",
+            "Mesh.SecondOrderIncomplete",
+            "1",
+            "-nt",
+            "1",
+            "-format",
+            "msh22",
+            "-o",
+            "window.msh",
+            "window.geo",
+        ];
+        // Not worth interrupting: it ends before anybody could ask.
+        let run = self
+            .0
+            .run(&arguments, folder, &log, LIMIT, &AtomicBool::new(false))?;
+        self.0.expect_success(run, &log)
+    }
+}

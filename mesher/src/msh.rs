@@ -1,0 +1,234 @@
+//! Reader of gmsh's .msh files (version 2.2, text): 8-node quadrilaterals and named boundary
+//! curves. Any bytes give a mesh or an error that names the line.
+
+use std::collections::HashMap;
+
+/// Curves of the window that something is done to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Boundary {
+    /// The window's edge on panel A, which is held.
+    ArcA,
+    /// The window's edge on panel B, which is driven.
+    ArcB,
+    /// The hole about the tip O.
+    Hole,
+}
+
+impl Boundary {
+    const ALL: [Self; 3] = [Self::ArcA, Self::ArcB, Self::Hole];
+
+    /// The physical tag of the curve in gmsh's files.
+    pub(crate) fn tag(self) -> u32 {
+        match self {
+            Self::ArcA => 1,
+            Self::ArcB => 2,
+            Self::Hole => 3,
+        }
+    }
+}
+
+/// A second-order mesh of the window in its plane; indices count from 0.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PlaneMesh {
+    /// Node positions in the hinge frame (mm).
+    pub nodes: Vec<[f64; 2]>,
+    /// Corners counter-clockwise, then the mid-sides of edges 01, 12, 23, 30.
+    pub quads: Vec<[usize; 8]>,
+    /// Edges of the named boundaries: two ends, then the mid-side.
+    pub edges: Vec<(Boundary, [usize; 3])>,
+}
+
+impl PlaneMesh {
+    /// The nodes of one boundary, sorted, each once.
+    pub fn nodes_on(&self, boundary: Boundary) -> Vec<usize> {
+        let mut nodes: Vec<_> = self
+            .edges
+            .iter()
+            .filter(|(of, _)| *of == boundary)
+            .flat_map(|(_, nodes)| *nodes)
+            .collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+}
+
+/// Why bytes are not a mesh of the expected kind.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MshError {
+    #[error("the mesh file is not text: byte {0} is not UTF-8")]
+    NotText(usize),
+    #[error("the mesh file has no section ${0}: gmsh did not finish writing it")]
+    NoSection(&'static str),
+    #[error("the mesh file's line {line}: {what}")]
+    Line { line: usize, what: &'static str },
+    #[error("the mesh file holds no quadrilaterals")]
+    Empty,
+}
+
+const QUAD_8: u32 = 16;
+const LINE_3: u32 = 8;
+
+/// Reads the bytes of a .msh file; nodes that no quadrilateral uses are dropped.
+pub fn read_msh(bytes: &[u8]) -> Result<PlaneMesh, MshError> {
+    let text = std::str::from_utf8(bytes).map_err(|e| MshError::NotText(e.valid_up_to()))?;
+    let lines: Vec<_> = text.lines().enumerate().collect();
+    let mut positions = HashMap::new();
+    for (number, line) in section(&lines, "Nodes")? {
+        let mut fields = Fields::new(*number, line);
+        let id: u64 = fields.next()?;
+        let position: [f64; 2] = [fields.next()?, fields.next()?];
+        if !position.iter().all(|x| x.is_finite()) {
+            return Err(fields.error("a coordinate is not finite"));
+        }
+        if positions.insert(id, position).is_some() {
+            return Err(fields.error("a node is given twice"));
+        }
+    }
+    let mut mesh = PlaneMesh::default();
+    let mut indices = HashMap::new();
+    let mut edges = Vec::new();
+    for (number, line) in section(&lines, "Elements")? {
+        let mut fields = Fields::new(*number, line);
+        let _id: u64 = fields.next()?;
+        let kind: u32 = fields.next()?;
+        let tags: u32 = fields.next()?;
+        if tags < 1 {
+            return Err(fields.error("an element has no physical tag"));
+        }
+        let physical: u32 = fields.next()?;
+        for _ in 1..tags {
+            fields.next::<u64>()?;
+        }
+        if kind == QUAD_8 {
+            let mut quad = [0; 8];
+            for corner in &mut quad {
+                let id: u64 = fields.next()?;
+                let Some(position) = positions.get(&id) else {
+                    return Err(fields.error("an element names a node that is not given"));
+                };
+                *corner = *indices.entry(id).or_insert_with(|| {
+                    mesh.nodes.push(*position);
+                    mesh.nodes.len() - 1
+                });
+            }
+            mesh.quads.push(quad);
+        } else if kind == LINE_3 {
+            let Some(boundary) = Boundary::ALL.into_iter().find(|b| b.tag() == physical) else {
+                return Err(fields.error("a boundary curve has an unknown tag"));
+            };
+            let ids: [u64; 3] = [fields.next()?, fields.next()?, fields.next()?];
+            edges.push((boundary, ids, fields.line));
+        } else {
+            return Err(fields.error("neither an 8-node quadrilateral nor a 3-node line"));
+        }
+    }
+    if mesh.quads.is_empty() {
+        return Err(MshError::Empty);
+    }
+    for (boundary, ids, line) in edges {
+        let [Some(a), Some(b), Some(c)] = ids.map(|id| indices.get(&id).copied()) else {
+            let what = "a boundary edge belongs to no quadrilateral";
+            return Err(MshError::Line { line, what });
+        };
+        mesh.edges.push((boundary, [a, b, c]));
+    }
+    Ok(mesh)
+}
+
+/// The numbered lines of $NAME ... $EndNAME, which must be as many as its first line says.
+fn section<'a, 't>(
+    lines: &'a [(usize, &'t str)],
+    name: &'static str,
+) -> Result<&'a [(usize, &'t str)], MshError> {
+    let find = |marker: String| lines.iter().position(|(_, line)| line.trim() == marker);
+    let (Some(start), Some(end)) = (find(format!("${name}")), find(format!("$End{name}"))) else {
+        return Err(MshError::NoSection(name));
+    };
+    let [(number, count), rows @ ..] = lines.get(start + 1..end).unwrap_or_default() else {
+        return Err(MshError::NoSection(name));
+    };
+    if count.trim().parse() != Ok(rows.len()) {
+        return Err(MshError::Line {
+            line: number + 1,
+            what: "the section's length is not the announced one",
+        });
+    }
+    Ok(rows)
+}
+
+/// The fields of one line.
+struct Fields<'t> {
+    line: usize,
+    fields: std::str::SplitWhitespace<'t>,
+}
+
+impl<'t> Fields<'t> {
+    fn new(number: usize, line: &'t str) -> Self {
+        Self {
+            line: number + 1,
+            fields: line.split_whitespace(),
+        }
+    }
+
+    fn next<T: std::str::FromStr>(&mut self) -> Result<T, MshError> {
+        let field = self.fields.next().and_then(|field| field.parse().ok());
+        field.ok_or_else(|| self.error("a number is missing or malformed"))
+    }
+
+    fn error(&self, what: &'static str) -> MshError {
+        let line = self.line;
+        MshError::Line { line, what }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const SQUARE: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n\
+        1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 .5 0 0\n6 1 .5 0\n7 .5 1 0\n8 0 .5 0\n$EndNodes\n\
+        $Elements\n2\n1 8 2 2 7 2 3 6\n2 16 2 100 1 1 2 3 4 5 6 7 8\n$EndElements\n";
+
+    #[test]
+    fn a_square_is_read() {
+        let mesh = read_msh(SQUARE.as_bytes()).unwrap();
+        assert_eq!(mesh.quads, [[0, 1, 2, 3, 4, 5, 6, 7]]);
+        assert_eq!(mesh.nodes[2], [1.0, 1.0]);
+        assert_eq!(mesh.nodes_on(Boundary::ArcB), [1, 2, 5]);
+        assert_eq!(mesh.nodes_on(Boundary::ArcA), []);
+    }
+
+    #[test]
+    fn errors_name_their_line() {
+        let cases = [
+            ("\n8 0 .5 0", "\n8 0 NaN 0", 13),
+            ("\n8 0 .5 0", "\n7 0 .5 0", 13),
+            ("4 5 6 7 8\n", "4 5 6 7 9\n", 18),
+            ("4 5 6 7 8\n", "4 5 6\n", 18),
+            ("2 7 2 3 6", "5 7 2 3 6", 17),
+        ];
+        for (old, new, expected) in cases {
+            let error = read_msh(SQUARE.replace(old, new).as_bytes()).unwrap_err();
+            assert!(
+                matches!(error, MshError::Line { line, .. } if line == expected),
+                "{error}"
+            );
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn truncated_and_corrupted_bytes_never_panic(
+            cut in 0..SQUARE.len(), at in 0..SQUARE.len(), byte in any::<u8>()
+        ) {
+            // Without its last newline the file is still whole.
+            let whole = cut == SQUARE.len() - 1;
+            prop_assert_eq!(read_msh(&SQUARE.as_bytes()[..cut]).is_ok(), whole);
+            let mut bytes = SQUARE.as_bytes().to_vec();
+            bytes[at] = byte;
+            let _ = read_msh(&bytes);
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! Geometry of the hinge window (section 2.4): a half-disc of radius r_win below the secondary
+//! cut, less the main cut (a slot of the kerf's width) and the hole drilled about its tip O.
+//!
+//! Arc A runs from (-r_win, 0) to the kerf face on panel A, arc B from the kerf face on panel B
+//! to (r_win, 0). Everything is in the hinge frame, in mm.
+
+use hinge::HingeDesign;
+use std::f64::consts::PI;
+
+/// The two panels of a hinge: A on the -x side of the main cut, B on the +x side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    A,
+    B,
+}
+
+impl Side {
+    /// Sign of the kerf face's offset along [`Window::normal`], which points to B.
+    fn sign(self) -> f64 {
+        match self {
+            Side::A => -1.0,
+            Side::B => 1.0,
+        }
+    }
+}
+
+/// The window of one hinge design, which must have been validated.
+#[derive(Clone, Copy, Debug)]
+pub struct Window<'a>(pub &'a HingeDesign);
+
+impl Window<'_> {
+    /// Unit normal of the main cut, pointing to panel B.
+    pub fn normal(&self) -> [f64; 2] {
+        let [x, y] = self.0.main_cut();
+        [-y, x]
+    }
+
+    /// Where a kerf face meets the hole (mm).
+    pub fn kerf_at_hole(&self, side: Side) -> [f64; 2] {
+        let half = 0.5 * self.0.kerf;
+        let along = (self.0.fillet_radius().powi(2) - half * half).sqrt();
+        self.on_kerf_face(side, along)
+    }
+
+    /// Where a kerf face meets the circle of radius `r` about the origin (mm); `r` > w_lig.
+    pub fn kerf_at_radius(&self, side: Side, r: f64) -> [f64; 2] {
+        let start = self.on_kerf_face(side, 0.0);
+        let b = dot(start, self.0.main_cut());
+        let along = -b + (b * b - dot(start, start) + r * r).sqrt();
+        self.on_kerf_face(side, along)
+    }
+
+    /// The point of a kerf face at the distance `along` the main cut from O (mm).
+    fn on_kerf_face(&self, side: Side, along: f64) -> [f64; 2] {
+        let (o, u, n) = (self.0.tip(), self.0.main_cut(), self.normal());
+        let across = 0.5 * self.0.kerf * side.sign();
+        [0, 1].map(|i| o[i] + along * u[i] + across * n[i])
+    }
+
+    /// Half the angle at O that the mouth of the main cut takes from the hole (rad).
+    pub fn mouth_half_angle(&self) -> f64 {
+        (0.5 * self.0.kerf / self.0.fillet_radius()).asin()
+    }
+
+    /// Area of the window (mm^2), exactly: Green's theorem over its arcs and segments.
+    pub fn area(&self) -> f64 {
+        let (rho, r) = (self.0.fillet_radius(), self.0.r_win);
+        let (hole_a, hole_b) = (self.kerf_at_hole(Side::A), self.kerf_at_hole(Side::B));
+        let (arc_a, arc_b) = (
+            self.kerf_at_radius(Side::A, r),
+            self.kerf_at_radius(Side::B, r),
+        );
+        let hole_angle = 2.0 * (PI - self.mouth_half_angle());
+        sector(r, polar_angle(arc_a) + PI)
+            + segment(arc_a, hole_a)
+            + arc(self.0.tip(), rho, hole_a, hole_b, -hole_angle)
+            + segment(hole_b, arc_b)
+            + sector(r, -polar_angle(arc_b))
+    }
+}
+
+/// Polar angle about the origin (rad), in (-pi, pi].
+pub(crate) fn polar_angle([x, y]: [f64; 2]) -> f64 {
+    y.atan2(x)
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+/// (1/2) of the contour integral of x dy - y dx along a straight segment.
+fn segment(from: [f64; 2], to: [f64; 2]) -> f64 {
+    0.5 * cross(from, to)
+}
+
+/// The same along an arc about the origin that turns by `angle`.
+fn sector(radius: f64, angle: f64) -> f64 {
+    0.5 * radius * radius * angle
+}
+
+/// The same along an arc about `centre`.
+fn arc(centre: [f64; 2], radius: f64, from: [f64; 2], to: [f64; 2], angle: f64) -> f64 {
+    let chord = [to[0] - from[0], to[1] - from[1]];
+    sector(radius, angle) + 0.5 * cross(centre, chord)
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    pub(crate) fn design(w_lig: f64, alpha_deg: f64) -> HingeDesign {
+        HingeDesign {
+            w_lig,
+            alpha: alpha_deg.to_radians(),
+            fillet_ratio: 0.16,
+            kerf: 0.2,
+            r_win: 100.0,
+        }
+    }
+
+    proptest! {
+        /// A thin kerf removes its width times its length; the hole removes its disc.
+        #[test]
+        fn area_is_the_half_disc_less_the_hole_and_the_kerf(
+            w in 5.0..25.0f64, alpha in 25.0..150.0f64
+        ) {
+            let design = HingeDesign { kerf: 1e-4, ..design(w, alpha) };
+            let window = Window(&design);
+            let rho = design.fillet_radius();
+            let [x, y] = window.kerf_at_radius(Side::A, 100.0);
+            let slot = x.hypot(y + w) - rho;
+            let expected = PI * (0.5 * 1e4 - rho * rho) - design.kerf * slot;
+            prop_assert!((window.area() - expected).abs() < 1e-7 * expected);
+        }
+
+        #[test]
+        fn kerf_faces_lie_on_their_circles_and_on_their_side(
+            w in 5.0..25.0f64, alpha in 25.0..150.0f64, r in 30.0..100.0f64
+        ) {
+            let design = design(w, alpha);
+            let window = Window(&design);
+            for (side, sign) in [(Side::A, -1.0), (Side::B, 1.0)] {
+                let p = window.kerf_at_radius(side, r);
+                let q = window.kerf_at_hole(side);
+                prop_assert!((p[0].hypot(p[1]) - r).abs() < 1e-10);
+                prop_assert!((q[0].hypot(q[1] + w) - design.fillet_radius()).abs() < 1e-12);
+                let across = dot([p[0], p[1] + w], window.normal());
+                prop_assert!((across - sign * 0.1).abs() < 1e-10);
+            }
+        }
+    }
+}

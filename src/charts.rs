@@ -1,0 +1,164 @@
+//! Charts of a training: predicted against computed values, and the learning curve.
+
+use anyhow::{Result, anyhow};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use std::ops::Range;
+use train::ParityPoint;
+
+/// One chart of [`parity`].
+pub struct ParityChart<'a> {
+    pub title: String,
+    pub points: &'a [ParityPoint],
+}
+
+const POINT: RGBColor = RGBColor(31, 110, 140);
+const VALIDATION: RGBColor = RGBColor(217, 95, 2);
+const GUIDE: RGBColor = RGBColor(120, 120, 120);
+const FONT: &str = "DejaVu Sans";
+
+/// Charts side by side, one a quantity, with the line of perfect agreement.
+pub fn parity(charts: &[ParityChart]) -> Result<String> {
+    let mut svg = String::new();
+    {
+        let size = (360 * charts.len() as u32, 380);
+        let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+        root.fill(&WHITE).map_err(drawing)?;
+        for (area, chart) in root.split_evenly((1, charts.len())).iter().zip(charts) {
+            parity_chart(area, chart).map_err(drawing)?;
+        }
+        root.present().map_err(drawing)?;
+    }
+    Ok(svg)
+}
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type DrawResult =
+    Result<(), DrawingAreaErrorKind<<SVGBackend<'static> as DrawingBackend>::ErrorType>>;
+
+fn drawing(error: impl std::fmt::Display) -> anyhow::Error {
+    anyhow!("cannot draw the chart: {error}")
+}
+
+fn parity_chart(area: &Area, ParityChart { title, points }: &ParityChart) -> DrawResult {
+    let range = padded(points.iter().flat_map(|p| [p.target, p.predicted]));
+    let mut chart = ChartBuilder::on(area)
+        .caption(title, (FONT, 15))
+        .margin(10)
+        .x_label_area_size(38)
+        .y_label_area_size(56)
+        .build_cartesian_2d(range.clone(), range.clone())?;
+    chart
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .x_labels(5)
+        .y_labels(5)
+        .label_style((FONT, 12))
+        .x_desc("finite elements")
+        .y_desc("surrogate")
+        .draw()?;
+    let diagonal = [range.start, range.end].map(|v| (v, v));
+    chart.draw_series(LineSeries::new(diagonal, GUIDE))?;
+    let mark = |p: &ParityPoint| Circle::new((p.target, p.predicted), 2, POINT.mix(0.5).filled());
+    chart.draw_series(points.iter().map(mark))?;
+    Ok(())
+}
+
+/// Training and validation loss against the epoch, the loss on a logarithmic axis.
+pub fn learning_curve(training: &[f64], validation: &[f64]) -> Result<String> {
+    let mut svg = String::new();
+    {
+        let root = SVGBackend::with_string(&mut svg, (720, 420)).into_drawing_area();
+        root.fill(&WHITE).map_err(drawing)?;
+        learning_chart(&root, training, validation).map_err(drawing)?;
+        root.present().map_err(drawing)?;
+    }
+    Ok(svg)
+}
+
+fn learning_chart(area: &Area, training: &[f64], validation: &[f64]) -> DrawResult {
+    let positive = || {
+        training
+            .iter()
+            .chain(validation)
+            .copied()
+            .filter(|v| *v > 0.0)
+    };
+    let least = positive().fold(f64::INFINITY, f64::min);
+    let greatest = positive().fold(0.0, f64::max);
+    let epochs = 0..training.len().max(2) - 1;
+    let mut chart = ChartBuilder::on(area)
+        .caption("Learning curve", (FONT, 16))
+        .margin(12)
+        .x_label_area_size(40)
+        .y_label_area_size(70)
+        .build_cartesian_2d(epochs, (0.8 * least..1.25 * greatest).log_scale())?;
+    chart
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .label_style((FONT, 12))
+        .x_desc("epoch")
+        .y_desc("loss (15)")
+        .y_label_formatter(&|v| format!("{v:.0e}"))
+        .draw()?;
+    for (name, losses, colour) in [
+        ("training", training, POINT),
+        ("validation", validation, VALIDATION),
+    ] {
+        chart
+            .draw_series(LineSeries::new(
+                losses.iter().copied().enumerate(),
+                colour.stroke_width(2),
+            ))?
+            .label(name)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+    }
+    chart
+        .configure_series_labels()
+        .label_font((FONT, 13))
+        .border_style(GUIDE)
+        .background_style(WHITE)
+        .draw()?;
+    Ok(())
+}
+
+/// The range of the values with a margin of a twentieth at both ends.
+fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let (least, greatest) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, g), v| {
+        (l.min(v), g.max(v))
+    });
+    if least > greatest {
+        return 0.0..1.0;
+    }
+    let margin = 0.05 * (greatest - least).max(1e-12);
+    least - margin..greatest + margin
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parity_chart_holds_a_mark_for_every_row() {
+        let points = [1.0, 2.0, 3.5].map(|target| ParityPoint {
+            target,
+            predicted: 1.1 * target,
+        });
+        let chart = |title: &str| ParityChart {
+            title: title.into(),
+            points: &points,
+        };
+        let svg = parity(&[chart("W"), chart("D")]).unwrap();
+        assert_eq!(svg.matches("<circle").count(), 6);
+        assert!(svg.contains("finite elements"));
+    }
+
+    #[test]
+    fn a_learning_curve_survives_a_single_epoch_and_zero_losses() {
+        assert!(
+            learning_curve(&[1.0], &[0.0])
+                .unwrap()
+                .contains("validation")
+        );
+    }
+}

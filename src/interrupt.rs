@@ -1,0 +1,21 @@
+//! Ctrl-C: ask for a clean stop; ask again to leave at once.
+
+use anyhow::{Context, Result};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+static LISTENING: AtomicBool = AtomicBool::new(false);
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// A flag that the first Ctrl-C (or SIGTERM) sets; the second ends the program.
+pub fn stop_flag() -> Result<&'static AtomicBool> {
+    if !LISTENING.swap(true, Ordering::Relaxed) {
+        ctrlc::set_handler(|| {
+            if STOP.swap(true, Ordering::Relaxed) {
+                std::process::exit(130);
+            }
+            eprintln!("stopping; what is finished is kept (press Ctrl-C again to leave at once)");
+        })
+        .context("cannot listen for Ctrl-C")?;
+    }
+    Ok(&STOP)
+}

@@ -1,0 +1,155 @@
+//! `kirigami solve`: one window solved along one ray, with a table of what it says.
+
+use crate::interrupt;
+use crate::table::table;
+use crate::window_args::WindowArgs;
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use comfy_table::Table;
+use fe_driver::{Ray, StepControl, Tools, WindowProblem, solve_window};
+use hinge::{HingeDeformation, HingeSample, SheetMaterial};
+use mesher::Tier;
+use serde_json::json;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Solve one hinge window by finite elements and print its ray
+///
+/// Panel A is held and panel B is driven from the undeformed state straight to the given
+/// deformation; every converged increment is a row. Example, the paper's hinge folded to 45 degrees:
+/// kirigami solve --theta-deg 45 --tier tiny
+#[derive(Args)]
+pub struct SolveCommand {
+    #[command(flatten)]
+    window: WindowArgs,
+    /// Relative rotation at the end of the ray (degrees); positive opens the main cut
+    #[arg(
+        long,
+        value_name = "DEG",
+        default_value_t = 60.0,
+        allow_negative_numbers = true
+    )]
+    theta_deg: f64,
+    /// Axial opening at the end of the ray, over the ligament width; negative in compression
+    #[arg(
+        long,
+        value_name = "RATIO",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    eta_a: f64,
+    /// Shear at the end of the ray, over the ligament width
+    #[arg(
+        long,
+        value_name = "RATIO",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    eta_s: f64,
+    /// Sheet material (TOML)
+    #[arg(
+        long,
+        value_name = "FILE",
+        default_value = "configs/materials/pet-0.5mm.toml"
+    )]
+    material: PathBuf,
+    /// Mesh tier: tiny, small, default, fine or reference
+    #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
+    tier: Tier,
+    /// Folder for the mesh, the deck, the log and the solver's output
+    #[arg(long, value_name = "FOLDER", default_value = "runs/solve")]
+    out: PathBuf,
+    /// End the solver after this time (s)
+    #[arg(long, value_name = "SECONDS", default_value_t = 600)]
+    time_limit_s: u64,
+    /// Print JSON instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+impl SolveCommand {
+    pub fn run(&self) -> Result<()> {
+        let design = self.window.design()?;
+        let problem = WindowProblem {
+            ray: Ray {
+                design,
+                end: HingeDeformation::from_eta(
+                    self.eta_a,
+                    self.eta_s,
+                    self.theta_deg.to_radians(),
+                    design.w_lig,
+                ),
+            },
+            material: hinge::config::read::<SheetMaterial>(&self.material)?,
+            tier: self.tier,
+            step: StepControl::default(),
+        };
+        std::fs::create_dir_all(&self.out)
+            .with_context(|| format!("cannot make the folder {}", self.out.display()))?;
+        let limit = Duration::from_secs(self.time_limit_s);
+        let stop = interrupt::stop_flag()?;
+        let solution = solve_window(&problem, &Tools::find()?, &self.out, limit, stop)?;
+        if self.json {
+            let description = json!({
+                "problem": problem,
+                "samples": solution.samples,
+                "stopped": solution.stopped.as_ref().map(ToString::to_string),
+                "cpu_seconds": solution.cpu_seconds,
+                "wall_seconds": solution.wall_seconds,
+                "iterations": solution.iterations,
+            });
+            println!("{description:#}");
+        } else {
+            println!("{}", ray_table(&solution.samples));
+            println!(
+                "{} increments, {} iterations, {:.1} s; mesh, deck and log in {}",
+                solution.samples.len(),
+                solution.iterations,
+                solution.wall_seconds,
+                self.out.display()
+            );
+        }
+        match solution.stopped {
+            None => Ok(()),
+            Some(reason) => bail!("the ray ends early: {reason}"),
+        }
+    }
+}
+
+/// The rows of a ray, thinned to about twenty.
+fn ray_table(samples: &[HingeSample]) -> Table {
+    let mut table = table([
+        "lambda",
+        "theta\ndeg",
+        "a\nmm",
+        "s\nmm",
+        "W\nN mm",
+        "F_a\nN",
+        "F_s\nN",
+        "M_theta\nN mm",
+        "D",
+        "D_peak",
+        "u_z\nmm",
+        "energy\nresidual",
+    ]);
+    let stride = samples.len().div_ceil(20).max(1);
+    for (i, x) in samples.iter().enumerate() {
+        if (samples.len() - 1 - i).is_multiple_of(stride) {
+            table.add_row([
+                format!("{:.3}", x.lambda),
+                format!("{:.2}", x.theta.to_degrees()),
+                format!("{:.3}", x.a),
+                format!("{:.3}", x.s),
+                format!("{:.3}", x.w),
+                format!("{:.3}", x.f_a),
+                format!("{:.3}", x.f_s),
+                format!("{:.3}", x.m_theta),
+                format!("{:.5}", x.d),
+                format!("{:.3}", x.d_peak),
+                format!("{:.2}", x.uz_max),
+                format!("{:.1e}", x.energy_residual),
+            ]);
+        }
+    }
+    table
+}

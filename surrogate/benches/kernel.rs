@@ -1,0 +1,117 @@
+//! Time to evaluate 275 hinges (a 15 x 10 sheet) at the paper's size 5-256-256-256-128.
+//!
+//! Divide by 275 for the time of one hinge. The floor of each order is its matrix products alone:
+//! 1 (W), 2 (forces), 5 (tangent) and 7 (design) passes of 0.33 Mflop a hinge.
+
+use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
+use surrogate::{
+    Card, FEATURE_NAMES, FORMAT_VERSION, HingeConstants, Layer, Order, Standardisation, Surrogate,
+    Tensor, TestErrors, UNITS,
+};
+
+const HINGES: usize = 275;
+
+fn main() {
+    divan::main();
+}
+
+#[divan::bench(args = [Order::Value, Order::Forces, Order::Tangent, Order::Design])]
+fn energy(bencher: divan::Bencher, order: Order) {
+    let (surrogate, designs, deformations) = case();
+    let prepared = surrogate.prepare(&designs);
+    bencher.bench(|| surrogate.evaluate(&prepared, &deformations, order));
+}
+
+#[divan::bench]
+fn prepare(bencher: divan::Bencher) {
+    let (surrogate, designs, _) = case();
+    bencher.bench(|| surrogate.prepare(&designs));
+}
+
+#[divan::bench]
+fn damage(bencher: divan::Bencher) {
+    let (surrogate, designs, deformations) = case();
+    bencher.bench(|| surrogate.damage(&designs, &deformations));
+}
+
+fn case() -> (Surrogate, Vec<HingeDesign>, Vec<HingeDeformation>) {
+    let surrogate = Surrogate::from_parts(
+        layers(&[5, 256, 256, 256, 128]),
+        layers(&[5, 256, 256, 1]),
+        card(),
+    )
+    .expect("the weights are finite and the shapes fit");
+    let spread = |index: usize, step: f64| (step * index as f64).sin();
+    let designs = (0..HINGES).map(|index| HingeDesign {
+        w_lig: 15.0 + 10.0 * spread(index, 0.7),
+        alpha: 1.5 + 0.7 * spread(index, 1.3),
+        fillet_ratio: 0.16,
+        kerf: 0.2,
+        r_win: 100.0,
+    });
+    let designs: Vec<HingeDesign> = designs.collect();
+    let states = designs.iter().enumerate().map(|(index, design)| {
+        let eta_a = 0.2 * spread(index, 2.1);
+        let eta_s = 0.2 * spread(index, 3.7);
+        HingeDeformation::from_eta(eta_a, eta_s, 0.6 + 0.6 * spread(index, 0.9), design.w_lig)
+    });
+    let deformations = states.collect();
+    (surrogate, designs, deformations)
+}
+
+/// Deterministic weights of Xavier's size.
+fn layers(widths: &[usize]) -> Vec<Layer> {
+    let mut state = 0.37_f64;
+    let mut uniform = || {
+        state = 3.99 * state * (1.0 - state);
+        2.0 * state - 1.0
+    };
+    let pairs = widths.windows(2);
+    pairs
+        .map(|pair| {
+            let (inputs, outputs) = (pair[0], pair[1]);
+            let bound = (6.0 / (inputs + outputs) as f64).sqrt();
+            let mut tensor = |shape: Vec<usize>| {
+                let length = shape.iter().product();
+                let values = (0..length).map(|_| bound * uniform()).collect();
+                Tensor { shape, values }
+            };
+            Layer {
+                weight: tensor(vec![outputs, inputs]),
+                bias: tensor(vec![outputs]),
+            }
+        })
+        .collect()
+}
+
+fn card() -> Card {
+    Card {
+        format_version: FORMAT_VERSION,
+        units: UNITS.into(),
+        features: FEATURE_NAMES.map(Into::into).to_vec(),
+        standardisation: Standardisation {
+            mean: [0.02, 0.0, 0.6, 2.64, 1.6],
+            std: [0.1, 0.1, 0.35, 0.45, 0.45],
+        },
+        energy_scale: 85.0,
+        damage_scale: 0.012,
+        domain: TrainingDomain {
+            eta_a: [-0.5, 0.25],
+            eta_s: [-0.35, 0.35],
+            theta: [0.0, 1.25],
+            w_lig: [5.0, 25.0],
+            alpha: [0.8, 2.3],
+        },
+        hinge: HingeConstants {
+            fillet_ratio: 0.16,
+            kerf: 0.2,
+            r_win: 100.0,
+        },
+        material: "benchmark".into(),
+        tier: "none".into(),
+        dataset_hash: "none".into(),
+        split_hash: "none".into(),
+        training: Default::default(),
+        test_errors: TestErrors::default(),
+    }
+}

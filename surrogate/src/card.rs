@@ -1,0 +1,137 @@
+//! The card beside the weights: units, scaling, training domain, provenance, test errors.
+
+use crate::features::{FEATURE_NAMES, Standardisation};
+use crate::network::InvalidWeights;
+use hinge::TrainingDomain;
+use serde::{Deserialize, Serialize};
+
+/// Version of the weight file and its card that this crate reads and writes.
+pub const FORMAT_VERSION: u32 = 1;
+
+/// The units of everything a surrogate takes and returns.
+pub const UNITS: &str = "mm, N, MPa, N mm, rad";
+
+/// What stands in `X.json` beside `X.safetensors`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Card {
+    /// [`FORMAT_VERSION`] of the writer.
+    pub format_version: u32,
+    /// [`UNITS`]
+    pub units: String,
+    /// [`FEATURE_NAMES`]
+    pub features: Vec<String>,
+    /// Mean and standard deviation of the features over the training rows.
+    pub standardisation: Standardisation,
+    /// W_s of (14) (N mm).
+    pub energy_scale: f64,
+    /// D_s of (14).
+    pub damage_scale: f64,
+    /// The box of states in the training rows.
+    pub domain: TrainingDomain,
+    /// The hinge constants that the training rows share.
+    pub hinge: HingeConstants,
+    /// Name of the sheet material.
+    pub material: String,
+    /// Tier of the window mesh that the rows were solved with.
+    pub tier: String,
+    /// Hash of the database file.
+    pub dataset_hash: String,
+    /// Hash of the split into training, validation and test.
+    pub split_hash: String,
+    /// The training configuration, as it was read.
+    pub training: serde_json::Value,
+    /// Errors on the test split.
+    pub test_errors: TestErrors,
+}
+
+/// The parts of the hinge design that are no feature of (13); the weights hold for these alone.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HingeConstants {
+    pub fillet_ratio: f64,
+    /// mm
+    pub kerf: f64,
+    /// mm
+    pub r_win: f64,
+}
+
+/// Errors of a surrogate on rows that training never saw.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TestErrors {
+    /// Number of rows.
+    pub rows: usize,
+    pub energy: FitError,
+    pub f_a: FitError,
+    pub f_s: FitError,
+    pub m_theta: FitError,
+    pub damage: FitError,
+}
+
+/// How far predictions lie from their targets.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FitError {
+    /// Root mean square of the error over the root mean square of the target.
+    pub relative_rmse: f64,
+    /// Median over the rows with a target other than zero of |error| / |target|.
+    pub median: f64,
+}
+
+impl Card {
+    /// Refuses other units or features, scales that are not positive, domains without a state.
+    pub(crate) fn validate(&self) -> Result<(), InvalidWeights> {
+        for (key, found, expected) in [
+            ("units", self.units.clone(), UNITS.into()),
+            (
+                "features",
+                self.features.join(", "),
+                FEATURE_NAMES.join(", "),
+            ),
+        ] {
+            if found != expected {
+                return Err(InvalidWeights::OtherConvention {
+                    key,
+                    expected,
+                    found,
+                });
+            }
+        }
+        let scales = [
+            ("w_scale".into(), self.energy_scale),
+            ("d_scale".into(), self.damage_scale),
+        ];
+        let deviations = FEATURE_NAMES.iter().zip(self.standardisation.std);
+        let deviations = deviations.map(|(name, std)| (format!("feat_std of {name}"), std));
+        for (name, value) in scales.into_iter().chain(deviations) {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(InvalidWeights::NotPositive { name, value });
+            }
+        }
+        let mean = self.standardisation.mean;
+        if let Some(index) = mean.iter().position(|value| !value.is_finite()) {
+            return Err(InvalidWeights::NotFinite {
+                tensor: "feat_mean".into(),
+                index,
+                value: mean[index],
+            });
+        }
+        for (name, [least, greatest]) in [
+            ("eta_a", self.domain.eta_a),
+            ("eta_s", self.domain.eta_s),
+            ("theta", self.domain.theta),
+            ("w_lig", self.domain.w_lig),
+            ("alpha", self.domain.alpha),
+        ] {
+            if !(least.is_finite() && greatest.is_finite() && least <= greatest) {
+                return Err(InvalidWeights::EmptyDomain {
+                    name,
+                    least,
+                    greatest,
+                });
+            }
+        }
+        Ok(())
+    }
+}

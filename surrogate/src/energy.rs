@@ -1,0 +1,286 @@
+//! W of (14) and its derivatives in the hinge deformation and in (w_lig, alpha).
+//!
+//! With r = chi(xi) - chi(xi(0, g)), J = d chi / d xi and J0 = d chi(xi(0, g)) / d g,
+//!
+//! ```text
+//! W                     = W_s |r|^2
+//! dW/dxi                = 2 W_s J' r
+//! d2W/dxi2              = 2 W_s (J'J + sum over layers and units of lambda sigma'' grad(a) grad(a)')
+//! ```
+//!
+//! where lambda is the adjoint of a unit seeded by r. In the two features of the design,
+//! chi(xi(0, g)) moves too: dW/dg = 2 W_s (J - J0)' r and d2W/dxi dg loses 2 W_s J' J0.
+
+use crate::features::{FEATURES, features, pull_back};
+use crate::network::Network;
+use crate::passes::{CHUNK, Passes, packed_index, packed_len};
+use faer::Mat;
+use hinge::{HingeDeformation, HingeDesign};
+use std::cell::RefCell;
+use std::ops::Range;
+
+/// How many derivatives to compute; each order includes the ones before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Order {
+    /// W
+    Value,
+    /// and its gradient in (a, s, theta)
+    Forces,
+    /// and its Hessian in (a, s, theta)
+    Tangent,
+    /// and its gradient in (w_lig, alpha) with the mixed second derivatives
+    Design,
+}
+
+/// Energy of one hinge and its derivatives; parts beyond the order asked for are zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HingeEnergy {
+    /// W (N mm).
+    pub w: f64,
+    /// dW/d(a, s, theta): (F_a, F_s, M_theta) in (N, N, N mm).
+    pub forces: [f64; 3],
+    /// d2W/d(a, s, theta)^2.
+    pub tangent: [[f64; 3]; 3],
+    /// dW/d(w_lig, alpha) at fixed (a, s, theta).
+    pub design: [f64; 2],
+    /// d2W/d(a, s, theta)d(w_lig, alpha).
+    pub mixed: [[f64; 2]; 3],
+}
+
+/// Hinge designs with chi(xi(0, g)) and its derivatives, which deformations do not change.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    designs: Vec<HingeDesign>,
+    /// chi(xi(0, g)), one row a hinge.
+    origin: Mat<f64>,
+    /// Its derivatives in log w_lig and in alpha.
+    origin_tangents: [Mat<f64>; 2],
+}
+
+/// The features that are the design's: log w_lig and alpha.
+const DESIGN_FEATURES: Range<usize> = 3..FEATURES;
+
+impl Prepared {
+    pub(crate) fn new(chi: &Network, designs: &[HingeDesign]) -> Self {
+        let zeros = || Mat::zeros(designs.len(), chi.outputs());
+        let mut origin = zeros();
+        let mut origin_tangents = [zeros(), zeros()];
+        let mut passes = Passes::default();
+        for (chunk, designs) in designs.chunks(CHUNK).enumerate() {
+            let n = designs.len();
+            let undeformed: Vec<_> = designs
+                .iter()
+                .map(|design| features(design, &HingeDeformation::default()))
+                .collect();
+            passes.forward(chi, &undeformed, DESIGN_FEATURES);
+            let rows = chunk * CHUNK..chunk * CHUNK + n;
+            let [by_log_w, by_alpha] = &mut origin_tangents;
+            for (output, block) in passes.outputs().enumerate() {
+                for (target, values) in [&mut origin, by_log_w, by_alpha]
+                    .into_iter()
+                    .zip(block.chunks_exact(n))
+                {
+                    target.col_as_slice_mut(output)[rows.clone()].copy_from_slice(values);
+                }
+            }
+        }
+        Self {
+            designs: designs.to_vec(),
+            origin,
+            origin_tangents,
+        }
+    }
+
+    /// The designs, in the order given.
+    pub fn designs(&self) -> &[HingeDesign] {
+        &self.designs
+    }
+}
+
+/// See [`crate::Surrogate::evaluate`].
+pub(crate) fn evaluate(
+    chi: &Network,
+    energy_scale: f64,
+    prepared: &Prepared,
+    deformations: &[HingeDeformation],
+    order: Order,
+) -> Vec<HingeEnergy> {
+    assert_eq!(
+        prepared.designs.len(),
+        deformations.len(),
+        "one deformation for each prepared hinge"
+    );
+    KERNEL.with_borrow_mut(|kernel| {
+        let mut energies = Vec::with_capacity(deformations.len());
+        for (chunk, deformations) in deformations.chunks(CHUNK).enumerate() {
+            let first = chunk * CHUNK;
+            let designs = &prepared.designs[first..first + deformations.len()];
+            kernel.run(chi, prepared, first, deformations, order);
+            for (hinge, (design, deformation)) in designs.iter().zip(deformations).enumerate() {
+                energies.push(kernel.energy(hinge, design, deformation, energy_scale, order));
+            }
+        }
+        energies
+    })
+}
+
+thread_local! {
+    /// Megabytes of buffers: fresh ones would cost a solver that asks again and again a tenth of
+    /// its time in page faults.
+    static KERNEL: RefCell<Kernel> = RefCell::default();
+}
+
+/// |r|^2 and its derivatives in the features, for a chunk of hinges.
+#[derive(Default)]
+struct Kernel {
+    passes: Passes,
+    n: usize,
+    /// Number of features with second derivatives.
+    tangents: usize,
+    /// chi(xi) - chi(xi(0, g)), one column an output.
+    r: Vec<f64>,
+    /// |r|^2
+    square: Vec<f64>,
+    /// Half the Hessian of |r|^2 at fixed chi(xi(0, g)), packed.
+    half_hessian: Vec<f64>,
+    /// J0' r, one run a design feature.
+    origin_gradient: Vec<f64>,
+    /// J_i' J0_p, one run for each deformation feature i and design feature p.
+    origin_mixed: Vec<f64>,
+}
+
+impl Kernel {
+    fn run(
+        &mut self,
+        chi: &Network,
+        prepared: &Prepared,
+        first: usize,
+        deformations: &[HingeDeformation],
+        order: Order,
+    ) {
+        let n = deformations.len();
+        let rows = first..first + n;
+        self.n = n;
+        self.tangents = match order {
+            Order::Value | Order::Forces => 0,
+            Order::Tangent => DESIGN_FEATURES.start,
+            Order::Design => FEATURES,
+        };
+        let xi: Vec<_> = prepared.designs[rows.clone()]
+            .iter()
+            .zip(deformations)
+            .map(|(design, deformation)| features(design, deformation))
+            .collect();
+        self.passes.forward(chi, &xi, 0..self.tangents);
+
+        self.r.clear();
+        reset(&mut self.square, n);
+        for (output, block) in self.passes.outputs().enumerate() {
+            let origin = &prepared.origin.col_as_slice(output)[rows.clone()];
+            for ((square, value), origin) in self.square.iter_mut().zip(block).zip(origin) {
+                let r = value - origin;
+                *square += r * r;
+                self.r.push(r);
+            }
+        }
+        if order < Order::Forces {
+            return;
+        }
+        reset(&mut self.half_hessian, n * packed_len(self.tangents));
+        self.passes.reverse(chi, &self.r, &mut self.half_hessian);
+        self.passes.add_gauss_newton(&mut self.half_hessian);
+        if order == Order::Design {
+            self.move_origin(prepared, rows);
+        }
+    }
+
+    /// The sums with J0, the motion of chi(xi(0, g)) with the design.
+    fn move_origin(&mut self, prepared: &Prepared, rows: Range<usize>) {
+        let n = self.n;
+        reset(&mut self.origin_gradient, 2 * n);
+        reset(&mut self.origin_mixed, 6 * n);
+        for (p, by_feature) in prepared.origin_tangents.iter().enumerate() {
+            for (output, block) in self.passes.outputs().enumerate() {
+                let by_feature = &by_feature.col_as_slice(output)[rows.clone()];
+                let r = &self.r[n * output..][..n];
+                add_product(&mut self.origin_gradient[n * p..][..n], r, by_feature);
+                for i in 0..DESIGN_FEATURES.start {
+                    let sum = &mut self.origin_mixed[n * (2 * i + p)..][..n];
+                    add_product(sum, &block[n * (1 + i)..][..n], by_feature);
+                }
+            }
+        }
+    }
+
+    /// W_s |r|^2 of one hinge with its derivatives in (a, s, theta, w_lig, alpha).
+    fn energy(
+        &self,
+        hinge: usize,
+        design: &HingeDesign,
+        deformation: &HingeDeformation,
+        energy_scale: f64,
+        order: Order,
+    ) -> HingeEnergy {
+        let mut energy = HingeEnergy {
+            w: energy_scale * self.square[hinge],
+            ..HingeEnergy::default()
+        };
+        if order < Order::Forces {
+            return energy;
+        }
+        let twice = 2.0 * energy_scale;
+        let mut gradient = self.passes.gradient(hinge).map(|value| twice * value);
+        if order == Order::Design {
+            for p in 0..2 {
+                gradient[3 + p] -= twice * self.origin_gradient[self.n * p + hinge];
+            }
+        }
+        let [f_a, f_s, m_theta, by_w, by_alpha] = pull_back(gradient, design, deformation);
+        energy.forces = [f_a, f_s, m_theta];
+        if order < Order::Tangent {
+            return energy;
+        }
+        // Row i of the Hessian in the features is the gradient of dW/dxi_i.
+        for (i, scale) in [design.w_lig, design.w_lig, 1.0].into_iter().enumerate() {
+            let row: [f64; FEATURES] =
+                std::array::from_fn(|j| twice * self.second(hinge, i, j, order));
+            let [by_a, by_s, by_theta, by_w, by_alpha] =
+                pull_back(row, design, deformation).map(|value| value / scale);
+            energy.tangent[i] = [by_a, by_s, by_theta];
+            if order == Order::Design {
+                energy.mixed[i] = [by_w, by_alpha];
+            }
+        }
+        if order == Order::Design {
+            energy.design = [by_w, by_alpha];
+            // The factor 1 / w_lig of dW/da and dW/ds depends on w_lig itself.
+            energy.mixed[0][0] -= f_a / design.w_lig;
+            energy.mixed[1][0] -= f_s / design.w_lig;
+        }
+        energy
+    }
+
+    /// Half the second derivative of |r|^2 in the features i (of the deformation) and j.
+    fn second(&self, hinge: usize, i: usize, j: usize, order: Order) -> f64 {
+        if j >= self.tangents {
+            return 0.0;
+        }
+        let mut value = self.half_hessian[self.n * packed_index(i, j, self.tangents) + hinge];
+        if order == Order::Design && DESIGN_FEATURES.contains(&j) {
+            value -= self.origin_mixed[self.n * (2 * i + j - DESIGN_FEATURES.start) + hinge];
+        }
+        value
+    }
+}
+
+fn reset(buffer: &mut Vec<f64>, len: usize) {
+    buffer.clear();
+    buffer.resize(len, 0.0);
+}
+
+/// sum += left * right, element by element.
+fn add_product(sum: &mut [f64], left: &[f64], right: &[f64]) {
+    for ((sum, left), right) in sum.iter_mut().zip(left).zip(right) {
+        *sum += left * right;
+    }
+}

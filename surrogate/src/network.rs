@@ -1,0 +1,158 @@
+//! A tanh network with a linear last layer, checked where it is made.
+
+use crate::features::{FEATURES, Standardisation};
+use faer::Mat;
+
+/// A named array as weight files hold it, in row-major order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tensor {
+    pub shape: Vec<usize>,
+    pub values: Vec<f64>,
+}
+
+/// One affine map y = weight x + bias; `weight` is (outputs, inputs), `bias` (outputs).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layer {
+    pub weight: Tensor,
+    pub bias: Tensor,
+}
+
+/// Weights or a card that cannot be evaluated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum InvalidWeights {
+    #[error("tensor `{tensor}` is missing; train or export the weights again")]
+    Missing { tensor: String },
+    #[error("tensor `{tensor}` has the shape {found:?}, expected {expected}")]
+    Shape {
+        tensor: String,
+        expected: String,
+        found: Vec<usize>,
+    },
+    #[error("tensor `{tensor}` holds {value} at index {index}; every weight must be finite")]
+    NotFinite {
+        tensor: String,
+        index: usize,
+        value: f64,
+    },
+    #[error("`{name}` = {value} violates 0 < {name} < infinity")]
+    NotPositive { name: String, value: f64 },
+    #[error("the card's {key} are {found}, expected {expected}")]
+    OtherConvention {
+        key: &'static str,
+        expected: String,
+        found: String,
+    },
+    #[error("the domain of `{name}` is [{least}, {greatest}], which holds no state")]
+    EmptyDomain {
+        name: &'static str,
+        least: f64,
+        greatest: f64,
+    },
+}
+
+/// y = W_L tanh(... tanh(W_0 x + b_0) ...) + b_L, taking the features (13) as they are.
+#[derive(Clone, Debug)]
+pub struct Network {
+    /// As in the file: the first layer takes standardised features.
+    layers: Vec<Layer>,
+    /// As evaluated: the standardisation is folded into the first layer.
+    pub(crate) affine: Vec<Affine>,
+}
+
+/// An affine map ready for matrix products.
+#[derive(Clone, Debug)]
+pub(crate) struct Affine {
+    /// (outputs, inputs)
+    pub weight: Mat<f64>,
+    pub bias: Vec<f64>,
+}
+
+impl Network {
+    /// Checks every tensor; `name` is what errors call the network, `outputs` what is required of
+    /// its last layer.
+    pub(crate) fn new(
+        name: &str,
+        layers: Vec<Layer>,
+        outputs: Option<usize>,
+        standardisation: &Standardisation,
+    ) -> Result<Self, InvalidWeights> {
+        if layers.is_empty() {
+            return Err(InvalidWeights::Missing {
+                tensor: format!("{name}.0.weight"),
+            });
+        }
+        let mut inputs = FEATURES;
+        for (index, Layer { weight, bias }) in layers.iter().enumerate() {
+            let last = index + 1 == layers.len();
+            let required = if last { outputs } else { None };
+            weight.check(&format!("{name}.{index}.weight"), &[required, Some(inputs)])?;
+            let rows = Some(weight.shape[0]);
+            bias.check(&format!("{name}.{index}.bias"), &[rows])?;
+            inputs = bias.values.len();
+        }
+        let mut affine: Vec<Affine> = layers.iter().map(Affine::of).collect();
+        affine[0].fold(standardisation);
+        Ok(Self { layers, affine })
+    }
+
+    /// The layers as they were given and are written.
+    pub fn layers(&self) -> &[Layer] {
+        &self.layers
+    }
+
+    pub(crate) fn outputs(&self) -> usize {
+        self.affine[self.affine.len() - 1].bias.len()
+    }
+}
+
+impl Affine {
+    fn of(layer: &Layer) -> Self {
+        let (outputs, inputs) = (layer.bias.values.len(), layer.weight.shape[1]);
+        Self {
+            weight: Mat::from_fn(outputs, inputs, |i, j| layer.weight.values[i * inputs + j]),
+            bias: layer.bias.values.clone(),
+        }
+    }
+
+    /// W (xi - mean) / std + b = (W / std) xi + (b - (W / std) mean)
+    fn fold(&mut self, standardisation: &Standardisation) {
+        for (k, column) in self.weight.col_iter_mut().enumerate() {
+            for (weight, bias) in column.iter_mut().zip(&mut self.bias) {
+                *weight /= standardisation.std[k];
+                *bias -= *weight * standardisation.mean[k];
+            }
+        }
+    }
+}
+
+impl Tensor {
+    /// Whether the shape is `expected` (`None`: any positive length) and every value finite.
+    fn check(&self, name: &str, expected: &[Option<usize>]) -> Result<(), InvalidWeights> {
+        let matches = self.shape.len() == expected.len()
+            && self
+                .shape
+                .iter()
+                .zip(expected)
+                .all(|(&found, expected)| expected.map_or(found > 0, |length| found == length))
+            && self.values.len() == self.shape.iter().product::<usize>();
+        if !matches {
+            let lengths: Vec<String> = expected
+                .iter()
+                .map(|length| length.map_or("any".into(), |length| length.to_string()))
+                .collect();
+            return Err(InvalidWeights::Shape {
+                tensor: name.into(),
+                expected: format!("[{}]", lengths.join(", ")),
+                found: self.shape.clone(),
+            });
+        }
+        match self.values.iter().position(|value| !value.is_finite()) {
+            Some(index) => Err(InvalidWeights::NotFinite {
+                tensor: name.into(),
+                index,
+                value: self.values[index],
+            }),
+            None => Ok(()),
+        }
+    }
+}

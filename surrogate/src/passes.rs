@@ -1,0 +1,297 @@
+//! Batched passes through a network by matrix products: value, tangents, reverse.
+//!
+//! A *block* holds, column by column (one column a unit), the values of a chunk of hinges and
+//! below them their derivatives in some of the features (13):
+//!
+//! ```text
+//! rows 0..n          a          pre-activation of each hinge        a_l = h_{l-1} W_l' + b_l
+//! rows n..2n, ...    da/dxi_k   one row block for each tangent k    T_l = (sigma'(a_{l-1}) T_{l-1}) W_l'
+//! ```
+//!
+//! so one product a layer carries the values and all tangents. For a function f of the outputs
+//! with gradient `seed`, the reverse pass gives lambda = df/dh of every hidden unit, the gradient
+//! of f in all features, and the curvature that the network adds to its Hessian,
+//!
+//! ```text
+//! sum over layers and units of  lambda sigma''(a) (da/dxi_i) (da/dxi_j)
+//! ```
+
+use crate::features::FEATURES;
+use crate::network::{Affine, Network};
+use crate::tanh::tanh;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
+use pulp::{Simd, WithSimd};
+use std::ops::Range;
+
+/// Hinges evaluated together; their tangents then stay in the second-level cache.
+pub(crate) const CHUNK: usize = 64;
+
+/// The buffers of the passes, kept from chunk to chunk.
+#[derive(Default)]
+pub(crate) struct Passes {
+    /// Hinges in the chunk.
+    n: usize,
+    /// The features in whose direction tangents are pushed forward.
+    tangents: Range<usize>,
+    /// The features (13), one column a feature.
+    inputs: Vec<f64>,
+    /// A block for each hidden layer, with tanh(a) in place of a.
+    hidden: Vec<Vec<f64>>,
+    /// The block [tanh(a), sigma'(a) T] of the layer last passed.
+    activation: Vec<f64>,
+    /// The block of the outputs.
+    output: Vec<f64>,
+    /// df/da of the layer last passed backwards, one column a unit.
+    adjoint: Vec<f64>,
+    /// df/dh of the layer before it.
+    lambda: Vec<f64>,
+    /// The weight of each hinge in [`accumulate_products`].
+    weight: Vec<f64>,
+    /// df/dxi, one column a feature.
+    gradient: Vec<f64>,
+}
+
+impl Passes {
+    /// Values and the derivatives in the features `tangents`, for at most [`CHUNK`] hinges.
+    pub fn forward(
+        &mut self,
+        network: &Network,
+        features: &[[f64; FEATURES]],
+        tangents: Range<usize>,
+    ) {
+        self.n = features.len();
+        self.tangents = tangents;
+        self.inputs.clear();
+        for k in 0..FEATURES {
+            self.inputs.extend(features.iter().map(|xi| xi[k]));
+        }
+        let [first, following @ ..] = network.affine.as_slice() else {
+            unreachable!("a network has at least one layer");
+        };
+        self.hidden.resize_with(following.len(), Vec::new);
+        self.enter(first);
+        for (index, affine) in following.iter().enumerate() {
+            std::mem::swap(&mut self.output, &mut self.hidden[index]);
+            let rows = self.rows();
+            let block = &mut self.hidden[index];
+            self.activation.resize(block.len(), 0.0);
+            pulp::Arch::new().dispatch(Activate {
+                n: self.n,
+                rows,
+                block,
+                activation: &mut self.activation,
+            });
+            let units = affine.bias.len();
+            self.output.resize(rows * units, 0.0);
+            matmul(
+                MatMut::from_column_major_slice_mut(&mut self.output, rows, units),
+                Accum::Replace,
+                MatRef::from_column_major_slice(&self.activation, rows, affine.weight.ncols()),
+                affine.weight.transpose(),
+                1.0,
+                Par::Seq,
+            );
+            self.add_bias(affine);
+        }
+    }
+
+    /// The first layer, whose tangents are the columns of its weight.
+    fn enter(&mut self, first: &Affine) {
+        let (n, rows, units) = (self.n, self.rows(), first.bias.len());
+        self.output.resize(rows * units, 0.0);
+        let values = MatMut::from_column_major_slice_mut(&mut self.output, rows, units);
+        matmul(
+            values.subrows_mut(0, n),
+            Accum::Replace,
+            MatRef::from_column_major_slice(&self.inputs, n, FEATURES),
+            first.weight.transpose(),
+            1.0,
+            Par::Seq,
+        );
+        for (unit, column) in self.output.chunks_exact_mut(rows).enumerate() {
+            for (k, tangent) in self.tangents.clone().zip(column[n..].chunks_exact_mut(n)) {
+                tangent.fill(first.weight[(unit, k)]);
+            }
+        }
+        self.add_bias(first);
+    }
+
+    fn add_bias(&mut self, affine: &Affine) {
+        let rows = self.rows();
+        for (column, bias) in self.output.chunks_exact_mut(rows).zip(&affine.bias) {
+            for value in &mut column[..self.n] {
+                *value += bias;
+            }
+        }
+    }
+
+    /// The gradient in the features of a function of the outputs, given its gradient `seed` in the
+    /// outputs (one column an output); adds the network's share of its Hessian to `curvature`,
+    /// packed as [`accumulate_products`] says.
+    pub fn reverse(&mut self, network: &Network, seed: &[f64], curvature: &mut [f64]) {
+        let (n, rows) = (self.n, self.rows());
+        self.weight.resize(n, 0.0);
+        self.adjoint.clear();
+        self.adjoint.extend_from_slice(seed);
+        for (affine, block) in network.affine[1..].iter().zip(&self.hidden).rev() {
+            multiply(&self.adjoint, affine, n, &mut self.lambda);
+            pulp::Arch::new().dispatch(Deactivate {
+                rows,
+                block,
+                lambda: &mut self.lambda,
+                weight: &mut self.weight,
+                curvature,
+            });
+            std::mem::swap(&mut self.adjoint, &mut self.lambda);
+        }
+        multiply(&self.adjoint, &network.affine[0], n, &mut self.gradient);
+    }
+
+    /// Adds J'J to `packed`, with J the derivatives of the outputs in the tangents.
+    pub fn add_gauss_newton(&mut self, packed: &mut [f64]) {
+        let rows = self.rows();
+        self.weight.clear();
+        self.weight.resize(self.n, 1.0);
+        pulp::Arch::new().dispatch(GaussNewton {
+            rows,
+            block: &self.output,
+            ones: &self.weight,
+            packed,
+        });
+    }
+
+    /// Value and tangents of each output: n values, then n derivatives in each tangent.
+    pub fn outputs(&self) -> impl Iterator<Item = &[f64]> {
+        self.output.chunks_exact(self.rows())
+    }
+
+    /// What [`Passes::reverse`] found for one hinge of the chunk.
+    pub fn gradient(&self, hinge: usize) -> [f64; FEATURES] {
+        std::array::from_fn(|k| self.gradient[k * self.n + hinge])
+    }
+
+    fn rows(&self) -> usize {
+        self.n * (1 + self.tangents.len())
+    }
+}
+
+/// `adjoint` times the weight of a layer: df/dh of the units before it.
+fn multiply(adjoint: &[f64], affine: &Affine, n: usize, product: &mut Vec<f64>) {
+    let (outputs, inputs) = affine.weight.shape();
+    product.resize(n * inputs, 0.0);
+    matmul(
+        MatMut::from_column_major_slice_mut(product, n, inputs),
+        Accum::Replace,
+        MatRef::from_column_major_slice(adjoint, n, outputs),
+        affine.weight.as_ref(),
+        1.0,
+        Par::Seq,
+    );
+}
+
+/// Replaces a by tanh(a) in `block` and writes [tanh(a), sigma'(a) T].
+struct Activate<'a> {
+    n: usize,
+    rows: usize,
+    block: &'a mut [f64],
+    activation: &'a mut [f64],
+}
+
+impl WithSimd for Activate<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let columns = self.block.chunks_exact_mut(self.rows);
+        for (column, activation) in columns.zip(self.activation.chunks_exact_mut(self.rows)) {
+            let (values, tangents) = column.split_at_mut(self.n);
+            let (activation, pushed) = activation.split_at_mut(self.n);
+            for (value, activation) in values.iter_mut().zip(activation) {
+                *value = tanh(*value);
+                *activation = *value;
+            }
+            let tangents = tangents.chunks_exact(self.n);
+            for (tangent, pushed) in tangents.zip(pushed.chunks_exact_mut(self.n)) {
+                for ((pushed, tangent), h) in pushed.iter_mut().zip(tangent).zip(&*values) {
+                    *pushed = (1.0 - h * h) * tangent;
+                }
+            }
+        }
+    }
+}
+
+/// Turns df/dh into df/da in place, with sigma' = 1 - h^2 and sigma'' = -2 h sigma', and adds
+/// lambda sigma'' T_i T_j to `curvature`; `weight` is room for one unit's lambda sigma''.
+struct Deactivate<'a> {
+    rows: usize,
+    block: &'a [f64],
+    lambda: &'a mut [f64],
+    weight: &'a mut [f64],
+    curvature: &'a mut [f64],
+}
+
+impl WithSimd for Deactivate<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let n = self.weight.len();
+        let columns = self.block.chunks_exact(self.rows);
+        for (column, lambda) in columns.zip(self.lambda.chunks_exact_mut(n)) {
+            let (values, tangents) = column.split_at(n);
+            for ((h, lambda), weight) in values.iter().zip(lambda).zip(&mut *self.weight) {
+                *lambda *= 1.0 - h * h;
+                *weight = -2.0 * h * *lambda;
+            }
+            accumulate_products(self.weight, tangents, self.curvature);
+        }
+    }
+}
+
+/// See [`Passes::add_gauss_newton`].
+struct GaussNewton<'a> {
+    rows: usize,
+    block: &'a [f64],
+    ones: &'a [f64],
+    packed: &'a mut [f64],
+}
+
+impl WithSimd for GaussNewton<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        for column in self.block.chunks_exact(self.rows) {
+            accumulate_products(self.ones, &column[self.ones.len()..], self.packed);
+        }
+    }
+}
+
+/// Adds weight T_i T_j to `packed` for every pair i <= j of the row blocks of `tangents`.
+///
+/// `packed` holds one run of n for each pair, in the order (0, 0), (0, 1), ..., (1, 1), ...;
+/// see [`packed_index`].
+#[inline(always)]
+fn accumulate_products(weight: &[f64], tangents: &[f64], packed: &mut [f64]) {
+    let n = weight.len();
+    let mut runs = packed.chunks_exact_mut(n);
+    for (i, left) in tangents.chunks_exact(n).enumerate() {
+        for (right, run) in tangents.chunks_exact(n).skip(i).zip(&mut runs) {
+            for (((run, weight), left), right) in run.iter_mut().zip(weight).zip(left).zip(right) {
+                *run += weight * left * right;
+            }
+        }
+    }
+}
+
+/// Number of pairs i <= j < `tangents`.
+pub(crate) fn packed_len(tangents: usize) -> usize {
+    tangents * (tangents + 1) / 2
+}
+
+/// Position of the pair (i, j) in the order of [`accumulate_products`].
+pub(crate) fn packed_index(i: usize, j: usize, tangents: usize) -> usize {
+    let (i, j) = (i.min(j), i.max(j));
+    i * tangents - packed_len(i) + j
+}

@@ -1,0 +1,283 @@
+//! The weight file `X.safetensors` and its card `X.json`.
+//!
+//! | tensor | shape |
+//! |---|---|
+//! | `chi.N.weight`, `chi.N.bias` | (out, in), (out) of layer N of the embedding |
+//! | `chi_d.N.weight`, `chi_d.N.bias` | the same of the damage head |
+//! | `feat_mean`, `feat_std` | (5), in the order of (13) |
+//! | `w_scale`, `d_scale` | (1), N mm and dimensionless |
+//!
+//! Tensors are float64 when written; float32 is read too. The scaling stands in both files, so
+//! that a card beside the wrong weights is noticed.
+
+use crate::Surrogate;
+use crate::card::{Card, FORMAT_VERSION};
+use crate::features::Standardisation;
+use crate::network::{InvalidWeights, Layer, Tensor};
+use safetensors::tensor::TensorView;
+use safetensors::{Dtype, SafeTensorError, SafeTensors};
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a surrogate could not be read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum WeightsError {
+    #[error("cannot read {path}: {source}", path = .path.display())]
+    Read { path: PathBuf, source: io::Error },
+    #[error("cannot write {path}: {source}", path = .path.display())]
+    Write { path: PathBuf, source: io::Error },
+    #[error(
+        "{weights} has no card: expected {card} beside it; copy the two files together",
+        weights = .weights.display(), card = .card.display()
+    )]
+    MissingCard { weights: PathBuf, card: PathBuf },
+    #[error("{path} is no card of a surrogate: {source}", path = .path.display())]
+    Card {
+        path: PathBuf,
+        source: serde_json::Error,
+    },
+    #[error(
+        "{path} has the format version {found}, this program reads {FORMAT_VERSION}; \
+         export the weights again",
+        path = .path.display()
+    )]
+    UnknownVersion { path: PathBuf, found: u64 },
+    #[error("{path} is no safetensors file: {source}", path = .path.display())]
+    Malformed {
+        path: PathBuf,
+        source: SafeTensorError,
+    },
+    #[error("{path}: tensor `{tensor}` belongs to no known layer", path = .path.display())]
+    Extra { path: PathBuf, tensor: String },
+    #[error("{path}: tensor `{tensor}` is {found:?}, expected F64 or F32", path = .path.display())]
+    Type {
+        path: PathBuf,
+        tensor: String,
+        found: Dtype,
+    },
+    #[error(
+        "{path}: `{tensor}` differs from the card beside it; the two files are of different \
+         trainings",
+        path = .path.display()
+    )]
+    OtherCard { path: PathBuf, tensor: &'static str },
+    #[error("{path}: {source}", path = .path.display())]
+    Invalid {
+        path: PathBuf,
+        source: InvalidWeights,
+    },
+}
+
+/// See [`Surrogate::load`].
+pub(crate) fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
+    let mut tensors = read_tensors(weights)?;
+    let card = read_card(weights)?;
+    let invalid = |source| WeightsError::Invalid {
+        path: weights.to_owned(),
+        source,
+    };
+    let chi = take_layers(&mut tensors, "chi").map_err(invalid)?;
+    let chi_d = take_layers(&mut tensors, "chi_d").map_err(invalid)?;
+    for (tensor, expected) in scaling(&card) {
+        let found = take(&mut tensors, tensor).map_err(invalid)?;
+        if found.shape != expected.shape {
+            return Err(invalid(InvalidWeights::Shape {
+                tensor: tensor.into(),
+                expected: format!("{:?}", expected.shape),
+                found: found.shape,
+            }));
+        }
+        if found.values != expected.values {
+            return Err(WeightsError::OtherCard {
+                path: weights.to_owned(),
+                tensor,
+            });
+        }
+    }
+    match tensors.pop_first() {
+        Some((tensor, _)) => Err(WeightsError::Extra {
+            path: weights.to_owned(),
+            tensor,
+        }),
+        None => Surrogate::from_parts(chi, chi_d, card).map_err(invalid),
+    }
+}
+
+/// See [`Surrogate::save`].
+pub(crate) fn save(surrogate: &Surrogate, weights: &Path) -> Result<(), WeightsError> {
+    let mut tensors: Vec<(String, Tensor)> = Vec::new();
+    for (name, network) in [("chi", &surrogate.chi), ("chi_d", &surrogate.chi_d)] {
+        for (index, layer) in network.layers().iter().enumerate() {
+            tensors.push((format!("{name}.{index}.weight"), layer.weight.clone()));
+            tensors.push((format!("{name}.{index}.bias"), layer.bias.clone()));
+        }
+    }
+    for (name, tensor) in scaling(&surrogate.card) {
+        tensors.push((name.into(), tensor));
+    }
+    let bytes: Vec<Vec<u8>> = tensors.iter().map(|(_, tensor)| to_bytes(tensor)).collect();
+    let views: Result<Vec<_>, _> = tensors
+        .iter()
+        .zip(&bytes)
+        .map(|((name, tensor), bytes)| {
+            Ok((
+                name,
+                TensorView::new(Dtype::F64, tensor.shape.clone(), bytes)?,
+            ))
+        })
+        .collect();
+    let file = views
+        .and_then(|views| safetensors::serialize(views, None))
+        .map_err(|source| WeightsError::Malformed {
+            path: weights.to_owned(),
+            source,
+        })?;
+    let path = card_path(weights);
+    let mut card =
+        serde_json::to_vec_pretty(&surrogate.card).map_err(|source| WeightsError::Card {
+            path: path.clone(),
+            source,
+        })?;
+    card.push(b'\n');
+    write(weights, &file)?;
+    write(&path, &card)
+}
+
+fn card_path(weights: &Path) -> PathBuf {
+    weights.with_extension("json")
+}
+
+fn read_card(weights: &Path) -> Result<Card, WeightsError> {
+    #[derive(serde::Deserialize)]
+    struct Version {
+        format_version: u64,
+    }
+    let path = card_path(weights);
+    let text = std::fs::read(&path).map_err(|source| match source.kind() {
+        io::ErrorKind::NotFound => WeightsError::MissingCard {
+            weights: weights.to_owned(),
+            card: path.clone(),
+        },
+        _ => WeightsError::Read {
+            path: path.clone(),
+            source,
+        },
+    })?;
+    let malformed = |source| WeightsError::Card {
+        path: path.clone(),
+        source,
+    };
+    let version: Version = serde_json::from_slice(&text).map_err(malformed)?;
+    if version.format_version != u64::from(FORMAT_VERSION) {
+        return Err(WeightsError::UnknownVersion {
+            path: path.clone(),
+            found: version.format_version,
+        });
+    }
+    serde_json::from_slice(&text).map_err(malformed)
+}
+
+fn read_tensors(path: &Path) -> Result<BTreeMap<String, Tensor>, WeightsError> {
+    let bytes = std::fs::read(path).map_err(|source| WeightsError::Read {
+        path: path.to_owned(),
+        source,
+    })?;
+    let file = SafeTensors::deserialize(&bytes).map_err(|source| WeightsError::Malformed {
+        path: path.to_owned(),
+        source,
+    })?;
+    file.iter()
+        .map(|(name, view)| match to_tensor(&view) {
+            Some(tensor) => Ok((name.to_owned(), tensor)),
+            None => Err(WeightsError::Type {
+                path: path.to_owned(),
+                tensor: name.to_owned(),
+                found: view.dtype(),
+            }),
+        })
+        .collect()
+}
+
+/// The values in float64; `None` if the type is neither F64 nor F32.
+fn to_tensor(view: &TensorView) -> Option<Tensor> {
+    let values = match view.dtype() {
+        Dtype::F64 => {
+            let (numbers, _) = view.data().as_chunks();
+            numbers
+                .iter()
+                .map(|&bytes| f64::from_le_bytes(bytes))
+                .collect()
+        }
+        Dtype::F32 => {
+            let (numbers, _) = view.data().as_chunks();
+            let widen = |&bytes| f64::from(f32::from_le_bytes(bytes));
+            numbers.iter().map(widen).collect()
+        }
+        _ => return None,
+    };
+    Some(Tensor {
+        shape: view.shape().to_vec(),
+        values,
+    })
+}
+
+fn to_bytes(tensor: &Tensor) -> Vec<u8> {
+    let values = tensor.values.iter();
+    values.flat_map(|value| value.to_le_bytes()).collect()
+}
+
+/// The tensors that the card repeats.
+fn scaling(card: &Card) -> [(&'static str, Tensor); 4] {
+    let Standardisation { mean, std } = card.standardisation;
+    let vector = |values: &[f64]| Tensor {
+        shape: vec![values.len()],
+        values: values.to_vec(),
+    };
+    [
+        ("feat_mean", vector(&mean)),
+        ("feat_std", vector(&std)),
+        ("w_scale", vector(&[card.energy_scale])),
+        ("d_scale", vector(&[card.damage_scale])),
+    ]
+}
+
+/// Layers 0, 1, ... of a network, up to the highest that the file names.
+fn take_layers(
+    tensors: &mut BTreeMap<String, Tensor>,
+    network: &str,
+) -> Result<Vec<Layer>, InvalidWeights> {
+    let layer_of = |name: &String| -> Option<usize> {
+        let (layer, _) = name
+            .strip_prefix(network)?
+            .strip_prefix('.')?
+            .split_once('.')?;
+        layer.parse().ok()
+    };
+    let last = tensors.keys().filter_map(layer_of).max().unwrap_or(0);
+    (0..=last)
+        .map(|layer| {
+            Ok(Layer {
+                weight: take(tensors, &format!("{network}.{layer}.weight"))?,
+                bias: take(tensors, &format!("{network}.{layer}.bias"))?,
+            })
+        })
+        .collect()
+}
+
+fn take(tensors: &mut BTreeMap<String, Tensor>, name: &str) -> Result<Tensor, InvalidWeights> {
+    tensors.remove(name).ok_or_else(|| InvalidWeights::Missing {
+        tensor: name.into(),
+    })
+}
+
+/// Writes beside the place and renames, so that no half-written file is ever found there.
+fn write(path: &Path, bytes: &[u8]) -> Result<(), WeightsError> {
+    let partial = path.with_added_extension("partial");
+    std::fs::write(&partial, bytes)
+        .and_then(|()| std::fs::rename(&partial, path))
+        .map_err(|source| WeightsError::Write {
+            path: path.to_owned(),
+            source,
+        })
+}

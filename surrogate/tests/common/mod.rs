@@ -1,0 +1,23 @@
+//! A surrogate of random weights and designs to ask it about.
+
+use hinge::HingeDesign;
+use std::path::{Path, PathBuf};
+use surrogate::Surrogate;
+
+pub fn cases() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases")
+}
+
+pub fn tiny() -> Surrogate {
+    Surrogate::load(&cases().join("chi_tiny.safetensors")).unwrap()
+}
+
+pub fn design(w_lig: f64, alpha: f64) -> HingeDesign {
+    HingeDesign {
+        w_lig,
+        alpha,
+        fillet_ratio: 0.16,
+        kerf: 0.2,
+        r_win: 100.0,
+    }
+}

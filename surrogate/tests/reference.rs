@@ -1,0 +1,219 @@
+//! The kernel against an independent implementation at 50 states, and against finite differences.
+
+mod common;
+
+use common::{cases, design, tiny};
+use hinge::{HingeDeformation, HingeDesign};
+use serde_json::Value;
+use surrogate::{HingeEnergy, Order};
+
+/// The reference states, from an independent implementation.
+fn states() -> Vec<Value> {
+    let text = std::fs::read_to_string(cases().join("states_tiny.json")).unwrap();
+    let file: Value = serde_json::from_str(&text).unwrap();
+    file["states"].as_array().unwrap().clone()
+}
+
+/// The numbers in a value, in reading order.
+fn numbers(value: &Value) -> Vec<f64> {
+    match value.as_array() {
+        Some(values) => values.iter().flat_map(numbers).collect(),
+        None => vec![value.as_f64().unwrap()],
+    }
+}
+
+fn hinges(states: &[Value]) -> (Vec<HingeDesign>, Vec<HingeDeformation>) {
+    states
+        .iter()
+        .map(|state| {
+            let eps = numbers(&state["eps"]);
+            (
+                design(
+                    state["w_lig"].as_f64().unwrap(),
+                    state["alpha"].as_f64().unwrap(),
+                ),
+                HingeDeformation::from([eps[0], eps[1], eps[2]]),
+            )
+        })
+        .unzip()
+}
+
+fn assert_close(what: &str, found: &[f64], expected: &[f64], tolerance: f64) {
+    assert_eq!(found.len(), expected.len(), "{what}");
+    for (found, expected) in found.iter().zip(expected) {
+        let error = (found - expected).abs();
+        assert!(
+            error <= tolerance * expected.abs().max(1.0),
+            "{what}: {found} instead of {expected}"
+        );
+    }
+}
+
+#[test]
+fn energy_and_damage_agree_with_the_reference() {
+    let (surrogate, states) = (tiny(), states());
+    let (designs, deformations) = hinges(&states);
+    let prepared = surrogate.prepare(&designs);
+    let energies = surrogate.evaluate(&prepared, &deformations, Order::Design);
+    let damages = surrogate.damage(&designs, &deformations);
+    assert_eq!((states.len(), energies.len(), damages.len()), (50, 50, 50));
+    for ((state, energy), damage) in states.iter().zip(&energies).zip(&damages) {
+        let pairs: [(&str, &[f64]); 7] = [
+            ("W", &[energy.w]),
+            ("grad", &energy.forces),
+            ("hessian", energy.tangent.as_flattened()),
+            ("dW_dw_alpha", &energy.design),
+            ("d2W_deps_dw_alpha", energy.mixed.as_flattened()),
+            ("D", &[damage.d]),
+            ("dD_deps", &damage.gradient[..3]),
+        ];
+        for (key, found) in pairs {
+            assert_close(key, found, &numbers(&state[key]), 1e-10);
+        }
+    }
+}
+
+#[test]
+fn each_order_repeats_the_ones_before_and_leaves_the_rest_zero() {
+    let surrogate = tiny();
+    let (designs, deformations) = hinges(&states());
+    let prepared = surrogate.prepare(&designs);
+    let all = surrogate.evaluate(&prepared, &deformations, Order::Design);
+    for order in [Order::Value, Order::Forces, Order::Tangent] {
+        let energies = surrogate.evaluate(&prepared, &deformations, order);
+        for (energy, all) in energies.iter().zip(&all) {
+            assert_close("w", &[energy.w], &[all.w], 1e-13);
+            if order >= Order::Forces {
+                assert_close("forces", &energy.forces, &all.forces, 1e-13);
+            } else {
+                assert_eq!(energy.forces, [0.0; 3]);
+            }
+            if order >= Order::Tangent {
+                let (tangent, all) = (energy.tangent.as_flattened(), all.tangent.as_flattened());
+                assert_close("tangent", tangent, all, 1e-13);
+            } else {
+                assert_eq!(energy.tangent, [[0.0; 3]; 3]);
+            }
+            assert_eq!((energy.design, energy.mixed), ([0.0; 2], [[0.0; 2]; 3]));
+        }
+    }
+}
+
+#[test]
+fn an_undeformed_hinge_has_no_energy_and_no_forces() {
+    let surrogate = tiny();
+    let (designs, _) = hinges(&states());
+    let prepared = surrogate.prepare(&designs);
+    let flat = vec![HingeDeformation::default(); designs.len()];
+    for energy in surrogate.evaluate(&prepared, &flat, Order::Design) {
+        assert!(energy.w >= 0.0 && energy.w < 1e-26, "{:e}", energy.w);
+        for value in energy.forces.iter().chain(&energy.design) {
+            assert!(value.abs() < 1e-12, "{value:e}");
+        }
+        assert!((0..3).all(|i| energy.tangent[i][i] > 0.0));
+    }
+}
+
+/// Central differences in each of (a, s, theta, w_lig, alpha) for all hinges at once.
+fn differences(
+    evaluate: impl Fn(&[HingeDesign], &[HingeDeformation]) -> Vec<f64>,
+    direction: usize,
+    step: f64,
+) -> Vec<f64> {
+    let (designs, deformations) = hinges(&states());
+    let moved = |step: f64| {
+        let (mut designs, mut deformations) = (designs.clone(), deformations.clone());
+        for (design, deformation) in designs.iter_mut().zip(&mut deformations) {
+            let unknowns = [
+                &mut deformation.a,
+                &mut deformation.s,
+                &mut deformation.theta,
+                &mut design.w_lig,
+                &mut design.alpha,
+            ];
+            *unknowns.into_iter().nth(direction).unwrap() += step;
+        }
+        evaluate(&designs, &deformations)
+    };
+    let (ahead, behind) = (moved(step), moved(-step));
+    let pairs = ahead.iter().zip(&behind);
+    pairs
+        .map(|(ahead, behind)| (ahead - behind) / (2.0 * step))
+        .collect()
+}
+
+/// The part of a HingeEnergy that is its derivative in one of (a, s, theta, w_lig, alpha).
+fn derivative(energy: &HingeEnergy, direction: usize) -> [f64; 4] {
+    let first = match direction {
+        0..3 => energy.forces[direction],
+        _ => energy.design[direction - 3],
+    };
+    let second = |i: usize| match direction {
+        0..3 => energy.tangent[i][direction],
+        _ => energy.mixed[i][direction - 3],
+    };
+    [first, second(0), second(1), second(2)]
+}
+
+#[test]
+fn every_derivative_is_that_of_finite_differences() {
+    let surrogate = tiny();
+    let (designs, deformations) = hinges(&states());
+    let prepared = surrogate.prepare(&designs);
+    let exact = surrogate.evaluate(&prepared, &deformations, Order::Design);
+    let damages = surrogate.damage(&designs, &deformations);
+    for direction in 0..5 {
+        let energies = differences(
+            |designs, deformations| {
+                let prepared = surrogate.prepare(designs);
+                let energies = surrogate.evaluate(&prepared, deformations, Order::Forces);
+                let flat = energies
+                    .iter()
+                    .flat_map(|e| [e.w, e.forces[0], e.forces[1], e.forces[2]]);
+                flat.collect()
+            },
+            direction,
+            1e-5,
+        );
+        for (exact, difference) in exact.iter().zip(energies.as_chunks::<4>().0) {
+            let what = format!("W in direction {direction}");
+            assert_close(&what, difference, &derivative(exact, direction), 2e-7);
+        }
+        let values = differences(
+            |designs, deformations| {
+                let damages = surrogate.damage(designs, deformations);
+                damages.iter().map(|damage| damage.d).collect()
+            },
+            direction,
+            1e-4,
+        );
+        for (exact, difference) in damages.iter().zip(values) {
+            let scaled = [difference / surrogate.damage_scale()];
+            let expected = [exact.gradient[direction] / surrogate.damage_scale()];
+            assert_close("dD", &scaled, &expected, 1e-7);
+        }
+    }
+}
+
+#[test]
+fn many_hinges_give_the_same_as_each_alone() {
+    let surrogate = tiny();
+    let (designs, deformations) = hinges(&states());
+    let repeat = |count: usize| {
+        let designs: Vec<_> = designs.iter().cycle().take(count).copied().collect();
+        let deformations: Vec<_> = deformations.iter().cycle().take(count).copied().collect();
+        let prepared = surrogate.prepare(&designs);
+        surrogate.evaluate(&prepared, &deformations, Order::Design)
+    };
+    let many = repeat(275);
+    assert_eq!(many.len(), 275);
+    assert!(repeat(0).is_empty());
+    for (index, energy) in many.iter().enumerate() {
+        let index = index % designs.len();
+        let prepared = surrogate.prepare(&designs[index..=index]);
+        let alone = surrogate.evaluate(&prepared, &deformations[index..=index], Order::Design);
+        assert_close("w", &[energy.w], &[alone[0].w], 1e-12);
+        let (many, alone) = (energy.mixed.as_flattened(), alone[0].mixed.as_flattened());
+        assert_close("mixed", many, alone, 1e-12);
+    }
+}

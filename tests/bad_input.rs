@@ -1,0 +1,155 @@
+//! Bad input of any kind: a message that names the file, the key or the program, and exit code 1.
+
+mod common;
+
+use common::{Workplace, failure};
+
+const DEMO: &str = "configs/campaigns/demo.toml";
+const SCENE: &str = "configs/scenes/linear-7x7.toml";
+
+/// The message of `command` after one edit of a fresh copy of the configurations.
+fn after(edited: &str, old: &str, new: &str, command: &str) -> String {
+    let work = Workplace::new();
+    work.edit(edited, &[(old, new)]);
+    work.error(command)
+}
+
+#[test]
+fn a_wrong_key_names_line_and_nearest_key() {
+    let message = after(DEMO, "kerf =", "kurf =", &format!("database plan {DEMO}"));
+    assert!(
+        message.contains("demo.toml:") && message.contains("did you mean `kerf`"),
+        "{message}"
+    );
+    let message = after(SCENE, "load_steps", "load_step", &format!("design {SCENE}"));
+    assert!(message.contains("did you mean `load_steps`"), "{message}");
+}
+
+#[test]
+fn a_wrong_type_and_a_wrong_sign_name_the_value() {
+    let message = after(
+        DEMO,
+        "seed = 1",
+        "seed = \"one\"",
+        &format!("database plan {DEMO}"),
+    );
+    assert!(message.contains("demo.toml:"), "{message}");
+    let material = "configs/materials/pet-0.5mm.toml";
+    let message = after(
+        material,
+        "young = 3000.0",
+        "young = -3000.0",
+        "solve --tier tiny",
+    );
+    assert!(message.contains("young = -3000"), "{message}");
+}
+
+#[test]
+fn unit_slips_are_suspected() {
+    let work = Workplace::new();
+    assert!(
+        work.error("solve --w-lig 0.018")
+            .contains("did you mean 18 mm")
+    );
+    let material = "configs/materials/pet-0.5mm.toml";
+    let message = after(
+        material,
+        "young = 3000.0",
+        "young = 3.0",
+        "solve --tier tiny",
+    );
+    assert!(message.contains("did you mean 3000 MPa"), "{message}");
+}
+
+#[test]
+fn missing_files_are_named() {
+    let work = Workplace::new();
+    for command in [
+        "database plan nowhere.toml",
+        "train nowhere.parquet",
+        "design nowhere.toml",
+    ] {
+        assert!(work.error(command).contains("nowhere"));
+    }
+}
+
+#[test]
+fn missing_programs_tell_how_to_get_them() {
+    let work = Workplace::new();
+    for (variable, package) in [("KIRIGAMI_GMSH", "gmsh"), ("KIRIGAMI_CCX", "calculix-ccx")] {
+        let mut command = work.kirigami("solve --tier tiny");
+        let message = failure({
+            command.env(variable, "/no/such/program");
+            command
+        });
+        assert!(message.contains(variable), "{message}");
+        assert!(
+            message.contains(&format!("apt-get install {package}")),
+            "{message}"
+        );
+    }
+    let mut doctor = work.kirigami("doctor");
+    doctor
+        .env("KIRIGAMI_CCX", "/no/such/program")
+        .assert()
+        .failure();
+}
+
+#[test]
+fn a_solver_that_fails_is_quoted_and_what_is_finished_is_kept() {
+    use std::os::unix::fs::PermissionsExt;
+    let work = Workplace::new();
+    let fake = work.path("ccx");
+    let script = "#!/bin/sh\n[ \"$1\" = -v ] && echo 'This is Version 2.20' && exit 0\n\
+                  echo ' *ERROR reading *SOLID SECTION'; exit 201\n";
+    std::fs::write(&fake, script).unwrap();
+    std::fs::set_permissions(&fake, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let mut command = work.kirigami("solve --tier tiny");
+    command.env("KIRIGAMI_CCX", &fake);
+    let message = failure(command);
+    assert!(
+        message.contains("*ERROR reading *SOLID SECTION"),
+        "{message}"
+    );
+    assert!(
+        work.path("runs/solve/window.inp").exists(),
+        "the deck is kept"
+    );
+}
+
+#[test]
+fn weights_that_are_none_are_refused() {
+    let work = Workplace::new();
+    let scene = "configs/scenes/demo.toml";
+    let message = work.error(&format!("design {scene}"));
+    assert!(message.contains("surrogate.safetensors"), "{message}");
+
+    std::fs::create_dir_all(work.path("runs/demo")).unwrap();
+    std::fs::write(work.path("runs/demo/surrogate.safetensors"), b"not weights").unwrap();
+    let message = work.error(&format!("design {scene}"));
+    assert!(
+        message.contains("surrogate.json"),
+        "the card is named: {message}"
+    );
+}
+
+#[test]
+fn help_is_there_for_every_command() {
+    let work = Workplace::new();
+    for command in [
+        "",
+        "demo",
+        "doctor",
+        "mesh",
+        "solve",
+        "database",
+        "database run",
+        "train",
+        "design",
+    ] {
+        assert!(
+            work.output(&format!("{command} --help"))
+                .contains("Usage: kirigami")
+        );
+    }
+}

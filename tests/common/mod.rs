@@ -1,0 +1,77 @@
+//! A working folder with small configurations, and the program run in it.
+
+use assert_cmd::Command;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+pub struct Workplace {
+    folder: TempDir,
+}
+
+impl Workplace {
+    /// A folder that holds the shipped configurations.
+    pub fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        copy(
+            &Path::new(env!("CARGO_MANIFEST_DIR")).join("configs"),
+            &folder.path().join("configs"),
+        );
+        Self { folder }
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// Rewrites a file, each replaced text occurring in it.
+    pub fn edit(&self, name: &str, replacements: &[(&str, &str)]) {
+        let path = self.path(name);
+        let mut text = std::fs::read_to_string(&path).unwrap();
+        for (old, new) in replacements {
+            assert!(text.contains(old), "{name} does not hold `{old}`");
+            text = text.replace(old, new);
+        }
+        std::fs::write(path, text).unwrap();
+    }
+
+    pub fn kirigami(&self, arguments: &str) -> Command {
+        let mut command = Command::cargo_bin("kirigami").unwrap();
+        command
+            .current_dir(self.folder.path())
+            .args(arguments.split_whitespace());
+        command
+    }
+
+    /// What a successful run prints.
+    pub fn output(&self, arguments: &str) -> String {
+        let assert = self.kirigami(arguments).assert().success();
+        String::from_utf8(assert.get_output().stdout.clone()).unwrap()
+    }
+
+    /// The message of a run that must fail as an error, not as a panic.
+    pub fn error(&self, arguments: &str) -> String {
+        failure(self.kirigami(arguments))
+    }
+}
+
+/// The message of a command that must fail as an error, not as a panic.
+pub fn failure(mut command: Command) -> String {
+    let assert = command.assert().failure();
+    let message = String::from_utf8(assert.get_output().stderr.clone()).unwrap();
+    assert!(message.starts_with("error: "), "{message}");
+    assert_eq!(assert.get_output().status.code(), Some(1), "{message}");
+    message
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let entry = entry.unwrap();
+        let target = to.join(entry.file_name());
+        if entry.file_type().unwrap().is_dir() {
+            copy(&entry.path(), &target);
+        } else {
+            std::fs::copy(entry.path(), target).unwrap();
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Time of ten training steps (2560 rows in batches of 256) with set-up and one validation, on
+//! each backend, at the sizes of `demo.toml` and `paper.toml`.
+
+use dataset::{Database, Gates, Row, SplitPlan};
+use hinge::{HingeDesign, HingeSample};
+use train::{Backend, TrainingConfig, train};
+
+fn main() {
+    divan::main();
+}
+
+#[divan::bench(args = Backend::ALL, sample_count = 10, sample_size = 1)]
+fn demo(bencher: divan::Bencher, backend: &Backend) {
+    ten_steps(bencher, *backend, &[64, 64, 32], &[64, 64]);
+}
+
+#[divan::bench(args = Backend::ALL, sample_count = 10, sample_size = 1)]
+fn paper(bencher: divan::Bencher, backend: &Backend) {
+    ten_steps(bencher, *backend, &[256, 256, 256, 128], &[256, 256]);
+}
+
+fn ten_steps(bencher: divan::Bencher, backend: Backend, embedding: &[usize], damage: &[usize]) {
+    let database = database();
+    let config = TrainingConfig {
+        seed: 0,
+        embedding: embedding.to_vec(),
+        damage: damage.to_vec(),
+        mirror: false,
+        epochs: 1,
+        batch_size: 256,
+        learning_rate: 1e-3,
+        learning_rate_end: 1e-3,
+        gradient_norm_max: 1.0,
+        energy_weight: 0.5,
+        damage_weight: 0.1,
+    };
+    bencher.bench(|| train(&database, &config, backend, &mut |_| {}));
+}
+
+/// 100 rays of 32 rows, 80 of them for training.
+fn database() -> Database {
+    let rows = (0..3200).map(|index| {
+        let ray = (index / 32) as f64;
+        let lambda = (index % 32 + 1) as f64 / 32.0;
+        Row {
+            job: format!("job-{ray:03}"),
+            design: HingeDesign {
+                w_lig: 15.0 + 10.0 * ray.sin(),
+                alpha: 1.5 + 0.7 * (1.7 * ray).sin(),
+                fillet_ratio: 0.16,
+                kerf: 0.2,
+                r_win: 100.0,
+            },
+            sample: HingeSample {
+                lambda,
+                a: lambda * ray.cos(),
+                s: lambda * (2.3 * ray).cos(),
+                theta: lambda,
+                w: 50.0 * lambda * lambda,
+                f_a: lambda,
+                f_s: lambda,
+                m_theta: 100.0 * lambda,
+                d: 0.01 * lambda,
+                ..HingeSample::default()
+            },
+            partial: false,
+            material: "benchmark".into(),
+            tier: "none".into(),
+            gmsh: "none".into(),
+            ccx: "none".into(),
+            cpu_s: 0.0,
+        }
+    });
+    Database::collect(rows.collect(), &Gates::default(), &SplitPlan::default())
+        .expect("the rows are finite and of a hundred geometries")
+}

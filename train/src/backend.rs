@@ -1,0 +1,104 @@
+//! The Burn backends compiled in, chosen at run time.
+
+use burn::tensor::Device;
+use std::fmt;
+use std::str::FromStr;
+
+#[cfg(not(any(feature = "flex", feature = "ndarray")))]
+compile_error!("training needs one of the features `flex` and `ndarray`");
+
+/// What runs the tensor operations of training; the model is the same on each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Backend {
+    #[cfg(feature = "flex")]
+    Flex,
+    #[cfg(feature = "ndarray")]
+    NdArray,
+}
+
+/// A backend name that is not compiled in.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("unknown backend `{name}`; this program was built with {built}", built = names())]
+pub struct UnknownBackend {
+    name: String,
+}
+
+impl Backend {
+    /// Every backend compiled in, the fastest first.
+    pub const ALL: &[Self] = &[
+        #[cfg(feature = "flex")]
+        Self::Flex,
+        #[cfg(feature = "ndarray")]
+        Self::NdArray,
+    ];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            #[cfg(feature = "flex")]
+            Self::Flex => "flex",
+            #[cfg(feature = "ndarray")]
+            Self::NdArray => "ndarray",
+        }
+    }
+
+    /// The device, recording gradients.
+    #[cfg_attr(
+        feature = "ndarray",
+        expect(
+            deprecated,
+            reason = "Burn asks for flex; users may still measure the two"
+        )
+    )]
+    pub(crate) fn device(self) -> Device {
+        match self {
+            #[cfg(feature = "flex")]
+            Self::Flex => Device::flex(),
+            #[cfg(feature = "ndarray")]
+            Self::NdArray => Device::ndarray(),
+        }
+        .autodiff()
+    }
+}
+
+impl Default for Backend {
+    fn default() -> Self {
+        Self::ALL[0]
+    }
+}
+
+impl fmt::Display for Backend {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Backend {
+    type Err = UnknownBackend;
+
+    fn from_str(name: &str) -> Result<Self, UnknownBackend> {
+        let mut all = Self::ALL.iter();
+        all.find(|backend| backend.name() == name)
+            .copied()
+            .ok_or_else(|| UnknownBackend { name: name.into() })
+    }
+}
+
+fn names() -> String {
+    let names: Vec<&str> = Backend::ALL.iter().map(|backend| backend.name()).collect();
+    names.join(" and ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_back_and_others_refused_with_the_list() {
+        for &backend in Backend::ALL {
+            assert_eq!(backend.name().parse(), Ok(backend));
+        }
+        let message = "cuda".parse::<Backend>().unwrap_err().to_string();
+        assert!(message.contains(Backend::default().name()), "{message}");
+    }
+}

@@ -1,0 +1,151 @@
+//! The training configuration, as TOML files hold it.
+
+use serde::{Deserialize, Serialize};
+
+/// Sizes, loss weights and optimiser of one training.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainingConfig {
+    /// Seed of the initial weights and of the order of the rows.
+    pub seed: u64,
+    /// Units of each layer of chi after the five features; the last is the embedding, linear.
+    pub embedding: Vec<usize>,
+    /// Units of each hidden layer of the damage head chi_D.
+    pub damage: Vec<usize>,
+    /// Whether mirror images of the rows are added, to each part of the split by itself.
+    pub mirror: bool,
+    /// Passes over the training rows.
+    pub epochs: usize,
+    /// Rows in one optimiser step.
+    pub batch_size: usize,
+    /// Adam's learning rate at the first step.
+    pub learning_rate: f64,
+    /// The learning rate that the cosine schedule ends at.
+    pub learning_rate_end: f64,
+    /// Greatest norm of the gradient of one weight matrix or bias; longer ones are shortened.
+    pub gradient_norm_max: f64,
+    /// gamma of (15): the weight of the energy against the forces, in [0, 1].
+    pub energy_weight: f64,
+    /// w_D of (15): the weight of the damage.
+    pub damage_weight: f64,
+}
+
+/// A value that no training can have.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("`{key}` = {value} violates {rule}")]
+pub struct InvalidConfig {
+    pub key: &'static str,
+    pub value: String,
+    pub rule: &'static str,
+}
+
+impl TrainingConfig {
+    /// Refuses impossible values, naming the key and the rule.
+    pub fn validate(&self) -> Result<(), InvalidConfig> {
+        let sizes = |widths: &[usize]| widths.iter().all(|width| (1..=4096).contains(width));
+        let rates = 0.0 < self.learning_rate && self.learning_rate <= 1.0;
+        let rate_end =
+            0.0 <= self.learning_rate_end && self.learning_rate_end <= self.learning_rate;
+        let checks = [
+            (
+                "embedding",
+                format!("{:?}", self.embedding),
+                "one layer or more, each of 1 to 4096 units",
+                !self.embedding.is_empty() && sizes(&self.embedding),
+            ),
+            (
+                "damage",
+                format!("{:?}", self.damage),
+                "each layer of 1 to 4096 units",
+                sizes(&self.damage),
+            ),
+            (
+                "epochs",
+                self.epochs.to_string(),
+                "epochs >= 1",
+                self.epochs >= 1,
+            ),
+            (
+                "batch_size",
+                self.batch_size.to_string(),
+                "batch_size >= 1",
+                self.batch_size >= 1,
+            ),
+            (
+                "learning_rate",
+                self.learning_rate.to_string(),
+                "0 < learning_rate <= 1",
+                rates,
+            ),
+            (
+                "learning_rate_end",
+                self.learning_rate_end.to_string(),
+                "0 <= learning_rate_end <= learning_rate",
+                rate_end,
+            ),
+            (
+                "gradient_norm_max",
+                self.gradient_norm_max.to_string(),
+                "0 < gradient_norm_max",
+                self.gradient_norm_max > 0.0,
+            ),
+            (
+                "energy_weight",
+                self.energy_weight.to_string(),
+                "0 <= energy_weight <= 1",
+                (0.0..=1.0).contains(&self.energy_weight),
+            ),
+            (
+                "damage_weight",
+                self.damage_weight.to_string(),
+                "0 <= damage_weight < infinity",
+                0.0 <= self.damage_weight && self.damage_weight.is_finite(),
+            ),
+        ];
+        match checks.into_iter().find(|(.., holds)| !holds) {
+            Some((key, value, rule, _)) => Err(InvalidConfig { key, value, rule }),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn every_shipped_configuration_is_valid() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/training");
+        let mut count = 0;
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let config: TrainingConfig = hinge::config::read(&entry.unwrap().path()).unwrap();
+            config.validate().unwrap();
+            count += 1;
+        }
+        assert_eq!(count, 4);
+    }
+
+    #[test]
+    fn impossible_values_name_their_key() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/training");
+        let demo: TrainingConfig = hinge::config::read(&folder.join("demo.toml")).unwrap();
+        type Change = fn(&mut TrainingConfig);
+        let changes: [(Change, &str); 9] = [
+            (|c| c.embedding.clear(), "embedding"),
+            (|c| c.damage[0] = 0, "damage"),
+            (|c| c.epochs = 0, "epochs"),
+            (|c| c.batch_size = 0, "batch_size"),
+            (|c| c.learning_rate = f64::NAN, "learning_rate"),
+            (|c| c.learning_rate_end = 1.0, "learning_rate_end"),
+            (|c| c.gradient_norm_max = 0.0, "gradient_norm_max"),
+            (|c| c.energy_weight = 1.5, "energy_weight"),
+            (|c| c.damage_weight = f64::INFINITY, "damage_weight"),
+        ];
+        for (change, key) in changes {
+            let mut config = demo.clone();
+            change(&mut config);
+            assert_eq!(config.validate().unwrap_err().key, key);
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! From Burn's networks to the layers of a weight file.
+
+use crate::networks::{Dense, Mlp};
+use crate::training::TrainError;
+use surrogate::{Layer, Tensor};
+
+/// The layers in float64, weights as (outputs, inputs).
+pub(crate) fn layers(network: &Mlp) -> Result<Vec<Layer>, TrainError> {
+    network.layers.iter().map(layer).collect()
+}
+
+fn layer(dense: &Dense) -> Result<Layer, TrainError> {
+    let weight = dense.weight.val().inner().transpose();
+    let bias = dense.bias.val().inner();
+    Ok(Layer {
+        weight: Tensor {
+            shape: weight.dims().to_vec(),
+            values: weight.try_into_vec_as()?,
+        },
+        bias: Tensor {
+            shape: bias.dims().to_vec(),
+            values: bias.try_into_vec_as()?,
+        },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::backend::Backend;
+    use crate::loss::predict;
+    use crate::networks::Networks;
+    use crate::samples::{Batch, Scales};
+    use crate::validation::Parity;
+    use burn::tensor::{DType, TensorCreationOptions};
+    use dataset::Row;
+    use hinge::{HingeDesign, HingeSample, TrainingDomain};
+    use surrogate::{
+        Card, FEATURE_NAMES, FORMAT_VERSION, HingeConstants, Surrogate, TestErrors, UNITS,
+    };
+
+    fn row(index: usize) -> Row {
+        let wave = |speed: f64| (speed * index as f64 + 0.3).sin();
+        Row {
+            job: format!("{index}"),
+            design: HingeDesign {
+                w_lig: 15.0 + 9.0 * wave(1.3),
+                alpha: 1.5 + 0.7 * wave(2.9),
+                fillet_ratio: 0.16,
+                kerf: 0.2,
+                r_win: 100.0,
+            },
+            sample: HingeSample {
+                a: 2.0 * wave(0.7),
+                s: 2.0 * wave(1.9),
+                theta: 0.6 + 0.6 * wave(3.1),
+                w: 50.0,
+                f_a: 10.0,
+                f_s: 5.0,
+                m_theta: 80.0,
+                d: 0.01,
+                ..HingeSample::default()
+            },
+            partial: false,
+            material: String::new(),
+            tier: String::new(),
+            gmsh: String::new(),
+            ccx: String::new(),
+            cpu_s: 0.0,
+        }
+    }
+
+    fn surrogate(networks: &Networks, scales: &Scales) -> Surrogate {
+        let card = Card {
+            format_version: FORMAT_VERSION,
+            units: UNITS.into(),
+            features: FEATURE_NAMES.map(Into::into).to_vec(),
+            standardisation: scales.standardisation,
+            energy_scale: scales.energy,
+            damage_scale: scales.damage,
+            domain: TrainingDomain {
+                eta_a: [0.0; 2],
+                eta_s: [0.0; 2],
+                theta: [0.0; 2],
+                w_lig: [1.0; 2],
+                alpha: [1.0; 2],
+            },
+            hinge: HingeConstants {
+                fillet_ratio: 0.16,
+                kerf: 0.2,
+                r_win: 100.0,
+            },
+            material: String::new(),
+            tier: String::new(),
+            dataset_hash: String::new(),
+            split_hash: String::new(),
+            training: serde_json::Value::Null,
+            test_errors: TestErrors::default(),
+        };
+        let (chi, chi_d) = (layers(&networks.chi), layers(&networks.chi_d));
+        Surrogate::from_parts(chi.unwrap(), chi_d.unwrap(), card).unwrap()
+    }
+
+    /// |burn - kernel| / |kernel| over all rows, for W, F_a, F_s, M_theta and D.
+    fn disagreement(backend: Backend, dtype: DType) -> [f64; 5] {
+        let options = TensorCreationOptions::new(backend.device()).with_dtype(dtype);
+        let networks = Networks::new(&[64, 64, 32], &[64, 64], 1, &options);
+        let rows: Vec<Row> = (0..200).map(row).collect();
+        let scales = Scales::of(&rows).unwrap();
+        let samples: Vec<_> = rows.iter().map(|row| scales.sample(row)).collect();
+        let predicted = predict(&networks, &Batch::new(&samples, &options));
+        let column = |tensor: &burn::tensor::Tensor<2>, k: usize, scale: f64| -> Vec<f64> {
+            let column = tensor.clone().inner().narrow(1, k, 1);
+            let values: Vec<f64> = column.try_into_vec_as().unwrap();
+            values.into_iter().map(|value| scale * value).collect()
+        };
+        let burn = [
+            column(&predicted.energy, 0, scales.energy),
+            column(&predicted.forces, 0, scales.forces[0]),
+            column(&predicted.forces, 1, scales.forces[1]),
+            column(&predicted.forces, 2, scales.forces[2]),
+            column(&predicted.damage, 0, scales.damage),
+        ];
+        let parity = Parity::of(&surrogate(&networks, &scales), &rows);
+        let kernel = [
+            parity.energy,
+            parity.f_a,
+            parity.f_s,
+            parity.m_theta,
+            parity.damage,
+        ];
+        std::array::from_fn(|quantity| {
+            let pairs = || burn[quantity].iter().zip(&kernel[quantity]);
+            let error: f64 = pairs()
+                .map(|(burn, point)| (burn - point.predicted).powi(2))
+                .sum();
+            let norm: f64 = pairs().map(|(_, point)| point.predicted.powi(2)).sum();
+            (error / norm).sqrt()
+        })
+    }
+
+    #[test]
+    fn the_kernel_agrees_with_burn_in_either_precision() {
+        for &backend in Backend::ALL {
+            for (dtype, tolerance) in [(DType::F32, 1e-6), (DType::F64, 1e-14)] {
+                let errors = disagreement(backend, dtype);
+                let close = errors.iter().all(|&error| error < tolerance);
+                assert!(close, "{backend} {dtype:?}: {errors:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! The loss (15), each term a mean over the batch.
+//!
+//! ```text
+//! gamma |W - W*|^2 / W_s^2 + (1 - gamma) / 3 sum_c |F_c - F_c*|^2 / sigma_F,c^2
+//!     + w_D |D - D*|^2 / D_s^2                                                     (15)
+//! ```
+
+use crate::config::TrainingConfig;
+use crate::force_tangents::with_tangents;
+use crate::networks::Networks;
+use crate::samples::Batch;
+use burn::tensor::Tensor;
+use burn::tensor::activation::softplus;
+
+/// (14) and its forces in the scales of (15).
+pub(crate) struct Prediction {
+    /// W / W_s, (n, 1)
+    pub energy: Tensor<2>,
+    /// (F_a, F_s, M_theta) / sigma_F, (n, 3)
+    pub forces: Tensor<2>,
+    /// D / D_s, (n, 1)
+    pub damage: Tensor<2>,
+}
+
+/// W = |r|^2 with r = chi(xi) - chi(xi0), so dW/dx_k = 2 r . T_k.
+pub(crate) fn predict(networks: &Networks, batch: &Batch) -> Prediction {
+    let (values, tangents) = with_tangents(&networks.chi, batch.inputs.clone());
+    let r = values - networks.chi.forward(batch.origin.clone());
+    let slopes = tangents.map(|tangent| (r.clone() * tangent).sum_dim(1).mul_scalar(2.0));
+    Prediction {
+        energy: r.square().sum_dim(1),
+        forces: Tensor::cat(slopes.into(), 1) * batch.force_factors.clone(),
+        damage: softplus(networks.chi_d.forward(batch.inputs.clone()), 1.0),
+    }
+}
+
+/// (15) as a tensor of one number.
+pub(crate) fn loss(networks: &Networks, batch: &Batch, config: &TrainingConfig) -> Tensor<1> {
+    let predicted = predict(networks, batch);
+    let mean_square =
+        |found: Tensor<2>, target: &Tensor<2>| (found - target.clone()).square().mean();
+    mean_square(predicted.energy, &batch.energy).mul_scalar(config.energy_weight)
+        + mean_square(predicted.forces, &batch.forces).mul_scalar(1.0 - config.energy_weight)
+        + mean_square(predicted.damage, &batch.damage).mul_scalar(config.damage_weight)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::backend::Backend;
+    use crate::networks::Dense;
+    use crate::samples::tests::samples;
+    use burn::module::Param;
+    use burn::tensor::{DType, TensorCreationOptions, TensorData};
+
+    fn config() -> TrainingConfig {
+        TrainingConfig {
+            seed: 0,
+            embedding: vec![7, 6, 4],
+            damage: vec![5],
+            mirror: false,
+            epochs: 1,
+            batch_size: 8,
+            learning_rate: 1e-3,
+            learning_rate_end: 1e-3,
+            gradient_norm_max: 1.0,
+            energy_weight: 0.3,
+            damage_weight: 0.7,
+        }
+    }
+
+    fn layer(networks: &mut Networks, head: bool, index: usize) -> &mut Dense {
+        let network = if head {
+            &mut networks.chi_d
+        } else {
+            &mut networks.chi
+        };
+        &mut network.layers[index]
+    }
+
+    /// A direction of no meaning, of the shape asked for.
+    fn direction(shape: [usize; 2], options: &TensorCreationOptions) -> Tensor<2> {
+        let values: Vec<f64> = (0..shape[0] * shape[1])
+            .map(|index| (1.1 * index as f64 + 0.4).cos())
+            .collect();
+        Tensor::from_data(TensorData::new(values, shape), options.clone())
+    }
+
+    #[test]
+    fn the_parameter_gradient_is_that_of_finite_differences() {
+        let options =
+            TensorCreationOptions::new(Backend::default().device()).with_dtype(DType::F64);
+        let config = config();
+        let networks = Networks::new(&config.embedding, &config.damage, 3, &options);
+        let batch = Batch::new(&samples(8), &options);
+        let gradients = loss(&networks, &batch, &config).backward();
+        let step = 1e-5;
+        for (head, index) in [(false, 0), (false, 1), (false, 2), (true, 0), (true, 1)] {
+            let Dense { weight, bias } = layer(&mut networks.clone(), head, index).clone();
+            let weight_direction = direction(weight.val().dims(), &options);
+            let bias_direction = direction([1, bias.val().dims()[0]], &options).squeeze_dim(0);
+            let moved = |step: f64| -> f64 {
+                let mut networks = networks.clone();
+                let layer = layer(&mut networks, head, index);
+                let move_weight = weight_direction.clone().mul_scalar(step);
+                let move_bias: Tensor<1> = bias_direction.clone().mul_scalar(step);
+                layer.weight = Param::from_tensor((weight.val() + move_weight).detach());
+                layer.bias = Param::from_tensor((bias.val() + move_bias).detach());
+                loss(&networks, &batch, &config).into_scalar()
+            };
+            let difference = (moved(step) - moved(-step)) / (2.0 * step);
+            let along_weight = weight.val().grad(&gradients).unwrap() * weight_direction.inner();
+            let along_bias = bias.val().grad(&gradients).unwrap() * bias_direction.inner();
+            let exact: f64 =
+                along_weight.sum().into_scalar::<f64>() + along_bias.sum().into_scalar::<f64>();
+            assert!(
+                exact.abs() > 1e-3,
+                "layer {index} has a gradient to check: {exact:e}"
+            );
+            assert!(
+                (difference - exact).abs() < 1e-8 * exact.abs().max(1.0),
+                "layer {index}: {difference} and {exact}"
+            );
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! Rows as the network sees them: standardised features, scaled targets, batches.
+
+use crate::training::TrainError;
+use burn::tensor::{Tensor, TensorCreationOptions, TensorData};
+use dataset::Row;
+use hinge::HingeDeformation;
+use surrogate::{FEATURE_NAMES, Standardisation, features};
+
+/// The scales of (14) and (15), from the training rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Scales {
+    pub standardisation: Standardisation,
+    /// W_s: root mean square of W (N mm).
+    pub energy: f64,
+    /// sigma_F,c: root mean square of (F_a, F_s, M_theta) in (N, N, N mm).
+    pub forces: [f64; 3],
+    /// D_s: root mean square of D.
+    pub damage: f64,
+}
+
+/// One row: inputs of the network and targets of (15), both of order one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Sample {
+    /// Standardised xi(eps, g).
+    pub inputs: [f64; 5],
+    /// Standardised xi(0, g).
+    pub origin: [f64; 5],
+    /// Turns d|r|^2 / d(standardised eta_a, eta_s, theta) into (F_a, F_s, M_theta) / sigma_F.
+    pub force_factors: [f64; 3],
+    /// W / W_s
+    pub energy: f64,
+    /// (F_a, F_s, M_theta) / sigma_F
+    pub forces: [f64; 3],
+    /// D / D_s
+    pub damage: f64,
+}
+
+/// Samples as tensors, one row each.
+pub(crate) struct Batch {
+    pub inputs: Tensor<2>,
+    pub origin: Tensor<2>,
+    pub force_factors: Tensor<2>,
+    /// (n, 1)
+    pub energy: Tensor<2>,
+    pub forces: Tensor<2>,
+    /// (n, 1)
+    pub damage: Tensor<2>,
+}
+
+impl Scales {
+    /// Refuses features and targets with nothing to scale.
+    pub fn of(rows: &[Row]) -> Result<Self, TrainError> {
+        let count = rows.len() as f64;
+        let root_mean_square = |target: &'static str, value: fn(&Row) -> f64| {
+            let sum: f64 = rows.iter().map(|row| value(row).powi(2)).sum();
+            let scale = (sum / count).sqrt();
+            if scale > 0.0 && scale.is_finite() {
+                Ok(scale)
+            } else {
+                Err(TrainError::NoScale { target, scale })
+            }
+        };
+        let xi: Vec<[f64; 5]> = rows.iter().map(row_features).collect();
+        let mean: [f64; 5] =
+            std::array::from_fn(|k| xi.iter().map(|xi| xi[k]).sum::<f64>() / count);
+        let std: [f64; 5] = std::array::from_fn(|k| {
+            let squares: f64 = xi.iter().map(|xi| (xi[k] - mean[k]).powi(2)).sum();
+            (squares / count).sqrt()
+        });
+        for (k, feature) in FEATURE_NAMES.into_iter().enumerate() {
+            // Rounding of the mean leaves a constant feature a spread of this size.
+            if !(std[k] > 1e-12 * mean[k].abs() && std[k].is_finite()) {
+                return Err(TrainError::ConstantFeature {
+                    feature,
+                    value: mean[k],
+                });
+            }
+        }
+        Ok(Self {
+            standardisation: Standardisation { mean, std },
+            energy: root_mean_square("W", |row| row.sample.w)?,
+            forces: [
+                root_mean_square("F_a", |row| row.sample.f_a)?,
+                root_mean_square("F_s", |row| row.sample.f_s)?,
+                root_mean_square("M_theta", |row| row.sample.m_theta)?,
+            ],
+            damage: root_mean_square("D", |row| row.sample.d)?,
+        })
+    }
+
+    /// One row in these scales.
+    pub fn sample(&self, row: &Row) -> Sample {
+        let Standardisation { mean, std } = self.standardisation;
+        let standardise =
+            |xi: [f64; 5]| -> [f64; 5] { std::array::from_fn(|k| (xi[k] - mean[k]) / std[k]) };
+        // d(eta_a, eta_s, theta) / d(a, s, theta)
+        let w = row.design.w_lig;
+        let by_deformation = [1.0 / w, 1.0 / w, 1.0];
+        let sample = &row.sample;
+        let forces = [sample.f_a, sample.f_s, sample.m_theta];
+        Sample {
+            inputs: standardise(row_features(row)),
+            origin: standardise(features(&row.design, &HingeDeformation::default())),
+            force_factors: std::array::from_fn(|k| {
+                self.energy * by_deformation[k] / (std[k] * self.forces[k])
+            }),
+            energy: sample.w / self.energy,
+            forces: std::array::from_fn(|k| forces[k] / self.forces[k]),
+            damage: sample.d / self.damage,
+        }
+    }
+}
+
+fn row_features(row: &Row) -> [f64; 5] {
+    features(&row.design, &row.sample.deformation())
+}
+
+impl Batch {
+    pub fn new(samples: &[Sample], options: &TensorCreationOptions) -> Self {
+        Self {
+            inputs: columns(samples, options, |sample| sample.inputs),
+            origin: columns(samples, options, |sample| sample.origin),
+            force_factors: columns(samples, options, |sample| sample.force_factors),
+            energy: columns(samples, options, |sample| [sample.energy]),
+            forces: columns(samples, options, |sample| sample.forces),
+            damage: columns(samples, options, |sample| [sample.damage]),
+        }
+    }
+}
+
+fn columns<const N: usize>(
+    samples: &[Sample],
+    options: &TensorCreationOptions,
+    values: impl Fn(&Sample) -> [f64; N],
+) -> Tensor<2> {
+    let flat: Vec<f64> = samples.iter().flat_map(values).collect();
+    Tensor::from_data(TensorData::new(flat, [samples.len(), N]), options.clone())
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// Samples of no meaning, all of order one.
+    pub fn samples(count: usize) -> Vec<Sample> {
+        let value = |row: usize, column: usize| (1.7 * row as f64 + 2.3 * column as f64).sin();
+        let sample = |row| Sample {
+            inputs: std::array::from_fn(|k| value(row, k)),
+            origin: std::array::from_fn(|k| if k < 3 { -0.3 } else { value(row, k) }),
+            force_factors: std::array::from_fn(|k| 1.0 + 0.5 * value(row, 5 + k)),
+            energy: value(row, 8).powi(2),
+            forces: std::array::from_fn(|k| value(row, 9 + k)),
+            damage: value(row, 12).abs(),
+        };
+        (0..count).map(sample).collect()
+    }
+}
