@@ -59,9 +59,11 @@ impl DemoCommand {
             format!("train {database_} --config {TRAINING} --out {weights_} --replace"),
             &|| TrainCommand::new(database.clone(), TRAINING.into(), weights.clone()).run(),
         )?;
-        step("design the sheet", format!("design {SCENE}"), &|| {
-            DesignCommand::new(SCENE.into()).run()
-        })?;
+        step(
+            "design the sheet",
+            format!("design {SCENE} --restart"),
+            &|| DesignCommand::afresh(SCENE.into()).run(),
+        )?;
 
         println!("\n{}\n{}", time_table(&times), product_table());
         Ok(())

@@ -3,9 +3,9 @@
 use crate::{interrupt, picture, progress};
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use design::inverse_design::{Ended, StepRecord, inverse_design};
+use design::inverse_design::{Ended, StepRecord, forget, inverse_design};
 use design::results::write_results;
-use design::scene::Scene;
+use design::scene::{Scene, SceneConfig, SurrogateFile};
 use std::path::{Path, PathBuf};
 
 /// Design a sheet: where to cut, and how wide to leave every ligament
@@ -18,6 +18,18 @@ pub struct DesignCommand {
     /// Scene (TOML); see configs/scenes
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
+    /// Weights of the hinge energy, instead of the scene's
+    #[arg(long, value_name = "FILE")]
+    weights: Option<PathBuf>,
+    /// Run folder, instead of the scene's
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+    /// Steps of the search, instead of the scene's
+    #[arg(long, value_name = "N")]
+    steps: Option<usize>,
+    /// Start afresh, although the run folder holds a run of this scene
+    #[arg(long)]
+    restart: bool,
     /// Print the report as JSON
     #[arg(long)]
     json: bool,
@@ -27,12 +39,23 @@ pub struct DesignCommand {
 const PICTURE_WIDTH: u32 = 1600;
 
 impl DesignCommand {
-    pub fn new(scene: PathBuf) -> Self {
-        Self { scene, json: false }
+    /// As the scene says, from its start.
+    pub fn afresh(scene: PathBuf) -> Self {
+        Self {
+            scene,
+            weights: None,
+            out: None,
+            steps: None,
+            restart: true,
+            json: false,
+        }
     }
 
     pub fn run(&self) -> Result<()> {
-        let scene = Scene::read(&self.scene)?;
+        let scene = self.scene()?;
+        if self.restart {
+            forget(&scene)?;
+        }
         let stop = interrupt::stop_flag()?;
         let bar = progress::bar(scene.config.optimiser.steps, "design steps");
         let designed = inverse_design(&scene, stop, &mut |step: &StepRecord| {
@@ -50,13 +73,32 @@ impl DesignCommand {
         if self.json {
             println!("{}", serde_json::to_string_pretty(&report)?);
         } else {
-            println!("{report}\nwritten to {}", scene.output().display());
+            let folder = scene.output().canonicalize()?;
+            println!("{report}\nwritten to {}", folder.display());
         }
         match designed.ended {
             Ended::Completed => Ok(()),
             Ended::Stopped => bail!("stopped; run again to go on"),
             Ended::Stuck { reason } => bail!("the search is stuck: {reason}"),
         }
+    }
+}
+
+impl DesignCommand {
+    /// The scene with what the command line says otherwise.
+    fn scene(&self) -> Result<Scene> {
+        let mut config: SceneConfig = hinge::config::read(&self.scene)?;
+        if let Some(weights) = &self.weights {
+            let weights = std::path::absolute(weights)?;
+            config.surrogate = Some(SurrogateFile { weights });
+        }
+        if let Some(out) = &self.out {
+            config.output = std::path::absolute(out)?;
+        }
+        if let Some(steps) = self.steps {
+            config.optimiser.steps = steps;
+        }
+        Ok(Scene::new(config, &self.scene)?)
     }
 }
 

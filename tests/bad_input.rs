@@ -3,6 +3,7 @@
 mod common;
 
 use common::{Workplace, failure};
+use std::path::Path;
 
 const DEMO: &str = "configs/campaigns/demo.toml";
 const SCENE: &str = "configs/scenes/linear-7x7.toml";
@@ -78,21 +79,17 @@ fn missing_programs_tell_how_to_get_them() {
     let work = Workplace::new();
     for (variable, package) in [("KIRIGAMI_GMSH", "gmsh"), ("KIRIGAMI_CCX", "calculix-ccx")] {
         let mut command = work.kirigami("solve --tier tiny");
-        let message = failure({
-            command.env(variable, "/no/such/program");
-            command
-        });
+        let message = failure(command.env(variable, "/no/such/program"));
         assert!(message.contains(variable), "{message}");
         assert!(
             message.contains(&format!("apt-get install {package}")),
             "{message}"
         );
     }
-    let mut doctor = work.kirigami("doctor");
-    doctor
-        .env("KIRIGAMI_CCX", "/no/such/program")
-        .assert()
-        .failure();
+    failure(
+        work.kirigami("doctor")
+            .env("KIRIGAMI_CCX", "/no/such/program"),
+    );
 }
 
 #[test]
@@ -104,9 +101,10 @@ fn a_solver_that_fails_is_quoted_and_what_is_finished_is_kept() {
                   echo ' *ERROR reading *SOLID SECTION'; exit 201\n";
     std::fs::write(&fake, script).unwrap();
     std::fs::set_permissions(&fake, std::fs::Permissions::from_mode(0o755)).unwrap();
-    let mut command = work.kirigami("solve --tier tiny");
-    command.env("KIRIGAMI_CCX", &fake);
-    let message = failure(command);
+    let message = failure(
+        work.kirigami("solve --tier tiny")
+            .env("KIRIGAMI_CCX", &fake),
+    );
     assert!(
         message.contains("*ERROR reading *SOLID SECTION"),
         "{message}"
@@ -125,12 +123,28 @@ fn weights_that_are_none_are_refused() {
     assert!(message.contains("surrogate.safetensors"), "{message}");
 
     std::fs::create_dir_all(work.path("runs/demo")).unwrap();
-    std::fs::write(work.path("runs/demo/surrogate.safetensors"), b"not weights").unwrap();
+    let weights = work.path("runs/demo/surrogate.safetensors");
+    std::fs::write(&weights, b"not weights").unwrap();
+    let message = work.error(&format!("design {scene}"));
+    assert!(
+        message.contains("surrogate.safetensors is no safetensors file"),
+        "{message}"
+    );
+
+    // A real file whose last number, the energy scale, is not one.
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("surrogate/tests/cases");
+    let mut bytes = std::fs::read(cases.join("chi_tiny.safetensors")).unwrap();
+    let last = bytes.len() - 8;
+    bytes[last..].copy_from_slice(&f64::NAN.to_le_bytes());
+    std::fs::write(&weights, bytes).unwrap();
     let message = work.error(&format!("design {scene}"));
     assert!(
         message.contains("surrogate.json"),
-        "the card is named: {message}"
+        "a card is asked for: {message}"
     );
+    std::fs::copy(cases.join("chi_tiny.json"), weights.with_extension("json")).unwrap();
+    let message = work.error(&format!("design {scene}"));
+    assert!(message.contains("w_scale"), "{message}");
 }
 
 #[test]

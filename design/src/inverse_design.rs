@@ -81,7 +81,7 @@ pub enum InverseDesignError {
         source: std::io::Error,
     },
     #[error(
-        "{path} is not the state of a run ({source}); remove it to start afresh",
+        "{path} is not the state of a run ({source}); restart the run",
         path = .path.display()
     )]
     State {
@@ -89,16 +89,25 @@ pub enum InverseDesignError {
         source: serde_json::Error,
     },
     #[error(
-        "{path} holds a design of another size than the scene's; remove it to start afresh",
+        "{path} holds a design of another size than the scene's; restart the run",
         path = .path.display()
     )]
     OtherSize { path: PathBuf },
     #[error(
-        "{path} belongs to a run of another scene; remove it to start afresh, or give the scene \
-         another `output`",
+        "{path} belongs to a run of another scene; restart it, or choose another output folder",
         path = .path.display()
     )]
     OtherScene { path: PathBuf },
+    #[error(
+        "{path} belongs to a run with other weights or another material: the search started from \
+         a loss of {found}, not {expected}; restart it, or choose another output folder",
+        path = .path.display()
+    )]
+    OtherModel {
+        path: PathBuf,
+        found: f64,
+        expected: f64,
+    },
 }
 
 /// Everything that the next step depends on.
@@ -134,7 +143,7 @@ pub fn inverse_design(
     let start = problem
         .evaluate(&scene.start())
         .map_err(InverseDesignError::Start)?;
-    let mut state = match State::read(&path, scene)? {
+    let mut state = match State::read(&path, scene, &start)? {
         Some(state) => state,
         None => {
             let mut state = State::new(scene);
@@ -174,6 +183,17 @@ pub fn inverse_design(
         start,
         best,
     })
+}
+
+/// Forgets an earlier run in the scene's run folder, so that the next one starts afresh.
+pub fn forget(scene: &Scene) -> Result<(), InverseDesignError> {
+    let path = scene.output().join(STATE_FILE);
+    match std::fs::remove_file(&path) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(InverseDesignError::Folder { path, source })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// What kept a step from its full length.
@@ -264,7 +284,11 @@ impl State {
     }
 
     /// The state of an earlier run of the same scene, which may since ask for more steps.
-    fn read(path: &Path, scene: &Scene) -> Result<Option<Self>, InverseDesignError> {
+    fn read(
+        path: &Path,
+        scene: &Scene,
+        start: &Evaluation,
+    ) -> Result<Option<Self>, InverseDesignError> {
         let text = match std::fs::read_to_string(path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
@@ -286,11 +310,20 @@ impl State {
         let n = scene.start().to_flat().len();
         let designs = [&state.design, &state.proposal, &state.best];
         let same_size = designs.iter().all(|design| design.to_flat().len() == n);
-        if !same_size || state.adam.len() != n || state.history.is_empty() {
-            let path = path.to_owned();
-            return Err(InverseDesignError::OtherSize { path });
+        let path = path.to_owned();
+        match state.history.first() {
+            Some(first) if same_size && state.adam.len() == n => {
+                if first.loss != start.loss {
+                    return Err(InverseDesignError::OtherModel {
+                        path,
+                        found: first.loss,
+                        expected: start.loss,
+                    });
+                }
+                Ok(Some(state))
+            }
+            _ => Err(InverseDesignError::OtherSize { path }),
         }
-        Ok(Some(state))
     }
 
     fn write(&self, path: &Path) -> Result<(), InverseDesignError> {

@@ -177,9 +177,14 @@ pub enum SceneError {
 }
 
 impl Scene {
-    /// Reads a scene, its material and its target, and refuses what cannot be.
+    /// Reads a scene with all that it names, and refuses what cannot be.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let config: SceneConfig = hinge::config::read(path)?;
+        Self::new(hinge::config::read(path)?, path)
+    }
+
+    /// Reads the material, the target and the weights of a scene whose paths are relative to the
+    /// file at `path`, and refuses what cannot be.
+    pub fn new(config: SceneConfig, path: &Path) -> Result<Self, SceneError> {
         let refuse = |reason| SceneError::Value {
             path: path.to_owned(),
             reason,

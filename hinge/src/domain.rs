@@ -34,21 +34,23 @@ impl TrainingDomain {
         .all(|([least, greatest], value)| (least..=greatest).contains(&value))
     }
 
-    /// The smallest box that holds every state; `None` if there is none.
+    /// The smallest box that holds every state and the undeformed one, where W and its gradient
+    /// vanish for any weights; `None` if there is no state.
     pub fn covering<'a>(
         states: impl IntoIterator<Item = (&'a HingeDesign, &'a HingeDeformation)>,
     ) -> Option<Self> {
         let mut domain: Option<Self> = None;
         for (design, deformation) in states {
             let [eta_a, eta_s] = deformation.eta(design.w_lig);
-            let point = Self {
-                eta_a: [eta_a; 2],
-                eta_s: [eta_s; 2],
-                theta: [deformation.theta; 2],
+            let from_zero = |x: f64| [x.min(0.0), x.max(0.0)];
+            let ray = Self {
+                eta_a: from_zero(eta_a),
+                eta_s: from_zero(eta_s),
+                theta: from_zero(deformation.theta),
                 w_lig: [design.w_lig; 2],
                 alpha: [design.alpha; 2],
             };
-            domain = Some(domain.map_or(point, |box_| box_.joined(&point)));
+            domain = Some(domain.map_or(ray, |domain| domain.joined(&ray)));
         }
         domain
     }
@@ -90,7 +92,7 @@ mod tests {
         ];
         let domain = TrainingDomain::covering(states.iter().map(|(g, e)| (g, e))).unwrap();
         assert_eq!(domain.eta_a, [-0.5, 0.25]);
-        assert_eq!(domain.theta, [0.2, 1.2]);
+        assert_eq!(domain.theta, [0.0, 1.2]);
         assert!(states.iter().all(|(g, e)| domain.contains(g, e)));
         assert!(!domain.contains(&wide, &HingeDeformation::from_eta(0.0, 0.0, 1.3, 25.0)));
         assert!(TrainingDomain::covering([]).is_none());

@@ -1,7 +1,7 @@
 //! A working folder with small configurations, and the program run in it.
 
-use assert_cmd::Command;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
 use tempfile::TempDir;
 
 pub struct Workplace {
@@ -34,8 +34,9 @@ impl Workplace {
         std::fs::write(path, text).unwrap();
     }
 
+    /// The program with arguments, ready to run in the folder.
     pub fn kirigami(&self, arguments: &str) -> Command {
-        let mut command = Command::cargo_bin("kirigami").unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_kirigami"));
         command
             .current_dir(self.folder.path())
             .args(arguments.split_whitespace());
@@ -44,23 +45,29 @@ impl Workplace {
 
     /// What a successful run prints.
     pub fn output(&self, arguments: &str) -> String {
-        let assert = self.kirigami(arguments).assert().success();
-        String::from_utf8(assert.get_output().stdout.clone()).unwrap()
+        let (output, message) = run(&mut self.kirigami(arguments));
+        assert!(output.status.success(), "{arguments}: {message}");
+        String::from_utf8(output.stdout).unwrap()
     }
 
     /// The message of a run that must fail as an error, not as a panic.
     pub fn error(&self, arguments: &str) -> String {
-        failure(self.kirigami(arguments))
+        failure(&mut self.kirigami(arguments))
     }
 }
 
 /// The message of a command that must fail as an error, not as a panic.
-pub fn failure(mut command: Command) -> String {
-    let assert = command.assert().failure();
-    let message = String::from_utf8(assert.get_output().stderr.clone()).unwrap();
+pub fn failure(command: &mut Command) -> String {
+    let (output, message) = run(command);
+    assert_eq!(output.status.code(), Some(1), "{message}");
     assert!(message.starts_with("error: "), "{message}");
-    assert_eq!(assert.get_output().status.code(), Some(1), "{message}");
     message
+}
+
+fn run(command: &mut Command) -> (Output, String) {
+    let output = command.output().unwrap();
+    let message = String::from_utf8(output.stderr.clone()).unwrap();
+    (output, message)
 }
 
 fn copy(from: &Path, to: &Path) {

@@ -2,6 +2,7 @@
 //! the objective counts, and the report knows the training domain.
 
 use super::{FILM, read, run, with};
+use design::inverse_design::forget;
 use design::report::{Concern, Report};
 use design::results::write_results;
 use design::scene::Scene;
@@ -110,4 +111,26 @@ fn warned(report: &Report, concern: Concern) -> Vec<usize> {
     of_concern
         .flat_map(|warning| warning.hinges.clone())
         .collect()
+}
+
+#[test]
+fn a_run_is_not_continued_with_another_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let run_with = |card: &[(&str, &str)]| {
+        weights(folder.path(), card);
+        run(
+            &read(folder.path(), &learned(&[("steps = 6", "steps = 1")])),
+            None,
+        )
+    };
+    run_with(&[]).unwrap();
+    // A narrower training domain: its barrier holds the hinges back.
+    let error = run_with(&[("\"theta\": [0.0, 1.25]", "\"theta\": [0.0, 0.01]")])
+        .err()
+        .unwrap()
+        .to_string();
+    assert!(error.contains("other weights"), "{error}");
+    let scene = read(folder.path(), &learned(&[("steps = 6", "steps = 1")]));
+    forget(&scene).unwrap();
+    assert_eq!(run(&scene, None).unwrap().history.len(), 2);
 }

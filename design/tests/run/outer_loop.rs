@@ -64,7 +64,7 @@ fn more_steps_may_be_asked_for_but_not_another_scene() {
     assert!(error.contains("another size"), "{error}");
     std::fs::write(&path, "{").unwrap();
     let error = run_with(&[]).err().unwrap().to_string();
-    assert!(error.contains("remove it to start afresh"), "{error}");
+    assert!(error.contains("restart the run"), "{error}");
 }
 
 #[test]
