@@ -115,6 +115,7 @@ fn learning_chart(area: &Area, training: &[f64], validation: &[f64]) -> DrawResu
     }
     chart
         .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
         .label_font((FONT, 13))
         .border_style(GUIDE)
         .background_style(WHITE)

@@ -14,7 +14,7 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
         CAMPAIGN,
         &[
             ("count = 40", "count = 6"),
-            ("theta_deg = [10.0, 45.0]", "theta_deg = [10.0, 20.0]"),
+            ("theta_deg = [10.0, 40.0]", "theta_deg = [10.0, 20.0]"),
         ],
     );
     work.edit(
