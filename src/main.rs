@@ -15,6 +15,7 @@ mod train;
 mod window_args;
 
 use clap::{Parser, Subcommand};
+use database::Unfinished;
 use std::process::ExitCode;
 
 /// From a sheet material to a cut sheet: kirigami whose hinges are understood
@@ -36,6 +37,9 @@ enum Command {
     Design(design::DesignCommand),
 }
 
+/// Exit code of a run that is to be run again: EX_TEMPFAIL of sysexits.h.
+const UNFINISHED: u8 = 75;
+
 fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Demo(command) => command.run(),
@@ -50,7 +54,10 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {}", told(&error));
-            ExitCode::FAILURE
+            match error.is::<Unfinished>() {
+                true => UNFINISHED.into(),
+                false => ExitCode::FAILURE,
+            }
         }
     }
 }

@@ -25,7 +25,7 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
 
     let run = format!("database run {CAMPAIGN} --folder runs/demo/campaign");
     assert!(work.output(&run).contains("6 rays complete"));
-    let events = || std::fs::read(work.path("runs/demo/campaign/events.jsonl")).unwrap();
+    let events = || std::fs::read(work.path("runs/demo/campaign/events-1-of-1.jsonl")).unwrap();
     let first = events();
     work.output(&run);
     assert_eq!(events(), first, "nothing finished is run again");

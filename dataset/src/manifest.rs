@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Version of the database that this crate reads and writes.
-pub const FORMAT_VERSION: u32 = 1;
+pub const FORMAT_VERSION: u32 = 2;
 
 /// Everything about a database but its rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -82,7 +82,7 @@ impl Manifest {
                 .collect(),
             rows: rows.len(),
             rays: rays.len(),
-            partial_rays: rays.values().filter(|row| row.partial).count(),
+            partial_rays: rays.values().filter(|row| row.is_partial()).count(),
             geometries: rows.iter().map(geometry).collect::<BTreeSet<_>>().len(),
             cpu_s: rays.values().map(|row| row.cpu_s).sum(),
             gates: *gates,

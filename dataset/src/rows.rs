@@ -9,12 +9,14 @@ pub struct Row {
     pub job: String,
     pub design: HingeDesign,
     pub sample: HingeSample,
-    /// Whether the ray stopped before its end.
-    pub partial: bool,
+    /// Why the ray stopped before its end; empty for a whole ray.
+    pub failure: String,
     /// Name of the sheet material.
     pub material: String,
-    /// Tier of the window mesh.
+    /// Tier of the window mesh that was asked.
     pub tier: String,
+    /// Tier that solved the row: a finer one if the asked one failed.
+    pub solved_tier: String,
     /// Version of gmsh.
     pub gmsh: String,
     /// Version of ccx.
@@ -27,6 +29,11 @@ impl Row {
     /// (eta_a, eta_s) of (13).
     pub fn eta(&self) -> [f64; 2] {
         self.sample.deformation().eta(self.design.w_lig)
+    }
+
+    /// Whether the ray stopped before its end.
+    pub fn is_partial(&self) -> bool {
+        !self.failure.is_empty()
     }
 
     /// Whether every number of the row is finite.
@@ -72,9 +79,10 @@ pub(crate) mod tests {
                 uz_max: 20.0 * lambda.sqrt(),
                 energy_residual: 1e-3,
             },
-            partial: index == 1,
+            failure: if index == 1 { "diverged" } else { "" }.into(),
             material: "film".into(),
             tier: "default".into(),
+            solved_tier: "default".into(),
             gmsh: "4.8.4".into(),
             ccx: "2.20".into(),
             cpu_s: 10.0,

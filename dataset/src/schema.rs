@@ -66,12 +66,10 @@ pub(crate) const NUMBERS: [Number; 22] = numbers! {
     "cpu_s" ["s"] = cpu_s;
 };
 
-const TEXTS: [Text; 5] = texts! { job material tier gmsh ccx };
+const TEXTS: [Text; 7] = texts! { job failure material tier solved_tier gmsh ccx };
 
 /// The ratios of (13), written for whoever reads the table and computed again when it is read.
 const RATIOS: [&str; 2] = ["eta_a", "eta_s"];
-
-const PARTIAL: &str = "partial";
 
 /// The unit of every column that has one.
 pub(crate) fn units() -> impl Iterator<Item = (&'static str, &'static str)> {
@@ -94,8 +92,6 @@ pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {
         let values: Vec<f64> = rows.iter().map(|row| row.eta()[index]).collect();
         columns.push(Series::new(name.into(), values).into_column());
     }
-    let partial: Vec<bool> = rows.iter().map(|row| row.partial).collect();
-    columns.push(Series::new(PARTIAL.into(), partial).into_column());
     Ok(DataFrame::new(rows.len(), columns)?)
 }
 
@@ -118,10 +114,6 @@ pub(crate) fn from_frame(frame: &DataFrame) -> Result<Vec<Row>, DatasetError> {
         let series = frame.column(column.name)?;
         fill(&mut rows, column.name, series.f64()?.iter(), column.set)?;
     }
-    let partial = frame.column(PARTIAL)?.bool()?.iter();
-    fill(&mut rows, PARTIAL, partial, |row, value| {
-        row.partial = value
-    })?;
     match rows.iter().find(|row| !row.is_finite()) {
         Some(row) => Err(DatasetError::NotFinite {
             job: row.job.clone(),
@@ -155,9 +147,10 @@ fn blank() -> Row {
             r_win: 0.0,
         },
         sample: HingeSample::default(),
-        partial: false,
+        failure: String::new(),
         material: String::new(),
         tier: String::new(),
+        solved_tier: String::new(),
         gmsh: String::new(),
         ccx: String::new(),
         cpu_s: 0.0,

@@ -27,9 +27,10 @@ fn row(job: usize, lambda: f64) -> Row {
             d: 0.01 * lambda,
             ..HingeSample::default()
         },
-        partial: job == 2,
+        failure: if job == 2 { "diverged" } else { "" }.into(),
         material: "film".into(),
         tier: "default".into(),
+        solved_tier: if job == 3 { "fine" } else { "default" }.into(),
         gmsh: "4.8.4".into(),
         ccx: "2.20".into(),
         cpu_s: 9.5,
@@ -201,7 +202,7 @@ fn a_missing_malformed_or_later_manifest_is_refused() {
     let (_folder, path, _) = written();
     let manifest = path.with_extension("json");
     let text = std::fs::read_to_string(&manifest).unwrap();
-    let later = text.replace("\"format_version\": 1", "\"format_version\": 9");
+    let later = text.replace("\"format_version\": 2", "\"format_version\": 9");
     std::fs::write(&manifest, later).unwrap();
     let error = Database::read(&path).unwrap_err();
     assert!(

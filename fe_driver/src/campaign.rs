@@ -52,8 +52,13 @@ pub enum CampaignError {
     },
     #[error("{0} holds no campaign: run one there first")]
     NoCampaign(PathBuf),
-    #[error("another run is at work in {0}: wait for it or stop it")]
+    #[error("another run is at work, and holds {0}: wait for it or stop it")]
     Locked(PathBuf),
+    #[error(
+        "job {0} is none of the campaign's: it was solved with other settings, another version \
+         of gmsh or ccx, or for another campaign"
+    )]
+    Stranger(String),
     #[error("the run ended at job {job}: {source}")]
     Halted {
         job: String,

@@ -26,7 +26,21 @@ pub enum FailureKind {
     EnergyImbalance,
 }
 
+/// What a program's log says of a full disk.
+const DISK_FULL: &str = "No space left on device";
+
 impl FailureKind {
+    /// Every kind.
+    pub const ALL: [Self; 7] = [
+        Self::InvalidInput,
+        Self::MeshFailed,
+        Self::Diverged,
+        Self::TimedOut,
+        Self::Killed,
+        Self::OutputTruncated,
+        Self::EnergyImbalance,
+    ];
+
     /// The kind of a failed job; `None` if the error is no fault of the job and ends the whole
     /// run: a missing tool, a full disk, a stop.
     pub fn of(error: &SolveError) -> Option<Self> {
@@ -34,6 +48,12 @@ impl FailureKind {
             SolveError::Material(_) | SolveError::Ray(_) => Some(Self::InvalidInput),
             SolveError::Mesh(MeshError::Design(_) | MeshError::Thickness(_)) => {
                 Some(Self::InvalidInput)
+            }
+            SolveError::Diverged { tail, .. }
+            | SolveError::Mesh(MeshError::Gmsh(ToolError::Failed { tail, .. }))
+                if tail.contains(DISK_FULL) =>
+            {
+                None
             }
             SolveError::Mesh(
                 MeshError::Read(_)
@@ -88,6 +108,22 @@ impl std::fmt::Display for FailureKind {
     }
 }
 
+/// A name of no kind of failure; the message lists those there are.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("no failure is called `{0}`; there are {known}", known = FailureKind::ALL.map(FailureKind::name).join(", "))]
+pub struct UnknownFailure(String);
+
+impl std::str::FromStr for FailureKind {
+    type Err = UnknownFailure;
+
+    fn from_str(name: &str) -> Result<Self, UnknownFailure> {
+        Self::ALL
+            .into_iter()
+            .find(|kind| kind.name() == name)
+            .ok_or_else(|| UnknownFailure(name.to_owned()))
+    }
+}
+
 /// The retry ladder: attempts in the order they are made, each after the failure of one above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -101,6 +137,16 @@ pub enum Rung {
 }
 
 impl Rung {
+    /// The name used in records and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::AsAsked => "as-asked",
+            Self::Again => "again",
+            Self::ShorterIncrements => "shorter-increments",
+            Self::FinerTier => "finer-tier",
+        }
+    }
+
     /// The problem as it is solved on this rung.
     pub fn problem(self, asked: &WindowProblem) -> WindowProblem {
         let mut problem = asked.clone();
@@ -118,23 +164,14 @@ impl Rung {
 mod tests {
     use super::*;
 
-    const KINDS: [FailureKind; 7] = [
-        FailureKind::InvalidInput,
-        FailureKind::MeshFailed,
-        FailureKind::Diverged,
-        FailureKind::TimedOut,
-        FailureKind::Killed,
-        FailureKind::OutputTruncated,
-        FailureKind::EnergyImbalance,
-    ];
-
     #[test]
     fn every_ladder_ends() {
         assert_eq!(
             FailureKind::Diverged.next(Rung::ShorterIncrements, Tier::Reference),
             None
         );
-        for kind in KINDS {
+        for kind in FailureKind::ALL {
+            assert_eq!(kind.name().parse(), Ok(kind));
             let mut rung = Rung::AsAsked;
             let mut attempts = 1;
             while let Some(next) = kind.next(rung, Tier::Default) {
@@ -158,6 +195,7 @@ mod tests {
         let killed = SolveError::Solver(ToolError::Killed {
             name: "ccx",
             signal: 9,
+            cpu_seconds: None,
         });
         assert_eq!(FailureKind::of(&killed), Some(FailureKind::Killed));
     }

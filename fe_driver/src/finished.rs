@@ -1,10 +1,10 @@
 //! The samples of a campaign, for the database.
 
 use crate::campaign::CampaignError;
+use crate::failure::FailureKind;
 use crate::job::ToolVersions;
 use crate::ledger::CampaignFolder;
-use crate::ray::Ray;
-use hinge::HingeSample;
+use hinge::{HingeDesign, HingeSample};
 use mesher::Tier;
 use std::path::Path;
 
@@ -12,18 +12,20 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq)]
 pub struct FinishedJob {
     pub id: String,
-    pub ray: Ray,
+    pub design: HingeDesign,
     /// Name of the sheet material.
     pub material: String,
-    /// Tier the samples were solved with: the asked one, or a finer one after a failure.
+    /// Tier that was asked.
     pub tier: Tier,
+    /// Tier that the samples were solved with: a finer one if the asked one failed.
+    pub solved_tier: Tier,
     pub tools: ToolVersions,
     /// One a converged increment.
     pub samples: Vec<HingeSample>,
     /// Of the solver, over all attempts (s).
     pub cpu_seconds: f64,
-    /// Whether the samples end before the ray does.
-    pub partial: bool,
+    /// Why the samples end before the ray does; `None` for a whole ray.
+    pub failure: Option<FailureKind>,
 }
 
 /// The jobs of the campaign in `folder` that are closed and have samples, in the campaign's order.
@@ -49,12 +51,13 @@ fn finished(folder: &CampaignFolder, id: String) -> Result<Option<FinishedJob>, 
     }
     Ok(Some(FinishedJob {
         id,
-        ray: spec.problem.ray,
-        samples: job.samples(&record)?,
+        design: spec.problem.ray.design,
         material: spec.problem.material.name,
-        tier: record.tier,
+        tier: spec.problem.tier,
+        solved_tier: record.tier,
         tools: spec.tools,
+        samples: job.samples(&record)?,
         cpu_seconds: record.cpu_seconds,
-        partial: record.is_partial(),
+        failure: record.failure,
     }))
 }

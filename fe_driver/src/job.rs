@@ -109,11 +109,6 @@ impl JobRecord {
     pub fn is_closed(&self) -> bool {
         self.next.is_none()
     }
-
-    /// Whether there are rows, but not to the end of the ray.
-    pub fn is_partial(&self) -> bool {
-        self.failure.is_some() && self.rows > 0
-    }
 }
 
 /// A file of a campaign that cannot be read, written or understood.
@@ -155,7 +150,7 @@ impl JobFolder {
         let path = self.0.join("rows.csv");
         let bytes = std::fs::read(&path).map_err(FileError::at(&path))?;
         if blake3::hash(&bytes).to_hex().as_str() != record.rows_hash {
-            let changed = "not the rows that result.json was written for: delete the job's folder";
+            let changed = "not the rows that result.json was written for: run the campaign again";
             return Err(FileError::at(&path)(io::Error::other(changed)));
         }
         let rows = csv::Reader::from_reader(&bytes[..]).into_deserialize();

@@ -1,13 +1,16 @@
 //! The folder of a campaign, and how its jobs stand.
 //!
 //! `campaign.json` names the campaign and its jobs as last run, `jobs/<id>/` holds one job each,
-//! `events.jsonl` is the append-only history.
+//! `events-<i>-of-<n>.jsonl` is the append-only history of each shard, and its lock.
 
-use crate::campaign::{Campaign, CampaignError};
+use crate::campaign::CampaignError;
 use crate::failure::FailureKind;
-use crate::job::{FileError, JobFolder, JobRecord, read_json, write_json};
+use crate::history::History;
+use crate::job::{FileError, JobFolder, JobRecord, JobSpec, read_json, write_json};
+use crate::shard::Shard;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::fs::{DirEntry, File};
 use std::path::{Path, PathBuf};
 
 /// The folder of a campaign.
@@ -15,11 +18,20 @@ use std::path::{Path, PathBuf};
 pub(crate) struct CampaignFolder(pub PathBuf);
 
 /// What `campaign.json` says.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Index {
     pub name: String,
     /// Ids of the jobs of the campaign as last run, in order.
     pub jobs: Vec<String>,
+}
+
+impl Index {
+    pub fn of(name: &str, specs: &[JobSpec]) -> Self {
+        Self {
+            name: name.to_owned(),
+            jobs: specs.iter().map(JobSpec::id).collect(),
+        }
+    }
 }
 
 impl CampaignFolder {
@@ -37,20 +49,36 @@ impl CampaignFolder {
     }
 
     /// Refuses a folder that belongs to a campaign of another name.
-    pub fn belongs_to(&self, campaign: &Campaign) -> Result<(), CampaignError> {
+    pub fn belongs_to(&self, name: &str) -> Result<(), CampaignError> {
         match read_json::<Index>(&self.index_path())? {
-            Some(index) if index.name != campaign.name => Err(CampaignError::OtherCampaign {
+            Some(index) if index.name != name => Err(CampaignError::OtherCampaign {
                 folder: self.0.clone(),
                 found: index.name,
-                asked: campaign.name.clone(),
+                asked: name.to_owned(),
             }),
             _ => Ok(()),
         }
     }
 
-    pub fn write_index(&self, name: &str, jobs: Vec<String>) -> Result<(), FileError> {
-        let name = name.to_owned();
-        write_json(&self.index_path(), &Index { name, jobs })
+    /// Makes the folder that of `index` and locks a shard of it, until the history is dropped.
+    ///
+    /// Refused while a shard that may overlap is at work.
+    pub fn enter(&self, shard: Shard, index: &Index) -> Result<History, CampaignError> {
+        std::fs::create_dir_all(&self.0).map_err(FileError::at(&self.0))?;
+        // Shards that start together come in one by one: each would find the other's lock, and
+        // they would write the index over each other.
+        let door = self.0.join("lock");
+        let _held = File::create(&door)
+            .and_then(|file| file.lock().map(|()| file))
+            .map_err(FileError::at(&door))?;
+        self.belongs_to(&index.name)?;
+        for entry in entries(&self.0)? {
+            if shard.overlaps(&entry.file_name().to_string_lossy()) {
+                History::open(&entry.path())?;
+            }
+        }
+        write_json(&self.index_path(), index)?;
+        History::open(&self.0.join(shard.history()))
     }
 
     /// How the jobs of these ids stand.
@@ -65,18 +93,19 @@ impl CampaignFolder {
         if !path.exists() {
             return Ok(Vec::new());
         }
-        let entries = std::fs::read_dir(&path).map_err(FileError::at(&path))?;
-        entries
-            .map(|entry| {
-                let entry = entry.map_err(FileError::at(&path))?;
-                Ok(entry.file_name().to_string_lossy().into_owned())
-            })
-            .collect()
+        let name = |entry: DirEntry| entry.file_name().to_string_lossy().into_owned();
+        Ok(entries(&path)?.into_iter().map(name).collect())
     }
 }
 
+fn entries(folder: &Path) -> Result<Vec<DirEntry>, FileError> {
+    std::fs::read_dir(folder)
+        .and_then(Iterator::collect)
+        .map_err(FileError::at(folder))
+}
+
 /// How many jobs stand how.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Tally {
     /// Never ended an attempt.
     pub open: usize,
@@ -138,17 +167,36 @@ impl Tally {
         self.open + self.retry
     }
 
-    /// Jobs closed in an hour of one worker; `None` before the first.
-    pub fn jobs_per_worker_hour(&self) -> Option<f64> {
-        (self.closed() > 0).then(|| 3600.0 * self.closed() as f64 / self.wall_seconds)
+    /// The pace so far; `None` before there are samples.
+    fn throughput(&self) -> Option<Throughput> {
+        (self.rows > 0).then(|| Throughput {
+            rays_per_hour: 3600.0 * self.closed() as f64 / self.wall_seconds,
+            samples_per_hour: 3600.0 * self.rows as f64 / self.wall_seconds,
+            cpu_seconds_per_sample: self.cpu_seconds / self.rows as f64,
+            overhead: 1.0 - self.cpu_seconds / self.wall_seconds,
+        })
     }
 }
 
+/// The pace of one worker over all attempts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Throughput {
+    /// Jobs closed in an hour.
+    pub rays_per_hour: f64,
+    pub samples_per_hour: f64,
+    /// Of the solver, over all attempts.
+    pub cpu_seconds_per_sample: f64,
+    /// Share of the time that the solver did not compute: gmsh, reading and writing, waiting for
+    /// a processor.
+    pub overhead: f64,
+}
+
 /// How a campaign stands.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Status {
     pub name: String,
     pub tally: Tally,
+    pub throughput: Option<Throughput>,
 }
 
 /// How the campaign in `folder` stands, as it was last run.
@@ -156,5 +204,9 @@ pub fn status(folder: &Path) -> Result<Status, CampaignError> {
     let folder = CampaignFolder(folder.to_owned());
     let Index { name, jobs } = folder.index()?;
     let tally = folder.tally(&jobs)?;
-    Ok(Status { name, tally })
+    Ok(Status {
+        name,
+        throughput: tally.throughput(),
+        tally,
+    })
 }

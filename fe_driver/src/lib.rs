@@ -3,7 +3,7 @@
 //! A *ray* drives one hinge design from the undeformed state straight to a deformation (a, s,
 //! theta); every converged increment is a sample (W, grad W, D) of section 2.4. [`solve_window`]
 //! solves one ray; a [`Campaign`] samples a box of designs and rays, [`plan`] says what is left to
-//! do, [`run`] does it, [`finished_jobs`] hands out the samples.
+//! do, [`run`] does it, [`finished_jobs`] hands out the samples, and [`restore`] takes them back.
 
 mod campaign;
 mod ccx;
@@ -12,13 +12,17 @@ mod deck;
 mod doctor;
 mod failure;
 mod finished;
+mod history;
 mod job;
 mod ledger;
 mod plan;
 mod ray;
 mod response;
+mod restore;
+mod retry;
 mod run;
 mod sampling;
+mod shard;
 mod window_solve;
 
 pub use campaign::{Campaign, CampaignError};
@@ -26,12 +30,15 @@ pub use ccx::{CCX, Ccx, CcxRun};
 pub use dat::DatError;
 pub use deck::{StepControl, deck};
 pub use doctor::{Diagnosis, doctor};
-pub use failure::{FailureKind, Rung};
+pub use failure::{FailureKind, Rung, UnknownFailure};
 pub use finished::{FinishedJob, finished_jobs};
 pub use job::{FileError, JobSpec, ToolVersions};
-pub use ledger::{Status, Tally, status};
+pub use ledger::{Status, Tally, Throughput, status};
 pub use plan::{Plan, plan};
 pub use ray::Ray;
-pub use run::{Progress, run};
+pub use restore::restore;
+pub use retry::retry;
+pub use run::{Progress, RunOptions, run};
 pub use sampling::{CommonDesign, RayBox};
+pub use shard::{InvalidShard, Shard};
 pub use window_solve::{SolveError, Tools, WindowProblem, WindowSolution, solve_window};

@@ -6,22 +6,31 @@
 
 use crate::campaign::{Campaign, CampaignError};
 use crate::failure::{FailureKind, Rung};
+use crate::history::{Event, History, now};
 use crate::job::{FileError, JobFolder, JobRecord, JobSpec, ToolVersions};
-use crate::ledger::{CampaignFolder, Tally};
+use crate::ledger::{CampaignFolder, Index, Tally};
+use crate::shard::Shard;
 use crate::window_solve::{SolveError, Tools, solve_window};
 use mesher::tool::ToolError;
-use serde::Serialize;
-use std::fs::{File, OpenOptions, TryLockError};
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant};
+
+/// Which jobs a run works on, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct RunOptions {
+    pub shard: Shard,
+    /// Solves at a time.
+    pub workers: usize,
+    /// No attempt is started after this time; those in flight are finished.
+    pub time_limit: Option<Duration>,
+}
 
 /// How a run stands.
 #[derive(Clone, Debug)]
 pub struct Progress {
-    /// All jobs of the campaign, those of earlier runs included.
+    /// All jobs of the shard, those of earlier runs included.
     pub tally: Tally,
     /// Expected time left (s), from the pace of this run; `None` before it has closed a job.
     pub seconds_left: Option<f64>,
@@ -33,6 +42,23 @@ struct Job {
     spec: JobSpec,
     folder: JobFolder,
     record: Option<JobRecord>,
+}
+
+impl Job {
+    /// A job as it stands in the folder. A record whose rows are not there, as after a crash
+    /// between the two, counts for nothing.
+    fn found(folder: &CampaignFolder, id: String, spec: JobSpec) -> Result<Self, FileError> {
+        let folder = folder.job(&id);
+        let record = folder
+            .record()?
+            .filter(|record| record.rows == 0 || folder.samples(record).is_ok());
+        Ok(Self {
+            id,
+            spec,
+            folder,
+            record,
+        })
+    }
 }
 
 /// What a worker tells the dispatcher.
@@ -53,8 +79,8 @@ enum Message {
 /// How often the dispatcher looks at the stop flag.
 const GLANCE: Duration = Duration::from_millis(100);
 
-/// Runs the open jobs of `campaign` in `folder`, and those that have something left to try, with
-/// `workers` solves at a time; `progress` is called at the start and after each attempt.
+/// Runs the open jobs of `campaign` in `folder`, and those that have something left to try;
+/// `progress` is called at the start and after each attempt.
 ///
 /// Once `stop` is true the solves in flight are ended and the run returns how far it came; the
 /// next run goes on from there.
@@ -62,39 +88,29 @@ pub fn run(
     campaign: &Campaign,
     folder: &Path,
     tools: &Tools,
-    workers: usize,
+    options: &RunOptions,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Progress, CampaignError> {
-    std::fs::create_dir_all(folder).map_err(FileError::at(folder))?;
-    let _lock = lock(folder)?;
+    let deadline = options.time_limit.map(|limit| Instant::now() + limit);
     let folder = CampaignFolder(folder.to_owned());
-    folder.belongs_to(campaign)?;
-    let jobs = campaign
-        .jobs(&ToolVersions::of(tools))
+    let specs = campaign.jobs(&ToolVersions::of(tools));
+    let index = Index::of(&campaign.name, &specs);
+    let history = folder.enter(options.shard, &index)?;
+    let jobs = index
+        .jobs
         .into_iter()
-        .map(|spec| {
-            let id = spec.id();
-            let folder = folder.job(&id);
-            let record = folder.record()?;
-            Ok(Job {
-                id,
-                spec,
-                folder,
-                record,
-            })
-        })
-        .collect::<Result<Vec<_>, FileError>>()?;
-    folder.write_index(
-        &campaign.name,
-        jobs.iter().map(|job| job.id.clone()).collect(),
-    )?;
+        .zip(specs)
+        .enumerate()
+        .filter(|(place, _)| options.shard.holds(*place))
+        .map(|(_, (id, spec))| Job::found(&folder, id, spec))
+        .collect::<Result<Vec<_>, _>>()?;
 
-    let mut books = Books::open(&folder, &jobs)?;
+    let mut books = Books::new(history, &jobs);
     let (next, halt) = (AtomicUsize::new(0), AtomicBool::new(false));
     let (sender, receiver) = mpsc::channel();
     std::thread::scope(|scope| {
-        for _ in 0..workers.max(1) {
+        for _ in 0..options.workers.max(1) {
             let (sender, jobs, next, halt) = (sender.clone(), &jobs, &next, &halt);
             let tell = move |message| {
                 if sender.send(message).is_err() {
@@ -105,10 +121,11 @@ pub fn run(
             let worker = Worker {
                 tools,
                 limit: campaign.time_limit,
+                deadline,
                 halt,
             };
             scope.spawn(move || {
-                while !halt.load(Ordering::Relaxed) {
+                while worker.may_start() {
                     let index = next.fetch_add(1, Ordering::Relaxed);
                     let Some(job) = jobs.get(index) else { break };
                     if let Err(error) = worker.climb(job, index, &tell) {
@@ -154,15 +171,26 @@ struct Worker<'a> {
     tools: &'a Tools,
     /// Time limit of one solve.
     limit: Duration,
+    /// When the last attempt may start.
+    deadline: Option<Instant>,
     /// Ends the solve in flight.
     halt: &'a AtomicBool,
 }
 
 impl Worker<'_> {
-    /// Climbs the retry ladder of one job until it is closed or the run halts.
+    fn may_start(&self) -> bool {
+        !self.halt.load(Ordering::Relaxed)
+            && self
+                .deadline
+                .is_none_or(|deadline| Instant::now() < deadline)
+    }
+
+    /// Climbs the retry ladder of one job until it is closed or the run ends.
     fn climb(&self, job: &Job, index: usize, tell: &dyn Fn(Message)) -> Result<(), CampaignError> {
         let mut record = job.record.clone();
-        while let Some(rung) = record.as_ref().map_or(Some(Rung::AsAsked), |r| r.next) {
+        while self.may_start()
+            && let Some(rung) = record.as_ref().map_or(Some(Rung::AsAsked), |r| r.next)
+        {
             tell(Message::Started { job: index, rung });
             let Some(ended) = self.attempt(job, rung, record)? else {
                 return Ok(());
@@ -190,13 +218,14 @@ impl Worker<'_> {
         let problem = rung.problem(&job.spec.problem);
         job.folder.write_spec(&job.spec)?;
         let work = job.folder.fresh_work()?;
-        let (solution, error) =
+        let (samples, error, cpu_seconds) =
             match solve_window(&problem, self.tools, &work, self.limit, self.halt) {
-                Ok(mut solution) => {
-                    let error = solution.stopped.take();
-                    (Some(solution), error)
+                Ok(solution) => (solution.samples, solution.stopped, solution.cpu_seconds),
+                Err(SolveError::Solver(error)) => {
+                    let cpu_seconds = error.cpu_seconds();
+                    (Vec::new(), Some(SolveError::Solver(error)), cpu_seconds)
                 }
-                Err(error) => (None, Some(error)),
+                Err(error) => (Vec::new(), Some(error), None),
             };
         let failure = match error {
             None => None,
@@ -210,12 +239,11 @@ impl Worker<'_> {
             },
         };
         let mut record = before.unwrap_or_default();
-        if let Some(solution) = &solution
-            && let Some(last) = solution.samples.last()
+        if let Some(last) = samples.last()
             && last.lambda > record.lambda
         {
-            record.rows_hash = job.folder.write_samples(&solution.samples)?;
-            record.rows = solution.samples.len();
+            record.rows_hash = job.folder.write_samples(&samples)?;
+            record.rows = samples.len();
             record.lambda = last.lambda;
             record.tier = problem.tier;
         }
@@ -224,7 +252,7 @@ impl Worker<'_> {
             .and_then(|(kind, _)| kind.next(rung, job.spec.problem.tier));
         (record.failure, record.message) = failure.unzip();
         record.attempts += 1;
-        record.cpu_seconds += solution.and_then(|s| s.cpu_seconds).unwrap_or(0.0);
+        record.cpu_seconds += cpu_seconds.unwrap_or(0.0);
         record.wall_seconds += start.elapsed().as_secs_f64();
         record.ended = now();
         if record.failure.is_none() {
@@ -240,62 +268,38 @@ struct Books<'a> {
     jobs: &'a [Job],
     /// Of every job, as it stands now.
     records: Vec<Option<JobRecord>>,
-    path: PathBuf,
-    events: File,
+    history: History,
     start: Instant,
     closed_before: usize,
 }
 
-/// A line of `events.jsonl`.
-#[derive(Serialize)]
-struct Event<'a> {
-    /// Seconds since 1970.
-    time: u64,
-    job: &'a str,
-    rung: Rung,
-    /// How the attempt ended; none when it starts.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    ended: Option<&'a JobRecord>,
-}
-
 impl<'a> Books<'a> {
-    fn open(folder: &CampaignFolder, jobs: &'a [Job]) -> Result<Self, FileError> {
-        let path = folder.0.join("events.jsonl");
-        let events = OpenOptions::new()
-            .create(true)
-            .append(true)
-            .open(&path)
-            .map_err(FileError::at(&path))?;
+    fn new(history: History, jobs: &'a [Job]) -> Self {
         let records: Vec<_> = jobs.iter().map(|job| job.record.clone()).collect();
-        Ok(Self {
+        Self {
             jobs,
             closed_before: Tally::of(&records).closed(),
             records,
-            path,
-            events,
+            history,
             start: Instant::now(),
-        })
+        }
     }
 
     fn note(&mut self, message: Message) -> Result<(), CampaignError> {
-        let (job, rung, record) = match message {
-            Message::Started { job, rung } => (job, rung, None),
-            Message::Ended { job, rung, record } => (job, rung, Some(record)),
+        match message {
+            Message::Started { job, rung } => {
+                self.history
+                    .note(&self.jobs[job].id, Event::Started { rung })?;
+            }
+            Message::Ended { job, rung, record } => {
+                let event = Event::Ended {
+                    rung,
+                    record: &record,
+                };
+                self.history.note(&self.jobs[job].id, event)?;
+                self.records[job] = Some(record);
+            }
             Message::Halted(error) => return Err(error),
-        };
-        let event = Event {
-            time: now(),
-            job: &self.jobs[job].id,
-            rung,
-            ended: record.as_ref(),
-        };
-        let mut line = serde_json::to_vec(&event).map_err(FileError::at(&self.path))?;
-        line.push(b'\n');
-        self.events
-            .write_all(&line)
-            .map_err(FileError::at(&self.path))?;
-        if record.is_some() {
-            self.records[job] = record;
         }
         Ok(())
     }
@@ -309,22 +313,4 @@ impl<'a> Books<'a> {
             tally,
         }
     }
-}
-
-/// Holds the folder against a second run until the file is dropped, however that comes about.
-fn lock(folder: &Path) -> Result<File, CampaignError> {
-    let path = folder.join("lock");
-    let file = File::create(&path).map_err(FileError::at(&path))?;
-    match file.try_lock() {
-        Ok(()) => Ok(file),
-        Err(TryLockError::WouldBlock) => Err(CampaignError::Locked(folder.to_owned())),
-        Err(TryLockError::Error(source)) => Err(FileError::at(&path)(source).into()),
-    }
-}
-
-/// Seconds since 1970.
-fn now() -> u64 {
-    SystemTime::now()
-        .duration_since(UNIX_EPOCH)
-        .map_or(0, |since| since.as_secs())
 }

@@ -4,11 +4,14 @@
 //! end of the ray), 5 of them pure rotations. So any prefix is a usable database, and a larger
 //! campaign of the same seed begins with the smaller one.
 //!
-//! A hinge that is pulled or sheared before it turns stores up to ten times the energy of any
-//! deployed one, and is where solvers stop early. Hinges of a deployed sheet turn as they
-//! translate; so tension and shear reach their full range only from `full_range_deg` of rotation
-//! on, less in proportion below, and together stay inside an ellipse. Compression, which buckles,
-//! always has its full range.
+//! A hinge that is pulled or sheared before it turns is stretched in its plane: it stores up to ten
+//! times the energy of any deployed one, and is where solvers stop early. Hinges of a deployed sheet
+//! turn as they translate, or are compressed. So tension and shear reach their full range only from
+//! `full_range_deg` of rotation on, less in proportion below, and together stay inside an ellipse.
+//! Compression, which buckles, always has its full range; and a compressed ligament may be sheared
+//! as long as it stays slack, its ends no further apart than they were:
+//!
+//! (1 + eta_a)^2 + eta_s^2 <= 1.
 
 use crate::ray::Ray;
 use hinge::{HingeDeformation, HingeDesign};
@@ -95,7 +98,9 @@ impl RayBox {
             let [compression, tension] = [self.eta_a[0], self.eta_a[1] * range];
             let eta_a = between([compression, tension], eta_a);
             let pull = if eta_a > 0.0 { eta_a / tension } else { 0.0 };
-            let shear = self.eta_s * range * (1.0 - pull * pull).sqrt();
+            let stretched = self.eta_s * range * (1.0 - pull * pull).sqrt();
+            let slack = (1.0 - (1.0 + eta_a).powi(2)).max(0.0).sqrt();
+            let shear = stretched.max(slack).min(self.eta_s);
             let eta_s = between([-shear, shear], eta_s);
             HingeDeformation::from_eta(eta_a, eta_s, theta.to_radians(), w_lig)
         };
@@ -196,16 +201,43 @@ mod tests {
     }
 
     #[test]
-    fn rays_stay_in_the_box_and_translate_little_before_they_turn() {
+    fn rays_stay_in_the_box_and_stretch_little_before_they_turn() {
         for (i, ray) in BOX.rays(&COMMON, 400, 1).iter().enumerate() {
             ray.design.validate().unwrap();
             let [eta_a, eta_s] = ray.end.eta(ray.design.w_lig);
             let theta = ray.end.theta.to_degrees();
             let range = (theta / 30.0).min(1.0);
             let [pull, shear] = [eta_a.max(0.0) / (0.25 * range), eta_s / (0.4 * range)];
-            assert!(eta_a >= -0.8 && pull.hypot(shear) <= 1.0 + 1e-12);
+            let slack = (1.0 + eta_a).hypot(eta_s) <= 1.0 + 1e-12;
+            assert!(slack || pull.hypot(shear) <= 1.0 + 1e-12);
+            assert!(eta_a >= -0.8 && eta_s.abs() <= 0.4);
             assert_eq!(i % 8 == 0, eta_a == 0.0 && eta_s == 0.0 && theta > 74.9);
         }
+    }
+
+    /// Where hinges of deployed sheets live, every octant of states has its rays: small rotations
+    /// with large shear among them, if compressed.
+    #[test]
+    fn every_prefix_covers_where_deployed_hinges_live() {
+        let rays = BOX.rays(&COMMON, 80, 1);
+        let ends: Vec<_> = rays
+            .iter()
+            .map(|ray| (ray.end.eta(ray.design.w_lig), ray.end.theta.to_degrees()))
+            .collect();
+        for compressed in [true, false] {
+            for sheared in [-1.0, 1.0] {
+                for turned in [true, false] {
+                    let octant = ends.iter().filter(|([eta_a, eta_s], theta)| {
+                        (*eta_a < -0.3) == compressed
+                            && eta_s * sheared > 0.05
+                            && (*theta > 35.0) == turned
+                    });
+                    assert!(octant.count() >= 2, "{compressed} {sheared} {turned}");
+                }
+            }
+        }
+        let early = |([_, eta_s], theta): &&([f64; 2], f64)| *theta < 30.0 && eta_s.abs() > 0.25;
+        assert!(ends.iter().filter(early).count() >= 4);
     }
 
     #[test]

@@ -128,9 +128,10 @@ pub fn solve_window(
     };
     let samples = samples(&mesh, ray, material, &read_frames(&output, &mesh)?);
     let last = samples.last().copied().unwrap_or_default();
-    let (cpu_seconds, iterations) = run
-        .as_ref()
-        .map_or((None, 0), |run| (run.run.cpu_seconds, run.iterations));
+    let (cpu_seconds, iterations) = match &run {
+        Ok(run) => (run.run.cpu_seconds, run.iterations),
+        Err(error) => (error.cpu_seconds(), 0),
+    };
     let stopped = match run {
         Err(error) => Some(error.into()),
         Ok(run) if !run.finished => Some(SolveError::Diverged {

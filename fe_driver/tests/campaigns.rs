@@ -2,33 +2,17 @@
 
 mod common;
 
-use common::{configs, fake_ccx};
+use common::{TWO_WORKERS, campaign, fake_ccx, jobs, run_with};
 use fe_driver::{
-    Campaign, CampaignError, Ccx, FailureKind, FinishedJob, ToolVersions, Tools, finished_jobs,
-    plan, run, status,
+    Campaign, CampaignError, Ccx, FailureKind, ToolVersions, Tools, finished_jobs, plan, run,
+    status,
 };
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The first rays of the demo, and only a little rotation.
-fn campaign(count: usize) -> Campaign {
-    let mut campaign = Campaign::load(&configs().join("campaigns/demo.toml")).unwrap();
-    campaign.count = count;
-    campaign.rays.theta_deg = [4.0, 8.0];
-    campaign
-}
-
-fn jobs(folder: &Path) -> Vec<FinishedJob> {
-    finished_jobs(folder)
-        .unwrap()
-        .collect::<Result<_, _>>()
-        .unwrap()
-}
-
 fn run_to_end(campaign: &Campaign, folder: &Path, tools: &Tools) {
-    let never = AtomicBool::new(false);
-    let progress = run(campaign, folder, tools, 2, &never, &mut |_| {}).unwrap();
-    assert_eq!(progress.tally.to_run(), 0);
+    let tally = run_with(&TWO_WORKERS, campaign, folder, tools).unwrap();
+    assert_eq!(tally.to_run(), 0);
 }
 
 #[test]
@@ -40,21 +24,29 @@ fn an_interrupted_campaign_is_resumed_to_the_same_rows() {
 
     // Stopped as soon as one job is closed, with another in flight.
     let stop = AtomicBool::new(false);
-    let progress = run(&campaign, parts.path(), &tools, 2, &stop, &mut |progress| {
-        stop.store(progress.tally.closed() > 0, Ordering::Relaxed);
-    });
+    let progress = run(
+        &campaign,
+        parts.path(),
+        &tools,
+        &TWO_WORKERS,
+        &stop,
+        &mut |progress| {
+            stop.store(progress.tally.closed() > 0, Ordering::Relaxed);
+        },
+    );
     let closed = progress.unwrap().tally.closed();
     assert!((1..3).contains(&closed), "{closed}");
     let versions = ToolVersions::of(&tools);
     let left = plan(&campaign, parts.path(), &versions).unwrap();
     assert_eq!((left.tally.complete, left.tally.open), (closed, 3 - closed));
+    assert_eq!(left.reasons.values().sum::<usize>(), 3 - closed);
     let done_before = jobs(parts.path());
 
     run_to_end(&campaign, parts.path(), &tools);
     let resumed = jobs(parts.path());
     assert_eq!(resumed.len(), 3);
     for (a, b) in resumed.iter().zip(jobs(whole.path())) {
-        assert_eq!((&a.id, &a.samples, a.partial), (&b.id, &b.samples, false));
+        assert_eq!((&a.id, &a.samples, a.failure), (&b.id, &b.samples, None));
         assert_eq!(a.samples.last().unwrap().lambda, 1.0);
     }
     // What was finished was not run again.
@@ -89,11 +81,8 @@ fn an_interrupted_campaign_is_resumed_to_the_same_rows() {
     let mut changed = campaign.clone();
     changed.material.young += 1.0;
     let after = plan(&changed, parts.path(), &versions).unwrap();
-    assert_eq!(after.tally.open, 3);
-    assert_eq!(
-        after.stale.into_iter().collect::<Vec<_>>(),
-        [("material".to_owned(), 3)]
-    );
+    assert_eq!((after.tally.open, after.stale), (3, 3));
+    assert_eq!(after.reasons["stale: material changed"], 3);
 
     // Another campaign does not touch the folder.
     changed.name = "other".into();
@@ -115,7 +104,7 @@ fn a_failing_solver_climbs_the_ladder_and_is_counted() {
     assert_eq!(status.tally.failures[&FailureKind::Diverged], 1);
     assert!(jobs(folder.path()).is_empty());
     // As asked, with shorter increments, on a finer mesh; each with a start and an end.
-    let events = std::fs::read_to_string(folder.path().join("events.jsonl")).unwrap();
+    let events = std::fs::read_to_string(folder.path().join("events-1-of-1.jsonl")).unwrap();
     assert_eq!(events.lines().count(), 6);
     assert!(events.lines().next_back().unwrap().contains("finer-tier"));
 }
@@ -129,28 +118,18 @@ fn a_solver_that_vanishes_ends_the_run_at_once() {
         ..Tools::find().unwrap()
     };
     std::fs::remove_file(&program).unwrap();
-    let never = AtomicBool::new(false);
-    let error = run(&campaign(5), folder.path(), &tools, 1, &never, &mut |_| {}).unwrap_err();
+    let error = run_with(&TWO_WORKERS, &campaign(5), folder.path(), &tools).unwrap_err();
     assert!(matches!(error, CampaignError::Halted { .. }), "{error}");
     assert_eq!(status(folder.path()).unwrap().tally.open, 5);
 }
 
 #[test]
-fn two_runs_do_not_share_a_folder() {
+fn rows_that_were_edited_are_refused_and_solved_again() {
     let folder = tempfile::tempdir().unwrap();
-    let lock = std::fs::File::create(folder.path().join("lock")).unwrap();
-    lock.lock().unwrap();
-    let never = AtomicBool::new(false);
-    let tools = Tools::find().unwrap();
-    let error = run(&campaign(1), folder.path(), &tools, 1, &never, &mut |_| {}).unwrap_err();
-    assert!(matches!(error, CampaignError::Locked(_)), "{error}");
-}
-
-#[test]
-fn rows_that_were_edited_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    run_to_end(&campaign(1), folder.path(), &Tools::find().unwrap());
-    let id = jobs(folder.path())[0].id.clone();
+    let (campaign, tools) = (campaign(1), Tools::find().unwrap());
+    run_to_end(&campaign, folder.path(), &tools);
+    let before = jobs(folder.path());
+    let id = &before[0].id;
     let rows = folder.path().join("jobs").join(id).join("rows.csv");
     let text = std::fs::read_to_string(&rows).unwrap();
     std::fs::write(&rows, text.replacen('3', "4", 1)).unwrap();
@@ -160,4 +139,6 @@ fn rows_that_were_edited_are_refused() {
         .unwrap()
         .unwrap_err();
     assert!(error.to_string().contains("rows.csv"), "{error}");
+    run_to_end(&campaign, folder.path(), &tools);
+    assert_eq!(jobs(folder.path())[0].samples, before[0].samples);
 }

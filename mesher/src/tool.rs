@@ -65,9 +65,19 @@ pub enum ToolError {
         source: std::io::Error,
     },
     #[error("{name} was ended at its time limit of {limit} s", limit = .limit.as_secs_f64())]
-    TimedOut { name: &'static str, limit: Duration },
+    TimedOut {
+        name: &'static str,
+        limit: Duration,
+        /// See [`Run::cpu_seconds`].
+        cpu_seconds: Option<f64>,
+    },
     #[error("{name} was killed by signal {signal} (out of memory, or by hand)")]
-    Killed { name: &'static str, signal: i32 },
+    Killed {
+        name: &'static str,
+        signal: i32,
+        /// See [`Run::cpu_seconds`].
+        cpu_seconds: Option<f64>,
+    },
     #[error("{name} was stopped on request")]
     Stopped { name: &'static str },
     #[error("{name} ended with {status}; its log ends:\n{tail}")]
@@ -76,6 +86,16 @@ pub enum ToolError {
         status: ExitStatus,
         tail: String,
     },
+}
+
+impl ToolError {
+    /// What the program had spent when it was ended (s), where the system tells it.
+    pub fn cpu_seconds(&self) -> Option<f64> {
+        match self {
+            Self::TimedOut { cpu_seconds, .. } | Self::Killed { cpu_seconds, .. } => *cpu_seconds,
+            _ => None,
+        }
+    }
 }
 
 /// Time a program has between SIGTERM and SIGKILL.
@@ -165,14 +185,23 @@ impl Tool {
             }
             if start.elapsed() > limit {
                 group.end();
-                return Err(ToolError::TimedOut { name, limit });
+                let cpu_seconds = group.cpu_seconds();
+                return Err(ToolError::TimedOut {
+                    name,
+                    limit,
+                    cpu_seconds,
+                });
             }
             std::thread::sleep(POLL.min(Duration::from_millis(1) + start.elapsed() / 10));
         }
-        let cpu_seconds = cpu_seconds(group.0.id());
+        let cpu_seconds = group.cpu_seconds();
         let status = group.0.wait().map_err(|source| self.cannot_start(source))?;
         if let Some(signal) = status.signal() {
-            return Err(ToolError::Killed { name, signal });
+            return Err(ToolError::Killed {
+                name,
+                signal,
+                cpu_seconds,
+            });
         }
         Ok(Run {
             status,
@@ -237,11 +266,19 @@ impl Group {
 
     /// Whether the leader has ended; it stays a zombie, so its times can still be read.
     fn has_ended(&self) -> bool {
-        let flags = WaitPidFlag::WEXITED | WaitPidFlag::WNOHANG | WaitPidFlag::WNOWAIT;
-        !matches!(
-            waitid(Id::Pid(self.pid()), flags),
-            Ok(WaitStatus::StillAlive)
-        )
+        !matches!(self.look(WaitPidFlag::WNOHANG), Ok(WaitStatus::StillAlive))
+    }
+
+    /// Waits for the leader, or only looks with WNOHANG, and does not reap it.
+    fn look(&self, how: WaitPidFlag) -> nix::Result<WaitStatus> {
+        let flags = WaitPidFlag::WEXITED | WaitPidFlag::WNOWAIT | how;
+        waitid(Id::Pid(self.pid()), flags)
+    }
+
+    /// User and system seconds of the leader, which has ended or is about to.
+    fn cpu_seconds(&self) -> Option<f64> {
+        self.look(WaitPidFlag::empty()).ok()?;
+        cpu_seconds(self.0.id())
     }
 
     /// SIGTERM, a moment to comply, SIGKILL.
@@ -357,12 +394,11 @@ mod tests {
 
     #[test]
     fn a_hanging_program_is_ended_with_its_children() {
-        let script = "trap '' TERM; sleep 1000 & echo $!; wait; sleep 1000";
+        let script = "trap '' TERM; sleep 1000 & echo $!; while true; do :; done";
         let (ended, log) = run(script, Duration::from_millis(200), false);
-        assert!(
-            matches!(ended, Err(ToolError::TimedOut { .. })),
-            "{ended:?}"
-        );
+        let error = ended.unwrap_err();
+        assert!(matches!(error, ToolError::TimedOut { .. }), "{error}");
+        assert!(error.cpu_seconds().unwrap() > 0.1, "{error:?}");
         let child: i32 = log.trim().parse().unwrap();
         let gone = || !Path::new(&format!("/proc/{child}")).exists() || is_zombie(child);
         let deadline = Instant::now() + GRACE;

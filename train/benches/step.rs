@@ -63,9 +63,10 @@ fn database() -> Database {
                 d: 0.01 * lambda,
                 ..HingeSample::default()
             },
-            partial: false,
+            failure: String::new(),
             material: "benchmark".into(),
             tier: "none".into(),
+            solved_tier: "none".into(),
             gmsh: "none".into(),
             ccx: "none".into(),
             cpu_s: 0.0,

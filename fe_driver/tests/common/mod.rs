@@ -1,13 +1,17 @@
 //! What the tests share: the shipped film, the paper's hinge, a problem to solve, fake solvers.
 #![allow(dead_code)] // every test program uses a part
 
-use fe_driver::{Ray, StepControl, WindowProblem};
+use fe_driver::{
+    Campaign, CampaignError, FinishedJob, Ray, RunOptions, Shard, StepControl, Tally, Tools,
+    WindowProblem, finished_jobs, run,
+};
 use hinge::{HingeDeformation, HingeDesign, SheetMaterial};
 use mesher::Tier;
 use std::io::ErrorKind;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::AtomicBool;
 
 pub fn configs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs")
@@ -39,6 +43,38 @@ pub fn problem(alpha_deg: f64, eta: [f64; 2], theta_deg: f64) -> WindowProblem {
         tier: Tier::Tiny,
         step: StepControl::default(),
     }
+}
+
+/// The first rays of the demo, and only a little rotation.
+pub fn campaign(count: usize) -> Campaign {
+    let mut campaign = Campaign::load(&configs().join("campaigns/demo.toml")).unwrap();
+    campaign.count = count;
+    campaign.rays.theta_deg = [4.0, 8.0];
+    campaign
+}
+
+pub fn jobs(folder: &Path) -> Vec<FinishedJob> {
+    finished_jobs(folder)
+        .unwrap()
+        .collect::<Result<_, _>>()
+        .unwrap()
+}
+
+pub const TWO_WORKERS: RunOptions = RunOptions {
+    shard: Shard::WHOLE,
+    workers: 2,
+    time_limit: None,
+};
+
+/// A run that nobody stops.
+pub fn run_with(
+    options: &RunOptions,
+    campaign: &Campaign,
+    folder: &Path,
+    tools: &Tools,
+) -> Result<Tally, CampaignError> {
+    let never = AtomicBool::new(false);
+    Ok(run(campaign, folder, tools, options, &never, &mut |_| {})?.tally)
 }
 
 /// An executable script in `folder` that answers like ccx and then does `body`.

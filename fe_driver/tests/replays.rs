@@ -1,0 +1,320 @@
+//! Campaigns whose solver replays recorded output in no time: every way to run them, and every
+//! way in which a solver fails, for once and for good.
+
+mod common;
+
+use common::{TWO_WORKERS, campaign, fake_ccx, jobs, run_with};
+use fe_driver::{
+    Campaign, CampaignError, Ccx, FailureKind, FinishedJob, RunOptions, Shard, Tally, ToolVersions,
+    Tools, plan, restore, retry, status,
+};
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+use std::time::{Duration, Instant};
+
+const RAYS: usize = 3;
+
+/// Real solves, and the output that they came from.
+struct Recording {
+    outputs: PathBuf,
+    jobs: Vec<FinishedJob>,
+}
+
+/// Recorded once for all tests.
+static RECORDING: LazyLock<Recording> = LazyLock::new(|| {
+    let outputs = Path::new(env!("CARGO_TARGET_TMPDIR")).join("recording");
+    let _ = std::fs::remove_dir_all(&outputs);
+    std::fs::create_dir_all(&outputs).unwrap();
+    let tools = Tools::find().unwrap();
+    let recorder = format!(
+        "{} \"$@\" || exit\n{JOB_ID}; cp window.dat {}/$id.dat",
+        tools.ccx.0.program.display(),
+        outputs.display()
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let ccx = Ccx::at(&fake_ccx(folder.path(), &recorder)).unwrap();
+    let tally = run_with(
+        &TWO_WORKERS,
+        &campaign(RAYS),
+        folder.path(),
+        &Tools { ccx, ..tools },
+    );
+    assert_eq!(tally.unwrap().complete, RAYS);
+    Recording {
+        outputs,
+        jobs: jobs(folder.path()),
+    }
+});
+
+/// Sets $id to the job's id, as ccx runs in jobs/<id>/work.
+const JOB_ID: &str = "id=${PWD%/work}; id=${id##*/}";
+
+/// gmsh, and a ccx that does `fault` before it replays.
+fn replaying(folder: &Path, fault: &str) -> Tools {
+    let outputs = RECORDING.outputs.display();
+    let body = format!(
+        "{JOB_ID}; output={outputs}/$id.dat\n{fault}\n\
+         echo 'Job finished'; exec cp $output window.dat"
+    );
+    Tools {
+        ccx: Ccx::at(&fake_ccx(folder, &body)).unwrap(),
+        ..Tools::find().unwrap()
+    }
+}
+
+fn run_whole(campaign: &Campaign, folder: &Path, tools: &Tools) -> Tally {
+    run_with(&TWO_WORKERS, campaign, folder, tools).unwrap()
+}
+
+/// Everything but what the solves cost.
+fn timeless(jobs: &[FinishedJob]) -> Vec<FinishedJob> {
+    let timeless = |job: &FinishedJob| FinishedJob {
+        cpu_seconds: 0.0,
+        ..job.clone()
+    };
+    jobs.iter().map(timeless).collect()
+}
+
+/// A way to fail, as a script; what a persistent one leaves.
+struct Fault {
+    script: &'static str,
+    kind: FailureKind,
+    /// Whether complete increments are left.
+    rows: bool,
+}
+
+const FAULTS: [Fault; 5] = [
+    Fault {
+        script: "kill -9 $$",
+        kind: FailureKind::Killed,
+        rows: false,
+    },
+    // Not on the last rung: what is replayed does not fit its finer mesh.
+    Fault {
+        script: "echo >> ../attempts; [ $(wc -l < ../attempts) -gt 3 ] || \
+                 head -c 150000 $output > window.dat; kill -9 $$",
+        kind: FailureKind::Killed,
+        rows: true,
+    },
+    Fault {
+        script: "sleep 1000 & sleep 1000",
+        kind: FailureKind::TimedOut,
+        rows: false,
+    },
+    // The last increment is missing, from its first heading on.
+    Fault {
+        script: "last=$(grep -n 'forces (fx' $output | tail -n 1 | cut -d: -f1); \
+                 head -n $((last - 1)) $output > window.dat; echo 'Job finished'; exit 0",
+        kind: FailureKind::OutputTruncated,
+        rows: true,
+    },
+    Fault {
+        script: "head -c 150000 $output > window.dat; echo 'Job finished'; exit 0",
+        kind: FailureKind::OutputTruncated,
+        rows: true,
+    },
+];
+
+/// The fault, only in the first attempt of each job.
+fn once(script: &str) -> String {
+    format!("if [ ! -e ../failed ]; then : > ../failed; {script}; fi")
+}
+
+#[test]
+fn a_fault_that_passes_leaves_no_trace() {
+    for Fault { script, .. } in FAULTS {
+        let folder = tempfile::tempdir().unwrap();
+        let mut campaign = campaign(RAYS);
+        campaign.time_limit = Duration::from_secs(2);
+        let tools = replaying(folder.path(), &once(script));
+        let tally = run_whole(&campaign, folder.path(), &tools);
+        assert_eq!(tally.complete, RAYS, "{script}");
+        assert_eq!(
+            timeless(&jobs(folder.path())),
+            timeless(&RECORDING.jobs),
+            "{script}"
+        );
+        assert_eq!(
+            left_running(folder.path()),
+            Vec::<PathBuf>::new(),
+            "{script}"
+        );
+    }
+}
+
+#[test]
+fn a_fault_that_stays_is_named_and_keeps_what_converged() {
+    for Fault { script, kind, rows } in FAULTS {
+        let folder = tempfile::tempdir().unwrap();
+        let mut campaign = campaign(RAYS);
+        campaign.time_limit = Duration::from_secs(2);
+        let tools = replaying(folder.path(), script);
+        let tally = run_whole(&campaign, folder.path(), &tools);
+        let (partial, failed) = if rows { (RAYS, 0) } else { (0, RAYS) };
+        assert_eq!((tally.partial, tally.failed), (partial, failed), "{script}");
+        assert_eq!(tally.failures[&kind], RAYS, "{script}");
+        let kept = jobs(folder.path());
+        assert_eq!(kept.len(), partial);
+        for (job, whole) in kept.iter().zip(&RECORDING.jobs) {
+            let samples = job.samples.len();
+            assert!(0 < samples && samples < whole.samples.len(), "{script}");
+            for (kept, solved) in job.samples.iter().zip(&whole.samples) {
+                assert_eq!(
+                    (kept.lambda, kept.w, kept.forces()),
+                    (solved.lambda, solved.w, solved.forces())
+                );
+            }
+            assert_eq!((&job.id, job.failure), (&whole.id, Some(kind)));
+        }
+        assert_eq!(
+            left_running(folder.path()),
+            Vec::<PathBuf>::new(),
+            "{script}"
+        );
+
+        // What failed for good is left alone, until it is reopened under better conditions.
+        let mended = replaying(folder.path(), "");
+        assert_eq!(run_whole(&campaign, folder.path(), &mended).complete, 0);
+        assert_eq!(
+            retry(folder.path(), Some(FailureKind::InvalidInput)).unwrap(),
+            0
+        );
+        assert_eq!(retry(folder.path(), Some(kind)).unwrap(), RAYS);
+        let why = plan(&campaign, folder.path(), &ToolVersions::of(&mended))
+            .unwrap()
+            .reasons;
+        assert_eq!(why[&format!("{kind}, next as-asked")], RAYS);
+        assert_eq!(run_whole(&campaign, folder.path(), &mended).complete, RAYS);
+        let mended: Vec<_> = timeless(&jobs(folder.path()));
+        assert_eq!(mended, timeless(&RECORDING.jobs), "{script}");
+    }
+}
+
+/// A full disk is no fault of the job: the run ends, and nothing is counted as failed.
+#[test]
+fn a_full_disk_ends_the_run_and_loses_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let full = "head -c 150000 $output > window.dat; \
+                echo 'Fortran runtime error: No space left on device'; exit 2";
+    let tools = replaying(folder.path(), full);
+    for _ in 0..2 {
+        let error = run_with(&TWO_WORKERS, &campaign(RAYS), folder.path(), &tools).unwrap_err();
+        assert!(matches!(error, CampaignError::Halted { .. }), "{error}");
+        assert!(error.to_string().contains("No space left"), "{error}");
+        assert_eq!(status(folder.path()).unwrap().tally.open, RAYS);
+    }
+    let tools = replaying(folder.path(), "");
+    assert_eq!(
+        run_whole(&campaign(RAYS), folder.path(), &tools).complete,
+        RAYS
+    );
+    assert_eq!(timeless(&jobs(folder.path())), timeless(&RECORDING.jobs));
+}
+
+#[test]
+fn time_that_a_solver_spent_in_vain_is_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut campaign = campaign(1);
+    campaign.time_limit = Duration::from_millis(600);
+    let tools = replaying(folder.path(), "while true; do :; done");
+    let tally = run_whole(&campaign, folder.path(), &tools);
+    assert_eq!(tally.failures[&FailureKind::TimedOut], 1);
+    assert!(
+        0.1 < tally.cpu_seconds && tally.cpu_seconds < tally.wall_seconds,
+        "{tally:?}"
+    );
+}
+
+#[test]
+fn shards_run_at_once_and_add_up() {
+    let folder = tempfile::tempdir().unwrap();
+    let (folder, tools) = (folder.path(), replaying(folder.path(), "sleep 0.2"));
+    let shard = |text: &str| RunOptions {
+        shard: text.parse().unwrap(),
+        ..TWO_WORKERS
+    };
+    std::thread::scope(|scope| {
+        let run = |text| run_with(&shard(text), &campaign(RAYS), folder, &tools);
+        let first = scope.spawn(move || run("1/2"));
+        let second = scope.spawn(move || run("2/2"));
+        // Once both are at work, no division that overlaps is let in.
+        let history = |name: &str| folder.join(name).exists();
+        while !history("events-1-of-2.jsonl") || !history("events-2-of-2.jsonl") {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        for text in ["1/2", "2/2", "1/1", "3/3"] {
+            let error = run(text).unwrap_err();
+            assert!(matches!(error, CampaignError::Locked(_)), "{text}: {error}");
+        }
+        assert!(matches!(retry(folder, None), Err(CampaignError::Locked(_))));
+        assert_eq!(first.join().unwrap().unwrap().complete, 2);
+        assert_eq!(second.join().unwrap().unwrap().complete, 1);
+    });
+    assert_eq!(timeless(&jobs(folder)), timeless(&RECORDING.jobs));
+    // Whoever comes later finds everything done.
+    assert_eq!(run_whole(&campaign(RAYS), folder, &tools).complete, RAYS);
+    assert_eq!(
+        std::fs::read(folder.join("events-1-of-1.jsonl")).unwrap(),
+        b""
+    );
+}
+
+#[test]
+fn after_the_time_limit_nothing_starts_and_nothing_is_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    let (folder, tools) = (folder.path(), replaying(folder.path(), "sleep 0.5"));
+    let short = RunOptions {
+        shard: Shard::WHOLE,
+        workers: 1,
+        time_limit: Some(Duration::from_millis(100)),
+    };
+    for done in 1..=RAYS {
+        let tally = run_with(&short, &campaign(RAYS), folder, &tools).unwrap();
+        assert_eq!((tally.complete, tally.open), (done, RAYS - done));
+    }
+}
+
+#[test]
+fn what_was_collected_is_not_solved_again() {
+    let solved = &RECORDING.jobs;
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // One of the rays ended early, on a finer tier.
+    let mut collected = solved.clone();
+    collected[1].failure = Some(FailureKind::Diverged);
+    collected[1].solved_tier = collected[1].tier.finer().unwrap();
+    collected[1].samples.pop();
+    assert_eq!(
+        restore(&campaign(RAYS), folder, &collected[..2]).unwrap(),
+        2
+    );
+    assert_eq!(jobs(folder), collected[..2]);
+    assert_eq!(restore(&campaign(RAYS), folder, &collected).unwrap(), 1);
+    assert_eq!(jobs(folder), collected);
+
+    let broken = replaying(folder, "exit 1");
+    let tally = run_whole(&campaign(RAYS), folder, &broken);
+    assert_eq!((tally.complete, tally.partial), (2, 1));
+    assert_eq!(jobs(folder), collected);
+
+    let mut other = campaign(RAYS);
+    other.material.young += 1.0;
+    let error = restore(&other, folder, &collected).unwrap_err();
+    assert!(matches!(error, CampaignError::Stranger(_)), "{error}");
+}
+
+/// Working folders under `folder` of processes that still run, given a moment to die of SIGKILL.
+fn left_running(folder: &Path) -> Vec<PathBuf> {
+    let running = || -> Vec<PathBuf> {
+        let processes = std::fs::read_dir("/proc").unwrap().flatten();
+        processes
+            .filter_map(|process| std::fs::read_link(process.path().join("cwd")).ok())
+            .filter(|cwd| cwd.starts_with(folder))
+            .collect()
+    };
+    let deadline = Instant::now() + Duration::from_secs(5);
+    while !running().is_empty() && Instant::now() < deadline {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    running()
+}

@@ -1,0 +1,35 @@
+//! `kirigami database restore`
+
+use super::CampaignArgs;
+use super::rows::jobs_of;
+use anyhow::Result;
+use clap::Args;
+use dataset::Database;
+use std::path::PathBuf;
+
+/// Write the folders of jobs back from a database that was collected from them
+///
+/// A run then solves only what the database does not hold. The jobs must be the campaign's, solved
+/// with the same settings and versions of gmsh and ccx.
+#[derive(Args)]
+pub struct RestoreCommand {
+    #[command(flatten)]
+    campaign: CampaignArgs,
+    /// The database: a Parquet file, with its manifest beside it
+    #[arg(long, value_name = "FILE")]
+    from: PathBuf,
+}
+
+impl RestoreCommand {
+    pub fn run(&self) -> Result<()> {
+        let jobs = jobs_of(Database::read(&self.from)?.rows())?;
+        let folder = self.campaign.folder();
+        let restored = fe_driver::restore(&self.campaign.load()?, &folder, &jobs)?;
+        println!(
+            "{restored} rays restored to {}; {} were there",
+            folder.display(),
+            jobs.len() - restored
+        );
+        Ok(())
+    }
+}

@@ -1,0 +1,78 @@
+//! `kirigami database run`
+
+use super::{CampaignArgs, print_tally, processors};
+use crate::interrupt;
+use crate::progress;
+use anyhow::{Result, bail};
+use clap::Args;
+use fe_driver::{RunOptions, Shard, Tools};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Solve what is not solved yet
+///
+/// Ends with code 0 when nothing is left to solve, 75 when it was stopped before, by Ctrl-C or at
+/// its time limit: run it again to go on.
+#[derive(Args)]
+pub struct RunCommand {
+    #[command(flatten)]
+    campaign: CampaignArgs,
+    /// Solves at a time [default: one for each processor]
+    #[arg(long, value_name = "N")]
+    jobs: Option<usize>,
+    /// Solve only the i-th of n parts; the parts of one folder may run at once
+    #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE)]
+    shard: Shard,
+    /// Start no solve after this time (minutes); those in flight are finished
+    #[arg(long, value_name = "MINUTES", value_parser = minutes)]
+    time_limit: Option<Duration>,
+}
+
+/// A run that ended before its work did.
+#[derive(Debug, thiserror::Error)]
+#[error("stopped with {0} rays left; run again to go on")]
+pub struct Unfinished(usize);
+
+impl RunCommand {
+    pub fn new(campaign: PathBuf, folder: PathBuf) -> Self {
+        let campaign = CampaignArgs {
+            campaign,
+            folder: Some(folder),
+        };
+        Self {
+            campaign,
+            jobs: None,
+            shard: Shard::WHOLE,
+            time_limit: None,
+        }
+    }
+
+    pub fn run(&self) -> Result<()> {
+        let (campaign, folder) = (self.campaign.load()?, self.campaign.folder());
+        let tools = Tools::find()?;
+        let stop = interrupt::stop_flag()?;
+        let options = RunOptions {
+            shard: self.shard,
+            workers: self.jobs.unwrap_or_else(processors),
+            time_limit: self.time_limit,
+        };
+        let bar = progress::bar(campaign.count, "rays");
+        let end = fe_driver::run(&campaign, &folder, &tools, &options, stop, &mut |now| {
+            let tally = &now.tally;
+            let message = format!("{} samples, {} failed", tally.rows, tally.failed);
+            bar.set_length((tally.closed() + tally.to_run()) as u64);
+            progress::show(&bar, tally.closed(), now.seconds_left, &message);
+        })?;
+        bar.finish_and_clear();
+        print_tally(&end.tally);
+        if end.tally.to_run() > 0 {
+            bail!(Unfinished(end.tally.to_run()));
+        }
+        Ok(())
+    }
+}
+
+fn minutes(text: &str) -> Result<Duration, String> {
+    let minutes: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    Duration::try_from_secs_f64(60.0 * minutes).map_err(|error| error.to_string())
+}

@@ -1,0 +1,37 @@
+//! `kirigami database status`
+
+use super::{CampaignArgs, print_tally};
+use anyhow::Result;
+use clap::Args;
+
+/// Show how the jobs of a campaign stand, why jobs failed, and the throughput
+#[derive(Args)]
+pub struct StatusCommand {
+    #[command(flatten)]
+    campaign: CampaignArgs,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+impl StatusCommand {
+    pub fn run(&self) -> Result<()> {
+        let status = fe_driver::status(&self.campaign.folder())?;
+        if self.json {
+            println!("{}", serde_json::to_string_pretty(&status)?);
+            return Ok(());
+        }
+        print_tally(&status.tally);
+        if let Some(pace) = &status.throughput {
+            println!(
+                "{:.0} rays and {:.0} samples an hour of one processor; {:.2} CPU s a sample; \
+                 {:.1} % of the time outside the solver",
+                pace.rays_per_hour,
+                pace.samples_per_hour,
+                pace.cpu_seconds_per_sample,
+                100.0 * pace.overhead
+            );
+        }
+        Ok(())
+    }
+}
