@@ -1,6 +1,7 @@
 //! `kirigami design`: cut pattern and ligament widths for a scene, and the files to cut it by.
 
-use crate::{interrupt, picture, progress};
+use crate::progress::Progress;
+use crate::{interrupt, picture, run_folder};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use design::inverse_design::{Ended, StepRecord, forget, inverse_design};
@@ -53,11 +54,12 @@ impl DesignCommand {
 
     pub fn run(&self) -> Result<()> {
         let scene = self.scene()?;
+        let _held = run_folder::hold(&scene.output())?;
         if self.restart {
             forget(&scene)?;
         }
         let stop = interrupt::stop_flag()?;
-        let bar = progress::bar(scene.config.optimiser.steps, "design steps");
+        let bar = Progress::new(scene.config.optimiser.steps, "design steps");
         let designed = inverse_design(&scene, stop, &mut |step: &StepRecord| {
             let message = format!(
                 "loss {:.4}, outline {:.2} mm, {:.0} % inside the domain",
@@ -65,9 +67,9 @@ impl DesignCommand {
                 step.outline_error,
                 100.0 * step.share_inside
             );
-            progress::show(&bar, step.step, None, &message);
+            bar.show(step.step, None, &message);
         })?;
-        bar.finish_and_clear();
+        bar.finish();
         let report = write_results(&scene, &designed)?;
         rasterise(&scene.output())?;
         if self.json {

@@ -1,10 +1,18 @@
-//! Ctrl-C: ask for a clean stop; ask again to leave at once.
+//! Signals. Ctrl-C: ask for a clean stop; ask again to leave at once.
 
 use anyhow::{Context, Result};
+use nix::sys::signal::{SigHandler, Signal, signal};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static LISTENING: AtomicBool = AtomicBool::new(false);
 static STOP: AtomicBool = AtomicBool::new(false);
+
+/// Ends the program when the reader of its output has gone, as in `kirigami solve | head`, where a
+/// Rust program would panic.
+pub fn end_quietly_when_nobody_reads() {
+    // SAFETY: the default action is no handler, so nothing of ours runs in signal context.
+    let _ = unsafe { signal(Signal::SIGPIPE, SigHandler::SigDfl) };
+}
 
 /// A flag that the first Ctrl-C (or SIGTERM) sets; the second ends the program.
 pub fn stop_flag() -> Result<&'static AtomicBool> {

@@ -9,6 +9,7 @@ mod interrupt;
 mod mesh;
 mod picture;
 mod progress;
+mod run_folder;
 mod solve;
 mod table;
 mod train;
@@ -41,6 +42,7 @@ enum Command {
 const UNFINISHED: u8 = 75;
 
 fn main() -> ExitCode {
+    interrupt::end_quietly_when_nobody_reads();
     let result = match Cli::parse().command {
         Command::Demo(command) => command.run(),
         Command::Doctor(command) => command.run(),

@@ -1,8 +1,8 @@
 //! `kirigami mesh`: the finite-element mesh of one hinge window, to look at.
 
-use crate::picture;
+use crate::{picture, run_folder};
 use crate::window_args::WindowArgs;
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::Args;
 use mesher::{Gmsh, Tier, mesh_window, plane_mesh_svg};
 use serde_json::json;
@@ -33,8 +33,7 @@ pub struct MeshCommand {
 impl MeshCommand {
     pub fn run(&self) -> Result<()> {
         let design = self.window.design()?;
-        std::fs::create_dir_all(&self.out)
-            .with_context(|| format!("cannot make the folder {}", self.out.display()))?;
+        let _held = run_folder::hold(&self.out)?;
         let gmsh = Gmsh::find()?;
         let mesh = mesh_window(&design, self.thickness, self.tier, &self.out, &gmsh)?;
         let quality = mesh.quality()?;

@@ -1,22 +1,59 @@
-//! Progress with time left, silent when standard error is not a terminal.
+//! Progress with time left: a bar on a terminal, else a line a minute.
 
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
-use std::time::Duration;
+use std::cell::Cell;
+use std::time::{Duration, Instant};
 
-/// A bar of `total` units of `what`; [`show`] moves it.
-pub fn bar(total: usize, what: &'static str) -> ProgressBar {
-    let style = ProgressStyle::with_template("{prefix:>14} [{bar:30}] {pos}/{len}  {wide_msg}")
-        .expect("the template is a constant");
-    ProgressBar::new(total as u64)
-        .with_style(style.progress_chars("=> "))
-        .with_prefix(what)
+/// How often a run that nobody watches says where it is.
+const LINE_EVERY: Duration = Duration::from_secs(60);
+
+/// Progress of a task of known length.
+pub struct Progress {
+    bar: ProgressBar,
+    what: &'static str,
+    last_line: Cell<Instant>,
 }
 
-/// Moves the bar to `done` and shows the time left, by the bar's own estimate if none is given.
-pub fn show(bar: &ProgressBar, done: usize, seconds_left: Option<f64>, message: &str) {
-    bar.set_position(done as u64);
-    let left = seconds_left.map_or_else(|| bar.eta(), Duration::from_secs_f64);
-    bar.set_message(format!("{} left  {message}", HumanDuration(left)));
+impl Progress {
+    /// A task of `total` units of `what`.
+    pub fn new(total: usize, what: &'static str) -> Self {
+        let style = ProgressStyle::with_template("{prefix:>14} [{bar:30}] {pos}/{len}  {wide_msg}")
+            .expect("the template is a constant");
+        let bar = ProgressBar::new(total as u64)
+            .with_style(style.progress_chars("=> "))
+            .with_prefix(what);
+        Self {
+            bar,
+            what,
+            last_line: Cell::new(Instant::now()),
+        }
+    }
+
+    /// For a task whose length shows only as it begins.
+    pub fn set_total(&self, total: usize) {
+        self.bar.set_length(total as u64);
+    }
+
+    /// `done` units are done; the time left is the bar's own estimate if none is given.
+    pub fn show(&self, done: usize, seconds_left: Option<f64>, message: &str) {
+        self.bar.set_position(done as u64);
+        let left = seconds_left.map_or_else(|| self.bar.eta(), Duration::from_secs_f64);
+        let message = match left.as_secs() {
+            0 => message.to_owned(),
+            _ => format!("{} left  {message}", HumanDuration(left)),
+        };
+        if self.bar.is_hidden() && self.last_line.get().elapsed() > LINE_EVERY {
+            self.last_line.set(Instant::now());
+            let total = self.bar.length().unwrap_or_default();
+            eprintln!("{} {done}/{total}  {message}", self.what);
+        }
+        self.bar.set_message(message);
+    }
+
+    /// Clears the bar.
+    pub fn finish(self) {
+        self.bar.finish_and_clear();
+    }
 }
 
 /// Seconds for people.

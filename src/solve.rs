@@ -1,9 +1,9 @@
 //! `kirigami solve`: one window solved along one ray, with a table of what it says.
 
-use crate::interrupt;
+use crate::{interrupt, run_folder};
 use crate::table::table;
 use crate::window_args::WindowArgs;
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use clap::Args;
 use comfy_table::Table;
 use fe_driver::{Ray, StepControl, Tools, WindowProblem, solve_window};
@@ -84,8 +84,7 @@ impl SolveCommand {
             tier: self.tier,
             step: StepControl::default(),
         };
-        std::fs::create_dir_all(&self.out)
-            .with_context(|| format!("cannot make the folder {}", self.out.display()))?;
+        let _held = run_folder::hold(&self.out)?;
         let limit = Duration::from_secs(self.time_limit_s);
         let stop = interrupt::stop_flag()?;
         let solution = solve_window(&problem, &Tools::find()?, &self.out, limit, stop)?;

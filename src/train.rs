@@ -2,7 +2,8 @@
 
 use crate::charts::{self, ParityChart};
 use crate::table::table;
-use crate::{picture, progress};
+use crate::picture;
+use crate::progress::Progress;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use comfy_table::Table;
@@ -69,15 +70,15 @@ impl TrainCommand {
             std::fs::create_dir_all(folder)
                 .with_context(|| format!("cannot make the folder {}", folder.display()))?;
         }
-        let bar = progress::bar(config.epochs, "epochs");
+        let bar = Progress::new(config.epochs, "epochs");
         let trained = train::train(&database, &config, self.backend, &mut |epoch: &Epoch| {
             let message = format!(
                 "loss {:.2e}, validation {:.2e}",
                 epoch.training_loss, epoch.validation_loss
             );
-            progress::show(&bar, epoch.epoch, None, &message);
+            bar.show(epoch.epoch, None, &message);
         })?;
-        bar.finish_and_clear();
+        bar.finish();
         trained.surrogate.save(&self.out)?;
         self.write_curve(&trained.history)?;
         picture::save(

@@ -2,8 +2,8 @@
 
 use super::{CampaignArgs, print_tally, processors};
 use crate::interrupt;
-use crate::progress;
-use anyhow::{Result, bail};
+use crate::progress::Progress;
+use anyhow::{Result, bail, ensure};
 use clap::Args;
 use fe_driver::{RunOptions, Shard, Tools};
 use std::path::PathBuf;
@@ -56,18 +56,23 @@ impl RunCommand {
             workers: self.jobs.unwrap_or_else(processors),
             time_limit: self.time_limit,
         };
-        let bar = progress::bar(campaign.count, "rays");
+        let bar = Progress::new(campaign.count, "rays");
         let end = fe_driver::run(&campaign, &folder, &tools, &options, stop, &mut |now| {
             let tally = &now.tally;
             let message = format!("{} samples, {} failed", tally.rows, tally.failed);
-            bar.set_length((tally.closed() + tally.to_run()) as u64);
-            progress::show(&bar, tally.closed(), now.seconds_left, &message);
+            bar.set_total(tally.closed() + tally.to_run());
+            bar.show(tally.closed(), now.seconds_left, &message);
         })?;
-        bar.finish_and_clear();
+        bar.finish();
         print_tally(&end.tally);
         if end.tally.to_run() > 0 {
             bail!(Unfinished(end.tally.to_run()));
         }
+        ensure!(
+            end.tally.complete + end.tally.partial > 0,
+            "every ray failed: look at a job's log in {}, then `kirigami database retry`",
+            folder.join("jobs").display()
+        );
         Ok(())
     }
 }
