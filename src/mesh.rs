@@ -1,7 +1,7 @@
 //! `kirigami mesh`: the finite-element mesh of one hinge window, to look at.
 
-use crate::{picture, run_folder};
 use crate::window_args::WindowArgs;
+use crate::{picture, run_folder};
 use anyhow::Result;
 use clap::Args;
 use mesher::{Gmsh, Tier, mesh_window, plane_mesh_svg};
@@ -13,6 +13,7 @@ use std::path::PathBuf;
 /// Writes gmsh's script and mesh and a picture of the plane mesh, and prints the mesh's size and
 /// quality. Example: kirigami mesh --w-lig 18 --alpha-deg 60 --tier default
 #[derive(Args)]
+#[command(allow_negative_numbers = true)]
 pub struct MeshCommand {
     #[command(flatten)]
     window: WindowArgs,

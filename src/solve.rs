@@ -1,8 +1,8 @@
 //! `kirigami solve`: one window solved along one ray, with a table of what it says.
 
-use crate::{interrupt, run_folder};
 use crate::table::table;
 use crate::window_args::WindowArgs;
+use crate::{interrupt, run_folder};
 use anyhow::{Result, bail};
 use clap::Args;
 use comfy_table::Table;
@@ -19,32 +19,18 @@ use std::time::Duration;
 /// deformation; every converged increment is a row. Example, the paper's hinge folded to 45 degrees:
 /// kirigami solve --theta-deg 45 --tier tiny
 #[derive(Args)]
+#[command(allow_negative_numbers = true)]
 pub struct SolveCommand {
     #[command(flatten)]
     window: WindowArgs,
     /// Relative rotation at the end of the ray (degrees); positive opens the main cut
-    #[arg(
-        long,
-        value_name = "DEG",
-        default_value_t = 60.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "DEG", default_value_t = 60.0)]
     theta_deg: f64,
     /// Axial opening at the end of the ray, over the ligament width; negative in compression
-    #[arg(
-        long,
-        value_name = "RATIO",
-        default_value_t = 0.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "RATIO", default_value_t = 0.0)]
     eta_a: f64,
     /// Shear at the end of the ray, over the ligament width
-    #[arg(
-        long,
-        value_name = "RATIO",
-        default_value_t = 0.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "RATIO", default_value_t = 0.0)]
     eta_s: f64,
     /// Sheet material (TOML)
     #[arg(

@@ -1,9 +1,9 @@
 //! `kirigami train`: from a hinge database to weights that `design` reads.
 
 use crate::charts::{self, ParityChart};
-use crate::table::table;
 use crate::picture;
 use crate::progress::Progress;
+use crate::table::table;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use comfy_table::Table;

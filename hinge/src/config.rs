@@ -78,7 +78,7 @@ fn nearest(key: &str, known: &[String]) -> Option<String> {
     known
         .iter()
         .map(|candidate| (strsim::jaro_winkler(key, candidate), candidate))
-        .filter(|(likeness, _)| *likeness > 0.6)
+        .filter(|(likeness, _)| *likeness > 0.8)
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, candidate)| candidate.clone())
 }
