@@ -5,12 +5,12 @@ use crate::gates::{Gates, Rejection};
 use crate::rows::Row;
 use crate::schema;
 use crate::split::{Split, SplitPlan, geometry};
-use hinge::TrainingDomain;
+use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Version of the database that this crate reads and writes.
-pub const FORMAT_VERSION: u32 = 1;
+pub const FORMAT_VERSION: u32 = 2;
 
 /// Everything about a database but its rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,12 +35,8 @@ pub struct Manifest {
     pub rejected: BTreeMap<Rejection, usize>,
     pub material: String,
     pub tier: String,
-    /// Hinge constants that all rows share.
-    pub fillet_ratio: f64,
-    /// mm
-    pub kerf: f64,
-    /// mm
-    pub r_win: f64,
+    /// What all hinges share.
+    pub hinge: HingeConstants,
     /// Versions of the tools that made the rows.
     pub gmsh: BTreeSet<String>,
     pub ccx: BTreeSet<String>,
@@ -89,9 +85,7 @@ impl Manifest {
             rejected,
             material: first.material.clone(),
             tier: first.tier.clone(),
-            fillet_ratio: first.design.fillet_ratio,
-            kerf: first.design.kerf,
-            r_win: first.design.r_win,
+            hinge: first.design.constants(),
             gmsh: rows.iter().map(|row| row.gmsh.clone()).collect(),
             ccx: rows.iter().map(|row| row.ccx.clone()).collect(),
             domain,

@@ -201,7 +201,7 @@ fn a_missing_malformed_or_later_manifest_is_refused() {
     let (_folder, path, _) = written();
     let manifest = path.with_extension("json");
     let text = std::fs::read_to_string(&manifest).unwrap();
-    let later = text.replace("\"format_version\": 1", "\"format_version\": 9");
+    let later = text.replace("\"format_version\": 2", "\"format_version\": 9");
     std::fs::write(&manifest, later).unwrap();
     let error = Database::read(&path).unwrap_err();
     assert!(

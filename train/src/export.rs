@@ -34,10 +34,8 @@ mod tests {
     use crate::validation::Parity;
     use burn::tensor::{DType, TensorCreationOptions};
     use dataset::Row;
-    use hinge::{HingeDesign, HingeSample, TrainingDomain};
-    use surrogate::{
-        Card, FEATURE_NAMES, FORMAT_VERSION, HingeConstants, Surrogate, TestErrors, UNITS,
-    };
+    use hinge::{HingeConstants, HingeDesign, HingeSample, TrainingDomain};
+    use surrogate::{Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS};
 
     fn row(index: usize) -> Row {
         let wave = |speed: f64| (speed * index as f64 + 0.3).sin();

@@ -18,8 +18,7 @@ use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 use std::time::Instant;
 use surrogate::{
-    Card, FEATURE_NAMES, FORMAT_VERSION, HingeConstants, InvalidWeights, Surrogate, TestErrors,
-    UNITS,
+    Card, FEATURE_NAMES, FORMAT_VERSION, InvalidWeights, Surrogate, TestErrors, UNITS,
 };
 
 /// Why a training gave no surrogate.
@@ -255,11 +254,7 @@ fn card(
         energy_scale: scales.energy,
         damage_scale: scales.damage,
         domain: domain.ok_or(TrainError::NoRows { part: "training" })?,
-        hinge: HingeConstants {
-            fillet_ratio: manifest.fillet_ratio,
-            kerf: manifest.kerf,
-            r_win: manifest.r_win,
-        },
+        hinge: manifest.hinge,
         material: manifest.material.clone(),
         tier: manifest.tier.clone(),
         dataset_hash: manifest.hash.clone(),
