@@ -33,6 +33,7 @@ pub struct Manifest {
     pub gates: Gates,
     /// Number of rejected rows by reason.
     pub rejected: BTreeMap<Rejection, usize>,
+    /// All of them, where they were mixed: "a + b".
     pub material: String,
     pub tier: String,
     /// What all hinges share.
@@ -83,8 +84,8 @@ impl Manifest {
             cpu_s: rays.values().map(|row| row.cpu_s).sum(),
             gates: *gates,
             rejected,
-            material: first.material.clone(),
-            tier: first.tier.clone(),
+            material: every(rows, |row| &row.material),
+            tier: every(rows, |row| &row.tier),
             hinge: first.design.constants(),
             gmsh: rows.iter().map(|row| row.gmsh.clone()).collect(),
             ccx: rows.iter().map(|row| row.ccx.clone()).collect(),
@@ -94,4 +95,10 @@ impl Manifest {
             split,
         })
     }
+}
+
+/// The different texts of the rows.
+fn every(rows: &[Row], text: fn(&Row) -> &String) -> String {
+    let different: BTreeSet<&str> = rows.iter().map(|row| text(row).as_str()).collect();
+    different.into_iter().collect::<Vec<_>>().join(" + ")
 }

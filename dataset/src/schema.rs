@@ -10,14 +10,14 @@ pub(crate) struct Number {
     pub name: &'static str,
     pub unit: &'static str,
     pub get: fn(&Row) -> f64,
-    set: fn(&mut Row, f64),
+    pub set: fn(&mut Row, f64),
 }
 
 /// A column of text that a row holds.
-struct Text {
-    name: &'static str,
+pub(crate) struct Text {
+    pub name: &'static str,
     get: fn(&Row) -> &str,
-    set: fn(&mut Row, String),
+    pub set: fn(&mut Row, String),
 }
 
 macro_rules! numbers {
@@ -66,12 +66,12 @@ pub(crate) const NUMBERS: [Number; 22] = numbers! {
     "cpu_s" ["s"] = cpu_s;
 };
 
-const TEXTS: [Text; 5] = texts! { job material tier gmsh ccx };
+pub(crate) const TEXTS: [Text; 5] = texts! { job material tier gmsh ccx };
 
 /// The ratios of (13), written for whoever reads the table and computed again when it is read.
 const RATIOS: [&str; 2] = ["eta_a", "eta_s"];
 
-const PARTIAL: &str = "partial";
+pub(crate) const PARTIAL: &str = "partial";
 
 /// The unit of every column that has one.
 pub(crate) fn units() -> impl Iterator<Item = (&'static str, &'static str)> {
@@ -131,7 +131,7 @@ pub(crate) fn from_frame(frame: &DataFrame) -> Result<Vec<Row>, DatasetError> {
     }
 }
 
-fn fill<T>(
+pub(crate) fn fill<T>(
     rows: &mut [Row],
     column: &'static str,
     values: impl IntoIterator<Item = Option<T>>,
@@ -144,7 +144,7 @@ fn fill<T>(
 }
 
 /// A row to fill.
-fn blank() -> Row {
+pub(crate) fn blank() -> Row {
     Row {
         job: String::new(),
         design: HingeDesign {

@@ -163,6 +163,7 @@ fn learned() -> SurrogateLaw {
         material: "none".into(),
         tier: "none".into(),
         dataset_hash: "none".into(),
+        fine_tuned_from: None,
         split_hash: "none".into(),
         training: Default::default(),
         test_errors: TestErrors::default(),

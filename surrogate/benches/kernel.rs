@@ -111,6 +111,7 @@ fn card() -> Card {
         material: "benchmark".into(),
         tier: "none".into(),
         dataset_hash: "none".into(),
+        fine_tuned_from: None,
         split_hash: "none".into(),
         training: Default::default(),
         test_errors: TestErrors::default(),

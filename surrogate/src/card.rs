@@ -42,6 +42,9 @@ pub struct Card {
     pub tier: String,
     /// Hash of the database file.
     pub dataset_hash: String,
+    /// Hash of the database of the weights that the training began from, if any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fine_tuned_from: Option<String>,
     /// Hash of the split into training, validation and test.
     pub split_hash: String,
     /// The training configuration, as it was read.

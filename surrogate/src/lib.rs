@@ -89,6 +89,11 @@ impl Surrogate {
         &self.card
     }
 
+    /// The layers of chi and of chi_D, as they are written.
+    pub fn layers(&self) -> [&[Layer]; 2] {
+        [self.chi.layers(), self.chi_d.layers()]
+    }
+
     /// The box of hinge states in the training data.
     pub fn domain(&self) -> &TrainingDomain {
         &self.card.domain
