@@ -5,7 +5,7 @@ use crate::manifest::{FORMAT_VERSION, Manifest};
 use crate::rows::Row;
 use crate::split::{Part, SplitPlan};
 use crate::{parquet, schema};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Why rows do not make a database, or a database could not be read or written.
@@ -15,7 +15,7 @@ pub enum DatasetError {
     NoRows { rejected: usize },
     #[error(
         "job {job}: {column} = {found}, but other rows have {expected}; \
-         collect each in a database of its own"
+         keep each in a database of its own, or say that materials and tiers may be mixed"
     )]
     Mixed {
         job: String,
@@ -36,6 +36,19 @@ pub enum DatasetError {
     Shares { validation: f64, test: f64 },
     #[error("column `{column}` has no value in row {index}")]
     Gap { column: &'static str, index: usize },
+    #[error(
+        "there is no column `{column}`: name the one that holds it under [columns], or its value \
+         under [constants]"
+    )]
+    NoColumn { column: String },
+    #[error("column `{column}`, row {index}: `{text}` is not a number")]
+    NotANumber {
+        column: &'static str,
+        index: usize,
+        text: String,
+    },
+    #[error("the column map names `{key}`, which is no column of a database, or of another kind")]
+    ColumnMap { key: String },
     #[error("job {job}, lambda = {lambda}: a number of the row is not finite")]
     NotFinite { job: String, lambda: f64 },
     #[error("cannot read {path}: {source}", path = .path.display())]
@@ -96,6 +109,50 @@ impl Database {
     ///
     /// Refuses rows of different materials, tiers or hinge constants.
     pub fn collect(rows: Vec<Row>, gates: &Gates, plan: &SplitPlan) -> Result<Self, DatasetError> {
+        Self::assemble(rows, gates, plan, Mixing::Refused)
+    }
+
+    /// Several databases as one, split anew.
+    ///
+    /// A job that stands in more than one is taken once. Materials and tiers may be mixed if told
+    /// so, hinge constants never: no feature of the surrogate tells them apart.
+    pub fn merge(
+        databases: &[Self],
+        plan: &SplitPlan,
+        mixing: Mixing,
+    ) -> Result<Self, DatasetError> {
+        let mut rows: Vec<Row> = Vec::new();
+        let mut jobs: BTreeSet<&str> = BTreeSet::new();
+        let mut rejected: BTreeMap<Rejection, usize> = BTreeMap::new();
+        let mut gates = Gates {
+            energy_residual_max: 0.0,
+        };
+        for database in databases {
+            let new = |row: &&Row| !jobs.contains(row.job.as_str());
+            rows.extend(database.rows.iter().filter(new).cloned());
+            jobs.extend(database.rows.iter().map(|row| row.job.as_str()));
+            for (reason, count) in &database.manifest.rejected {
+                *rejected.entry(*reason).or_default() += count;
+            }
+            let limit = database.manifest.gates.energy_residual_max;
+            gates.energy_residual_max = gates.energy_residual_max.max(limit);
+        }
+        let mut merged = Self::assemble(rows, &gates, plan, mixing)?;
+        merged.manifest.rejected = rejected;
+        Ok(merged)
+    }
+
+    /// The same rows split by another plan.
+    pub fn split(&self, plan: &SplitPlan) -> Result<Self, DatasetError> {
+        Self::merge(std::slice::from_ref(self), plan, Mixing::Allowed)
+    }
+
+    fn assemble(
+        rows: Vec<Row>,
+        gates: &Gates,
+        plan: &SplitPlan,
+        mixing: Mixing,
+    ) -> Result<Self, DatasetError> {
         let mut rejected: BTreeMap<Rejection, usize> = BTreeMap::new();
         let mut rows: Vec<Row> = rows
             .into_iter()
@@ -111,7 +168,7 @@ impl Database {
             let by_lambda = || left.sample.lambda.total_cmp(&right.sample.lambda);
             left.job.cmp(&right.job).then_with(by_lambda)
         });
-        refuse_mixed(&rows)?;
+        refuse_mixed(&rows, mixing)?;
         refuse_duplicates(&rows)?;
         let parquet = parquet::encode(schema::to_frame(&rows)?)?;
         let hash = parquet::hash(&parquet);
@@ -153,16 +210,27 @@ impl Database {
     }
 }
 
+/// Whether the rows of a database may be of different materials or mesh tiers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mixing {
+    Refused,
+    Allowed,
+}
+
 /// What all rows must share: a surrogate knows none of it.
-fn refuse_mixed(rows: &[Row]) -> Result<(), DatasetError> {
+fn refuse_mixed(rows: &[Row], mixing: Mixing) -> Result<(), DatasetError> {
     let shared = |row: &Row| {
-        [
-            ("material", row.material.clone()),
-            ("tier", row.tier.clone()),
+        let constants = [
             ("fillet_ratio", row.design.fillet_ratio.to_string()),
             ("kerf", format!("{} mm", row.design.kerf)),
             ("r_win", format!("{} mm", row.design.r_win)),
-        ]
+        ];
+        let mixable = [
+            ("material", row.material.clone()),
+            ("tier", row.tier.clone()),
+        ];
+        let mixable = mixable.into_iter().filter(|_| mixing == Mixing::Refused);
+        mixable.chain(constants).collect::<Vec<_>>()
     };
     let Some(first) = rows.first().map(shared) else {
         return Ok(());

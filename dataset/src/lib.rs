@@ -13,8 +13,10 @@
 //! | `mirror` | the mirror image of a row |
 //! | `manifest` | what stands beside the Parquet file |
 //! | `parquet` | reading and writing |
-//! | `summary` | counts and ranges, to print |
+//! | `csv` | CSV, also of other solvers |
+//! | `summary` | counts, ranges, histograms and coverage, to print |
 
+mod csv;
 mod database;
 mod gates;
 mod manifest;
@@ -25,9 +27,11 @@ mod schema;
 mod split;
 mod summary;
 
-pub use database::{Database, DatasetError};
+pub use csv::{ColumnMap, Constant, rows_from_csv};
+pub use database::{Database, DatasetError, Mixing};
 pub use gates::{Gates, Rejection};
 pub use manifest::{FORMAT_VERSION, Manifest};
 pub use mirror::with_mirrored;
 pub use rows::Row;
 pub use split::{Part, Split, SplitPlan};
+pub use summary::Details;

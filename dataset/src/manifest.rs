@@ -5,7 +5,7 @@ use crate::gates::{Gates, Rejection};
 use crate::rows::Row;
 use crate::schema;
 use crate::split::{Split, SplitPlan, geometry};
-use hinge::TrainingDomain;
+use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -33,14 +33,11 @@ pub struct Manifest {
     pub gates: Gates,
     /// Number of rejected rows by reason.
     pub rejected: BTreeMap<Rejection, usize>,
+    /// All of them, where they were mixed: "a + b".
     pub material: String,
     pub tier: String,
-    /// Hinge constants that all rows share.
-    pub fillet_ratio: f64,
-    /// mm
-    pub kerf: f64,
-    /// mm
-    pub r_win: f64,
+    /// What all hinges share.
+    pub hinge: HingeConstants,
     /// Versions of the tools that made the rows.
     pub gmsh: BTreeSet<String>,
     pub ccx: BTreeSet<String>,
@@ -87,11 +84,9 @@ impl Manifest {
             cpu_s: rays.values().map(|row| row.cpu_s).sum(),
             gates: *gates,
             rejected,
-            material: first.material.clone(),
-            tier: first.tier.clone(),
-            fillet_ratio: first.design.fillet_ratio,
-            kerf: first.design.kerf,
-            r_win: first.design.r_win,
+            material: every(rows, |row| &row.material),
+            tier: every(rows, |row| &row.tier),
+            hinge: first.design.constants(),
             gmsh: rows.iter().map(|row| row.gmsh.clone()).collect(),
             ccx: rows.iter().map(|row| row.ccx.clone()).collect(),
             domain,
@@ -100,4 +95,10 @@ impl Manifest {
             split,
         })
     }
+}
+
+/// The different texts of the rows.
+fn every(rows: &[Row], text: fn(&Row) -> &String) -> String {
+    let different: BTreeSet<&str> = rows.iter().map(|row| text(row).as_str()).collect();
+    different.into_iter().collect::<Vec<_>>().join(" + ")
 }

@@ -97,13 +97,9 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, DatasetError> {
     })
 }
 
-/// Writes beside the place and renames, so that no half-written file is ever found there.
 fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), DatasetError> {
-    let partial = path.with_added_extension("partial");
-    std::fs::write(&partial, bytes)
-        .and_then(|()| std::fs::rename(&partial, path))
-        .map_err(|source| DatasetError::Write {
-            path: path.to_owned(),
-            source,
-        })
+    hinge::files::write(path, bytes).map_err(|source| DatasetError::Write {
+        path: path.to_owned(),
+        source,
+    })
 }

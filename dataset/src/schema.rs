@@ -10,14 +10,14 @@ pub(crate) struct Number {
     pub name: &'static str,
     pub unit: &'static str,
     pub get: fn(&Row) -> f64,
-    set: fn(&mut Row, f64),
+    pub set: fn(&mut Row, f64),
 }
 
 /// A column of text that a row holds.
-struct Text {
-    name: &'static str,
+pub(crate) struct Text {
+    pub name: &'static str,
     get: fn(&Row) -> &str,
-    set: fn(&mut Row, String),
+    pub set: fn(&mut Row, String),
 }
 
 macro_rules! numbers {
@@ -66,7 +66,7 @@ pub(crate) const NUMBERS: [Number; 22] = numbers! {
     "cpu_s" ["s"] = cpu_s;
 };
 
-const TEXTS: [Text; 7] = texts! { job failure material tier solved_tier gmsh ccx };
+pub(crate) const TEXTS: [Text; 7] = texts! { job failure material tier solved_tier gmsh ccx };
 
 /// The ratios of (13), written for whoever reads the table and computed again when it is read.
 const RATIOS: [&str; 2] = ["eta_a", "eta_s"];
@@ -123,7 +123,7 @@ pub(crate) fn from_frame(frame: &DataFrame) -> Result<Vec<Row>, DatasetError> {
     }
 }
 
-fn fill<T>(
+pub(crate) fn fill<T>(
     rows: &mut [Row],
     column: &'static str,
     values: impl IntoIterator<Item = Option<T>>,
@@ -136,7 +136,7 @@ fn fill<T>(
 }
 
 /// A row to fill.
-fn blank() -> Row {
+pub(crate) fn blank() -> Row {
     Row {
         job: String::new(),
         design: HingeDesign {

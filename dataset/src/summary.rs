@@ -1,8 +1,10 @@
 //! What a database holds, as text to print.
 
 use crate::database::Database;
+use crate::rows::Row;
 use crate::schema;
-use crate::split::Part;
+use crate::split::{Part, geometry};
+use std::collections::BTreeSet;
 use std::fmt;
 
 /// Counts, rejected rows, split, and the range of every column of numbers.
@@ -48,5 +50,110 @@ impl fmt::Display for Database {
             )?;
         }
         Ok(())
+    }
+}
+
+/// What training wants to know before it believes a database: histograms, residuals, coverage of
+/// the box, and states solved twice.
+pub struct Details<'a>(pub &'a Database);
+
+/// Bins of a histogram, and cells of each side of the coverage.
+const BINS: usize = 8;
+
+impl fmt::Display for Details<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let rows = self.0.rows();
+        writeln!(
+            f,
+            "{:18} rows in {BINS} bins from least to greatest",
+            "column"
+        )?;
+        for name in ["w_lig", "alpha", "a", "s", "theta", "W", "D", "D_peak"] {
+            let column = schema::NUMBERS.iter().find(|column| column.name == name);
+            let values: Vec<f64> =
+                column.map_or(Vec::new(), |column| rows.iter().map(column.get).collect());
+            let counts = histogram(&values).map(|count| format!("{count:6}"));
+            writeln!(f, "{name:18} {}", counts.join(" "))?;
+        }
+        let mut residuals: Vec<f64> = rows.iter().map(|row| row.sample.energy_residual).collect();
+        residuals.sort_by(f64::total_cmp);
+        let quantile = |share: f64| residuals[(share * (residuals.len() - 1) as f64) as usize];
+        writeln!(
+            f,
+            "energy residual    median {:.1e}, 90 % {:.1e}, 99 % {:.1e}, greatest {:.1e}",
+            quantile(0.5),
+            quantile(0.9),
+            quantile(0.99),
+            quantile(1.0),
+        )?;
+        let cells = BINS * BINS;
+        writeln!(
+            f,
+            "coverage           {} of {cells} cells of (w_lig, alpha), {} of {cells} of (w_lig, theta)",
+            covered(rows, |row| [row.design.w_lig, row.design.alpha]),
+            covered(rows, |row| [row.design.w_lig, row.sample.theta]),
+        )?;
+        writeln!(f, "states solved more than once: {}", repeated(rows))
+    }
+}
+
+/// The bin of each value between the least and the greatest.
+fn bins(values: &[f64]) -> impl Iterator<Item = usize> {
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let width = (greatest - least).max(f64::MIN_POSITIVE) / BINS as f64;
+    let bin = move |value: &f64| (((value - least) / width) as usize).min(BINS - 1);
+    values.iter().map(bin)
+}
+
+fn histogram(values: &[f64]) -> [usize; BINS] {
+    let mut counts = [0; BINS];
+    bins(values).for_each(|bin| counts[bin] += 1);
+    counts
+}
+
+/// Cells of the plane of two quantities that hold a row.
+fn covered(rows: &[Row], point: fn(&Row) -> [f64; 2]) -> usize {
+    let [x, y] = [0, 1].map(|k| rows.iter().map(|row| point(row)[k]).collect::<Vec<f64>>());
+    bins(&x).zip(bins(&y)).collect::<BTreeSet<_>>().len()
+}
+
+/// Rows whose state, up to mirroring, another row has too.
+fn repeated(rows: &[Row]) -> usize {
+    let state = |row: &Row| {
+        let mirrored = row.design.alpha > std::f64::consts::FRAC_PI_2;
+        let s = if mirrored {
+            -row.sample.s
+        } else {
+            row.sample.s
+        };
+        let deformation = [row.sample.a, s, row.sample.theta];
+        (
+            geometry(row),
+            deformation.map(|value| (1e9 * value).round() as i64),
+        )
+    };
+    rows.len() - rows.iter().map(state).collect::<BTreeSet<_>>().len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rows::tests::rows;
+
+    #[test]
+    fn histograms_hold_every_value_and_constants_fall_into_one_bin() {
+        assert_eq!(histogram(&[0.0, 1.0, 7.9, 8.0]), [1, 1, 0, 0, 0, 0, 0, 2]);
+        assert_eq!(histogram(&[3.0; 5]), [5, 0, 0, 0, 0, 0, 0, 0]);
+        assert_eq!(histogram(&[]).iter().sum::<usize>(), 0);
+    }
+
+    #[test]
+    fn a_state_and_its_mirror_image_are_one() {
+        let mut rows = rows(4);
+        assert_eq!(repeated(&rows), 0);
+        rows.extend(crate::mirror::with_mirrored(&rows[..3]).split_off(3));
+        assert_eq!(repeated(&rows), 3);
+        assert!(covered(&rows, |row| [row.design.w_lig, row.sample.theta]) > 8);
     }
 }

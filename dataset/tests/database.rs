@@ -1,52 +1,13 @@
 //! From rows to files and back, and everything that is refused on the way.
 
-use dataset::{Database, DatasetError, Gates, Part, Rejection, Row, SplitPlan};
-use hinge::{HingeDesign, HingeSample};
+mod common;
+
+use common::{collect, row, rows};
+use dataset::{Database, DatasetError, Part, Rejection, Row};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 type Change = fn(&mut Row);
-
-fn row(job: usize, lambda: f64) -> Row {
-    Row {
-        job: format!("job-{job:02}"),
-        design: HingeDesign {
-            w_lig: 5.0 + job as f64,
-            alpha: 0.8 + 0.05 * job as f64,
-            fillet_ratio: 0.16,
-            kerf: 0.2,
-            r_win: 100.0,
-        },
-        sample: HingeSample {
-            lambda,
-            a: 0.1 * lambda,
-            s: -0.2 * lambda,
-            theta: lambda,
-            w: 50.0 * lambda * lambda + 1.0 / 3.0,
-            m_theta: 100.0 * lambda,
-            d: 0.01 * lambda,
-            ..HingeSample::default()
-        },
-        failure: if job == 2 { "diverged" } else { "" }.into(),
-        material: "film".into(),
-        tier: "default".into(),
-        solved_tier: if job == 3 { "fine" } else { "default" }.into(),
-        gmsh: "4.8.4".into(),
-        ccx: "2.20".into(),
-        cpu_s: 9.5,
-    }
-}
-
-/// Five increments of each of ten jobs, in no useful order.
-fn rows() -> Vec<Row> {
-    let lambdas = [0.6, 0.2, 1.0, 0.4, 0.8];
-    let increments = |job| lambdas.map(|lambda| row(job, lambda));
-    (0..10).rev().flat_map(increments).collect()
-}
-
-fn collect(rows: Vec<Row>) -> Result<Database, DatasetError> {
-    Database::collect(rows, &Gates::default(), &SplitPlan::default())
-}
 
 fn written() -> (TempDir, PathBuf, Database) {
     let folder = tempfile::tempdir().unwrap();
@@ -219,4 +180,49 @@ fn a_missing_malformed_or_later_manifest_is_refused() {
         Database::read(&path),
         Err(DatasetError::Read { .. })
     ));
+}
+
+/// What reading says to these bytes with a manifest that vouches for them.
+fn vouched(path: &Path, bytes: &[u8]) -> DatasetError {
+    std::fs::write(path, bytes).unwrap();
+    let Err(DatasetError::Hash {
+        expected, found, ..
+    }) = Database::read(path)
+    else {
+        panic!("other bytes have another hash");
+    };
+    let manifest = path.with_extension("json");
+    let text = std::fs::read_to_string(&manifest).unwrap();
+    std::fs::write(&manifest, text.replace(&expected, &found)).unwrap();
+    Database::read(path).unwrap_err()
+}
+
+#[test]
+fn a_file_that_is_no_table_is_an_error_even_if_its_hash_is_right() {
+    let (_folder, path, _) = written();
+    let bytes = std::fs::read(&path).unwrap();
+    let length = bytes.len();
+    let mut headless = bytes.clone();
+    headless[..200].fill(0);
+    let mut tail = bytes.clone();
+    tail[length - 8..length - 4].fill(0xff);
+    let truncated = [0, 3, 12, length / 2, length - 1].map(|length| bytes[..length].to_vec());
+    let others = [vec![0; 4096], b"job,a,s\n1,2,3\n".to_vec(), tail, headless];
+    for broken in truncated.into_iter().chain(others) {
+        let error = vouched(&path, &broken);
+        assert!(matches!(error, DatasetError::In { .. }), "{error}");
+    }
+}
+
+#[test]
+fn one_geometry_or_one_row_is_refused() {
+    let mut one = rows();
+    one.iter_mut().for_each(|row| row.design = rows()[0].design);
+    for rows in [one, vec![row(0, 1.0)]] {
+        let error = collect(rows).unwrap_err();
+        assert!(
+            matches!(error, DatasetError::TooFewGeometries { found: 1 }),
+            "{error}"
+        );
+    }
 }

@@ -15,8 +15,8 @@ use design::path_functionals::PerFunctional;
 use design::pattern::Outline;
 use design::sheet::{Centroid, CutProcess, HingePoint, SheetOptions};
 use divan::{Bencher, black_box};
-use hinge::TrainingDomain;
-use surrogate::{Card, FEATURE_NAMES, HingeConstants, Layer, Surrogate, Tensor, TestErrors};
+use hinge::{HingeConstants, TrainingDomain};
+use surrogate::{Card, FEATURE_NAMES, Layer, Surrogate, Tensor, TestErrors};
 
 fn main() {
     divan::main();
@@ -147,6 +147,7 @@ fn learned() -> SurrogateLaw {
         },
         energy_scale: 85.0,
         damage_scale: 0.01,
+        peak_scale: None,
         domain: TrainingDomain {
             eta_a: [-0.5, 0.5],
             eta_s: [-0.5, 0.5],
@@ -162,9 +163,11 @@ fn learned() -> SurrogateLaw {
         material: "none".into(),
         tier: "none".into(),
         dataset_hash: "none".into(),
+        fine_tuned_from: None,
         split_hash: "none".into(),
         training: Default::default(),
         test_errors: TestErrors::default(),
+        error_bins: Vec::new(),
     };
     let chi = layers(&[5, 64, 64, 64, 32]);
     SurrogateLaw::new(Surrogate::from_parts(chi, layers(&[5, 64, 1]), card).unwrap())

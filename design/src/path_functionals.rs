@@ -146,6 +146,7 @@ mod tests {
                 per_width,
                 0.0,
             ],
+            ..HingeDamage::default()
         }
     }
 

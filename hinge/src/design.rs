@@ -19,6 +19,31 @@ pub struct HingeDesign {
     pub r_win: f64,
 }
 
+/// The parts of (7) that all hinges of a sheet share, being the cutting tool's and the window's.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HingeConstants {
+    /// Radius of the hole drilled about O, as a multiple of w_lig.
+    pub fillet_ratio: f64,
+    /// Width the cutting tool removes along the main cut (mm).
+    pub kerf: f64,
+    /// Radius of the half-disc of sheet assigned to the hinge (mm).
+    pub r_win: f64,
+}
+
+impl HingeConstants {
+    /// The hinge of width `w_lig` (mm) and cut angle `alpha` (rad).
+    pub fn hinge(&self, w_lig: f64, alpha: f64) -> HingeDesign {
+        HingeDesign {
+            w_lig,
+            alpha,
+            fillet_ratio: self.fillet_ratio,
+            kerf: self.kerf,
+            r_win: self.r_win,
+        }
+    }
+}
+
 /// A hinge design that cannot be cut, with the inequality it violates.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum InvalidDesign {
@@ -71,6 +96,15 @@ impl HingeDesign {
     /// Radius of the hole drilled about O (mm).
     pub fn fillet_radius(&self) -> f64 {
         self.fillet_ratio * self.w_lig
+    }
+
+    /// What it shares with the other hinges of its sheet.
+    pub fn constants(&self) -> HingeConstants {
+        HingeConstants {
+            fillet_ratio: self.fillet_ratio,
+            kerf: self.kerf,
+            r_win: self.r_win,
+        }
     }
 
     /// The design seen after reflecting x.
@@ -138,6 +172,7 @@ mod tests {
         };
         assert_eq!(oblique.mirrored().alpha, PI - 1.0);
         assert!((oblique.mirrored().mirrored().alpha - 1.0).abs() < 1e-15);
+        assert_eq!(oblique.constants().hinge(18.0, 1.0), oblique);
     }
 
     #[test]

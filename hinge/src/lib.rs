@@ -24,11 +24,12 @@ pub mod config;
 mod deformation;
 mod design;
 mod domain;
+pub mod files;
 mod material;
 mod sample;
 
 pub use deformation::{HingeDeformation, HingeForces};
-pub use design::{HingeDesign, InvalidDesign};
+pub use design::{HingeConstants, HingeDesign, InvalidDesign};
 pub use domain::TrainingDomain;
 pub use material::{InvalidMaterial, SheetMaterial};
 pub use sample::HingeSample;

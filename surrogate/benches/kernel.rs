@@ -3,10 +3,10 @@
 //! Divide by 275 for the time of one hinge. The floor of each order is its matrix products alone:
 //! 1 (W), 2 (forces), 5 (tangent) and 7 (design) passes of 0.33 Mflop a hinge.
 
-use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
+use hinge::{HingeConstants, HingeDeformation, HingeDesign, TrainingDomain};
 use surrogate::{
-    Card, FEATURE_NAMES, FORMAT_VERSION, HingeConstants, Layer, Order, Standardisation, Surrogate,
-    Tensor, TestErrors, UNITS,
+    Card, FEATURE_NAMES, FORMAT_VERSION, Layer, Order, Standardisation, Surrogate, Tensor,
+    TestErrors, UNITS,
 };
 
 const HINGES: usize = 275;
@@ -37,7 +37,7 @@ fn damage(bencher: divan::Bencher) {
 fn case() -> (Surrogate, Vec<HingeDesign>, Vec<HingeDeformation>) {
     let surrogate = Surrogate::from_parts(
         layers(&[5, 256, 256, 256, 128]),
-        layers(&[5, 256, 256, 1]),
+        layers(&[5, 256, 256, 2]),
         card(),
     )
     .expect("the weights are finite and the shapes fit");
@@ -95,6 +95,7 @@ fn card() -> Card {
         },
         energy_scale: 85.0,
         damage_scale: 0.012,
+        peak_scale: Some(0.3),
         domain: TrainingDomain {
             eta_a: [-0.5, 0.25],
             eta_s: [-0.35, 0.35],
@@ -110,8 +111,10 @@ fn card() -> Card {
         material: "benchmark".into(),
         tier: "none".into(),
         dataset_hash: "none".into(),
+        fine_tuned_from: None,
         split_hash: "none".into(),
         training: Default::default(),
         test_errors: TestErrors::default(),
+        error_bins: Vec::new(),
     }
 }

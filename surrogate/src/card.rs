@@ -2,11 +2,13 @@
 
 use crate::features::{FEATURE_NAMES, Standardisation};
 use crate::network::InvalidWeights;
-use hinge::TrainingDomain;
+use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Serialize};
 
-/// Version of the weight file and its card that this crate reads and writes.
-pub const FORMAT_VERSION: u32 = 1;
+/// Version of the weight file and its card that this crate writes; it reads those before too.
+///
+/// 1: the damage head predicts D. 2: it may predict D_peak too; errors by bins.
+pub const FORMAT_VERSION: u32 = 2;
 
 /// The units of everything a surrogate takes and returns.
 pub const UNITS: &str = "mm, N, MPa, N mm, rad";
@@ -27,9 +29,12 @@ pub struct Card {
     pub energy_scale: f64,
     /// D_s of (14).
     pub damage_scale: f64,
+    /// The same of D_peak, if the damage head predicts it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak_scale: Option<f64>,
     /// The box of states in the training rows.
     pub domain: TrainingDomain,
-    /// The hinge constants that the training rows share.
+    /// The parts of the hinge design that are no feature of (13); the weights hold for these alone.
     pub hinge: HingeConstants,
     /// Name of the sheet material.
     pub material: String,
@@ -37,23 +42,18 @@ pub struct Card {
     pub tier: String,
     /// Hash of the database file.
     pub dataset_hash: String,
+    /// Hash of the database of the weights that the training began from, if any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fine_tuned_from: Option<String>,
     /// Hash of the split into training, validation and test.
     pub split_hash: String,
     /// The training configuration, as it was read.
     pub training: serde_json::Value,
     /// Errors on the test split.
     pub test_errors: TestErrors,
-}
-
-/// The parts of the hinge design that are no feature of (13); the weights hold for these alone.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct HingeConstants {
-    pub fillet_ratio: f64,
-    /// mm
-    pub kerf: f64,
-    /// mm
-    pub r_win: f64,
+    /// The same by bins of single quantities.
+    #[serde(default)]
+    pub error_bins: Vec<ErrorBin>,
 }
 
 /// Errors of a surrogate on rows that training never saw.
@@ -67,6 +67,21 @@ pub struct TestErrors {
     pub f_s: FitError,
     pub m_theta: FitError,
     pub damage: FitError,
+    /// Zero where the damage head does not predict it.
+    #[serde(default)]
+    pub damage_peak: FitError,
+}
+
+/// Errors on the test rows in which one quantity lies in an interval.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ErrorBin {
+    /// `theta_deg`, `w_lig`, `alpha_deg`, or `edge`: the distance from the nearest side of the
+    /// training domain over that side's length.
+    pub quantity: String,
+    /// Lower and upper end; the upper belongs to the next bin.
+    pub range: [f64; 2],
+    pub errors: TestErrors,
 }
 
 /// How far predictions lie from their targets.
@@ -80,6 +95,13 @@ pub struct FitError {
 }
 
 impl Card {
+    /// One scale for each output of the damage head.
+    pub(crate) fn damage_scales(&self) -> Vec<f64> {
+        std::iter::once(self.damage_scale)
+            .chain(self.peak_scale)
+            .collect()
+    }
+
     /// Refuses other units or features, scales that are not positive, domains without a state.
     pub(crate) fn validate(&self) -> Result<(), InvalidWeights> {
         for (key, found, expected) in [
@@ -98,13 +120,12 @@ impl Card {
                 });
             }
         }
-        let scales = [
-            ("w_scale".into(), self.energy_scale),
-            ("d_scale".into(), self.damage_scale),
-        ];
+        let damages = self.damage_scales().into_iter();
+        let scales = std::iter::once(("w_scale".into(), self.energy_scale))
+            .chain(damages.map(|scale| ("d_scale".into(), scale)));
         let deviations = FEATURE_NAMES.iter().zip(self.standardisation.std);
         let deviations = deviations.map(|(name, std)| (format!("feat_std of {name}"), std));
-        for (name, value) in scales.into_iter().chain(deviations) {
+        for (name, value) in scales.chain(deviations) {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(InvalidWeights::NotPositive { name, value });
             }

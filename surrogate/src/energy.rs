@@ -13,7 +13,7 @@
 
 use crate::features::{FEATURES, features, pull_back};
 use crate::network::Network;
-use crate::passes::{CHUNK, Passes, packed_index, packed_len};
+use crate::passes::{Passes, chunk_size, packed_index, packed_len};
 use faer::Mat;
 use hinge::{HingeDeformation, HingeDesign};
 use std::cell::RefCell;
@@ -30,6 +30,17 @@ pub enum Order {
     Tangent,
     /// and its gradient in (w_lig, alpha) with the mixed second derivatives
     Design,
+}
+
+impl Order {
+    /// Number of features with second derivatives.
+    fn tangents(self) -> usize {
+        match self {
+            Self::Value | Self::Forces => 0,
+            Self::Tangent => DESIGN_FEATURES.start,
+            Self::Design => FEATURES,
+        }
+    }
 }
 
 /// Energy of one hinge and its derivatives; parts beyond the order asked for are zero.
@@ -65,25 +76,27 @@ impl Prepared {
         let zeros = || Mat::zeros(designs.len(), chi.outputs());
         let mut origin = zeros();
         let mut origin_tangents = [zeros(), zeros()];
-        let mut passes = Passes::default();
-        for (chunk, designs) in designs.chunks(CHUNK).enumerate() {
-            let n = designs.len();
-            let undeformed: Vec<_> = designs
-                .iter()
-                .map(|design| features(design, &HingeDeformation::default()))
-                .collect();
-            passes.forward(chi, &undeformed, DESIGN_FEATURES);
-            let rows = chunk * CHUNK..chunk * CHUNK + n;
-            let [by_log_w, by_alpha] = &mut origin_tangents;
-            for (output, block) in passes.outputs().enumerate() {
-                for (target, values) in [&mut origin, by_log_w, by_alpha]
-                    .into_iter()
-                    .zip(block.chunks_exact(n))
-                {
-                    target.col_as_slice_mut(output)[rows.clone()].copy_from_slice(values);
+        Passes::lent(|passes| {
+            let size = chunk_size(designs.len(), DESIGN_FEATURES.len());
+            for (chunk, designs) in designs.chunks(size).enumerate() {
+                let n = designs.len();
+                let undeformed: Vec<_> = designs
+                    .iter()
+                    .map(|design| features(design, &HingeDeformation::default()))
+                    .collect();
+                passes.forward(chi, &undeformed, DESIGN_FEATURES);
+                let rows = chunk * size..chunk * size + n;
+                let [by_log_w, by_alpha] = &mut origin_tangents;
+                for (output, block) in passes.outputs().enumerate() {
+                    for (target, values) in [&mut origin, by_log_w, by_alpha]
+                        .into_iter()
+                        .zip(block.chunks_exact(n))
+                    {
+                        target.col_as_slice_mut(output)[rows.clone()].copy_from_slice(values);
+                    }
                 }
             }
-        }
+        });
         Self {
             designs: designs.to_vec(),
             origin,
@@ -112,8 +125,9 @@ pub(crate) fn evaluate(
     );
     KERNEL.with_borrow_mut(|kernel| {
         let mut energies = Vec::with_capacity(deformations.len());
-        for (chunk, deformations) in deformations.chunks(CHUNK).enumerate() {
-            let first = chunk * CHUNK;
+        let size = chunk_size(deformations.len(), order.tangents());
+        for (chunk, deformations) in deformations.chunks(size).enumerate() {
+            let first = chunk * size;
             let designs = &prepared.designs[first..first + deformations.len()];
             kernel.run(chi, prepared, first, deformations, order);
             for (hinge, (design, deformation)) in designs.iter().zip(deformations).enumerate() {
@@ -125,8 +139,7 @@ pub(crate) fn evaluate(
 }
 
 thread_local! {
-    /// Megabytes of buffers: fresh ones would cost a solver that asks again and again a tenth of
-    /// its time in page faults.
+    /// Kept like the buffers of [`Passes::lent`].
     static KERNEL: RefCell<Kernel> = RefCell::default();
 }
 
@@ -161,11 +174,7 @@ impl Kernel {
         let n = deformations.len();
         let rows = first..first + n;
         self.n = n;
-        self.tangents = match order {
-            Order::Value | Order::Forces => 0,
-            Order::Tangent => DESIGN_FEATURES.start,
-            Order::Design => FEATURES,
-        };
+        self.tangents = order.tangents();
         let xi: Vec<_> = prepared.designs[rows.clone()]
             .iter()
             .zip(deformations)
@@ -177,11 +186,14 @@ impl Kernel {
         reset(&mut self.square, n);
         for (output, block) in self.passes.outputs().enumerate() {
             let origin = &prepared.origin.col_as_slice(output)[rows.clone()];
-            for ((square, value), origin) in self.square.iter_mut().zip(block).zip(origin) {
-                let r = value - origin;
-                *square += r * r;
-                self.r.push(r);
-            }
+            let first = self.r.len();
+            let r = block
+                .iter()
+                .zip(origin)
+                .map(|(value, origin)| value - origin);
+            self.r.extend(r);
+            let r = &self.r[first..];
+            add_product(&mut self.square, r, r);
         }
         if order < Order::Forces {
             return;

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! W(eps; g) = W_s |chi(xi(eps, g)) - chi(xi(0, g))|^2
-//! D(eps; g) = D_s softplus(chi_D(xi(eps, g)))
+//! D(eps; g) = D_s softplus(chi_D(xi(eps, g))),   and D_peak likewise from a second output
 //! xi(eps, g) = [a / w_lig, s / w_lig, theta, log w_lig, alpha]                  (13)
 //! ```
 //!
@@ -17,7 +17,7 @@
 //! | `passes` | batched value, tangents and reverse pass through a network |
 //! | `tanh` | a branch-free tanh that vectorises |
 //! | `energy` | W and its derivatives in deformation and design |
-//! | `damage` | D and its gradient |
+//! | `damage` | D and D_peak with their gradients |
 //! | `card` | what the weights were trained on, and how well they fit |
 //! | `weights` | reading and writing the two files |
 
@@ -30,7 +30,7 @@ mod passes;
 mod tanh;
 mod weights;
 
-pub use card::{Card, FORMAT_VERSION, FitError, HingeConstants, TestErrors, UNITS};
+pub use card::{Card, ErrorBin, FORMAT_VERSION, FitError, TestErrors, UNITS};
 pub use damage::HingeDamage;
 pub use energy::{HingeEnergy, Order, Prepared};
 pub use features::{FEATURE_NAMES, Standardisation, features};
@@ -45,7 +45,7 @@ use std::path::Path;
 pub struct Surrogate {
     /// The embedding chi, of any number of outputs.
     chi: Network,
-    /// The damage head chi_D, of one output.
+    /// The damage head chi_D: D, and D_peak if it has a second output.
     chi_d: Network,
     card: Card,
 }
@@ -53,7 +53,8 @@ pub struct Surrogate {
 impl Surrogate {
     /// Joins networks and card.
     ///
-    /// The networks take the standardised features; `chi_d` has one output.
+    /// The networks take the standardised features; `chi_d` has one output for each damage scale
+    /// of the card.
     pub fn from_parts(
         chi: Vec<Layer>,
         chi_d: Vec<Layer>,
@@ -61,13 +62,15 @@ impl Surrogate {
     ) -> Result<Self, InvalidWeights> {
         card.validate()?;
         let chi = Network::new("chi", chi, None, &card.standardisation)?;
-        let chi_d = Network::new("chi_d", chi_d, Some(1), &card.standardisation)?;
+        let outputs = Some(card.damage_scales().len());
+        let chi_d = Network::new("chi_d", chi_d, outputs, &card.standardisation)?;
         Ok(Self { chi, chi_d, card })
     }
 
     /// The same surrogate with errors on its card, which can only be measured once it exists.
-    pub fn with_test_errors(mut self, test_errors: TestErrors) -> Self {
+    pub fn with_test_errors(mut self, test_errors: TestErrors, bins: Vec<ErrorBin>) -> Self {
         self.card.test_errors = test_errors;
+        self.card.error_bins = bins;
         self
     }
 
@@ -84,6 +87,11 @@ impl Surrogate {
     /// What the weights were trained on, and how well they fit.
     pub fn card(&self) -> &Card {
         &self.card
+    }
+
+    /// The layers of chi and of chi_D, as they are written.
+    pub fn layers(&self) -> [&[Layer]; 2] {
+        [self.chi.layers(), self.chi_d.layers()]
     }
 
     /// The box of hinge states in the training data.
@@ -125,7 +133,7 @@ impl Surrogate {
         )
     }
 
-    /// D of (14) and its gradient, for each hinge.
+    /// D and D_peak of (14) and their gradients, for each hinge.
     ///
     /// # Panics
     /// If there is not one deformation for each design.
@@ -134,6 +142,11 @@ impl Surrogate {
         designs: &[HingeDesign],
         deformations: &[HingeDeformation],
     ) -> Vec<HingeDamage> {
-        damage::evaluate(&self.chi_d, self.damage_scale(), designs, deformations)
+        damage::evaluate(
+            &self.chi_d,
+            &self.card.damage_scales(),
+            designs,
+            deformations,
+        )
     }
 }

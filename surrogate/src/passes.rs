@@ -22,10 +22,19 @@ use crate::tanh::tanh;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use pulp::{Simd, WithSimd};
+use std::cell::RefCell;
 use std::ops::Range;
 
-/// Hinges evaluated together; their tangents then stay in the second-level cache.
-pub(crate) const CHUNK: usize = 64;
+/// Rows of a block at most, about: enough to pay for laying out the weights of each product, few
+/// enough to stay in cache.
+const ROWS: usize = 320;
+
+/// How many of `hinges` to evaluate together with so many tangents: chunks of one size, a whole
+/// number of vector registers.
+pub(crate) fn chunk_size(hinges: usize, tangents: usize) -> usize {
+    let chunks = hinges.div_ceil(ROWS / (1 + tangents)).max(1);
+    hinges.div_ceil(chunks).next_multiple_of(8).max(8)
+}
 
 /// The buffers of the passes, kept from chunk to chunk.
 #[derive(Default)]
@@ -52,8 +61,19 @@ pub(crate) struct Passes {
     gradient: Vec<f64>,
 }
 
+thread_local! {
+    /// Megabytes of buffers: fresh ones would cost a solver that asks again and again a large part
+    /// of its time in page faults.
+    static PASSES: RefCell<Passes> = RefCell::default();
+}
+
 impl Passes {
-    /// Values and the derivatives in the features `tangents`, for at most [`CHUNK`] hinges.
+    /// Lends the buffers of this thread; `work` must not ask for them again.
+    pub fn lent<T>(work: impl FnOnce(&mut Self) -> T) -> T {
+        PASSES.with_borrow_mut(work)
+    }
+
+    /// Values and the derivatives in the features `tangents`, for a chunk of hinges.
     pub fn forward(
         &mut self,
         network: &Network,
@@ -79,6 +99,7 @@ impl Passes {
             pulp::Arch::new().dispatch(Activate {
                 n: self.n,
                 rows,
+                bias: &network.affine[index].bias,
                 block,
                 activation: &mut self.activation,
             });
@@ -92,11 +113,17 @@ impl Passes {
                 1.0,
                 Par::Seq,
             );
-            self.add_bias(affine);
+        }
+        let rows = self.rows();
+        let last = &network.affine[following.len()];
+        for (column, bias) in self.output.chunks_exact_mut(rows).zip(&last.bias) {
+            for value in &mut column[..self.n] {
+                *value += bias;
+            }
         }
     }
 
-    /// The first layer, whose tangents are the columns of its weight.
+    /// The first layer but for its bias; its tangents are the columns of its weight.
     fn enter(&mut self, first: &Affine) {
         let (n, rows, units) = (self.n, self.rows(), first.bias.len());
         self.output.resize(rows * units, 0.0);
@@ -112,16 +139,6 @@ impl Passes {
         for (unit, column) in self.output.chunks_exact_mut(rows).enumerate() {
             for (k, tangent) in self.tangents.clone().zip(column[n..].chunks_exact_mut(n)) {
                 tangent.fill(first.weight[(unit, k)]);
-            }
-        }
-        self.add_bias(first);
-    }
-
-    fn add_bias(&mut self, affine: &Affine) {
-        let rows = self.rows();
-        for (column, bias) in self.output.chunks_exact_mut(rows).zip(&affine.bias) {
-            for value in &mut column[..self.n] {
-                *value += bias;
             }
         }
     }
@@ -190,10 +207,11 @@ fn multiply(adjoint: &[f64], affine: &Affine, n: usize, product: &mut Vec<f64>) 
     );
 }
 
-/// Replaces a by tanh(a) in `block` and writes [tanh(a), sigma'(a) T].
+/// Replaces a, which lacks its bias yet, by tanh(a) in `block` and writes [tanh(a), sigma'(a) T].
 struct Activate<'a> {
     n: usize,
     rows: usize,
+    bias: &'a [f64],
     block: &'a mut [f64],
     activation: &'a mut [f64],
 }
@@ -204,11 +222,12 @@ impl WithSimd for Activate<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let columns = self.block.chunks_exact_mut(self.rows);
-        for (column, activation) in columns.zip(self.activation.chunks_exact_mut(self.rows)) {
+        let activations = self.activation.chunks_exact_mut(self.rows);
+        for ((column, activation), bias) in columns.zip(activations).zip(self.bias) {
             let (values, tangents) = column.split_at_mut(self.n);
             let (activation, pushed) = activation.split_at_mut(self.n);
             for (value, activation) in values.iter_mut().zip(activation) {
-                *value = tanh(*value);
+                *value = tanh(*value + bias);
                 *activation = *value;
             }
             let tangents = tangents.chunks_exact(self.n);

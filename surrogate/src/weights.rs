@@ -5,7 +5,8 @@
 //! | `chi.N.weight`, `chi.N.bias` | (out, in), (out) of layer N of the embedding |
 //! | `chi_d.N.weight`, `chi_d.N.bias` | the same of the damage head |
 //! | `feat_mean`, `feat_std` | (5), in the order of (13) |
-//! | `w_scale`, `d_scale` | (1), N mm and dimensionless |
+//! | `w_scale` | (1), N mm |
+//! | `d_scale` | (1) or (2), dimensionless: of D and of D_peak, as many as `chi_d` has outputs |
 //!
 //! Tensors are float64 when written; float32 is read too. The scaling stands in both files, so
 //! that a card beside the wrong weights is noticed.
@@ -38,8 +39,8 @@ pub enum WeightsError {
         source: serde_json::Error,
     },
     #[error(
-        "{path} has the format version {found}, this program reads {FORMAT_VERSION}; \
-         export the weights again",
+        "{path} has the format version {found}, this program reads 1 to {FORMAT_VERSION}; \
+         export the weights again, or use a newer program",
         path = .path.display()
     )]
     UnknownVersion { path: PathBuf, found: u64 },
@@ -169,7 +170,7 @@ fn read_card(weights: &Path) -> Result<Card, WeightsError> {
         source,
     };
     let version: Version = serde_json::from_slice(&text).map_err(malformed)?;
-    if version.format_version != u64::from(FORMAT_VERSION) {
+    if !(1..=u64::from(FORMAT_VERSION)).contains(&version.format_version) {
         return Err(WeightsError::UnknownVersion {
             path: path.clone(),
             found: version.format_version,
@@ -238,7 +239,7 @@ fn scaling(card: &Card) -> [(&'static str, Tensor); 4] {
         ("feat_mean", vector(&mean)),
         ("feat_std", vector(&std)),
         ("w_scale", vector(&[card.energy_scale])),
-        ("d_scale", vector(&[card.damage_scale])),
+        ("d_scale", vector(&card.damage_scales())),
     ]
 }
 
@@ -271,13 +272,9 @@ fn take(tensors: &mut BTreeMap<String, Tensor>, name: &str) -> Result<Tensor, In
     })
 }
 
-/// Writes beside the place and renames, so that no half-written file is ever found there.
 fn write(path: &Path, bytes: &[u8]) -> Result<(), WeightsError> {
-    let partial = path.with_added_extension("partial");
-    std::fs::write(&partial, bytes)
-        .and_then(|()| std::fs::rename(&partial, path))
-        .map_err(|source| WeightsError::Write {
-            path: path.to_owned(),
-            source,
-        })
+    hinge::files::write(path, bytes).map_err(|source| WeightsError::Write {
+        path: path.to_owned(),
+        source,
+    })
 }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{cases, design, tiny};
+use common::{cases, design, tiny, with_peak};
 use hinge::{HingeDeformation, HingeDesign};
 use serde_json::Value;
 use surrogate::{HingeEnergy, Order};
@@ -157,7 +157,7 @@ fn derivative(energy: &HingeEnergy, direction: usize) -> [f64; 4] {
 
 #[test]
 fn every_derivative_is_that_of_finite_differences() {
-    let surrogate = tiny();
+    let surrogate = with_peak();
     let (designs, deformations) = hinges(&states());
     let prepared = surrogate.prepare(&designs);
     let exact = surrogate.evaluate(&prepared, &deformations, Order::Design);
@@ -181,17 +181,35 @@ fn every_derivative_is_that_of_finite_differences() {
         }
         let values = differences(
             |designs, deformations| {
-                let damages = surrogate.damage(designs, deformations);
-                damages.iter().map(|damage| damage.d).collect()
+                let damages = surrogate.damage(designs, deformations).into_iter();
+                damages.flat_map(|it| [it.d, it.d_peak.unwrap()]).collect()
             },
             direction,
             1e-4,
         );
-        for (exact, difference) in damages.iter().zip(values) {
-            let scaled = [difference / surrogate.damage_scale()];
-            let expected = [exact.gradient[direction] / surrogate.damage_scale()];
-            assert_close("dD", &scaled, &expected, 1e-7);
+        let scales = [
+            surrogate.damage_scale(),
+            surrogate.card().peak_scale.unwrap(),
+        ];
+        for (exact, difference) in damages.iter().zip(values.as_chunks::<2>().0) {
+            let exact = [exact.gradient[direction], exact.peak_gradient[direction]];
+            for k in 0..2 {
+                let (exact, found) = (exact[k] / scales[k], difference[k] / scales[k]);
+                assert_close("damage", &[found], &[exact], 1e-7);
+            }
         }
+    }
+}
+
+#[test]
+fn a_second_output_leaves_the_first_as_it_was() {
+    let (designs, deformations) = hinges(&states());
+    let one = tiny().damage(&designs, &deformations);
+    let two = with_peak().damage(&designs, &deformations);
+    for (one, two) in one.iter().zip(&two) {
+        assert_close("D", &[two.d], &[one.d], 1e-14);
+        assert_close("dD", &two.gradient, &one.gradient, 1e-14);
+        assert_eq!((one.d_peak, one.peak_gradient), (None, [0.0; 5]));
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{cases, design, tiny};
+use common::{cases, design, tiny, with_peak};
 use hinge::HingeDeformation;
 use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensors};
@@ -85,10 +85,12 @@ fn energy(surrogate: &Surrogate) -> f64 {
 fn what_is_saved_is_loaded_bit_by_bit() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("copy.safetensors");
-    tiny().save(&path).unwrap();
-    let copy = Surrogate::load(&path).unwrap();
-    assert_eq!(copy.card(), tiny().card());
-    assert_eq!(energy(&copy), energy(&tiny()));
+    for surrogate in [tiny(), with_peak()] {
+        surrogate.save(&path).unwrap();
+        let copy = Surrogate::load(&path).unwrap();
+        assert_eq!(copy.card(), surrogate.card());
+        assert_eq!(energy(&copy), energy(&surrogate));
+    }
     let mut names: Vec<_> = std::fs::read_dir(folder.path())
         .unwrap()
         .map(|entry| entry.unwrap().file_name())
@@ -150,11 +152,18 @@ fn cards_of_other_versions_shapes_and_trainings_are_refused() {
         file.card = file.card.replace(from, to);
         file.load().unwrap_err()
     };
-    let error = with_card("\"format_version\": 1", "\"format_version\": 2");
-    assert!(
-        matches!(error, WeightsError::UnknownVersion { found: 2, .. }),
-        "{error}"
-    );
+    for found in [0, 3] {
+        let error = with_card(
+            "\"format_version\": 1",
+            &format!("\"format_version\": {found}"),
+        );
+        assert!(
+            matches!(error, WeightsError::UnknownVersion { found: it, .. } if it == found),
+            "{error}"
+        );
+    }
+    let error = with_card("\"damage_scale\"", "\"peak_scale\": 0.3, \"damage_scale\"");
+    assert!(error.to_string().contains("`d_scale`"), "{error}");
     let error = with_card("\"material\"", "\"materiel\"");
     assert!(error.to_string().contains("materiel"), "{error}");
     let error = with_card("\"energy_scale\": 85.0", "\"energy_scale\": 86.0");

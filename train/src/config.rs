@@ -16,6 +16,9 @@ pub struct TrainingConfig {
     pub mirror: bool,
     /// Passes over the training rows.
     pub epochs: usize,
+    /// Epochs without a lesser validation loss after which the training stops; never, if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub patience: Option<usize>,
     /// Rows in one optimiser step.
     pub batch_size: usize,
     /// Adam's learning rate at the first step.
@@ -64,6 +67,12 @@ impl TrainingConfig {
                 self.epochs.to_string(),
                 "epochs >= 1",
                 self.epochs >= 1,
+            ),
+            (
+                "patience",
+                format!("{:?}", self.patience),
+                "patience >= 1",
+                self.patience != Some(0),
             ),
             (
                 "batch_size",
@@ -131,10 +140,11 @@ mod tests {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/training");
         let demo: TrainingConfig = hinge::config::read(&folder.join("demo.toml")).unwrap();
         type Change = fn(&mut TrainingConfig);
-        let changes: [(Change, &str); 9] = [
+        let changes: [(Change, &str); 10] = [
             (|c| c.embedding.clear(), "embedding"),
             (|c| c.damage[0] = 0, "damage"),
             (|c| c.epochs = 0, "epochs"),
+            (|c| c.patience = Some(0), "patience"),
             (|c| c.batch_size = 0, "batch_size"),
             (|c| c.learning_rate = f64::NAN, "learning_rate"),
             (|c| c.learning_rate_end = 1.0, "learning_rate_end"),

@@ -1,7 +1,7 @@
 //! From Burn's networks to the layers of a weight file.
 
+use crate::error::TrainError;
 use crate::networks::{Dense, Mlp};
-use crate::training::TrainError;
 use surrogate::{Layer, Tensor};
 
 /// The layers in float64, weights as (outputs, inputs).
@@ -34,10 +34,8 @@ mod tests {
     use crate::validation::Parity;
     use burn::tensor::{DType, TensorCreationOptions};
     use dataset::Row;
-    use hinge::{HingeDesign, HingeSample, TrainingDomain};
-    use surrogate::{
-        Card, FEATURE_NAMES, FORMAT_VERSION, HingeConstants, Surrogate, TestErrors, UNITS,
-    };
+    use hinge::{HingeConstants, HingeDesign, HingeSample, TrainingDomain};
+    use surrogate::{Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS};
 
     fn row(index: usize) -> Row {
         let wave = |speed: f64| (speed * index as f64 + 0.3).sin();
@@ -59,6 +57,7 @@ mod tests {
                 f_s: 5.0,
                 m_theta: 80.0,
                 d: 0.01,
+                d_peak: 0.2,
                 ..HingeSample::default()
             },
             failure: String::new(),
@@ -79,6 +78,8 @@ mod tests {
             standardisation: scales.standardisation,
             energy_scale: scales.energy,
             damage_scale: scales.damage,
+            peak_scale: scales.peak,
+            fine_tuned_from: None,
             domain: TrainingDomain {
                 eta_a: [0.0; 2],
                 eta_s: [0.0; 2],
@@ -98,15 +99,16 @@ mod tests {
             split_hash: String::new(),
             training: serde_json::Value::Null,
             test_errors: TestErrors::default(),
+            error_bins: Vec::new(),
         };
         let (chi, chi_d) = (layers(&networks.chi), layers(&networks.chi_d));
         Surrogate::from_parts(chi.unwrap(), chi_d.unwrap(), card).unwrap()
     }
 
-    /// |burn - kernel| / |kernel| over all rows, for W, F_a, F_s, M_theta and D.
-    fn disagreement(backend: Backend, dtype: DType) -> [f64; 5] {
+    /// |burn - kernel| / |kernel| over all rows, for W, F_a, F_s, M_theta, D and D_peak.
+    fn disagreement(backend: Backend, dtype: DType) -> [f64; 6] {
         let options = TensorCreationOptions::new(backend.device()).with_dtype(dtype);
-        let networks = Networks::new(&[64, 64, 32], &[64, 64], 1, &options);
+        let networks = Networks::new(&[64, 64, 32], &[64, 64], 2, 1, &options);
         let rows: Vec<Row> = (0..200).map(row).collect();
         let scales = Scales::of(&rows).unwrap();
         let samples: Vec<_> = rows.iter().map(|row| scales.sample(row)).collect();
@@ -122,6 +124,7 @@ mod tests {
             column(&predicted.forces, 1, scales.forces[1]),
             column(&predicted.forces, 2, scales.forces[2]),
             column(&predicted.damage, 0, scales.damage),
+            column(&predicted.damage, 1, scales.peak.unwrap()),
         ];
         let parity = Parity::of(&surrogate(&networks, &scales), &rows);
         let kernel = [
@@ -130,6 +133,7 @@ mod tests {
             parity.f_s,
             parity.m_theta,
             parity.damage,
+            parity.damage_peak,
         ];
         std::array::from_fn(|quantity| {
             let pairs = || burn[quantity].iter().zip(&kernel[quantity]);

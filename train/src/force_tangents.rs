@@ -8,9 +8,8 @@
 //! Every line is an ordinary tensor operation, so one reverse pass through them gives the
 //! parameter gradient of a loss in the forces.
 
-use crate::networks::Mlp;
+use crate::networks::{Mlp, tanh};
 use burn::tensor::Tensor;
-use burn::tensor::activation::tanh;
 
 /// The values of `network` and its derivatives in the first three inputs, each (n, outputs).
 pub(crate) fn with_tangents(network: &Mlp, inputs: Tensor<2>) -> (Tensor<2>, [Tensor<2>; 3]) {
@@ -47,7 +46,7 @@ mod tests {
         let step = 1e-5;
         for &backend in Backend::ALL {
             let options = TensorCreationOptions::new(backend.device()).with_dtype(DType::F64);
-            let network = Networks::new(&[9, 8, 4], &[3], 5, &options).chi;
+            let network = Networks::new(&[9, 8, 4], &[3], 1, 5, &options).chi;
             let (_, tangents) = with_tangents(&network, Batch::new(&samples(6), &options).inputs);
             for (k, tangent) in tangents.into_iter().enumerate() {
                 let moved = |step: f64| {

@@ -13,21 +13,34 @@
 //! | `networks` | chi and chi_D |
 //! | `force_tangents` | chi and its derivatives in (eta_a, eta_s, theta) |
 //! | `loss` | (15) |
-//! | `training` | the loop: Adam, schedule, best checkpoint |
+//! | `training` | the loop: Adam, schedule, best epoch |
+//! | `state` | a training on disk, to go on from |
 //! | `validation` | errors on rows held out |
+//! | `bins` | the same by rotation, width, angle and distance from the edge |
+//! | `stiffness` | the learned tangent against the finite elements |
+//! | `ensemble` | networks of other seeds as a measure of error |
 //! | `export` | Burn to `surrogate` |
 
 mod backend;
+mod bins;
 mod config;
+mod ensemble;
+mod error;
 mod export;
 mod force_tangents;
 mod loss;
 mod networks;
 mod samples;
+mod state;
+mod stiffness;
 mod training;
 mod validation;
 
 pub use backend::{Backend, UnknownBackend};
 pub use config::{InvalidConfig, TrainingConfig};
-pub use training::{Epoch, TrainError, Trained, train};
+pub use ensemble::EnsembleCheck;
+pub use error::TrainError;
+pub use state::StateError;
+pub use stiffness::StiffnessCheck;
+pub use training::{Epoch, Start, Trained, Training, train};
 pub use validation::{Parity, ParityPoint};

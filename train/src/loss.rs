@@ -4,6 +4,8 @@
 //! gamma |W - W*|^2 / W_s^2 + (1 - gamma) / 3 sum_c |F_c - F_c*|^2 / sigma_F,c^2
 //!     + w_D |D - D*|^2 / D_s^2                                                     (15)
 //! ```
+//!
+//! Where D_peak is predicted too, the last term is the mean of both.
 
 use crate::config::TrainingConfig;
 use crate::force_tangents::with_tangents;
@@ -18,7 +20,7 @@ pub(crate) struct Prediction {
     pub energy: Tensor<2>,
     /// (F_a, F_s, M_theta) / sigma_F, (n, 3)
     pub forces: Tensor<2>,
-    /// D / D_s, (n, 1)
+    /// D / D_s and, if predicted, D_peak over its scale, (n, 1 or 2)
     pub damage: Tensor<2>,
 }
 
@@ -39,9 +41,11 @@ pub(crate) fn loss(networks: &Networks, batch: &Batch, config: &TrainingConfig) 
     let predicted = predict(networks, batch);
     let mean_square =
         |found: Tensor<2>, target: &Tensor<2>| (found - target.clone()).square().mean();
+    let outputs = predicted.damage.dims()[1];
+    let damage = batch.damage.clone().narrow(1, 0, outputs);
     mean_square(predicted.energy, &batch.energy).mul_scalar(config.energy_weight)
         + mean_square(predicted.forces, &batch.forces).mul_scalar(1.0 - config.energy_weight)
-        + mean_square(predicted.damage, &batch.damage).mul_scalar(config.damage_weight)
+        + mean_square(predicted.damage, &damage).mul_scalar(config.damage_weight)
 }
 
 #[cfg(test)]
@@ -66,6 +70,7 @@ mod tests {
             gradient_norm_max: 1.0,
             energy_weight: 0.3,
             damage_weight: 0.7,
+            patience: None,
         }
     }
 
@@ -91,7 +96,7 @@ mod tests {
         let options =
             TensorCreationOptions::new(Backend::default().device()).with_dtype(DType::F64);
         let config = config();
-        let networks = Networks::new(&config.embedding, &config.damage, 3, &options);
+        let networks = Networks::new(&config.embedding, &config.damage, 2, 3, &options);
         let batch = Batch::new(&samples(8), &options);
         let gradients = loss(&networks, &batch, &config).backward();
         let step = 1e-5;

@@ -1,54 +1,32 @@
-//! The training loop: Adam with a cosine schedule, the best-validation checkpoint kept in memory.
+//! The training loop: Adam with a cosine schedule, the epoch of the least validation loss kept.
 
 use crate::backend::Backend;
-use crate::config::{InvalidConfig, TrainingConfig};
+use crate::bins::error_bins;
+use crate::config::TrainingConfig;
+use crate::error::TrainError;
 use crate::export::layers;
 use crate::loss::loss;
 use crate::networks::Networks;
 use crate::samples::{Batch, Sample, Scales};
+use crate::state::{self, Progress, State};
+use crate::stiffness::StiffnessCheck;
 use crate::validation::Parity;
 use burn::grad_clipping::GradientClippingConfig;
 use burn::optim::{AdamConfig, GradientsParams, ModuleOptimizer};
-use burn::tensor::{TensorCreationOptions, TensorReadError};
+use burn::tensor::TensorCreationOptions;
 use dataset::{Database, Manifest, Part, Row, with_mirrored};
 use hinge::TrainingDomain;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
+use std::path::Path;
 use std::time::Instant;
-use surrogate::{
-    Card, FEATURE_NAMES, FORMAT_VERSION, HingeConstants, InvalidWeights, Surrogate, TestErrors,
-    UNITS,
-};
-
-/// Why a training gave no surrogate.
-#[derive(Debug, thiserror::Error)]
-pub enum TrainError {
-    #[error("training configuration: {0}")]
-    Config(#[from] InvalidConfig),
-    #[error("the {part} part of the split has no rows; collect more geometries")]
-    NoRows { part: &'static str },
-    #[error(
-        "the feature `{feature}` is {value} in every training row, so nothing can be learned \
-         about it; sample it in the campaign"
-    )]
-    ConstantFeature { feature: &'static str, value: f64 },
-    #[error(
-        "the root mean square of {target} over the training rows is {scale}: there is nothing \
-         to fit"
-    )]
-    NoScale { target: &'static str, scale: f64 },
-    #[error("the loss is not finite in epoch {epoch}; lower `learning_rate` = {learning_rate}")]
-    Diverged { epoch: usize, learning_rate: f64 },
-    #[error("the weights cannot be exported: {0}")]
-    Export(#[from] InvalidWeights),
-    #[error("the backend lost a tensor: {0}")]
-    Backend(#[from] TensorReadError),
-}
+use surrogate::{Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS};
 
 /// What one pass over the training rows did.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Epoch {
     /// 1, 2, ..., `epochs`
     pub epoch: usize,
@@ -62,7 +40,7 @@ pub struct Epoch {
     pub learning_rate: f64,
     /// Whether no epoch before had a smaller validation loss.
     pub best: bool,
-    /// Wall time since training began (s).
+    /// Time that the training took so far (s).
     pub elapsed_s: f64,
 }
 
@@ -71,11 +49,43 @@ pub struct Epoch {
 pub struct Trained {
     /// Of the epoch with the least validation loss.
     pub surrogate: Surrogate,
+    /// Of the last epoch.
+    pub last: Surrogate,
     pub history: Vec<Epoch>,
     /// On the test part, which nothing was chosen by.
     pub test_errors: TestErrors,
     /// Targets and predictions on the test part.
     pub parity: Parity,
+    /// On the test part without its mirror images.
+    pub stiffness: StiffnessCheck,
+}
+
+/// Where a training begins.
+#[derive(Clone, Copy, Debug)]
+pub enum Start<'a> {
+    /// Random weights.
+    Fresh,
+    /// The weights of another training, in its scales: fine-tuning.
+    Weights(&'a Surrogate),
+    /// Where [`Training::save`] left off; what follows is as if it had never stopped, to the bit.
+    State(&'a Path),
+}
+
+/// A training between two epochs.
+pub struct Training {
+    config: TrainingConfig,
+    options: TensorCreationOptions,
+    parts: Parts,
+    scales: Scales,
+    card: Card,
+    samples: Vec<Sample>,
+    optimiser: ModuleOptimizer,
+    networks: Networks,
+    best: Networks,
+    history: Vec<Epoch>,
+    /// When the clock of [`Epoch::elapsed_s`] was at `elapsed_s`.
+    began: Instant,
+    elapsed_s: f64,
 }
 
 /// The rows of the three parts, mirrored if asked for.
@@ -83,6 +93,8 @@ struct Parts {
     training: Vec<Row>,
     validation: Vec<Row>,
     test: Vec<Row>,
+    /// As solved: without mirror images.
+    solved_test: Vec<Row>,
 }
 
 /// Fits (14) to the database by minimising (15); section 2.4.
@@ -94,26 +106,103 @@ pub fn train(
     backend: Backend,
     progress: &mut dyn FnMut(&Epoch),
 ) -> Result<Trained, TrainError> {
-    config.validate()?;
-    let began = Instant::now();
-    let parts = Parts::of(database, config.mirror)?;
-    let scales = Scales::of(&parts.training)?;
-    let card = card(database.manifest(), &parts.training, &scales, config)?;
-    let mut samples: Vec<Sample> = parts
-        .training
-        .iter()
-        .map(|row| scales.sample(row))
-        .collect();
+    let mut training = Training::new(database, config, backend, Start::Fresh)?;
+    while !training.is_finished() {
+        progress(&training.epoch()?);
+    }
+    training.finish()
+}
 
-    let mut descent = Descent::new(config, samples.len(), backend);
-    let mut networks = descent.initial_networks();
-    let mut history: Vec<Epoch> = Vec::new();
-    let mut least = f64::INFINITY;
-    let mut best = None;
-    for epoch in 1..=config.epochs {
-        let training_loss;
-        (networks, training_loss) = descent.epoch(networks, &mut samples)?;
-        let learning_rate = descent.learning_rate();
+impl Training {
+    /// Reads the rows, scales them, and makes or loads the networks.
+    pub fn new(
+        database: &Database,
+        config: &TrainingConfig,
+        backend: Backend,
+        start: Start,
+    ) -> Result<Self, TrainError> {
+        config.validate()?;
+        let began = Instant::now();
+        let parts = Parts::of(database, config.mirror)?;
+        let state = match start {
+            Start::State(path) => Some(State::read(path)?),
+            Start::Fresh | Start::Weights(_) => None,
+        };
+        let base = match start {
+            Start::Fresh => None,
+            Start::Weights(weights) => Some(weights.card()),
+            Start::State(_) => state.as_ref().map(|state| &state.progress.card),
+        };
+        let scales = match base {
+            Some(card) => Scales::of_card(card, &parts.training)?,
+            None => Scales::of(&parts.training)?,
+        };
+        let mut card = card(database.manifest(), &parts.training, &scales, config)?;
+        let options = TensorCreationOptions::new(backend.device());
+        let mut networks = Networks::new(
+            &config.embedding,
+            &config.damage,
+            scales.damage_outputs(),
+            config.seed,
+            &options,
+        );
+        if let Start::Weights(weights) = start {
+            let [chi, chi_d] = weights.layers();
+            let given = Networks::of_layers(chi, chi_d, &options);
+            if given.widths() != networks.widths() {
+                return Err(TrainError::OtherSizes {
+                    expected: networks.widths(),
+                    found: given.widths(),
+                });
+            }
+            networks = given;
+            card.fine_tuned_from = Some(weights.card().dataset_hash.clone());
+        }
+        let clipping = GradientClippingConfig::Norm(config.gradient_norm_max as f32);
+        let adam = AdamConfig::new()
+            .with_epsilon(1e-8)
+            .with_grad_clipping(Some(clipping));
+        let mut training = Self {
+            config: config.clone(),
+            options,
+            samples: parts
+                .training
+                .iter()
+                .map(|row| scales.sample(row))
+                .collect(),
+            parts,
+            scales,
+            card,
+            optimiser: adam.init(),
+            best: networks.clone(),
+            networks,
+            history: Vec::new(),
+            began,
+            elapsed_s: 0.0,
+        };
+        if let Some(state) = state {
+            training.go_on(state)?;
+        }
+        Ok(training)
+    }
+
+    /// Whether every epoch was run, or none was better for as long as the configuration allows.
+    pub fn is_finished(&self) -> bool {
+        let since_best = self.history.iter().rev().take_while(|it| !it.best).count();
+        let patience = self.config.patience.unwrap_or(usize::MAX);
+        self.history.len() >= self.config.epochs || since_best >= patience
+    }
+
+    /// The epochs run so far.
+    pub fn history(&self) -> &[Epoch] {
+        &self.history
+    }
+
+    /// One pass over the training rows.
+    pub fn epoch(&mut self) -> Result<Epoch, TrainError> {
+        let epoch = self.history.len() + 1;
+        let training_loss = self.descend(epoch)?;
+        let learning_rate = self.learning_rate(epoch * self.steps_per_epoch());
         let diverged = TrainError::Diverged {
             epoch,
             learning_rate,
@@ -121,36 +210,98 @@ pub fn train(
         if !training_loss.is_finite() {
             return Err(diverged);
         }
-        let surrogate = export(&networks, &card)?;
-        let validation_loss = Parity::of(&surrogate, &parts.validation).loss(&scales, config);
+        let surrogate = export(&self.networks, &self.card)?;
+        let validation = Parity::of(&surrogate, &self.parts.validation);
+        let validation_loss = validation.loss(&self.scales, &self.config);
         if !validation_loss.is_finite() {
             return Err(diverged);
         }
+        let losses = self.history.iter().map(|epoch| epoch.validation_loss);
         let report = Epoch {
             epoch,
-            epochs: config.epochs,
+            epochs: self.config.epochs,
             training_loss,
             validation_loss,
             learning_rate,
-            best: validation_loss < least,
-            elapsed_s: began.elapsed().as_secs_f64(),
+            best: validation_loss < losses.fold(f64::INFINITY, f64::min),
+            elapsed_s: self.elapsed_s + self.began.elapsed().as_secs_f64(),
         };
         if report.best {
-            least = validation_loss;
-            best = Some(surrogate);
+            self.best = self.networks.clone();
         }
-        progress(&report);
-        history.push(report);
+        self.history.push(report);
+        Ok(report)
     }
-    let best = best.expect("the first epoch has a finite validation loss, which is the least");
-    let parity = Parity::of(&best, &parts.test);
-    let test_errors = parity.errors();
-    Ok(Trained {
-        surrogate: best.with_test_errors(test_errors),
-        history,
-        test_errors,
-        parity,
-    })
+
+    /// Exports the best and the last networks and measures the best on the test part.
+    pub fn finish(self) -> Result<Trained, TrainError> {
+        let best = export(&self.best, &self.card)?;
+        let parity = Parity::of(&best, &self.parts.test);
+        let test_errors = parity.errors();
+        let bins = error_bins(&parity, &self.parts.test, &self.card.domain);
+        let last = export(&self.networks, &self.card)?;
+        let last_errors = Parity::of(&last, &self.parts.test).errors();
+        Ok(Trained {
+            stiffness: StiffnessCheck::of(&best, &self.parts.solved_test),
+            surrogate: best.with_test_errors(test_errors, bins),
+            last: last.with_test_errors(last_errors, Vec::new()),
+            history: self.history,
+            test_errors,
+            parity,
+        })
+    }
+
+    /// Writes everything that [`Start::State`] needs, beside its place and renamed.
+    pub fn save(&self, path: &Path) -> Result<(), TrainError> {
+        let progress = Progress::new(&self.card, &self.history);
+        state::write(path, &progress, &self.networks, &self.best, &self.optimiser)?;
+        Ok(())
+    }
+
+    fn go_on(&mut self, state: State) -> Result<(), TrainError> {
+        state.check(&self.card)?;
+        let Progress { card, history, .. } = state.progress.clone();
+        self.elapsed_s = history.last().map_or(0.0, |epoch| epoch.elapsed_s);
+        (self.card, self.history) = (card, history);
+        let optimiser = self.optimiser.clone();
+        (self.networks, self.best, self.optimiser) = state.restore(&self.networks, optimiser)?;
+        Ok(())
+    }
+
+    /// Steps of Adam over the samples in an order that the seed and the epoch decide; the mean of
+    /// (15) as it was met.
+    fn descend(&mut self, epoch: usize) -> Result<f64, TrainError> {
+        let mut order: Vec<usize> = (0..self.samples.len()).collect();
+        let mut rng = ChaCha8Rng::seed_from_u64(self.config.seed);
+        rng.set_stream(epoch as u64);
+        order.shuffle(&mut rng);
+        let mut networks = self.networks.clone();
+        let mut sum = 0.0;
+        let first = (epoch - 1) * self.steps_per_epoch();
+        for (step, batch) in order.chunks(self.config.batch_size).enumerate() {
+            let samples: Vec<Sample> = batch.iter().map(|&index| self.samples[index]).collect();
+            let batch = Batch::new(&samples, &self.options);
+            let value = loss(&networks, &batch, &self.config);
+            let gradients = GradientsParams::from_grads(value.backward(), &networks);
+            sum += value.try_into_scalar::<f64>()? * samples.len() as f64;
+            let rate = self.learning_rate(first + step);
+            networks = self.optimiser.step(rate, networks, gradients);
+        }
+        self.networks = networks;
+        Ok(sum / self.samples.len() as f64)
+    }
+
+    fn steps_per_epoch(&self) -> usize {
+        self.samples.len().div_ceil(self.config.batch_size)
+    }
+
+    /// Half a cosine from `learning_rate` at the first step to `learning_rate_end` after the last.
+    fn learning_rate(&self, step: usize) -> f64 {
+        let steps = (self.config.epochs * self.steps_per_epoch()) as f64;
+        let share = 0.5 * (1.0 + (PI * step as f64 / steps).cos());
+        let end = self.config.learning_rate_end;
+        end + share * (self.config.learning_rate - end)
+    }
 }
 
 impl Parts {
@@ -167,71 +318,8 @@ impl Parts {
             training: part(Part::Training, "training")?,
             validation: part(Part::Validation, "validation")?,
             test: part(Part::Test, "test")?,
+            solved_test: database.part(Part::Test),
         })
-    }
-}
-
-/// Adam along its schedule.
-struct Descent<'a> {
-    config: &'a TrainingConfig,
-    options: TensorCreationOptions,
-    optimiser: ModuleOptimizer,
-    rng: ChaCha8Rng,
-    step: usize,
-    steps: usize,
-}
-
-impl<'a> Descent<'a> {
-    fn new(config: &'a TrainingConfig, rows: usize, backend: Backend) -> Self {
-        let clipping = GradientClippingConfig::Norm(config.gradient_norm_max as f32);
-        Self {
-            config,
-            options: TensorCreationOptions::new(backend.device()),
-            optimiser: AdamConfig::new()
-                .with_epsilon(1e-8)
-                .with_grad_clipping(Some(clipping))
-                .init(),
-            rng: ChaCha8Rng::seed_from_u64(config.seed),
-            step: 0,
-            steps: config.epochs * rows.div_ceil(config.batch_size),
-        }
-    }
-
-    fn initial_networks(&self) -> Networks {
-        let TrainingConfig {
-            embedding,
-            damage,
-            seed,
-            ..
-        } = self.config;
-        Networks::new(embedding, damage, *seed, &self.options)
-    }
-
-    /// One pass over the samples in a new order; the mean of (15) as it was met.
-    fn epoch(
-        &mut self,
-        mut networks: Networks,
-        samples: &mut [Sample],
-    ) -> Result<(Networks, f64), TrainError> {
-        samples.shuffle(&mut self.rng);
-        let mut sum = 0.0;
-        for batch in samples.chunks(self.config.batch_size) {
-            let value = loss(&networks, &Batch::new(batch, &self.options), self.config);
-            let gradients = GradientsParams::from_grads(value.backward(), &networks);
-            sum += value.try_into_scalar::<f64>()? * batch.len() as f64;
-            networks = self
-                .optimiser
-                .step(self.learning_rate(), networks, gradients);
-            self.step += 1;
-        }
-        Ok((networks, sum / samples.len() as f64))
-    }
-
-    /// Half a cosine from `learning_rate` at the first step to `learning_rate_end` after the last.
-    fn learning_rate(&self) -> f64 {
-        let share = 0.5 * (1.0 + (PI * self.step as f64 / self.steps as f64).cos());
-        let end = self.config.learning_rate_end;
-        end + share * (self.config.learning_rate - end)
     }
 }
 
@@ -254,19 +342,18 @@ fn card(
         standardisation: scales.standardisation,
         energy_scale: scales.energy,
         damage_scale: scales.damage,
+        peak_scale: scales.peak,
         domain: domain.ok_or(TrainError::NoRows { part: "training" })?,
-        hinge: HingeConstants {
-            fillet_ratio: manifest.fillet_ratio,
-            kerf: manifest.kerf,
-            r_win: manifest.r_win,
-        },
+        hinge: manifest.hinge,
         material: manifest.material.clone(),
         tier: manifest.tier.clone(),
         dataset_hash: manifest.hash.clone(),
+        fine_tuned_from: None,
         split_hash: manifest.split_hash.clone(),
         training: serde_json::to_value(config)
             .expect("a configuration of numbers and lists is always JSON"),
         test_errors: TestErrors::default(),
+        error_bins: Vec::new(),
     })
 }
 

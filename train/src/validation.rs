@@ -24,13 +24,17 @@ pub struct Parity {
     /// M_theta (N mm)
     pub m_theta: Vec<ParityPoint>,
     pub damage: Vec<ParityPoint>,
+    /// Empty if the surrogate does not predict it.
+    pub damage_peak: Vec<ParityPoint>,
 }
 
 impl Parity {
     /// Evaluates the surrogate at every row.
     pub fn of(surrogate: &Surrogate, rows: &[Row]) -> Self {
-        let designs: Vec<_> = rows.iter().map(|row| row.design).collect();
-        let deformations: Vec<_> = rows.iter().map(|row| row.sample.deformation()).collect();
+        let (designs, deformations): (Vec<_>, Vec<_>) = rows
+            .iter()
+            .map(|row| (row.design, row.sample.deformation()))
+            .unzip();
         let prepared = surrogate.prepare(&designs);
         let energies = surrogate.evaluate(&prepared, &deformations, Order::Forces);
         let damages = surrogate.damage(&designs, &deformations);
@@ -38,14 +42,15 @@ impl Parity {
         for ((row, energy), damage) in rows.iter().zip(energies).zip(damages) {
             let target = row.sample;
             let pairs = [
-                (&mut parity.energy, target.w, energy.w),
-                (&mut parity.f_a, target.f_a, energy.forces[0]),
-                (&mut parity.f_s, target.f_s, energy.forces[1]),
-                (&mut parity.m_theta, target.m_theta, energy.forces[2]),
-                (&mut parity.damage, target.d, damage.d),
+                (&mut parity.energy, target.w, Some(energy.w)),
+                (&mut parity.f_a, target.f_a, Some(energy.forces[0])),
+                (&mut parity.f_s, target.f_s, Some(energy.forces[1])),
+                (&mut parity.m_theta, target.m_theta, Some(energy.forces[2])),
+                (&mut parity.damage, target.d, Some(damage.d)),
+                (&mut parity.damage_peak, target.d_peak, damage.d_peak),
             ];
             for (points, target, predicted) in pairs {
-                points.push(ParityPoint { target, predicted });
+                points.extend(predicted.map(|predicted| ParityPoint { target, predicted }));
             }
         }
         parity
@@ -60,6 +65,23 @@ impl Parity {
             f_s: fit_error(&self.f_s),
             m_theta: fit_error(&self.m_theta),
             damage: fit_error(&self.damage),
+            damage_peak: fit_error(&self.damage_peak),
+        }
+    }
+
+    /// Of the rows with these indices alone.
+    pub(crate) fn of_rows(&self, indices: &[usize]) -> Self {
+        let some = |points: &[ParityPoint]| {
+            let chosen = indices.iter().filter_map(|&index| points.get(index));
+            chosen.copied().collect()
+        };
+        Self {
+            energy: some(&self.energy),
+            f_a: some(&self.f_a),
+            f_s: some(&self.f_s),
+            m_theta: some(&self.m_theta),
+            damage: some(&self.damage),
+            damage_peak: some(&self.damage_peak),
         }
     }
 
@@ -67,21 +89,28 @@ impl Parity {
     pub(crate) fn loss(&self, scales: &Scales, config: &TrainingConfig) -> f64 {
         let [f_a, f_s, m_theta] = scales.forces;
         let force_weight = (1.0 - config.energy_weight) / 3.0;
+        let damage_weight = config.damage_weight / scales.damage_outputs() as f64;
         [
             (&self.energy, scales.energy, config.energy_weight),
             (&self.f_a, f_a, force_weight),
             (&self.f_s, f_s, force_weight),
             (&self.m_theta, m_theta, force_weight),
-            (&self.damage, scales.damage, config.damage_weight),
+            (&self.damage, scales.damage, damage_weight),
         ]
         .into_iter()
+        .chain(
+            scales
+                .peak
+                .map(|scale| (&self.damage_peak, scale, damage_weight)),
+        )
         .map(|(points, scale, weight)| weight * (rms_error(points) / scale).powi(2))
         .sum()
     }
 }
 
-fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let count = values.len() as f64;
+/// Zero if there are no values.
+pub(crate) fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len().max(1) as f64;
     (values.map(|value| value * value).sum::<f64>() / count).sqrt()
 }
 
@@ -90,7 +119,7 @@ fn rms_error(points: &[ParityPoint]) -> f64 {
 }
 
 /// Relative to the targets; an error of zero where every target is zero and so predicted.
-fn fit_error(points: &[ParityPoint]) -> FitError {
+pub(crate) fn fit_error(points: &[ParityPoint]) -> FitError {
     let target = root_mean_square(points.iter().map(|point| point.target));
     let nonzero = points.iter().filter(|point| point.target != 0.0);
     let mut relative: Vec<f64> = nonzero

@@ -9,8 +9,12 @@
 
 use dataset::{Database, Gates, Row, SplitPlan};
 use hinge::{HingeDeformation, HingeDesign, HingeSample};
+use std::path::Path;
 use surrogate::{Order, Surrogate};
-use train::{Backend, Epoch, TrainError, Trained, TrainingConfig, train};
+use train::{
+    Backend, EnsembleCheck, Epoch, Start, StateError, TrainError, Trained, Training,
+    TrainingConfig, train,
+};
 
 fn sample(design: &HingeDesign, eps: HingeDeformation, lambda: f64) -> HingeSample {
     let w = design.w_lig;
@@ -32,6 +36,7 @@ fn sample(design: &HingeDesign, eps: HingeDeformation, lambda: f64) -> HingeSamp
         f_s: 20.0 * v + 3.0 * t * cos,
         m_theta: w * (6.0 * t + 4.0 * u + 3.0 * v * cos + t.powi(3) * (1.0 + sin)),
         d: 0.01 * (t * t + u * u),
+        d_peak: 0.2 * t * t,
         ..HingeSample::default()
     }
 }
@@ -88,6 +93,7 @@ fn config(epochs: usize) -> TrainingConfig {
         gradient_norm_max: 1.0,
         energy_weight: 0.5,
         damage_weight: 0.5,
+        patience: None,
     }
 }
 
@@ -237,4 +243,214 @@ fn a_loss_beyond_float32_says_so() {
         matches!(error, TrainError::Diverged { epoch: 1, .. }),
         "{error}"
     );
+}
+
+/// A training of `epochs` epochs, of which `run` were run.
+fn begun(epochs: usize, run: usize, backend: Backend) -> Training {
+    let database = database(rows(20));
+    let mut training = Training::new(&database, &config(epochs), backend, Start::Fresh).unwrap();
+    for _ in 0..run {
+        training.epoch().unwrap();
+    }
+    training
+}
+
+fn finished(mut training: Training) -> Trained {
+    while !training.is_finished() {
+        training.epoch().unwrap();
+    }
+    training.finish().unwrap()
+}
+
+fn resumed(state: &Path, config: &TrainingConfig) -> Result<Training, TrainError> {
+    let database = database(rows(20));
+    Training::new(&database, config, Backend::default(), Start::State(state))
+}
+
+#[test]
+fn a_training_goes_on_to_the_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let state = folder.path().join("chi.state");
+    for &backend in Backend::ALL {
+        let straight = finished(begun(5, 0, backend));
+        begun(5, 2, backend).save(&state).unwrap();
+        let database = database(rows(20));
+        let start = Start::State(&state);
+        let training = Training::new(&database, &config(5), backend, start).unwrap();
+        assert_eq!(training.history().len(), 2);
+        let resumed = finished(training);
+        assert_eq!(energies(&straight.surrogate), energies(&resumed.surrogate));
+        assert_eq!(energies(&straight.last), energies(&resumed.last));
+        let losses = |trained: &Trained| -> Vec<_> {
+            let epochs = trained.history.iter();
+            epochs
+                .map(|it| (it.training_loss, it.validation_loss, it.best))
+                .collect()
+        };
+        assert_eq!(losses(&straight), losses(&resumed));
+    }
+}
+
+#[test]
+fn a_damaged_or_foreign_state_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let state = folder.path().join("chi.state");
+    begun(3, 1, Backend::default()).save(&state).unwrap();
+    let other = TrainingConfig {
+        batch_size: 32,
+        ..config(3)
+    };
+    let error = resumed(&state, &other).err().unwrap();
+    assert!(error.to_string().contains("configuration"), "{error}");
+
+    let bytes = std::fs::read(&state).unwrap();
+    let mut flipped = bytes.clone();
+    flipped[bytes.len() / 2] ^= 1;
+    let cases = [
+        &bytes[..0],
+        &bytes[..31],
+        &bytes[..32],
+        &bytes[..bytes.len() - 1],
+        &flipped,
+    ];
+    for damaged in cases {
+        std::fs::write(&state, damaged).unwrap();
+        let error = resumed(&state, &config(3)).err().unwrap();
+        let malformed = matches!(error, TrainError::State(StateError::Malformed { .. }));
+        assert!(malformed, "{} bytes: {error}", damaged.len());
+    }
+    std::fs::remove_file(&state).unwrap();
+    let error = resumed(&state, &config(3)).err().unwrap();
+    assert!(
+        matches!(error, TrainError::State(StateError::Read { .. })),
+        "{error}"
+    );
+}
+
+#[test]
+fn fine_tuning_begins_where_the_weights_are() {
+    let base = trained(40, Backend::default());
+    let mut stiffer = rows(40);
+    for row in &mut stiffer {
+        let sample = &mut row.sample;
+        for value in [
+            &mut sample.w,
+            &mut sample.f_a,
+            &mut sample.f_s,
+            &mut sample.m_theta,
+        ] {
+            *value *= 1.02;
+        }
+    }
+    let stiffer = database(stiffer);
+    let first_loss = |start| {
+        let mut training = Training::new(&stiffer, &config(40), Backend::default(), start).unwrap();
+        training.epoch().unwrap().training_loss
+    };
+    let tuned = first_loss(Start::Weights(&base.surrogate));
+    assert!(tuned < 0.2 * first_loss(Start::Fresh), "{tuned}");
+
+    let start = Start::Weights(&base.surrogate);
+    let training = Training::new(&stiffer, &config(1), Backend::default(), start).unwrap();
+    let card = finished(training).surrogate.card().clone();
+    let hash = &base.surrogate.card().dataset_hash;
+    assert_eq!(card.fine_tuned_from.as_ref(), Some(hash));
+    assert_eq!(card.standardisation, base.surrogate.card().standardisation);
+    assert_ne!(&card.dataset_hash, hash);
+
+    let wider = TrainingConfig {
+        embedding: vec![32, 32, 32],
+        ..config(1)
+    };
+    let error = Training::new(&stiffer, &wider, Backend::default(), start)
+        .err()
+        .unwrap();
+    assert!(matches!(error, TrainError::OtherSizes { .. }), "{error}");
+}
+
+#[test]
+fn patience_ends_a_training_that_no_longer_improves() {
+    let config = TrainingConfig {
+        patience: Some(2),
+        learning_rate: 1e-30,
+        learning_rate_end: 1e-30,
+        ..config(50)
+    };
+    let trained = train(
+        &database(rows(20)),
+        &config,
+        Backend::default(),
+        &mut |_| {},
+    )
+    .unwrap();
+    assert_eq!(trained.history.len(), 3);
+}
+
+#[test]
+fn members_of_an_ensemble_agree_with_themselves_alone() {
+    let rows = rows(20);
+    let database = database(rows.clone());
+    let member = |seed| {
+        let config = TrainingConfig { seed, ..config(3) };
+        train(&database, &config, Backend::default(), &mut |_| {})
+            .unwrap()
+            .surrogate
+    };
+    let first = member(1);
+    let same = EnsembleCheck::of(&[first.clone(), first.clone()], &rows);
+    assert!(same.deviation < 1e-12 && same.error > 0.0, "{same:?}");
+    let different = EnsembleCheck::of(&[first, member(2)], &rows);
+    assert!(different.deviation > 0.01, "{different:?}");
+    assert!(different.error_in_top_tenth > 0.0 && different.error_in_top_tenth < 1.0);
+}
+
+#[test]
+fn an_outlier_is_refused_by_name() {
+    type Change = fn(&mut Row);
+    let changes: [(Change, &str); 3] = [
+        (|row| row.sample.f_s = -1e6, "F_s"),
+        (|row| row.sample.w = 1e6, "W"),
+        (|row| row.sample.d_peak = 1e6, "D_peak"),
+    ];
+    for (change, name) in changes {
+        let mut rows = rows(20);
+        // Every second ray has one, so that the training part has some.
+        rows.iter_mut().step_by(20).for_each(change);
+        let error =
+            train(&database(rows), &config(1), Backend::default(), &mut |_| {}).unwrap_err();
+        match error {
+            TrainError::Outlier { target, job, .. } => {
+                assert_eq!(target, name);
+                assert!(job.starts_with("job-"), "{job}");
+            }
+            other => panic!("{other}"),
+        }
+    }
+}
+
+#[test]
+fn a_box_without_compression_and_rows_without_a_peak_are_learned() {
+    let mut tension = rows(20);
+    for row in &mut tension {
+        let end = HingeDeformation {
+            a: row.sample.a.abs(),
+            ..row.sample.deformation()
+        };
+        row.sample = HingeSample {
+            d_peak: 0.0,
+            ..sample(&row.design, end, row.sample.lambda)
+        };
+    }
+    let trained = train(
+        &database(tension),
+        &config(2),
+        Backend::default(),
+        &mut |_| {},
+    )
+    .unwrap();
+    let card = trained.surrogate.card();
+    assert!(card.domain.eta_a[0] >= 0.0);
+    assert_eq!(card.peak_scale, None);
+    assert!(trained.parity.damage_peak.is_empty());
+    assert!(trained.test_errors.energy.relative_rmse.is_finite());
 }

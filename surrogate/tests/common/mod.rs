@@ -8,8 +8,14 @@ pub fn cases() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases")
 }
 
+/// Of format version 1: no D_peak.
 pub fn tiny() -> Surrogate {
     Surrogate::load(&cases().join("chi_tiny.safetensors")).unwrap()
+}
+
+/// Of format version 2: [`tiny`] with a second output of its damage head.
+pub fn with_peak() -> Surrogate {
+    Surrogate::load(&cases().join("chi_peak.safetensors")).unwrap()
 }
 
 pub fn design(w_lig: f64, alpha: f64) -> HingeDesign {

@@ -1,0 +1,45 @@
+//! Rows of ten jobs, each with five increments.
+
+use dataset::{Database, DatasetError, Gates, Row, SplitPlan};
+use hinge::{HingeDesign, HingeSample};
+
+pub fn row(job: usize, lambda: f64) -> Row {
+    Row {
+        job: format!("job-{job:02}"),
+        design: HingeDesign {
+            w_lig: 5.0 + job as f64,
+            alpha: 0.8 + 0.05 * job as f64,
+            fillet_ratio: 0.16,
+            kerf: 0.2,
+            r_win: 100.0,
+        },
+        sample: HingeSample {
+            lambda,
+            a: 0.1 * lambda,
+            s: -0.2 * lambda,
+            theta: lambda,
+            w: 50.0 * lambda * lambda + 1.0 / 3.0,
+            m_theta: 100.0 * lambda,
+            d: 0.01 * lambda,
+            ..HingeSample::default()
+        },
+        failure: if job == 2 { "diverged" } else { "" }.into(),
+        material: "film".into(),
+        tier: "default".into(),
+        solved_tier: if job == 3 { "fine" } else { "default" }.into(),
+        gmsh: "4.8.4".into(),
+        ccx: "2.20".into(),
+        cpu_s: 9.5,
+    }
+}
+
+/// Five increments of each of ten jobs, in no useful order.
+pub fn rows() -> Vec<Row> {
+    let lambdas = [0.6, 0.2, 1.0, 0.4, 0.8];
+    let increments = |job| lambdas.map(|lambda| row(job, lambda));
+    (0..10).rev().flat_map(increments).collect()
+}
+
+pub fn collect(rows: Vec<Row>) -> Result<Database, DatasetError> {
+    Database::collect(rows, &Gates::default(), &SplitPlan::default())
+}

@@ -1,0 +1,198 @@
+//! Databases joined, split anew, and exchanged as CSV.
+
+mod common;
+
+use common::{collect, rows};
+use dataset::{
+    ColumnMap, Constant, Database, DatasetError, Gates, Mixing, Part, Row, SplitPlan, rows_from_csv,
+};
+use std::path::PathBuf;
+use tempfile::TempDir;
+
+fn plan(seed: u64) -> SplitPlan {
+    SplitPlan {
+        seed,
+        ..SplitPlan::default()
+    }
+}
+
+/// The rows of one job only, under another name.
+fn renamed(prefix: &str) -> Vec<Row> {
+    let rename = |row: Row| Row {
+        job: format!("{prefix}-{}", row.job),
+        ..row
+    };
+    rows().into_iter().map(rename).collect()
+}
+
+fn file(text: &str) -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("table.csv");
+    std::fs::write(&path, text).unwrap();
+    (folder, path)
+}
+
+/// Three hinges as another solver tells them.
+const FOREIGN: &str = "ray,width,angle,u,v,turn,energy,Fu,Fv,M\n\
+    A,8,60,0.1,0.2,10,1.5,1,2,3\n\
+    A,8,60,0.2,0.4,20,6.0,2,4,6\n\
+    B,12,75,0.1,0.0,10,2.5,1,0,3\n\
+    C,20,90,0.0,0.1,10,3.5,0,1,3\n";
+
+fn foreign_map() -> ColumnMap {
+    let columns = [
+        ("job", "ray"),
+        ("w_lig", "width"),
+        ("alpha", "angle"),
+        ("a", "u"),
+        ("s", "v"),
+        ("theta", "turn"),
+        ("lambda", "turn"),
+        ("W", "energy"),
+        ("F_a", "Fu"),
+        ("F_s", "Fv"),
+        ("M_theta", "M"),
+    ];
+    let degree = 1f64.to_radians();
+    let numbers = [("fillet_ratio", 0.16), ("kerf", 0.2), ("r_win", 100.0)];
+    let numbers = numbers.map(|(name, value)| (name.to_owned(), Constant::Number(value)));
+    let material = [("material".to_owned(), Constant::Text("steel".into()))];
+    ColumnMap {
+        columns: columns
+            .map(|(ours, theirs)| (ours.into(), theirs.into()))
+            .into(),
+        factors: [("alpha", degree), ("theta", degree), ("lambda", 0.05)]
+            .map(|(name, factor)| (name.into(), factor))
+            .into(),
+        constants: numbers.into_iter().chain(material).collect(),
+    }
+}
+
+#[test]
+fn a_merge_holds_every_job_once_and_keeps_the_count_of_the_rejected() {
+    let mut bad = renamed("other");
+    bad[0].sample.w = -1.0;
+    let databases = [collect(rows()).unwrap(), collect(bad).unwrap()];
+    let twice = [&databases[..], &databases[..1]].concat();
+    let merged = Database::merge(&twice, &plan(0), Mixing::Refused).unwrap();
+    assert_eq!(merged.rows().len(), 99);
+    assert_eq!(merged.manifest().rays, 20);
+    assert_eq!(merged.manifest().rejected.values().sum::<usize>(), 1);
+    let once = Database::merge(&databases, &plan(0), Mixing::Refused).unwrap();
+    assert_eq!(merged.manifest(), once.manifest());
+}
+
+#[test]
+fn tiers_are_mixed_only_if_told_and_hinge_constants_never() {
+    let mut coarse = renamed("coarse");
+    coarse.iter_mut().for_each(|row| row.tier = "tiny".into());
+    let mut narrow = renamed("narrow");
+    narrow.iter_mut().for_each(|row| row.design.kerf = 0.1);
+    let [default, coarse, narrow] = [rows(), coarse, narrow].map(|rows| collect(rows).unwrap());
+    let merge = |other: &Database, mixing| {
+        Database::merge(&[default.clone(), other.clone()], &plan(0), mixing)
+    };
+    let error = merge(&coarse, Mixing::Refused).unwrap_err();
+    assert!(
+        matches!(error, DatasetError::Mixed { column: "tier", .. }),
+        "{error}"
+    );
+    let mixed = merge(&coarse, Mixing::Allowed).unwrap();
+    assert_eq!(mixed.manifest().tier, "default + tiny");
+    let error = merge(&narrow, Mixing::Allowed).unwrap_err();
+    assert!(
+        matches!(error, DatasetError::Mixed { column: "kerf", .. }),
+        "{error}"
+    );
+}
+
+#[test]
+fn another_seed_deals_the_same_rows_otherwise() {
+    let database = collect(rows()).unwrap();
+    let again = database.split(&plan(0)).unwrap();
+    assert_eq!(again.manifest(), database.manifest());
+    let other = database.split(&plan(1)).unwrap();
+    assert_eq!(other.rows(), database.rows());
+    assert_eq!(other.manifest().hash, database.manifest().hash);
+    assert_ne!(other.manifest().split_hash, database.manifest().split_hash);
+}
+
+#[test]
+fn csv_brings_every_digit_back() {
+    let database = collect(rows()).unwrap();
+    let (_folder, path) = file(&String::from_utf8(database.to_csv().unwrap()).unwrap());
+    let again = collect(rows_from_csv(&path, &ColumnMap::default()).unwrap()).unwrap();
+    assert_eq!(again.rows(), database.rows());
+    assert_eq!(again.manifest(), database.manifest());
+}
+
+#[test]
+fn a_foreign_table_becomes_a_database() {
+    let (_folder, path) = file(FOREIGN);
+    let rows = rows_from_csv(&path, &foreign_map()).unwrap();
+    let database = Database::collect(rows, &Gates::default(), &plan(0)).unwrap();
+    assert_eq!((database.manifest().rays, database.rows().len()), (3, 4));
+    let row = &database.rows()[1];
+    assert_eq!((row.job.as_str(), row.sample.lambda), ("A", 1.0));
+    assert!((row.design.alpha - 60f64.to_radians()).abs() < 1e-15);
+    assert_eq!(
+        [row.sample.w, row.sample.f_s, row.sample.d],
+        [6.0, 4.0, 0.0]
+    );
+    assert_eq!((row.material.as_str(), row.design.kerf), ("steel", 0.2));
+}
+
+#[test]
+fn tables_and_maps_that_cannot_be_understood_say_where() {
+    let error = |text: &str, map: &ColumnMap| {
+        let (_folder, path) = file(text);
+        let all = |error: &dyn std::error::Error| {
+            let source = error.source().map(|source| source.to_string());
+            format!("{error} {}", source.unwrap_or_default())
+        };
+        all(&rows_from_csv(&path, map).unwrap_err())
+    };
+    let map = foreign_map();
+    for (from, to, expected) in [
+        ("20,6.0", "20,six", "column `W`, row 1: `six`"),
+        (",M\n", ",Moment\n", "no column `M`"),
+        ("ray,", "\u{0}\u{1},", "no column `ray`"),
+    ] {
+        let message = error(&FOREIGN.replacen(from, to, 1), &map);
+        assert!(message.contains(expected), "{message}");
+    }
+    assert!(error("", &map).contains("table.csv"));
+    assert!(error("ray,width\nA", &map).contains("table.csv"));
+    let mut typo = foreign_map();
+    typo.columns.insert("w_lug".into(), "width".into());
+    assert!(error(FOREIGN, &typo).contains("w_lug"));
+    let mut bare = foreign_map();
+    bare.constants.remove("kerf");
+    assert!(error(FOREIGN, &bare).contains("no column `kerf`"));
+}
+
+#[test]
+fn gaps_and_numbers_that_are_none_are_rejected_rows() {
+    for cell in ["", "NaN", "inf"] {
+        let (_folder, path) = file(&FOREIGN.replacen("20,6.0", &format!("20,{cell}"), 1));
+        let rows = rows_from_csv(&path, &foreign_map()).unwrap();
+        let database = Database::collect(rows, &Gates::default(), &plan(0)).unwrap();
+        assert_eq!(database.rows().len(), 3, "{cell}");
+        assert_eq!(database.manifest().rejected.values().sum::<usize>(), 1);
+    }
+}
+
+#[test]
+fn the_summary_tells_coverage_residuals_and_repeated_states() {
+    let database = collect(rows()).unwrap();
+    let text = dataset::Details(&database).to_string();
+    for expected in [
+        "w_lig",
+        "energy residual",
+        "of 64 cells",
+        "more than once: 0",
+    ] {
+        assert!(text.contains(expected), "{text}");
+    }
+    assert_eq!(database.part(Part::Test).len(), 5);
+}

@@ -1,0 +1,135 @@
+//! Errors by bins: where in the training domain a surrogate is good, and where it is not.
+
+use crate::validation::Parity;
+use dataset::Row;
+use hinge::TrainingDomain;
+use surrogate::ErrorBin;
+
+/// Bins of each quantity, of one width.
+const BINS: usize = 5;
+
+/// Errors on `rows`, of which `parity` tells targets and predictions, by rotation, ligament width,
+/// cut angle, and distance from the edge of the domain; bins without a row are left out.
+pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain) -> Vec<ErrorBin> {
+    let degrees = |[least, greatest]: [f64; 2]| [least.to_degrees(), greatest.to_degrees()];
+    let edge = |row: &Row| edge_distance(row, domain);
+    let quantities: [(&str, [f64; 2], &dyn Fn(&Row) -> f64); 4] = [
+        ("theta_deg", degrees(domain.theta), &|row| {
+            row.sample.theta.to_degrees()
+        }),
+        ("w_lig", domain.w_lig, &|row| row.design.w_lig),
+        ("alpha_deg", degrees(domain.alpha), &|row| {
+            row.design.alpha.to_degrees()
+        }),
+        ("edge", [0.0, 0.5], &edge),
+    ];
+    let mut bins = Vec::new();
+    for (quantity, [least, greatest], value) in quantities {
+        let width = (greatest - least) / BINS as f64;
+        for bin in 0..BINS {
+            let lower = least + bin as f64 * width;
+            let inside = |row: &Row| bin_of(value(row), least, width) == bin;
+            let indices: Vec<usize> = (0..rows.len()).filter(|&i| inside(&rows[i])).collect();
+            if !indices.is_empty() {
+                bins.push(ErrorBin {
+                    quantity: quantity.into(),
+                    range: [lower, lower + width],
+                    errors: parity.of_rows(&indices).errors(),
+                });
+            }
+        }
+    }
+    bins
+}
+
+/// The bin of a value; what lies beyond the ends belongs to the bins there.
+fn bin_of(value: f64, least: f64, width: f64) -> usize {
+    (((value - least) / width).max(0.0) as usize).min(BINS - 1)
+}
+
+/// Distance of a state from the nearest side of the domain over the length of that side: from 0
+/// at (or beyond) the edge to 1/2 in the middle.
+fn edge_distance(row: &Row, domain: &TrainingDomain) -> f64 {
+    let [eta_a, eta_s] = row.eta();
+    [
+        (eta_a, domain.eta_a),
+        (eta_s, domain.eta_s),
+        (row.sample.theta, domain.theta),
+        (row.design.w_lig, domain.w_lig),
+        (row.design.alpha, domain.alpha),
+    ]
+    .into_iter()
+    .map(|(value, [least, greatest])| (value - least).min(greatest - value) / (greatest - least))
+    .fold(0.5, f64::min)
+    .max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::validation::ParityPoint;
+    use hinge::{HingeConstants, HingeSample};
+
+    fn row(w_lig: f64, theta: f64) -> Row {
+        let constants = HingeConstants {
+            fillet_ratio: 0.16,
+            kerf: 0.2,
+            r_win: 100.0,
+        };
+        Row {
+            job: String::new(),
+            design: constants.hinge(w_lig, 1.5),
+            sample: HingeSample {
+                theta,
+                ..HingeSample::default()
+            },
+            failure: String::new(),
+            material: String::new(),
+            tier: String::new(),
+            solved_tier: String::new(),
+            gmsh: String::new(),
+            ccx: String::new(),
+            cpu_s: 0.0,
+        }
+    }
+
+    const DOMAIN: TrainingDomain = TrainingDomain {
+        eta_a: [-1.0, 1.0],
+        eta_s: [-1.0, 1.0],
+        theta: [0.0, 1.0],
+        w_lig: [5.0, 25.0],
+        alpha: [1.0, 2.0],
+    };
+
+    #[test]
+    fn every_row_falls_into_one_bin_of_each_quantity() {
+        let rows = [row(5.0, 0.1), row(12.0, 0.5), row(25.0, 1.0)];
+        let point = |error: f64| ParityPoint {
+            target: 1.0,
+            predicted: 1.0 + error,
+        };
+        let parity = Parity {
+            energy: vec![point(0.1), point(0.2), point(0.4)],
+            ..Parity::default()
+        };
+        let bins = error_bins(&parity, &rows, &DOMAIN);
+        for quantity in ["theta_deg", "w_lig", "alpha_deg", "edge"] {
+            let of = bins.iter().filter(|bin| bin.quantity == quantity);
+            assert_eq!(
+                of.map(|bin| bin.errors.rows).sum::<usize>(),
+                3,
+                "{quantity}"
+            );
+        }
+        let widest = bins.iter().rfind(|bin| bin.quantity == "w_lig").unwrap();
+        assert_eq!(widest.range, [21.0, 25.0]);
+        assert!((widest.errors.energy.relative_rmse - 0.4).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_edge_is_the_nearest_side() {
+        assert_eq!(edge_distance(&row(15.0, 0.5), &DOMAIN), 0.5);
+        assert_eq!(edge_distance(&row(6.0, 0.5), &DOMAIN), 0.05);
+        assert_eq!(edge_distance(&row(15.0, 1.7), &DOMAIN), 0.0);
+    }
+}

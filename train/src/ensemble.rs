@@ -1,0 +1,66 @@
+//! Networks of other seeds as a measure of what the data leave open.
+//!
+//! ```text
+//! deviation^2 = sum over members and force components of |F_m,c - mean_m F_c|^2 / (M sigma_c^2)
+//! error^2     = sum over force components of |mean_m F_c - F_c*|^2 / sigma_c^2
+//! ```
+
+use crate::validation::root_mean_square;
+use dataset::Row;
+use surrogate::{Order, Surrogate};
+
+/// Whether the members' disagreement about the forces tells their error, on rows held out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnsembleCheck {
+    /// Root mean square over the rows of the deviation.
+    pub deviation: f64,
+    /// Root mean square over the rows of the error of the members' mean.
+    pub error: f64,
+    /// Share of the squared error on the tenth of the rows with the greatest deviation: a tenth
+    /// if the deviation tells nothing.
+    pub error_in_top_tenth: f64,
+}
+
+impl EnsembleCheck {
+    /// `members` must not be empty, nor `rows`.
+    pub fn of(members: &[Surrogate], rows: &[Row]) -> Self {
+        let forces: Vec<Vec<[f64; 3]>> = members.iter().map(|it| forces(it, rows)).collect();
+        let targets: Vec<[f64; 3]> = rows
+            .iter()
+            .map(|row| [row.sample.f_a, row.sample.f_s, row.sample.m_theta])
+            .collect();
+        let scales = [0, 1, 2].map(|c| root_mean_square(targets.iter().map(|f| f[c])));
+        let count = members.len() as f64;
+        let mut of_rows: Vec<[f64; 2]> = (0..rows.len())
+            .map(|row| {
+                let [mut deviation, mut error] = [0.0; 2];
+                for (c, scale) in scales.into_iter().enumerate() {
+                    let mean = forces.iter().map(|member| member[row][c]).sum::<f64>() / count;
+                    let square = |value: f64| ((value - mean) / scale).powi(2);
+                    let squares = forces.iter().map(|member| square(member[row][c]));
+                    deviation += squares.sum::<f64>() / count;
+                    error += square(targets[row][c]);
+                }
+                [deviation, error]
+            })
+            .collect();
+        of_rows.sort_by(|left, right| right[0].total_cmp(&left[0]));
+        let sum = |rows: &[[f64; 2]], k: usize| rows.iter().map(|row| row[k]).sum::<f64>();
+        let top = &of_rows[..rows.len().div_ceil(10)];
+        Self {
+            deviation: (sum(&of_rows, 0) / rows.len() as f64).sqrt(),
+            error: (sum(&of_rows, 1) / rows.len() as f64).sqrt(),
+            error_in_top_tenth: sum(top, 1) / sum(&of_rows, 1),
+        }
+    }
+}
+
+fn forces(surrogate: &Surrogate, rows: &[Row]) -> Vec<[f64; 3]> {
+    let (designs, states): (Vec<_>, Vec<_>) = rows
+        .iter()
+        .map(|row| (row.design, row.sample.deformation()))
+        .unzip();
+    let prepared = surrogate.prepare(&designs);
+    let energies = surrogate.evaluate(&prepared, &states, Order::Forces);
+    energies.iter().map(|energy| energy.forces).collect()
+}

@@ -1,0 +1,189 @@
+//! A training between two epochs on disk, from which it goes on to the bit.
+//!
+//! The file is the BLAKE3 of what follows, then safetensors: the networks, those of the best epoch
+//! and the state of the optimiser as Burn's own records (bytes), and everything else as JSON.
+
+use crate::networks::Networks;
+use crate::training::Epoch;
+use burn::module::Module;
+use burn::optim::ModuleOptimizer;
+use burn::store::{ModuleRecord, RecordError};
+use burn::tensor::Bytes;
+use safetensors::tensor::{Dtype, SafeTensors, TensorView};
+use serde::{Deserialize, Serialize};
+use std::io;
+use std::path::{Path, PathBuf};
+use surrogate::Card;
+
+/// Version of the file; a state is no archive, so no other version is read.
+const FORMAT_VERSION: u32 = 1;
+
+/// Why a training cannot go on, or cannot be kept.
+#[derive(Debug, thiserror::Error)]
+pub enum StateError {
+    #[error("cannot read {path}: {source}", path = .path.display())]
+    Read { path: PathBuf, source: io::Error },
+    #[error("cannot write {path}: {source}", path = .path.display())]
+    Write { path: PathBuf, source: io::Error },
+    #[error(
+        "{path} is no state of a training, or was damaged ({reason}); remove it and begin again",
+        path = .path.display()
+    )]
+    Malformed { path: PathBuf, reason: String },
+    #[error(
+        "{path} is the state of another training: the {what} is not the same; go on with the one \
+         it began with, or begin again",
+        path = .path.display()
+    )]
+    Other { path: PathBuf, what: &'static str },
+    #[error("the backend cannot record the networks: {0}")]
+    Record(#[from] RecordError),
+}
+
+/// The part of a state that is not tensors.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Progress {
+    format_version: u32,
+    pub card: Card,
+    pub history: Vec<Epoch>,
+}
+
+impl Progress {
+    pub fn new(card: &Card, history: &[Epoch]) -> Self {
+        Self {
+            format_version: FORMAT_VERSION,
+            card: card.clone(),
+            history: history.to_vec(),
+        }
+    }
+}
+
+/// A state as it was read.
+pub(crate) struct State {
+    pub progress: Progress,
+    path: PathBuf,
+    records: [Vec<u8>; 3],
+}
+
+/// The names of the records.
+const RECORDS: [&str; 3] = ["networks", "best", "optimiser"];
+
+/// Writes a state beside its place and renames it.
+pub(crate) fn write(
+    path: &Path,
+    progress: &Progress,
+    networks: &Networks,
+    best: &Networks,
+    optimiser: &ModuleOptimizer,
+) -> Result<(), StateError> {
+    let records = [
+        networks.clone().into_record().into_bytes()?,
+        best.clone().into_record().into_bytes()?,
+        optimiser.into_bytes()?,
+    ];
+    let malformed = |reason: String| StateError::Malformed {
+        path: path.to_owned(),
+        reason,
+    };
+    let progress = serde_json::to_string(progress).map_err(|error| malformed(error.to_string()))?;
+    let views: Result<Vec<_>, _> = RECORDS
+        .into_iter()
+        .zip(&records)
+        .map(|(name, record)| {
+            Ok((
+                name,
+                TensorView::new(Dtype::U8, vec![record.len()], record)?,
+            ))
+        })
+        .collect();
+    let metadata = Some([("progress".to_owned(), progress)].into());
+    let body = views
+        .and_then(|views| safetensors::serialize(views, metadata))
+        .map_err(|error| malformed(error.to_string()))?;
+    let mut bytes = blake3::hash(&body).as_bytes().to_vec();
+    bytes.extend(body);
+    hinge::files::write(path, &bytes).map_err(|source| StateError::Write {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+impl State {
+    pub fn read(path: &Path) -> Result<Self, StateError> {
+        let malformed = |reason: String| StateError::Malformed {
+            path: path.to_owned(),
+            reason,
+        };
+        let bytes = std::fs::read(path).map_err(|source| StateError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        let (hash, body) = bytes
+            .split_first_chunk::<{ blake3::OUT_LEN }>()
+            .ok_or_else(|| malformed("it is too short".into()))?;
+        if blake3::hash(body) != *hash {
+            return Err(malformed("its hash is wrong".into()));
+        }
+        let tensors =
+            SafeTensors::deserialize(body).map_err(|error| malformed(error.to_string()))?;
+        let (_, metadata) =
+            SafeTensors::read_metadata(body).map_err(|error| malformed(error.to_string()))?;
+        let progress = metadata
+            .metadata()
+            .as_ref()
+            .and_then(|map| map.get("progress"));
+        let progress = progress.ok_or_else(|| malformed("it tells no progress".into()))?;
+        let progress: Progress =
+            serde_json::from_str(progress).map_err(|error| malformed(error.to_string()))?;
+        if progress.format_version != FORMAT_VERSION {
+            return Err(malformed(format!(
+                "its format version is {}, not {FORMAT_VERSION}",
+                progress.format_version
+            )));
+        }
+        let mut records = RECORDS.map(|_| Vec::new());
+        for (record, name) in records.iter_mut().zip(RECORDS) {
+            let view = tensors
+                .tensor(name)
+                .map_err(|error| malformed(error.to_string()))?;
+            *record = view.data().to_vec();
+        }
+        Ok(Self {
+            progress,
+            path: path.to_owned(),
+            records,
+        })
+    }
+
+    /// Refuses to go on with another configuration or other rows.
+    pub fn check(&self, card: &Card) -> Result<(), StateError> {
+        let saved = &self.progress.card;
+        for (what, same) in [
+            ("configuration", saved.training == card.training),
+            ("database", saved.dataset_hash == card.dataset_hash),
+            ("split", saved.split_hash == card.split_hash),
+        ] {
+            if !same {
+                let path = self.path.clone();
+                return Err(StateError::Other { path, what });
+            }
+        }
+        Ok(())
+    }
+
+    /// The networks, those of the best epoch, and the optimiser, given some of the same sizes.
+    pub fn restore(
+        self,
+        networks: &Networks,
+        optimiser: ModuleOptimizer,
+    ) -> Result<(Networks, Networks, ModuleOptimizer), StateError> {
+        let [current, best, adam] = self.records.map(Bytes::from_bytes_vec);
+        let load = |record| {
+            networks
+                .clone()
+                .try_load_record(ModuleRecord::from_bytes(record)?)
+        };
+        Ok((load(current)?, load(best)?, optimiser.from_bytes(adam)?))
+    }
+}

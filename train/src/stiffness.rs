@@ -1,0 +1,131 @@
+//! The learned tangent against the finite elements: curvature of the energy along rays.
+//!
+//! Between two increments of a ray the finite elements say
+//!
+//! ```text
+//! d2W/dlambda2  ~  (F_2 - F_1) . (eps_2 - eps_1) / (lambda_2 - lambda_1)^2
+//! ```
+//!
+//! and the surrogate (eps_2 - eps_1)' H (eps_2 - eps_1) / (lambda_2 - lambda_1)^2 in the middle.
+
+use crate::validation::{ParityPoint, fit_error};
+use dataset::Row;
+use hinge::HingeDeformation;
+use surrogate::{FitError, Order, Surrogate};
+
+/// How the learned tangent behaves on some rays.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StiffnessCheck {
+    /// Pairs of increments.
+    pub pairs: usize,
+    /// Share of the states whose learned tangent is not positive definite.
+    pub indefinite: f64,
+    /// Share of the pairs along which the finite elements lose stiffness.
+    pub softening: f64,
+    /// The same by the learned tangent.
+    pub learned_softening: f64,
+    /// Of the learned curvature along the rays.
+    pub curvature: FitError,
+}
+
+impl StiffnessCheck {
+    /// `rows` in the order of job and lambda, as a database has them.
+    pub fn of(surrogate: &Surrogate, rows: &[Row]) -> Self {
+        let pairs: Vec<(&Row, &Row)> = rows
+            .iter()
+            .zip(rows.iter().skip(1))
+            .filter(|(left, right)| left.job == right.job)
+            .collect();
+        let designs: Vec<_> = pairs.iter().map(|(left, _)| left.design).collect();
+        let middles: Vec<HingeDeformation> = pairs.iter().map(|pair| between(pair, 0.5)).collect();
+        let prepared = surrogate.prepare(&designs);
+        let energies = surrogate.evaluate(&prepared, &middles, Order::Tangent);
+        let points: Vec<ParityPoint> = pairs
+            .iter()
+            .zip(&energies)
+            .map(|(pair, energy)| ParityPoint {
+                target: curvature(pair),
+                predicted: along(&energy.tangent, pair),
+            })
+            .collect();
+        let share = |count: usize| count as f64 / pairs.len().max(1) as f64;
+        let negative = |value: fn(&ParityPoint) -> f64| {
+            share(points.iter().filter(|point| value(point) < 0.0).count())
+        };
+        let indefinite = energies.iter().filter(|energy| !positive(&energy.tangent));
+        Self {
+            pairs: pairs.len(),
+            indefinite: share(indefinite.count()),
+            softening: negative(|point| point.target),
+            learned_softening: negative(|point| point.predicted),
+            curvature: fit_error(&points),
+        }
+    }
+}
+
+/// Part of the way from one increment to the next.
+fn between((left, right): &(&Row, &Row), share: f64) -> HingeDeformation {
+    let (from, to) = (left.sample.deformation(), right.sample.deformation());
+    let (from, to) = (from.to_array(), to.to_array());
+    HingeDeformation::from([0, 1, 2].map(|k| from[k] + share * (to[k] - from[k])))
+}
+
+/// d eps / d lambda.
+fn direction((left, right): &(&Row, &Row)) -> [f64; 3] {
+    let step = right.sample.lambda - left.sample.lambda;
+    let (from, to) = (left.sample.deformation(), right.sample.deformation());
+    let (from, to) = (from.to_array(), to.to_array());
+    [0, 1, 2].map(|k| (to[k] - from[k]) / step)
+}
+
+/// What the finite elements say.
+fn curvature(pair: &(&Row, &Row)) -> f64 {
+    let (left, right) = (pair.0.sample, pair.1.sample);
+    let change = [
+        right.f_a - left.f_a,
+        right.f_s - left.f_s,
+        right.m_theta - left.m_theta,
+    ];
+    let products = direction(pair).into_iter().zip(change);
+    products.map(|(d, f)| d * f).sum::<f64>() / (right.lambda - left.lambda)
+}
+
+/// What the learned tangent says.
+fn along(tangent: &[[f64; 3]; 3], pair: &(&Row, &Row)) -> f64 {
+    let d = direction(pair);
+    let row = |i: usize| d[i] * (0..3).map(|j| tangent[i][j] * d[j]).sum::<f64>();
+    (0..3).map(row).sum()
+}
+
+/// Sylvester's criterion.
+fn positive(h: &[[f64; 3]; 3]) -> bool {
+    let minor = h[0][0] * h[1][1] - h[0][1] * h[1][0];
+    let determinant = h[0][2] * (h[1][0] * h[2][1] - h[1][1] * h[2][0])
+        - h[1][2] * (h[0][0] * h[2][1] - h[0][1] * h[2][0])
+        + h[2][2] * minor;
+    h[0][0] > 0.0 && minor > 0.0 && determinant > 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn definiteness_is_that_of_the_eigenvalues() {
+        assert!(positive(&[
+            [2.0, 1.0, 0.0],
+            [1.0, 2.0, 1.0],
+            [0.0, 1.0, 2.0]
+        ]));
+        assert!(!positive(&[
+            [1.0, 2.0, 0.0],
+            [2.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0]
+        ]));
+        assert!(!positive(&[
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, -1.0]
+        ]));
+    }
+}
