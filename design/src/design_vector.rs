@@ -51,6 +51,13 @@ impl DesignVector {
         design
     }
 
+    /// Whether every block is as long as the other's.
+    pub fn same_shape(&self, other: &Self) -> bool {
+        self.blocks()
+            .map(<[f64]>::len)
+            .eq(other.blocks().map(<[f64]>::len))
+    }
+
     fn blocks(&self) -> impl Iterator<Item = &[f64]> {
         std::iter::once(self.pattern.z.as_slice())
             .chain(self.pattern.ell.iter().map(Vec::as_slice))

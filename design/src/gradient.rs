@@ -14,6 +14,7 @@ use crate::pattern::{CutPattern, Outline, PatternError};
 use crate::plane::add;
 use crate::sheet::{Sheet, SheetError, SheetGradient, SheetOptions};
 use crate::topology::PanelCorner;
+use serde::Serialize;
 
 /// Why a design has no value.
 #[derive(Debug, thiserror::Error)]
@@ -26,6 +27,8 @@ pub enum DesignError {
     Equilibrium(#[from] EquilibriumError),
     #[error("w_minus = {w_minus} mm, w_plus = {w_plus} mm violates 0 < w_minus < w_plus")]
     WidthChart { w_minus: f64, w_plus: f64 },
+    #[error("hinge = \"pin\" solves no equilibrium; choose \"linear\" or \"surrogate\"")]
+    NoMechanics,
     #[error("the target has no points")]
     EmptyTarget,
     #[error("an opening of {0} rad is not a finite number")]
@@ -76,7 +79,7 @@ pub struct Deployment {
 }
 
 /// The gradient of L in what is fixed before the design begins.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Sensitivities {
     /// In the outline's corners, at fixed r and tau.
     pub outline: [[f64; 2]; 4],
@@ -114,8 +117,8 @@ impl Deployment {
 }
 
 impl DesignProblem {
-    /// Lines 2-5 of Algorithm 1. A path that diverges ends early; see [`LoadStep::status`].
-    pub fn deploy(&self, design: &DesignVector) -> Result<Deployment, DesignError> {
+    /// Lines 2-4 of Algorithm 1: the flat sheet.
+    pub fn cut(&self, design: &DesignVector) -> Result<(CutPattern, Sheet), DesignError> {
         let WidthChart { w_minus, w_plus } = self.widths;
         if !(w_minus > 0.0 && w_minus < w_plus && w_plus.is_finite()) {
             return Err(DesignError::WidthChart { w_minus, w_plus });
@@ -125,6 +128,12 @@ impl DesignProblem {
             .map(|&omega| self.widths.width(omega))
             .collect();
         let sheet = Sheet::new(&pattern, &w_lig, self.options)?;
+        Ok((pattern, sheet))
+    }
+
+    /// Lines 2-5 of Algorithm 1. A path that diverges ends early; see [`LoadStep::status`].
+    pub fn deploy(&self, design: &DesignVector) -> Result<Deployment, DesignError> {
+        let (pattern, sheet) = self.cut(design)?;
         let path = match &self.model {
             Model::Ideal { opening } => {
                 let theta = design.opening.unwrap_or(*opening);
@@ -284,7 +293,11 @@ impl DesignProblem {
 }
 
 impl Mechanics {
-    fn hinged<'a>(&'a self, sheet: &'a Sheet, law: &'a dyn PreparedLaw) -> HingedSheet<'a> {
+    pub(crate) fn hinged<'a>(
+        &'a self,
+        sheet: &'a Sheet,
+        law: &'a dyn PreparedLaw,
+    ) -> HingedSheet<'a> {
         HingedSheet {
             sheet,
             law,

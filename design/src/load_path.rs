@@ -1,13 +1,14 @@
 //! Following the load path from the flat sheet.
 //!
 //! An increment starts where the tangent at its beginning leads and ends at a minimum. It is halved
-//! until there is one, and until the rates of the path at both ends explain it,
+//! until there is one, and until the rates of the path explain its rotations,
 //!
 //! ```text
-//! |dphi - (phi'_0 + phi'_1) dt / 2| <= |dphi| / 2         greatest panel rotations
+//! |dphi - (phi'_0 + phi'_1) dt / 2| <= |dphi| / 2,     or     |dphi| <= 3/2 |phi'| dt at either end
 //! ```
 //!
-//! A leap that does not shrink with its increment is a jump past a limit point.
+//! where the second will do if no tangent on the way was indefinite. A leap that does not shrink with
+//! its increment is a jump past a limit point.
 
 use crate::equilibrium::{EquilibriumSolver, HingedSheet};
 use crate::kinematics::Configuration;
@@ -22,6 +23,8 @@ use crate::stroke::HeldFactor;
 const LONGEST_PREDICTION: f64 = 0.5;
 /// Part of a rotation that the rates at both ends may leave unexplained.
 const UNEXPLAINED: f64 = 0.5;
+/// How much further than the rate at one end a continuous path may turn.
+const AHEAD_OF_RATE: f64 = 1.5;
 /// A leap that halving the increment leaves this great is a jump; on a fold it is 1, on a path that
 /// branches off like a square root 0.7.
 const JUMP: f64 = 0.8;
@@ -104,7 +107,7 @@ impl EquilibriumSolver {
                 configuration: minimum.state.configuration.clone(),
                 rate: self.rate(&potential, &minimum.state, minimum.factor.as_ref()),
             };
-            if let Some(leap) = self.leap(reached, &arrived) {
+            if let Some(leap) = self.leap(reached, &arrived, minimum.unstable) {
                 if increment > least {
                     (increment, last_leap) = (0.5 * increment, leap);
                     continue;
@@ -236,18 +239,21 @@ impl EquilibriumSolver {
         rate
     }
 
-    /// The greatest rotation (rad) between two points of the path that the rates at them leave
-    /// unexplained, if it is worth a look.
-    fn leap(&self, from: &Reached, to: &Reached) -> Option<f64> {
+    /// The greatest rotation (rad) between two points of the path, if the rates at them do not explain
+    /// it and it is worth a look.
+    fn leap(&self, from: &Reached, to: &Reached, unstable: bool) -> Option<f64> {
         let half = 0.5 * (to.at - from.at);
-        let (mut turned, mut unexplained) = (0.0_f64, 0.0_f64);
+        let (mut turned, mut unexplained, mut fastest) = (0.0_f64, 0.0_f64, 0.0_f64);
         for k in 0..from.configuration.len() {
             let turn = to.configuration[k][2] - from.configuration[k][2];
-            let rates = half * (from.rate[k][2] + to.rate[k][2]);
+            let rates = [from.rate[k][2], to.rate[k][2]].map(|rate| half * rate);
             turned = turned.max(turn.abs());
-            unexplained = unexplained.max((turn - rates).abs());
+            unexplained = unexplained.max((turn - rates[0] - rates[1]).abs());
+            fastest = fastest.max(2.0 * rates[0].abs().max(rates[1].abs()));
         }
-        let leaps = turned > self.settings.least_leap && unexplained > UNEXPLAINED * turned;
+        let leaps = turned > self.settings.least_leap
+            && unexplained > UNEXPLAINED * turned
+            && (unstable || turned > AHEAD_OF_RATE * fastest);
         leaps.then_some(turned)
     }
 

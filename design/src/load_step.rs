@@ -7,9 +7,11 @@ use crate::potential::State;
 use crate::sheet::Sheet;
 use crate::stroke::HeldFactor;
 use hinge::HingeDeformation;
+use serde::Serialize;
 
 /// How a load step ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Status {
     /// A stable equilibrium, inside the hinge law's domain.
     Converged,

@@ -33,6 +33,8 @@ pub(crate) struct Minimum {
     /// `None` if the tangent is singular.
     pub factor: Option<HeldFactor>,
     pub iterations: usize,
+    /// Whether the tangent lost its positive definiteness on the way.
+    pub unstable: bool,
 }
 
 /// Why there is no minimum.
@@ -54,12 +56,13 @@ impl Potential<'_> {
         })?;
         let mut tangent = self.tangent(&state);
         let scale = self.pattern.shift_scale(&tangent);
-        let mut longest = LONGEST_STEP;
+        let (mut longest, mut unstable) = (LONGEST_STEP, false);
         for iterations in 0..settings.max_iterations {
             let factor = self.factorise(&tangent);
             let stable = factor
                 .as_ref()
                 .filter(|factor| factor.unstable_directions() == 0);
+            unstable |= stable.is_none();
             let stationary = state.residual <= settings.tolerance;
             let next = match stable {
                 Some(_) if stationary => None,
@@ -78,6 +81,7 @@ impl Potential<'_> {
                         tangent,
                         factor,
                         iterations,
+                        unstable,
                     });
                 }
                 None => {

@@ -175,6 +175,17 @@ impl CutPattern {
         self.points[self.grid.endpoint(i, j, Endpoint::XPrime)]
     }
 
+    /// The sides r L and (1 - r) L of the void of every interior cut (mm), row by row.
+    pub fn void_sides(&self) -> Vec<[f64; 2]> {
+        let cuts = std::iter::zip(self.grid.interior_vertices(), &self.r);
+        cuts.map(|((i, j), r)| {
+            let [a, b] = self.grid.facing_endpoints(i, j);
+            let length = (complex(self.points[a]) - complex(self.points[b])).norm();
+            [r * length, (1.0 - r) * length]
+        })
+        .collect()
+    }
+
     /// The gradient in (z, ell) and in the outline's corners of a function whose gradient in
     /// [`points`](Self::points) is given.
     pub fn pullback(&self, points: &[[f64; 2]]) -> (PatternCoordinates, [[f64; 2]; 4]) {

@@ -4,8 +4,8 @@
 
 use super::{HingeModel, SceneConfig, SheetConfig};
 use crate::pattern::{Outline, PatternError};
+use crate::polygon::edges;
 use crate::target::Target;
-use crate::window::edges;
 use hinge::HingeDesign;
 use std::f64::consts::FRAC_PI_2;
 

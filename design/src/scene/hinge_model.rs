@@ -156,9 +156,13 @@ fn no_damage(config: &SceneConfig) -> Result<(), String> {
 fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, String> {
     no_damage(config)?;
     within("pin.opening_deg", pin.opening_deg, [-180.0, 180.0], "deg")?;
-    if !(config.supports.is_empty() && config.loads.is_empty()) {
+    let held_or_loaded = !config.supports.is_empty()
+        || !config.loads.is_empty()
+        || !config.edge_loads.is_empty()
+        || !config.opening_couples.is_empty();
+    if held_or_loaded || config.drive.is_some() || config.contact.is_some() {
         return Err(
-            "supports, loads: hinge = \"pin\" solves no equilibrium; remove them, or choose \
+            "supports, loads, edge_loads, opening_couples, drive, contact: hinge = \"pin\" solves no equilibrium; remove them, or choose \
              hinge = \"linear\""
                 .into(),
         );
