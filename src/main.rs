@@ -3,10 +3,15 @@
 mod charts;
 mod database;
 mod demo;
+mod deploy;
 mod design;
 mod doctor;
+mod equilibrium;
+mod gradient;
+mod inspect;
 mod interrupt;
 mod mesh;
+mod pattern;
 mod picture;
 mod progress;
 mod run_folder;
@@ -36,6 +41,10 @@ enum Command {
     Database(database::DatabaseCommand),
     Train(train::TrainCommand),
     Design(design::DesignCommand),
+    Pattern(pattern::PatternCommand),
+    Deploy(deploy::DeployCommand),
+    Equilibrium(equilibrium::EquilibriumCommand),
+    Gradient(gradient::GradientCommand),
 }
 
 /// Exit code of a run that is to be run again: EX_TEMPFAIL of sysexits.h.
@@ -51,6 +60,10 @@ fn main() -> ExitCode {
         Command::Database(command) => command.run(),
         Command::Train(command) => command.run(),
         Command::Design(command) => command.run(),
+        Command::Pattern(command) => command.run(),
+        Command::Deploy(command) => command.run(),
+        Command::Equilibrium(command) => command.run(),
+        Command::Gradient(command) => command.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

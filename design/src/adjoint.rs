@@ -5,7 +5,9 @@
 //! ```
 //!
 //! local to each hinge in p = (attachment point, centroids, angle of e_sec, w_lig, alpha). Each load
-//! step reuses the factors of its own tangent, refined against the tangent itself.
+//! step reuses the factors of its own tangent, refined against the tangent itself. In the constants
+//! of (11) and in the loads the bracket is eps_c e_c . D eps_h[lambda] and -zeta lambda; a driven sheet
+//! adds the border of its stroke, whose condition (f . q)/F = stroke depends on the loads too.
 
 use crate::equilibrium::{EquilibriumSolver, HingedSheet, LoadStep};
 use crate::gradient::DesignError;
@@ -13,18 +15,27 @@ use crate::hinge_law::Order;
 use crate::kinematics::{HingeGeometryGradient, HingeMotion};
 use crate::panel_vectors::{add_at_hinge, at_hinge, gather, spread};
 use crate::plane::{add, complex};
+use crate::refined_solve::refined_solve;
 use crate::sheet::SheetGradient;
-use crate::tangent::{Factor, TangentPattern};
 
-/// Rounds of iterative refinement.
-const REFINEMENTS: usize = 5;
+/// Backward error of an adjoint solve from which the tangent counts as singular.
+const SINGULAR: f64 = 1e-6;
+
+/// What the adjoint finds beside the gradient in the sheet.
+pub(crate) struct AdjointSums {
+    /// Gradient in (F_x, F_y, M) of every panel at full load.
+    pub loads: Vec<[f64; 3]>,
+    /// Gradient in (k_a, k_s, k_theta) of every hinge; zero for a law without such constants.
+    pub constants: Vec<[f64; 3]>,
+    /// Greatest componentwise backward error of the solves.
+    pub residual: f64,
+}
 
 /// The gradient of a function of the path in the sheet, through the hinge states it reads directly
 /// and through the equilibria.
 ///
 /// `by_path[h][i]` is its gradient in (a, s, theta, w_lig, alpha) of hinge h at load step i and
-/// `by_last` in the last configuration. The gradient is added to `by_sheet`; returned is the greatest
-/// componentwise backward error of the adjoint solves.
+/// `by_last` in the last configuration. The gradient in the sheet is added to `by_sheet`.
 pub(crate) fn adjoint(
     solver: &EquilibriumSolver,
     sheet: HingedSheet,
@@ -32,10 +43,14 @@ pub(crate) fn adjoint(
     by_path: &[Vec<[f64; 5]>],
     by_last: Vec<[f64; 3]>,
     by_sheet: &mut SheetGradient,
-) -> Result<f64, DesignError> {
+) -> Result<AdjointSums, DesignError> {
     let mut by_configurations = vec![vec![[0.0; 3]; by_last.len()]; path.len()];
     by_configurations[path.len() - 1] = by_last;
-    let mut greatest = 0.0_f64;
+    let mut sums = AdjointSums {
+        loads: vec![[0.0; 3]; sheet.sheet.panels.len()],
+        constants: vec![[0.0; 3]; sheet.sheet.hinges.len()],
+        residual: 0.0,
+    };
     for (i, (step, mut by_q)) in std::iter::zip(path, by_configurations).enumerate() {
         let hinges = || sheet.sheet.hinges.iter().enumerate();
         let motions: Vec<HingeMotion> = hinges()
@@ -45,13 +60,25 @@ pub(crate) fn adjoint(
             let [a, s, theta, ..] = by_path[h][i];
             add_at_hinge(&mut by_q, hinge, motions[h].forces([a, s, theta]));
         }
-        let (tangent, factor) = (step.tangent.as_ref()).ok_or(DesignError::SingularTangent {
-            load_factor: step.load_factor,
-        })?;
-        let rhs = gather(solver.free(), &by_q);
-        let (lambda, error) = refined_solve(solver.pattern(), tangent, factor, &rhs);
-        greatest = greatest.max(error);
-        let lambda = spread(solver.free(), &lambda);
+        let rhs = gather(&solver.free, &by_q);
+        let stroke = solver.drive.as_ref().map(|(stroke, _)| stroke);
+        let solution = (step.tangent.as_ref())
+            .and_then(|tangent| refined_solve(&solver.pattern, tangent, stroke, &rhs))
+            .filter(|solution| solution.error < SINGULAR)
+            .ok_or(DesignError::SingularTangent {
+                load_factor: step.load_factor,
+            })?;
+        sums.residual = sums.residual.max(solution.error);
+        let lambda = spread(&solver.free, &solution.x);
+        for (sum, lambda) in std::iter::zip(&mut sums.loads, &lambda) {
+            (0..3).for_each(|d| sum[d] += step.load_factor * lambda[d]);
+        }
+        if let Some(stroke) = stroke {
+            let by_loads = stroke.by_loads(&solver.loads, &step.configuration);
+            for (sum, by_load) in std::iter::zip(&mut sums.loads, by_loads) {
+                (0..3).for_each(|d| sum[d] -= solution.mu * by_load[d]);
+            }
+        }
         let energies = sheet.energies(&step.deformations, Order::Design);
         for (h, hinge) in hinges() {
             let virtual_motion = at_hinge(hinge, &lambda);
@@ -68,11 +95,15 @@ pub(crate) fn adjoint(
             let panels = [hinge.panel_a(), hinge.panel_b()];
             add_geometry(by_sheet, h, panels, &stretching, 1.0);
             add_geometry(by_sheet, h, panels, &turning, -1.0);
+            if sheet.law.has_constants() {
+                let eps = step.deformations[h].to_array();
+                (0..3).for_each(|c| sums.constants[h][c] -= eps[c] * rates[c]);
+            }
             by_sheet.widths[h] += by_state[3] - against(energy.mixed.map(|row| row[0]));
             by_sheet.alphas[h] += by_state[4] - against(energy.mixed.map(|row| row[1]));
         }
     }
-    Ok(greatest)
+    Ok(sums)
 }
 
 fn add_geometry(
@@ -87,38 +118,4 @@ fn add_geometry(
     add_point(&mut by_sheet.centroids[a], gradient.centroid_a);
     add_point(&mut by_sheet.centroids[b], gradient.centroid_b);
     by_sheet.frame_angles[hinge] += sign * gradient.frame_angle;
-}
-
-/// The solution of H x = rhs and its componentwise backward error.
-fn refined_solve(
-    pattern: &TangentPattern,
-    tangent: &[f64],
-    factor: &Factor,
-    rhs: &[f64],
-) -> (Vec<f64>, f64) {
-    let mut solution = vec![0.0; rhs.len()];
-    let mut remainder = rhs.to_vec();
-    let mut error = f64::INFINITY;
-    for _ in 0..=REFINEMENTS {
-        pattern.solve(factor, &mut remainder);
-        let refined: Vec<f64> = std::iter::zip(&solution, &remainder)
-            .map(|(x, d)| x + d)
-            .collect();
-        let (product, bound) = pattern.product(tangent, &refined);
-        remainder = std::iter::zip(rhs, product).map(|(b, p)| b - p).collect();
-        let refined_error = backward_error(&remainder, &bound, rhs);
-        if refined_error >= 0.5 * error {
-            break;
-        }
-        (solution, error) = (refined, refined_error);
-    }
-    (solution, error)
-}
-
-/// Greatest |b - H x| over |H| |x| + |b|.
-fn backward_error(remainder: &[f64], bound: &[f64], rhs: &[f64]) -> f64 {
-    (remainder.iter().zip(bound).zip(rhs))
-        .filter(|((remainder, _), _)| **remainder != 0.0)
-        .map(|((remainder, bound), rhs)| remainder.abs() / (bound + rhs.abs()))
-        .fold(0.0, f64::max)
 }

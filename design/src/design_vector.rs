@@ -1,8 +1,8 @@
 //! The design vector theta = (z, ell, omega) of (1) in unconstrained coordinates, and the chart of
 //! the ligament widths, w_lig = w_minus + (w_plus - w_minus) sigma(omega).
 
+use crate::charts::{PatternCoordinates, logistic, logit};
 use crate::grid::Grid;
-use crate::pattern::{PatternCoordinates, logistic};
 use serde::{Deserialize, Serialize};
 
 /// Everything the optimiser sets, or a gradient in it.
@@ -51,6 +51,13 @@ impl DesignVector {
         design
     }
 
+    /// Whether every block is as long as the other's.
+    pub fn same_shape(&self, other: &Self) -> bool {
+        self.blocks()
+            .map(<[f64]>::len)
+            .eq(other.blocks().map(<[f64]>::len))
+    }
+
     fn blocks(&self) -> impl Iterator<Item = &[f64]> {
         std::iter::once(self.pattern.z.as_slice())
             .chain(self.pattern.ell.iter().map(Vec::as_slice))
@@ -72,6 +79,11 @@ impl WidthChart {
     /// w_lig (mm).
     pub fn width(&self, omega: f64) -> f64 {
         self.w_minus + (self.w_plus - self.w_minus) * logistic(omega)
+    }
+
+    /// The coordinate of a width strictly inside the interval (mm).
+    pub fn omega(&self, w_lig: f64) -> f64 {
+        logit((w_lig - self.w_minus) / (self.w_plus - self.w_minus))
     }
 
     /// dw_lig/domega (mm).

@@ -9,10 +9,12 @@ use crate::hinge_law::{Contact, HingeLaw, PreparedLaw};
 use crate::ideal_deployment::{ideal_deployment, ideal_deployment_pullback};
 use crate::kinematics::{deployed, deployed_pullback};
 use crate::objective::{Judgement, Objective, Terms};
+use crate::path_functionals::PerFunctional;
 use crate::pattern::{CutPattern, Outline, PatternError};
 use crate::plane::add;
 use crate::sheet::{Sheet, SheetError, SheetGradient, SheetOptions};
 use crate::topology::PanelCorner;
+use serde::Serialize;
 
 /// Why a design has no value.
 #[derive(Debug, thiserror::Error)]
@@ -25,6 +27,8 @@ pub enum DesignError {
     Equilibrium(#[from] EquilibriumError),
     #[error("w_minus = {w_minus} mm, w_plus = {w_plus} mm violates 0 < w_minus < w_plus")]
     WidthChart { w_minus: f64, w_plus: f64 },
+    #[error("hinge = \"pin\" solves no equilibrium; choose \"linear\" or \"surrogate\"")]
+    NoMechanics,
     #[error("the target has no points")]
     EmptyTarget,
     #[error("an opening of {0} rad is not a finite number")]
@@ -74,6 +78,17 @@ pub struct Deployment {
     pub path: Vec<LoadStep>,
 }
 
+/// The gradient of L in what is fixed before the design begins.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Sensitivities {
+    /// In the outline's corners, at fixed r and tau.
+    pub outline: [[f64; 2]; 4],
+    /// In (F_x, F_y, M) per panel at full load; empty without equilibrium.
+    pub loads: Vec<[f64; 3]>,
+    /// In (k_a, k_s, k_theta) per hinge; empty without equilibrium, zero unless the law is (11).
+    pub constants: Vec<[f64; 3]>,
+}
+
 /// A design, judged.
 pub struct Evaluation {
     /// L of (16).
@@ -81,6 +96,8 @@ pub struct Evaluation {
     pub terms: Terms,
     /// dL/dtheta
     pub gradient: DesignVector,
+    /// The gradient in what no design changes.
+    pub sensitivities: Sensitivities,
     pub deployment: Deployment,
     /// Greatest componentwise backward error of the adjoint solves.
     pub adjoint_residual: f64,
@@ -100,8 +117,8 @@ impl Deployment {
 }
 
 impl DesignProblem {
-    /// Lines 2-5 of Algorithm 1. A path that diverges ends early; see [`LoadStep::status`].
-    pub fn deploy(&self, design: &DesignVector) -> Result<Deployment, DesignError> {
+    /// Lines 2-4 of Algorithm 1: the flat sheet.
+    pub fn cut(&self, design: &DesignVector) -> Result<(CutPattern, Sheet), DesignError> {
         let WidthChart { w_minus, w_plus } = self.widths;
         if !(w_minus > 0.0 && w_minus < w_plus && w_plus.is_finite()) {
             return Err(DesignError::WidthChart { w_minus, w_plus });
@@ -111,6 +128,12 @@ impl DesignProblem {
             .map(|&omega| self.widths.width(omega))
             .collect();
         let sheet = Sheet::new(&pattern, &w_lig, self.options)?;
+        Ok((pattern, sheet))
+    }
+
+    /// Lines 2-5 of Algorithm 1. A path that diverges ends early; see [`LoadStep::status`].
+    pub fn deploy(&self, design: &DesignVector) -> Result<Deployment, DesignError> {
+        let (pattern, sheet) = self.cut(design)?;
         let path = match &self.model {
             Model::Ideal { opening } => {
                 let theta = design.opening.unwrap_or(*opening);
@@ -140,6 +163,7 @@ impl DesignProblem {
         let mut by_sheet = SheetGradient::zeros(self.grid);
         let by_last = outline_pullback(sheet, last, &outline, &judgement.by_outline, &mut by_sheet);
         let (mut by_opening, mut adjoint_residual) = (None, 0.0);
+        let mut sensitivities = Sensitivities::default();
         match &self.model {
             Model::Ideal { opening } => {
                 let theta = design.opening.unwrap_or(*opening);
@@ -148,7 +172,7 @@ impl DesignProblem {
             }
             Model::Equilibrium(mechanics) => {
                 let law = mechanics.law.prepare(&sheet.designs());
-                adjoint_residual = adjoint(
+                let sums = adjoint(
                     &mechanics.solver,
                     mechanics.hinged(sheet, &*law),
                     &deployment.path,
@@ -156,11 +180,16 @@ impl DesignProblem {
                     by_last,
                     &mut by_sheet,
                 )?;
+                adjoint_residual = sums.residual;
+                sensitivities.loads = sums.loads;
+                sensitivities.constants = sums.constants;
             }
         }
         let (by_points, by_width) = sheet.pullback(&by_sheet);
+        let (by_pattern, by_outline) = deployment.pattern.pullback(&by_points);
+        sensitivities.outline = by_outline;
         let gradient = DesignVector {
-            pattern: deployment.pattern.pullback(&by_points),
+            pattern: by_pattern,
             omega: std::iter::zip(&design.omega, by_width)
                 .map(|(&omega, by_width)| by_width * self.widths.slope(omega))
                 .collect(),
@@ -170,6 +199,7 @@ impl DesignProblem {
             loss: judgement.loss,
             terms: judgement.terms,
             gradient,
+            sensitivities,
             deployment,
             adjoint_residual,
         })
@@ -180,6 +210,52 @@ impl DesignProblem {
         let deployment = self.deploy(design)?;
         let outline = self.objective.outline.of(&deployment.sheet);
         Ok(self.judge(&deployment, &outline)?.loss)
+    }
+
+    /// The problem with each weight of a path functional relative to the gradient of the Chamfer
+    /// distance at `start`: at the weight 1 both gradients have the same norm. A functional without
+    /// a gradient there keeps its weight.
+    pub fn balanced(mut self, start: &DesignVector) -> Result<Self, DesignError> {
+        let asked = self.objective.weights;
+        let mut gradient = |weights: PerFunctional| {
+            self.objective.weights = weights;
+            Ok::<_, DesignError>(self.evaluate(start)?.gradient.to_flat())
+        };
+        let none = PerFunctional::default();
+        let shape = gradient(none)?;
+        let mut balanced = |weight: f64, alone: PerFunctional| {
+            if weight == 0.0 {
+                return Ok(0.0);
+            }
+            let both = gradient(alone)?;
+            let functional: Vec<f64> = std::iter::zip(both, &shape).map(|(b, s)| b - s).collect();
+            let norm = norm(&functional);
+            let ratio = if norm > 0.0 {
+                self::norm(&shape) / norm
+            } else {
+                1.0
+            };
+            Ok::<_, DesignError>(weight * ratio)
+        };
+        let weights = PerFunctional {
+            damage: balanced(
+                asked.damage,
+                PerFunctional {
+                    damage: 1.0,
+                    ..none
+                },
+            )?,
+            compression: balanced(
+                asked.compression,
+                PerFunctional {
+                    compression: 1.0,
+                    ..none
+                },
+            )?,
+            shear: balanced(asked.shear, PerFunctional { shear: 1.0, ..none })?,
+        };
+        self.objective.weights = weights;
+        Ok(self)
     }
 
     fn judge(
@@ -217,7 +293,11 @@ impl DesignProblem {
 }
 
 impl Mechanics {
-    fn hinged<'a>(&'a self, sheet: &'a Sheet, law: &'a dyn PreparedLaw) -> HingedSheet<'a> {
+    pub(crate) fn hinged<'a>(
+        &'a self,
+        sheet: &'a Sheet,
+        law: &'a dyn PreparedLaw,
+    ) -> HingedSheet<'a> {
         HingedSheet {
             sheet,
             law,
@@ -249,4 +329,8 @@ fn outline_pullback(
         add(&mut by_sheet.centroids[panel], by_centroid);
     }
     by_last
+}
+
+fn norm(vector: &[f64]) -> f64 {
+    vector.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
 }

@@ -40,6 +40,11 @@ pub trait PreparedLaw {
         Vec::new()
     }
 
+    /// Whether the law is (11), with the constants (k_a, k_s, k_theta) at every hinge.
+    fn has_constants(&self) -> bool {
+        false
+    }
+
     /// Which hinges are in a state that the law was made for.
     fn inside(&self, deformations: &[HingeDeformation]) -> Vec<bool> {
         vec![true; deformations.len()]

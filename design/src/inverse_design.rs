@@ -75,13 +75,14 @@ pub enum InverseDesignError {
     Start(DesignError),
     #[error("the best design of the run cannot be evaluated again: {0}")]
     Best(DesignError),
-    #[error("the run folder: cannot use {path}: {source}", path = .path.display())]
+    #[error("cannot use {path}: {source}", path = .path.display())]
     Folder {
         path: PathBuf,
         source: std::io::Error,
     },
     #[error(
-        "{path} is not the state of a run ({source}); restart the run",
+        "{path} is neither the state of a run nor a design ({source}); give another, or restart the \
+         run",
         path = .path.display()
     )]
     State {
@@ -89,7 +90,7 @@ pub enum InverseDesignError {
         source: serde_json::Error,
     },
     #[error(
-        "{path} holds a design of another size than the scene's; restart the run",
+        "{path} holds a design of another size than the scene's; give another, or restart the run",
         path = .path.display()
     )]
     OtherSize { path: PathBuf },
@@ -122,6 +123,30 @@ struct State {
     adam: Adam,
     best: DesignVector,
     history: Vec<StepRecord>,
+}
+
+/// The design in a JSON file: the best of a run's state, or one written alone.
+pub fn stored_design(path: &Path, scene: &Scene) -> Result<DesignVector, InverseDesignError> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Stored {
+        Run { best: DesignVector },
+        Alone(DesignVector),
+    }
+    let text = std::fs::read_to_string(path).map_err(|source| InverseDesignError::Folder {
+        path: path.to_owned(),
+        source,
+    })?;
+    let stored = serde_json::from_str(&text).map_err(|source| InverseDesignError::State {
+        path: path.to_owned(),
+        source,
+    })?;
+    let (Stored::Run { best: design } | Stored::Alone(design)) = stored;
+    if design.same_shape(&scene.start()) {
+        return Ok(design);
+    }
+    let path = path.to_owned();
+    Err(InverseDesignError::OtherSize { path })
 }
 
 /// Runs the search of a scene in its run folder, from the state there if there is one.
@@ -307,9 +332,10 @@ impl State {
             let path = path.to_owned();
             return Err(InverseDesignError::OtherScene { path });
         }
-        let n = scene.start().to_flat().len();
+        let scene_start = scene.start();
+        let n = scene_start.to_flat().len();
         let designs = [&state.design, &state.proposal, &state.best];
-        let same_size = designs.iter().all(|design| design.to_flat().len() == n);
+        let same_size = designs.iter().all(|design| design.same_shape(&scene_start));
         let path = path.to_owned();
         match state.history.first() {
             Some(first) if same_size && state.adam.len() == n => {

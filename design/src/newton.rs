@@ -4,12 +4,11 @@
 //! smallest sigma found that makes the matrix positive definite, is cut to a length in which the
 //! rotations stay moderate, and is accepted if Pi falls by a part of what the model predicts.
 
-use crate::equilibrium::{HingedSheet, SolverSettings};
-use crate::hinge_law::{HingeEnergy, Order};
-use crate::kinematics::{Configuration, HingeMotion};
-use crate::panel_vectors::{add_at_hinge, at_hinge, gather, spread};
-use crate::tangent::{Factor, TangentPattern};
-use hinge::HingeDeformation;
+use crate::equilibrium::SolverSettings;
+use crate::kinematics::Configuration;
+use crate::panel_vectors::spread;
+use crate::potential::{Potential, State};
+use crate::stroke::{HeldFactor, dot};
 
 /// Longest step: rotations in rad, hinge translations in panel sizes.
 const LONGEST_STEP: f64 = 0.5;
@@ -27,40 +26,12 @@ const NEGATIVE_CURVATURE: f64 = -1e-11;
 /// a difference of much greater numbers.
 const LEVEL: f64 = 1e-9;
 
-/// The potential (10) at one load factor.
-pub(crate) struct Potential<'a> {
-    pub sheet: HingedSheet<'a>,
-    pub pattern: &'a TangentPattern,
-    /// Numbers of the free degrees of freedom.
-    pub free: &'a [Option<usize>],
-    /// zeta (F_x, F_y, M) per panel.
-    pub loads: Vec<[f64; 3]>,
-    /// Size of a panel, which makes moments comparable with forces (mm).
-    pub panel_size: f64,
-    /// (F_x, F_y, M) per panel at zeta = 1.
-    pub full_loads: &'a [[f64; 3]],
-}
-
-/// The potential and its first derivatives at a configuration.
-pub(crate) struct State {
-    pub configuration: Configuration,
-    pub motions: Vec<HingeMotion>,
-    pub energies: Vec<HingeEnergy>,
-    pub potential: f64,
-    /// Sum of the sizes of the terms of `potential`.
-    magnitude: f64,
-    /// d Pi / d q over the free degrees of freedom.
-    gradient: Vec<f64>,
-    /// Greatest unbalanced force over the greatest force.
-    pub residual: f64,
-}
-
 /// Where a minimisation ended.
 pub(crate) struct Minimum {
     pub state: State,
     pub tangent: Vec<f64>,
     /// `None` if the tangent is singular.
-    pub factor: Option<Factor>,
+    pub factor: Option<HeldFactor>,
     pub iterations: usize,
     /// Whether the tangent lost its positive definiteness on the way.
     pub unstable: bool,
@@ -72,90 +43,7 @@ pub(crate) struct Failure {
     pub iterations: usize,
 }
 
-impl State {
-    pub fn deformations(&self) -> Vec<HingeDeformation> {
-        self.motions.iter().map(HingeMotion::deformation).collect()
-    }
-}
-
 impl Potential<'_> {
-    /// `None` where the potential is not finite.
-    pub fn state(&self, configuration: Configuration) -> Option<State> {
-        let sheet = self.sheet.sheet;
-        let motions: Vec<HingeMotion> = (0..sheet.hinges.len())
-            .map(|hinge| HingeMotion::new(sheet, hinge, &configuration))
-            .collect();
-        let deformations: Vec<HingeDeformation> =
-            motions.iter().map(HingeMotion::deformation).collect();
-        let energies = self.sheet.energies(&deformations, Order::Tangent);
-
-        let mut unbalanced: Vec<[f64; 3]> = (self.loads.iter())
-            .map(|load| load.map(|force| -force))
-            .collect();
-        for ((hinge, motion), energy) in sheet.hinges.iter().zip(&motions).zip(&energies) {
-            add_at_hinge(&mut unbalanced, hinge, motion.forces(energy.forces));
-        }
-        let stored = energies.iter().map(|energy| energy.w);
-        let works = std::iter::zip(&self.loads, &configuration)
-            .flat_map(|(load, motion)| std::iter::zip(load, motion).map(|(f, u)| f * u));
-        let terms = stored.chain(works.map(|work| -work));
-        let gradient = gather(self.free, &unbalanced);
-        let state = State {
-            potential: terms.clone().sum(),
-            magnitude: terms.map(f64::abs).sum(),
-            residual: self.residual(&gradient, &energies),
-            gradient,
-            configuration,
-            motions,
-            energies,
-        };
-        let finite = state.potential.is_finite() && state.gradient.iter().all(|g| g.is_finite());
-        finite.then_some(state)
-    }
-
-    /// Greatest unbalanced force on a panel over the greatest load or hinge force.
-    fn residual(&self, gradient: &[f64], energies: &[HingeEnergy]) -> f64 {
-        let unbalanced = self.greatest(spread(self.free, gradient).into_iter());
-        if unbalanced == 0.0 {
-            return 0.0;
-        }
-        let loads = self.greatest(self.full_loads.iter().copied());
-        let inner = self.greatest(energies.iter().map(|energy| energy.forces));
-        unbalanced / loads.max(inner)
-    }
-
-    /// Greatest of forces and moments, as a force (N).
-    fn greatest(&self, forces: impl Iterator<Item = [f64; 3]>) -> f64 {
-        forces
-            .map(|[x, y, moment]| x.hypot(y).max(moment.abs() / self.panel_size))
-            .fold(0.0, f64::max)
-    }
-
-    fn tangent(&self, state: &State) -> Vec<f64> {
-        let blocks = std::iter::zip(&state.motions, &state.energies);
-        self.pattern
-            .assemble(blocks.map(|(motion, energy)| motion.stiffness(energy)))
-    }
-
-    fn moved(&self, state: &State, motion: &[[f64; 3]], fraction: f64) -> Option<State> {
-        let configuration = std::iter::zip(&state.configuration, motion)
-            .map(|(q, d)| std::array::from_fn(|c| q[c] + fraction * d[c]))
-            .collect();
-        self.state(configuration)
-    }
-
-    /// Greatest panel rotation (rad) or hinge translation (panel sizes) of a motion.
-    fn length(&self, state: &State, motion: &[[f64; 3]]) -> f64 {
-        std::iter::zip(&self.sheet.sheet.hinges, &state.motions)
-            .map(|(hinge, hinge_motion)| {
-                let motions = at_hinge(hinge, motion);
-                let [along, across, _] = hinge_motion.rates(motions);
-                let translation = along.hypot(across) / self.panel_size;
-                translation.max(motions[2].abs()).max(motions[5].abs())
-            })
-            .fold(0.0, f64::max)
-    }
-
     /// A minimum near `start`.
     pub fn minimise(
         &self,
@@ -167,11 +55,13 @@ impl Potential<'_> {
             iterations: 0,
         })?;
         let mut tangent = self.tangent(&state);
-        let scale = self.shift_scale(&tangent);
+        let scale = self.pattern.shift_scale(&tangent);
         let (mut longest, mut unstable) = (LONGEST_STEP, false);
         for iterations in 0..settings.max_iterations {
-            let factor = self.pattern.factorise(&tangent);
-            let stable = factor.as_ref().filter(|factor| factor.negative_pivots == 0);
+            let factor = self.factorise(&tangent);
+            let stable = factor
+                .as_ref()
+                .filter(|factor| factor.unstable_directions() == 0);
             unstable |= stable.is_none();
             let stationary = state.residual <= settings.tolerance;
             let next = match stable {
@@ -215,12 +105,12 @@ impl Potential<'_> {
     fn step(
         &self,
         state: &State,
-        factor: &Factor,
+        factor: &HeldFactor,
         longest: &mut f64,
         settings: &SolverSettings,
     ) -> Option<State> {
-        let mut direction: Vec<f64> = state.gradient.iter().map(|g| -g).collect();
-        self.pattern.solve(factor, &mut direction);
+        let downhill: Vec<f64> = state.gradient.iter().map(|g| -g).collect();
+        let direction = factor.solve(self.pattern, &downhill);
         let slope = dot(&state.gradient, &direction);
         let motion = spread(self.free, &direction);
         let length = self.length(state, &motion);
@@ -245,32 +135,21 @@ impl Potential<'_> {
         None
     }
 
-    /// S: the sizes of the diagonal of a tangent, none zero.
-    fn shift_scale(&self, tangent: &[f64]) -> Vec<f64> {
-        let mut scale = self.pattern.diagonal(tangent);
-        let greatest = scale
-            .iter()
-            .fold(0.0_f64, |max, entry| max.max(entry.abs()));
-        let least = if greatest > 0.0 {
-            1e-12 * greatest
-        } else {
-            1.0
-        };
-        scale
-            .iter_mut()
-            .for_each(|entry| *entry = entry.abs().max(least));
-        scale
+    /// The factors of the tangent, bordered if the sheet is driven.
+    pub fn factorise(&self, tangent: &[f64]) -> Option<HeldFactor> {
+        let factor = self.pattern.factorise(tangent)?;
+        HeldFactor::new(self.pattern, factor, self.control.stroke())
     }
 
     /// H + sigma S, positive definite; `None` if no reasonable sigma makes it so.
-    fn shifted_factor(&self, tangent: &[f64], scale: &[f64]) -> Option<Factor> {
+    fn shifted_factor(&self, tangent: &[f64], scale: &[f64]) -> Option<HeldFactor> {
         let [mut shift, growth, greatest] = SHIFTS;
         while shift <= greatest {
             let shifted = self
                 .pattern
                 .shifted(tangent, scale.iter().map(|entry| shift * entry));
-            match self.pattern.factorise(&shifted) {
-                Some(factor) if factor.negative_pivots == 0 => return Some(factor),
+            match self.factorise(&shifted) {
+                Some(factor) if factor.unstable_directions() == 0 => return Some(factor),
                 _ => shift *= growth,
             }
         }
@@ -287,7 +166,7 @@ impl Potential<'_> {
             for (component, scale) in std::iter::zip(&mut direction, scale) {
                 *component *= scale;
             }
-            self.pattern.solve(&factor, &mut direction);
+            direction = factor.solve(self.pattern, &direction);
             let norm = dot(&direction, &direction).sqrt();
             direction
                 .iter_mut()
@@ -316,8 +195,4 @@ impl Potential<'_> {
         }
         None
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    std::iter::zip(a, b).map(|(a, b)| a * b).sum()
 }

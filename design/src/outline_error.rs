@@ -5,6 +5,7 @@ use crate::gradient::Deployment;
 use crate::kinematics::{Configuration, deployed};
 use crate::scene::Scene;
 use crate::sheet::Sheet;
+use crate::topology::PanelCorner;
 
 /// Root mean square distance of the deployed outline points P to the target (mm).
 ///
@@ -37,9 +38,20 @@ pub(crate) fn placed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -
     placed
 }
 
+/// The whole deployed outline, free corners or not, where the objective compares it (mm).
+pub fn deployed_outline(scene: &Scene, deployment: &Deployment) -> Vec<[f64; 2]> {
+    let sheet = &deployment.sheet;
+    let configuration = placed(scene, sheet, &deployment.final_step().configuration);
+    corners(sheet, sheet.outline_corners(), &configuration)
+}
+
 /// The deployed points P (mm).
 fn outline(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<[f64; 2]> {
-    let corners = scene.config.objective.outline.of(sheet);
+    let points = scene.config.objective.outline.of(sheet);
+    corners(sheet, points, configuration)
+}
+
+fn corners(sheet: &Sheet, corners: Vec<PanelCorner>, configuration: &[[f64; 3]]) -> Vec<[f64; 2]> {
     corners
         .into_iter()
         .map(|(k, corner)| {

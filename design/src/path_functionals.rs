@@ -11,9 +11,10 @@
 use crate::hinge_law::HingeDamage;
 use crate::smooth_extrema::{smooth_max, smooth_min};
 use hinge::HingeDeformation;
+use serde::Serialize;
 
 /// One number for each functional: a value, a weight or a temperature.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct PerFunctional {
     pub damage: f64,
     pub compression: f64,

@@ -1,4 +1,4 @@
-//! The cut pattern: the charts (5), the outline (4) and the one sparse solve that places every cut
+//! The cut pattern: the outline (4) and the one sparse solve that places every cut
 //! endpoint (3),
 //!
 //! ```text
@@ -9,9 +9,11 @@
 //!
 //! and its exact vector-Jacobian product through the transposed system.
 
+use crate::charts::{PatternCoordinates, intervals, logistic, partial_sums, partial_sums_pullback};
 use crate::grid::{EDGES, Endpoint, Grid};
-use crate::plane::{complex, cross, dot};
+use crate::plane::{add, complex, cross, dot};
 use faer::Mat;
+use faer::c64;
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::Lu;
 use faer::sparse::{SparseColMat, Triplet};
@@ -41,6 +43,12 @@ pub enum PatternError {
         index: usize,
         value: f64,
     },
+    #[error("{name}[{index}] = {value} violates 0 < {name} < 1, growing along each edge")]
+    Interval {
+        name: &'static str,
+        index: usize,
+        value: f64,
+    },
     #[error(
         "{name}[{index}] has run so far that its chart (5) rounds to the bound of (0, 1): two cuts collide"
     )]
@@ -64,59 +72,29 @@ impl Outline {
         }
     }
 
-    fn is_convex(&self) -> bool {
+    /// mm^2
+    pub fn area(&self) -> f64 {
+        let [sw, se, ne, nw] = self.corners.map(complex);
+        0.5 * cross(ne - sw, nw - se)
+    }
+
+    /// The greater of width and height (mm).
+    pub fn size(&self) -> f64 {
+        let extent = |axis: usize| {
+            let values = self.corners.map(|corner| corner[axis]);
+            let greatest = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            greatest - values.into_iter().fold(f64::INFINITY, f64::min)
+        };
+        f64::max(extent(0), extent(1))
+    }
+
+    /// Whether the corners turn counter-clockwise.
+    pub fn is_convex(&self) -> bool {
         let corner = |k: usize| complex(self.corners[k % 4]);
         (0..4).all(|k| {
             let turn = cross(corner(k + 1) - corner(k), corner(k + 2) - corner(k + 1));
             turn > 0.0 && turn.is_finite()
         })
-    }
-}
-
-/// Unconstrained coordinates of a pattern (5), or a gradient in them.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PatternCoordinates {
-    /// Logits of the void aspect ratios of the interior cuts, row by row.
-    pub z: Vec<f64>,
-    /// Logits of the intervals between the cuts on the edges bottom, right, top, left.
-    pub ell: [Vec<f64>; 4],
-}
-
-impl PatternCoordinates {
-    /// r = 1/2 everywhere and evenly spaced cuts on the outline.
-    pub fn uniform(grid: Grid) -> Self {
-        Self {
-            z: vec![0.0; grid.aspect_ratio_count()],
-            ell: grid.edge_cut_counts().map(|count| vec![0.0; count + 1]),
-        }
-    }
-
-    fn check(&self, grid: Grid) -> Result<(), PatternError> {
-        let expected = grid.edge_cut_counts().map(|count| count + 1);
-        let blocks = [
-            ("z", &self.z, grid.aspect_ratio_count()),
-            ("ell of the bottom edge", &self.ell[0], expected[0]),
-            ("ell of the right edge", &self.ell[1], expected[1]),
-            ("ell of the top edge", &self.ell[2], expected[2]),
-            ("ell of the left edge", &self.ell[3], expected[3]),
-        ];
-        for (name, values, expected) in blocks {
-            if values.len() != expected {
-                return Err(PatternError::Count {
-                    name,
-                    found: values.len(),
-                    expected,
-                    m: grid.m,
-                    n: grid.n,
-                });
-            }
-            if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-                let value = values[index];
-                return Err(PatternError::NotFinite { name, index, value });
-            }
-        }
-        Ok(())
     }
 }
 
@@ -197,8 +175,20 @@ impl CutPattern {
         self.points[self.grid.endpoint(i, j, Endpoint::XPrime)]
     }
 
-    /// The gradient in (z, ell) of a function whose gradient in [`points`](Self::points) is given.
-    pub fn pullback(&self, points: &[[f64; 2]]) -> PatternCoordinates {
+    /// The sides r L and (1 - r) L of the void of every interior cut (mm), row by row.
+    pub fn void_sides(&self) -> Vec<[f64; 2]> {
+        let cuts = std::iter::zip(self.grid.interior_vertices(), &self.r);
+        cuts.map(|((i, j), r)| {
+            let [a, b] = self.grid.facing_endpoints(i, j);
+            let length = (complex(self.points[a]) - complex(self.points[b])).norm();
+            [r * length, (1.0 - r) * length]
+        })
+        .collect()
+    }
+
+    /// The gradient in (z, ell) and in the outline's corners of a function whose gradient in
+    /// [`points`](Self::points) is given.
+    pub fn pullback(&self, points: &[[f64; 2]]) -> (PatternCoordinates, [[f64; 2]; 4]) {
         let adjoint = self
             .system
             .solve_transpose(Mat::from_fn(points.len(), 2, |row, axis| points[row][axis]));
@@ -226,51 +216,34 @@ impl CutPattern {
                 .collect();
             partial_sums_pullback(&self.tau[edge], &tau)
         });
-        PatternCoordinates { z, ell }
+        (
+            PatternCoordinates { z, ell },
+            self.outline_pullback(adjoint),
+        )
     }
-}
 
-/// The logistic function sigma of (5).
-pub(crate) fn logistic(z: f64) -> f64 {
-    1.0 / (1.0 + (-z).exp())
-}
-
-/// Partial sums of softmax(ell), without the last, which is 1; (5).
-fn partial_sums(ell: &[f64]) -> Vec<f64> {
-    let greatest = ell.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let weights: Vec<f64> = ell.iter().map(|logit| (logit - greatest).exp()).collect();
-    let total: f64 = weights.iter().sum();
-    let mut sum = 0.0;
-    weights[..weights.len() - 1]
-        .iter()
-        .map(|weight| {
-            sum += weight / total;
-            sum
-        })
-        .collect()
-}
-
-/// The intervals between neighbouring boundary positions: the softmax weights.
-fn intervals(tau: &[f64]) -> Vec<f64> {
-    let ends = std::iter::once(0.0)
-        .chain(tau.iter().copied())
-        .chain(std::iter::once(1.0));
-    ends.clone().skip(1).zip(ends).map(|(b, a)| b - a).collect()
-}
-
-/// The gradient in ell from the gradient in tau.
-fn partial_sums_pullback(tau: &[f64], gradient: &[f64]) -> Vec<f64> {
-    let weights = intervals(tau);
-    let mut by_weight = vec![0.0; weights.len()];
-    for s in (0..gradient.len()).rev() {
-        by_weight[s] = by_weight[s + 1] + gradient[s];
+    /// The gradient in the outline's corners, from the adjoint of the cut endpoints.
+    fn outline_pullback(&self, adjoint: impl Fn(usize) -> c64) -> [[f64; 2]; 4] {
+        let mut corners = [[0.0; 2]; 4];
+        for (edge, tau) in self.tau.iter().enumerate() {
+            let [start, end] = EDGES[edge];
+            for (s, tau) in std::iter::zip(1.., tau) {
+                let (i, j) = self.grid.edge_vertex(edge, s);
+                let both =
+                    [Endpoint::X, Endpoint::XPrime].map(|e| adjoint(self.grid.endpoint(i, j, e)));
+                let force = both[0] + both[1];
+                add(&mut corners[start], force * (1.0 - tau));
+                add(&mut corners[end], force * *tau);
+            }
+        }
+        let Grid { m, n } = self.grid;
+        for (corner, (i, j)) in std::iter::zip(&mut corners, [(0, 0), (m, 0), (m, n), (0, n)]) {
+            for endpoint in [Endpoint::X, Endpoint::XPrime] {
+                add(corner, adjoint(self.grid.endpoint(i, j, endpoint)));
+            }
+        }
+        corners
     }
-    let mean: f64 = std::iter::zip(&weights, &by_weight)
-        .map(|(w, g)| w * g)
-        .sum();
-    std::iter::zip(&weights, &by_weight)
-        .map(|(w, g)| w * (g - mean))
-        .collect()
 }
 
 /// The matrix of (3)-(4): one row per cut endpoint.

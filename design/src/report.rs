@@ -9,9 +9,9 @@ use crate::gradient::{Deployment, Evaluation};
 use crate::inverse_design::{Designed, Ended};
 use crate::localisation::gamma;
 use crate::outline_error::outline_error;
+use crate::polygon::edges;
 use crate::scene::Scene;
 use crate::sheet::{Hinge, Sheet};
-use crate::window::edges;
 use serde::Serialize;
 use std::fmt;
 

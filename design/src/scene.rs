@@ -3,13 +3,21 @@
 //! A scene names the cheapest model that answers it, and only that is loaded: `hinge = "linear"`
 //! reads no weights. Paths are relative to the scene file. What a value may be is in `checks.rs`.
 
+mod actuation;
 mod checks;
 mod hinge_model;
 mod problem;
+mod sheet_config;
 
-pub use hinge_model::{HingeModel, LinearConstants, PinConfig, SurrogateFile};
+pub use actuation::{
+    DriveConfig, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SheetEdge, SupportConfig,
+    SupportKind,
+};
+pub use hinge_model::{ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile};
+pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 
-use crate::grid::Grid;
+use crate::equilibrium::SolverSettings;
+use crate::gradient::DesignError;
 use crate::objective::OutlinePoints;
 use crate::sheet::{Centroid, CutProcess, HingePoint, SheetOptions};
 use crate::target::{Target, TargetError, TargetShape};
@@ -38,8 +46,11 @@ pub struct SceneConfig {
     pub load_steps: usize,
     /// The run folder.
     pub output: PathBuf,
-    pub sheet: SheetSize,
+    pub sheet: SheetConfig,
     pub ligament: LigamentConfig,
+    /// Where the search starts; by default the uniform sheet.
+    #[serde(default)]
+    pub start: StartConfig,
     pub process: CutProcess,
     /// Read if `hinge = "pin"`.
     pub pin: Option<PinConfig>,
@@ -49,65 +60,21 @@ pub struct SceneConfig {
     pub surrogate: Option<SurrogateFile>,
     #[serde(default)]
     pub supports: Vec<SupportConfig>,
+    /// Contact of panel edges; by default that of the hinge law.
+    pub contact: Option<ContactConfig>,
     #[serde(default)]
     pub loads: Vec<LoadConfig>,
+    #[serde(default)]
+    pub edge_loads: Vec<EdgeLoadConfig>,
+    #[serde(default)]
+    pub opening_couples: Vec<OpeningCoupleConfig>,
+    /// Follows the path by the way of the loads instead of their size.
+    pub drive: Option<DriveConfig>,
+    #[serde(default)]
+    pub solver: SolverConfig,
     pub target: TargetShape,
     pub objective: ObjectiveConfig,
     pub optimiser: OptimiserConfig,
-}
-
-/// The flat sheet: a rectangle from the origin, `panels` = [columns M, rows N].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SheetSize {
-    /// [along x, along y] (mm)
-    pub size: [f64; 2],
-    pub panels: [usize; 2],
-}
-
-/// The ligament widths: where they start, and the chart's interval in which they are chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LigamentConfig {
-    /// Width that every hinge starts at (mm).
-    pub start: f64,
-    /// [w_minus, w_plus] of the chart (mm).
-    pub range: [f64; 2],
-}
-
-/// A held panel, named by [column, row].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SupportConfig {
-    pub panel: [usize; 2],
-    pub kind: SupportKind,
-}
-
-/// Which motions of a panel's centroid a support prevents.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SupportKind {
-    /// Both translations and the rotation.
-    Clamp,
-    /// Both translations.
-    Pin,
-    /// Rolls along x: the translation along y.
-    RollerX,
-    /// Rolls along y: the translation along x.
-    RollerY,
-}
-
-/// A dead load at the centroid of a panel, named by [column, row].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LoadConfig {
-    pub panel: [usize; 2],
-    /// N
-    #[serde(default)]
-    pub force: [f64; 2],
-    /// N mm, counter-clockwise.
-    #[serde(default)]
-    pub couple: f64,
 }
 
 /// The weights of (16)-(19), relative to the Chamfer distance over the mean panel area: at the weight
@@ -126,6 +93,13 @@ pub struct ObjectiveConfig {
     /// Of (19).
     #[serde(default)]
     pub shear: f64,
+    /// Whether the weights are relative to the gradient of the Chamfer distance at the start instead:
+    /// at the weight 1 a functional pulls as hard as the shape.
+    #[serde(default)]
+    pub balance: bool,
+    /// Temperature of the minima in the Chamfer distance (mm^2); 0 is the hard minimum of the paper.
+    #[serde(default)]
+    pub smoothing: f64,
     /// Which panel corners on the outline are compared with the target: `free`, those that belong
     /// to no hinge, or `all`.
     #[serde(default)]
@@ -147,6 +121,21 @@ pub struct OptimiserConfig {
     /// Of the random start.
     #[serde(default)]
     pub seed: u64,
+}
+
+/// How the equilibria are sought.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SolverConfig {
+    /// Residual of a converged state, relative to the greatest force.
+    pub tolerance: f64,
+}
+
+impl Default for SolverConfig {
+    fn default() -> Self {
+        let tolerance = SolverSettings::default().tolerance;
+        Self { tolerance }
+    }
 }
 
 fn default_load_steps() -> usize {
@@ -174,6 +163,8 @@ pub enum SceneError {
     Target { path: PathBuf, source: TargetError },
     #[error(transparent)]
     Weights(#[from] WeightsError),
+    #[error("{path}: objective.balance needs the gradients at the start: {source}", path = .path.display())]
+    Balance { path: PathBuf, source: DesignError },
 }
 
 impl Scene {
@@ -203,7 +194,7 @@ impl Scene {
                 source,
             }
         })?;
-        checks::target(&target, config.sheet.size).map_err(refuse)?;
+        checks::target(&target, &config.sheet.outline()).map_err(refuse)?;
         let hinge = LoadedHinge::load(&config, &material, path)?;
         Ok(Self {
             config,
@@ -217,7 +208,7 @@ impl Scene {
     /// The learned hinge law, if the scene names it.
     pub fn surrogate(&self) -> Option<&Surrogate> {
         match &self.hinge {
-            LoadedHinge::Surrogate(surrogate) => Some(surrogate),
+            LoadedHinge::Surrogate { surrogate, .. } => Some(surrogate),
             _ => None,
         }
     }
@@ -238,25 +229,6 @@ impl Scene {
     /// The run folder.
     pub fn output(&self) -> PathBuf {
         beside(&self.path, &self.config.output)
-    }
-}
-
-impl SupportKind {
-    /// Whether (u_x, u_y, phi) are held.
-    pub fn holds(self) -> [bool; 3] {
-        match self {
-            Self::Clamp => [true, true, true],
-            Self::Pin => [true, true, false],
-            Self::RollerX => [false, true, false],
-            Self::RollerY => [true, false, false],
-        }
-    }
-}
-
-impl SheetSize {
-    pub fn grid(&self) -> Grid {
-        let [m, n] = self.panels;
-        Grid { m, n }
     }
 }
 

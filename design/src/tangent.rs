@@ -18,6 +18,9 @@ use std::collections::BTreeSet;
 /// Free degrees of freedom from which the supernodal factorisation is the faster one (measured).
 const SUPERNODAL_FROM: usize = 400;
 
+/// Rounds of the condition estimate, which seldom needs more than three.
+const HAGER_ROUNDS: usize = 5;
+
 /// A pivot this small beside its diagonal entry is lost in rounding.
 const LEAST_PIVOT_RATIO: f64 = 1e-13;
 
@@ -119,6 +122,23 @@ impl TangentPattern {
         self.diagonal.iter().map(|&slot| values[slot]).collect()
     }
 
+    /// S: the sizes of the diagonal of a tangent, none zero.
+    pub fn shift_scale(&self, values: &[f64]) -> Vec<f64> {
+        let mut scale = self.diagonal(values);
+        let greatest = scale
+            .iter()
+            .fold(0.0_f64, |max, entry| max.max(entry.abs()));
+        let least = if greatest > 0.0 {
+            1e-12 * greatest
+        } else {
+            1.0
+        };
+        scale
+            .iter_mut()
+            .for_each(|entry| *entry = entry.abs().max(least));
+        scale
+    }
+
     /// H + shift, for a diagonal shift.
     pub fn shifted(&self, values: &[f64], shift: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut values = values.to_vec();
@@ -208,6 +228,51 @@ impl TangentPattern {
                 pivot / diagonal[row].abs()
             })
             .collect()
+    }
+
+    /// Estimate of the condition number of H scaled to a unit diagonal, in the 1-norm (Hager 1984).
+    pub fn condition(&self, values: &[f64], factor: &Factor) -> f64 {
+        let root: Vec<f64> = self
+            .diagonal(values)
+            .iter()
+            .map(|d| d.abs().sqrt())
+            .collect();
+        let n = root.len();
+        if n == 0 {
+            return 1.0;
+        }
+        let (starts, rows) = (self.matrix.col_ptr(), self.matrix.row_idx());
+        let mut sums = vec![0.0; n];
+        for column in 0..n {
+            for slot in starts[column]..starts[column + 1] {
+                let row = rows[slot];
+                let entry = (values[slot] / (root[row] * root[column])).abs();
+                sums[column] += entry;
+                if row != column {
+                    sums[row] += entry;
+                }
+            }
+        }
+        let inverse = |x: &[f64]| -> Vec<f64> {
+            let mut scaled: Vec<f64> = std::iter::zip(x, &root).map(|(x, r)| x * r).collect();
+            self.solve(factor, &mut scaled);
+            std::iter::zip(scaled, &root).map(|(x, r)| x * r).collect()
+        };
+        let (mut x, mut greatest) = (vec![1.0 / n as f64; n], 0.0);
+        for _ in 0..HAGER_ROUNDS {
+            let y = inverse(&x);
+            let norm: f64 = y.iter().map(|y| y.abs()).sum();
+            if norm <= greatest {
+                break;
+            }
+            greatest = norm;
+            let signs: Vec<f64> = y.iter().map(|y| y.signum()).collect();
+            let z = inverse(&signs);
+            let steepest = (0..n).max_by(|&i, &j| z[i].abs().total_cmp(&z[j].abs()));
+            x.fill(0.0);
+            x[steepest.expect("the tangent has a row")] = 1.0;
+        }
+        greatest * sums.into_iter().fold(0.0, f64::max)
     }
 
     /// Solves with the factor, in place.

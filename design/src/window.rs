@@ -4,6 +4,7 @@
 //! tip O. Energies of hinges add up only while windows are disjoint and stay within the two panels
 //! they join.
 
+use crate::polygon::{clip, common, contains, distance_to_polygon};
 use crate::sheet::{Hinge, Panel, Sheet};
 use std::f64::consts::PI;
 
@@ -65,10 +66,7 @@ impl Window {
 
     /// The part of the half-disc in a panel, as a convex polygon (mm).
     pub fn inside(&self, panel: &Panel) -> Vec<[f64; 2]> {
-        edges(&panel.corners).fold(self.polygon(), |part, (p, q)| {
-            let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
-            clip(&part, |[x, y]| dy * (x - p[0]) - dx * (y - p[1]))
-        })
+        common(&self.polygon(), &panel.corners)
     }
 
     /// Signed distance of a point above the flat side, away from the material (mm).
@@ -95,64 +93,6 @@ impl Window {
             .iter()
             .all(|&point| contains(&a.corners, point) || contains(&b.corners, point))
     }
-}
-
-/// The part of a convex polygon where `height`, which is linear, is negative.
-fn clip(polygon: &[[f64; 2]], height: impl Fn([f64; 2]) -> f64) -> Vec<[f64; 2]> {
-    let mut kept = Vec::new();
-    for (p, q) in edges(polygon) {
-        let (below_p, below_q) = (height(p), height(q));
-        if below_p <= 0.0 {
-            kept.push(p);
-        }
-        if (below_p <= 0.0) != (below_q <= 0.0) {
-            let f = below_p / (below_p - below_q);
-            kept.push([p[0] + f * (q[0] - p[0]), p[1] + f * (q[1] - p[1])]);
-        }
-    }
-    kept
-}
-
-/// Whether a convex counter-clockwise polygon contains a point, its border included.
-fn contains(polygon: &[[f64; 2]], point: [f64; 2]) -> bool {
-    edges(polygon).all(|(p, q)| {
-        let (d, e) = (
-            [q[0] - p[0], q[1] - p[1]],
-            [point[0] - p[0], point[1] - p[1]],
-        );
-        let rounding = 1e-9 * (d[0] * d[0] + d[1] * d[1]);
-        d[0] * e[1] - d[1] * e[0] >= -rounding
-    })
-}
-
-/// Distance from a point to a convex counter-clockwise polygon; infinite if it is empty (mm).
-fn distance_to_polygon(point: [f64; 2], polygon: &[[f64; 2]]) -> f64 {
-    if !polygon.is_empty() && contains(polygon, point) {
-        return 0.0;
-    }
-    edges(polygon)
-        .map(|(p, q)| distance_to_segment(point, p, q))
-        .fold(f64::INFINITY, f64::min)
-}
-
-/// Distance from a point to the segment from `a` to `b` (mm).
-pub(crate) fn distance_to_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
-    let (d, e) = (
-        [b[0] - a[0], b[1] - a[1]],
-        [point[0] - a[0], point[1] - a[1]],
-    );
-    let square = d[0] * d[0] + d[1] * d[1];
-    let along = if square > 0.0 {
-        ((d[0] * e[0] + d[1] * e[1]) / square).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    f64::hypot(e[0] - along * d[0], e[1] - along * d[1])
-}
-
-/// The edges of a closed polygon.
-pub(crate) fn edges(polygon: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
-    (0..polygon.len()).map(|i| (polygon[i], polygon[(i + 1) % polygon.len()]))
 }
 
 #[cfg(test)]
@@ -219,13 +159,5 @@ mod tests {
         let below = window([0.0, 0.0], 0.0);
         assert!(below.within(&panel(-300.0, 300.0), &panel(0.0, 300.0)));
         assert!(!below.within(&panel(-300.0, 300.0), &panel(0.0, 90.0)));
-    }
-
-    #[test]
-    fn distances_to_a_segment() {
-        let (a, b) = ([0.0, 0.0], [10.0, 0.0]);
-        assert_eq!(distance_to_segment([5.0, 3.0], a, b), 3.0);
-        assert_eq!(distance_to_segment([13.0, 4.0], a, b), 5.0);
-        assert_eq!(distance_to_segment([3.0, 4.0], a, a), 5.0);
     }
 }

@@ -9,9 +9,10 @@
 //!   800 |--o  |  -------- o      o: a hinge on the outline, |: a slit open on it
 //! ```
 
+use design::charts::PatternCoordinates;
 use design::fabrication::{CutLines, FabricationError, write_dxf, write_svg};
 use design::grid::Grid;
-use design::pattern::{CutPattern, Outline, PatternCoordinates};
+use design::pattern::{CutPattern, Outline};
 use design::sheet::{Centroid, CutProcess, HingePoint, Sheet, SheetOptions};
 use dxf::entities::EntityType;
 use hinge::SheetMaterial;

@@ -64,8 +64,7 @@ impl State<'_> {
 
     /// Points around everything that is drawn.
     fn extent(&self) -> Vec<[f64; 2]> {
-        let [width, height] = self.scene.config.sheet.size;
-        let arrow = 0.25 * f64::max(width, height);
+        let arrow = 0.25 * self.sheet.outline.size();
         let arrows = self.scene.config.loads.iter().map(|load| {
             let ([x, y], [c, s]) = (self.centroid(load.panel), direction(load));
             [x + arrow * c, y + arrow * s]

@@ -11,9 +11,9 @@
 
 use super::FabricationError;
 use crate::pattern::CutPattern;
+use crate::polygon::{distance_to_segment, edges};
 use crate::sheet::Sheet;
 use crate::topology::hinge_sites;
-use crate::window::{distance_to_segment, edges};
 use hinge::SheetMaterial;
 use std::collections::BTreeMap;
 

@@ -56,6 +56,10 @@ impl PreparedLaw for &LinearLaw {
             .map(|(deformation, constants)| spring(deformation.to_array(), constants))
             .collect()
     }
+
+    fn has_constants(&self) -> bool {
+        true
+    }
 }
 
 fn spring(deformation: [f64; 3], constants: &[f64; 3]) -> HingeEnergy {

@@ -2,7 +2,9 @@
 //!
 //! The ranges are wider than any sheet that is cut and narrower than a slip of a factor 1000.
 
-use super::{HingeModel, SceneConfig};
+use super::{HingeModel, SceneConfig, SheetConfig};
+use crate::pattern::{Outline, PatternError};
+use crate::polygon::edges;
 use crate::target::Target;
 use hinge::HingeDesign;
 use std::f64::consts::FRAC_PI_2;
@@ -12,14 +14,17 @@ use std::f64::consts::FRAC_PI_2;
 pub(super) fn config(scene: &SceneConfig) -> Result<(), String> {
     sheet(scene)?;
     ligament(scene)?;
+    start(scene)?;
     supports(scene)?;
     loads(scene)?;
     search(scene)
 }
 
 /// A target of a quite different size than the sheet is a slip of units.
-pub(super) fn target(target: &Target, size: [f64; 2]) -> Result<(), String> {
-    let perimeter = 2.0 * (size[0] + size[1]);
+pub(super) fn target(target: &Target, outline: &Outline) -> Result<(), String> {
+    let perimeter: f64 = edges(&outline.corners)
+        .map(|(p, q)| f64::hypot(q[0] - p[0], q[1] - p[1]))
+        .sum();
     within(
         "length of the target outline",
         target.length(),
@@ -29,9 +34,27 @@ pub(super) fn target(target: &Target, size: [f64; 2]) -> Result<(), String> {
 }
 
 fn sheet(scene: &SceneConfig) -> Result<(), String> {
-    for side in scene.sheet.size {
+    let SheetConfig { size, corners, .. } = scene.sheet;
+    if size.is_some() == corners.is_some() {
+        return Err("sheet: give either size or corners".into());
+    }
+    for side in size.into_iter().flatten() {
         within("sheet.size", side, [20.0, 2e4], "mm")?;
     }
+    let outline = scene.sheet.outline();
+    if !outline.is_convex() {
+        let corners = outline.corners;
+        return Err(format!(
+            "sheet.corners: {}",
+            PatternError::Outline { corners }
+        ));
+    }
+    within(
+        "the size of sheet.corners",
+        outline.size(),
+        [20.0, 2e4],
+        "mm",
+    )?;
     let [columns, rows] = scene.sheet.panels;
     if columns < 2 || rows < 2 || columns.saturating_mul(rows) > 100_000 {
         return Err(format!(
@@ -71,6 +94,39 @@ fn ligament(scene: &SceneConfig) -> Result<(), String> {
     Ok(())
 }
 
+fn start(scene: &SceneConfig) -> Result<(), String> {
+    let start = &scene.start;
+    for (explicit, logits, twice) in [
+        ("r", "z", start.r.is_some() && start.z.is_some()),
+        ("tau", "ell", start.tau.is_some() && start.ell.is_some()),
+    ] {
+        if twice {
+            return Err(format!("start: give either {explicit} or {logits}"));
+        }
+    }
+    let grid = scene.sheet.grid();
+    start
+        .pattern(grid)
+        .map_err(|error| format!("start: {error}"))?;
+    let Some(w_lig) = &start.w_lig else {
+        return Ok(());
+    };
+    if w_lig.len() != grid.hinge_count() {
+        return Err(format!(
+            "start.w_lig has {} entries; the sheet has {} hinges",
+            w_lig.len(),
+            grid.hinge_count()
+        ));
+    }
+    let [least, greatest] = scene.ligament.range;
+    match w_lig.iter().find(|w| !(**w > least && **w < greatest)) {
+        Some(w) => Err(format!(
+            "start.w_lig = {w} mm violates {least} < w_lig < {greatest} mm (ligament.range)"
+        )),
+        None => Ok(()),
+    }
+}
+
 fn supports(scene: &SceneConfig) -> Result<(), String> {
     if scene.supports.is_empty() && scene.hinge != HingeModel::Pin {
         return Err("supports: a sheet that is held nowhere has no equilibrium".into());
@@ -84,6 +140,22 @@ fn supports(scene: &SceneConfig) -> Result<(), String> {
             return Err(format!(
                 "supports[{i}].panel = {:?} is supported twice",
                 support.panel
+            ));
+        }
+        let key = format!("supports[{i}]");
+        for way in support.displacement {
+            within(&format!("{key}.displacement"), way, [-1e5, 1e5], "mm")?;
+        }
+        within(
+            &format!("{key}.rotation_deg"),
+            support.rotation_deg,
+            [-720.0, 720.0],
+            "deg",
+        )?;
+        let mut ways = support.motion().into_iter().zip(support.kind.holds());
+        if ways.any(|(way, held)| way != 0.0 && !held) {
+            return Err(format!(
+                "{key} moves what a support of its kind leaves free"
             ));
         }
     }
@@ -115,7 +187,34 @@ fn loads(scene: &SceneConfig) -> Result<(), String> {
             ));
         }
     }
-    Ok(())
+    for (i, load) in scene.edge_loads.iter().enumerate() {
+        for traction in load.traction {
+            within(
+                &format!("edge_loads[{i}].traction"),
+                traction,
+                [-1e3, 1e3],
+                "N/mm",
+            )?;
+        }
+    }
+    for (i, load) in scene.opening_couples.iter().enumerate() {
+        let key = format!("opening_couples[{i}]");
+        within(&format!("{key}.couple"), load.couple, [-1e8, 1e8], "N mm")?;
+        let Some([first, second]) = load.panels else {
+            continue;
+        };
+        panel(scene, &key, first)?;
+        panel(scene, &key, second)?;
+        if first[0].abs_diff(second[0]) + first[1].abs_diff(second[1]) != 1 {
+            return Err(format!(
+                "{key}.panels = [{first:?}, {second:?}] are no neighbours"
+            ));
+        }
+    }
+    match scene.drive {
+        Some(drive) => within("drive.stroke", drive.stroke, [-1e5, 1e5], "mm"),
+        None => Ok(()),
+    }
 }
 
 fn search(scene: &SceneConfig) -> Result<(), String> {
@@ -131,9 +230,11 @@ fn search(scene: &SceneConfig) -> Result<(), String> {
         ("objective.damage", objective.damage),
         ("objective.compression", objective.compression),
         ("objective.shear", objective.shear),
+        ("objective.smoothing", objective.smoothing),
     ] {
         within(key, weight, [0.0, 1e9], "")?;
     }
+    within("solver.tolerance", scene.solver.tolerance, [1e-14, 0.1], "")?;
     let optimiser = &scene.optimiser;
     counted("optimiser.steps", optimiser.steps, 10_000_000)?;
     within(

@@ -43,6 +43,25 @@ pub struct LinearConstants {
     pub k_theta: f64,
 }
 
+/// The barrier on the void angles; text of (11).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ContactConfig {
+    /// N mm
+    pub stiffness: f64,
+    /// Void angle beyond which edges cannot be pressed (deg).
+    pub phi_min_deg: f64,
+    /// Void angle at which contact begins (deg).
+    pub phi_cut_deg: f64,
+}
+
+impl ContactConfig {
+    fn contact(self) -> Result<Contact, String> {
+        let [phi_min, phi_cut] = [self.phi_min_deg, self.phi_cut_deg].map(f64::to_radians);
+        Contact::new(self.stiffness, phi_min, phi_cut).map_err(|error| error.to_string())
+    }
+}
+
 /// The weights of (14).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -61,7 +80,10 @@ pub(super) enum LoadedHinge {
         law: LinearLaw,
         contact: Contact,
     },
-    Surrogate(Box<Surrogate>),
+    Surrogate {
+        surrogate: Box<Surrogate>,
+        contact: Option<Contact>,
+    },
 }
 
 impl LoadedHinge {
@@ -109,7 +131,11 @@ impl LoadedHinge {
                         weights.display()
                     ))
                 })?;
-                Ok(Self::Surrogate(Box::new(surrogate)))
+                let contact = config.contact.map(ContactConfig::contact).transpose();
+                Ok(Self::Surrogate {
+                    surrogate: Box::new(surrogate),
+                    contact: contact.map_err(refuse)?,
+                })
             }
         }
     }
@@ -130,9 +156,13 @@ fn no_damage(config: &SceneConfig) -> Result<(), String> {
 fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, String> {
     no_damage(config)?;
     within("pin.opening_deg", pin.opening_deg, [-180.0, 180.0], "deg")?;
-    if !(config.supports.is_empty() && config.loads.is_empty()) {
+    let held_or_loaded = !config.supports.is_empty()
+        || !config.loads.is_empty()
+        || !config.edge_loads.is_empty()
+        || !config.opening_couples.is_empty();
+    if held_or_loaded || config.drive.is_some() || config.contact.is_some() {
         return Err(
-            "supports, loads: hinge = \"pin\" solves no equilibrium; remove them, or choose \
+            "supports, loads, edge_loads, opening_couples, drive, contact: hinge = \"pin\" solves no equilibrium; remove them, or choose \
              hinge = \"linear\""
                 .into(),
         );
@@ -149,8 +179,11 @@ fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHing
     within("linear.k_theta", k_theta, [1e-3, 1e9], "N mm/rad")?;
     let law = LinearLaw::uniform([k_a, k_s, k_theta], config.sheet.grid().hinge_count())
         .map_err(|error| error.to_string())?;
-    let contact = Contact::new(CONTACT_STIFFNESS * k_theta, CONTACT_WALL, 0.0)
-        .map_err(|error| error.to_string())?;
+    let contact = match config.contact {
+        Some(contact) => contact.contact()?,
+        None => Contact::new(CONTACT_STIFFNESS * k_theta, CONTACT_WALL, 0.0)
+            .map_err(|error| error.to_string())?,
+    };
     Ok(LoadedHinge::Linear { law, contact })
 }
 

@@ -2,16 +2,14 @@
 
 use super::hinge_model::LoadedHinge;
 use super::{Scene, SceneError};
-use crate::actuation::{Dof, Load, Support};
 use crate::chamfer::Chamfer;
 use crate::design_vector::{DesignVector, WidthChart};
-use crate::equilibrium::{EquilibriumSolver, SolverSettings};
+use crate::equilibrium::{EquilibriumError, EquilibriumSolver, SolverSettings};
 use crate::gradient::{DesignProblem, Mechanics, Model};
 use crate::grid::Grid;
 use crate::hinge_law::{HingeLaw, SurrogateLaw};
 use crate::objective::Objective;
 use crate::path_functionals::PerFunctional;
-use crate::pattern::Outline;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -29,24 +27,39 @@ impl Scene {
 
     /// Everything that is fixed before the design begins.
     pub fn problem(&self) -> Result<DesignProblem, SceneError> {
-        let [width, height] = self.config.sheet.size;
-        let [w_minus, w_plus] = self.config.ligament.range;
-        Ok(DesignProblem {
+        let problem = DesignProblem {
             grid: self.grid(),
-            outline: Outline::rectangle(width, height),
-            widths: WidthChart { w_minus, w_plus },
+            outline: self.config.sheet.outline(),
+            widths: self.width_chart(),
             options: self.sheet_options(),
             model: self.model()?,
             objective: self.objective(),
+        };
+        if !self.config.objective.balance {
+            return Ok(problem);
+        }
+        let balanced = problem.balanced(&self.start());
+        balanced.map_err(|source| SceneError::Balance {
+            path: self.path.clone(),
+            source,
         })
     }
 
-    /// The uniform sheet at the starting width, with the seeded noise that the scene asks for.
-    pub fn start(&self) -> DesignVector {
-        let mut design = DesignVector::uniform(self.grid());
+    fn width_chart(&self) -> WidthChart {
         let [w_minus, w_plus] = self.config.ligament.range;
-        let share = (self.config.ligament.start - w_minus) / (w_plus - w_minus);
-        design.omega.fill((share / (1.0 - share)).ln());
+        WidthChart { w_minus, w_plus }
+    }
+
+    /// The design that the search starts from, with the seeded noise that the scene asks for.
+    pub fn start(&self) -> DesignVector {
+        let (start, grid, widths) = (&self.config.start, self.grid(), self.width_chart());
+        let uniform = vec![self.config.ligament.start; grid.hinge_count()];
+        let w_lig = start.w_lig.as_ref().unwrap_or(&uniform);
+        let mut design = DesignVector {
+            pattern: start.pattern(grid).expect("the scene has been checked"),
+            omega: w_lig.iter().map(|w| widths.omega(*w)).collect(),
+            opening: None,
+        };
         if let LoadedHinge::Pin { opening } = self.hinge {
             design.opening = Some(opening);
         }
@@ -64,12 +77,16 @@ impl Scene {
 
     /// Area of the sheet over its panels (mm^2): what the weights of the objective are relative to.
     pub fn mean_panel_area(&self) -> f64 {
-        let [width, height] = self.config.sheet.size;
-        width * height / self.grid().panel_count() as f64
+        self.config.sheet.outline().area() / self.grid().panel_count() as f64
     }
 
     fn objective(&self) -> Objective {
-        let (config, area) = (&self.config.objective, self.mean_panel_area());
+        let config = &self.config.objective;
+        let unit = if config.balance {
+            1.0
+        } else {
+            self.mean_panel_area()
+        };
         let ideal = matches!(self.hinge, LoadedHinge::Pin { .. });
         let centre = if ideal { self.target.mean() } else { [0.0; 2] };
         Objective {
@@ -81,15 +98,15 @@ impl Scene {
                 .collect(),
             chamfer: Chamfer {
                 coverage_weight: config.coverage,
-                smoothing: 0.0,
+                smoothing: config.smoothing,
             },
             outline: config.outline,
             // A sheet on pins is held nowhere.
             centred: ideal,
             weights: PerFunctional {
-                damage: config.damage * area,
-                compression: config.compression * area,
-                shear: config.shear * area,
+                damage: config.damage * unit,
+                compression: config.compression * unit,
+                shear: config.shear * unit,
             },
             temperatures: TEMPERATURES,
         }
@@ -99,18 +116,11 @@ impl Scene {
         let (law, contact): (Box<dyn HingeLaw>, _) = match &self.hinge {
             LoadedHinge::Pin { opening } => return Ok(Model::Ideal { opening: *opening }),
             LoadedHinge::Linear { law, contact } => (Box::new(law.clone()), Some(*contact)),
-            LoadedHinge::Surrogate(surrogate) => {
-                (Box::new(SurrogateLaw::new((**surrogate).clone())), None)
+            LoadedHinge::Surrogate { surrogate, contact } => {
+                (Box::new(SurrogateLaw::new((**surrogate).clone())), *contact)
             }
         };
-        let solver = EquilibriumSolver::new(
-            self.grid(),
-            &self.supports(),
-            &self.loads(),
-            self.config.load_steps,
-            SolverSettings::default(),
-        )
-        .map_err(|error| SceneError::Value {
+        let solver = self.solver().map_err(|error| SceneError::Value {
             path: self.path.clone(),
             reason: error.to_string(),
         })?;
@@ -121,35 +131,19 @@ impl Scene {
         }))
     }
 
-    fn supports(&self) -> Vec<Support> {
-        let mut supports = Vec::new();
-        for support in &self.config.supports {
-            let panel = self.panel(support.panel);
-            for (dof, held) in Dof::ALL.into_iter().zip(support.kind.holds()) {
-                if held {
-                    let value = 0.0;
-                    supports.push(Support { panel, dof, value });
-                }
-            }
+    fn solver(&self) -> Result<EquilibriumSolver, EquilibriumError> {
+        let tolerance = self.config.solver.tolerance;
+        let settings = SolverSettings {
+            tolerance,
+            loose_tolerance: tolerance.max(SolverSettings::default().loose_tolerance),
+            ..SolverSettings::default()
+        };
+        let (supports, loads) = (self.supports(), self.loads());
+        let steps = self.config.load_steps;
+        let solver = EquilibriumSolver::new(self.grid(), &supports, &loads, steps, settings)?;
+        match self.config.drive {
+            Some(drive) => solver.driven(drive.stroke),
+            None => Ok(solver),
         }
-        supports
-    }
-
-    fn loads(&self) -> Vec<Load> {
-        let mut loads = Vec::new();
-        for load in &self.config.loads {
-            let panel = self.panel(load.panel);
-            let values = [load.force[0], load.force[1], load.couple];
-            for (dof, value) in Dof::ALL.into_iter().zip(values) {
-                if value != 0.0 {
-                    loads.push(Load { panel, dof, value });
-                }
-            }
-        }
-        loads
-    }
-
-    fn panel(&self, [column, row]: [usize; 2]) -> usize {
-        self.grid().panel(column, row)
     }
 }

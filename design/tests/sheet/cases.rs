@@ -1,8 +1,9 @@
 //! Reading the reference cases, which an independent implementation computed in float64.
 
 use design::actuation::{Dof, Load, Support};
+use design::charts::PatternCoordinates;
 use design::grid::Grid;
-use design::pattern::{CutPattern, Outline, PatternCoordinates};
+use design::pattern::{CutPattern, Outline};
 use design::sheet::{Centroid, CutProcess, HingePoint, Sheet, SheetOptions};
 use serde::de::DeserializeOwned;
 use serde_json::Value;

@@ -4,6 +4,7 @@ use crate::cases::{self, AT_CORNER, case};
 use crate::closed_forms::{clamp, opening_moments, path};
 use crate::random::Random;
 use design::actuation::{Dof, Load, Support};
+use design::charts::PatternCoordinates;
 use design::equilibrium::{
     EquilibriumError, EquilibriumSolver, HingedSheet, LoadStep, SolverSettings, Status,
 };
@@ -11,7 +12,7 @@ use design::grid::{Endpoint, Grid};
 use design::hinge_law::{Contact, HingeEnergy, HingeLaw, LinearLaw, Order, PreparedLaw};
 use design::ideal_deployment::ideal_deployment;
 use design::kinematics::deployed;
-use design::pattern::{CutPattern, Outline, PatternCoordinates, PatternError};
+use design::pattern::{CutPattern, Outline, PatternError};
 use design::sheet::Sheet;
 use hinge::{HingeDeformation, HingeDesign};
 

@@ -48,7 +48,7 @@ fn pulled_back(
 ) -> DesignVector {
     let (by_points, by_width) = sheet.pullback(gradient);
     DesignVector {
-        pattern: pattern.pullback(&by_points),
+        pattern: pattern.pullback(&by_points).0,
         omega: std::iter::zip(&design.omega, by_width)
             .map(|(&omega, by_width)| by_width * WIDTHS.slope(omega))
             .collect(),

@@ -1,0 +1,266 @@
+//! Following the load path from the flat sheet.
+//!
+//! An increment starts where the tangent at its beginning leads and ends at a minimum. It is halved
+//! until there is one, and until the rates of the path explain its rotations,
+//!
+//! ```text
+//! |dphi - (phi'_0 + phi'_1) dt / 2| <= |dphi| / 2,     or     |dphi| <= 3/2 |phi'| dt at either end
+//! ```
+//!
+//! where the second will do if no tangent on the way was indefinite. A leap that does not shrink with
+//! its increment is a jump past a limit point.
+
+use crate::equilibrium::{EquilibriumSolver, HingedSheet};
+use crate::kinematics::Configuration;
+use crate::load_step::{LoadStep, Status, StepTangent};
+use crate::newton::Minimum;
+use crate::panel_vectors::{gather, spread};
+use crate::potential::{Control, Potential, State, moved};
+use crate::sheet::Panel;
+use crate::stroke::HeldFactor;
+
+/// A rotation predicted further than this (rad) is cut.
+const LONGEST_PREDICTION: f64 = 0.5;
+/// Part of a rotation that the rates at both ends may leave unexplained.
+const UNEXPLAINED: f64 = 0.5;
+/// How much further than the rate at one end a continuous path may turn.
+const AHEAD_OF_RATE: f64 = 1.5;
+/// A leap that halving the increment leaves this great is a jump; on a fold it is 1, on a path that
+/// branches off like a square root 0.7.
+const JUMP: f64 = 0.8;
+
+/// A point on the path.
+struct Reached {
+    /// Part of the load, of the stroke and of the ways of the supports.
+    at: f64,
+    configuration: Configuration,
+    /// Of the configuration.
+    rate: Vec<[f64; 3]>,
+}
+
+impl EquilibriumSolver {
+    /// Follows the load path from the flat sheet. The path ends early where a step diverges.
+    ///
+    /// # Panics
+    /// If the sheet has another grid than the solver.
+    pub fn path(&self, sheet: HingedSheet) -> Vec<LoadStep> {
+        assert_eq!(
+            self.grid, sheet.sheet.grid,
+            "the solver's grid is the sheet's"
+        );
+        let mut path: Vec<LoadStep> = Vec::with_capacity(self.steps);
+        let mut reached = self.flat(sheet);
+        for i in 1..=self.steps {
+            let step = self.advance(sheet, &mut reached, i as f64 / self.steps as f64);
+            let diverged = step.status == Status::Diverged;
+            path.push(step);
+            if diverged {
+                break;
+            }
+        }
+        path
+    }
+
+    /// The flat sheet, where the path begins.
+    fn flat(&self, sheet: HingedSheet) -> Reached {
+        let potential = self.potential(sheet, 0.0);
+        let flat = vec![[0.0; 3]; self.grid.panel_count()];
+        let state = potential.state(flat.clone());
+        let rate = state.map_or(flat.clone(), |state| {
+            let factor = potential.factorise(&potential.tangent(&state));
+            self.rate(&potential, &state, factor.as_ref())
+        });
+        Reached {
+            at: 0.0,
+            configuration: flat,
+            rate,
+        }
+    }
+
+    /// The load step to `to`, in as many increments as it takes; moves `reached` there.
+    fn advance(&self, sheet: HingedSheet, reached: &mut Reached, to: f64) -> LoadStep {
+        let mut increment = to - reached.at;
+        let least = increment * 0.5_f64.powi(self.settings.max_halvings as i32);
+        let (mut iterations, mut jumped, mut last_leap) = (0, false, f64::INFINITY);
+        loop {
+            // The last increment ends exactly, so that rounding leaves no sliver of load behind.
+            let at = if to - reached.at < 1.5 * increment {
+                to
+            } else {
+                reached.at + increment
+            };
+            let potential = self.potential(sheet, at);
+            let minimum = match potential.minimise(self.predicted(reached, at), &self.settings) {
+                Ok(minimum) => minimum,
+                Err(failure) => {
+                    iterations += failure.iterations;
+                    if increment > least {
+                        increment *= 0.5;
+                        continue;
+                    }
+                    return self.diverged(sheet, reached, failure.residual, iterations);
+                }
+            };
+            iterations += minimum.iterations;
+            let arrived = Reached {
+                at,
+                configuration: minimum.state.configuration.clone(),
+                rate: self.rate(&potential, &minimum.state, minimum.factor.as_ref()),
+            };
+            if let Some(leap) = self.leap(reached, &arrived, minimum.unstable) {
+                if increment > least {
+                    (increment, last_leap) = (0.5 * increment, leap);
+                    continue;
+                }
+                jumped |= leap > JUMP * last_leap;
+            }
+            (*reached, increment, last_leap) = (arrived, 2.0 * increment, f64::INFINITY);
+            if at == to {
+                let status = self.status(sheet, &minimum, jumped);
+                let work = self.work(&minimum.state.configuration);
+                let tangent = StepTangent {
+                    values: minimum.tangent,
+                    factor: minimum.factor,
+                };
+                return LoadStep::new(
+                    sheet,
+                    minimum.state,
+                    work,
+                    Some(tangent),
+                    status,
+                    iterations,
+                );
+            }
+        }
+    }
+
+    /// The last point of a path that could not be followed further.
+    fn diverged(
+        &self,
+        sheet: HingedSheet,
+        reached: &Reached,
+        residual: f64,
+        iterations: usize,
+    ) -> LoadStep {
+        let potential = self.potential(sheet, reached.at);
+        let state = potential.state(reached.configuration.clone());
+        let state = state.expect("this state has been computed before");
+        let work = self.work(&reached.configuration);
+        let step = LoadStep::new(sheet, state, work, None, Status::Diverged, iterations);
+        LoadStep { residual, ..step }
+    }
+
+    fn status(&self, sheet: HingedSheet, minimum: &Minimum, jumped: bool) -> Status {
+        let stable = (minimum.factor.as_ref()).is_some_and(|held| held.unstable_directions() == 0);
+        let law = sheet.law;
+        if jumped {
+            Status::LimitPoint
+        } else if minimum.state.residual > self.settings.tolerance || !stable {
+            Status::Almost
+        } else if law.inside(&minimum.state.deformations()).contains(&false) {
+            Status::LeftDomain
+        } else {
+            Status::Converged
+        }
+    }
+
+    /// The potential at a point of the path.
+    fn potential<'a>(&'a self, sheet: HingedSheet<'a>, at: f64) -> Potential<'a> {
+        let area: f64 = sheet.sheet.panels.iter().map(Panel::area).sum();
+        Potential {
+            sheet,
+            pattern: &self.pattern,
+            free: &self.free,
+            control: match &self.drive {
+                None => Control::Load(at),
+                Some((stroke, _)) => Control::Stroke(stroke),
+            },
+            loads: &self.loads,
+            panel_size: (area / sheet.sheet.panels.len() as f64).sqrt(),
+        }
+    }
+
+    /// Where the rate at `reached` leads, the supports and the stroke as they are at `at`.
+    fn predicted(&self, reached: &Reached, at: f64) -> Configuration {
+        let ahead = at - reached.at;
+        let turned = ahead
+            * reached
+                .rate
+                .iter()
+                .fold(0.0, |most, rate| rate[2].abs().max(most));
+        // A stroke is kept whatever the rotation.
+        let cut = match self.drive {
+            None if turned > LONGEST_PREDICTION => LONGEST_PREDICTION / turned,
+            _ => 1.0,
+        };
+        let mut configuration = moved(&reached.configuration, &reached.rate, cut * ahead);
+        for support in &self.supports {
+            configuration[support.panel][support.dof.index()] = at * support.value;
+        }
+        configuration
+    }
+
+    /// The rate of the configuration along the path. Where the tangent is singular only supports and
+    /// stroke move.
+    fn rate(
+        &self,
+        potential: &Potential,
+        state: &State,
+        factor: Option<&HeldFactor>,
+    ) -> Vec<[f64; 3]> {
+        let mut supports = vec![[0.0; 3]; self.grid.panel_count()];
+        for support in &self.supports {
+            supports[support.panel][support.dof.index()] = support.value;
+        }
+        let moving = supports.as_flattened().iter().any(|way| *way != 0.0);
+        let resisted = match moving {
+            true => potential.resistance(state, &supports),
+            false => vec![[0.0; 3]; supports.len()],
+        };
+        let (loads, stroke) = match &self.drive {
+            None => (1.0, 0.0),
+            Some((_, stroke)) => (0.0, *stroke),
+        };
+        let b: Vec<[f64; 3]> = std::iter::zip(&self.loads, resisted)
+            .map(|(load, resisted)| std::array::from_fn(|d| loads * load[d] - resisted[d]))
+            .collect();
+        let free = match (factor, &self.drive) {
+            (Some(factor), _) => {
+                let b = gather(&self.free, &b);
+                factor.solve_bordered(&self.pattern, &b, stroke).0
+            }
+            (None, Some((direction, _))) => direction.motion(stroke),
+            (None, None) => vec![0.0; self.free.iter().flatten().count()],
+        };
+        let mut rate = spread(&self.free, &free);
+        for (rate, support) in std::iter::zip(rate.as_flattened_mut(), supports.as_flattened()) {
+            *rate += support;
+        }
+        rate
+    }
+
+    /// The greatest rotation (rad) between two points of the path, if the rates at them do not explain
+    /// it and it is worth a look.
+    fn leap(&self, from: &Reached, to: &Reached, unstable: bool) -> Option<f64> {
+        let half = 0.5 * (to.at - from.at);
+        let (mut turned, mut unexplained, mut fastest) = (0.0_f64, 0.0_f64, 0.0_f64);
+        for k in 0..from.configuration.len() {
+            let turn = to.configuration[k][2] - from.configuration[k][2];
+            let rates = [from.rate[k][2], to.rate[k][2]].map(|rate| half * rate);
+            turned = turned.max(turn.abs());
+            unexplained = unexplained.max((turn - rates[0] - rates[1]).abs());
+            fastest = fastest.max(2.0 * rates[0].abs().max(rates[1].abs()));
+        }
+        let leaps = turned > self.settings.least_leap
+            && unexplained > UNEXPLAINED * turned
+            && (unstable || turned > AHEAD_OF_RATE * fastest);
+        leaps.then_some(turned)
+    }
+
+    /// Work of the full loads (N mm).
+    fn work(&self, configuration: &[[f64; 3]]) -> f64 {
+        std::iter::zip(self.loads.as_flattened(), configuration.as_flattened())
+            .map(|(f, q)| f * q)
+            .sum()
+    }
+}

@@ -1,0 +1,129 @@
+//! The state of the sheet at one step of the load path, and how it was reached.
+
+use crate::equilibrium::{EquilibriumSolver, HingedSheet};
+use crate::hinge_law::HingeDamage;
+use crate::kinematics::{Configuration, hinge_deformations};
+use crate::potential::State;
+use crate::sheet::Sheet;
+use crate::stroke::HeldFactor;
+use hinge::HingeDeformation;
+use serde::Serialize;
+
+/// How a load step ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Status {
+    /// A stable equilibrium, inside the hinge law's domain.
+    Converged,
+    /// A stable equilibrium, with hinges in states that the hinge law was not made for.
+    LeftDomain,
+    /// The residual stopped falling between the two tolerances, or the state is stationary and the
+    /// tangent singular.
+    Almost,
+    /// The path ended on the way here and the sheet jumped to this stable equilibrium: at a limit point
+    /// of the load, or of the stroke of a driven sheet.
+    LimitPoint,
+    /// No equilibrium was found: this is the last one before, and the path ends.
+    Diverged,
+}
+
+/// The state at one load factor.
+#[derive(Clone, Debug)]
+pub struct LoadStep {
+    /// zeta: i/N, or of a driven sheet what holds it.
+    pub load_factor: f64,
+    pub configuration: Configuration,
+    /// (8) per hinge.
+    pub deformations: Vec<HingeDeformation>,
+    /// W + contact per hinge (N mm).
+    pub energies: Vec<f64>,
+    /// The predicted damage (12) per hinge; empty where the law predicts none.
+    pub damage: Vec<HingeDamage>,
+    /// Pi of (10) (N mm).
+    pub potential: f64,
+    pub status: Status,
+    /// Greatest unbalanced force over the greatest force.
+    pub residual: f64,
+    /// Newton iterations, all increments together.
+    pub iterations: usize,
+    /// Pivots of the tangent that are not positive: 0 in a state that is stable under dead loads, and
+    /// where `pivot_ratio` is 0. A driven sheet past a limit point of the load has 1.
+    pub negative_pivots: usize,
+    /// Smallest pivot of the tangent over its diagonal entry: small near a singular tangent, 0 where
+    /// it could not be factored.
+    pub pivot_ratio: f64,
+    /// Per hinge, whether the hinge law was made for the state.
+    pub inside: Vec<bool>,
+    /// H at the configuration and its factors, for the adjoint.
+    pub(crate) tangent: Option<StepTangent>,
+}
+
+/// H at an equilibrium.
+#[derive(Clone, Debug)]
+pub(crate) struct StepTangent {
+    pub values: Vec<f64>,
+    /// `None` if it is singular.
+    pub factor: Option<HeldFactor>,
+}
+
+impl LoadStep {
+    /// Estimate of the condition number of the tangent in the 1-norm, scaled to a unit diagonal so
+    /// that it does not depend on units; infinite where it could not be factored.
+    pub fn condition(&self, solver: &EquilibriumSolver) -> f64 {
+        match &self.tangent {
+            Some(StepTangent {
+                values,
+                factor: Some(held),
+            }) => solver.pattern.condition(values, &held.factor),
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// The ideal deployment as a path of one step: no energy, nothing unbalanced.
+    pub(crate) fn ideal(sheet: &Sheet, configuration: Configuration) -> Self {
+        let hinges = sheet.hinges.len();
+        Self {
+            load_factor: 1.0,
+            deformations: hinge_deformations(sheet, &configuration),
+            configuration,
+            energies: vec![0.0; hinges],
+            damage: Vec::new(),
+            potential: 0.0,
+            status: Status::Converged,
+            residual: 0.0,
+            iterations: 0,
+            negative_pivots: 0,
+            pivot_ratio: 1.0,
+            inside: vec![true; hinges],
+            tangent: None,
+        }
+    }
+
+    pub(crate) fn new(
+        sheet: HingedSheet,
+        state: State,
+        work: f64,
+        tangent: Option<StepTangent>,
+        status: Status,
+        iterations: usize,
+    ) -> Self {
+        let deformations = state.deformations();
+        let factor = tangent.as_ref().and_then(|tangent| tangent.factor.as_ref());
+        let factor = factor.map(|held| &held.factor);
+        Self {
+            load_factor: state.load_factor,
+            inside: sheet.law.inside(&deformations),
+            damage: sheet.law.damage(&deformations),
+            deformations,
+            energies: state.energies.iter().map(|energy| energy.w).collect(),
+            potential: state.stored - state.load_factor * work,
+            status,
+            residual: state.residual,
+            iterations,
+            negative_pivots: factor.map_or(0, |factor| factor.negative_pivots),
+            pivot_ratio: factor.map_or(0.0, |factor| factor.pivot_ratio),
+            configuration: state.configuration,
+            tangent,
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! The potential (10) of a configuration at one point of the path, with its first two derivatives.
+//!
+//! Under load control the load factor zeta is given. A driven sheet is told the stroke c . q of its
+//! loads instead, c their direction; zeta is then the multiplier that balances them best,
+//!
+//! ```text
+//! min |grad U - zeta f|     over zeta, moments compared with forces by the size of a panel
+//! ```
+//!
+//! and what is minimised is U alone, because the loads do the same work in every such configuration.
+
+use crate::equilibrium::HingedSheet;
+use crate::hinge_law::{HingeEnergy, Order};
+use crate::kinematics::{Configuration, HingeMotion};
+use crate::panel_vectors::{add_at_hinge, at_hinge, gather, spread};
+use crate::stroke::Stroke;
+use crate::tangent::TangentPattern;
+use hinge::HingeDeformation;
+
+/// The potential (10) at one point of the path.
+pub(crate) struct Potential<'a> {
+    pub sheet: HingedSheet<'a>,
+    pub pattern: &'a TangentPattern,
+    /// Numbers of the free degrees of freedom.
+    pub free: &'a [Option<usize>],
+    pub control: Control<'a>,
+    /// Size of a panel, which makes moments comparable with forces (mm).
+    pub panel_size: f64,
+    /// (F_x, F_y, M) per panel at zeta = 1.
+    pub loads: &'a [[f64; 3]],
+}
+
+/// What is given of the loads.
+#[derive(Clone, Copy)]
+pub(crate) enum Control<'a> {
+    /// zeta
+    Load(f64),
+    /// Their way.
+    Stroke(&'a Stroke),
+}
+
+/// The potential and its first derivatives at a configuration.
+pub(crate) struct State {
+    pub configuration: Configuration,
+    pub motions: Vec<HingeMotion>,
+    pub energies: Vec<HingeEnergy>,
+    /// zeta
+    pub load_factor: f64,
+    /// U of (10).
+    pub stored: f64,
+    /// What is minimised: Pi, or U of a driven sheet.
+    pub potential: f64,
+    /// Sum of the sizes of the terms of `potential`.
+    pub magnitude: f64,
+    /// d Pi / d q over the free degrees of freedom.
+    pub gradient: Vec<f64>,
+    /// Greatest unbalanced force over the greatest force.
+    pub residual: f64,
+}
+
+impl State {
+    pub fn deformations(&self) -> Vec<HingeDeformation> {
+        self.motions.iter().map(HingeMotion::deformation).collect()
+    }
+}
+
+impl Control<'_> {
+    /// The stroke that is held, if one is.
+    pub fn stroke(&self) -> Option<&Stroke> {
+        match self {
+            Self::Load(_) => None,
+            Self::Stroke(stroke) => Some(stroke),
+        }
+    }
+}
+
+impl Potential<'_> {
+    /// `None` where the potential is not finite.
+    pub fn state(&self, configuration: Configuration) -> Option<State> {
+        let sheet = self.sheet.sheet;
+        let motions: Vec<HingeMotion> = (0..sheet.hinges.len())
+            .map(|hinge| HingeMotion::new(sheet, hinge, &configuration))
+            .collect();
+        let deformations: Vec<HingeDeformation> =
+            motions.iter().map(HingeMotion::deformation).collect();
+        let energies = self.sheet.energies(&deformations, Order::Tangent);
+
+        let mut inner = vec![[0.0; 3]; configuration.len()];
+        for ((hinge, motion), energy) in sheet.hinges.iter().zip(&motions).zip(&energies) {
+            add_at_hinge(&mut inner, hinge, motion.forces(energy.forces));
+        }
+        let (load_factor, worked) = match self.control {
+            Control::Load(zeta) => (zeta, zeta),
+            Control::Stroke(_) => (self.multiplier(&inner), 0.0),
+        };
+        let unbalanced: Vec<[f64; 3]> = std::iter::zip(&inner, self.loads)
+            .map(|(inner, load)| std::array::from_fn(|d| inner[d] - load_factor * load[d]))
+            .collect();
+        let works = std::iter::zip(self.loads, &configuration)
+            .flat_map(|(load, motion)| std::iter::zip(load, motion).map(|(f, u)| f * u));
+        let works = works.map(|work| -worked * work);
+        let terms = energies.iter().map(|energy| energy.w).chain(works);
+        let gradient = gather(self.free, &unbalanced);
+        let state = State {
+            stored: energies.iter().map(|energy| energy.w).sum(),
+            potential: terms.clone().sum(),
+            magnitude: terms.map(f64::abs).sum(),
+            residual: self.residual(&gradient, &energies, load_factor),
+            gradient,
+            load_factor,
+            configuration,
+            motions,
+            energies,
+        };
+        let finite = state.potential.is_finite() && state.gradient.iter().all(|g| g.is_finite());
+        finite.then_some(state)
+    }
+
+    /// The zeta that leaves the least unbalanced.
+    fn multiplier(&self, inner: &[[f64; 3]]) -> f64 {
+        let arm = 1.0 / (self.panel_size * self.panel_size);
+        let product = |[x, y, m]: [f64; 3], [fx, fy, fm]: [f64; 3]| x * fx + y * fy + arm * m * fm;
+        let (mut along, mut square) = (0.0, 0.0);
+        for (&inner, &load) in std::iter::zip(inner, self.loads) {
+            along += product(inner, load);
+            square += product(load, load);
+        }
+        along / square
+    }
+
+    /// Greatest unbalanced force on a panel over the greatest load or hinge force.
+    fn residual(&self, gradient: &[f64], energies: &[HingeEnergy], load_factor: f64) -> f64 {
+        let unbalanced = self.greatest(spread(self.free, gradient).into_iter());
+        if unbalanced == 0.0 {
+            return 0.0;
+        }
+        let full = match self.control {
+            Control::Load(_) => 1.0,
+            Control::Stroke(_) => load_factor.abs(),
+        };
+        let loads = full * self.greatest(self.loads.iter().copied());
+        let inner = self.greatest(energies.iter().map(|energy| energy.forces));
+        unbalanced / loads.max(inner)
+    }
+
+    /// Greatest of forces and moments, as a force (N).
+    fn greatest(&self, forces: impl Iterator<Item = [f64; 3]>) -> f64 {
+        forces
+            .map(|[x, y, moment]| x.hypot(y).max(moment.abs() / self.panel_size))
+            .fold(0.0, f64::max)
+    }
+
+    /// H of (20).
+    pub fn tangent(&self, state: &State) -> Vec<f64> {
+        let blocks = std::iter::zip(&state.motions, &state.energies);
+        self.pattern
+            .assemble(blocks.map(|(motion, energy)| motion.stiffness(energy)))
+    }
+
+    /// H times a motion of all panels, those of the supports included.
+    pub fn resistance(&self, state: &State, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let mut forces = vec![[0.0; 3]; motion.len()];
+        let hinges = std::iter::zip(&state.motions, &state.energies);
+        for (hinge, (hinge_motion, energy)) in std::iter::zip(&self.sheet.sheet.hinges, hinges) {
+            let motions = at_hinge(hinge, motion);
+            let force = hinge_motion
+                .stiffness(energy)
+                .map(|row| std::iter::zip(row, motions).map(|(k, q)| k * q).sum());
+            add_at_hinge(&mut forces, hinge, force);
+        }
+        forces
+    }
+
+    pub fn moved(&self, state: &State, motion: &[[f64; 3]], fraction: f64) -> Option<State> {
+        self.state(moved(&state.configuration, motion, fraction))
+    }
+
+    /// Greatest panel rotation (rad) or hinge translation (panel sizes) of a motion.
+    pub fn length(&self, state: &State, motion: &[[f64; 3]]) -> f64 {
+        std::iter::zip(&self.sheet.sheet.hinges, &state.motions)
+            .map(|(hinge, hinge_motion)| {
+                let motions = at_hinge(hinge, motion);
+                let [along, across, _] = hinge_motion.rates(motions);
+                let translation = along.hypot(across) / self.panel_size;
+                translation.max(motions[2].abs()).max(motions[5].abs())
+            })
+            .fold(0.0, f64::max)
+    }
+}
+
+/// A configuration and a fraction of a motion.
+pub(crate) fn moved(
+    configuration: &[[f64; 3]],
+    motion: &[[f64; 3]],
+    fraction: f64,
+) -> Configuration {
+    std::iter::zip(configuration, motion)
+        .map(|(q, d)| std::array::from_fn(|c| q[c] + fraction * d[c]))
+        .collect()
+}

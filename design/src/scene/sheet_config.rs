@@ -1,0 +1,80 @@
+//! The flat sheet of a scene: outline, panels, ligaments, and the pattern that the search starts from.
+
+use crate::charts::PatternCoordinates;
+use crate::grid::Grid;
+use crate::pattern::{Outline, PatternError};
+use serde::{Deserialize, Serialize};
+
+/// The flat sheet: a rectangle from the origin or any convex quadrilateral, cut into
+/// `panels` = [columns M, rows N].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SheetConfig {
+    /// [along x, along y] (mm)
+    pub size: Option<[f64; 2]>,
+    /// Corners SW, SE, NE, NW (mm), in place of `size`.
+    pub corners: Option<[[f64; 2]; 4]>,
+    pub panels: [usize; 2],
+}
+
+/// The ligament widths: where they start, and the chart's interval in which they are chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LigamentConfig {
+    /// Width that every hinge starts at (mm).
+    pub start: f64,
+    /// [w_minus, w_plus] of the chart (mm).
+    pub range: [f64; 2],
+}
+
+/// Where the search starts: explicit r and tau or their logits, and widths hinge by hinge. What is
+/// left out is uniform.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct StartConfig {
+    /// Void aspect ratios of the interior cuts, row by row, each in (0, 1).
+    pub r: Option<Vec<f64>>,
+    /// Boundary positions on the edges bottom, right, top, left, growing in (0, 1).
+    pub tau: Option<[Vec<f64>; 4]>,
+    /// Logits of r, in place of `r`.
+    pub z: Option<Vec<f64>>,
+    /// Logits of the intervals of tau, in place of `tau`.
+    pub ell: Option<[Vec<f64>; 4]>,
+    /// mm, one per hinge, in place of `ligament.start`.
+    pub w_lig: Option<Vec<f64>>,
+}
+
+impl SheetConfig {
+    pub fn grid(&self) -> Grid {
+        let [m, n] = self.panels;
+        Grid { m, n }
+    }
+
+    /// The outline; a sheet that says nothing about it has none.
+    pub fn outline(&self) -> Outline {
+        let [width, height] = self.size.unwrap_or_default();
+        self.corners
+            .map_or(Outline::rectangle(width, height), |corners| Outline {
+                corners,
+            })
+    }
+}
+
+impl StartConfig {
+    /// The pattern that the search starts from.
+    pub fn pattern(&self, grid: Grid) -> Result<PatternCoordinates, PatternError> {
+        let uniform = PatternCoordinates::uniform(grid);
+        let start = PatternCoordinates {
+            z: match (&self.r, &self.z) {
+                (Some(r), _) => PatternCoordinates::z_of(r)?,
+                (None, z) => z.clone().unwrap_or(uniform.z),
+            },
+            ell: match (&self.tau, &self.ell) {
+                (Some(tau), _) => PatternCoordinates::ell_of(tau)?,
+                (None, ell) => ell.clone().unwrap_or(uniform.ell),
+            },
+        };
+        start.check(grid)?;
+        Ok(start)
+    }
+}

@@ -1,0 +1,22 @@
+//! `kirigami gradient`: objective and gradient of a design in numbers.
+
+use crate::inspect::Inspected;
+use anyhow::Result;
+use clap::Args;
+use design::listing::GradientListing;
+
+/// Objective of a scene's sheet, term by term, and its gradient
+///
+/// Example: kirigami gradient configs/scenes/linear-7x7.toml --json
+#[derive(Args)]
+pub struct GradientCommand {
+    #[command(flatten)]
+    inspected: Inspected,
+}
+
+impl GradientCommand {
+    pub fn run(&self) -> Result<()> {
+        let (scene, design) = self.inspected.read()?;
+        self.inspected.print(GradientListing::new(&scene, &design)?)
+    }
+}
