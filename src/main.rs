@@ -2,6 +2,7 @@
 
 mod charts;
 mod database;
+mod dataset;
 mod demo;
 mod design;
 mod doctor;
@@ -9,7 +10,9 @@ mod interrupt;
 mod mesh;
 mod picture;
 mod progress;
+mod slices;
 mod solve;
+mod surrogate;
 mod table;
 mod train;
 mod window_args;
@@ -32,7 +35,9 @@ enum Command {
     Mesh(mesh::MeshCommand),
     Solve(solve::SolveCommand),
     Database(database::DatabaseCommand),
+    Dataset(dataset::DatasetCommand),
     Train(train::TrainCommand),
+    Surrogate(surrogate::SurrogateCommand),
     Design(design::DesignCommand),
 }
 
@@ -43,7 +48,9 @@ fn main() -> ExitCode {
         Command::Mesh(command) => command.run(),
         Command::Solve(command) => command.run(),
         Command::Database(command) => command.run(),
+        Command::Dataset(command) => command.run(),
         Command::Train(command) => command.run(),
+        Command::Surrogate(command) => command.run(),
         Command::Design(command) => command.run(),
     };
     match result {
