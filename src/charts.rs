@@ -1,4 +1,4 @@
-//! Charts of a training: predicted against computed values, and the learning curve.
+//! Charts of a training: predicted against computed values, learning curve, slices of the energy.
 
 use anyhow::{Result, anyhow};
 use plotters::coord::Shift;
@@ -14,6 +14,13 @@ pub struct ParityChart<'a> {
 
 const POINT: RGBColor = RGBColor(31, 110, 140);
 const VALIDATION: RGBColor = RGBColor(217, 95, 2);
+const SLICES: [RGBColor; 5] = [
+    POINT,
+    VALIDATION,
+    RGBColor(117, 112, 179),
+    RGBColor(102, 166, 30),
+    RGBColor(166, 118, 29),
+];
 const GUIDE: RGBColor = RGBColor(120, 120, 120);
 const FONT: &str = "DejaVu Sans";
 
@@ -123,6 +130,69 @@ fn learning_chart(area: &Area, training: &[f64], validation: &[f64]) -> DrawResu
     Ok(())
 }
 
+/// W against the rotation at one hinge design: the surrogate's curve and computed points.
+pub struct Slice {
+    pub title: String,
+    /// (theta in degrees, W in N mm)
+    pub curve: Vec<(f64, f64)>,
+    pub points: Vec<(f64, f64)>,
+}
+
+/// Curves of the surrogate with the points of the finite elements.
+pub fn slices(slices: &[Slice]) -> Result<String> {
+    let mut svg = String::new();
+    {
+        let root = SVGBackend::with_string(&mut svg, (720, 480)).into_drawing_area();
+        root.fill(&WHITE).map_err(drawing)?;
+        slice_chart(&root, slices).map_err(drawing)?;
+        root.present().map_err(drawing)?;
+    }
+    Ok(svg)
+}
+
+fn slice_chart(area: &Area, slices: &[Slice]) -> DrawResult {
+    let all = || {
+        slices
+            .iter()
+            .flat_map(|it| it.curve.iter().chain(&it.points))
+    };
+    let mut chart = ChartBuilder::on(area)
+        .caption("Energy against rotation", (FONT, 16))
+        .margin(12)
+        .x_label_area_size(40)
+        .y_label_area_size(60)
+        .build_cartesian_2d(padded(all().map(|p| p.0)), padded(all().map(|p| p.1)))?;
+    chart
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .label_style((FONT, 12))
+        .x_desc("theta (deg)")
+        .y_desc("W (N mm); points: finite elements")
+        .draw()?;
+    for (slice, &colour) in slices.iter().zip(SLICES.iter().cycle()) {
+        chart
+            .draw_series(LineSeries::new(
+                slice.curve.iter().copied(),
+                colour.stroke_width(2),
+            ))?
+            .label(&slice.title)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+        let marks = slice
+            .points
+            .iter()
+            .map(|&p| Circle::new(p, 3, colour.filled()));
+        chart.draw_series(marks)?;
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperLeft)
+        .label_font((FONT, 13))
+        .border_style(GUIDE)
+        .background_style(WHITE)
+        .draw()?;
+    Ok(())
+}
+
 /// The range of the values with a margin of a twentieth at both ends.
 fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
     let (least, greatest) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, g), v| {
@@ -152,6 +222,18 @@ mod tests {
         let svg = parity(&[chart("W"), chart("D")]).unwrap();
         assert_eq!(svg.matches("<circle").count(), 6);
         assert!(svg.contains("finite elements"));
+    }
+
+    #[test]
+    fn slices_show_every_computed_point() {
+        let slice = |title: &str| Slice {
+            title: title.into(),
+            curve: vec![(0.0, 0.0), (30.0, 4.0)],
+            points: vec![(10.0, 0.5), (20.0, 1.9), (30.0, 4.1)],
+        };
+        let svg = slices(&[slice("narrow"), slice("wide")]).unwrap();
+        assert_eq!(svg.matches("<circle").count(), 6);
+        assert!(svg.contains("narrow") && svg.contains("wide"));
     }
 
     #[test]

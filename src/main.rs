@@ -2,6 +2,7 @@
 
 mod charts;
 mod database;
+mod dataset;
 mod demo;
 mod deploy;
 mod design;
@@ -15,7 +16,9 @@ mod pattern;
 mod picture;
 mod progress;
 mod run_folder;
+mod slices;
 mod solve;
+mod surrogate;
 mod table;
 mod train;
 mod window_args;
@@ -39,7 +42,9 @@ enum Command {
     Mesh(mesh::MeshCommand),
     Solve(solve::SolveCommand),
     Database(database::DatabaseCommand),
+    Dataset(dataset::DatasetCommand),
     Train(train::TrainCommand),
+    Surrogate(surrogate::SurrogateCommand),
     Design(design::DesignCommand),
     Pattern(pattern::PatternCommand),
     Deploy(deploy::DeployCommand),
@@ -58,7 +63,9 @@ fn main() -> ExitCode {
         Command::Mesh(command) => command.run(),
         Command::Solve(command) => command.run(),
         Command::Database(command) => command.run(),
+        Command::Dataset(command) => command.run(),
         Command::Train(command) => command.run(),
+        Command::Surrogate(command) => command.run(),
         Command::Design(command) => command.run(),
         Command::Pattern(command) => command.run(),
         Command::Deploy(command) => command.run(),

@@ -1,22 +1,27 @@
 //! `kirigami train`: from a hinge database to weights that `design` reads.
 
 use crate::charts::{self, ParityChart};
-use crate::picture;
-use crate::progress::Progress;
 use crate::table::table;
+use crate::progress::Progress;
+use crate::{interrupt, picture, slices};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use comfy_table::Table;
-use dataset::Database;
+use dataset::{Database, Part};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use surrogate::TestErrors;
-use train::{Backend, Epoch, Parity, TrainingConfig};
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+use surrogate::{ErrorBin, FitError, Surrogate, TestErrors};
+use train::{
+    Backend, EnsembleCheck, Epoch, Parity, Start, StiffnessCheck, Trained, Training, TrainingConfig,
+};
 
 /// Train the surrogate hinge energy on a database
 ///
-/// Writes the weights, their card, the learning curve and a parity plot, and prints the errors on
-/// hinge geometries that the training never saw. Example:
+/// Writes the weights (of the best epoch and of the last), their card, the learning curve, a parity
+/// plot and slices of the energy, and prints the errors on hinge geometries that the training never
+/// saw. It can be stopped at any time and goes on with --resume. Example:
 /// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml
 #[derive(Args)]
 pub struct TrainCommand {
@@ -40,10 +45,23 @@ pub struct TrainCommand {
     /// What computes the tensors: flex or ndarray
     #[arg(long, value_name = "NAME", default_value_t = Backend::default())]
     backend: Backend,
+    /// Weights to begin from, of the same sizes: fine-tuning
+    #[arg(long, value_name = "WEIGHTS", conflicts_with = "resume")]
+    from: Option<PathBuf>,
+    /// Go on with a training that was stopped
+    #[arg(long, conflicts_with = "seeds")]
+    resume: bool,
+    /// Trainings with as many seeds; the one of the least validation loss is taken, and the spread
+    /// tells how far its forces can be trusted
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=64))]
+    seeds: u64,
     /// Replace existing weights
     #[arg(long)]
     replace: bool,
 }
+
+/// Longest time that a kill of the training can cost.
+const SAVE_EVERY: Duration = Duration::from_secs(30);
 
 impl TrainCommand {
     /// With the default backend, replacing weights that are there.
@@ -53,6 +71,9 @@ impl TrainCommand {
             config,
             out,
             backend: Backend::default(),
+            from: None,
+            resume: false,
+            seeds: 1,
             replace: true,
         }
     }
@@ -60,33 +81,102 @@ impl TrainCommand {
     pub fn run(&self) -> Result<()> {
         let config: TrainingConfig = hinge::config::read(&self.config)?;
         let database = Database::read(&self.database)?;
-        if self.out.exists() && !self.replace {
+        self.refuse_existing()?;
+        if let Some(folder) = self.out.parent() {
+            std::fs::create_dir_all(folder)
+                .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+        }
+        let base = self.from.as_deref().map(Surrogate::load).transpose()?;
+        let state = self.state();
+        let start = match &base {
+            _ if self.resume => Start::State(&state),
+            Some(weights) => Start::Weights(weights),
+            None => Start::Fresh,
+        };
+        let mut members = Vec::new();
+        for seed in config.seed..config.seed + self.seeds {
+            let config = TrainingConfig {
+                seed,
+                ..config.clone()
+            };
+            members.push(self.train(&database, &config, start)?);
+        }
+        if members.len() > 1 {
+            self.write_members(&members, &database, config.seed)?;
+        }
+        let best = members
+            .into_iter()
+            .min_by(|left, right| least_loss(left).total_cmp(&least_loss(right)))
+            .context("`--seeds` must be at least 1")?;
+        self.write(&best, &database)?;
+        std::fs::remove_file(&state).ok();
+        Ok(())
+    }
+
+    fn refuse_existing(&self) -> Result<()> {
+        if self.replace || self.resume {
+            return Ok(());
+        }
+        if self.out.exists() {
             bail!(
                 "{} exists: choose another name or pass --replace",
                 self.out.display()
             );
         }
-        if let Some(folder) = self.out.parent() {
-            std::fs::create_dir_all(folder)
-                .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+        if self.state().exists() {
+            bail!(
+                "{} is what a stopped training left: go on with --resume, or begin again with \
+                 --replace",
+                self.state().display()
+            );
         }
+        Ok(())
+    }
+
+    /// One training, kept on disk every now and then and when it is stopped.
+    fn train(&self, database: &Database, config: &TrainingConfig, start: Start) -> Result<Trained> {
+        let (state, stop) = (self.state(), interrupt::stop_flag()?);
+        let mut training = Training::new(database, config, self.backend, start)?;
         let bar = Progress::new(config.epochs, "epochs");
-        let trained = train::train(&database, &config, self.backend, &mut |epoch: &Epoch| {
+        let mut saved = Instant::now();
+        while !training.is_finished() {
+            let epoch = training.epoch()?;
             let message = format!(
                 "loss {:.2e}, validation {:.2e}",
                 epoch.training_loss, epoch.validation_loss
             );
             bar.show(epoch.epoch, None, &message);
-        })?;
+            let stopping = stop.load(Ordering::Relaxed);
+            if stopping || saved.elapsed() > SAVE_EVERY {
+                training.save(&state)?;
+                saved = Instant::now();
+            }
+            if stopping && !training.is_finished() {
+                bail!(
+                    "stopped after {} of {} epochs; go on with --resume",
+                    epoch.epoch,
+                    epoch.epochs
+                );
+            }
+        }
         bar.finish();
+        Ok(training.finish()?)
+    }
+
+    /// Weights, last weights, curves and plots of one training, and its errors to the screen.
+    fn write(&self, trained: &Trained, database: &Database) -> Result<()> {
         trained.surrogate.save(&self.out)?;
+        trained.last.save(&self.beside("last.safetensors"))?;
         self.write_curve(&trained.history)?;
-        picture::save(
-            &parity_chart(&trained.parity)?,
-            &self.beside("parity"),
-            2000,
-        )?;
-        println!("{}", error_table(&trained.test_errors));
+        let parity = parity_chart(&trained.parity)?;
+        picture::save(&parity, &self.beside("parity"), 2000)?;
+        let slices = slices::rotations(&trained.surrogate, database);
+        if !slices.is_empty() {
+            picture::save(&charts::slices(&slices)?, &self.beside("slices"), 1200)?;
+        }
+        println!("{}\n", error_table(&trained.test_errors));
+        println!("{}\n", bin_table(&trained.surrogate.card().error_bins));
+        print_stiffness(&trained.stiffness);
         if let Some(last) = trained.history.last() {
             println!(
                 "{} epochs on {} in {:.1} s; weights written to {}",
@@ -97,6 +187,36 @@ impl TrainCommand {
             );
         }
         Ok(())
+    }
+
+    /// The weights of every seed, the spread of their errors, and what it tells.
+    fn write_members(&self, members: &[Trained], database: &Database, first: u64) -> Result<()> {
+        for (seed, member) in (first..).zip(members) {
+            let path = self.beside(&format!("seed-{seed}.safetensors"));
+            member.surrogate.save(&path)?;
+        }
+        let errors: Vec<TestErrors> = members.iter().map(|member| member.test_errors).collect();
+        println!("{}\n", spread_table(&errors));
+        let surrogates: Vec<Surrogate> = members
+            .iter()
+            .map(|member| member.surrogate.clone())
+            .collect();
+        let check = EnsembleCheck::of(&surrogates, &database.part(Part::Test));
+        println!(
+            "forces of {} networks: they differ by {:.3}, their mean errs by {:.3} (in units of the \
+             forces' RMS);\nthe tenth of the states where they differ most holds {:.0} % of the \
+             squared error\n",
+            members.len(),
+            check.deviation,
+            check.error,
+            100.0 * check.error_in_top_tenth
+        );
+        Ok(())
+    }
+
+    /// What [`Training::save`] writes.
+    fn state(&self) -> PathBuf {
+        self.out.with_extension("state")
     }
 
     /// `<stem>-<suffix>` beside the weights.
@@ -136,25 +256,29 @@ fn parity_chart(parity: &Parity) -> Result<String> {
         title: title.to_owned(),
         points,
     };
-    charts::parity(&[
+    let mut charts = vec![
         chart("energy W (N mm)", &parity.energy),
         chart("axial force F_a (N)", &parity.f_a),
         chart("shear force F_s (N)", &parity.f_s),
         chart("moment M (N mm)", &parity.m_theta),
         chart("damage D", &parity.damage),
-    ])
+        chart("damage D_peak", &parity.damage_peak),
+    ];
+    charts.retain(|chart| !chart.points.is_empty());
+    charts::parity(&charts)
 }
 
-fn error_table(errors: &TestErrors) -> Table {
+/// The least validation loss of a training.
+fn least_loss(trained: &Trained) -> f64 {
+    let losses = trained.history.iter().map(|epoch| epoch.validation_loss);
+    losses.fold(f64::INFINITY, f64::min)
+}
+
+/// The errors of each quantity.
+pub fn error_table(errors: &TestErrors) -> Table {
     let header = format!("on {} samples of unseen geometries", errors.rows);
     let mut table = table([header.as_str(), "relative RMSE", "median"]);
-    for (name, error) in [
-        ("energy W", errors.energy),
-        ("axial force F_a", errors.f_a),
-        ("shear force F_s", errors.f_s),
-        ("moment M_theta", errors.m_theta),
-        ("damage D", errors.damage),
-    ] {
+    for (name, error) in quantities(errors) {
         table.add_row([
             name.to_owned(),
             format!("{:.2} %", 100.0 * error.relative_rmse),
@@ -162,4 +286,82 @@ fn error_table(errors: &TestErrors) -> Table {
         ]);
     }
     table
+}
+
+fn quantities(errors: &TestErrors) -> [(&'static str, FitError); 6] {
+    [
+        ("energy W", errors.energy),
+        ("axial force F_a", errors.f_a),
+        ("shear force F_s", errors.f_s),
+        ("moment M_theta", errors.m_theta),
+        ("damage D", errors.damage),
+        ("damage D_peak", errors.damage_peak),
+    ]
+}
+
+/// Relative root mean square errors by bins.
+pub fn bin_table(bins: &[ErrorBin]) -> Table {
+    let mut table = table([
+        "relative RMSE (%)",
+        "from",
+        "to",
+        "samples",
+        "W",
+        "F_a",
+        "F_s",
+        "M",
+        "D",
+        "D_peak",
+    ]);
+    for ErrorBin {
+        quantity,
+        range: [lower, upper],
+        errors,
+    } in bins
+    {
+        let mut row = vec![
+            quantity.clone(),
+            format!("{lower:.2}"),
+            format!("{upper:.2}"),
+            errors.rows.to_string(),
+        ];
+        let percent = |error: FitError| format!("{:.2}", 100.0 * error.relative_rmse);
+        row.extend(quantities(errors).map(|(_, error)| percent(error)));
+        table.add_row(row);
+    }
+    table
+}
+
+/// Least, mean and greatest relative root mean square error over trainings.
+fn spread_table(errors: &[TestErrors]) -> Table {
+    let header = format!("relative RMSE (%) of {} seeds", errors.len());
+    let mut table = table([header.as_str(), "least", "mean", "greatest"]);
+    let all: Vec<_> = errors.iter().map(quantities).collect();
+    for quantity in 0..quantities(&TestErrors::default()).len() {
+        let values: Vec<f64> = all
+            .iter()
+            .map(|errors| 100.0 * errors[quantity].1.relative_rmse)
+            .collect();
+        let fold = |pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick).unwrap_or(0.0);
+        table.add_row([
+            all[0][quantity].0.to_owned(),
+            format!("{:.2}", fold(f64::min)),
+            format!("{:.2}", values.iter().sum::<f64>() / values.len() as f64),
+            format!("{:.2}", fold(f64::max)),
+        ]);
+    }
+    table
+}
+
+fn print_stiffness(check: &StiffnessCheck) {
+    println!(
+        "tangent of {} states: {:.1} % indefinite; along the rays the energy is concave in {:.1} % \
+         (finite elements {:.1} %), the curvature errs by {:.1} % (median {:.1} %)",
+        check.pairs,
+        100.0 * check.indefinite,
+        100.0 * check.learned_softening,
+        100.0 * check.softening,
+        100.0 * check.curvature.relative_rmse,
+        100.0 * check.curvature.median
+    );
 }

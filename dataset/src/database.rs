@@ -129,7 +129,11 @@ impl Database {
         };
         for database in databases {
             let new = |row: &&Row| !jobs.contains(row.job.as_str());
+            let before = rows.len();
             rows.extend(database.rows.iter().filter(new).cloned());
+            if rows.len() == before {
+                continue;
+            }
             jobs.extend(database.rows.iter().map(|row| row.job.as_str()));
             for (reason, count) in &database.manifest.rejected {
                 *rejected.entry(*reason).or_default() += count;

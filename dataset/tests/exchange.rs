@@ -73,7 +73,7 @@ fn a_merge_holds_every_job_once_and_keeps_the_count_of_the_rejected() {
     let mut bad = renamed("other");
     bad[0].sample.w = -1.0;
     let databases = [collect(rows()).unwrap(), collect(bad).unwrap()];
-    let twice = [&databases[..], &databases[..1]].concat();
+    let twice = [&databases[..], &databases[..]].concat();
     let merged = Database::merge(&twice, &plan(0), Mixing::Refused).unwrap();
     assert_eq!(merged.rows().len(), 99);
     assert_eq!(merged.manifest().rays, 20);

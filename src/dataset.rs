@@ -1,0 +1,199 @@
+//! `kirigami dataset`: look at hinge databases, join them, split them, exchange them as CSV.
+
+use anyhow::{Context, Result, ensure};
+use clap::{Args, Subcommand};
+use dataset::{ColumnMap, Database, Details, Gates, Mixing, SplitPlan, rows_from_csv};
+use std::path::{Path, PathBuf};
+
+/// Look at hinge databases, join them, split them, exchange them as CSV
+#[derive(Args)]
+pub struct DatasetCommand {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Subcommand)]
+enum Action {
+    Summary(SummaryCommand),
+    Merge(MergeCommand),
+    Split(SplitCommand),
+    Import(ImportCommand),
+    Export(ExportCommand),
+}
+
+/// Print counts, ranges, histograms, rejected rows, energy residuals and coverage
+#[derive(Args)]
+struct SummaryCommand {
+    /// Database (Parquet with its manifest)
+    #[arg(value_name = "DATABASE")]
+    database: PathBuf,
+}
+
+/// Join the databases of several campaigns; a job that stands in more than one counts once
+#[derive(Args)]
+struct MergeCommand {
+    /// Databases (Parquet with their manifests)
+    #[arg(value_name = "DATABASE", required = true)]
+    databases: Vec<PathBuf>,
+    /// Let materials and mesh tiers be mixed, which no surrogate can tell apart
+    #[arg(long)]
+    mixed: bool,
+    #[command(flatten)]
+    out: OutArgs,
+}
+
+/// Deal the geometries anew to training, validation and test
+#[derive(Args)]
+struct SplitCommand {
+    /// Database (Parquet with its manifest)
+    #[arg(value_name = "DATABASE")]
+    database: PathBuf,
+    #[command(flatten)]
+    out: OutArgs,
+}
+
+/// Make a database of a CSV file, of `dataset export` or of any solver
+#[derive(Args)]
+struct ImportCommand {
+    /// Table, one state of one hinge a row
+    #[arg(value_name = "CSV")]
+    table: PathBuf,
+    /// Names, factors and constants of foreign columns (TOML); see configs/import
+    #[arg(long, value_name = "FILE")]
+    columns: Option<PathBuf>,
+    /// Greatest accepted energy residual of a row, where the table has one
+    #[arg(long, value_name = "SHARE", default_value_t = Gates::default().energy_residual_max)]
+    energy_residual_max: f64,
+    #[command(flatten)]
+    out: OutArgs,
+}
+
+/// Write the table of a database as CSV
+#[derive(Args)]
+struct ExportCommand {
+    /// Database (Parquet with its manifest)
+    #[arg(value_name = "DATABASE")]
+    database: PathBuf,
+    /// The CSV file
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+/// The database to write, and how its geometries are dealt out.
+#[derive(Args)]
+struct OutArgs {
+    /// The Parquet file to write
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Replace an existing file
+    #[arg(long)]
+    replace: bool,
+    /// Seed of the split
+    #[arg(long, value_name = "N", default_value_t = SplitPlan::default().seed)]
+    seed: u64,
+    /// Share of the geometries that chooses the checkpoint
+    #[arg(long, value_name = "SHARE", default_value_t = SplitPlan::default().validation)]
+    validation: f64,
+    /// Share of the geometries that errors are measured on
+    #[arg(long, value_name = "SHARE", default_value_t = SplitPlan::default().test)]
+    test: f64,
+}
+
+impl DatasetCommand {
+    pub fn run(&self) -> Result<()> {
+        match &self.action {
+            Action::Summary(command) => command.run(),
+            Action::Merge(command) => command.run(),
+            Action::Split(command) => command.run(),
+            Action::Import(command) => command.run(),
+            Action::Export(command) => command.run(),
+        }
+    }
+}
+
+impl SummaryCommand {
+    fn run(&self) -> Result<()> {
+        let database = Database::read(&self.database)?;
+        println!("{database}\n{}", Details(&database));
+        Ok(())
+    }
+}
+
+impl MergeCommand {
+    fn run(&self) -> Result<()> {
+        let databases: Result<Vec<_>, _> = self
+            .databases
+            .iter()
+            .map(|path| Database::read(path))
+            .collect();
+        let mixing = match self.mixed {
+            true => Mixing::Allowed,
+            false => Mixing::Refused,
+        };
+        self.out
+            .write(&Database::merge(&databases?, &self.out.plan(), mixing)?)
+    }
+}
+
+impl SplitCommand {
+    fn run(&self) -> Result<()> {
+        let database = Database::read(&self.database)?;
+        self.out.write(&database.split(&self.out.plan())?)
+    }
+}
+
+impl ImportCommand {
+    fn run(&self) -> Result<()> {
+        let map: ColumnMap = match &self.columns {
+            Some(path) => hinge::config::read(path)?,
+            None => ColumnMap::default(),
+        };
+        let gates = Gates {
+            energy_residual_max: self.energy_residual_max,
+        };
+        let rows = rows_from_csv(&self.table, &map)?;
+        self.out
+            .write(&Database::collect(rows, &gates, &self.out.plan())?)
+    }
+}
+
+impl ExportCommand {
+    fn run(&self) -> Result<()> {
+        ensure!(
+            !self.out.exists(),
+            "{} exists; choose another name",
+            self.out.display()
+        );
+        let csv = Database::read(&self.database)?.to_csv()?;
+        make_folder(&self.out)?;
+        hinge::files::write(&self.out, &csv)
+            .with_context(|| format!("cannot write {}", self.out.display()))?;
+        println!("written to {}", self.out.display());
+        Ok(())
+    }
+}
+
+impl OutArgs {
+    fn plan(&self) -> SplitPlan {
+        SplitPlan {
+            seed: self.seed,
+            validation: self.validation,
+            test: self.test,
+        }
+    }
+
+    fn write(&self, database: &Database) -> Result<()> {
+        make_folder(&self.out)?;
+        database.write(&self.out, self.replace)?;
+        println!("{database}\nwritten to {}", self.out.display());
+        Ok(())
+    }
+}
+
+fn make_folder(file: &Path) -> Result<()> {
+    let Some(folder) = file.parent() else {
+        return Ok(());
+    };
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("cannot make the folder {}", folder.display()))
+}

@@ -1,0 +1,135 @@
+//! Someone with their own solver: a CSV table becomes a database, a surrogate, and answers.
+//!
+//! ```text
+//! W = w (20 u^2 + 10 v^2 + 3 t^2 + 4 u t),   D = t^2 / 100,   u = a / w,  v = s / w,  t = theta
+//! ```
+
+mod common;
+
+use common::Workplace;
+use std::fmt::Write;
+
+const DATABASE: &str = "own.parquet";
+const WEIGHTS: &str = "runs/own.safetensors";
+
+/// Thirty rays of ten states, with angles in degrees.
+fn table() -> String {
+    let mut csv = String::from(
+        "ray,width_mm,alpha_deg,a,s,theta_deg,lambda,energy_mJ,F_a,F_s,moment_Nmm,D\n",
+    );
+    for ray in 0..30 {
+        let spread = |step: f64| (step * f64::from(ray + 1)).fract();
+        let (w, alpha) = (8.0 + 12.0 * spread(0.7549), 60.0 + 30.0 * spread(0.5698));
+        let end = [spread(0.4142) - 0.5, 0.5 * spread(0.732) - 0.25, 1.0];
+        for k in 1..=10 {
+            let lambda = 0.1 * f64::from(k);
+            let [u, v, t] = end.map(|value| lambda * value);
+            let energy = w * (20.0 * u * u + 10.0 * v * v + 3.0 * t * t + 4.0 * u * t);
+            let (f_a, f_s, m) = (40.0 * u + 4.0 * t, 20.0 * v, w * (6.0 * t + 4.0 * u));
+            writeln!(
+                csv,
+                "{ray},{w},{alpha},{},{},{},{lambda},{energy},{f_a},{f_s},{m},{}",
+                u * w,
+                v * w,
+                t.to_degrees(),
+                0.01 * t * t
+            )
+            .unwrap();
+        }
+    }
+    csv
+}
+
+fn workplace() -> Workplace {
+    let work = Workplace::new();
+    std::fs::write(work.path("own.csv"), table()).unwrap();
+    let import = "dataset import own.csv --columns configs/import/example.toml";
+    work.output(&format!("{import} --out {DATABASE}"));
+    work.edit(
+        "configs/training/demo.toml",
+        &[
+            ("[64, 64, 32]", "[24, 24, 12]"),
+            ("epochs = 300", "epochs = 150"),
+            ("batch_size = 128", "batch_size = 32"),
+        ],
+    );
+    work
+}
+
+#[test]
+fn a_table_becomes_weights_that_answer() {
+    let work = workplace();
+    let summary = work.output(&format!("dataset summary {DATABASE}"));
+    assert!(summary.contains("300 rows of 30 rays"), "{summary}");
+    assert!(summary.contains("cells of (w_lig, alpha)"), "{summary}");
+
+    let train = format!("train {DATABASE} --config configs/training/demo.toml");
+    let output = work.output(&format!("{train} --seeds 2 --out {WEIGHTS}"));
+    for expected in [
+        "of 2 seeds",
+        "theta_deg",
+        "forces of 2 networks",
+        "indefinite",
+    ] {
+        assert!(output.contains(expected), "{output}");
+    }
+    for name in ["own-last.safetensors", "own-seed-1.json", "own-parity.png"] {
+        assert!(work.path("runs").join(name).exists(), "{name}");
+    }
+    assert!(!work.path("runs/own.state").exists());
+
+    std::fs::write(
+        work.path("states.csv"),
+        "w_lig,alpha,a,s,theta\n12,1.3,0.6,0.3,0.5\n12,1.3,0,0,0\n12,1.3,60,0,0.5\n",
+    )
+    .unwrap();
+    let json = work.output(&format!("surrogate eval {WEIGHTS} states.csv --json"));
+    let answers: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let energy = answers[0]["w"].as_f64().unwrap();
+    let exact = 12.0 * (20.0 * 0.0025 + 10.0 * 0.000_625 + 3.0 * 0.25 + 4.0 * 0.025);
+    assert!(
+        (energy - exact).abs() < 0.2 * exact,
+        "{energy} instead of {exact}"
+    );
+    assert!(answers[1]["w"].as_f64().unwrap() < 1e-20);
+    assert_eq!(answers[2]["inside"], false);
+    let csv = work.output(&format!("surrogate eval {WEIGHTS} states.csv"));
+    assert_eq!(csv.lines().count(), 4);
+
+    let card = work.output(&format!("surrogate card {WEIGHTS}"));
+    assert!(
+        card.contains("PET film 0.5 mm") && card.contains("edge"),
+        "{card}"
+    );
+
+    let tuned = format!("{train} --from {WEIGHTS} --out runs/tuned.safetensors");
+    work.output(&tuned);
+    let card = work.output("surrogate card runs/tuned.safetensors");
+    assert!(card.contains("fine-tuned"), "{card}");
+}
+
+#[test]
+fn what_cannot_be_evaluated_or_resumed_is_told() {
+    let work = workplace();
+    let error = work.error(&format!(
+        "train {DATABASE} --config configs/training/demo.toml --resume --out {WEIGHTS}"
+    ));
+    assert!(error.contains("own.state"), "{error}");
+    let error = work.error("dataset summary own.csv");
+    assert!(error.contains("own.json"), "{error}");
+    let tiny = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/surrogate/tests/cases/chi_tiny.safetensors"
+    );
+    for (text, expected) in [
+        ("w_lig,alpha,a,s\n1,1,1,1\n", "theta"),
+        ("w_lig,alpha,a,s,theta\n", "no rows"),
+        ("w_lig,alpha,a,s,theta\n-1,1,0,0,0\n", "0 < w_lig"),
+        ("w_lig,alpha,a,s,theta\n9,75,0,0,0\n", "pi (rad)"),
+        ("w_lig,alpha,a,s,theta\n9,1,NaN,0,0\n", "not finite"),
+    ] {
+        std::fs::write(work.path("states.csv"), text).unwrap();
+        let error = work.error(&format!("surrogate eval {tiny} states.csv"));
+        assert!(error.contains(expected), "{error}");
+    }
+}
