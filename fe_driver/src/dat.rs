@@ -263,6 +263,27 @@ mod tests {
             prop_assert_eq!(frames.len(), usize::from(cut >= printed(0.5).len()));
         }
 
+        /// Lines that may stand in an output, in any order and number.
+        #[test]
+        fn shuffled_lines_give_whole_frames_or_an_error(
+            order in proptest::collection::vec(any::<prop::sample::Index>(), 0..120)
+        ) {
+            let text = two_increments();
+            let lines: Vec<_> = text.split_inclusive('\n').collect();
+            let shuffled: String = order.iter().map(|index| *index.get(&lines)).collect();
+            if let Ok(frames) = read_dat(shuffled.as_bytes(), LAYOUT) {
+                prop_assert!(frames.iter().all(|frame| frame.is_complete(LAYOUT)));
+                prop_assert!(frames.windows(2).all(|pair| pair[0].lambda < pair[1].lambda));
+            }
+        }
+
+        #[test]
+        fn any_bytes_give_frames_or_an_error(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+            if let Ok(frames) = read_dat(&bytes, LAYOUT) {
+                prop_assert!(frames.iter().all(|frame| frame.is_complete(LAYOUT)));
+            }
+        }
+
         #[test]
         fn corrupted_bytes_never_panic(at in 0..2000usize, byte in any::<u8>()) {
             let mut bytes = two_increments().into_bytes();

@@ -27,7 +27,7 @@ mod window_solve;
 
 pub use campaign::{Campaign, CampaignError};
 pub use ccx::{CCX, Ccx, CcxRun};
-pub use dat::DatError;
+pub use dat::{DatError, Frame, Layout, read_dat};
 pub use deck::{StepControl, deck};
 pub use doctor::{Diagnosis, doctor};
 pub use failure::{FailureKind, Rung, UnknownFailure};

@@ -220,7 +220,7 @@ fn time_that_a_solver_spent_in_vain_is_counted() {
     let tally = run_whole(&campaign, folder.path(), &tools);
     assert_eq!(tally.failures[&FailureKind::TimedOut], 1);
     assert!(
-        0.1 < tally.cpu_seconds && tally.cpu_seconds < tally.wall_seconds,
+        0.0 < tally.cpu_seconds && tally.cpu_seconds < tally.wall_seconds,
         "{tally:?}"
     );
 }

@@ -18,7 +18,7 @@ mod window;
 
 pub use gmsh::{GMSH, Gmsh};
 pub use mesh::{MeshError, WindowMesh, mesh_window};
-pub use msh::{Boundary, MshError, PlaneMesh};
+pub use msh::{Boundary, MshError, PlaneMesh, read_msh};
 pub use quality::{MeshDefect, MeshQuality};
 pub use svg::plane_mesh_svg;
 pub use tier::{MeshRecipe, Tier};

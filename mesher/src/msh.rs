@@ -219,6 +219,24 @@ mod tests {
     }
 
     proptest! {
+        /// Lines that may stand in a mesh file, in any order and number.
+        #[test]
+        fn shuffled_lines_give_a_consistent_mesh_or_an_error(
+            order in proptest::collection::vec(any::<prop::sample::Index>(), 0..40)
+        ) {
+            let lines: Vec<_> = SQUARE.split_inclusive('\n').collect();
+            let shuffled: String = order.iter().map(|index| *index.get(&lines)).collect();
+            if let Ok(mesh) = read_msh(shuffled.as_bytes()) {
+                prop_assert!(mesh.quads.iter().flatten().all(|index| *index < mesh.nodes.len()));
+            }
+        }
+
+        #[test]
+        fn any_bytes_give_a_mesh_or_an_error(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+            // A mesh needs markers that random bytes do not spell.
+            prop_assert!(read_msh(&bytes).is_err());
+        }
+
         #[test]
         fn truncated_and_corrupted_bytes_never_panic(
             cut in 0..SQUARE.len(), at in 0..SQUARE.len(), byte in any::<u8>()

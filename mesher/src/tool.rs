@@ -398,7 +398,7 @@ mod tests {
         let (ended, log) = run(script, Duration::from_millis(200), false);
         let error = ended.unwrap_err();
         assert!(matches!(error, ToolError::TimedOut { .. }), "{error}");
-        assert!(error.cpu_seconds().unwrap() > 0.1, "{error:?}");
+        assert!(error.cpu_seconds().unwrap() > 0.0, "{error:?}");
         let child: i32 = log.trim().parse().unwrap();
         let gone = || !Path::new(&format!("/proc/{child}")).exists() || is_zombie(child);
         let deadline = Instant::now() + GRACE;

@@ -1,0 +1,208 @@
+//! A campaign that is killed again and again, or whose folder is lost: the database is the same.
+
+mod common;
+
+use common::Workplace;
+use dataset::{Database, Row};
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+const CAMPAIGN: &str = "configs/campaigns/demo.toml";
+
+/// Solves a small campaign once, and replays gmsh's and ccx's output from then on.
+struct Replay {
+    work: Workplace,
+}
+
+impl Replay {
+    fn new() -> Self {
+        let work = Workplace::new();
+        work.edit(
+            CAMPAIGN,
+            &[
+                ("count = 40", "count = 6"),
+                ("theta_deg = [10.0, 60.0]", "theta_deg = [4.0, 8.0]"),
+            ],
+        );
+        let replay = Self { work };
+        std::fs::create_dir(replay.work.path("recorded")).unwrap();
+        // Programs run in jobs/<id>/work.
+        let id = "id=${PWD%/work}; id=${id##*/}";
+        let recorded = replay.work.path("recorded").display().to_string();
+        let script = |program: &str, body: &str| {
+            let path = replay.work.path(program);
+            std::fs::write(&path, format!("#!/bin/sh\n{body}\n")).unwrap();
+            std::fs::set_permissions(&path, PermissionsExt::from_mode(0o755)).unwrap();
+        };
+        script(
+            "recording-ccx",
+            &format!(
+                "[ \"$1\" = -v ] && exec ccx -v\nccx \"$@\" || exit\n{id}\n\
+                 cp window.dat {recorded}/$id.dat; cp window.msh {recorded}/$id.msh"
+            ),
+        );
+        script(
+            "replaying-ccx",
+            &format!(
+                "[ \"$1\" = -v ] && echo {} && exit\n{id}; sleep 0.02; echo 'Job finished'\n\
+                 exec cp {recorded}/$id.dat window.dat",
+                version("ccx", "-v")
+            ),
+        );
+        script(
+            "replaying-gmsh",
+            &format!(
+                "[ \"$1\" = --version ] && echo {} && exit\n{id}\n\
+                 exec cp {recorded}/$id.msh window.msh",
+                version("gmsh", "--version")
+            ),
+        );
+        let mut record = replay.run("recorded-campaign");
+        record.env_remove("KIRIGAMI_GMSH");
+        record.env("KIRIGAMI_CCX", replay.work.path("recording-ccx"));
+        assert!(record.status().unwrap().success());
+        replay
+    }
+
+    /// A run in a folder, by the replaying programs.
+    fn run(&self, folder: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_kirigami"));
+        command
+            .args([
+                "database", "run", CAMPAIGN, "--jobs", "2", "--folder", folder,
+            ])
+            .current_dir(self.work.path(""))
+            .env("KIRIGAMI_GMSH", self.work.path("replaying-gmsh"))
+            .env("KIRIGAMI_CCX", self.work.path("replaying-ccx"))
+            .stdout(Stdio::null());
+        command
+    }
+
+    fn collected(&self, folder: &str) -> Database {
+        self.work.output(&format!(
+            "database collect {CAMPAIGN} --folder {folder} --out {folder}.parquet"
+        ));
+        Database::read(&self.work.path(&format!("{folder}.parquet"))).unwrap()
+    }
+}
+
+/// What a program answers when asked for its version, the number at its end.
+fn version(program: &str, flag: &str) -> String {
+    let output = Command::new(program).arg(flag).output().unwrap();
+    let text = [output.stdout, output.stderr].concat();
+    let text = String::from_utf8(text).unwrap();
+    let number = |word: &&str| word.starts_with(|c: char| c.is_ascii_digit());
+    text.split_whitespace().find(number).unwrap().to_owned()
+}
+
+/// Everything but what the solves cost.
+fn timeless(database: &Database) -> Vec<Row> {
+    let rows = database.rows().iter().cloned();
+    rows.map(|row| Row { cpu_s: 0.0, ..row }).collect()
+}
+
+#[test]
+fn a_campaign_killed_twenty_times_gives_the_same_database() {
+    let replay = Replay::new();
+    let whole = timeless(&replay.collected("recorded-campaign"));
+    assert!(whole.len() > 60);
+    let start = Instant::now();
+    assert!(replay.run("uninterrupted").status().unwrap().success());
+    let span = start.elapsed();
+    assert_eq!(timeless(&replay.collected("uninterrupted")), whole);
+
+    let mut interrupted = 0;
+    for campaign in 0..5 {
+        let folder = format!("killed-{campaign}");
+        for kill in 0..4 {
+            let mut run = replay.run(&folder).spawn().unwrap();
+            // Multiples of the golden ratio fall everywhere, never twice in one place.
+            let share = (0.618 * f64::from(4 * campaign + kill)).fract();
+            std::thread::sleep(span.mul_f64(share));
+            interrupted += u32::from(run.try_wait().unwrap().is_none());
+            run.kill().unwrap();
+            run.wait().unwrap();
+        }
+        assert!(replay.run(&folder).status().unwrap().success());
+        assert_eq!(timeless(&replay.collected(&folder)), whole);
+        assert_eq!(
+            left_running(&replay.work.path(&folder)),
+            Vec::<PathBuf>::new()
+        );
+    }
+    assert!(
+        interrupted >= 10,
+        "only {interrupted} runs were really killed"
+    );
+}
+
+#[test]
+fn a_lost_folder_is_restored_from_the_database() {
+    let replay = Replay::new();
+    let before = replay.collected("recorded-campaign");
+    let restore = format!("database restore {CAMPAIGN} --from recorded-campaign.parquet");
+    let restored = replay.work.output(&format!("{restore} --folder restored"));
+    assert!(restored.contains("6 rays restored"), "{restored}");
+    // Nothing is left to solve, so no solver is missed.
+    let mut run = replay.run("restored");
+    let outcome = run.env("KIRIGAMI_CCX", replay.work.path("replaying-ccx"));
+    std::fs::remove_dir_all(replay.work.path("recorded")).unwrap();
+    assert!(outcome.status().unwrap().success());
+    let after = replay.collected("restored");
+    assert_eq!(after.rows(), before.rows());
+    assert_eq!(after.manifest(), before.manifest());
+
+    replay.work.edit(CAMPAIGN, &[("kerf = 0.2", "kerf = 0.3")]);
+    let message = replay.work.error(&format!("{restore} --folder other"));
+    assert!(message.contains("none of the campaign's"), "{message}");
+}
+
+#[test]
+fn a_run_that_ends_early_says_so_by_its_exit_code() {
+    let replay = Replay::new();
+    let mut run = replay.run("short");
+    let output = run.args(["--time-limit", "0"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(75));
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("6 rays left; run again"), "{message}");
+
+    let arguments = format!("{CAMPAIGN} --folder short");
+    let refused = replay.work.error(&format!("database collect {arguments}"));
+    assert!(
+        refused.contains("missing: 6 rays not solved yet"),
+        "{refused}"
+    );
+    for shard in ["1/2", "2/2"] {
+        let status = replay.run("short").args(["--shard", shard]).status();
+        assert!(status.unwrap().success());
+    }
+    let status = replay
+        .work
+        .output(&format!("database status {arguments} --json"));
+    let status: serde_json::Value = serde_json::from_str(&status).unwrap();
+    assert_eq!(status["tally"]["complete"], 6);
+    assert!(status["throughput"]["rays_per_hour"].as_f64().unwrap() > 0.0);
+    let plan = replay
+        .work
+        .output(&format!("database plan {arguments} --json"));
+    let plan: serde_json::Value = serde_json::from_str(&plan).unwrap();
+    assert_eq!(plan["reasons"], serde_json::json!({}));
+}
+
+/// Working folders under `folder` of processes that still run, given a moment to die of SIGKILL.
+fn left_running(folder: &Path) -> Vec<PathBuf> {
+    let running = || -> Vec<PathBuf> {
+        let processes = std::fs::read_dir("/proc").unwrap().flatten();
+        processes
+            .filter_map(|process| std::fs::read_link(process.path().join("cwd")).ok())
+            .filter(|cwd| cwd.starts_with(folder))
+            .collect()
+    };
+    let deadline = Instant::now() + Duration::from_secs(5);
+    while !running().is_empty() && Instant::now() < deadline {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    running()
+}
