@@ -52,9 +52,20 @@ pub enum EquilibriumError {
     Settings(SolverSettings),
 }
 
+/// How equilibria are sought.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Method {
+    /// Newton's method on the sparse tangent.
+    #[default]
+    Newton,
+    /// Limited-memory BFGS, as the paper, with so many iterations per load increment.
+    Lbfgs { max_iterations: usize },
+}
+
 /// How hard to try.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverSettings {
+    pub method: Method,
     /// Residual of a converged state, relative to the greatest force.
     pub tolerance: f64,
     /// Residual of an almost converged state.
@@ -71,6 +82,7 @@ pub struct SolverSettings {
 impl Default for SolverSettings {
     fn default() -> Self {
         Self {
+            method: Method::default(),
             tolerance: 1e-10,
             loose_tolerance: 1e-6,
             max_iterations: 60,

@@ -75,15 +75,20 @@ impl Control<'_> {
 }
 
 impl Potential<'_> {
-    /// `None` where the potential is not finite.
+    /// With what the tangent needs; `None` where the potential is not finite.
     pub fn state(&self, configuration: Configuration) -> Option<State> {
+        self.state_up_to(configuration, Order::Tangent)
+    }
+
+    /// With the derivatives of the hinge energies up to `order`, forces at least.
+    pub fn state_up_to(&self, configuration: Configuration, order: Order) -> Option<State> {
         let sheet = self.sheet.sheet;
         let motions: Vec<HingeMotion> = (0..sheet.hinges.len())
             .map(|hinge| HingeMotion::new(sheet, hinge, &configuration))
             .collect();
         let deformations: Vec<HingeDeformation> =
             motions.iter().map(HingeMotion::deformation).collect();
-        let energies = self.sheet.energies(&deformations, Order::Tangent);
+        let energies = self.sheet.energies(&deformations, order);
 
         let mut inner = vec![[0.0; 3]; configuration.len()];
         for ((hinge, motion), energy) in sheet.hinges.iter().zip(&motions).zip(&energies) {
