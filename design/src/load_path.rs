@@ -41,17 +41,26 @@ struct Reached {
     speed: f64,
     /// Whether the path sped up on the way here.
     faster: bool,
+    /// Greatest force so far, under load control that of the full load (N).
+    force: f64,
 }
 
 impl Reached {
-    fn new(at: f64, configuration: Configuration, rate: Vec<[f64; 3]>, before: f64) -> Self {
+    fn new(
+        at: f64,
+        configuration: Configuration,
+        rate: Vec<[f64; 3]>,
+        speed_before: f64,
+        force: f64,
+    ) -> Self {
         let speed = rate.iter().fold(0.0, |most, rate| rate[2].abs().max(most));
         Self {
             at,
             configuration,
             rate,
             speed,
-            faster: speed > before,
+            faster: speed > speed_before,
+            force,
         }
     }
 }
@@ -81,21 +90,25 @@ impl EquilibriumSolver {
 
     /// The flat sheet, where the path begins.
     fn flat(&self, sheet: HingedSheet) -> Reached {
-        let potential = self.potential(sheet, 0.0);
+        let potential = self.potential(sheet, 0.0, 0.0);
+        let force = match self.drive {
+            None => potential.greatest(self.loads.iter().copied()),
+            Some(_) => 0.0,
+        };
         let flat = vec![[0.0; 3]; self.grid.panel_count()];
         let state = potential.state(flat.clone());
         let rate = state.map_or(flat.clone(), |state| {
             let factor = potential.factorise(&potential.tangent(&state));
             self.rate(&potential, &state, factor.as_ref())
         });
-        Reached::new(0.0, flat, rate, f64::INFINITY)
+        Reached::new(0.0, flat, rate, f64::INFINITY, force)
     }
 
     /// The load step to `to`, in as many increments as it takes; moves `reached` there.
     fn advance(&self, sheet: HingedSheet, reached: &mut Reached, to: f64) -> LoadStep {
         let mut increment = to - reached.at;
         let least = increment * 0.5_f64.powi(self.settings.max_halvings as i32);
-        let (mut iterations, mut jumped, mut last_leap) = (0, false, f64::INFINITY);
+        let (mut iterations, mut jumped, mut last_leap) = (0, false, 0.0);
         loop {
             increment = increment.min(to - reached.at);
             // From the flat sheet, soft and soon stiff, Newton's method finds its own way better.
@@ -108,7 +121,7 @@ impl EquilibriumSolver {
             } else {
                 reached.at + increment
             };
-            let potential = self.potential(sheet, at);
+            let potential = self.potential(sheet, at, reached.force);
             let start = self.predicted(reached, at);
             let minimum = match self.settings.method {
                 Method::Newton => potential.minimise(start, &self.settings),
@@ -130,7 +143,7 @@ impl EquilibriumSolver {
             iterations += minimum.iterations;
             let rate = self.rate(&potential, &minimum.state, minimum.factor.as_ref());
             let configuration = minimum.state.configuration.clone();
-            let arrived = Reached::new(at, configuration, rate, reached.speed);
+            let arrived = Reached::new(at, configuration, rate, reached.speed, minimum.state.force);
             if let Some(leap) = self.leap(reached, &arrived, minimum.unstable) {
                 if increment > least {
                     (increment, last_leap) = (0.5 * increment, leap);
@@ -138,7 +151,7 @@ impl EquilibriumSolver {
                 }
                 jumped |= leap > JUMP * last_leap;
             }
-            (*reached, increment, last_leap) = (arrived, 2.0 * increment, f64::INFINITY);
+            (*reached, increment, last_leap) = (arrived, 2.0 * increment, 0.0);
             if at == to {
                 let status = self.status(sheet, &minimum, jumped);
                 let work = self.work(&minimum.state.configuration);
@@ -166,7 +179,7 @@ impl EquilibriumSolver {
         residual: f64,
         iterations: usize,
     ) -> LoadStep {
-        let potential = self.potential(sheet, reached.at);
+        let potential = self.potential(sheet, reached.at, reached.force);
         let state = potential.state(reached.configuration.clone());
         let state = state.expect("this state has been computed before");
         let work = self.work(&reached.configuration);
@@ -189,7 +202,7 @@ impl EquilibriumSolver {
     }
 
     /// The potential at a point of the path.
-    fn potential<'a>(&'a self, sheet: HingedSheet<'a>, at: f64) -> Potential<'a> {
+    fn potential<'a>(&'a self, sheet: HingedSheet<'a>, at: f64, force: f64) -> Potential<'a> {
         let area: f64 = sheet.sheet.panels.iter().map(Panel::area).sum();
         Potential {
             sheet,
@@ -200,6 +213,7 @@ impl EquilibriumSolver {
                 Some((stroke, _)) => Control::Stroke(stroke),
             },
             loads: &self.loads,
+            force,
             panel_size: (area / sheet.sheet.panels.len() as f64).sqrt(),
         }
     }

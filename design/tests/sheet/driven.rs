@@ -70,16 +70,14 @@ fn the_stroke_of_a_load_brings_the_load_back() {
     }
 }
 
-/// W = theta^2 (theta - 1)^2 resists opening by a moment that rises to sqrt(3)/9, falls through zero at
-/// 1/2 and rises again. Driven, every angle is an equilibrium, M = W'(theta); where the moment falls
-/// no load holds it.
+/// Hinges of W = theta^2 (theta - 1)^2 soften beyond 0.21 rad, one after the other. Driven, the sheet is
+/// followed where its load falls and no load would hold it, and stores what the loads do.
 #[test]
 fn a_snapping_sheet_is_followed_through_its_fall() {
     let sheet = cases::sheet(&case("p1_3x3_random"));
     let loads = opening_moments(&sheet, 4, 1.0);
-    // Twelve hinges do work, on panels that carry 24 couples, four of them on the clamp.
-    let (steps, open) = (24, 1.2);
-    let stroke = open * 12.0 / 20.0;
+    let couples: f64 = loads.iter().map(|load| load.value.abs()).sum();
+    let (steps, stroke) = (60, 0.15);
     let path = driven(
         &sheet,
         &Rotational(snapping),
@@ -88,18 +86,17 @@ fn a_snapping_sheet_is_followed_through_its_fall() {
         stroke,
     );
     assert_eq!(path.len(), steps);
-    for (i, step) in path.iter().enumerate() {
-        let angle = open * (i + 1) as f64 / steps as f64;
-        let [_, moment, stiffness] = snapping(angle);
-        assert_eq!(step.status, Status::Converged, "{i}");
-        assert!(
-            step.deformations
-                .iter()
-                .all(|eps| (eps.theta - angle).abs() < 1e-9)
-        );
-        assert!((step.load_factor - moment).abs() < 1e-8);
-        assert_eq!(step.negative_pivots, usize::from(stiffness < 0.0), "{i}");
+    let (mut worked, mut before, mut fell) = (0.0, 0.0, 0);
+    for step in &path {
+        let found = (step.residual, step.negative_pivots, step.load_factor);
+        assert_eq!(step.status, Status::Converged, "{found:?}");
+        worked += 0.5 * (before + step.load_factor) * couples * stroke / steps as f64;
+        fell += usize::from(step.load_factor < before && step.negative_pivots == 1);
+        before = step.load_factor;
+        let stored: f64 = step.energies.iter().sum();
+        assert!((worked - stored).abs() < 2e-3, "{worked} {stored}");
     }
+    assert!(fell > 5, "{fell}");
 }
 
 /// A spring of 1 N mm with a bump of 0.08 N mm: under load the sheet jumps by about 0.1 rad.
