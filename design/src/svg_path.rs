@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn lines_absolute_relative_and_repeated() {
-        let square = vec![[0.0, 0.0], [10.0, 0.0], [10.0, -10.0], [0.0, -10.0]];
+        let square = [[0.0, 0.0], [10.0, 0.0], [10.0, -10.0], [0.0, -10.0]];
         for data in [
             "M0 0 L10 0 L10 10 L0 10 Z",
             "m0,0 10,0 0,10 -10,0z",
