@@ -160,6 +160,10 @@ fn help_is_there_for_every_command() {
         "database run",
         "train",
         "design",
+        "pattern",
+        "deploy",
+        "equilibrium",
+        "gradient",
     ] {
         assert!(
             work.output(&format!("{command} --help"))

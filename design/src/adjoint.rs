@@ -61,7 +61,7 @@ pub(crate) fn adjoint(
             add_at_hinge(&mut by_q, hinge, motions[h].forces([a, s, theta]));
         }
         let rhs = gather(&solver.free, &by_q);
-        let stroke = solver.drive.as_ref().map(|(stroke, _)| stroke);
+        let stroke = solver.drive.as_ref().map(|(stroke, _)| &**stroke);
         let solution = (step.tangent.as_ref())
             .and_then(|tangent| refined_solve(&solver.pattern, tangent, stroke, &rhs))
             .filter(|solution| solution.error < SINGULAR)

@@ -44,7 +44,10 @@ impl PatternCoordinates {
     pub fn ell_of(tau: &[Vec<f64>; 4]) -> Result<[Vec<f64>; 4], PatternError> {
         for tau in tau {
             let widths = intervals(tau);
-            if let Some(index) = widths.iter().position(|width| !(*width > 0.0)) {
+            if let Some(index) = widths
+                .iter()
+                .position(|width| *width <= 0.0 || width.is_nan())
+            {
                 let index = index.min(tau.len() - 1);
                 return Err(PatternError::Interval {
                     name: "tau",

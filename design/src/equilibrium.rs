@@ -52,9 +52,20 @@ pub enum EquilibriumError {
     Settings(SolverSettings),
 }
 
+/// How equilibria are sought.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Method {
+    /// Newton's method on the sparse tangent.
+    #[default]
+    Newton,
+    /// Limited-memory BFGS, as the paper, with so many iterations per load increment.
+    Lbfgs { max_iterations: usize },
+}
+
 /// How hard to try.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverSettings {
+    pub method: Method,
     /// Residual of a converged state, relative to the greatest force.
     pub tolerance: f64,
     /// Residual of an almost converged state.
@@ -71,6 +82,7 @@ pub struct SolverSettings {
 impl Default for SolverSettings {
     fn default() -> Self {
         Self {
+            method: Method::default(),
             tolerance: 1e-10,
             loose_tolerance: 1e-6,
             max_iterations: 60,
@@ -117,13 +129,13 @@ pub struct EquilibriumSolver {
     pub(crate) settings: SolverSettings,
     pub(crate) steps: usize,
     /// Numbers of the free degrees of freedom, three per panel.
-    pub(crate) free: Vec<Option<usize>>,
+    pub(crate) free: Box<[Option<usize>]>,
     /// Prescribed motions at full load.
-    pub(crate) supports: Vec<Support>,
+    pub(crate) supports: Box<[Support]>,
     /// (F_x, F_y, M) per panel at full load.
-    pub(crate) loads: Vec<[f64; 3]>,
+    pub(crate) loads: Box<[[f64; 3]]>,
     /// Of a driven sheet, the direction of the stroke and its full length.
-    pub(crate) drive: Option<(Stroke, f64)>,
+    pub(crate) drive: Option<(Box<Stroke>, f64)>,
     /// Boxed: large beside the rest.
     pub(crate) pattern: Box<TangentPattern>,
 }
@@ -186,9 +198,9 @@ impl EquilibriumSolver {
             settings,
             steps,
             pattern: Box::new(TangentPattern::new(grid, &free)),
-            free,
-            supports: supports.to_vec(),
-            loads: total,
+            free: free.into(),
+            supports: supports.into(),
+            loads: total.into(),
             drive: None,
         })
     }
@@ -201,7 +213,7 @@ impl EquilibriumSolver {
         }
         let direction = Stroke::new(&self.loads, &gather(&self.free, &self.loads));
         let direction = direction.ok_or(EquilibriumError::NothingDrives)?;
-        self.drive = Some((direction, stroke));
+        self.drive = Some((Box::new(direction), stroke));
         Ok(self)
     }
 }

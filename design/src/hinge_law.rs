@@ -3,15 +3,18 @@
 //! | law | energy | needs |
 //! |---|---|---|
 //! | [`LinearLaw`] | (11), three springs | constants |
+//! | [`CondensedLaw`] | (11) with the constants of a learned energy | weights |
 //! | [`SurrogateLaw`] | (14), with a barrier around the training domain | weights |
 //!
 //! A law is first prepared for the hinges of one sheet and then evaluated for all of them at once.
 
+mod condensed;
 mod contact;
 mod linear;
 mod surrogate;
 
 pub use ::surrogate::{HingeDamage, HingeEnergy, Order};
+pub use condensed::{CondensedLaw, Constant};
 pub use contact::{Contact, InvalidContact};
 pub use linear::{InvalidStiffness, LinearLaw};
 pub use surrogate::SurrogateLaw;

@@ -4,13 +4,14 @@
 //! until there is one, and until the rates of the path explain its rotations,
 //!
 //! ```text
-//! |dphi - (phi'_0 + phi'_1) dt / 2| <= |dphi| / 2,     or     |dphi| <= 3/2 |phi'| dt at either end
+//! |dphi - (phi'_0 + phi'_1) dt / 2| <= |dphi| / 2,     or     |dphi| <= 3/2 |phi'| dt at one end
 //! ```
 //!
-//! where the second will do if no tangent on the way was indefinite. A leap that does not shrink with
+//! where the second will do if no tangent on the way was indefinite, and at an end towards which the
+//! path slows down: towards a limit point it speeds up without bound. A leap that does not shrink with
 //! its increment is a jump past a limit point.
 
-use crate::equilibrium::{EquilibriumSolver, HingedSheet};
+use crate::equilibrium::{EquilibriumSolver, HingedSheet, Method};
 use crate::kinematics::Configuration;
 use crate::load_step::{LoadStep, Status, StepTangent};
 use crate::newton::Minimum;
@@ -19,8 +20,8 @@ use crate::potential::{Control, Potential, State, moved};
 use crate::sheet::Panel;
 use crate::stroke::HeldFactor;
 
-/// A rotation predicted further than this (rad) is cut.
-const LONGEST_PREDICTION: f64 = 0.5;
+/// Rotation (rad) that an increment is meant not to exceed, by the rate at its beginning.
+const LONGEST_INCREMENT: f64 = 0.2;
 /// Part of a rotation that the rates at both ends may leave unexplained.
 const UNEXPLAINED: f64 = 0.5;
 /// How much further than the rate at one end a continuous path may turn.
@@ -36,6 +37,32 @@ struct Reached {
     configuration: Configuration,
     /// Of the configuration.
     rate: Vec<[f64; 3]>,
+    /// Greatest rate of rotation (rad).
+    speed: f64,
+    /// Whether the path sped up on the way here.
+    faster: bool,
+    /// Greatest force so far, under load control that of the full load (N).
+    force: f64,
+}
+
+impl Reached {
+    fn new(
+        at: f64,
+        configuration: Configuration,
+        rate: Vec<[f64; 3]>,
+        speed_before: f64,
+        force: f64,
+    ) -> Self {
+        let speed = rate.iter().fold(0.0, |most, rate| rate[2].abs().max(most));
+        Self {
+            at,
+            configuration,
+            rate,
+            speed,
+            faster: speed > speed_before,
+            force,
+        }
+    }
 }
 
 impl EquilibriumSolver {
@@ -63,34 +90,46 @@ impl EquilibriumSolver {
 
     /// The flat sheet, where the path begins.
     fn flat(&self, sheet: HingedSheet) -> Reached {
-        let potential = self.potential(sheet, 0.0);
+        let potential = self.potential(sheet, 0.0, 0.0);
+        let force = match self.drive {
+            None => potential.greatest(self.loads.iter().copied()),
+            Some(_) => 0.0,
+        };
         let flat = vec![[0.0; 3]; self.grid.panel_count()];
         let state = potential.state(flat.clone());
         let rate = state.map_or(flat.clone(), |state| {
             let factor = potential.factorise(&potential.tangent(&state));
             self.rate(&potential, &state, factor.as_ref())
         });
-        Reached {
-            at: 0.0,
-            configuration: flat,
-            rate,
-        }
+        Reached::new(0.0, flat, rate, f64::INFINITY, force)
     }
 
     /// The load step to `to`, in as many increments as it takes; moves `reached` there.
     fn advance(&self, sheet: HingedSheet, reached: &mut Reached, to: f64) -> LoadStep {
         let mut increment = to - reached.at;
         let least = increment * 0.5_f64.powi(self.settings.max_halvings as i32);
-        let (mut iterations, mut jumped, mut last_leap) = (0, false, f64::INFINITY);
+        let (mut iterations, mut jumped, mut last_leap) = (0, false, 0.0);
         loop {
+            increment = increment.min(to - reached.at);
+            // From the flat sheet, soft and soon stiff, Newton's method finds its own way better.
+            if reached.at > 0.0 {
+                increment = increment.min((LONGEST_INCREMENT / reached.speed).max(least));
+            }
             // The last increment ends exactly, so that rounding leaves no sliver of load behind.
             let at = if to - reached.at < 1.5 * increment {
                 to
             } else {
                 reached.at + increment
             };
-            let potential = self.potential(sheet, at);
-            let minimum = match potential.minimise(self.predicted(reached, at), &self.settings) {
+            let potential = self.potential(sheet, at, reached.force);
+            let start = self.predicted(reached, at);
+            let minimum = match self.settings.method {
+                Method::Newton => potential.minimise(start, &self.settings),
+                Method::Lbfgs { max_iterations } => {
+                    potential.minimise_lbfgs(start, &self.settings, max_iterations)
+                }
+            };
+            let minimum = match minimum {
                 Ok(minimum) => minimum,
                 Err(failure) => {
                     iterations += failure.iterations;
@@ -102,11 +141,9 @@ impl EquilibriumSolver {
                 }
             };
             iterations += minimum.iterations;
-            let arrived = Reached {
-                at,
-                configuration: minimum.state.configuration.clone(),
-                rate: self.rate(&potential, &minimum.state, minimum.factor.as_ref()),
-            };
+            let rate = self.rate(&potential, &minimum.state, minimum.factor.as_ref());
+            let configuration = minimum.state.configuration.clone();
+            let arrived = Reached::new(at, configuration, rate, reached.speed, minimum.state.force);
             if let Some(leap) = self.leap(reached, &arrived, minimum.unstable) {
                 if increment > least {
                     (increment, last_leap) = (0.5 * increment, leap);
@@ -114,7 +151,7 @@ impl EquilibriumSolver {
                 }
                 jumped |= leap > JUMP * last_leap;
             }
-            (*reached, increment, last_leap) = (arrived, 2.0 * increment, f64::INFINITY);
+            (*reached, increment, last_leap) = (arrived, 2.0 * increment, 0.0);
             if at == to {
                 let status = self.status(sheet, &minimum, jumped);
                 let work = self.work(&minimum.state.configuration);
@@ -142,7 +179,7 @@ impl EquilibriumSolver {
         residual: f64,
         iterations: usize,
     ) -> LoadStep {
-        let potential = self.potential(sheet, reached.at);
+        let potential = self.potential(sheet, reached.at, reached.force);
         let state = potential.state(reached.configuration.clone());
         let state = state.expect("this state has been computed before");
         let work = self.work(&reached.configuration);
@@ -165,7 +202,7 @@ impl EquilibriumSolver {
     }
 
     /// The potential at a point of the path.
-    fn potential<'a>(&'a self, sheet: HingedSheet<'a>, at: f64) -> Potential<'a> {
+    fn potential<'a>(&'a self, sheet: HingedSheet<'a>, at: f64, force: f64) -> Potential<'a> {
         let area: f64 = sheet.sheet.panels.iter().map(Panel::area).sum();
         Potential {
             sheet,
@@ -176,6 +213,7 @@ impl EquilibriumSolver {
                 Some((stroke, _)) => Control::Stroke(stroke),
             },
             loads: &self.loads,
+            force,
             panel_size: (area / sheet.sheet.panels.len() as f64).sqrt(),
         }
     }
@@ -183,15 +221,11 @@ impl EquilibriumSolver {
     /// Where the rate at `reached` leads, the supports and the stroke as they are at `at`.
     fn predicted(&self, reached: &Reached, at: f64) -> Configuration {
         let ahead = at - reached.at;
-        let turned = ahead
-            * reached
-                .rate
-                .iter()
-                .fold(0.0, |most, rate| rate[2].abs().max(most));
         // A stroke is kept whatever the rotation.
         let cut = match self.drive {
-            None if turned > LONGEST_PREDICTION => LONGEST_PREDICTION / turned,
-            _ => 1.0,
+            None if reached.at == 0.0 => 0.0,
+            None => (LONGEST_INCREMENT / (ahead * reached.speed)).min(1.0),
+            Some(_) => 1.0,
         };
         let mut configuration = moved(&reached.configuration, &reached.rate, cut * ahead);
         for support in &self.supports {
@@ -242,18 +276,22 @@ impl EquilibriumSolver {
     /// The greatest rotation (rad) between two points of the path, if the rates at them do not explain
     /// it and it is worth a look.
     fn leap(&self, from: &Reached, to: &Reached, unstable: bool) -> Option<f64> {
-        let half = 0.5 * (to.at - from.at);
-        let (mut turned, mut unexplained, mut fastest) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let ahead = to.at - from.at;
+        let (mut turned, mut unexplained) = (0.0_f64, 0.0_f64);
         for k in 0..from.configuration.len() {
             let turn = to.configuration[k][2] - from.configuration[k][2];
-            let rates = [from.rate[k][2], to.rate[k][2]].map(|rate| half * rate);
+            let mean = 0.5 * (from.rate[k][2] + to.rate[k][2]);
             turned = turned.max(turn.abs());
-            unexplained = unexplained.max((turn - rates[0] - rates[1]).abs());
-            fastest = fastest.max(2.0 * rates[0].abs().max(rates[1].abs()));
+            unexplained = unexplained.max((turn - mean * ahead).abs());
         }
+        let speed = if from.faster {
+            to.speed
+        } else {
+            from.speed.max(to.speed)
+        };
         let leaps = turned > self.settings.least_leap
             && unexplained > UNEXPLAINED * turned
-            && (unstable || turned > AHEAD_OF_RATE * fastest);
+            && (unstable || turned > AHEAD_OF_RATE * speed * ahead);
         leaps.then_some(turned)
     }
 

@@ -124,7 +124,9 @@ impl Potential<'_> {
                     && dot(&next.gradient, &direction).abs() <= 0.5 * slope.abs();
                 if fall >= SUFFICIENT_FALL * predicted || level {
                     *longest = LONGEST_STEP.min(2.0 * fraction * length).max(*longest);
-                    let progress = state.residual > settings.loose_tolerance
+                    // Beside a saddle the residual grows before it falls.
+                    let progress = factor.shifted
+                        || state.residual > settings.loose_tolerance
                         || next.residual <= 0.5 * state.residual;
                     return progress.then_some(next);
                 }
@@ -149,7 +151,10 @@ impl Potential<'_> {
                 .pattern
                 .shifted(tangent, scale.iter().map(|entry| shift * entry));
             match self.factorise(&shifted) {
-                Some(factor) if factor.unstable_directions() == 0 => return Some(factor),
+                Some(mut factor) if factor.unstable_directions() == 0 => {
+                    factor.shifted = true;
+                    return Some(factor);
+                }
                 _ => shift *= growth,
             }
         }

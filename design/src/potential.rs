@@ -28,6 +28,9 @@ pub(crate) struct Potential<'a> {
     pub panel_size: f64,
     /// (F_x, F_y, M) per panel at zeta = 1.
     pub loads: &'a [[f64; 3]],
+    /// What unbalanced forces are measured by, at least (N): on the way through a state without force
+    /// that of the states before.
+    pub force: f64,
 }
 
 /// What is given of the loads.
@@ -54,8 +57,10 @@ pub(crate) struct State {
     pub magnitude: f64,
     /// d Pi / d q over the free degrees of freedom.
     pub gradient: Vec<f64>,
-    /// Greatest unbalanced force over the greatest force.
+    /// Greatest unbalanced force over `force`.
     pub residual: f64,
+    /// The greatest force (N).
+    pub force: f64,
 }
 
 impl State {
@@ -75,15 +80,20 @@ impl Control<'_> {
 }
 
 impl Potential<'_> {
-    /// `None` where the potential is not finite.
+    /// With what the tangent needs; `None` where the potential is not finite.
     pub fn state(&self, configuration: Configuration) -> Option<State> {
+        self.state_up_to(configuration, Order::Tangent)
+    }
+
+    /// With the derivatives of the hinge energies up to `order`, forces at least.
+    pub fn state_up_to(&self, configuration: Configuration, order: Order) -> Option<State> {
         let sheet = self.sheet.sheet;
         let motions: Vec<HingeMotion> = (0..sheet.hinges.len())
             .map(|hinge| HingeMotion::new(sheet, hinge, &configuration))
             .collect();
         let deformations: Vec<HingeDeformation> =
             motions.iter().map(HingeMotion::deformation).collect();
-        let energies = self.sheet.energies(&deformations, Order::Tangent);
+        let energies = self.sheet.energies(&deformations, order);
 
         let mut inner = vec![[0.0; 3]; configuration.len()];
         for ((hinge, motion), energy) in sheet.hinges.iter().zip(&motions).zip(&energies) {
@@ -101,11 +111,16 @@ impl Potential<'_> {
         let works = works.map(|work| -worked * work);
         let terms = energies.iter().map(|energy| energy.w).chain(works);
         let gradient = gather(self.free, &unbalanced);
+        let left = self.greatest(spread(self.free, &gradient).into_iter());
+        let loads = load_factor.abs() * self.greatest(self.loads.iter().copied());
+        let hinges = self.greatest(energies.iter().map(|energy| energy.forces));
+        let force = self.force.max(loads).max(hinges);
         let state = State {
             stored: energies.iter().map(|energy| energy.w).sum(),
             potential: terms.clone().sum(),
             magnitude: terms.map(f64::abs).sum(),
-            residual: self.residual(&gradient, &energies, load_factor),
+            residual: if left == 0.0 { 0.0 } else { left / force },
+            force,
             gradient,
             load_factor,
             configuration,
@@ -128,23 +143,8 @@ impl Potential<'_> {
         along / square
     }
 
-    /// Greatest unbalanced force on a panel over the greatest load or hinge force.
-    fn residual(&self, gradient: &[f64], energies: &[HingeEnergy], load_factor: f64) -> f64 {
-        let unbalanced = self.greatest(spread(self.free, gradient).into_iter());
-        if unbalanced == 0.0 {
-            return 0.0;
-        }
-        let full = match self.control {
-            Control::Load(_) => 1.0,
-            Control::Stroke(_) => load_factor.abs(),
-        };
-        let loads = full * self.greatest(self.loads.iter().copied());
-        let inner = self.greatest(energies.iter().map(|energy| energy.forces));
-        unbalanced / loads.max(inner)
-    }
-
     /// Greatest of forces and moments, as a force (N).
-    fn greatest(&self, forces: impl Iterator<Item = [f64; 3]>) -> f64 {
+    pub fn greatest(&self, forces: impl Iterator<Item = [f64; 3]>) -> f64 {
         forces
             .map(|[x, y, moment]| x.hypot(y).max(moment.abs() / self.panel_size))
             .fold(0.0, f64::max)

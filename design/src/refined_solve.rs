@@ -57,7 +57,7 @@ pub(crate) fn refined_solve(
         }
         remainder = std::iter::zip(b, product).map(|(b, p)| b - p).collect();
         let error = backward_error(&remainder, &bound, b);
-        if !(error < 0.5 * refined.error) {
+        if error >= 0.5 * refined.error || error.is_nan() {
             break;
         }
         refined = Refined { x, mu, error };

@@ -13,7 +13,9 @@ pub use actuation::{
     DriveConfig, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SheetEdge, SupportConfig,
     SupportKind,
 };
-pub use hinge_model::{ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile};
+pub use hinge_model::{
+    CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
+};
 pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 
 use crate::equilibrium::SolverSettings;
@@ -56,6 +58,8 @@ pub struct SceneConfig {
     pub pin: Option<PinConfig>,
     /// Constants of (11); read if `hinge = "linear"`.
     pub linear: Option<LinearConstants>,
+    /// Constants of (11) from a learned energy, in place of `linear`.
+    pub condensed: Option<CondensedConfig>,
     /// Read if `hinge = "surrogate"`.
     pub surrogate: Option<SurrogateFile>,
     #[serde(default)]

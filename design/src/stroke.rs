@@ -71,6 +71,8 @@ impl Stroke {
 #[derive(Clone, Debug)]
 pub(crate) struct HeldFactor {
     pub factor: Factor,
+    /// Whether they are those of a shifted tangent.
+    pub shifted: bool,
     border: Option<Border>,
 }
 
@@ -97,10 +99,11 @@ impl HeldFactor {
             }
         });
         let regular = |border: &Border| border.compliance.is_finite() && border.compliance != 0.0;
-        border
-            .as_ref()
-            .is_none_or(regular)
-            .then_some(Self { factor, border })
+        border.as_ref().is_none_or(regular).then_some(Self {
+            factor,
+            shifted: false,
+            border,
+        })
     }
 
     /// Directions of negative curvature, of those that keep the stroke if it is held: the border adds

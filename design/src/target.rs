@@ -1,5 +1,6 @@
 //! The target outline T of (16): a closed curve, sampled densely and evenly by arc length.
 
+use crate::svg_path::{self, SvgPathError};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -26,6 +27,12 @@ pub enum TargetShape {
     Csv {
         file: PathBuf,
     },
+    /// The first path of an SVG file, scaled to `height` (mm) about the centre of its box.
+    Svg {
+        file: PathBuf,
+        centre: [f64; 2],
+        height: f64,
+    },
 }
 
 /// A target that is not an outline.
@@ -42,6 +49,8 @@ pub enum TargetError {
         line: usize,
         text: String,
     },
+    #[error("{path}: {source}", path = .path.display())]
+    Svg { path: PathBuf, source: SvgPathError },
     #[error("target.{key} = {value} violates 0 < {key} (mm)")]
     Size { key: &'static str, value: f64 },
     #[error("target.{key} holds a number that is not finite")]
@@ -94,6 +103,19 @@ impl Target {
                 along_polygon(vertices, count)
             }
             TargetShape::Csv { file } => along_polygon(&read_points(&folder.join(file))?, count),
+            TargetShape::Svg {
+                file,
+                centre,
+                height,
+            } => {
+                finite("svg.centre", centre)?;
+                positive("svg.height", *height)?;
+                let path = folder.join(file);
+                let svg = read(&path)?;
+                let drawn =
+                    svg_path::vertices(&svg).map_err(|source| TargetError::Svg { path, source })?;
+                along_polygon(&placed(&drawn, *centre, *height)?, count)
+            }
         }
     }
 
@@ -158,12 +180,37 @@ fn along_polygon(vertices: &[[f64; 2]], count: usize) -> Result<Target, TargetEr
     Ok(Target { points, length })
 }
 
-fn read_points(path: &Path) -> Result<Vec<[f64; 2]>, TargetError> {
-    let text = std::fs::read_to_string(path).map_err(|source| TargetError::Read {
+/// The vertices scaled to a height and moved to a centre, both of their box (mm).
+fn placed(
+    vertices: &[[f64; 2]],
+    centre: [f64; 2],
+    height: f64,
+) -> Result<Vec<[f64; 2]>, TargetError> {
+    let bounds = |axis: usize| {
+        let values = vertices.iter().map(|vertex| vertex[axis]);
+        let least = values.clone().fold(f64::INFINITY, f64::min);
+        [least, values.fold(f64::NEG_INFINITY, f64::max)]
+    };
+    let [[left, right], [low, high]] = [bounds(0), bounds(1)];
+    if high <= low || vertices.is_empty() {
+        return Err(TargetError::NoArea);
+    }
+    let scale = height / (high - low);
+    let middle = [0.5 * (left + right), 0.5 * (low + high)];
+    let place = |vertex: &[f64; 2]| [0, 1].map(|c| centre[c] + scale * (vertex[c] - middle[c]));
+    Ok(vertices.iter().map(place).collect())
+}
+
+fn read(path: &Path) -> Result<String, TargetError> {
+    std::fs::read_to_string(path).map_err(|source| TargetError::Read {
         path: path.to_owned(),
         source,
-    })?;
-    text.lines()
+    })
+}
+
+fn read_points(path: &Path) -> Result<Vec<[f64; 2]>, TargetError> {
+    read(path)?
+        .lines()
         .enumerate()
         .map(|(row, line)| (row + 1, line.split('#').next().unwrap_or_default().trim()))
         .filter(|(_, line)| !line.is_empty())

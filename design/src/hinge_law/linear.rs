@@ -62,7 +62,8 @@ impl PreparedLaw for &LinearLaw {
     }
 }
 
-fn spring(deformation: [f64; 3], constants: &[f64; 3]) -> HingeEnergy {
+/// The energy of three springs, without its derivatives in the design.
+pub(super) fn spring(deformation: [f64; 3], constants: &[f64; 3]) -> HingeEnergy {
     let mut energy = HingeEnergy::default();
     for c in 0..3 {
         energy.forces[c] = constants[c] * deformation[c];

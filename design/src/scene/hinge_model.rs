@@ -2,9 +2,10 @@
 
 use super::checks::within;
 use super::{SceneConfig, SceneError};
-use crate::hinge_law::{Contact, LinearLaw};
-use hinge::SheetMaterial;
+use crate::hinge_law::{CondensedLaw, Contact, LinearLaw};
+use hinge::{HingeDesign, SheetMaterial};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 use surrogate::Surrogate;
 
@@ -69,6 +70,16 @@ pub struct SurrogateFile {
     pub weights: PathBuf,
 }
 
+/// The constants of (11) from a learned energy, hinge by hinge.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CondensedConfig {
+    pub weights: PathBuf,
+    /// Angle of the rotational secant (deg); 0 takes the Hessian at zero.
+    #[serde(default)]
+    pub secant_deg: f64,
+}
+
 /// A [`HingeModel`] with its constants or its weights.
 #[derive(Clone, Debug)]
 pub(super) enum LoadedHinge {
@@ -78,6 +89,10 @@ pub(super) enum LoadedHinge {
     },
     Linear {
         law: LinearLaw,
+        contact: Contact,
+    },
+    Condensed {
+        law: Box<CondensedLaw>,
         contact: Contact,
     },
     Surrogate {
@@ -107,30 +122,30 @@ impl LoadedHinge {
                 let pin = config.pin.ok_or_else(|| missing("pin"))?;
                 pinned(config, pin).map_err(refuse)
             }
-            HingeModel::Linear => {
-                let constants = config.linear.ok_or_else(|| missing("linear"))?;
-                linear(config, constants).map_err(refuse)
-            }
-            HingeModel::Surrogate => {
-                let file = config
-                    .surrogate
-                    .as_ref()
-                    .ok_or_else(|| missing("surrogate"))?;
-                let weights = super::beside(path, &file.weights);
-                if !weights.is_file() {
-                    return Err(refuse(format!(
-                        "surrogate.weights: there is no file {}; train one, or design with \
-                         hinge = \"linear\"",
-                        weights.display()
-                    )));
+            HingeModel::Linear => match (config.linear, &config.condensed) {
+                (Some(constants), None) => linear(config, constants).map_err(refuse),
+                (None, Some(file)) => {
+                    no_damage(config).map_err(refuse)?;
+                    within(
+                        "condensed.secant_deg",
+                        file.secant_deg,
+                        [-180.0, 180.0],
+                        "deg",
+                    )
+                    .map_err(refuse)?;
+                    let surrogate = learned(config, material, path, "condensed", &file.weights)?;
+                    condensed(config, surrogate, file.secant_deg).map_err(refuse)
                 }
-                let surrogate = Surrogate::load(&weights)?;
-                same_hinge(config, material, &surrogate).map_err(|reason| {
-                    refuse(format!(
-                        "the weights {} are for {reason}",
-                        weights.display()
-                    ))
-                })?;
+                (None, None) => Err(missing("linear")),
+                (Some(_), Some(_)) => {
+                    let reason = "hinge = \"linear\" takes either [linear] or [condensed]";
+                    Err(refuse(reason.into()))
+                }
+            },
+            HingeModel::Surrogate => {
+                let file = config.surrogate.as_ref();
+                let weights = &file.ok_or_else(|| missing("surrogate"))?.weights;
+                let surrogate = learned(config, material, path, "surrogate", weights)?;
                 let contact = config.contact.map(ContactConfig::contact).transpose();
                 Ok(Self::Surrogate {
                     surrogate: Box::new(surrogate),
@@ -138,6 +153,75 @@ impl LoadedHinge {
                 })
             }
         }
+    }
+}
+
+/// The weights that a section of a scene names, if they are for its hinges.
+fn learned(
+    config: &SceneConfig,
+    material: &SheetMaterial,
+    scene: &Path,
+    section: &str,
+    weights: &Path,
+) -> Result<Surrogate, SceneError> {
+    let refuse = |reason| SceneError::Value {
+        path: scene.to_owned(),
+        reason,
+    };
+    let weights = super::beside(scene, weights);
+    if !weights.is_file() {
+        return Err(refuse(format!(
+            "{section}.weights: there is no file {}; train one, or give the constants of \
+             hinge = \"linear\"",
+            weights.display()
+        )));
+    }
+    let surrogate = Surrogate::load(&weights)?;
+    same_hinge(config, material, &surrogate).map_err(|reason| {
+        refuse(format!(
+            "the weights {} are for {reason}",
+            weights.display()
+        ))
+    })?;
+    Ok(surrogate)
+}
+
+/// The linear law of a learned energy; the contact is as stiff beside the start's hinges as beside
+/// given ones.
+fn condensed(
+    config: &SceneConfig,
+    surrogate: Surrogate,
+    secant_deg: f64,
+) -> Result<LoadedHinge, String> {
+    let process = config.process;
+    let typical = HingeDesign {
+        w_lig: config.ligament.start,
+        alpha: FRAC_PI_2,
+        fillet_ratio: process.fillet_ratio,
+        kerf: process.kerf,
+        r_win: process.r_win,
+    };
+    let law = CondensedLaw::new(surrogate, secant_deg.to_radians());
+    let [k_a, k_s, k_theta] = law.constants(&[typical])[0].map(|constant| constant.value);
+    if !(k_a > 0.0 && k_s > 0.0 && k_theta > 0.0) {
+        return Err(format!(
+            "condensed: at w_lig = {} mm the weights have k_a = {k_a} N/mm, k_s = {k_s} N/mm, \
+             k_theta = {k_theta} N mm, which are not all positive",
+            typical.w_lig
+        ));
+    }
+    Ok(LoadedHinge::Condensed {
+        law: Box::new(law),
+        contact: contact(config, k_theta)?,
+    })
+}
+
+/// The contact that a scene asks for, or one for hinges as stiff as `k_theta`.
+fn contact(config: &SceneConfig, k_theta: f64) -> Result<Contact, String> {
+    match config.contact {
+        Some(contact) => contact.contact(),
+        None => Contact::new(CONTACT_STIFFNESS * k_theta, CONTACT_WALL, 0.0)
+            .map_err(|error| error.to_string()),
     }
 }
 
@@ -179,11 +263,7 @@ fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHing
     within("linear.k_theta", k_theta, [1e-3, 1e9], "N mm/rad")?;
     let law = LinearLaw::uniform([k_a, k_s, k_theta], config.sheet.grid().hinge_count())
         .map_err(|error| error.to_string())?;
-    let contact = match config.contact {
-        Some(contact) => contact.contact()?,
-        None => Contact::new(CONTACT_STIFFNESS * k_theta, CONTACT_WALL, 0.0)
-            .map_err(|error| error.to_string())?,
-    };
+    let contact = contact(config, k_theta)?;
     Ok(LoadedHinge::Linear { law, contact })
 }
 

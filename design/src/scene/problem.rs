@@ -116,6 +116,7 @@ impl Scene {
         let (law, contact): (Box<dyn HingeLaw>, _) = match &self.hinge {
             LoadedHinge::Pin { opening } => return Ok(Model::Ideal { opening: *opening }),
             LoadedHinge::Linear { law, contact } => (Box::new(law.clone()), Some(*contact)),
+            LoadedHinge::Condensed { law, contact } => (law.clone(), Some(*contact)),
             LoadedHinge::Surrogate { surrogate, contact } => {
                 (Box::new(SurrogateLaw::new((**surrogate).clone())), *contact)
             }

@@ -18,7 +18,7 @@ use hinge::{HingeDeformation, HingeDesign};
 
 /// k_a a^2/2 + k_s s^2/2 + any function of theta with two derivatives.
 #[derive(Clone, Copy)]
-struct Rotational(fn(f64) -> [f64; 3]);
+pub struct Rotational(pub fn(f64) -> [f64; 3]);
 
 impl HingeLaw for Rotational {
     fn prepare<'a>(&'a self, _designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a> {
@@ -175,16 +175,18 @@ fn an_unstable_flat_sheet_is_left_for_a_minimum() {
     assert!(path[1].potential < -0.1);
 }
 
-/// W = theta^2 (theta - 1)^2 resists opening by at most M_max = sqrt(3)/9, then snaps to theta > 1.
+/// W = theta^2 (theta - 1)^2 resists opening by at most M_max = sqrt(3)/9.
+pub fn snapping(theta: f64) -> [f64; 3] {
+    [
+        theta * theta * (theta - 1.0).powi(2),
+        2.0 * theta * (theta - 1.0) * (2.0 * theta - 1.0),
+        12.0 * theta * theta - 12.0 * theta + 2.0,
+    ]
+}
+
 #[test]
 fn a_snapping_sheet_reports_its_limit_point() {
-    let law = Rotational(|theta| {
-        [
-            theta * theta * (theta - 1.0).powi(2),
-            2.0 * theta * (theta - 1.0) * (2.0 * theta - 1.0),
-            12.0 * theta * theta - 12.0 * theta + 2.0,
-        ]
-    });
+    let law = Rotational(snapping);
     let sheet = cases::sheet(&case("p1_3x3_random"));
     let greatest = 3.0_f64.sqrt() / 9.0;
     let loads = opening_moments(&sheet, 4, 1.5 * greatest);

@@ -3,11 +3,14 @@
 
 mod cases;
 mod closed_forms;
+mod driven;
 mod equilibrium;
 mod extremes;
 mod gradient;
 mod kinematics;
+mod limits;
 mod pattern;
 mod pullbacks;
 mod random;
+mod sensitivities;
 mod taylor;

@@ -1,0 +1,173 @@
+//! The limited-memory BFGS method (Liu and Nocedal 1989), by which the paper minimises (10): the
+//! baseline that Newton's method is measured against.
+//!
+//! Rotations are scaled by the size of a panel; steps satisfy the weak Wolfe conditions. A driven sheet
+//! moves across the direction of its stroke.
+
+use crate::equilibrium::SolverSettings;
+use crate::hinge_law::Order;
+use crate::kinematics::Configuration;
+use crate::newton::{Failure, Minimum};
+use crate::panel_vectors::{gather, spread};
+use crate::potential::{Potential, State, moved};
+use crate::stroke::dot;
+use std::collections::VecDeque;
+
+/// Pairs of steps and gradient changes that are remembered.
+const MEMORY: usize = 20;
+/// Part of the predicted fall that a step must achieve, and of the slope that it may leave.
+const WOLFE: [f64; 2] = [1e-4, 0.9];
+/// Trial steps of one line search.
+const TRIALS: usize = 40;
+/// First step over the size of a panel.
+const FIRST_STEP: f64 = 1e-3;
+/// Change of Pi over the sum of its terms' sizes below which it is rounding.
+const LEVEL: f64 = 1e-13;
+
+/// A step and the change of the gradient over it, in scaled coordinates.
+struct Pair {
+    step: Vec<f64>,
+    change: Vec<f64>,
+    product: f64,
+}
+
+impl Potential<'_> {
+    /// A minimum near `start`, within `max_iterations`.
+    pub fn minimise_lbfgs(
+        &self,
+        start: Configuration,
+        settings: &SolverSettings,
+        max_iterations: usize,
+    ) -> Result<Minimum, Failure> {
+        let failure = |residual, iterations| Failure {
+            residual,
+            iterations,
+        };
+        let mut state = self.forces(start).ok_or(failure(f64::INFINITY, 0))?;
+        let scale = vec![[1.0, 1.0, 1.0 / self.panel_size]; state.configuration.len()];
+        let scale = gather(self.free, &scale);
+        let mut gradient = self.scaled(&state, &scale);
+        let mut memory: VecDeque<Pair> = VecDeque::with_capacity(MEMORY);
+        let mut iterations = 0;
+        while state.residual > settings.tolerance && iterations < max_iterations {
+            let direction = descent(&gradient, &memory, self.panel_size);
+            let Some((next, fraction)) = self.wolfe_step(&state, &gradient, &direction, &scale)
+            else {
+                break;
+            };
+            let next_gradient = self.scaled(&next, &scale);
+            let change: Vec<f64> = std::iter::zip(&next_gradient, &gradient)
+                .map(|(to, from)| to - from)
+                .collect();
+            let step: Vec<f64> = direction.iter().map(|d| fraction * d).collect();
+            let product = dot(&step, &change);
+            if product > 0.0 {
+                memory.truncate(MEMORY - 1);
+                memory.push_front(Pair {
+                    step,
+                    change,
+                    product,
+                });
+            }
+            (state, gradient, iterations) = (next, next_gradient, iterations + 1);
+        }
+        if state.residual > settings.loose_tolerance {
+            return Err(failure(state.residual, iterations));
+        }
+        let residual = state.residual;
+        let state = self.state(state.configuration);
+        let state = state.ok_or(failure(residual, iterations))?;
+        let tangent = self.tangent(&state);
+        Ok(Minimum {
+            factor: self.factorise(&tangent),
+            tangent,
+            state,
+            iterations,
+            unstable: false,
+        })
+    }
+
+    fn forces(&self, configuration: Configuration) -> Option<State> {
+        self.state_up_to(configuration, Order::Forces)
+    }
+
+    /// The gradient in scaled coordinates, of a driven sheet across the stroke.
+    fn scaled(&self, state: &State, scale: &[f64]) -> Vec<f64> {
+        let times =
+            |v: &[f64]| -> Vec<f64> { std::iter::zip(v, scale).map(|(v, s)| v * s).collect() };
+        let mut gradient = times(&state.gradient);
+        if let Some(stroke) = self.control.stroke() {
+            let border = times(stroke.direction());
+            let along = dot(&border, &gradient) / dot(&border, &border);
+            for (g, c) in std::iter::zip(&mut gradient, border) {
+                *g -= along * c;
+            }
+        }
+        gradient
+    }
+
+    /// A step along `direction`, by bisection between too far and not far enough.
+    fn wolfe_step(
+        &self,
+        state: &State,
+        gradient: &[f64],
+        direction: &[f64],
+        scale: &[f64],
+    ) -> Option<(State, f64)> {
+        let scaled: Vec<f64> = std::iter::zip(direction, scale)
+            .map(|(d, s)| d * s)
+            .collect();
+        let motion = spread(self.free, &scaled);
+        let slope = dot(gradient, direction);
+        let (mut near, mut far, mut fraction) = (0.0, f64::INFINITY, 1.0);
+        for _ in 0..TRIALS {
+            let configuration = moved(&state.configuration, &motion, fraction);
+            let next = self.forces(configuration);
+            let falls = next.as_ref().is_some_and(|next| {
+                let fall = state.potential - next.potential;
+                fall >= -WOLFE[0] * fraction * slope || fall.abs() <= LEVEL * state.magnitude
+            });
+            match next {
+                Some(next) if falls => {
+                    if dot(&self.scaled(&next, scale), direction) >= WOLFE[1] * slope {
+                        return Some((next, fraction));
+                    }
+                    near = fraction;
+                }
+                _ => far = fraction,
+            }
+            fraction = if far.is_finite() {
+                0.5 * (near + far)
+            } else {
+                2.0 * near
+            };
+        }
+        None
+    }
+}
+
+/// Minus the inverse Hessian that the memory suggests, times the gradient (two-loop recursion).
+fn descent(gradient: &[f64], memory: &VecDeque<Pair>, panel_size: f64) -> Vec<f64> {
+    let mut direction: Vec<f64> = gradient.iter().map(|g| -g).collect();
+    let mut weights = Vec::with_capacity(memory.len());
+    for pair in memory {
+        let weight = dot(&pair.step, &direction) / pair.product;
+        add(&mut direction, &pair.change, -weight);
+        weights.push(weight);
+    }
+    let size = match memory.front() {
+        Some(last) => last.product / dot(&last.change, &last.change),
+        None => FIRST_STEP * panel_size / dot(gradient, gradient).sqrt(),
+    };
+    direction.iter_mut().for_each(|d| *d *= size);
+    for (pair, weight) in std::iter::zip(memory, weights).rev() {
+        let along = dot(&pair.change, &direction) / pair.product;
+        add(&mut direction, &pair.step, weight - along);
+    }
+    direction
+}
+
+/// sum += weight * vector
+fn add(sum: &mut [f64], vector: &[f64], weight: f64) {
+    std::iter::zip(sum, vector).for_each(|(sum, v)| *sum += weight * v);
+}

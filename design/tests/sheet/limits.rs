@@ -1,0 +1,73 @@
+//! Limits of the ideal deployment and the validity of patterns, over sizes, outlines, r and tau.
+
+use crate::cases::{self, AT_CORNER, case};
+use crate::random::Random;
+use design::charts::PatternCoordinates;
+use design::grid::Grid;
+use design::ideal_deployment::ideal_deployment;
+use design::opening_limits::{CONTACT, Span};
+use design::pattern::{CutPattern, Outline};
+use design::sheet::Sheet;
+use design::validity::{Validity, overlap};
+use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
+
+fn random(random: &mut Random, grid: Grid, size: f64) -> (CutPattern, Sheet) {
+    let mut coordinates = PatternCoordinates::uniform(grid);
+    let edges = coordinates.ell.iter_mut().flatten();
+    let all = coordinates.z.iter_mut().chain(edges);
+    all.for_each(|x| *x = random.number(size));
+    let outline = Outline {
+        corners: [[0.0, 0.0], [3.2, -0.3], [2.7, 2.9], [-0.4, 3.3]],
+    };
+    let pattern = CutPattern::new(grid, outline, &coordinates).unwrap();
+    let sheet = Sheet::new(&pattern, &vec![0.02; grid.hinge_count()], AT_CORNER).unwrap();
+    (pattern, sheet)
+}
+
+#[test]
+fn patterns_are_valid_and_open_without_overlap_up_to_the_second_contact() {
+    let mut numbers = Random::new(5);
+    for (m, n) in [(2, 2), (3, 3), (2, 7), (5, 4), (9, 8)] {
+        for size in [0.5, 3.0] {
+            let (pattern, sheet) = random(&mut numbers, Grid { m, n }, size);
+            let valid = Validity::new(&pattern, &sheet);
+            assert!(valid.area_error.abs() < 1e-13 && valid.overlap < 1e-12);
+            assert!(valid.least_panel_area > 0.0 && valid.least_void_side > 0.0);
+            let [least, greatest] = valid.alpha_deg;
+            assert!(least > 0.0 && greatest < 180.0);
+            for share in [0.02, 0.3, 0.6, 0.98] {
+                let theta = CONTACT[0] + share * (CONTACT[1] - CONTACT[0]);
+                assert!(
+                    overlap(&sheet, &ideal_deployment(&sheet, theta)) < 1e-12,
+                    "{m} x {n} {share}"
+                );
+            }
+            for beyond in [-0.05, PI + 0.05] {
+                assert!(overlap(&sheet, &ideal_deployment(&sheet, beyond)) > 0.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_greatest_stretch_is_that_of_six_and_no_opening_exceeds_it() {
+    let square = cases::sheet(&case("p0_3x3_uniform"));
+    for span in Span::of_sheet(&square) {
+        assert!((span.lambda_max - SQRT_2).abs() < 1e-12);
+        assert!((span.theta_max - FRAC_PI_2).abs() < 1e-12);
+    }
+    let (_, sheet) = random(&mut Random::new(6), Grid { m: 4, n: 5 }, 1.0);
+    for (from, to) in [(0, 19), (3, 16), (8, 11)] {
+        let span = Span::between(&sheet, from, to);
+        assert!((span.stretch(span.theta_max) - span.lambda_max).abs() < 1e-12);
+        for i in 0..50 {
+            let theta = f64::from(i) * PI / 50.0;
+            let q = ideal_deployment(&sheet, theta);
+            let centre = |k: usize| [0, 1].map(|c| sheet.panels[k].centroid[c] + q[k][c]);
+            let ([ax, ay], [bx, by]) = (centre(from), centre(to));
+            let stretch = f64::hypot(bx - ax, by - ay) / span.flat;
+            assert!((stretch - span.stretch(theta)).abs() < 1e-12);
+            assert!(stretch <= span.lambda_max + 1e-12);
+        }
+    }
+}
