@@ -36,7 +36,13 @@ impl MeshCommand {
         std::fs::create_dir_all(&self.out)
             .with_context(|| format!("cannot make the folder {}", self.out.display()))?;
         let gmsh = Gmsh::find()?;
-        let mesh = mesh_window(&design, self.thickness, self.tier, &self.out, &gmsh)?;
+        let mesh = mesh_window(
+            &design,
+            self.thickness,
+            &self.tier.recipe(),
+            &self.out,
+            &gmsh,
+        )?;
         let quality = mesh.quality()?;
         let pictures = picture::save(&plane_mesh_svg(&mesh), &self.out.join("mesh"), 1600)?;
         if self.json {

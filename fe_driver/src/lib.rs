@@ -14,11 +14,13 @@ mod failure;
 mod finished;
 mod job;
 mod ledger;
+mod path;
 mod plan;
 mod ray;
 mod response;
 mod run;
 mod sampling;
+mod study;
 mod window_solve;
 
 pub use campaign::{Campaign, CampaignError};
@@ -30,8 +32,12 @@ pub use failure::{FailureKind, Rung};
 pub use finished::{FinishedJob, finished_jobs};
 pub use job::{FileError, JobSpec, ToolVersions};
 pub use ledger::{Status, Tally, status};
+pub use path::{DeformationPath, PathError};
 pub use plan::{Plan, plan};
 pub use ray::Ray;
 pub use run::{Progress, run};
 pub use sampling::{CommonDesign, RayBox};
-pub use window_solve::{SolveError, Tools, WindowProblem, WindowSolution, solve_window};
+pub use study::{STUDY_THETA_DEG, StudyCase, StudySolution, StudyState, richardson, study_cases};
+pub use window_solve::{
+    SolveError, Tools, WindowModel, WindowProblem, WindowSolution, solve_window,
+};

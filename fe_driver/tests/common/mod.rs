@@ -1,13 +1,15 @@
 //! What the tests share: the shipped film, the paper's hinge, a problem to solve, fake solvers.
 #![allow(dead_code)] // every test program uses a part
 
-use fe_driver::{Ray, StepControl, WindowProblem};
+use fe_driver::{Ccx, Ray, StepControl, WindowProblem};
 use hinge::{HingeDeformation, HingeDesign, SheetMaterial};
 use mesher::Tier;
 use std::io::ErrorKind;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
 pub fn configs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs")
@@ -39,6 +41,26 @@ pub fn problem(alpha_deg: f64, eta: [f64; 2], theta_deg: f64) -> WindowProblem {
         tier: Tier::Tiny,
         step: StepControl::default(),
     }
+}
+
+/// What ccx prints for a deck, which it must finish.
+pub fn solved(deck: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("test.inp"), deck).unwrap();
+    let limit = Duration::from_secs(120);
+    let ccx = Ccx::find().unwrap();
+    let run = ccx.run(folder.path(), "test", limit, &AtomicBool::new(false));
+    let run = run.unwrap();
+    let log = mesher::tool::tail(&folder.path().join("test.log"));
+    assert!(run.finished, "{run:?} {log}");
+    std::fs::read_to_string(folder.path().join("test.dat")).unwrap()
+}
+
+/// The rows of so many numbers in a part of a solver's output.
+pub fn rows(text: &str, fields: usize) -> Vec<Vec<f64>> {
+    let numbers = |line: &str| line.split_whitespace().map(|f| f.parse().ok()).collect();
+    let rows = text.lines().filter_map(numbers);
+    rows.filter(|row: &Vec<f64>| row.len() == fields).collect()
 }
 
 /// An executable script in `folder` that answers like ccx and then does `body`.
