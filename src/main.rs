@@ -10,6 +10,7 @@ mod mesh;
 mod picture;
 mod progress;
 mod solve;
+mod study;
 mod table;
 mod train;
 mod window_args;
@@ -31,6 +32,8 @@ enum Command {
     Doctor(doctor::DoctorCommand),
     Mesh(mesh::MeshCommand),
     Solve(solve::SolveCommand),
+    #[command(subcommand)]
+    Study(study::StudyCommand),
     Database(database::DatabaseCommand),
     Train(train::TrainCommand),
     Design(design::DesignCommand),
@@ -42,6 +45,7 @@ fn main() -> ExitCode {
         Command::Doctor(command) => command.run(),
         Command::Mesh(command) => command.run(),
         Command::Solve(command) => command.run(),
+        Command::Study(command) => command.run(),
         Command::Database(command) => command.run(),
         Command::Train(command) => command.run(),
         Command::Design(command) => command.run(),

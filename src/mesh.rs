@@ -16,7 +16,7 @@ use std::path::PathBuf;
 pub struct MeshCommand {
     #[command(flatten)]
     window: WindowArgs,
-    /// Mesh tier: tiny, small, default, fine or reference
+    /// Mesh tier: tiny, small, default, fine, reference or paper
     #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
     tier: Tier,
     /// Sheet thickness (mm)
@@ -60,11 +60,12 @@ impl MeshCommand {
             return Ok(());
         }
         println!(
-            "{} tier: {} elements (C3D20R), {} nodes, {} layers through {} mm",
+            "{} tier: {} elements ({}), {} nodes, {} layers through {} mm",
             self.tier,
             mesh.elements.len(),
+            mesh.recipe.element().name(),
             mesh.nodes.len(),
-            self.tier.recipe().layers,
+            mesh.recipe.layers,
             self.thickness
         );
         println!(

@@ -57,7 +57,7 @@ pub struct SolveCommand {
         default_value = "configs/materials/pet-0.5mm.toml"
     )]
     material: PathBuf,
-    /// Mesh tier: tiny, small, default, fine or reference
+    /// Mesh tier: tiny, small, default, fine, reference or paper
     #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
     tier: Tier,
     /// Folder for the mesh, the deck, the log and the solver's output

@@ -6,6 +6,20 @@ use serde::{Deserialize, Serialize};
 
 /// A named compromise between speed and accuracy, cheapest first.
 ///
+/// | tier | bricks | CPU seconds | W, rotation | W, tension and shear | W, compression |
+/// |---|---|---|---|---|---|
+/// | `tiny` | 36 | 2.6 | 8.6 % | 11.4 % | 4.0 % |
+/// | `small` | 96 | 6.8 | 2.2 % | 3.1 % | 5.3 % |
+/// | `default` | 228 | 28 | 0.4 % | 2.1 % | 2.8 % |
+/// | `reference` | 500 | 79 | - | - | - |
+///
+/// The paper's film; one thread of a busy machine, on the dearest of the three rays, the second.
+/// Errors are root mean squares over the ray, against `reference` or a mesh as fine: 18 mm, 90 deg,
+/// rotated to 70 deg; and the two corners of the range found to be the worst, 25 mm, 45 deg, driven
+/// to (eta_a, eta_s, theta) = (0.23, -0.22, 72 deg) and (-0.24, 0.09, 18 deg). On `default` F_a and
+/// F_s are off by 5 to 14 % at these corners, and M_theta by more where it is near zero. `fine` lies
+/// between `default` and `reference`; `paper` is the paper's element, for comparison.
+///
 /// All but `paper` are layers of bricks on one structured topology. A hinge in tension and shear
 /// folds along two lines through O, one of them at 40 deg to the other: columns are fine out to
 /// 0.8 w_lig on the free edge. A hinge in compression bends its panels: rings are as fine around O
@@ -98,7 +112,7 @@ impl Tier {
         let (plane, layers) = match self {
             Tier::Tiny => (structured(2, 8, 2, 3, 0.15), 1),
             Tier::Small => (structured(2, 12, 2, 4, 0.12), 2),
-            Tier::Default => (structured(3, 20, 3, 8, 0.07), 2),
+            Tier::Default => (structured(3, 20, 3, 6, 0.07), 2),
             Tier::Fine => (structured(4, 24, 4, 8, 0.06), 2),
             Tier::Reference => (structured(5, 26, 4, 10, 0.06), 2),
             Tier::Paper => (
@@ -125,9 +139,9 @@ impl Tier {
     /// CPU seconds to expect of one ray.
     pub fn usual_cpu_seconds(self) -> f64 {
         match self {
-            Tier::Tiny => 2.1,
-            Tier::Small => 4.5,
-            Tier::Default => 13.0,
+            Tier::Tiny => 2.5,
+            Tier::Small => 5.7,
+            Tier::Default => 15.0,
             Tier::Fine => 28.0,
             Tier::Reference => 60.0,
             Tier::Paper => 200.0,
@@ -216,7 +230,7 @@ mod tests {
             PlaneRecipe::Structured(plane) => plane.quads() * tier.recipe().layers,
             PlaneRecipe::Unstructured(_) => 0,
         });
-        assert_eq!(bricks, [36, 96, 252, 384, 500, 0]);
+        assert_eq!(bricks, [36, 96, 228, 384, 500, 0]);
     }
 
     #[test]
