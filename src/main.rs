@@ -18,6 +18,7 @@ mod progress;
 mod run_folder;
 mod slices;
 mod solve;
+mod study;
 mod surrogate;
 mod table;
 mod train;
@@ -41,6 +42,8 @@ enum Command {
     Doctor(doctor::DoctorCommand),
     Mesh(mesh::MeshCommand),
     Solve(solve::SolveCommand),
+    #[command(subcommand)]
+    Study(study::StudyCommand),
     Database(database::DatabaseCommand),
     Dataset(dataset::DatasetCommand),
     Train(train::TrainCommand),
@@ -62,6 +65,7 @@ fn main() -> ExitCode {
         Command::Doctor(command) => command.run(),
         Command::Mesh(command) => command.run(),
         Command::Solve(command) => command.run(),
+        Command::Study(command) => command.run(),
         Command::Database(command) => command.run(),
         Command::Dataset(command) => command.run(),
         Command::Train(command) => command.run(),

@@ -17,7 +17,7 @@ use std::path::PathBuf;
 pub struct MeshCommand {
     #[command(flatten)]
     window: WindowArgs,
-    /// Mesh tier: tiny, small, default, fine or reference
+    /// Mesh tier: tiny, small, default, fine, reference or paper
     #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
     tier: Tier,
     /// Sheet thickness (mm)
@@ -36,7 +36,13 @@ impl MeshCommand {
         let design = self.window.design()?;
         let _held = run_folder::hold(&self.out)?;
         let gmsh = Gmsh::find()?;
-        let mesh = mesh_window(&design, self.thickness, self.tier, &self.out, &gmsh)?;
+        let mesh = mesh_window(
+            &design,
+            self.thickness,
+            &self.tier.recipe(),
+            &self.out,
+            &gmsh,
+        )?;
         let quality = mesh.quality()?;
         let pictures = picture::save(&plane_mesh_svg(&mesh), &self.out.join("mesh"), 1600)?;
         if self.json {
@@ -54,11 +60,12 @@ impl MeshCommand {
             return Ok(());
         }
         println!(
-            "{} tier: {} elements (C3D20R), {} nodes, {} layers through {} mm",
+            "{} tier: {} elements ({}), {} nodes, {} layers through {} mm",
             self.tier,
             mesh.elements.len(),
+            mesh.recipe.element().name(),
             mesh.nodes.len(),
-            self.tier.recipe().layers,
+            mesh.recipe.layers,
             self.thickness
         );
         println!(

@@ -6,9 +6,9 @@ use crate::{interrupt, run_folder};
 use anyhow::{Result, bail};
 use clap::Args;
 use comfy_table::Table;
-use fe_driver::{Ray, StepControl, Tools, WindowProblem, solve_window};
+use fe_driver::{DeformationPath, StepControl, Tools, WindowModel};
 use hinge::{HingeDeformation, HingeSample, SheetMaterial};
-use mesher::Tier;
+use mesher::{Tier, mesh_window};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -16,8 +16,8 @@ use std::time::Duration;
 /// Solve one hinge window by finite elements and print its ray
 ///
 /// Panel A is held and panel B is driven from the undeformed state straight to the given
-/// deformation; every converged increment is a row. Example, the paper's hinge folded to 45 degrees:
-/// kirigami solve --theta-deg 45 --tier tiny
+/// deformation, or along a recorded path; every converged increment is a row. Example, the paper's
+/// hinge folded to 45 degrees: kirigami solve --theta-deg 45 --tier tiny
 #[derive(Args)]
 #[command(allow_negative_numbers = true)]
 pub struct SolveCommand {
@@ -32,6 +32,10 @@ pub struct SolveCommand {
     /// Shear at the end of the ray, over the ligament width
     #[arg(long, value_name = "RATIO", default_value_t = 0.0)]
     eta_s: f64,
+    /// Recorded path instead of a straight one: a CSV file with the columns eta_a, eta_s, theta_deg
+    /// and, if its states are not at equal distances, lambda
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["theta_deg", "eta_a", "eta_s"])]
+    path: Option<PathBuf>,
     /// Sheet material (TOML)
     #[arg(
         long,
@@ -39,7 +43,7 @@ pub struct SolveCommand {
         default_value = "configs/materials/pet-0.5mm.toml"
     )]
     material: PathBuf,
-    /// Mesh tier: tiny, small, default, fine or reference
+    /// Mesh tier: tiny, small, default, fine, reference or paper
     #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
     tier: Tier,
     /// Folder for the mesh, the deck, the log and the solver's output
@@ -56,27 +60,37 @@ pub struct SolveCommand {
 impl SolveCommand {
     pub fn run(&self) -> Result<()> {
         let design = self.window.design()?;
-        let problem = WindowProblem {
-            ray: Ray {
-                design,
-                end: HingeDeformation::from_eta(
-                    self.eta_a,
-                    self.eta_s,
-                    self.theta_deg.to_radians(),
-                    design.w_lig,
-                ),
-            },
-            material: hinge::config::read::<SheetMaterial>(&self.material)?,
-            tier: self.tier,
-            step: StepControl::default(),
+        let w_lig = design.w_lig;
+        let path = match &self.path {
+            Some(file) => DeformationPath::read(file, w_lig)?,
+            None => DeformationPath::straight(HingeDeformation::from_eta(
+                self.eta_a,
+                self.eta_s,
+                self.theta_deg.to_radians(),
+                w_lig,
+            )),
         };
+        let material: SheetMaterial = hinge::config::read(&self.material)?;
+        material.validate()?;
         let _held = run_folder::hold(&self.out)?;
         let limit = Duration::from_secs(self.time_limit_s);
         let stop = interrupt::stop_flag()?;
-        let solution = solve_window(&problem, &Tools::find()?, &self.out, limit, stop)?;
+        let tools = Tools::find()?;
+        let recipe = self.tier.recipe();
+        let mesh = mesh_window(&design, material.thickness, &recipe, &self.out, &tools.gmsh)?;
+        let model = WindowModel {
+            mesh: &mesh,
+            path: &path,
+            material: &material,
+            step: &StepControl::default(),
+        };
+        let solution = model.solve(&tools.ccx, &self.out, limit, stop)?;
         if self.json {
             let description = json!({
-                "problem": problem,
+                "design": design,
+                "path": path,
+                "material": material,
+                "tier": self.tier,
                 "samples": solution.samples,
                 "stopped": solution.stopped.as_ref().map(ToString::to_string),
                 "cpu_seconds": solution.cpu_seconds,

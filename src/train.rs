@@ -1,8 +1,8 @@
 //! `kirigami train`: from a hinge database to weights that `design` reads.
 
 use crate::charts::{self, ParityChart};
-use crate::table::table;
 use crate::progress::Progress;
+use crate::table::table;
 use crate::{interrupt, picture, slices};
 use anyhow::{Context, Result, bail};
 use clap::Args;

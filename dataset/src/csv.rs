@@ -102,7 +102,10 @@ fn rows_of(bytes: &[u8], map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
     for text in &TEXTS {
         let values = match (column(text.name)?, map.constants.get(text.name)) {
             // An empty cell is an empty text: most rows have no failure.
-            (Some(cells), _) => cells.into_iter().map(|c| Some(c.unwrap_or_default())).collect(),
+            (Some(cells), _) => cells
+                .into_iter()
+                .map(|c| Some(c.unwrap_or_default()))
+                .collect(),
             (None, Some(Constant::Text(value))) => vec![Some(value.clone()); rows.len()],
             (None, _) if text.name == "material" => {
                 return Err(DatasetError::NoColumn {

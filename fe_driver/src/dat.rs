@@ -11,8 +11,9 @@ pub struct Layout {
     pub arc_nodes: usize,
     /// Nodes of the lower face.
     pub bottom_nodes: usize,
-    /// Bricks, of eight Gauss points each.
     pub elements: usize,
+    /// Gauss points of an element.
+    pub points: usize,
 }
 
 /// The printed output of one converged increment.
@@ -146,7 +147,7 @@ impl Frame {
     }
 
     fn is_complete(&self, layout: Layout) -> bool {
-        let points = 8 * layout.elements;
+        let points = layout.points * layout.elements;
         self.energies == 1
             && self.reactions.len() == layout.arc_nodes
             && self.uz.len() == layout.bottom_nodes
@@ -160,9 +161,9 @@ fn in_order<'a, 't>(fields: &'a [&'t str], index: usize, layout: Layout) -> Opti
     let [element, point, values @ ..] = fields else {
         return None;
     };
-    let expected = [index / 8 + 1, index % 8 + 1];
+    let expected = [index / layout.points + 1, index % layout.points + 1];
     let found: [usize; 2] = [element.parse().ok()?, point.parse().ok()?];
-    (index < 8 * layout.elements && found == expected).then_some(values)
+    (index < layout.points * layout.elements && found == expected).then_some(values)
 }
 
 /// Exactly N finite numbers.
@@ -190,6 +191,7 @@ mod tests {
         arc_nodes: 2,
         bottom_nodes: 1,
         elements: 1,
+        points: 8,
     };
 
     /// The output of one increment, as ccx writes it.

@@ -4,7 +4,9 @@
 //! arc B to them. Everything is printed in every increment: the total internal energy is
 //! accumulated between *printed* increments and would be wrong otherwise.
 
-use crate::ray::{PanelMotion, Ray};
+use crate::path::DeformationPath;
+use crate::ray::PanelMotion;
+use crate::window_solve::WindowModel;
 use hinge::SheetMaterial;
 use mesher::WindowMesh;
 use serde::{Deserialize, Serialize};
@@ -59,20 +61,15 @@ fn real(x: f64) -> String {
     format!("{x:.11e}")
 }
 
-/// The deck that drives `mesh` along `ray`.
-pub fn deck(mesh: &WindowMesh, ray: &Ray, material: &SheetMaterial, step: &StepControl) -> String {
+/// The deck that drives the window along its path.
+pub fn deck(model: &WindowModel) -> String {
     let mut text = String::new();
-    write_deck(&mut text, mesh, ray, material, step).expect("writing to a string cannot fail");
+    write_deck(&mut text, model).expect("writing to a string cannot fail");
     text
 }
 
-fn write_deck(
-    d: &mut String,
-    mesh: &WindowMesh,
-    ray: &Ray,
-    material: &SheetMaterial,
-    step: &StepControl,
-) -> fmt::Result {
+fn write_deck(d: &mut String, model: &WindowModel) -> fmt::Result {
+    let mesh = model.mesh;
     let turner = mesh.nodes.len() + 1;
     let mover = turner + 1;
     writeln!(d, "*NODE,NSET=NALL")?;
@@ -80,15 +77,15 @@ fn write_deck(
         writeln!(d, "{},{},{},{}", node + 1, real(*x), real(*y), real(*z))?;
     }
     writeln!(d, "*NODE,NSET=CONTROL\n{turner},0.,0.,0.\n{mover},0.,0.,0.")?;
-    write_elements(d, &mesh.elements)?;
+    write_elements(d, mesh)?;
     write_set(d, "ARCA", &mesh.arc_a)?;
     write_set(d, "ARCB", &mesh.arc_b)?;
     write_set(d, "BOTTOM", &mesh.bottom)?;
-    write_material(d, material)?;
+    write_material(d, model.material)?;
     writeln!(d, "*SOLID SECTION,ELSET=EALL,MATERIAL=SHEET")?;
     write_equations(d, mesh, turner, mover)?;
-    write_amplitudes(d, ray)?;
-    write_step(d, step)?;
+    write_amplitudes(d, model.path)?;
+    write_step(d, model.step)?;
     writeln!(d, "*BOUNDARY\nARCA,1,3,0.\nARCB,3,3,0.\nCONTROL,3,3,0.")?;
     let freedoms = [(turner, 1), (turner, 2), (mover, 1), (mover, 2)];
     for (i, (node, freedom)) in freedoms.into_iter().enumerate() {
@@ -112,10 +109,10 @@ fn write_step(d: &mut String, step: &StepControl) -> fmt::Result {
     )
 }
 
-/// C3D20R: reduced integration neither locks nor costs much.
-fn write_elements(d: &mut String, elements: &[[usize; 20]]) -> fmt::Result {
-    writeln!(d, "*ELEMENT,TYPE=C3D20R,ELSET=EALL")?;
-    for (element, nodes) in elements.iter().enumerate() {
+fn write_elements(d: &mut String, mesh: &WindowMesh) -> fmt::Result {
+    let kind = mesh.recipe.element().name();
+    writeln!(d, "*ELEMENT,TYPE={kind},ELSET=EALL")?;
+    for (element, nodes) in mesh.elements.iter().enumerate() {
         write!(d, "{}", element + 1)?;
         for (i, node) in nodes.iter().enumerate() {
             // A line holds at most 16 entries.
@@ -164,13 +161,18 @@ fn write_equations(d: &mut String, mesh: &WindowMesh, turner: usize, mover: usiz
     Ok(())
 }
 
-fn write_amplitudes(d: &mut String, ray: &Ray) -> fmt::Result {
+fn write_amplitudes(d: &mut String, path: &DeformationPath) -> fmt::Result {
+    let even = (0..=AMPLITUDE_INTERVALS).map(|i| i as f64 / AMPLITUDE_INTERVALS as f64);
+    let mut lambdas: Vec<_> = even.chain(path.corners()).collect();
+    lambdas.sort_unstable_by(f64::total_cmp);
+    // Entries closer than the digits written would be one time with two values.
+    lambdas.dedup_by(|next, kept| *next - *kept < 1e-9);
     for i in 0..4 {
-        let pairs: Vec<_> = (0..=AMPLITUDE_INTERVALS)
-            .map(|interval| {
-                let lambda = interval as f64 / AMPLITUDE_INTERVALS as f64;
-                let q = PanelMotion::of(&ray.end.at(lambda)).amplitudes()[i];
-                format!("{},{}", real(lambda), real(q))
+        let pairs: Vec<_> = lambdas
+            .iter()
+            .map(|lambda| {
+                let q = PanelMotion::of(&path.at(*lambda)).amplitudes()[i];
+                format!("{},{}", real(*lambda), real(q))
             })
             .collect();
         writeln!(d, "*AMPLITUDE,NAME=Q{}", i + 1)?;
@@ -185,6 +187,7 @@ fn write_amplitudes(d: &mut String, ray: &Ray) -> fmt::Result {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hinge::HingeDeformation;
 
     #[test]
     fn numbers_fit_the_fields_of_a_deck() {
@@ -196,23 +199,14 @@ mod tests {
     }
 
     #[test]
-    fn amplitudes_start_at_rest_and_end_at_the_end_of_the_ray() {
-        let ray = Ray {
-            design: hinge::HingeDesign {
-                w_lig: 18.0,
-                alpha: 1.5,
-                fillet_ratio: 0.16,
-                kerf: 0.2,
-                r_win: 100.0,
-            },
-            end: hinge::HingeDeformation {
-                a: -1.0,
-                s: 2.0,
-                theta: 1.2,
-            },
+    fn amplitudes_start_at_rest_and_end_at_the_end_of_the_path() {
+        let end = HingeDeformation {
+            a: -1.0,
+            s: 2.0,
+            theta: 1.2,
         };
         let mut text = String::new();
-        write_amplitudes(&mut text, &ray).unwrap();
+        write_amplitudes(&mut text, &DeformationPath::straight(end)).unwrap();
         let tables: Vec<Vec<f64>> = text
             .split("*AMPLITUDE,NAME=Q")
             .skip(1)
@@ -222,7 +216,7 @@ mod tests {
                 fields.map(|field| field.parse().unwrap()).collect()
             })
             .collect();
-        let end = PanelMotion::of(&ray.end).amplitudes();
+        let end = PanelMotion::of(&end).amplitudes();
         assert_eq!(tables.len(), 4);
         for (table, end) in tables.iter().zip(end) {
             assert_eq!(table.len(), 2 * (AMPLITUDE_INTERVALS + 1));

@@ -15,6 +15,7 @@ mod finished;
 mod history;
 mod job;
 mod ledger;
+mod path;
 mod plan;
 mod ray;
 mod response;
@@ -23,6 +24,7 @@ mod retry;
 mod run;
 mod sampling;
 mod shard;
+mod study;
 mod window_solve;
 
 pub use campaign::{Campaign, CampaignError};
@@ -34,6 +36,7 @@ pub use failure::{FailureKind, Rung, UnknownFailure};
 pub use finished::{FinishedJob, finished_jobs};
 pub use job::{FileError, JobSpec, ToolVersions};
 pub use ledger::{Status, Tally, Throughput, status};
+pub use path::{DeformationPath, PathError};
 pub use plan::{Plan, plan};
 pub use ray::Ray;
 pub use restore::restore;
@@ -41,4 +44,7 @@ pub use retry::retry;
 pub use run::{Progress, RunOptions, run};
 pub use sampling::{CommonDesign, RayBox};
 pub use shard::{InvalidShard, Shard};
-pub use window_solve::{SolveError, Tools, WindowProblem, WindowSolution, solve_window};
+pub use study::{STUDY_THETA_DEG, StudyCase, StudySolution, StudyState, richardson, study_cases};
+pub use window_solve::{
+    SolveError, Tools, WindowModel, WindowProblem, WindowSolution, solve_window,
+};

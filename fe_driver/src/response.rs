@@ -1,7 +1,8 @@
 //! From printed frames to hinge samples: energy, work, forces, damage.
 
 use crate::dat::Frame;
-use crate::ray::{PanelMotion, Ray, rotated};
+use crate::ray::{PanelMotion, rotated};
+use crate::window_solve::WindowModel;
 use hinge::{HingeDeformation, HingeForces, HingeSample, SheetMaterial};
 use mesher::WindowMesh;
 use std::f64::consts::PI;
@@ -10,12 +11,8 @@ use std::f64::consts::PI;
 const PEAK_SHARE: f64 = 0.999;
 
 /// One sample a frame, in the order of the frames.
-pub(crate) fn samples(
-    mesh: &WindowMesh,
-    ray: &Ray,
-    material: &SheetMaterial,
-    frames: &[Frame],
-) -> Vec<HingeSample> {
+pub(crate) fn samples(model: &WindowModel, frames: &[Frame]) -> Vec<HingeSample> {
+    let (mesh, material) = (model.mesh, model.material);
     let mut before = (HingeDeformation::default(), HingeForces::default());
     let energies = frames.iter().map(|frame| frame.energy.abs());
     let largest_w = energies.fold(f64::MIN_POSITIVE, f64::max);
@@ -23,7 +20,7 @@ pub(crate) fn samples(
     frames
         .iter()
         .map(|frame| {
-            let deformation = ray.end.at(frame.lambda);
+            let deformation = model.path.at(frame.lambda);
             let forces = arc_forces(mesh, &deformation, &frame.reactions);
             w_work += trapezoid(before, (deformation, forces));
             before = (deformation, forces);

@@ -6,6 +6,7 @@
 use crate::ccx::Ccx;
 use crate::dat::{DatError, Frame, Layout, read_dat};
 use crate::deck::{StepControl, deck};
+use crate::path::DeformationPath;
 use crate::ray::Ray;
 use crate::response::samples;
 use hinge::{HingeSample, InvalidMaterial, SheetMaterial};
@@ -41,6 +42,15 @@ impl Tools {
             ccx: Ccx::find()?,
         })
     }
+}
+
+/// A meshed window with all that its deck says.
+#[derive(Clone, Copy, Debug)]
+pub struct WindowModel<'a> {
+    pub mesh: &'a WindowMesh,
+    pub path: &'a DeformationPath,
+    pub material: &'a SheetMaterial,
+    pub step: &'a StepControl,
 }
 
 /// What a window solve gave: samples, and whether they reach the end of the ray.
@@ -93,10 +103,7 @@ const MAX_ENERGY_RESIDUAL: f64 = 0.01;
 /// Name of the deck and its output in the folder of a solve.
 const JOB: &str = "window";
 
-/// Solves `problem` in `folder`, which keeps the mesh, the deck, the log and the output.
-///
-/// ccx is ended after `limit`, and soon after `stop` becomes true. A ray that stops early keeps its
-/// converged increments: an error means that there are none.
+/// Meshes the window of `problem` and solves it in `folder`; see [`WindowModel::solve`].
 pub fn solve_window(
     problem: &WindowProblem,
     tools: &Tools,
@@ -105,55 +112,84 @@ pub fn solve_window(
     stop: &AtomicBool,
 ) -> Result<WindowSolution, SolveError> {
     let start = Instant::now();
-    let WindowProblem {
-        ray,
-        material,
-        tier,
-        step,
-    } = problem;
-    material.validate()?;
-    if !ray.end.to_array().iter().all(|x| x.is_finite()) {
-        return Err(SolveError::Ray(ray.end));
-    }
-    let mesh = mesh_window(&ray.design, material.thickness, *tier, folder, &tools.gmsh)?;
-    let input = folder.join(JOB).with_extension("inp");
-    std::fs::write(&input, deck(&mesh, ray, material, step)).map_err(at(&input))?;
-    let output = folder.join(JOB).with_extension("dat");
-    remove_stale(&output).map_err(at(&output))?;
+    let (design, thickness) = (&problem.ray.design, problem.material.thickness);
+    let mesh = mesh_window(
+        design,
+        thickness,
+        &problem.tier.recipe(),
+        folder,
+        &tools.gmsh,
+    )?;
+    let model = WindowModel {
+        mesh: &mesh,
+        path: &DeformationPath::straight(problem.ray.end),
+        material: &problem.material,
+        step: &problem.step,
+    };
+    let solution = model.solve(&tools.ccx, folder, limit, stop)?;
+    Ok(WindowSolution {
+        wall_seconds: start.elapsed().as_secs_f64(),
+        ..solution
+    })
+}
 
-    let run = match tools.ccx.run(folder, JOB, limit, stop) {
-        // What had converged when it was ended is as good as ever.
-        Err(error @ (ToolError::TimedOut { .. } | ToolError::Killed { .. })) => Err(error),
-        other => Ok(other?),
-    };
-    let samples = samples(&mesh, ray, material, &read_frames(&output, &mesh)?);
-    let last = samples.last().copied().unwrap_or_default();
-    let (cpu_seconds, iterations) = match &run {
-        Ok(run) => (run.run.cpu_seconds, run.iterations),
-        Err(error) => (error.cpu_seconds(), 0),
-    };
-    let stopped = match run {
-        Err(error) => Some(error.into()),
-        Ok(run) if !run.finished => Some(SolveError::Diverged {
-            lambda: last.lambda,
-            tail: tail(&folder.join(JOB).with_extension("log")),
-        }),
-        Ok(_) if last.lambda < 1.0 => Some(SolveError::Truncated {
-            lambda: last.lambda,
-        }),
-        Ok(_) => None,
-    };
-    let residual = last.energy_residual;
-    match stopped {
-        Some(error) if samples.is_empty() => Err(error),
-        None if residual > MAX_ENERGY_RESIDUAL => Err(SolveError::EnergyImbalance { residual }),
-        stopped => Ok(WindowSolution {
-            samples,
-            stopped,
-            cpu_seconds,
-            wall_seconds: start.elapsed().as_secs_f64(),
-            iterations,
-        }),
+impl WindowModel<'_> {
+    /// Solves the window in `folder`, which keeps the deck, the log and the output.
+    ///
+    /// ccx is ended after `limit`, and soon after `stop` becomes true. A path that stops early
+    /// keeps its converged increments: an error means that there are none.
+    pub fn solve(
+        &self,
+        ccx: &Ccx,
+        folder: &Path,
+        limit: Duration,
+        stop: &AtomicBool,
+    ) -> Result<WindowSolution, SolveError> {
+        let start = Instant::now();
+        self.material.validate()?;
+        let end = self.path.at(1.0);
+        if !end.to_array().iter().all(|x| x.is_finite()) {
+            return Err(SolveError::Ray(end));
+        }
+        let input = folder.join(JOB).with_extension("inp");
+        std::fs::write(&input, deck(self)).map_err(at(&input))?;
+        let output = folder.join(JOB).with_extension("dat");
+        remove_stale(&output).map_err(at(&output))?;
+
+        let run = match ccx.run(folder, JOB, limit, stop) {
+            // What had converged when it was ended is as good as ever.
+            Err(error @ (ToolError::TimedOut { .. } | ToolError::Killed { .. })) => Err(error),
+            other => Ok(other?),
+        };
+        let samples = samples(self, &read_frames(&output, self.mesh)?);
+        let last = samples.last().copied().unwrap_or_default();
+        let (cpu_seconds, iterations) = match &run {
+            Ok(run) => (run.run.cpu_seconds, run.iterations),
+            Err(error) => (error.cpu_seconds(), 0),
+        };
+        let stopped = match run {
+            Err(error) => Some(error.into()),
+            Ok(run) if !run.finished => Some(SolveError::Diverged {
+                lambda: last.lambda,
+                tail: tail(&folder.join(JOB).with_extension("log")),
+            }),
+            Ok(_) if last.lambda < 1.0 => Some(SolveError::Truncated {
+                lambda: last.lambda,
+            }),
+            Ok(_) => None,
+        };
+        let residual = last.energy_residual;
+        match stopped {
+            Some(error) if samples.is_empty() => Err(error),
+            None if residual > MAX_ENERGY_RESIDUAL => Err(SolveError::EnergyImbalance { residual }),
+            stopped => Ok(WindowSolution {
+                samples,
+                stopped,
+                cpu_seconds,
+                wall_seconds: start.elapsed().as_secs_f64(),
+                iterations,
+            }),
+        }
     }
 }
 
@@ -173,6 +209,7 @@ fn read_frames(output: &Path, mesh: &WindowMesh) -> Result<Vec<Frame>, SolveErro
         arc_nodes: mesh.arc_b.len(),
         bottom_nodes: mesh.bottom.len(),
         elements: mesh.elements.len(),
+        points: mesh.recipe.element().gauss_points(),
     };
     Ok(read_dat(&bytes, layout)?)
 }

@@ -71,7 +71,7 @@ pub enum InvalidDesign {
 /// machine, so that a value in metres or in micrometres is caught.
 const MIN_W_LIG: f64 = 0.5;
 const MAX_W_LIG: f64 = 500.0;
-/// The window must contain the tip region that is meshed around O, of radius 2.2 w_lig.
+/// The window must contain the tip region that is meshed around O, and some panel around it.
 const MIN_WINDOW: f64 = 2.5;
 
 fn unit_slip(w_lig: f64) -> String {

@@ -1,10 +1,108 @@
-//! The 20-node brick with 2x2x2 integration points (C3D20R): volumes at its Gauss points.
+//! The two elements of a window, and the volumes at their Gauss points.
 //!
-//! Node order: bottom corners counter-clockwise seen from +z, top corners, mid-sides of the
-//! bottom, of the top, and of the verticals. Gauss points: x fastest, z slowest.
+//! * C3D20R, the 20-node brick with 2x2x2 Gauss points: x fastest, z slowest.
+//! * C3D15, the 15-node wedge with 3x3: three in the triangle, at its mid-lines, on each of three
+//!   levels.
+//!
+//! Node order of both: bottom corners counter-clockwise seen from +z, top corners, mid-sides of the
+//! bottom, of the top, and of the verticals.
 
-/// Natural coordinates (xi, eta, zeta) of the nodes.
-const NODES: [[f64; 3]; 20] = [
+use serde::{Deserialize, Serialize};
+
+/// An element of the window, extruded from a face of the plane mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ElementKind {
+    /// C3D20R, over an 8-node quadrilateral.
+    Brick,
+    /// C3D15, over a 6-node triangle: the paper's.
+    Wedge,
+}
+
+impl ElementKind {
+    /// CalculiX's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Brick => "C3D20R",
+            Self::Wedge => "C3D15",
+        }
+    }
+
+    /// Corners of the face that it is extruded from.
+    pub fn corners(self) -> usize {
+        match self {
+            Self::Brick => 4,
+            Self::Wedge => 3,
+        }
+    }
+
+    /// Gauss points of an element.
+    pub fn gauss_points(self) -> usize {
+        match self {
+            Self::Brick => 8,
+            Self::Wedge => 9,
+        }
+    }
+
+    /// Natural coordinates and weight of a Gauss point, in the order of CalculiX.
+    fn gauss_point(self, point: usize) -> ([f64; 3], f64) {
+        match self {
+            Self::Brick => {
+                let g = 1.0 / 3.0_f64.sqrt();
+                let at = |bit: usize| if point >> bit & 1 == 1 { g } else { -g };
+                ([at(0), at(1), at(2)], 1.0)
+            }
+            Self::Wedge => {
+                let (one, two) = (1.0 / 6.0, 2.0 / 3.0);
+                let [xi, eta] = [[one, one], [two, one], [one, two]][point % 3];
+                let level = 0.6_f64.sqrt();
+                let (zeta, weight) =
+                    [(-level, 5.0 / 9.0), (0.0, 8.0 / 9.0), (level, 5.0 / 9.0)][point / 3];
+                ([xi, eta, zeta], weight / 6.0)
+            }
+        }
+    }
+
+    /// Weight of a Gauss point in natural coordinates.
+    pub(crate) fn gauss_weight(self, point: usize) -> f64 {
+        self.gauss_point(point).1
+    }
+
+    fn shape_gradient(self, node: usize, at: [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::Brick => brick_gradient(&BRICK_NODES[node], at),
+            Self::Wedge => wedge_gradient(node, at),
+        }
+    }
+
+    /// Volume (mm^3) that each Gauss point of the element with these nodes stands for.
+    pub(crate) fn gauss_volumes(self, nodes: &[[f64; 3]]) -> Vec<f64> {
+        (0..self.gauss_points())
+            .map(|point| {
+                let (at, weight) = self.gauss_point(point);
+                weight * self.jacobian_determinant(nodes, at)
+            })
+            .collect()
+    }
+
+    fn jacobian_determinant(self, nodes: &[[f64; 3]], at: [f64; 3]) -> f64 {
+        let mut j = [[0.0; 3]; 3];
+        for (node, position) in nodes.iter().enumerate() {
+            let gradient = self.shape_gradient(node, at);
+            for r in 0..3 {
+                for c in 0..3 {
+                    j[r][c] += position[r] * gradient[c];
+                }
+            }
+        }
+        j[0][0] * (j[1][1] * j[2][2] - j[1][2] * j[2][1])
+            - j[0][1] * (j[1][0] * j[2][2] - j[1][2] * j[2][0])
+            + j[0][2] * (j[1][0] * j[2][1] - j[1][1] * j[2][0])
+    }
+}
+
+/// Natural coordinates (xi, eta, zeta) of the nodes of the brick.
+const BRICK_NODES: [[f64; 3]; 20] = [
     [-1., -1., -1.],
     [1., -1., -1.],
     [1., 1., -1.],
@@ -27,33 +125,9 @@ const NODES: [[f64; 3]; 20] = [
     [-1., 1., 0.],
 ];
 
-/// Volume (mm^3) that each Gauss point stands for: the Jacobian determinant, as weights are 1.
-pub(crate) fn gauss_volumes(nodes: &[[f64; 3]; 20]) -> [f64; 8] {
-    let g = 1.0 / 3.0_f64.sqrt();
-    std::array::from_fn(|point| {
-        let sign = |bit: usize| if point >> bit & 1 == 1 { g } else { -g };
-        jacobian_determinant(nodes, [sign(0), sign(1), sign(2)])
-    })
-}
-
-fn jacobian_determinant(nodes: &[[f64; 3]; 20], at: [f64; 3]) -> f64 {
-    let mut j = [[0.0; 3]; 3];
-    for (position, natural) in nodes.iter().zip(&NODES) {
-        let gradient = shape_gradient(natural, at);
-        for r in 0..3 {
-            for c in 0..3 {
-                j[r][c] += position[r] * gradient[c];
-            }
-        }
-    }
-    j[0][0] * (j[1][1] * j[2][2] - j[1][2] * j[2][1])
-        - j[0][1] * (j[1][0] * j[2][2] - j[1][2] * j[2][0])
-        + j[0][2] * (j[1][0] * j[2][1] - j[1][1] * j[2][0])
-}
-
 /// Gradient of the serendipity shape function of the node at `node`:
 /// corners (1/8) prod(1 + x_i n_i) (sum x_i n_i - 2); mid-sides (1/4) (1 - x_m^2) prod(1 + x_i n_i).
-fn shape_gradient(node: &[f64; 3], at: [f64; 3]) -> [f64; 3] {
+fn brick_gradient(node: &[f64; 3], at: [f64; 3]) -> [f64; 3] {
     let factor = |i: usize| {
         if node[i] == 0.0 {
             (1.0 - at[i] * at[i], -2.0 * at[i])
@@ -74,34 +148,114 @@ fn shape_gradient(node: &[f64; 3], at: [f64; 3]) -> [f64; 3] {
     })
 }
 
+/// Gradient of a shape function of the wedge, with the area coordinates L = (1 - xi - eta, xi, eta)
+/// and s = -1, 1 on the lower and upper face: corners (L/2) ((2L - 1) (1 + s zeta) - (1 - zeta^2)),
+/// mid-sides 2 L L' (1 + s zeta), verticals L (1 - zeta^2).
+fn wedge_gradient(node: usize, [xi, eta, zeta]: [f64; 3]) -> [f64; 3] {
+    let l = [1.0 - xi - eta, xi, eta];
+    let (i, j) = (node % 3, (node + 1) % 3);
+    let s = if matches!(node, 0..3 | 6..9) {
+        -1.0
+    } else {
+        1.0
+    };
+    let bubble = 1.0 - zeta * zeta;
+    // Derivatives in L_0, L_1, L_2 and in zeta.
+    let mut by_l = [0.0; 3];
+    let by_zeta = match node {
+        0..6 => {
+            by_l[i] = 0.5 * ((4.0 * l[i] - 1.0) * (1.0 + s * zeta) - bubble);
+            0.5 * l[i] * ((2.0 * l[i] - 1.0) * s + 2.0 * zeta)
+        }
+        6..12 => {
+            by_l[i] = 2.0 * l[j] * (1.0 + s * zeta);
+            by_l[j] = 2.0 * l[i] * (1.0 + s * zeta);
+            2.0 * l[i] * l[j] * s
+        }
+        _ => {
+            by_l[i] = bubble;
+            -2.0 * l[i] * zeta
+        }
+    };
+    [by_l[1] - by_l[0], by_l[2] - by_l[0], by_zeta]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const WEDGE_NODES: [[f64; 3]; 15] = [
+        [0., 0., -1.],
+        [1., 0., -1.],
+        [0., 1., -1.],
+        [0., 0., 1.],
+        [1., 0., 1.],
+        [0., 1., 1.],
+        [0.5, 0., -1.],
+        [0.5, 0.5, -1.],
+        [0., 0.5, -1.],
+        [0.5, 0., 1.],
+        [0.5, 0.5, 1.],
+        [0., 0.5, 1.],
+        [0., 0., 0.],
+        [1., 0., 0.],
+        [0., 1., 0.],
+    ];
+
+    /// The element, its nodes in natural coordinates, and its volume there.
+    fn natural() -> [(ElementKind, Vec<[f64; 3]>, f64); 2] {
+        [
+            (ElementKind::Brick, BRICK_NODES.to_vec(), 8.0),
+            (ElementKind::Wedge, WEDGE_NODES.to_vec(), 1.0),
+        ]
+    }
+
     #[test]
-    fn a_sheared_box_has_its_volume_at_every_gauss_point() {
-        let nodes = NODES.map(|[x, y, z]| [3.0 * x + 0.4 * y, 2.0 * y - 0.1 * z, 0.5 * z]);
-        for volume in gauss_volumes(&nodes) {
-            assert!((volume - 3.0).abs() < 1e-13);
+    fn a_sheared_element_has_its_volume_in_the_shares_of_its_gauss_points() {
+        for (kind, nodes, volume) in natural() {
+            let sheared: Vec<_> = nodes
+                .iter()
+                .map(|[x, y, z]| [3.0 * x + 0.4 * y, 2.0 * y - 0.1 * z, 0.5 * z])
+                .collect();
+            for (point, found) in kind.gauss_volumes(&sheared).into_iter().enumerate() {
+                let (_, weight) = kind.gauss_point(point);
+                assert!((found - 3.0 * weight).abs() < 1e-13, "{kind:?} {point}");
+            }
+            let total: f64 = kind.gauss_volumes(&sheared).iter().sum();
+            assert!((total - 3.0 * volume).abs() < 1e-13, "{kind:?}");
         }
     }
 
-    /// The shape functions hold a general quadratic map exactly: sum of volumes = exact volume.
+    /// The shape functions hold a quadratic map exactly; this one keeps every volume.
     #[test]
-    fn a_bulged_box_has_its_exact_volume() {
-        let nodes = NODES.map(|[x, y, z]| [x + 0.1 * (1.0 - y * y), y, z + 0.2 * x * y]);
-        let total: f64 = gauss_volumes(&nodes).iter().sum();
-        assert!((total - 8.0).abs() < 1e-13);
+    fn a_bulged_element_has_its_exact_volume() {
+        for (kind, nodes, volume) in natural() {
+            let bulged: Vec<_> = nodes
+                .iter()
+                .map(|[x, y, z]| [x + 0.1 * (1.0 - y * y), *y, z + 0.2 * x * y])
+                .collect();
+            let total: f64 = kind.gauss_volumes(&bulged).iter().sum();
+            assert!((total - volume).abs() < 1e-13, "{kind:?}: {total}");
+        }
     }
 
+    /// The gradient of sum N_i f(x_i) is that of f, for every f that the element represents.
     #[test]
-    fn gradients_are_those_of_a_partition_of_unity() {
-        for axis in 0..3 {
-            let total: f64 = NODES
-                .iter()
-                .map(|n| shape_gradient(n, [0.3, -0.7, 0.2])[axis])
-                .sum();
-            assert!(total.abs() < 1e-15);
+    fn gradients_are_exact_for_quadratic_functions() {
+        let at = [0.3, 0.2, -0.4];
+        let f = |[x, y, z]: [f64; 3]| 1.0 + x + 2.0 * y * y - z * z + 0.5 * x * y + 3.0 * y * z;
+        let exact = [
+            1.0 + 0.5 * at[1],
+            4.0 * at[1] + 0.5 * at[0] + 3.0 * at[2],
+            -2.0 * at[2] + 3.0 * at[1],
+        ];
+        for (kind, nodes, _) in natural() {
+            for axis in 0..3 {
+                let found: f64 = (0..nodes.len())
+                    .map(|node| f(nodes[node]) * kind.shape_gradient(node, at)[axis])
+                    .sum();
+                assert!((found - exact[axis]).abs() < 1e-14, "{kind:?} {axis}");
+            }
         }
     }
 }

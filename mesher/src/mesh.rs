@@ -1,42 +1,42 @@
-//! The window as bricks: the plane mesh extruded to layers, with the imperfection in z.
+//! The window as solid elements: the plane mesh extruded to layers, with the imperfection in z.
 //!
 //! The sheet's midplane is not quite flat, or it would never buckle: z is lifted by
 //! t exp(-(x/w)^2 - (y/w)^2) (1 - (r/r_win)^4), stress-free and zero on the arcs. One thickness
-//! is what the paper measured on a cut hinge (section 4.1).
+//! is what the paper measured on a cut hinge (section 4.1). Amplitude and widths of the bump are
+//! the recipe's.
 
-use crate::element::gauss_volumes;
 use crate::geo;
 use crate::gmsh::Gmsh;
 use crate::msh::{Boundary, MshError, PlaneMesh, read_msh};
 use crate::quality::MeshDefect;
-use crate::tier::Tier;
+use crate::tier::MeshRecipe;
 use crate::tool::{self, ToolError};
 use crate::window::Window;
 use hinge::{HingeDesign, InvalidDesign};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// A window of 20-node bricks; indices count from 0.
+/// A window of solid elements of one kind; indices count from 0.
 #[derive(Clone, Debug)]
 pub struct WindowMesh {
     pub design: HingeDesign,
     /// mm
     pub thickness: f64,
-    pub tier: Tier,
+    pub recipe: MeshRecipe,
     /// The plane mesh that was extruded.
     pub plane: PlaneMesh,
     /// Node positions in the hinge frame, imperfection included (mm).
     pub nodes: Vec<[f64; 3]>,
-    /// Bricks, in the node order of C3D20R, layer by layer.
-    pub elements: Vec<[usize; 20]>,
+    /// Elements in the node order of their [`ElementKind`](crate::ElementKind), layer by layer.
+    pub elements: Vec<Vec<usize>>,
     /// Nodes of the held arc, through the thickness.
     pub arc_a: Vec<usize>,
     /// Nodes of the driven arc, through the thickness.
     pub arc_b: Vec<usize>,
     /// Nodes of the sheet's lower face.
     pub bottom: Vec<usize>,
-    /// Undeformed volume that each Gauss point of each brick stands for (mm^3).
-    pub gauss_volumes: Vec<[f64; 8]>,
+    /// Undeformed volume that each Gauss point of each element stands for (mm^3).
+    pub gauss_volumes: Vec<Vec<f64>>,
 }
 
 /// Why there is no mesh.
@@ -51,11 +51,10 @@ pub enum MeshError {
     #[error("gmsh wrote no usable mesh: {0}")]
     Read(#[from] MshError),
     #[error(
-        "the {tier} mesh of w_lig = {w_lig} mm, alpha = {alpha_deg} deg is refused: {defect}; \
+        "the mesh of w_lig = {w_lig} mm, alpha = {alpha_deg} deg is refused: {defect}; \
          try a finer tier"
     )]
     Defect {
-        tier: Tier,
         w_lig: f64,
         alpha_deg: f64,
         defect: MeshDefect,
@@ -71,7 +70,7 @@ pub enum MeshError {
 pub fn mesh_window(
     design: &HingeDesign,
     thickness: f64,
-    tier: Tier,
+    recipe: &MeshRecipe,
     scratch: &Path,
     gmsh: &Gmsh,
 ) -> Result<WindowMesh, MeshError> {
@@ -79,7 +78,7 @@ pub fn mesh_window(
     if !(thickness.is_finite() && thickness > 0.0) {
         return Err(MeshError::Thickness(thickness));
     }
-    let script = geo::script(&Window(design), &tier.recipe());
+    let script = geo::script(&Window(design), &recipe.plane);
     let at = |path: &Path| {
         let path = path.to_owned();
         move |source| MeshError::File { path, source }
@@ -94,11 +93,15 @@ pub fn mesh_window(
         Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
         read => read.map_err(at(&msh))?,
     };
-    let mesh = WindowMesh::extrude(*design, thickness, tier, read_msh(&bytes)?);
+    let mesh = WindowMesh::extrude(
+        *design,
+        thickness,
+        *recipe,
+        read_msh(&bytes, recipe.element())?,
+    );
     match mesh.quality() {
         Ok(_) => Ok(mesh),
         Err(defect) => Err(MeshError::Defect {
-            tier,
             w_lig: design.w_lig,
             alpha_deg: design.alpha.to_degrees(),
             defect,
@@ -107,9 +110,9 @@ pub fn mesh_window(
 }
 
 impl WindowMesh {
-    /// Extrudes a plane mesh to the layers of `tier` through z in [-t/2, t/2].
-    fn extrude(design: HingeDesign, thickness: f64, tier: Tier, plane: PlaneMesh) -> Self {
-        let layers = tier.recipe().layers;
+    /// Extrudes a plane mesh to the layers of `recipe` through z in [-t/2, t/2].
+    fn extrude(design: HingeDesign, thickness: f64, recipe: MeshRecipe, plane: PlaneMesh) -> Self {
+        let layers = recipe.layers;
         let levels = Levels::of(&plane, layers);
         let nodes: Vec<_> = levels
             .nodes
@@ -117,21 +120,28 @@ impl WindowMesh {
             .map(|(level, node)| {
                 let [x, y] = plane.nodes[*node];
                 let z = thickness * (*level as f64 / (2 * layers) as f64 - 0.5);
-                [x, y, z + imperfection(&design, thickness, x, y)]
+                [
+                    x,
+                    y,
+                    z + recipe.imperfection.height(&design, thickness, x, y),
+                ]
             })
             .collect();
         let elements: Vec<_> = (0..layers)
-            .flat_map(|layer| plane.quads.iter().map(move |quad| (layer, quad)))
-            .map(|(layer, quad)| levels.brick(layer, quad))
+            .flat_map(|layer| plane.faces.iter().map(move |face| (layer, face)))
+            .map(|(layer, face)| levels.element(layer, face))
             .collect();
         let gauss_volumes = elements
             .iter()
-            .map(|element| gauss_volumes(&element.map(|node| nodes[node])))
+            .map(|element| {
+                let positions: Vec<_> = element.iter().map(|node| nodes[*node]).collect();
+                recipe.element().gauss_volumes(&positions)
+            })
             .collect();
         Self {
             design,
             thickness,
-            tier,
+            recipe,
             arc_a: levels.through(&plane.nodes_on(Boundary::ArcA)),
             arc_b: levels.through(&plane.nodes_on(Boundary::ArcB)),
             bottom: (0..plane.nodes.len()).collect(),
@@ -160,8 +170,11 @@ struct Levels {
 impl Levels {
     fn of(plane: &PlaneMesh, layers: usize) -> Self {
         let mut is_corner = vec![false; plane.nodes.len()];
-        for quad in &plane.quads {
-            quad[..4].iter().for_each(|node| is_corner[*node] = true);
+        for face in &plane.faces {
+            let corners = face.len() / 2;
+            face[..corners]
+                .iter()
+                .for_each(|node| is_corner[*node] = true);
         }
         let mut nodes = Vec::new();
         let ids = (0..=2 * layers)
@@ -179,15 +192,23 @@ impl Levels {
         Self { nodes, ids }
     }
 
-    /// The brick over a quadrilateral: bottom and top corners, bottom and top mid-sides, verticals.
-    fn brick(&self, layer: usize, quad: &[usize; 8]) -> [usize; 20] {
+    /// The element over a face: bottom and top corners, bottom and top mid-sides, verticals.
+    fn element(&self, layer: usize, face: &[usize]) -> Vec<usize> {
         let (bottom, middle, top) = (2 * layer, 2 * layer + 1, 2 * layer + 2);
-        let parts = [(bottom, 0), (top, 0), (bottom, 4), (top, 4), (middle, 0)];
-        std::array::from_fn(|i| {
-            let (level, first) = parts[i / 4];
-            self.ids[level][quad[first + i % 4]]
-                .expect("corners are on every level, mid-sides on the even ones")
+        let (corners, mid_sides) = face.split_at(face.len() / 2);
+        [
+            (bottom, corners),
+            (top, corners),
+            (bottom, mid_sides),
+            (top, mid_sides),
+            (middle, corners),
+        ]
+        .into_iter()
+        .flat_map(|(level, nodes)| nodes.iter().map(move |node| (level, *node)))
+        .map(|(level, node)| {
+            self.ids[level][node].expect("corners are on every level, mid-sides on the even ones")
         })
+        .collect()
     }
 
     /// The extruded nodes over plane nodes, on all levels.
@@ -195,11 +216,4 @@ impl Levels {
         let on_level = |ids: &Vec<Option<usize>>| plane.iter().filter_map(|n| ids[*n]).collect();
         self.ids.iter().flat_map::<Vec<_>, _>(on_level).collect()
     }
-}
-
-/// Height (mm) of the stress-free bump at (x, y).
-fn imperfection(design: &HingeDesign, thickness: f64, x: f64, y: f64) -> f64 {
-    let r2 = x * x + y * y;
-    let decay = 1.0 - (r2 / design.r_win.powi(2)).powi(2);
-    thickness * (-r2 / design.w_lig.powi(2)).exp() * decay
 }

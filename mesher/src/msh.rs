@@ -1,6 +1,7 @@
-//! Reader of gmsh's .msh files (version 2.2, text): 8-node quadrilaterals and named boundary
-//! curves. Any bytes give a mesh or an error that names the line.
+//! Reader of gmsh's .msh files (version 2.2, text): second-order faces of one kind and named
+//! boundary curves. Any bytes give a mesh or an error that names the line.
 
+use crate::element::ElementKind;
 use std::collections::HashMap;
 
 /// Curves of the window that something is done to.
@@ -32,8 +33,8 @@ impl Boundary {
 pub struct PlaneMesh {
     /// Node positions in the hinge frame (mm).
     pub nodes: Vec<[f64; 2]>,
-    /// Corners counter-clockwise, then the mid-sides of edges 01, 12, 23, 30.
-    pub quads: Vec<[usize; 8]>,
+    /// Corners counter-clockwise, then as many mid-sides: of edge 01, 12, and so on.
+    pub faces: Vec<Vec<usize>>,
     /// Edges of the named boundaries: two ends, then the mid-side.
     pub edges: Vec<(Boundary, [usize; 3])>,
 }
@@ -53,6 +54,12 @@ impl PlaneMesh {
     }
 }
 
+/// The sides of a face: two ends, then the mid-side.
+pub(crate) fn sides(face: &[usize]) -> impl Iterator<Item = [usize; 3]> + Clone {
+    let corners = face.len() / 2;
+    (0..corners).map(move |i| [face[i], face[(i + 1) % corners], face[corners + i]])
+}
+
 /// Why bytes are not a mesh of the expected kind.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MshError {
@@ -62,15 +69,23 @@ pub enum MshError {
     NoSection(&'static str),
     #[error("the mesh file's line {line}: {what}")]
     Line { line: usize, what: &'static str },
-    #[error("the mesh file holds no quadrilaterals")]
+    #[error("the mesh file holds no faces")]
     Empty,
 }
 
-const QUAD_8: u32 = 16;
+/// gmsh's number of the line of three nodes.
 const LINE_3: u32 = 8;
 
-/// Reads the bytes of a .msh file; nodes that no quadrilateral uses are dropped.
-pub fn read_msh(bytes: &[u8]) -> Result<PlaneMesh, MshError> {
+/// gmsh's number of the face that elements of this kind are extruded from.
+fn face_number(element: ElementKind) -> u32 {
+    match element {
+        ElementKind::Brick => 16,
+        ElementKind::Wedge => 9,
+    }
+}
+
+/// Reads the bytes of a .msh file of faces for `element`; nodes that no face uses are dropped.
+pub fn read_msh(bytes: &[u8], element: ElementKind) -> Result<PlaneMesh, MshError> {
     let text = std::str::from_utf8(bytes).map_err(|e| MshError::NotText(e.valid_up_to()))?;
     let lines: Vec<_> = text.lines().enumerate().collect();
     let mut positions = HashMap::new();
@@ -100,19 +115,19 @@ pub fn read_msh(bytes: &[u8]) -> Result<PlaneMesh, MshError> {
         for _ in 1..tags {
             fields.next::<u64>()?;
         }
-        if kind == QUAD_8 {
-            let mut quad = [0; 8];
-            for corner in &mut quad {
+        if kind == face_number(element) {
+            let mut face = vec![0; 2 * element.corners()];
+            for node in &mut face {
                 let id: u64 = fields.next()?;
                 let Some(position) = positions.get(&id) else {
                     return Err(fields.error("an element names a node that is not given"));
                 };
-                *corner = *indices.entry(id).or_insert_with(|| {
+                *node = *indices.entry(id).or_insert_with(|| {
                     mesh.nodes.push(*position);
                     mesh.nodes.len() - 1
                 });
             }
-            mesh.quads.push(quad);
+            mesh.faces.push(face);
         } else if kind == LINE_3 {
             let Some(boundary) = Boundary::ALL.into_iter().find(|b| b.tag() == physical) else {
                 return Err(fields.error("a boundary curve has an unknown tag"));
@@ -120,15 +135,15 @@ pub fn read_msh(bytes: &[u8]) -> Result<PlaneMesh, MshError> {
             let ids: [u64; 3] = [fields.next()?, fields.next()?, fields.next()?];
             edges.push((boundary, ids, fields.line));
         } else {
-            return Err(fields.error("neither an 8-node quadrilateral nor a 3-node line"));
+            return Err(fields.error("neither a face of the expected kind nor a 3-node line"));
         }
     }
-    if mesh.quads.is_empty() {
+    if mesh.faces.is_empty() {
         return Err(MshError::Empty);
     }
     for (boundary, ids, line) in edges {
         let [Some(a), Some(b), Some(c)] = ids.map(|id| indices.get(&id).copied()) else {
-            let what = "a boundary edge belongs to no quadrilateral";
+            let what = "a boundary edge belongs to no face";
             return Err(MshError::Line { line, what });
         };
         mesh.edges.push((boundary, [a, b, c]));
@@ -191,10 +206,23 @@ mod tests {
         1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 .5 0 0\n6 1 .5 0\n7 .5 1 0\n8 0 .5 0\n$EndNodes\n\
         $Elements\n2\n1 8 2 2 7 2 3 6\n2 16 2 100 1 1 2 3 4 5 6 7 8\n$EndElements\n";
 
+    fn read(bytes: &[u8]) -> Result<PlaneMesh, MshError> {
+        read_msh(bytes, ElementKind::Brick)
+    }
+
+    #[test]
+    fn a_triangle_is_read_where_one_is_expected() {
+        let triangle = SQUARE.replace("2 16 2 100 1 1 2 3 4 5 6 7 8", "2 9 2 100 1 1 2 3 5 6 8");
+        let mesh = read_msh(triangle.as_bytes(), ElementKind::Wedge).unwrap();
+        assert_eq!(mesh.faces, [[0, 1, 2, 3, 4, 5]]);
+        let error = read_msh(SQUARE.as_bytes(), ElementKind::Wedge).unwrap_err();
+        assert!(matches!(error, MshError::Line { line: 18, .. }), "{error}");
+    }
+
     #[test]
     fn a_square_is_read() {
-        let mesh = read_msh(SQUARE.as_bytes()).unwrap();
-        assert_eq!(mesh.quads, [[0, 1, 2, 3, 4, 5, 6, 7]]);
+        let mesh = read(SQUARE.as_bytes()).unwrap();
+        assert_eq!(mesh.faces, [[0, 1, 2, 3, 4, 5, 6, 7]]);
         assert_eq!(mesh.nodes[2], [1.0, 1.0]);
         assert_eq!(mesh.nodes_on(Boundary::ArcB), [1, 2, 5]);
         assert_eq!(mesh.nodes_on(Boundary::ArcA), []);
@@ -210,7 +238,7 @@ mod tests {
             ("2 7 2 3 6", "5 7 2 3 6", 17),
         ];
         for (old, new, expected) in cases {
-            let error = read_msh(SQUARE.replace(old, new).as_bytes()).unwrap_err();
+            let error = read(SQUARE.replace(old, new).as_bytes()).unwrap_err();
             assert!(
                 matches!(error, MshError::Line { line, .. } if line == expected),
                 "{error}"
@@ -243,10 +271,10 @@ mod tests {
         ) {
             // Without its last newline the file is still whole.
             let whole = cut == SQUARE.len() - 1;
-            prop_assert_eq!(read_msh(&SQUARE.as_bytes()[..cut]).is_ok(), whole);
+            prop_assert_eq!(read(&SQUARE.as_bytes()[..cut]).is_ok(), whole);
             let mut bytes = SQUARE.as_bytes().to_vec();
             bytes[at] = byte;
-            let _ = read_msh(&bytes);
+            let _ = read(&bytes);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What a mesh must satisfy before a solver is started on it.
 
 use crate::mesh::WindowMesh;
-use crate::msh::Boundary;
+use crate::msh::{Boundary, sides};
 use crate::window::Window;
 
 /// Largest accepted ratio of an element's in-plane edges.
@@ -44,10 +44,14 @@ impl WindowMesh {
                 return Err(MeshDefect::NoBoundary(boundary));
             }
         }
+        let kind = self.recipe.element();
         let mut jacobian_ratio = 1.0_f64;
         for (element, volumes) in self.gauss_volumes.iter().enumerate() {
-            let least = volumes.iter().copied().fold(f64::INFINITY, f64::min);
-            let greatest = volumes.iter().copied().fold(0.0, f64::max);
+            let jacobians = (0..)
+                .zip(volumes)
+                .map(|(point, v)| v / kind.gauss_weight(point));
+            let least = jacobians.clone().fold(f64::INFINITY, f64::min);
+            let greatest = jacobians.fold(0.0, f64::max);
             if least <= 0.0 || least.is_nan() {
                 let jacobian = least;
                 return Err(MeshDefect::Folded { element, jacobian });
@@ -55,13 +59,13 @@ impl WindowMesh {
             jacobian_ratio = jacobian_ratio.min(least / greatest);
         }
         let mut largest_aspect = 1.0_f64;
-        for (element, quad) in self.plane.quads.iter().enumerate() {
-            let edges = [0, 1, 2, 3].map(|i| {
-                let [p, q] = [quad[i], quad[(i + 1) % 4]].map(|node| self.plane.nodes[node]);
+        for (element, face) in self.plane.faces.iter().enumerate() {
+            let lengths = sides(face).map(|[from, to, _]| {
+                let [p, q] = [from, to].map(|node| self.plane.nodes[node]);
                 (q[0] - p[0]).hypot(q[1] - p[1])
             });
-            let aspect = edges.iter().copied().fold(0.0, f64::max)
-                / edges.iter().copied().fold(f64::INFINITY, f64::min);
+            let longest = lengths.clone().fold(0.0, f64::max);
+            let aspect = longest / lengths.fold(f64::INFINITY, f64::min);
             if aspect > MAX_ASPECT {
                 return Err(MeshDefect::Sliver { element, aspect });
             }

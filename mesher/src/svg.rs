@@ -1,7 +1,7 @@
 //! A picture of the plane mesh, for a person to look at.
 
 use crate::mesh::WindowMesh;
-use crate::msh::Boundary;
+use crate::msh::{Boundary, sides};
 use std::fmt::Write;
 
 /// Picture width (px); the window's diameter fills it.
@@ -36,12 +36,11 @@ pub fn plane_mesh_svg(mesh: &WindowMesh) -> String {
         )
         .expect("writing to a string cannot fail");
     };
-    let mut sides = mesh
-        .plane
-        .quads
-        .iter()
-        .flat_map(|q| [0, 1, 2, 3].map(|i| [q[i], q[(i + 1) % 4], q[4 + i]]));
-    path(&mut sides, "#888", 0.8);
+    path(
+        &mut mesh.plane.faces.iter().flat_map(|face| sides(face)),
+        "#888",
+        0.8,
+    );
     for (boundary, colour) in [
         (Boundary::ArcA, "#1f5fbf"),
         (Boundary::ArcB, "#c0392b"),

@@ -2,7 +2,7 @@
 #![allow(dead_code)] // every test program uses a part
 
 use fe_driver::{
-    Campaign, CampaignError, FinishedJob, Ray, RunOptions, Shard, StepControl, Tally, Tools,
+    Campaign, CampaignError, Ccx, FinishedJob, Ray, RunOptions, Shard, StepControl, Tally, Tools,
     WindowProblem, finished_jobs, run,
 };
 use hinge::{HingeDeformation, HingeDesign, SheetMaterial};
@@ -12,6 +12,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
 pub fn configs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs")
@@ -75,6 +76,26 @@ pub fn run_with(
 ) -> Result<Tally, CampaignError> {
     let never = AtomicBool::new(false);
     Ok(run(campaign, folder, tools, options, &never, &mut |_| {})?.tally)
+}
+
+/// What ccx prints for a deck, which it must finish.
+pub fn solved(deck: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("test.inp"), deck).unwrap();
+    let limit = Duration::from_secs(120);
+    let ccx = Ccx::find().unwrap();
+    let run = ccx.run(folder.path(), "test", limit, &AtomicBool::new(false));
+    let run = run.unwrap();
+    let log = mesher::tool::tail(&folder.path().join("test.log"));
+    assert!(run.finished, "{run:?} {log}");
+    std::fs::read_to_string(folder.path().join("test.dat")).unwrap()
+}
+
+/// The rows of so many numbers in a part of a solver's output.
+pub fn rows(text: &str, fields: usize) -> Vec<Vec<f64>> {
+    let numbers = |line: &str| line.split_whitespace().map(|f| f.parse().ok()).collect();
+    let rows = text.lines().filter_map(numbers);
+    rows.filter(|row: &Vec<f64>| row.len() == fields).collect()
 }
 
 /// An executable script in `folder` that answers like ccx and then does `body`.

@@ -1,0 +1,231 @@
+//! The structured mesh: transfinite, recombined patches, one patch a column.
+//!
+//! Block 1 is an O-grid from the hole to the half-disc of radius 1.5 w_lig; block 2 continues its
+//! arcs to the window's. Columns are numbered counter-clockwise about O, from the kerf face on B
+//! over the free edge to the kerf face on A. One patch a side instead of one a column would fold
+//! elements at small alpha.
+
+use super::Script;
+use crate::msh::Boundary;
+use crate::tier::Structured;
+use crate::window::{Side, Window, polar_angle};
+use std::f64::consts::PI;
+
+/// Radius of block 1 over w_lig: just past the hole, so that the rings of block 2 begin where the
+/// panels still bend. At 2.2 the compression of an oblique hinge is 8 % too stiff.
+const INNER_RADIUS: f64 = 1.5;
+/// Share of the true polar angle, against equal angles, in the spacing of columns at the hole.
+const ANGLE_BLEND: f64 = 0.5;
+
+/// Adds the patches of `window`.
+pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Structured) {
+    let centre = geo.point([0.0, 0.0]);
+    let tip = geo.point(window.0.tip());
+
+    let outer = inner_half_disc(window, recipe);
+    let hole = hole_points(window, &outer);
+    let outer_ids: Vec<_> = outer.iter().map(|p| geo.point(*p)).collect();
+    let hole_ids: Vec<_> = hole.iter().map(|p| geo.point(*p)).collect();
+
+    let columns = outer.len() - 1;
+    let hole_arcs: Vec<_> = (0..columns)
+        .map(|c| {
+            let arc = geo.arc(hole_ids[c], tip, hole_ids[c + 1]);
+            geo.divide(arc, 1, 1.0)
+        })
+        .collect();
+    let top = recipe.arc_columns..columns - recipe.arc_columns;
+    let outer_edges: Vec<_> = (0..columns)
+        .map(|c| {
+            let edge = if top.contains(&c) {
+                geo.line(outer_ids[c], outer_ids[c + 1])
+            } else {
+                geo.arc(outer_ids[c], centre, outer_ids[c + 1])
+            };
+            geo.divide(edge, 1, 1.0)
+        })
+        .collect();
+    let first = (window.0.w_lig - window.0.fillet_radius()) / recipe.inner_rings as f64;
+    let rays: Vec<_> = (0..=columns)
+        .map(|c| {
+            let [p, q] = [hole[c], outer[c]];
+            let length = (q[0] - p[0]).hypot(q[1] - p[1]);
+            let growth = growth_ratio(length / first, recipe.inner_rings);
+            let ray = geo.line(hole_ids[c], outer_ids[c]);
+            geo.divide(ray, recipe.inner_rings, growth)
+        })
+        .collect();
+    for c in 0..columns {
+        geo.patch([rays[c], outer_edges[c], -rays[c + 1], -hole_arcs[c]]);
+    }
+    geo.boundary(Boundary::Hole, &hole_arcs);
+
+    let growth =
+        (window.0.r_win / (INNER_RADIUS * window.0.w_lig)).powf(1.0 / recipe.outer_rings as f64);
+    for (boundary, side, start) in [
+        (Boundary::ArcB, Side::B, 0),
+        (Boundary::ArcA, Side::A, top.end),
+    ] {
+        let rim: Vec<_> = panel_arc(window, side, window.0.r_win, recipe.arc_columns)
+            .into_iter()
+            .map(|p| geo.point(p))
+            .collect();
+        let rays: Vec<_> = rim
+            .iter()
+            .enumerate()
+            .map(|(j, p)| {
+                let ray = geo.line(outer_ids[start + j], *p);
+                geo.divide(ray, recipe.outer_rings, growth)
+            })
+            .collect();
+        let arcs: Vec<_> = rim
+            .windows(2)
+            .map(|pair| {
+                let arc = geo.arc(pair[0], centre, pair[1]);
+                geo.divide(arc, 1, 1.0)
+            })
+            .collect();
+        for j in 0..recipe.arc_columns {
+            geo.patch([rays[j], arcs[j], -rays[j + 1], -outer_edges[start + j]]);
+        }
+        geo.boundary(boundary, &arcs);
+    }
+}
+
+/// Corners of the columns on the rim of block 1, counter-clockwise from the kerf face on B.
+fn inner_half_disc(window: &Window, recipe: &Structured) -> Vec<[f64; 2]> {
+    let radius = INNER_RADIUS * window.0.w_lig;
+    let k = edge_grading(recipe);
+    let edge = (1..recipe.edge_columns).map(|i| {
+        let xi = 1.0 - 2.0 * i as f64 / recipe.edge_columns as f64;
+        [radius * (k * xi).sinh() / k.sinh(), 0.0]
+    });
+    let mut rim = panel_arc(window, Side::B, radius, recipe.arc_columns);
+    rim.extend(edge);
+    rim.extend(panel_arc(window, Side::A, radius, recipe.arc_columns));
+    rim
+}
+
+/// Points at equal angles on one panel's part of the circle `radius`, counter-clockwise.
+fn panel_arc(window: &Window, side: Side, radius: f64, columns: usize) -> Vec<[f64; 2]> {
+    let kerf = window.kerf_at_radius(side, radius);
+    let (from, to) = match side {
+        Side::B => (polar_angle(kerf), 0.0),
+        Side::A => (-PI, polar_angle(kerf)),
+    };
+    let at = |j: usize| {
+        let angle = from + (to - from) * j as f64 / columns as f64;
+        [radius * angle.cos(), radius * angle.sin()]
+    };
+    let mut points: Vec<_> = (0..=columns).map(at).collect();
+    // The ends exactly, so that the free edge is straight and the kerf faces are flat.
+    let (free, cut) = match side {
+        Side::B => (columns, 0),
+        Side::A => (0, columns),
+    };
+    points[free] = [radius.copysign(points[free][0]), 0.0];
+    points[cut] = kerf;
+    points
+}
+
+/// Corners of the columns on the hole, between the directions of `outer` and equal angles.
+fn hole_points(window: &Window, outer: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let (tip, rho) = (window.0.tip(), window.0.fillet_radius());
+    let from = -window.0.alpha + window.mouth_half_angle();
+    let span = 2.0 * (PI - window.mouth_half_angle());
+    let directions: Vec<_> = outer
+        .iter()
+        // Turned so that the mouth of the cut, where the angle jumps, is at +-pi.
+        .map(|p| turned_angle([p[0] - tip[0], p[1] - tip[1]], PI - window.0.alpha))
+        .collect();
+    let last = outer.len() - 1;
+    let range = directions[last] - directions[0];
+    (0..=last)
+        .map(|c| {
+            let direction = (directions[c] - directions[0]) / range;
+            let uniform = c as f64 / last as f64;
+            let share = ANGLE_BLEND * direction + (1.0 - ANGLE_BLEND) * uniform;
+            let angle = from + span * share;
+            [tip[0] + rho * angle.cos(), tip[1] + rho * angle.sin()]
+        })
+        .collect()
+}
+
+/// Polar angle (rad) of `p` seen from an axis at the angle `axis`.
+fn turned_angle(p: [f64; 2], axis: f64) -> f64 {
+    let (sin, cos) = axis.sin_cos();
+    polar_angle([p[0] * cos + p[1] * sin, p[1] * cos - p[0] * sin])
+}
+
+/// k of x = r sinh(k xi) / sinh(k) that makes the elements next to x = 0 `fold_size` w_lig wide.
+fn edge_grading(recipe: &Structured) -> f64 {
+    let xi = 2.0 / recipe.edge_columns as f64;
+    let target = recipe.fold_size / INNER_RADIUS;
+    bisect(1e-6, 50.0, |k| target - (k * xi).sinh() / k.sinh())
+}
+
+/// q of 1 + q + ... + q^(n-1) = `total`, for `total` >= n.
+fn growth_ratio(total: f64, n: usize) -> f64 {
+    bisect(1.0, total.max(1.0), |q| {
+        (0..n).map(|i| q.powi(i as i32)).sum::<f64>() - total
+    })
+}
+
+/// The root of an increasing function in [low, high], to the last bit; an end if there is none.
+fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return middle;
+        }
+        if f(middle) < 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tier::{PlaneRecipe, Tier};
+    use crate::window::tests::design;
+
+    #[test]
+    fn gradings_meet_their_first_element() {
+        for tier in Tier::ALL {
+            let PlaneRecipe::Structured(recipe) = tier.recipe().plane else {
+                continue;
+            };
+            let k = edge_grading(&recipe);
+            let first = (2.0 * k / recipe.edge_columns as f64).sinh() / k.sinh();
+            assert!((INNER_RADIUS * first - recipe.fold_size).abs() < 1e-12);
+        }
+        let q = growth_ratio(7.0, 3);
+        assert!((q - 2.0).abs() < 1e-14);
+        assert_eq!(growth_ratio(3.0, 3), 1.0);
+    }
+
+    #[test]
+    fn columns_go_round_the_hole_without_crossing() {
+        for alpha in [25.0, 45.0, 90.0, 120.0, 150.0] {
+            let design = design(25.0, alpha);
+            let window = Window(&design);
+            let recipe = Structured {
+                inner_rings: 3,
+                edge_columns: 14,
+                arc_columns: 3,
+                outer_rings: 4,
+                fold_size: 0.1,
+            };
+            let outer = inner_half_disc(&window, &recipe);
+            let hole = hole_points(&window, &outer);
+            let angle = |p: &[f64; 2]| turned_angle([p[0], p[1] + 25.0], PI - design.alpha);
+            assert!(hole.windows(2).all(|p| angle(&p[0]) < angle(&p[1])));
+            assert!(outer.windows(2).all(|p| angle(&p[0]) < angle(&p[1])));
+            let mouth = window.kerf_at_hole(Side::B);
+            assert!((hole[0][0] - mouth[0]).abs() + (hole[0][1] - mouth[1]).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! The unstructured mesh: free triangles that grow with the distance d from O.
+//!
+//! Their size is tip_size w_lig + rim_size r_win (d / r_win)^2: even across the ligament, which
+//! folds all along, and coarse in the panels, which only bend.
+
+use super::Script;
+use crate::msh::Boundary;
+use crate::tier::Unstructured;
+use crate::window::{Side, Window};
+
+/// Adds the window as one surface, and the sizes of its triangles.
+pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Unstructured) {
+    let (w, rho, r) = (window.0.w_lig, window.0.fillet_radius(), window.0.r_win);
+    let centre = geo.point([0.0, 0.0]);
+    let tip = geo.point(window.0.tip());
+    let [hole_b, hole_a] = [Side::B, Side::A].map(|side| geo.point(window.kerf_at_hole(side)));
+    // gmsh's arcs are shorter than a half circle: the hole is two, that meet opposite the cut.
+    let [x, y] = window.0.main_cut();
+    let crown = geo.point([-rho * x, -w - rho * y]);
+    let [cut_b, cut_a] = [Side::B, Side::A].map(|side| geo.point(window.kerf_at_radius(side, r)));
+    let [right, left] = [r, -r].map(|x| geo.point([x, 0.0]));
+
+    let arc_a = geo.arc(left, centre, cut_a);
+    let face_a = geo.line(cut_a, hole_a);
+    let hole = [geo.arc(hole_a, tip, crown), geo.arc(crown, tip, hole_b)];
+    let face_b = geo.line(hole_b, cut_b);
+    let arc_b = geo.arc(cut_b, centre, right);
+    let edge = geo.line(right, left);
+    geo.surface(&[arc_a, face_a, hole[0], hole[1], face_b, arc_b, edge]);
+    geo.boundary(Boundary::Hole, &hole);
+    geo.boundary(Boundary::ArcA, &[arc_a]);
+    geo.boundary(Boundary::ArcB, &[arc_b]);
+    let (tip_size, rim_size) = (recipe.tip_size * w, recipe.rim_size / r);
+    geo.add(format_args!("Field[1] = MathEval;"));
+    geo.add(format_args!(
+        "Field[1].F = \"{tip_size:?} + {rim_size:?} * (x * x + (y + {w:?}) * (y + {w:?}))\";"
+    ));
+    geo.add(format_args!("Background Field = 1;"));
+    for source in ["FromPoints", "FromCurvature", "ExtendFromBoundary"] {
+        geo.add(format_args!("Mesh.CharacteristicLength{source} = 0;"));
+    }
+}
