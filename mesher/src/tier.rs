@@ -117,7 +117,7 @@ impl Tier {
             Tier::Reference => (structured(5, 26, 4, 10, 0.06), 2),
             Tier::Paper => (
                 PlaneRecipe::Unstructured(Unstructured {
-                    tip_size: 0.08,
+                    tip_size: 0.1,
                     rim_size: 0.2,
                 }),
                 1,

@@ -1,7 +1,7 @@
 //! The unstructured mesh: free triangles that grow with the distance d from O.
 //!
-//! Their size is tip_size w_lig + rim_size r_win (d / r_win)^2: even across the ligament, which
-//! folds all along, and coarse in the panels, which only bend.
+//! Their size is tip_size w_lig (1 + (d / (1.5 w_lig))^2), no more than rim_size r_win: nearly even
+//! across the ligament, which folds all along, and coarse in the panels, which only bend.
 
 use super::Script;
 use crate::msh::Boundary;
@@ -30,10 +30,13 @@ pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Unstructured) {
     geo.boundary(Boundary::Hole, &hole);
     geo.boundary(Boundary::ArcA, &[arc_a]);
     geo.boundary(Boundary::ArcB, &[arc_b]);
-    let (tip_size, rim_size) = (recipe.tip_size * w, recipe.rim_size / r);
+    let (tip_size, rim_size) = (recipe.tip_size * w, recipe.rim_size * r);
+    let reach = (1.5 * w).powi(2);
     geo.add(format_args!("Field[1] = MathEval;"));
     geo.add(format_args!(
-        "Field[1].F = \"{tip_size:?} + {rim_size:?} * (x * x + (y + {w:?}) * (y + {w:?}))\";"
+        // The harmonic sum is no more than either, and smooth.
+        "Field[1].F = \"1 / (1 / ({tip_size:?} * (1 + (x * x + (y + {w:?}) * (y + {w:?})) \
+         / {reach:?})) + 1 / {rim_size:?})\";"
     ));
     geo.add(format_args!("Background Field = 1;"));
     for source in ["FromPoints", "FromCurvature", "ExtendFromBoundary"] {
