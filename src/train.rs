@@ -114,14 +114,23 @@ impl TrainCommand {
     }
 
     fn refuse_existing(&self) -> Result<()> {
+        // Card and manifest are both `<stem>.json`.
+        if card_path(&self.out) == card_path(&self.database) {
+            bail!(
+                "the card of {} would replace the database's manifest: choose another name",
+                self.out.display()
+            );
+        }
         if self.replace || self.resume {
             return Ok(());
         }
-        if self.out.exists() {
-            bail!(
-                "{} exists: choose another name or pass --replace",
-                self.out.display()
-            );
+        for path in [self.out.clone(), card_path(&self.out)] {
+            if path.exists() {
+                bail!(
+                    "{} exists: choose another name or pass --replace",
+                    path.display()
+                );
+            }
         }
         if self.state().exists() {
             bail!(
@@ -249,6 +258,11 @@ impl TrainCommand {
 
 fn write(path: &Path, text: &str) -> Result<()> {
     std::fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// Where the card of weights, or the manifest of a database, stands.
+fn card_path(file: &Path) -> PathBuf {
+    file.with_extension("json")
 }
 
 fn parity_chart(parity: &Parity) -> Result<String> {

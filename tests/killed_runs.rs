@@ -23,7 +23,7 @@ impl Replay {
             CAMPAIGN,
             &[
                 ("count = 40", "count = 6"),
-                ("theta_deg = [10.0, 60.0]", "theta_deg = [4.0, 8.0]"),
+                ("theta_deg = [10.0, 40.0]", "theta_deg = [4.0, 8.0]"),
             ],
         );
         let replay = Self { work };

@@ -116,7 +116,9 @@ fn what_cannot_be_evaluated_or_resumed_is_told() {
     ));
     assert!(error.contains("own.state"), "{error}");
     let error = work.error("dataset summary own.csv");
-    assert!(error.contains("own.json"), "{error}");
+    assert!(error.contains("own.csv is not the file"), "{error}");
+    let error = work.error(&format!("train {DATABASE} --out own.safetensors --replace"));
+    assert!(error.contains("manifest"), "{error}");
     let tiny = concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/surrogate/tests/cases/chi_tiny.safetensors"

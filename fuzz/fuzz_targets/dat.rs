@@ -8,6 +8,7 @@ const LAYOUT: Layout = Layout {
     arc_nodes: 2,
     bottom_nodes: 1,
     elements: 1,
+    points: 8,
 };
 
 fuzz_target!(|bytes: &[u8]| {

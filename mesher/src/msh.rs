@@ -254,15 +254,15 @@ mod tests {
         ) {
             let lines: Vec<_> = SQUARE.split_inclusive('\n').collect();
             let shuffled: String = order.iter().map(|index| *index.get(&lines)).collect();
-            if let Ok(mesh) = read_msh(shuffled.as_bytes()) {
-                prop_assert!(mesh.quads.iter().flatten().all(|index| *index < mesh.nodes.len()));
+            if let Ok(mesh) = read_msh(shuffled.as_bytes(), ElementKind::Brick) {
+                prop_assert!(mesh.faces.iter().flatten().all(|index| *index < mesh.nodes.len()));
             }
         }
 
         #[test]
         fn any_bytes_give_a_mesh_or_an_error(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
             // A mesh needs markers that random bytes do not spell.
-            prop_assert!(read_msh(&bytes).is_err());
+            prop_assert!(read_msh(&bytes, ElementKind::Brick).is_err());
         }
 
         #[test]

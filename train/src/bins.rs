@@ -8,12 +8,15 @@ use surrogate::ErrorBin;
 /// Bins of each quantity, of one width.
 const BINS: usize = 5;
 
+/// What a row is binned by.
+type Quantity<'a> = &'a dyn Fn(&Row) -> f64;
+
 /// Errors on `rows`, of which `parity` tells targets and predictions, by rotation, ligament width,
 /// cut angle, and distance from the edge of the domain; bins without a row are left out.
 pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain) -> Vec<ErrorBin> {
     let degrees = |[least, greatest]: [f64; 2]| [least.to_degrees(), greatest.to_degrees()];
     let edge = |row: &Row| edge_distance(row, domain);
-    let quantities: [(&str, [f64; 2], &dyn Fn(&Row) -> f64); 4] = [
+    let quantities: [(&str, [f64; 2], Quantity); 4] = [
         ("theta_deg", degrees(domain.theta), &|row| {
             row.sample.theta.to_degrees()
         }),

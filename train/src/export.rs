@@ -94,7 +94,6 @@ mod tests {
             },
             material: String::new(),
             tier: String::new(),
-            solved_tier: String::new(),
             dataset_hash: String::new(),
             split_hash: String::new(),
             training: serde_json::Value::Null,
