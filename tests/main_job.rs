@@ -33,8 +33,21 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
     let collect = format!(
         "database collect {CAMPAIGN} --folder runs/demo/campaign --out runs/demo/hinges.parquet"
     );
+    let status = format!("database status {CAMPAIGN} --folder runs/demo/campaign");
+    assert!(work.output(&status).contains("6 rays complete"));
     work.output(&collect);
     assert!(work.error(&collect).contains("exists"));
+
+    // What was run is what is collected.
+    work.edit(CAMPAIGN, &[("count = 6", "count = 7")]);
+    for command in [format!("{collect} --replace"), status] {
+        let message = work.error(&command);
+        assert!(
+            message.contains("has changed since it was run"),
+            "{message}"
+        );
+    }
+    work.edit(CAMPAIGN, &[("count = 7", "count = 6")]);
 
     let train = "train runs/demo/hinges.parquet --config configs/training/demo.toml \
                  --out runs/demo/surrogate.safetensors";

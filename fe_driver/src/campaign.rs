@@ -50,6 +50,11 @@ pub enum CampaignError {
         found: String,
         asked: String,
     },
+    #[error(
+        "the campaign has changed since it was run in {folder} ({changes}): run it again first",
+        folder = .folder.display()
+    )]
+    Changed { folder: PathBuf, changes: String },
     #[error("{0} holds no campaign: run one there first")]
     NoCampaign(PathBuf),
     #[error("another run is at work, and holds {0}: wait for it or stop it")]

@@ -3,7 +3,7 @@
 //! `campaign.json` names the campaign and its jobs as last run, `jobs/<id>/` holds one job each,
 //! `events-<i>-of-<n>.jsonl` is the append-only history of each shard, and its lock.
 
-use crate::campaign::CampaignError;
+use crate::campaign::{Campaign, CampaignError};
 use crate::failure::FailureKind;
 use crate::history::History;
 use crate::job::{FileError, JobFolder, JobRecord, JobSpec, read_json, write_json};
@@ -197,6 +197,33 @@ pub struct Status {
     pub name: String,
     pub tally: Tally,
     pub throughput: Option<Throughput>,
+}
+
+/// Refuses a folder in which `campaign` was last run with other settings than it has now.
+///
+/// Tool versions are those of the folder: neither gmsh nor ccx need be installed.
+pub fn refuse_changed(campaign: &Campaign, folder: &Path) -> Result<(), CampaignError> {
+    let folder = CampaignFolder(folder.to_owned());
+    folder.belongs_to(&campaign.name)?;
+    let ids = folder.index()?.jobs;
+    let mut specs = ids.iter().map(|id| folder.job(id).spec());
+    let Some(solved) = specs.find_map(Result::transpose).transpose()? else {
+        return Ok(());
+    };
+    let asked = campaign.jobs(&solved.tools);
+    if Index::of(&campaign.name, &asked).jobs == ids {
+        return Ok(());
+    }
+    let changes = asked
+        .first()
+        .map_or(Vec::new(), |first| first.differences(&solved));
+    Err(CampaignError::Changed {
+        folder: folder.0,
+        changes: match changes.as_slice() {
+            [] => "its rays".into(),
+            changes => changes.join(", "),
+        },
+    })
 }
 
 /// How the campaign in `folder` stands, as it was last run.

@@ -35,7 +35,7 @@ pub use doctor::{Diagnosis, doctor};
 pub use failure::{FailureKind, Rung, UnknownFailure};
 pub use finished::{FinishedJob, finished_jobs};
 pub use job::{FileError, JobSpec, ToolVersions};
-pub use ledger::{Status, Tally, Throughput, status};
+pub use ledger::{Status, Tally, Throughput, refuse_changed, status};
 pub use path::{DeformationPath, PathError};
 pub use plan::{Plan, plan};
 pub use ray::Ray;

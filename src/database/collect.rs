@@ -40,6 +40,7 @@ impl CollectCommand {
 
     pub fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
+        fe_driver::refuse_changed(&self.campaign.load()?, &folder)?;
         let tally = fe_driver::status(&folder)?.tally;
         let missing = missing(&tally);
         if tally.to_run() > 0 && !self.partial {

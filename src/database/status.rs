@@ -16,7 +16,9 @@ pub struct StatusCommand {
 
 impl StatusCommand {
     pub fn run(&self) -> Result<()> {
-        let status = fe_driver::status(&self.campaign.folder())?;
+        let folder = self.campaign.folder();
+        fe_driver::refuse_changed(&self.campaign.load()?, &folder)?;
+        let status = fe_driver::status(&folder)?;
         if self.json {
             println!("{}", serde_json::to_string_pretty(&status)?);
             return Ok(());
