@@ -7,10 +7,10 @@
 
 use crate::adam::Adam;
 use crate::design_vector::DesignVector;
-use crate::files;
 use crate::gradient::{DesignError, DesignProblem, Evaluation};
 use crate::outline_error::outline_error;
 use crate::scene::{Scene, SceneConfig, SceneError};
+use hinge::files;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -11,7 +11,6 @@ pub mod design_vector;
 pub mod drawing;
 pub mod equilibrium;
 pub mod fabrication;
-pub mod files;
 pub mod gradient;
 pub mod grid;
 pub mod hinge_law;

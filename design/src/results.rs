@@ -2,11 +2,11 @@
 
 use crate::drawing;
 use crate::fabrication::{CutLines, FabricationError, write_dxf, write_svg};
-use crate::files;
 use crate::gradient::Deployment;
 use crate::inverse_design::Designed;
 use crate::report::Report;
 use crate::scene::Scene;
+use hinge::files;
 use std::path::PathBuf;
 
 /// A result that could not be written.

@@ -6,7 +6,7 @@
 
 use crate::failure::{FailureKind, Rung};
 use crate::window_solve::{Tools, WindowProblem};
-use hinge::HingeSample;
+use hinge::{HingeSample, files};
 use mesher::{MeshRecipe, Tier};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -172,7 +172,7 @@ impl JobFolder {
             .try_for_each(|sample| writer.serialize(sample))
             .map_err(FileError::at(&path))?;
         let bytes = writer.into_inner().expect("a vector takes every byte");
-        write_atomically(&path, &bytes)?;
+        files::write(&path, &bytes).map_err(FileError::at(&path))?;
         Ok(blake3::hash(&bytes).to_hex().to_string())
     }
 
@@ -217,14 +217,7 @@ pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, F
 
 pub(crate) fn write_json<T: Serialize>(path: &Path, value: &T) -> Result<(), FileError> {
     let bytes = serde_json::to_vec_pretty(value).map_err(FileError::at(path))?;
-    write_atomically(path, &bytes)
-}
-
-/// Writes beside and renames: the path holds the old bytes or the new ones, never a part.
-fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
-    let beside = path.with_extension("partial");
-    std::fs::write(&beside, bytes).map_err(FileError::at(&beside))?;
-    std::fs::rename(&beside, path).map_err(FileError::at(path))
+    files::write(path, &bytes).map_err(FileError::at(path))
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ pub fn write_dxf(path: &Path, cuts: &CutLines) -> Result<(), FabricationError> {
             path: path.to_owned(),
             source,
         })?;
-    crate::files::write(path, &text).map_err(|source| FabricationError::Write {
+    hinge::files::write(path, &text).map_err(|source| FabricationError::Write {
         path: path.to_owned(),
         source,
     })

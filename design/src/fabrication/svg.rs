@@ -9,7 +9,7 @@ const MARGIN: f64 = 0.05;
 
 /// Writes the cut lines; the file is replaced as a whole.
 pub fn write_svg(path: &Path, cuts: &CutLines) -> Result<(), FabricationError> {
-    crate::files::write(path, svg(cuts).as_bytes()).map_err(|source| FabricationError::Write {
+    hinge::files::write(path, svg(cuts).as_bytes()).map_err(|source| FabricationError::Write {
         path: path.to_owned(),
         source,
     })
