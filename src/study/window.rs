@@ -1,0 +1,282 @@
+//! `kirigami study window`: what the modelling choices of the window solve are worth.
+
+use crate::charts::{self, StudyPanel};
+use crate::progress::Progress;
+use crate::{interrupt, picture, run_folder};
+use anyhow::{Context, Result};
+use clap::Args;
+use fe_driver::{StudyCase, StudySolution, Tools, richardson, study_cases};
+use hinge::{HingeDesign, SheetMaterial};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+/// Convergence of the window solve: meshes, increments, imperfection, window radius, layers
+///
+/// Nine hinges are turned by 60 degrees, one choice varied at a time. What is solved is kept in the
+/// folder, so the study can be stopped and goes on where it was. Writes window.csv, window.md and
+/// window.svg. Example: kirigami study window --quick
+#[derive(Args)]
+pub struct WindowStudy {
+    /// Only the paper's hinge, 18 mm and 90 degrees, without the tiers that take minutes
+    #[arg(long)]
+    quick: bool,
+    /// Sheet material (TOML)
+    #[arg(
+        long,
+        value_name = "FILE",
+        default_value = "configs/materials/pet-0.5mm.toml"
+    )]
+    material: PathBuf,
+    /// Folder for the tables, the chart and the solutions
+    #[arg(long, value_name = "FOLDER", default_value = "runs/study-window")]
+    out: PathBuf,
+    /// End a solve after this time (s)
+    #[arg(long, value_name = "SECONDS", default_value_t = 3600)]
+    time_limit_s: u64,
+}
+
+/// A case and what it gave.
+type Row = (StudyCase, StudySolution);
+
+impl WindowStudy {
+    pub fn run(&self) -> Result<()> {
+        let material: SheetMaterial = hinge::config::read(&self.material)?;
+        let _held = run_folder::hold(&self.out)?;
+        let kept = self.out.join("solutions");
+        std::fs::create_dir_all(&kept)
+            .with_context(|| format!("cannot make the folder {}", kept.display()))?;
+        let tools = Tools::find()?;
+        let stop = interrupt::stop_flag()?;
+        let limit = Duration::from_secs(self.time_limit_s);
+        let cases: Vec<_> = self
+            .hinges()
+            .into_iter()
+            .flat_map(|design| study_cases(design, self.quick))
+            .collect();
+        let bar = Progress::new(cases.len(), "solves");
+        let (mut rows, mut failures): (Vec<Row>, _) = (Vec::new(), String::new());
+        for (done, case) in cases.into_iter().enumerate() {
+            bar.show(done, None, &case.value);
+            let solution = match case.kept(&kept)? {
+                Some(solution) => solution,
+                None => match case.solve(&material, &tools, &self.out, limit, stop) {
+                    Ok(solution) => {
+                        case.keep(&kept, &solution)?;
+                        solution
+                    }
+                    Err(error) if stop.load(Ordering::Relaxed) => return Err(error.into()),
+                    Err(error) => {
+                        writeln!(failures, "* {}: {error}", title(&case))?;
+                        continue;
+                    }
+                },
+            };
+            rows.push((case, solution));
+        }
+        bar.finish();
+        self.write("window.csv", &csv(&rows))?;
+        self.write("window.md", &markdown(&rows, &failures)?)?;
+        let chart = charts::studies(&panels(&rows))?;
+        let pictures = picture::save(&chart, &self.out.join("window"), 1600)?;
+        println!("{} solves; {}", rows.len(), pictures[1].display());
+        Ok(())
+    }
+
+    fn hinges(&self) -> Vec<HingeDesign> {
+        let all = [5.0, 18.0, 25.0].map(|w| [60.0, 90.0, 120.0].map(|alpha| (w, alpha)));
+        all.into_iter()
+            .flatten()
+            .filter(|hinge| !self.quick || *hinge == (18.0, 90.0))
+            .map(|(w_lig, alpha_deg)| HingeDesign {
+                w_lig,
+                alpha: f64::to_radians(alpha_deg),
+                fillet_ratio: 0.16,
+                kerf: 0.2,
+                r_win: 100.0,
+            })
+            .collect()
+    }
+
+    fn write(&self, name: &str, text: &str) -> Result<()> {
+        let path = self.out.join(name);
+        std::fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
+    }
+}
+
+/// The hinge and the value of a case.
+fn title(case: &StudyCase) -> String {
+    format!(
+        "{}, {}, {}",
+        hinge_name(&case.design),
+        case.study,
+        case.value
+    )
+}
+
+fn hinge_name(design: &HingeDesign) -> String {
+    let alpha_deg = design.alpha.to_degrees();
+    format!("{} mm, {alpha_deg:.0} deg", design.w_lig)
+}
+
+/// One line a solve.
+fn csv(rows: &[Row]) -> String {
+    let mut text = "study,value,w_lig_mm,alpha_deg,elements,cpu_seconds,iterations,\
+        w_45deg_n_mm,f_a_45deg_n,m_theta_45deg_n_mm,d_45deg,uz_50deg_mm,\
+        difference_w,difference_f_a,difference_m_theta,difference_d\n"
+        .to_owned();
+    for row @ (case, solution) in rows {
+        let [w, f_a, m, d, _] = solution.at(45.0);
+        let [.., uz] = solution.at(50.0);
+        let [dw, df, dm, dd, _] = difference(row, rows);
+        let (design, study, value) = (&case.design, case.study, &case.value);
+        let alpha_deg = design.alpha.to_degrees();
+        let (elements, cpu) = (solution.elements, solution.cpu_seconds);
+        let (w_lig, iterations) = (design.w_lig, solution.iterations);
+        text += &format!(
+            "{study},{value},{w_lig},{alpha_deg:.0},{elements},{cpu:.1},{iterations},\
+             {w:.4},{f_a:.4},{m:.4},{d:.6},{uz:.3},{dw:.5},{df:.5},{dm:.5},{dd:.5}\n"
+        );
+    }
+    text
+}
+
+/// The difference of a row from the one it is compared with; not a number if that one failed.
+fn difference((case, solution): &Row, rows: &[Row]) -> [f64; 5] {
+    let against = rows.iter().find(|(other, _)| is_compared(case, other));
+    against.map_or([f64::NAN; 5], |(_, other)| solution.difference(other))
+}
+
+fn markdown(rows: &[Row], failures: &str) -> Result<String> {
+    let mut text = "# Convergence of the window solve\n\n\
+        Pure rotations to 60 degrees. The differences are root mean squares over the ray, relative \
+        to the value named in the heading.\n"
+        .to_owned();
+    let mut heading = String::new();
+    for row @ (case, solution) in rows {
+        let own = format!(
+            "{}: {} against {}",
+            hinge_name(&case.design),
+            case.study,
+            case.against
+        );
+        if own != heading {
+            write!(
+                text,
+                "\n## {own}\n\n| value | elements | CPU s | W(45), N mm | u_z(50), mm | W | F_a \
+                 | M_theta | D |\n|---|---|---|---|---|---|---|---|---|\n"
+            )?;
+            heading = own;
+        }
+        let ([w, ..], [.., uz]) = (solution.at(45.0), solution.at(50.0));
+        let [dw, df, dm, dd, _] = difference(row, rows).map(|x| 100.0 * x);
+        writeln!(
+            text,
+            "| {} | {} | {:.1} | {w:.2} | {uz:.2} | {dw:.2} % | {df:.2} % | {dm:.2} % | {dd:.2} % |",
+            case.value, solution.elements, solution.cpu_seconds
+        )?;
+    }
+    text += &extrapolation(rows)?;
+    text += &paper_comparison(rows)?;
+    if !failures.is_empty() {
+        write!(text, "\n## Solves that did not reach the end\n\n{failures}")?;
+    }
+    Ok(text)
+}
+
+/// W(45) extrapolated from the default tier and the finest of the mesh study.
+fn extrapolation(rows: &[Row]) -> Result<String> {
+    let mut text = "\n## Richardson estimate of the default tier\n\n\
+        | hinge | W(45), default | W(45), size 0 | error of the default |\n|---|---|---|---|\n"
+        .to_owned();
+    let is_default = |case: &StudyCase| case.study == "mesh" && case.value == "default";
+    for (case, default) in rows.iter().filter(|(case, _)| is_default(case)) {
+        let finest = rows.iter().find(|(other, _)| is_compared(case, other));
+        if let Some((_, finest)) = finest {
+            let known = [default, finest].map(|s| (s.elements, s.at(45.0)[0]));
+            let limit = richardson(known);
+            let error = 100.0 * (known[0].1 / limit - 1.0);
+            let name = hinge_name(&case.design);
+            writeln!(
+                text,
+                "| {name} | {:.2} | {limit:.2} | {error:+.1} % |",
+                known[0].1
+            )?;
+        }
+    }
+    Ok(text)
+}
+
+/// Beside the numbers of the paper's sections 2.4 and 4: bins of 5 to 9 and of 21 to 25 mm, whose
+/// middles lie on power laws through our hinges.
+fn paper_comparison(rows: &[Row]) -> Result<String> {
+    let at = |w_lig: f64| {
+        let found = rows.iter().find(|(case, _)| {
+            case.study == "mesh"
+                && case.value == "default"
+                && case.design.w_lig == w_lig
+                && (case.design.alpha.to_degrees() - 90.0).abs() < 1e-9
+        });
+        found.map(|(_, solution)| (solution.at(45.0), solution.at(50.0)[4]))
+    };
+    let mut text = "\n## Beside the paper (90 deg, default tier)\n\n\
+        | quantity | here | paper |\n|---|---|---|\n"
+        .to_owned();
+    if let Some((_, uz)) = at(18.0) {
+        writeln!(
+            text,
+            "| u_z(50 deg), 18 mm | {uz:.1} mm | 25 mm, measured 25.5 |"
+        )?;
+    }
+    if let (Some((narrow, uz_narrow)), Some((wide, uz_wide))) = (at(5.0), at(25.0)) {
+        let middle = |from: f64, to: f64, w_lig: f64| {
+            from * (to / from).powf((w_lig / 5.0).ln() / 5.0_f64.ln())
+        };
+        let [w7, w23] = [7.0, 23.0].map(|w_lig| middle(narrow[0], wide[0], w_lig));
+        let [d7, d23] = [7.0, 23.0].map(|w_lig| middle(narrow[3], wide[3], w_lig));
+        let [u7, u23] = [7.0, 23.0].map(|w_lig| middle(uz_narrow, uz_wide, w_lig) / 0.5);
+        writeln!(
+            text,
+            "| W(45 deg), 7 mm | {w7:.1} N mm | 36.4 (5 to 9 mm) |"
+        )?;
+        writeln!(
+            text,
+            "| W(45 deg), 23 mm | {w23:.1} N mm | 113.7 (21 to 25 mm) |"
+        )?;
+        writeln!(text, "| D(45 deg), 7 over 23 mm | {:.1} | 17 |", d7 / d23)?;
+        writeln!(text, "| u_z(50 deg) / t, 7 mm | {u7:.1} | 20.9 |")?;
+        writeln!(text, "| u_z(50 deg) / t, 23 mm | {u23:.1} | 53.8 |")?;
+    }
+    Ok(text)
+}
+
+/// One panel a study, one line a hinge: W(45) above that of the value compared with, in percent.
+fn panels(rows: &[Row]) -> Vec<StudyPanel> {
+    let mut panels: BTreeMap<&str, StudyPanel> = BTreeMap::new();
+    for (case, solution) in rows {
+        let against = rows.iter().find(|(other, _)| is_compared(case, other));
+        let Some((_, against)) = against else {
+            continue;
+        };
+        let panel = panels.entry(case.study).or_default();
+        panel.title = case.study;
+        let value = panel.values.iter().position(|known| *known == case.value);
+        let value = value.unwrap_or_else(|| {
+            panel.values.push(case.value.clone());
+            panel.values.len() - 1
+        });
+        let percent = 100.0 * (solution.at(45.0)[0] / against.at(45.0)[0] - 1.0);
+        let line = panel.lines.entry(hinge_name(&case.design)).or_default();
+        line.push((value as f64, percent));
+    }
+    panels.into_values().collect()
+}
+
+/// Whether `other` is the case that `case` is compared with.
+fn is_compared(case: &StudyCase, other: &StudyCase) -> bool {
+    other.study == case.study
+        && other.value == case.against
+        && hinge_name(&other.design) == hinge_name(&case.design)
+}
