@@ -98,7 +98,7 @@ impl SolveCommand {
                 "iterations": solution.iterations,
             });
             println!("{description:#}");
-        } else {
+        } else if !solution.samples.is_empty() {
             println!("{}", ray_table(&solution.samples));
             println!(
                 "{} increments, {} iterations, {:.1} s; mesh, deck and log in {}",

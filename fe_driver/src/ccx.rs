@@ -26,8 +26,6 @@ pub struct CcxRun {
     pub run: Run,
     /// Whether it says that it came to the end of the deck, and left with status zero.
     pub finished: bool,
-    /// Newton iterations over all increments, cut-backs included.
-    pub iterations: usize,
 }
 
 impl Ccx {
@@ -53,16 +51,8 @@ impl Ccx {
         let run = self.0.run(&["-i", job], folder, &log, limit, stop)?;
         let bytes = std::fs::read(&log).unwrap_or_default();
         let text = String::from_utf8_lossy(&bytes);
-        let iterations = text
-            .lines()
-            .filter(|line| {
-                let words = line.trim_start().strip_prefix("iteration ");
-                words.is_some_and(|rest| rest.trim().parse::<u32>().is_ok())
-            })
-            .count();
         Ok(CcxRun {
             finished: run.status.success() && text.contains(END_MARKER),
-            iterations,
             run,
         })
     }

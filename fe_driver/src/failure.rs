@@ -14,6 +14,8 @@ pub enum FailureKind {
     InvalidInput,
     /// gmsh failed, or its mesh was refused.
     MeshFailed,
+    /// The solver ended before its first increment: it is broken, or its deck is.
+    NotStarted,
     /// Increments fell below the least allowed.
     Diverged,
     /// Ended at the time limit.
@@ -31,9 +33,10 @@ const DISK_FULL: &str = "No space left on device";
 
 impl FailureKind {
     /// Every kind.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::InvalidInput,
         Self::MeshFailed,
+        Self::NotStarted,
         Self::Diverged,
         Self::TimedOut,
         Self::Killed,
@@ -50,6 +53,7 @@ impl FailureKind {
                 Some(Self::InvalidInput)
             }
             SolveError::Diverged { tail, .. }
+            | SolveError::NotStarted { tail, .. }
             | SolveError::Mesh(MeshError::Gmsh(ToolError::Failed { tail, .. }))
                 if tail.contains(DISK_FULL) =>
             {
@@ -66,8 +70,11 @@ impl FailureKind {
             ) => Some(Self::MeshFailed),
             SolveError::Solver(ToolError::TimedOut { .. }) => Some(Self::TimedOut),
             SolveError::Solver(ToolError::Killed { .. }) => Some(Self::Killed),
+            SolveError::NotStarted { .. } => Some(Self::NotStarted),
             SolveError::Diverged { .. } => Some(Self::Diverged),
-            SolveError::Truncated { .. } | SolveError::Output(_) => Some(Self::OutputTruncated),
+            SolveError::Truncated { .. } | SolveError::Skipped { .. } | SolveError::Output(_) => {
+                Some(Self::OutputTruncated)
+            }
             SolveError::EnergyImbalance { .. } => Some(Self::EnergyImbalance),
             SolveError::Mesh(_) | SolveError::Solver(_) | SolveError::File { .. } => None,
         }
@@ -79,7 +86,10 @@ impl FailureKind {
         let next = match (self, rung) {
             (Self::InvalidInput, _) | (_, Rung::FinerTier) => None,
             (Self::MeshFailed, _) => Some(Rung::FinerTier),
-            (Self::Killed | Self::OutputTruncated, Rung::AsAsked) => Some(Rung::Again),
+            (Self::NotStarted | Self::Killed | Self::OutputTruncated, Rung::AsAsked) => {
+                Some(Rung::Again)
+            }
+            (Self::NotStarted, _) => None,
             (_, Rung::AsAsked | Rung::Again) => Some(Rung::ShorterIncrements),
             // A finer mesh would take longer still.
             (Self::TimedOut, Rung::ShorterIncrements) => None,
@@ -93,6 +103,7 @@ impl FailureKind {
         match self {
             Self::InvalidInput => "invalid-input",
             Self::MeshFailed => "mesh-failed",
+            Self::NotStarted => "not-started",
             Self::Diverged => "diverged",
             Self::TimedOut => "timed-out",
             Self::Killed => "killed",

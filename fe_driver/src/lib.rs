@@ -24,6 +24,7 @@ mod retry;
 mod run;
 mod sampling;
 mod shard;
+mod sta;
 mod study;
 mod window_solve;
 
@@ -44,7 +45,10 @@ pub use retry::retry;
 pub use run::{Progress, RunOptions, run};
 pub use sampling::{CommonDesign, RayBox};
 pub use shard::{InvalidShard, Shard};
-pub use study::{STUDY_THETA_DEG, StudyCase, StudySolution, StudyState, richardson, study_cases};
+pub use sta::{Attempt, read_sta};
+pub use study::{
+    Richardson, STUDY_THETA_DEG, StudyCase, StudySolution, StudyState, richardson, study_cases,
+};
 pub use window_solve::{
     SolveError, Tools, WindowModel, WindowProblem, WindowSolution, solve_window,
 };

@@ -221,10 +221,6 @@ impl Worker<'_> {
         let (samples, error, cpu_seconds) =
             match solve_window(&problem, self.tools, &work, self.limit, self.halt) {
                 Ok(solution) => (solution.samples, solution.stopped, solution.cpu_seconds),
-                Err(SolveError::Solver(error)) => {
-                    let cpu_seconds = error.cpu_seconds();
-                    (Vec::new(), Some(SolveError::Solver(error)), cpu_seconds)
-                }
                 Err(error) => (Vec::new(), Some(error), None),
             };
         let failure = match error {

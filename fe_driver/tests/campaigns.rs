@@ -90,10 +90,13 @@ fn an_interrupted_campaign_is_resumed_to_the_same_rows() {
     assert!(matches!(&refused, CampaignError::OtherCampaign { found, .. } if found == "demo"));
 }
 
+/// One increment that diverges, in the solver's account, and its last words.
+const GIVES_UP: &str = "echo '1 1 1U 4 0. 0. 0.005' > window.sta; echo '*ERROR: too small'";
+
 #[test]
 fn a_failing_solver_climbs_the_ladder_and_is_counted() {
     let folder = tempfile::tempdir().unwrap();
-    let program = fake_ccx(folder.path(), "echo '*ERROR: too small'; exit 201");
+    let program = fake_ccx(folder.path(), &format!("{GIVES_UP}; exit 201"));
     let tools = Tools {
         ccx: Ccx::at(&program).unwrap(),
         ..Tools::find().unwrap()

@@ -21,19 +21,28 @@ fn solve(body: &str, folder: &Path, limit: Duration) -> Result<WindowSolution, S
 
 fn failure(body: &str) -> (SolveError, FailureKind) {
     let folder = tempfile::tempdir().unwrap();
-    let error = solve(body, folder.path(), Duration::from_secs(60)).unwrap_err();
+    let solution = solve(body, folder.path(), Duration::from_secs(60)).unwrap();
+    assert!(solution.samples.is_empty());
+    let error = solution.stopped.unwrap();
     let kind = FailureKind::of(&error).unwrap();
     (error, kind)
 }
 
 #[test]
 fn a_solver_that_fails_tells_the_end_of_its_log() {
-    let (error, kind) = failure("echo '*ERROR: increment size smaller than minimum'; exit 201");
-    assert_eq!(kind, FailureKind::Diverged);
-    assert!(
-        error.to_string().contains("smaller than minimum"),
-        "{error}"
-    );
+    let words = "echo '*ERROR: increment size smaller than minimum'; exit 201";
+    let attempted = format!("echo '1 1 1U 4 0. 0. 0.005' > window.sta; {words}");
+    for (body, expected) in [
+        (words, FailureKind::NotStarted),
+        (&attempted, FailureKind::Diverged),
+    ] {
+        let (error, kind) = failure(body);
+        assert_eq!(kind, expected);
+        assert!(
+            error.to_string().contains("smaller than minimum"),
+            "{error}"
+        );
+    }
 }
 
 #[test]
@@ -60,11 +69,11 @@ fn a_hanging_solver_is_ended_with_its_children() {
     let folder = tempfile::tempdir().unwrap();
     let body = "sleep 1000 & echo $! > child; trap '' TERM; while true; do sleep 1; done";
     let limit = Duration::from_millis(300);
-    let error = solve(body, folder.path(), limit).unwrap_err();
-    assert!(
-        matches!(error, SolveError::Solver(ToolError::TimedOut { .. })),
-        "{error}"
-    );
+    let stopped = solve(body, folder.path(), limit).unwrap().stopped;
+    assert!(matches!(
+        stopped,
+        Some(SolveError::Solver(ToolError::TimedOut { .. }))
+    ));
     let child = std::fs::read_to_string(folder.path().join("child")).unwrap();
     let stat = Path::new("/proc").join(child.trim()).join("stat");
     let running = || std::fs::read_to_string(&stat).is_ok_and(|stat| !stat.contains(") Z"));
@@ -86,8 +95,9 @@ fn what_an_earlier_solve_left_is_not_taken_for_a_result() {
         limit,
     )
     .unwrap();
-    let error = solve("echo 'Job finished'", folder.path(), limit).unwrap_err();
-    assert!(matches!(error, SolveError::Truncated { .. }), "{error}");
+    let again = solve("echo 'Job finished'", folder.path(), limit).unwrap();
+    assert!(again.samples.is_empty());
+    assert!(matches!(again.stopped, Some(SolveError::Truncated { .. })));
 }
 
 /// A real solve whose output is cut: the complete increments before the cut are kept.

@@ -27,7 +27,7 @@ static RECORDING: LazyLock<Recording> = LazyLock::new(|| {
     std::fs::create_dir_all(&outputs).unwrap();
     let tools = Tools::find().unwrap();
     let recorder = format!(
-        "{} \"$@\" || exit\n{JOB_ID}; cp window.dat {}/$id.dat",
+        "{} \"$@\" || exit\n{JOB_ID}; for kind in sta dat; do cp window.$kind {}/$id.$kind; done",
         tools.ccx.0.program.display(),
         outputs.display()
     );
@@ -53,7 +53,7 @@ const JOB_ID: &str = "id=${PWD%/work}; id=${id##*/}";
 fn replaying(folder: &Path, fault: &str) -> Tools {
     let outputs = RECORDING.outputs.display();
     let body = format!(
-        "{JOB_ID}; output={outputs}/$id.dat\n{fault}\n\
+        "{JOB_ID}; output={outputs}/$id.dat; cp {outputs}/$id.sta window.sta\n{fault}\n\
          echo 'Job finished'; exec cp $output window.dat"
     );
     Tools {
@@ -83,7 +83,19 @@ struct Fault {
     rows: bool,
 }
 
-const FAULTS: [Fault; 5] = [
+const FAULTS: [Fault; 7] = [
+    Fault {
+        script: "rm window.sta; exit 127",
+        kind: FailureKind::NotStarted,
+        rows: false,
+    },
+    // An increment in the middle is missing, from its first heading to that of the next.
+    Fault {
+        script: "awk '/forces .fx/ { n++ } n != 3' $output > window.dat; \
+                 echo 'Job finished'; exit 0",
+        kind: FailureKind::OutputTruncated,
+        rows: false,
+    },
     Fault {
         script: "kill -9 $$",
         kind: FailureKind::Killed,

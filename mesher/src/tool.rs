@@ -42,6 +42,10 @@ pub struct Run {
     pub status: ExitStatus,
     /// User and system time of the process (s), where the system tells it.
     pub cpu_seconds: Option<f64>,
+    /// From start to end (s).
+    pub wall_seconds: f64,
+    /// Largest resident memory seen while it ran (MiB), where the system tells it.
+    pub peak_memory_mib: Option<f64>,
 }
 
 /// Why an external program gave no result.
@@ -178,7 +182,9 @@ impl Tool {
             .spawn(arguments, folder, log)
             .map_err(|source| self.cannot_start(source))?;
         let name = self.kind.name;
+        let mut peak_memory_mib = None;
         while !group.has_ended() {
+            peak_memory_mib = memory_mib(group.0.id()).or(peak_memory_mib);
             if stop.load(Ordering::Relaxed) {
                 group.end();
                 return Err(ToolError::Stopped { name });
@@ -206,6 +212,8 @@ impl Tool {
         Ok(Run {
             status,
             cpu_seconds,
+            wall_seconds: start.elapsed().as_secs_f64(),
+            peak_memory_mib,
         })
     }
 
@@ -314,6 +322,16 @@ fn cpu_seconds(pid: u32) -> Option<f64> {
     Some((ticks(11)? + ticks(12)?) / USER_HZ)
 }
 
+/// Largest resident memory so far of a running process (MiB), from /proc.
+fn memory_mib(pid: u32) -> Option<f64> {
+    let status = std::fs::read_to_string(format!("/proc/{pid}/status")).ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kib: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib / 1024.0)
+}
+
 /// The first executable file of that name on PATH.
 fn search_path(name: &str) -> Option<PathBuf> {
     use std::os::unix::fs::PermissionsExt;
@@ -379,7 +397,7 @@ mod tests {
     const LONG: Duration = Duration::from_secs(60);
 
     #[test]
-    fn a_run_tells_status_log_and_cpu_time() {
+    fn a_run_tells_status_log_time_and_memory() {
         let (ended, log) = run(
             "i=0; while [ $i -lt 200000 ]; do i=$((i+1)); done; echo out; echo err >&2; exit 3",
             LONG,
@@ -390,6 +408,9 @@ mod tests {
         assert_eq!(log, "out\nerr");
         let cpu = ended.cpu_seconds.unwrap();
         assert!(cpu > 0.0 && cpu < 10.0, "{cpu}");
+        assert!(ended.wall_seconds > 0.0);
+        let memory = ended.peak_memory_mib.unwrap();
+        assert!(memory > 0.1 && memory < 1000.0, "{memory}");
     }
 
     #[test]

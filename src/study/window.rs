@@ -5,8 +5,9 @@ use crate::progress::Progress;
 use crate::{interrupt, picture, run_folder};
 use anyhow::{Context, Result};
 use clap::Args;
-use fe_driver::{StudyCase, StudySolution, Tools, richardson, study_cases};
+use fe_driver::{Richardson, StudyCase, StudySolution, Tools, richardson, study_cases};
 use hinge::{HingeDesign, SheetMaterial};
+use mesher::{MeshRecipe, PlaneRecipe, Tier};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -16,8 +17,8 @@ use std::time::Duration;
 /// Convergence of the window solve: meshes, increments, imperfection, window radius, layers
 ///
 /// Nine hinges are turned by 60 degrees, one choice varied at a time. What is solved is kept in the
-/// folder, so the study can be stopped and goes on where it was. Writes window.csv, window.md and
-/// window.svg. Example: kirigami study window --quick
+/// folder, so the study can be stopped and goes on where it was. Writes window.csv, window.md,
+/// tradeoff.md and window.svg. Example: kirigami study window --quick
 #[derive(Args)]
 pub struct WindowStudy {
     /// Only the paper's hinge, 18 mm and 90 degrees, without the tiers that take minutes
@@ -79,6 +80,7 @@ impl WindowStudy {
         bar.finish();
         self.write("window.csv", &csv(&rows))?;
         self.write("window.md", &markdown(&rows, &failures)?)?;
+        self.write("tradeoff.md", &tradeoff(&rows)?)?;
         let chart = charts::studies(&panels(&rows))?;
         let pictures = picture::save(&chart, &self.out.join("window"), 1600)?;
         println!("{} solves; {}", rows.len(), pictures[1].display());
@@ -186,25 +188,122 @@ fn markdown(rows: &[Row], failures: &str) -> Result<String> {
     Ok(text)
 }
 
-/// W(45) extrapolated from the default tier and the finest of the mesh study.
+/// The states at 45 degrees extrapolated from the three finest meshes of the ladder.
 fn extrapolation(rows: &[Row]) -> Result<String> {
-    let mut text = "\n## Richardson estimate of the default tier\n\n\
-        | hinge | W(45), default | W(45), size 0 | error of the default |\n|---|---|---|---|\n"
+    let mut text = "\n## Richardson estimates of the default tier at 45 degrees\n\n\
+        From the three finest tiers, whose elements are similar. The order is that seen between \
+        them, or 2 (in brackets) where they show none.\n\n\
+        | hinge | quantity | default | size 0 | order | error of the default |\n\
+        |---|---|---|---|---|---|\n"
         .to_owned();
-    let is_default = |case: &StudyCase| case.study == "mesh" && case.value == "default";
-    for (case, default) in rows.iter().filter(|(case, _)| is_default(case)) {
-        let finest = rows.iter().find(|(other, _)| is_compared(case, other));
-        if let Some((_, finest)) = finest {
-            let known = [default, finest].map(|s| (s.elements, s.at(45.0)[0]));
-            let limit = richardson(known);
-            let error = 100.0 * (known[0].1 / limit - 1.0);
-            let name = hinge_name(&case.design);
+    for hinge in hinges(rows) {
+        let ladder = similar_meshes(rows, &hinge);
+        let (Some([x, y, z]), Some(default)) = (ladder.last_chunk(), tier(rows, &hinge, "default"))
+        else {
+            continue;
+        };
+        let sizes = [x.0, y.0, z.0];
+        let states = [x.1, y.1, z.1].map(|solution| solution.at(45.0));
+        for (i, name) in ["W, N mm", "F_a, N", "M_theta, N mm", "D"]
+            .iter()
+            .enumerate()
+        {
+            let Richardson {
+                order,
+                observed,
+                limit,
+            } = richardson(sizes, states.map(|state| state[i]));
+            let known = default.at(45.0)[i];
+            let error = 100.0 * (known / limit - 1.0);
+            let order = match observed {
+                true => format!("{order:.1}"),
+                false => "(2)".to_owned(),
+            };
             writeln!(
                 text,
-                "| {name} | {:.2} | {limit:.2} | {error:+.1} % |",
-                known[0].1
+                "| {hinge} | {name} | {known:.4} | {limit:.4} | {order} | {error:+.1} % |"
             )?;
         }
+    }
+    Ok(text)
+}
+
+/// The solved two-layer tiers of a hinge with the size of their elements over that of the default
+/// tier's, the coarsest first.
+fn similar_meshes<'a>(rows: &'a [Row], hinge: &str) -> Vec<(f64, &'a StudySolution)> {
+    let fold_size = |recipe: MeshRecipe| match recipe.plane {
+        PlaneRecipe::Structured(plane) if recipe.layers == 2 => Some(plane.fold_size),
+        _ => None,
+    };
+    let unit = fold_size(Tier::Default.recipe()).unwrap_or(1.0);
+    of_tiers(rows, hinge)
+        .filter_map(|(case, solution)| Some((fold_size(case.recipe)? / unit, solution)))
+        .collect()
+}
+
+/// The rows of the mesh study of one hinge.
+fn of_tiers<'a>(rows: &'a [Row], hinge: &str) -> impl Iterator<Item = &'a Row> {
+    rows.iter()
+        .filter(move |(case, _)| case.study == "mesh" && hinge_name(&case.design) == hinge)
+}
+
+fn tier<'a>(rows: &'a [Row], hinge: &str, name: &str) -> Option<&'a StudySolution> {
+    let mut found = of_tiers(rows, hinge).filter(|(case, _)| case.value == name);
+    found.next().map(|(_, solution)| solution)
+}
+
+/// Names of the hinges, each once, in the order of the study.
+fn hinges(rows: &[Row]) -> Vec<String> {
+    let mut names: Vec<_> = rows
+        .iter()
+        .map(|(case, _)| hinge_name(&case.design))
+        .collect();
+    names.dedup();
+    names
+}
+
+/// One row a tier: what it costs, and its largest difference from the finest over the hinges.
+fn tradeoff(rows: &[Row]) -> Result<String> {
+    let mut text = "## Window tier\n\n\
+        Pure rotations to 60 degrees; CPU time and memory are those of CalculiX, the mean and the \
+        greatest over the hinges. Differences from the tier `reference` are root mean squares \
+        over the ray, the greatest over the hinges. Driver is the share of the time from the mesh to the \
+        samples in which CalculiX does not run (median). Two cores solve two rays at a time. \
+        `kirigami study window`.\n\n\
+        | tier | hinges | elements | CPU s a ray | CPU s a row | rays an hour, 2 cores | memory, MiB \
+        | driver | W | F_a | M_theta | D |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n"
+        .to_owned();
+    for name in Tier::ALL.map(Tier::name) {
+        let solved: Vec<_> = rows
+            .iter()
+            .filter(|(case, _)| case.study == "mesh" && case.value == name)
+            .collect();
+        let Some((_, first)) = solved.first() else {
+            continue;
+        };
+        let sum = |of: fn(&StudySolution) -> f64| solved.iter().map(|(_, s)| of(s)).sum::<f64>();
+        let cpu = sum(|s| s.cpu_seconds);
+        let ray = cpu / solved.len() as f64;
+        let row = cpu / sum(|s| s.samples.len() as f64);
+        let memory = solved.iter().map(|(_, s)| s.peak_memory_mib);
+        let memory = memory.fold(0.0, f64::max);
+        let mut overheads: Vec<_> = solved.iter().map(|(_, s)| 100.0 * s.overhead).collect();
+        overheads.sort_by(f64::total_cmp);
+        let overhead = overheads[overheads.len() / 2];
+        let mut worst = [0.0_f64; 5];
+        for row in &solved {
+            let differences = difference(row, rows);
+            worst = std::array::from_fn(|i| worst[i].max(100.0 * differences[i]));
+        }
+        let [w, f_a, m, d, _] = worst;
+        writeln!(
+            text,
+            "| {name} | {} | {} | {ray:.1} | {row:.2} | {:.0} | {memory:.0} | {overhead:.1} % \
+             | {w:.1} % | {f_a:.1} % | {m:.1} % | {d:.1} % |",
+            solved.len(),
+            first.elements,
+            7200.0 / ray,
+        )?;
     }
     Ok(text)
 }
