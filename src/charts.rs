@@ -25,15 +25,16 @@ const SLICES: [RGBColor; 5] = [
 const GUIDE: RGBColor = RGBColor(120, 120, 120);
 const FONT: &str = "DejaVu Sans";
 
-/// Charts side by side, one a quantity, with the line of perfect agreement.
-pub fn parity(charts: &[ParityChart]) -> Result<String> {
+/// Charts side by side, one a quantity, with the line of perfect agreement; `axes` names what is
+/// computed and what is judged by it.
+pub fn parity(charts: &[ParityChart], axes: [&str; 2]) -> Result<String> {
     let mut svg = String::new();
     {
         let size = (360 * charts.len() as u32, 380);
         let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
         root.fill(&WHITE).map_err(drawing)?;
         for (area, chart) in root.split_evenly((1, charts.len())).iter().zip(charts) {
-            parity_chart(area, chart).map_err(drawing)?;
+            parity_chart(area, chart, axes).map_err(drawing)?;
         }
         root.present().map_err(drawing)?;
     }
@@ -48,7 +49,11 @@ fn drawing(error: impl std::fmt::Display) -> anyhow::Error {
     anyhow!("cannot draw the chart: {error}")
 }
 
-fn parity_chart(area: &Area, ParityChart { title, points }: &ParityChart) -> DrawResult {
+fn parity_chart(
+    area: &Area,
+    ParityChart { title, points }: &ParityChart,
+    [computed, judged]: [&str; 2],
+) -> DrawResult {
     let range = padded(points.iter().flat_map(|p| [p.target, p.predicted]));
     let mut chart = ChartBuilder::on(area)
         .caption(title, (FONT, 15))
@@ -62,8 +67,8 @@ fn parity_chart(area: &Area, ParityChart { title, points }: &ParityChart) -> Dra
         .x_labels(5)
         .y_labels(5)
         .label_style((FONT, 12))
-        .x_desc("finite elements")
-        .y_desc("surrogate")
+        .x_desc(computed)
+        .y_desc(judged)
         .draw()?;
     let diagonal = [range.start, range.end].map(|v| (v, v));
     chart.draw_series(LineSeries::new(diagonal, GUIDE))?;
@@ -284,7 +289,7 @@ mod tests {
             title: title.into(),
             points: &points,
         };
-        let svg = parity(&[chart("W"), chart("D")]).unwrap();
+        let svg = parity(&[chart("W"), chart("D")], ["finite elements", "surrogate"]).unwrap();
         assert_eq!(svg.matches("<circle").count(), 6);
         assert!(svg.contains("finite elements"));
     }

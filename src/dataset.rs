@@ -1,5 +1,7 @@
 //! `kirigami dataset`: look at hinge databases, join them, split them, exchange them as CSV.
 
+mod compare;
+
 use anyhow::{Context, Result, ensure};
 use clap::{Args, Subcommand};
 use dataset::{ColumnMap, Database, Details, Gates, Mixing, SplitPlan, rows_from_csv};
@@ -19,6 +21,7 @@ enum Action {
     Split(SplitCommand),
     Import(ImportCommand),
     Export(ExportCommand),
+    Compare(compare::CompareCommand),
 }
 
 /// Print counts, ranges, histograms, rejected rows, energy residuals and coverage
@@ -107,6 +110,7 @@ impl DatasetCommand {
             Action::Split(command) => command.run(),
             Action::Import(command) => command.run(),
             Action::Export(command) => command.run(),
+            Action::Compare(command) => command.run(),
         }
     }
 }

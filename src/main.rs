@@ -21,6 +21,7 @@ mod solve;
 mod study;
 mod surrogate;
 mod table;
+mod tradeoff;
 mod train;
 mod window_args;
 
@@ -44,6 +45,7 @@ enum Command {
     Solve(solve::SolveCommand),
     #[command(subcommand)]
     Study(study::StudyCommand),
+    Tradeoff(tradeoff::TradeoffCommand),
     Database(database::DatabaseCommand),
     Dataset(dataset::DatasetCommand),
     Train(train::TrainCommand),
@@ -66,6 +68,7 @@ fn main() -> ExitCode {
         Command::Mesh(command) => command.run(),
         Command::Solve(command) => command.run(),
         Command::Study(command) => command.run(),
+        Command::Tradeoff(command) => command.run(),
         Command::Database(command) => command.run(),
         Command::Dataset(command) => command.run(),
         Command::Train(command) => command.run(),

@@ -1,16 +1,18 @@
 //! `kirigami solve`: one window solved along one ray, with a table of what it says.
 
+use crate::progress::Progress;
 use crate::table::table;
 use crate::window_args::WindowArgs;
 use crate::{interrupt, run_folder};
 use anyhow::{Result, bail};
 use clap::Args;
 use comfy_table::Table;
-use fe_driver::{DeformationPath, StepControl, Tools, WindowModel};
-use hinge::{HingeDeformation, HingeSample, SheetMaterial};
+use fe_driver::{DeformationPath, StepControl, Tools, WindowModel, reached};
+use hinge::{HingeDeformation, HingeDesign, HingeSample, SheetMaterial};
 use mesher::{Tier, mesh_window};
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// Solve one hinge window by finite elements and print its ray
@@ -84,7 +86,10 @@ impl SolveCommand {
             material: &material,
             step: &StepControl::default(),
         };
-        let solution = model.solve(&tools.ccx, &self.out, limit, stop)?;
+        warn_of_contact(&design, &path);
+        let solution = watched(&self.out, || {
+            model.solve(&tools.ccx, &self.out, limit, stop)
+        })?;
         if self.json {
             let description = json!({
                 "design": design,
@@ -113,6 +118,40 @@ impl SolveCommand {
             Some(reason) => bail!("the ray ends early: {reason}"),
         }
     }
+}
+
+/// The window knows no contact: says so where the flanks of the cut pass through each other.
+fn warn_of_contact(design: &HingeDesign, path: &DeformationPath) {
+    let states = (0..=100).map(|i| path.at(f64::from(i) / 100.0));
+    let gaps = states.map(|state| design.flank_gap(&state));
+    let least = gaps.fold(f64::INFINITY, f64::min);
+    if least < 0.0 {
+        eprintln!(
+            "warning: the flanks of the cut pass through each other by {:.2} mm at the window's rim, \
+             where a real sheet would touch: what follows is the hinge without contact",
+            -least
+        );
+    }
+}
+
+/// Does `solve` in `folder`, and shows meanwhile how far it has come.
+fn watched<T>(folder: &Path, solve: impl FnOnce() -> T) -> T {
+    /// Parts that a path is shown in.
+    const PARTS: f64 = 1000.0;
+    let done = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let bar = Progress::new(PARTS as usize, "lambda / 1000");
+            while !done.load(Ordering::Relaxed) {
+                bar.show((PARTS * reached(folder)) as usize, None, "");
+                std::thread::sleep(Duration::from_millis(100));
+            }
+            bar.finish();
+        });
+        let result = solve();
+        done.store(true, Ordering::Relaxed);
+        result
+    })
 }
 
 /// The rows of a ray, thinned to about twenty.

@@ -279,7 +279,7 @@ fn parity_chart(parity: &Parity) -> Result<String> {
         chart("damage D_peak", &parity.damage_peak),
     ];
     charts.retain(|chart| !chart.points.is_empty());
-    charts::parity(&charts)
+    charts::parity(&charts, ["finite elements", "surrogate"])
 }
 
 /// The least validation loss of a training.

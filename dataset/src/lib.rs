@@ -13,9 +13,11 @@
 //! | `mirror` | the mirror image of a row |
 //! | `manifest` | what stands beside the Parquet file |
 //! | `parquet` | reading and writing |
+//! | `compare` | the same rays solved twice |
 //! | `csv` | CSV, also of other solvers |
 //! | `summary` | counts, ranges, histograms and coverage, to print |
 
+mod compare;
 mod csv;
 mod database;
 mod gates;
@@ -27,6 +29,7 @@ mod schema;
 mod split;
 mod summary;
 
+pub use compare::{COMPARED, ComparedRay, ComparedState, compare, relative_rms};
 pub use csv::{ColumnMap, Constant, rows_from_csv};
 pub use database::{Database, DatasetError, Mixing};
 pub use gates::{Gates, Rejection};

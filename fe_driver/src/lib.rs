@@ -50,5 +50,5 @@ pub use study::{
     Richardson, STUDY_THETA_DEG, StudyCase, StudySolution, StudyState, richardson, study_cases,
 };
 pub use window_solve::{
-    SolveError, Tools, WindowModel, WindowProblem, WindowSolution, solve_window,
+    SolveError, Tools, WindowModel, WindowProblem, WindowSolution, reached, solve_window,
 };

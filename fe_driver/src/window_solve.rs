@@ -114,6 +114,13 @@ const MAX_ENERGY_RESIDUAL: f64 = 0.01;
 /// Name of the deck and its output in the folder of a solve.
 const JOB: &str = "window";
 
+/// How far along its path (lambda) the solve in `folder` has come, while it runs.
+pub fn reached(folder: &Path) -> f64 {
+    let status = std::fs::read(folder.join(JOB).with_extension("sta")).unwrap_or_default();
+    let attempts = read_sta(&status);
+    attempts.last().map_or(0.0, |attempt| attempt.lambda)
+}
+
 /// Meshes the window of `problem` and solves it in `folder`; see [`WindowModel::solve`].
 pub fn solve_window(
     problem: &WindowProblem,

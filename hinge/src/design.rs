@@ -1,5 +1,6 @@
 //! The hinge design vector g of (7).
 
+use crate::deformation::HingeDeformation;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -93,6 +94,14 @@ impl HingeDesign {
         [self.alpha.cos(), -self.alpha.sin()]
     }
 
+    /// Gap (mm) between the flanks of the main cut at the window's rim, in the plane of the sheet;
+    /// negative where they pass through each other, as they may: the window knows no contact.
+    pub fn flank_gap(&self, deformation: &HingeDeformation) -> f64 {
+        let normal = [self.alpha.sin(), self.alpha.cos()];
+        let HingeDeformation { a, s, theta } = deformation;
+        self.kerf + normal[0] * a + normal[1] * s + 2.0 * self.r_win * (0.5 * theta).sin()
+    }
+
     /// Radius of the hole drilled about O (mm).
     pub fn fillet_radius(&self) -> f64 {
         self.fillet_ratio * self.w_lig
@@ -162,6 +171,30 @@ mod tests {
         kerf: 0.2,
         r_win: 100.0,
     };
+
+    #[test]
+    fn the_flanks_meet_when_the_hinge_closes_by_the_kerf_at_the_rim() {
+        let gap = |a, theta| PAPER.flank_gap(&HingeDeformation { a, s: 0.0, theta });
+        assert_eq!(gap(0.0, 0.0), 0.2);
+        assert!((gap(-0.2, 0.0)).abs() < 1e-15);
+        assert!(gap(0.0, -0.0019) > 0.0 && gap(0.0, -0.0021) < 0.0);
+        // Opening by pi parts the ends of the flanks by the whole diameter.
+        assert!((gap(0.0, PI) - 200.2).abs() < 1e-12);
+        // Shear closes an oblique cut from one side and opens it from the other.
+        let oblique = HingeDesign {
+            alpha: PI / 4.0,
+            ..PAPER
+        };
+        let sheared = |design: HingeDesign, s| {
+            design.flank_gap(&HingeDeformation {
+                a: 0.0,
+                s,
+                theta: 0.0,
+            })
+        };
+        assert!(sheared(oblique, 1.0) > 0.2);
+        assert!((sheared(oblique.mirrored(), -1.0) - sheared(oblique, 1.0)).abs() < 1e-12);
+    }
 
     #[test]
     fn the_papers_hinge_is_accepted_and_mirrors_onto_itself_twice() {
