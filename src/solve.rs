@@ -72,8 +72,7 @@ impl SolveCommand {
                 w_lig,
             )),
         };
-        let material: SheetMaterial = hinge::config::read(&self.material)?;
-        material.validate()?;
+        let material = SheetMaterial::load(&self.material)?;
         let _held = run_folder::hold(&self.out)?;
         let limit = Duration::from_secs(self.time_limit_s);
         let stop = interrupt::stop_flag()?;

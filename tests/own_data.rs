@@ -135,3 +135,78 @@ fn what_cannot_be_evaluated_or_resumed_is_told() {
         assert!(error.contains(expected), "{error}");
     }
 }
+
+/// A database, and one of the same rays whose energies and forces are 5 % higher.
+#[test]
+fn a_database_is_judged_by_another_of_the_same_rays() {
+    let work = workplace();
+    let stiffer: String = table()
+        .lines()
+        .enumerate()
+        .map(|(line, row)| {
+            let mut fields: Vec<String> = row.split(',').map(str::to_owned).collect();
+            for field in &mut fields[7..] {
+                if line > 0 {
+                    *field = (1.05 * field.parse::<f64>().unwrap()).to_string();
+                }
+            }
+            fields.join(",") + "\n"
+        })
+        .collect();
+    std::fs::write(work.path("stiff.csv"), stiffer).unwrap();
+    let import = "dataset import stiff.csv --columns configs/import/example.toml";
+    work.output(&format!("{import} --out stiff.parquet"));
+    let output = work.output(&format!(
+        "dataset compare stiff.parquet {DATABASE} --out results/tiers"
+    ));
+    assert!(output.contains("300 states of 30 rays"), "{output}");
+    assert!(
+        output.contains("| F_s | 5.00 % | 5.00 % | 5.00 % | 5.00 % |"),
+        "{output}"
+    );
+    for name in ["compare.csv", "compare.md", "compare.png", "tradeoff.md"] {
+        assert!(work.path("results/tiers").join(name).exists(), "{name}");
+    }
+    work.output("tradeoff --results results --out page.md");
+    let page = std::fs::read_to_string(work.path("page.md")).unwrap();
+    assert!(page.starts_with("# Speed against accuracy"), "{page}");
+    assert!(
+        page.contains("30 rays") && page.contains("| W | 5.00 %"),
+        "{page}"
+    );
+    let error = work.error("tradeoff --results configs --out other.md");
+    assert!(error.contains("kirigami study"), "{error}");
+}
+
+/// The tensile curve of a testing machine becomes the material of a campaign.
+#[test]
+fn a_measured_curve_is_a_material() {
+    let work = Workplace::new();
+    let file = "configs/materials/s235-1.5mm.toml";
+    let mut curve = "engineering_strain,engineering_stress_mpa\n0,0\n".to_owned();
+    for i in 1..=400 {
+        let strain = 5e-4 * f64::from(i);
+        let stress = (210e3 * strain).min(235.0 + 900.0 * strain / (1.0 + 3.0 * strain));
+        writeln!(curve, "{strain},{stress}").unwrap();
+    }
+    std::fs::write(work.path("configs/materials/curve.csv"), curve).unwrap();
+    let text = std::fs::read_to_string(work.path(file)).unwrap();
+    let (head, _) = text.split_once("plastic = [").unwrap();
+    std::fs::write(
+        work.path(file),
+        format!("{head}tensile_csv = \"curve.csv\"\n"),
+    )
+    .unwrap();
+    let solve = format!("solve --material {file} --tier tiny --theta-deg 3");
+    let json = work.output(&format!("{solve} --json"));
+    let solved: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let yields = solved["material"]["plastic"][0][0].as_f64().unwrap();
+    assert!((235.0..245.0).contains(&yields), "{yields}");
+
+    std::fs::remove_file(work.path("configs/materials/curve.csv")).unwrap();
+    let error = work.error(&solve);
+    assert!(error.contains("curve.csv"), "{error}");
+    std::fs::write(work.path(file), head).unwrap();
+    let error = work.error(&solve);
+    assert!(error.contains("`plastic` or `tensile_csv`"), "{error}");
+}

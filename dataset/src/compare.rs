@@ -151,11 +151,9 @@ mod tests {
         let (judged, reference) = (database(stiff.collect()), database(rows(6)));
         let rays = compare(&judged, &reference);
         assert_eq!(rays.len(), 6);
-        for ray in &rays {
-            assert!(!ray.states.is_empty());
-            for difference in relative_rms(&ray.states) {
-                assert!((difference - 0.03).abs() < 1e-12, "{difference}");
-            }
+        assert!(rays.iter().all(|ray| !ray.states.is_empty()));
+        for difference in relative_rms(rays.iter().flat_map(|ray| &ray.states)) {
+            assert!((difference - 0.03).abs() < 1e-12, "{difference}");
         }
         // Only what both hold is compared.
         let fewer = database(rows(4));

@@ -23,8 +23,8 @@ use crate::gradient::DesignError;
 use crate::objective::OutlinePoints;
 use crate::sheet::{Centroid, CutProcess, HingePoint, SheetOptions};
 use crate::target::{Target, TargetError, TargetShape};
-use hinge::SheetMaterial;
 use hinge::config::ConfigError;
+use hinge::{MaterialError, SheetMaterial};
 use hinge_model::LoadedHinge;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -161,6 +161,8 @@ pub struct Scene {
 pub enum SceneError {
     #[error(transparent)]
     Config(#[from] ConfigError),
+    #[error(transparent)]
+    Material(#[from] MaterialError),
     #[error("{path}: {reason}", path = .path.display())]
     Value { path: PathBuf, reason: String },
     #[error("{path}: {source}", path = .path.display())]
@@ -186,11 +188,7 @@ impl Scene {
         };
         checks::config(&config).map_err(refuse)?;
         let material_path = beside(path, &config.material);
-        let material: SheetMaterial = hinge::config::read(&material_path)?;
-        material.validate().map_err(|invalid| SceneError::Value {
-            path: material_path,
-            reason: invalid.to_string(),
-        })?;
+        let material = SheetMaterial::load(&material_path)?;
         let points = config.objective.target_points;
         let target = Target::sample(&config.target, folder(path), points).map_err(|source| {
             SceneError::Target {

@@ -5,7 +5,7 @@ use crate::job::{FileError, JobSpec, ToolVersions};
 use crate::sampling::{CommonDesign, RayBox};
 use crate::window_solve::{SolveError, WindowProblem};
 use hinge::config::{self, ConfigError};
-use hinge::{InvalidDesign, InvalidMaterial, SheetMaterial};
+use hinge::{InvalidDesign, MaterialError, SheetMaterial};
 use mesher::Tier;
 use mesher::tool::ToolError;
 use serde::Deserialize;
@@ -36,7 +36,7 @@ pub enum CampaignError {
     #[error("{path}: {reason}", path = .path.display())]
     Invalid { path: PathBuf, reason: String },
     #[error(transparent)]
-    Material(#[from] InvalidMaterial),
+    Material(#[from] MaterialError),
     #[error(transparent)]
     Tool(#[from] ToolError),
     #[error(transparent)]
@@ -138,8 +138,7 @@ impl Campaign {
             });
         }
         let material_path = path.parent().unwrap_or(Path::new("")).join(&file.material);
-        let material: SheetMaterial = config::read(&material_path)?;
-        material.validate()?;
+        let material = SheetMaterial::load(&material_path)?;
         Ok(Self {
             name: file.name,
             material,

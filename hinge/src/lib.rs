@@ -27,9 +27,11 @@ mod domain;
 pub mod files;
 mod material;
 mod sample;
+mod tensile;
 
 pub use deformation::{HingeDeformation, HingeForces};
 pub use design::{HingeConstants, HingeDesign, InvalidDesign};
 pub use domain::TrainingDomain;
-pub use material::{InvalidMaterial, SheetMaterial};
+pub use material::{InvalidMaterial, MaterialError, SheetMaterial};
 pub use sample::HingeSample;
+pub use tensile::TensileError;

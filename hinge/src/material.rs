@@ -1,6 +1,9 @@
 //! The sheet material as measured on tensile specimens; section 4.1.
 
+use crate::config::{self, ConfigError};
+use crate::tensile::{TensileError, read_tensile};
 use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
 
 /// A uniform sheet: thickness, isotropic elasticity, tabulated J2 hardening, fracture strain.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,6 +24,37 @@ pub struct SheetMaterial {
     pub plastic: Vec<[f64; 2]>,
 }
 
+/// The file; see `configs/materials/`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MaterialFile {
+    name: String,
+    thickness: f64,
+    young: f64,
+    poisson: f64,
+    density_kg_m3: f64,
+    fracture_strain: f64,
+    plastic: Option<Vec<[f64; 2]>>,
+    /// A measured curve in place of `plastic`; relative to the material's file.
+    tensile_csv: Option<PathBuf>,
+}
+
+/// Why a material could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum MaterialError {
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    #[error(transparent)]
+    Tensile(#[from] TensileError),
+    #[error("{path}: give either `plastic` or `tensile_csv`", path = .0.display())]
+    Hardening(PathBuf),
+    #[error("{path}: {source}", path = .path.display())]
+    Invalid {
+        path: PathBuf,
+        source: InvalidMaterial,
+    },
+}
+
 /// A material that cannot be, or that was written in other units.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("material `{material}`: {reason}")]
@@ -30,6 +64,35 @@ pub struct InvalidMaterial {
 }
 
 impl SheetMaterial {
+    /// Reads a material and its tensile curve, and refuses what cannot be.
+    pub fn load(path: &Path) -> Result<Self, MaterialError> {
+        let file: MaterialFile = config::read(path)?;
+        let plastic = match (file.plastic, file.tensile_csv) {
+            (Some(rows), None) => rows,
+            (None, Some(curve)) => {
+                let folder = path.parent().unwrap_or(Path::new(""));
+                read_tensile(&folder.join(curve), file.young)?
+            }
+            _ => return Err(MaterialError::Hardening(path.to_owned())),
+        };
+        let material = Self {
+            name: file.name,
+            thickness: file.thickness,
+            young: file.young,
+            poisson: file.poisson,
+            density_kg_m3: file.density_kg_m3,
+            fracture_strain: file.fracture_strain,
+            plastic,
+        };
+        match material.validate() {
+            Ok(()) => Ok(material),
+            Err(source) => Err(MaterialError::Invalid {
+                path: path.to_owned(),
+                source,
+            }),
+        }
+    }
+
     /// Refuses impossible values and the usual unit slips (GPa for MPa, m for mm, g/cm^3 for kg/m^3).
     pub fn validate(&self) -> Result<(), InvalidMaterial> {
         let refuse = |reason: String| {

@@ -19,8 +19,7 @@ fn every_shipped_material_is_valid_and_is_that_of_table_2() {
     let mut read = 0;
     for entry in folder.read_dir().unwrap() {
         let path = entry.unwrap().path();
-        let material: SheetMaterial = hinge::config::read(&path).unwrap();
-        material.validate().unwrap();
+        let material = SheetMaterial::load(&path).unwrap();
         assert_eq!(
             Some(material.name.as_str()),
             path.file_stem().unwrap().to_str()

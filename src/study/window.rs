@@ -44,7 +44,7 @@ type Row = (StudyCase, StudySolution);
 
 impl WindowStudy {
     pub fn run(&self) -> Result<()> {
-        let material: SheetMaterial = hinge::config::read(&self.material)?;
+        let material = SheetMaterial::load(&self.material)?;
         let _held = run_folder::hold(&self.out)?;
         let kept = self.out.join("solutions");
         std::fs::create_dir_all(&kept)

@@ -19,7 +19,7 @@ pub fn configs() -> PathBuf {
 }
 
 pub fn film() -> SheetMaterial {
-    hinge::config::read(&configs().join("materials/pet-0.5mm.toml")).unwrap()
+    SheetMaterial::load(&configs().join("materials/pet-0.5mm.toml")).unwrap()
 }
 
 /// The paper's hinge at the cut angle `alpha_deg`.
