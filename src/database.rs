@@ -95,6 +95,6 @@ fn print_tally(tally: &Tally) {
     }
 }
 
-fn processors() -> usize {
+pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }

@@ -1,6 +1,7 @@
 //! The command line: one subcommand a file, errors told once.
 
 mod charts;
+mod comparison;
 mod database;
 mod dataset;
 mod demo;
@@ -11,10 +12,13 @@ mod equilibrium;
 mod gradient;
 mod inspect;
 mod interrupt;
+mod kept_solves;
 mod mesh;
 mod pattern;
 mod picture;
 mod progress;
+mod replay;
+mod routes;
 mod run_folder;
 mod slices;
 mod solve;
@@ -55,6 +59,7 @@ enum Command {
     Deploy(deploy::DeployCommand),
     Equilibrium(equilibrium::EquilibriumCommand),
     Gradient(gradient::GradientCommand),
+    Replay(replay::ReplayCommand),
 }
 
 /// Exit code of a run that is to be run again: EX_TEMPFAIL of sysexits.h.
@@ -78,6 +83,7 @@ fn main() -> ExitCode {
         Command::Deploy(command) => command.run(),
         Command::Equilibrium(command) => command.run(),
         Command::Gradient(command) => command.run(),
+        Command::Replay(command) => command.run(),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

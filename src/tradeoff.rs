@@ -24,7 +24,7 @@ them. CPU times are comparable within a table.
 ";
 
 /// The folders of the studies, in the order of the page.
-const STUDIES: [&str; 4] = ["window", "tiers", "surrogate", "sheet"];
+const STUDIES: [&str; 5] = ["window", "tiers", "path", "surrogate", "sheet"];
 
 impl TradeoffCommand {
     pub fn run(&self) -> Result<()> {

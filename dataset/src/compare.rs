@@ -12,11 +12,6 @@ use std::collections::BTreeMap;
 /// The quantities that are compared.
 pub const COMPARED: [&str; 6] = ["W", "F_a", "F_s", "M_theta", "D", "D_peak"];
 
-/// The values of [`COMPARED`] in a state.
-fn values(x: &HingeSample) -> [f64; 6] {
-    [x.w, x.f_a, x.f_s, x.m_theta, x.d, x.d_peak]
-}
-
 /// One ray solved twice.
 #[derive(Clone, Debug)]
 pub struct ComparedRay<'a> {
@@ -37,6 +32,16 @@ pub struct ComparedState {
     pub reference: [f64; 6],
 }
 
+impl ComparedState {
+    pub fn new(value: &HingeSample, reference: &HingeSample) -> Self {
+        let compared = |x: &HingeSample| [x.w, x.f_a, x.f_s, x.m_theta, x.d, x.d_peak];
+        Self {
+            value: compared(value),
+            reference: compared(reference),
+        }
+    }
+}
+
 /// The rays that stand in both databases, in the order of their designs.
 pub fn compare<'a>(judged: &'a Database, reference: &'a Database) -> Vec<ComparedRay<'a>> {
     let references = rays(reference.rows());
@@ -47,11 +52,10 @@ pub fn compare<'a>(judged: &'a Database, reference: &'a Database) -> Vec<Compare
     pairs
         .filter_map(|(rows, reference)| {
             let end = *rows.last()?;
+            let samples: Vec<_> = reference.iter().map(|row| row.sample).collect();
             let states = rows.iter().filter_map(|row| {
-                Some(ComparedState {
-                    value: values(&row.sample),
-                    reference: at(reference, row.sample.lambda)?,
-                })
+                let there = HingeSample::at(&samples, row.sample.lambda)?;
+                Some(ComparedState::new(&row.sample, &there))
             });
             Some(ComparedRay {
                 end,
@@ -62,16 +66,31 @@ pub fn compare<'a>(judged: &'a Database, reference: &'a Database) -> Vec<Compare
         .collect()
 }
 
-/// Root mean square of the differences over that of the reference, quantity by quantity.
-pub fn relative_rms<'a>(states: impl IntoIterator<Item = &'a ComparedState>) -> [f64; 6] {
-    let (mut off, mut all) = ([0.0; 6], [0.0; 6]);
+/// Root mean square of the references, quantity by quantity.
+pub fn reference_rms<'a>(states: impl IntoIterator<Item = &'a ComparedState>) -> [f64; 6] {
+    rms(states, |state, i| state.reference[i])
+}
+
+/// Root mean square of the differences over that of the references, quantity by quantity, or over
+/// `least` where that is greater: a damage of next to nothing is not judged by its own size.
+pub fn relative_rms(states: &[ComparedState], least: [f64; 6]) -> [f64; 6] {
+    let off = rms(states, |state, i| state.value[i] - state.reference[i]);
+    let scale = reference_rms(states);
+    std::array::from_fn(|i| off[i] / scale[i].max(least[i]).max(f64::MIN_POSITIVE))
+}
+
+fn rms<'a>(
+    states: impl IntoIterator<Item = &'a ComparedState>,
+    part: impl Fn(&ComparedState, usize) -> f64,
+) -> [f64; 6] {
+    let (mut squares, mut count) = ([0.0; 6], 0.0);
     for state in states {
-        for i in 0..6 {
-            off[i] += (state.value[i] - state.reference[i]).powi(2);
-            all[i] += state.reference[i].powi(2);
+        count += 1.0;
+        for (i, square) in squares.iter_mut().enumerate() {
+            *square += part(state, i).powi(2);
         }
     }
-    std::array::from_fn(|i| (off[i] / f64::max(all[i], f64::MIN_POSITIVE)).sqrt())
+    squares.map(|square| (square / f64::max(count, 1.0)).sqrt())
 }
 
 /// Design and end, in millionths of their units.
@@ -100,18 +119,6 @@ fn rays(rows: &[Row]) -> BTreeMap<Ray, Vec<&Row>> {
         rows.sort_by(|x, y| x.sample.lambda.total_cmp(&y.sample.lambda));
     }
     rays
-}
-
-/// The values at `lambda`, linear between rows and from the undeformed state to the first; none
-/// past the last.
-fn at(rows: &[&Row], lambda: f64) -> Option<[f64; 6]> {
-    let after = rows.partition_point(|row| row.sample.lambda < lambda);
-    let next = &rows.get(after)?.sample;
-    let start = HingeSample::default();
-    let before = after.checked_sub(1).map_or(&start, |i| &rows[i].sample);
-    let share = (lambda - before.lambda) / (next.lambda - before.lambda);
-    let (x, y) = (values(before), values(next));
-    Some(std::array::from_fn(|i| x[i] + share * (y[i] - x[i])))
 }
 
 #[cfg(test)]
@@ -152,23 +159,16 @@ mod tests {
         let rays = compare(&judged, &reference);
         assert_eq!(rays.len(), 6);
         assert!(rays.iter().all(|ray| !ray.states.is_empty()));
-        for difference in relative_rms(rays.iter().flat_map(|ray| &ray.states)) {
+        let states: Vec<_> = rays.iter().flat_map(|ray| ray.states.clone()).collect();
+        for difference in relative_rms(&states, [0.0; 6]) {
             assert!((difference - 0.03).abs() < 1e-12, "{difference}");
+        }
+        let twice = reference_rms(&states).map(|rms| 2.0 * rms);
+        for difference in relative_rms(&states, twice) {
+            assert!((difference - 0.015).abs() < 1e-12, "{difference}");
         }
         // Only what both hold is compared.
         let fewer = database(rows(4));
         assert_eq!(compare(&judged, &fewer).len(), 4);
-    }
-
-    #[test]
-    fn states_are_read_between_rows_and_not_past_the_end() {
-        let rows = rows(1);
-        let rows: Vec<_> = rows.iter().collect();
-        let first = rows[0].sample;
-        let half = at(&rows, 0.5 * first.lambda).unwrap();
-        assert!((half[0] - 0.5 * first.w).abs() < 1e-12);
-        let last = rows.last().unwrap().sample;
-        assert_eq!(at(&rows, last.lambda), Some(values(&last)));
-        assert_eq!(at(&rows, last.lambda + 1e-9), None);
     }
 }

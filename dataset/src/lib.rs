@@ -29,7 +29,7 @@ mod schema;
 mod split;
 mod summary;
 
-pub use compare::{COMPARED, ComparedRay, ComparedState, compare, relative_rms};
+pub use compare::{COMPARED, ComparedRay, ComparedState, compare, reference_rms, relative_rms};
 pub use csv::{ColumnMap, Constant, rows_from_csv};
 pub use database::{Database, DatasetError, Mixing};
 pub use gates::{Gates, Rejection};

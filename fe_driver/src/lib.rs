@@ -14,6 +14,7 @@ mod failure;
 mod finished;
 mod history;
 mod job;
+mod kept_solve;
 mod ledger;
 mod path;
 mod plan;
@@ -36,6 +37,7 @@ pub use doctor::{Diagnosis, doctor};
 pub use failure::{FailureKind, Rung, UnknownFailure};
 pub use finished::{FinishedJob, finished_jobs};
 pub use job::{FileError, JobSpec, ToolVersions};
+pub use kept_solve::{KeptSolution, KeptSolve, KeptSolveError};
 pub use ledger::{Status, Tally, Throughput, refuse_changed, status};
 pub use path::{DeformationPath, PathError};
 pub use plan::{Plan, plan};
@@ -47,7 +49,8 @@ pub use sampling::{CommonDesign, RayBox};
 pub use shard::{InvalidShard, Shard};
 pub use sta::{Attempt, read_sta};
 pub use study::{
-    Richardson, STUDY_THETA_DEG, StudyCase, StudySolution, StudyState, richardson, study_cases,
+    Richardson, STUDY_THETA_DEG, StudyCase, StudyState, richardson, study_cases, study_difference,
+    study_state,
 };
 pub use window_solve::{
     SolveError, Tools, WindowModel, WindowProblem, WindowSolution, reached, solve_window,

@@ -53,6 +53,15 @@ impl DeformationPath {
         }
     }
 
+    /// The path through `states`, at equal distances in lambda; none without a state.
+    pub fn through(states: &[HingeDeformation]) -> Option<Self> {
+        let share = |i: usize| (i + 1) as f64 / states.len() as f64;
+        let recorded = states.iter().enumerate();
+        let mut knots = vec![(0.0, HingeDeformation::default())];
+        knots.extend(recorded.map(|(i, state)| (share(i), *state)));
+        (knots.len() > 1).then_some(Self { knots })
+    }
+
     /// Reads a recorded path of a hinge of width `w_lig` (mm).
     pub fn read(path: &Path, w_lig: f64) -> Result<Self, PathError> {
         let rows = read_rows(path).map_err(|source| PathError::Read {

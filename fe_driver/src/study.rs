@@ -4,16 +4,11 @@
 //! to W, F_a, M_theta and D, over that of the value it is compared with.
 
 use crate::deck::StepControl;
-use crate::job::{FileError, read_json, write_json};
+use crate::kept_solve::{KeptSolution, KeptSolve};
 use crate::path::DeformationPath;
-use crate::window_solve::{SolveError, Tools, WindowModel};
 use hinge::{HingeDeformation, HingeDesign, HingeSample, SheetMaterial};
-use mesher::{Imperfection, MeshRecipe, Tier, mesh_window};
-use serde::{Deserialize, Serialize};
+use mesher::Tier;
 use std::f64::consts::FRAC_PI_2;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
-use std::time::{Duration, Instant};
 
 /// Rotation at the end of every ray of the study (deg).
 pub const STUDY_THETA_DEG: f64 = 60.0;
@@ -27,38 +22,34 @@ pub struct StudyCase {
     pub value: String,
     /// The value of the same study that this one is compared with.
     pub against: &'static str,
-    pub design: HingeDesign,
-    pub recipe: MeshRecipe,
-    pub step: StepControl,
-}
-
-/// What a solve of the study gave.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StudySolution {
-    pub elements: usize,
-    /// Of the solver (s).
-    pub cpu_seconds: f64,
-    /// Share of the time from the mesh to the samples in which the solver did not run.
-    pub overhead: f64,
-    /// Largest resident memory of the solver (MiB).
-    pub peak_memory_mib: f64,
-    pub iterations: usize,
-    pub samples: Vec<HingeSample>,
+    pub solve: KeptSolve,
 }
 
 /// Every case for one hinge, the cheap ones first; `quick` leaves out what takes minutes. The
 /// paper's own mesh is for comparison, at its right angle only.
-pub fn study_cases(design: HingeDesign, quick: bool) -> Vec<StudyCase> {
-    let (recipe, step) = (Tier::Default.recipe(), StepControl::default());
-    let base = |study, value, against| StudyCase {
-        study,
-        value,
-        against,
+pub fn study_cases(design: HingeDesign, material: &SheetMaterial, quick: bool) -> Vec<StudyCase> {
+    let end = HingeDeformation {
+        theta: STUDY_THETA_DEG.to_radians(),
+        ..HingeDeformation::default()
+    };
+    let usual = KeptSolve {
         design,
-        recipe,
-        step,
+        path: DeformationPath::straight(end),
+        material: material.clone(),
+        recipe: Tier::Default.recipe(),
+        step: StepControl::default(),
     };
     let mut cases = Vec::new();
+    let mut add = |study, value: String, against, vary: &dyn Fn(&mut KeptSolve)| {
+        let mut solve = usual.clone();
+        vary(&mut solve);
+        cases.push(StudyCase {
+            study,
+            value,
+            against,
+            solve,
+        });
+    };
     let finest = match quick {
         true => Tier::Fine,
         false => Tier::Reference,
@@ -71,148 +62,62 @@ pub fn study_cases(design: HingeDesign, quick: bool) -> Vec<StudyCase> {
             tier != Tier::Paper || square
         };
         if wanted {
-            cases.push(StudyCase {
-                recipe: tier.recipe(),
-                ..base("mesh", tier.to_string(), finest.name())
+            add("mesh", tier.to_string(), finest.name(), &|solve| {
+                solve.recipe = tier.recipe();
             });
         }
     }
     for greatest in [0.07, 0.035, 0.0175] {
-        cases.push(StudyCase {
-            step: StepControl { greatest, ..step },
-            ..base("increments", greatest.to_string(), "0.0175")
+        add("increments", greatest.to_string(), "0.0175", &|solve| {
+            solve.step.greatest = greatest;
         });
     }
     for amplitude in [0.1, 0.5, 1.0, 2.0] {
-        let imperfection = Imperfection {
-            amplitude,
-            ..recipe.imperfection
-        };
-        cases.push(StudyCase {
-            recipe: MeshRecipe {
-                imperfection,
-                ..recipe
-            },
-            ..base("imperfection amplitude", format!("{amplitude} t"), "1 t")
+        let value = format!("{amplitude} t");
+        add("imperfection amplitude", value, "1 t", &|solve| {
+            solve.recipe.imperfection.amplitude = amplitude;
         });
     }
     for widths in [[0.5, 0.5], [1.0, 1.0], [2.0, 1.4]] {
-        let imperfection = Imperfection {
-            widths,
-            ..recipe.imperfection
-        };
-        let [x, y] = widths;
-        cases.push(StudyCase {
-            recipe: MeshRecipe {
-                imperfection,
-                ..recipe
-            },
-            ..base("imperfection widths", format!("{x} x {y}"), "1 x 1")
+        let value = format!("{} x {}", widths[0], widths[1]);
+        add("imperfection widths", value, "1 x 1", &|solve| {
+            solve.recipe.imperfection.widths = widths;
         });
     }
     for r_win in [70.0, 100.0, 140.0] {
-        cases.push(StudyCase {
-            design: HingeDesign { r_win, ..design },
-            ..base("window radius", format!("{r_win} mm"), "140 mm")
+        add("window radius", format!("{r_win} mm"), "140 mm", &|solve| {
+            solve.design.r_win = r_win;
         });
     }
     for layers in [1, 2, 3] {
-        cases.push(StudyCase {
-            recipe: MeshRecipe { layers, ..recipe },
-            ..base("layers", layers.to_string(), "3")
+        add("layers", layers.to_string(), "3", &|solve| {
+            solve.recipe.layers = layers;
         });
     }
     cases
 }
 
-impl StudyCase {
-    /// The solution kept in `folder`, if there is one.
-    pub fn kept(&self, folder: &Path) -> Result<Option<StudySolution>, FileError> {
-        read_json(&self.file(folder))
-    }
-
-    /// Keeps a solution in `folder`.
-    pub fn keep(&self, folder: &Path, solution: &StudySolution) -> Result<(), FileError> {
-        write_json(&self.file(folder), solution)
-    }
-
-    /// Its name is the same only for cases that solve the same.
-    fn file(&self, folder: &Path) -> PathBuf {
-        let decisive = (&self.design, &self.recipe, &self.step);
-        let text = serde_json::to_vec(&decisive).expect("a case is numbers and text");
-        let id = &blake3::hash(&text).to_hex()[..16];
-        folder.join(id).with_extension("json")
-    }
-
-    /// Solves the case in `folder`.
-    pub fn solve(
-        &self,
-        material: &SheetMaterial,
-        tools: &Tools,
-        folder: &Path,
-        limit: Duration,
-        stop: &AtomicBool,
-    ) -> Result<StudySolution, SolveError> {
-        let thickness = material.thickness;
-        let start = Instant::now();
-        let mesh = mesh_window(&self.design, thickness, &self.recipe, folder, &tools.gmsh)?;
-        let end = HingeDeformation {
-            theta: STUDY_THETA_DEG.to_radians(),
-            ..HingeDeformation::default()
-        };
-        let model = WindowModel {
-            mesh: &mesh,
-            path: &DeformationPath::straight(end),
-            material,
-            step: &self.step,
-        };
-        let solution = model.solve(&tools.ccx, folder, limit, stop)?;
-        match solution.stopped {
-            Some(reason) => Err(reason),
-            None => Ok(StudySolution {
-                elements: mesh.elements.len(),
-                cpu_seconds: solution.cpu_seconds.unwrap_or(f64::NAN),
-                overhead: 1.0 - solution.solver_seconds / start.elapsed().as_secs_f64(),
-                peak_memory_mib: solution.peak_memory_mib.unwrap_or(f64::NAN),
-                iterations: solution.iterations,
-                samples: solution.samples,
-            }),
-        }
-    }
-}
-
 /// W (N mm), F_a (N), M_theta (N mm), D and u_z (mm) of a hinge at one rotation.
 pub type StudyState = [f64; 5];
 
-impl StudySolution {
-    /// The state at `theta_deg`, linear between the increments.
-    pub fn at(&self, theta_deg: f64) -> StudyState {
-        let lambda = theta_deg / STUDY_THETA_DEG;
-        let state = |x: &HingeSample| [x.w, x.f_a, x.m_theta, x.d, x.uz_max];
-        let after = self.samples.partition_point(|x| x.lambda < lambda);
-        let after = after.min(self.samples.len() - 1);
-        let (l1, y) = (self.samples[after].lambda, state(&self.samples[after]));
-        let (l0, x) = match after.checked_sub(1) {
-            Some(before) => (self.samples[before].lambda, state(&self.samples[before])),
-            None => (0.0, [0.0; 5]),
-        };
-        let share = (lambda - l0) / (l1 - l0);
-        std::array::from_fn(|i| x[i] + share * (y[i] - x[i]))
-    }
+/// The state of a whole ray of the study at `theta_deg`.
+pub fn study_state(solution: &KeptSolution, theta_deg: f64) -> StudyState {
+    let x = HingeSample::at(&solution.samples, theta_deg / STUDY_THETA_DEG).unwrap_or_default();
+    [x.w, x.f_a, x.m_theta, x.d, x.uz_max]
+}
 
-    /// What the difference from `other` is worth in each component of the state: its root mean
-    /// square over the ray past 3 deg, over that of `other`.
-    pub fn difference(&self, other: &Self) -> StudyState {
-        let (mut off, mut all) = ([0.0; 5], [0.0; 5]);
-        for degrees in 3..=STUDY_THETA_DEG as u32 {
-            let (x, y) = (self.at(degrees.into()), other.at(degrees.into()));
-            for i in 0..5 {
-                off[i] += (x[i] - y[i]).powi(2);
-                all[i] += y[i].powi(2);
-            }
+/// What the difference of two solutions is worth in each component of the state: its root mean
+/// square over the ray past 3 deg, over that of `against`.
+pub fn study_difference(solution: &KeptSolution, against: &KeptSolution) -> StudyState {
+    let (mut off, mut all) = ([0.0; 5], [0.0; 5]);
+    for degrees in 3..=STUDY_THETA_DEG as u32 {
+        let [x, y] = [solution, against].map(|it| study_state(it, degrees.into()));
+        for i in 0..5 {
+            off[i] += (x[i] - y[i]).powi(2);
+            all[i] += y[i].powi(2);
         }
-        std::array::from_fn(|i| (off[i] / all[i]).sqrt())
     }
+    std::array::from_fn(|i| (off[i] / all[i]).sqrt())
 }
 
 /// What meshes of falling element size say of the limit of size zero.
@@ -266,7 +171,15 @@ mod tests {
         }
     }
 
-    fn solution(scale: f64) -> StudySolution {
+    fn film() -> SheetMaterial {
+        let film = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../configs/materials/pet-0.5mm.toml"
+        );
+        SheetMaterial::load(std::path::Path::new(film)).unwrap()
+    }
+
+    fn solution(scale: f64) -> KeptSolution {
         let sample = |lambda: f64| HingeSample {
             lambda,
             w: scale * lambda * lambda,
@@ -276,27 +189,20 @@ mod tests {
             uz_max: scale,
             ..HingeSample::default()
         };
-        StudySolution {
+        KeptSolution {
             elements: 1,
             cpu_seconds: 1.0,
             overhead: 0.01,
             peak_memory_mib: 100.0,
             iterations: 1,
             samples: [0.25, 0.5, 1.0].map(sample).to_vec(),
+            stopped: None,
         }
     }
 
     #[test]
-    fn a_state_is_linear_between_increments_and_rests_at_the_start() {
-        let solution = solution(8.0);
-        assert_eq!(solution.at(30.0), [2.0, 8.0, -4.0, 4.0, 8.0]);
-        assert_eq!(solution.at(45.0), [5.0, 8.0, -6.0, 6.0, 8.0]);
-        assert_eq!(solution.at(0.0), [0.0; 5]);
-    }
-
-    #[test]
     fn a_state_that_is_three_percent_larger_differs_by_three_percent() {
-        for difference in solution(1.03).difference(&solution(1.0)) {
+        for difference in study_difference(&solution(1.03), &solution(1.0)) {
             assert!((difference - 0.03).abs() < 1e-12);
         }
     }
@@ -323,7 +229,7 @@ mod tests {
     #[test]
     fn every_value_is_compared_with_one_that_is_solved() {
         for quick in [false, true] {
-            let cases = study_cases(design(), quick);
+            let cases = study_cases(design(), &film(), quick);
             for case in &cases {
                 let mut same = cases.iter().filter(|c| c.study == case.study);
                 assert!(same.any(|c| c.value == case.against), "{case:?}");

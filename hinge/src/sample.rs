@@ -44,6 +44,34 @@ pub struct HingeSample {
 }
 
 impl HingeSample {
+    /// The state of a ray at `lambda`: linear between its samples, which are in order of lambda,
+    /// and from the undeformed state to the first; none past the last.
+    pub fn at(ray: &[Self], lambda: f64) -> Option<Self> {
+        let after = ray.partition_point(|x| x.lambda < lambda);
+        let next = ray.get(after)?;
+        let before = after.checked_sub(1).map_or(Self::default(), |i| ray[i]);
+        let share = (lambda - before.lambda) / (next.lambda - before.lambda);
+        let mix = |of: fn(&Self) -> f64| of(&before) + share * (of(next) - of(&before));
+        Some(Self {
+            lambda,
+            a: mix(|x| x.a),
+            s: mix(|x| x.s),
+            theta: mix(|x| x.theta),
+            w: mix(|x| x.w),
+            w_work: mix(|x| x.w_work),
+            w_elastic: mix(|x| x.w_elastic),
+            f_a: mix(|x| x.f_a),
+            f_s: mix(|x| x.f_s),
+            m_theta: mix(|x| x.m_theta),
+            plastic_integral: mix(|x| x.plastic_integral),
+            d: mix(|x| x.d),
+            d_window: mix(|x| x.d_window),
+            d_peak: mix(|x| x.d_peak),
+            uz_max: mix(|x| x.uz_max),
+            energy_residual: mix(|x| x.energy_residual),
+        })
+    }
+
     pub fn deformation(&self) -> HingeDeformation {
         HingeDeformation {
             a: self.a,
@@ -67,5 +95,29 @@ impl HingeSample {
             f_s: -self.f_s,
             ..*self
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_state_is_linear_between_samples_and_rests_at_the_start() {
+        let sample = |lambda: f64| HingeSample {
+            lambda,
+            theta: lambda,
+            w: 8.0 * lambda * lambda,
+            ..HingeSample::default()
+        };
+        let ray = [0.25, 0.5, 1.0].map(sample);
+        let w = |lambda| HingeSample::at(&ray, lambda).map(|x| x.w);
+        assert_eq!(w(0.125), Some(0.25));
+        assert_eq!(w(0.5), Some(2.0));
+        assert_eq!(w(0.75), Some(5.0));
+        assert_eq!(w(1.0), Some(8.0));
+        assert_eq!(w(1.1), None);
+        assert_eq!(HingeSample::at(&ray, 0.3).map(|x| x.theta), Some(0.3));
+        assert_eq!(HingeSample::at(&[], 0.3), None);
     }
 }

@@ -1,13 +1,11 @@
 //! `kirigami dataset compare`: what a database is worth, beside a finer one of the same rays.
 
-use crate::charts::{self, ParityChart};
-use crate::picture;
+use crate::comparison::{self, SCALE, each_relative, spread_table};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use dataset::{COMPARED, ComparedRay, Database, compare, relative_rms};
+use dataset::{COMPARED, ComparedRay, ComparedState, Database, compare};
 use std::fmt::Write;
 use std::path::PathBuf;
-use train::ParityPoint;
 
 /// Judge a database by a finer one of the same rays
 ///
@@ -48,21 +46,8 @@ impl CompareCommand {
         self.write("compare.csv", &csv(&rays)?)?;
         self.write("compare.md", &format!("{summary}{}", worst(&rays)?))?;
         self.write("tradeoff.md", &summary)?;
-        let charts: Vec<_> = COMPARED
-            .iter()
-            .enumerate()
-            .map(|(i, name)| (name, points(&rays, i)))
-            .collect();
-        let charts: Vec<_> = charts
-            .iter()
-            .map(|(name, points)| ParityChart {
-                title: name.to_string(),
-                points,
-            })
-            .collect();
         let axes = [tiers[1].as_str(), &tiers[0]];
-        let picture = charts::parity(&charts, axes)?;
-        picture::save(&picture, &self.out.join("compare"), 2000)?;
+        comparison::draw(&groups(&rays), axes, &self.out.join("compare"))?;
         println!("{summary}\nwritten to {}", self.out.display());
         Ok(())
     }
@@ -77,39 +62,25 @@ impl CompareCommand {
 fn summary(rays: &[ComparedRay], [judged, reference]: &[String; 2]) -> Result<String> {
     let states = rays.iter().map(|ray| ray.states.len()).sum::<usize>();
     let cpu = [0, 1].map(|i| rays.iter().map(|ray| ray.cpu_s[i]).sum::<f64>() / rays.len() as f64);
-    let mut text = format!(
+    let heading = format!(
         "## Tier {judged} by tier {reference}, over the whole box\n\n\
          {states} states of {} rays, {:.1} and {:.1} CPU s a ray. Differences are root mean squares relative \
-         to that of the tier {reference}: over all states, and ray by ray. `kirigami dataset compare`.\n\n\
-         | quantity | all states | median ray | 90 % of rays | worst ray |\n|---|---|---|---|---|\n",
+         to that of the tier {reference}: {SCALE}. `kirigami dataset compare`.\n\n\
+         ",
         rays.len(),
         cpu[0],
         cpu[1],
     );
-    let all = relative_rms(rays.iter().flat_map(|ray| &ray.states));
-    let each: Vec<_> = rays.iter().map(|ray| relative_rms(&ray.states)).collect();
-    for (i, name) in COMPARED.iter().enumerate() {
-        let mut sorted: Vec<_> = each.iter().map(|ray| 100.0 * ray[i]).collect();
-        sorted.sort_by(f64::total_cmp);
-        let quantile = |share: f64| sorted[(share * (sorted.len() - 1) as f64).round() as usize];
-        writeln!(
-            text,
-            "| {name} | {:.2} % | {:.2} % | {:.2} % | {:.2} % |",
-            100.0 * all[i],
-            quantile(0.5),
-            quantile(0.9),
-            quantile(1.0)
-        )?;
-    }
-    Ok(text)
+    Ok(heading + &spread_table(&groups(rays), "ray")?)
+}
+
+fn groups<'a>(rays: &'a [ComparedRay]) -> Vec<&'a [ComparedState]> {
+    rays.iter().map(|ray| ray.states.as_slice()).collect()
 }
 
 /// The rays that differ most in W.
 fn worst(rays: &[ComparedRay]) -> Result<String> {
-    let mut ranked: Vec<_> = rays
-        .iter()
-        .map(|ray| (relative_rms(&ray.states), ray))
-        .collect();
+    let mut ranked: Vec<_> = each_relative(&groups(rays)).into_iter().zip(rays).collect();
     ranked.sort_by(|(x, _), (y, _)| y[0].total_cmp(&x[0]));
     let mut text = format!(
         "\nThe {} rays that differ most in W:\n\n| w_lig, mm | alpha, deg | eta_a | eta_s | theta, deg \
@@ -139,9 +110,9 @@ fn csv(rays: &[ComparedRay]) -> Result<String> {
             .join(",")
             .to_lowercase()
     );
-    for ray in rays {
+    for (ray, differences) in rays.iter().zip(each_relative(&groups(rays))) {
         let place = place(ray).map(|x| format!("{x:.5}"));
-        let differences = relative_rms(&ray.states).map(|x| format!("{x:.5}"));
+        let differences = differences.map(|x| format!("{x:.5}"));
         writeln!(
             text,
             "{},{:.4},{:.2},{:.2},{}",
@@ -166,14 +137,4 @@ fn place(ray: &ComparedRay) -> [f64; 5] {
         eta_s,
         sample.theta.to_degrees(),
     ]
-}
-
-fn points(rays: &[ComparedRay], quantity: usize) -> Vec<ParityPoint> {
-    let states = rays.iter().flat_map(|ray| &ray.states);
-    states
-        .map(|state| ParityPoint {
-            target: state.reference[quantity],
-            predicted: state.value[quantity],
-        })
-        .collect()
 }

@@ -1,22 +1,23 @@
 //! `kirigami study window`: what the modelling choices of the window solve are worth.
 
 use crate::charts::{self, StudyPanel};
-use crate::progress::Progress;
-use crate::{interrupt, picture, run_folder};
+use crate::kept_solves::SolveArgs;
+use crate::{picture, run_folder};
 use anyhow::{Context, Result};
 use clap::Args;
-use fe_driver::{Richardson, StudyCase, StudySolution, Tools, richardson, study_cases};
+use fe_driver::{
+    KeptSolution, Richardson, StudyCase, richardson, study_cases, study_difference, study_state,
+};
 use hinge::{HingeDesign, SheetMaterial};
 use mesher::{MeshRecipe, PlaneRecipe, Tier};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
-use std::time::Duration;
 
 /// Convergence of the window solve: meshes, increments, imperfection, window radius, layers
 ///
-/// Nine hinges are turned by 60 degrees, one choice varied at a time. What is solved is kept in the
+/// Six hinges are turned by 60 degrees, one choice varied at a time; those of 120 degrees would be
+/// the mirror images of those of 60. What is solved is kept in the
 /// folder, so the study can be stopped and goes on where it was. Writes window.csv, window.md,
 /// tradeoff.md and window.svg. Example: kirigami study window --quick
 #[derive(Args)]
@@ -34,50 +35,30 @@ pub struct WindowStudy {
     /// Folder for the tables, the chart and the solutions
     #[arg(long, value_name = "FOLDER", default_value = "runs/study-window")]
     out: PathBuf,
-    /// End a solve after this time (s)
-    #[arg(long, value_name = "SECONDS", default_value_t = 3600)]
-    time_limit_s: u64,
+    #[command(flatten)]
+    solve: SolveArgs,
 }
 
 /// A case and what it gave.
-type Row = (StudyCase, StudySolution);
+type Row = (StudyCase, KeptSolution);
 
 impl WindowStudy {
     pub fn run(&self) -> Result<()> {
         let material = SheetMaterial::load(&self.material)?;
         let _held = run_folder::hold(&self.out)?;
-        let kept = self.out.join("solutions");
-        std::fs::create_dir_all(&kept)
-            .with_context(|| format!("cannot make the folder {}", kept.display()))?;
-        let tools = Tools::find()?;
-        let stop = interrupt::stop_flag()?;
-        let limit = Duration::from_secs(self.time_limit_s);
-        let cases: Vec<_> = self
-            .hinges()
-            .into_iter()
-            .flat_map(|design| study_cases(design, self.quick))
+        let hinges = self.hinges().into_iter();
+        let cases: Vec<_> = hinges
+            .flat_map(|design| study_cases(design, &material, self.quick))
             .collect();
-        let bar = Progress::new(cases.len(), "solves");
+        let solves: Vec<_> = cases.iter().map(|case| &case.solve).collect();
+        let outcomes = self.solve.solve(&solves, &self.out)?;
         let (mut rows, mut failures): (Vec<Row>, _) = (Vec::new(), String::new());
-        for (done, case) in cases.into_iter().enumerate() {
-            bar.show(done, None, &case.value);
-            let solution = match case.kept(&kept)? {
-                Some(solution) => solution,
-                None => match case.solve(&material, &tools, &self.out, limit, stop) {
-                    Ok(solution) => {
-                        case.keep(&kept, &solution)?;
-                        solution
-                    }
-                    Err(error) if stop.load(Ordering::Relaxed) => return Err(error.into()),
-                    Err(error) => {
-                        writeln!(failures, "* {}: {error}", title(&case))?;
-                        continue;
-                    }
-                },
-            };
-            rows.push((case, solution));
+        for (case, outcome) in cases.into_iter().zip(outcomes) {
+            match outcome {
+                Ok(solution) => rows.push((case, solution)),
+                Err(reason) => writeln!(failures, "* {}: {reason}", title(&case))?,
+            }
         }
-        bar.finish();
         self.write("window.csv", &csv(&rows))?;
         self.write("window.md", &markdown(&rows, &failures)?)?;
         self.write("tradeoff.md", &tradeoff(&rows)?)?;
@@ -88,7 +69,7 @@ impl WindowStudy {
     }
 
     fn hinges(&self) -> Vec<HingeDesign> {
-        let all = [5.0, 18.0, 25.0].map(|w| [60.0, 90.0, 120.0].map(|alpha| (w, alpha)));
+        let all = [5.0, 18.0, 25.0].map(|w| [60.0, 90.0].map(|alpha| (w, alpha)));
         all.into_iter()
             .flatten()
             .filter(|hinge| !self.quick || *hinge == (18.0, 90.0))
@@ -112,7 +93,7 @@ impl WindowStudy {
 fn title(case: &StudyCase) -> String {
     format!(
         "{}, {}, {}",
-        hinge_name(&case.design),
+        hinge_name(&case.solve.design),
         case.study,
         case.value
     )
@@ -130,10 +111,10 @@ fn csv(rows: &[Row]) -> String {
         difference_w,difference_f_a,difference_m_theta,difference_d\n"
         .to_owned();
     for row @ (case, solution) in rows {
-        let [w, f_a, m, d, _] = solution.at(45.0);
-        let [.., uz] = solution.at(50.0);
+        let [w, f_a, m, d, _] = study_state(solution, 45.0);
+        let [.., uz] = study_state(solution, 50.0);
         let [dw, df, dm, dd, _] = difference(row, rows);
-        let (design, study, value) = (&case.design, case.study, &case.value);
+        let (design, study, value) = (&case.solve.design, case.study, &case.value);
         let alpha_deg = design.alpha.to_degrees();
         let (elements, cpu) = (solution.elements, solution.cpu_seconds);
         let (w_lig, iterations) = (design.w_lig, solution.iterations);
@@ -148,7 +129,9 @@ fn csv(rows: &[Row]) -> String {
 /// The difference of a row from the one it is compared with; not a number if that one failed.
 fn difference((case, solution): &Row, rows: &[Row]) -> [f64; 5] {
     let against = rows.iter().find(|(other, _)| is_compared(case, other));
-    against.map_or([f64::NAN; 5], |(_, other)| solution.difference(other))
+    against.map_or([f64::NAN; 5], |(_, other)| {
+        study_difference(solution, other)
+    })
 }
 
 fn markdown(rows: &[Row], failures: &str) -> Result<String> {
@@ -160,7 +143,7 @@ fn markdown(rows: &[Row], failures: &str) -> Result<String> {
     for row @ (case, solution) in rows {
         let own = format!(
             "{}: {} against {}",
-            hinge_name(&case.design),
+            hinge_name(&case.solve.design),
             case.study,
             case.against
         );
@@ -172,7 +155,7 @@ fn markdown(rows: &[Row], failures: &str) -> Result<String> {
             )?;
             heading = own;
         }
-        let ([w, ..], [.., uz]) = (solution.at(45.0), solution.at(50.0));
+        let ([w, ..], [.., uz]) = (study_state(solution, 45.0), study_state(solution, 50.0));
         let [dw, df, dm, dd, _] = difference(row, rows).map(|x| 100.0 * x);
         writeln!(
             text,
@@ -203,7 +186,7 @@ fn extrapolation(rows: &[Row]) -> Result<String> {
             continue;
         };
         let sizes = [x.0, y.0, z.0];
-        let states = [x.1, y.1, z.1].map(|solution| solution.at(45.0));
+        let states = [x.1, y.1, z.1].map(|solution| study_state(solution, 45.0));
         for (i, name) in ["W, N mm", "F_a, N", "M_theta, N mm", "D"]
             .iter()
             .enumerate()
@@ -213,7 +196,7 @@ fn extrapolation(rows: &[Row]) -> Result<String> {
                 observed,
                 limit,
             } = richardson(sizes, states.map(|state| state[i]));
-            let known = default.at(45.0)[i];
+            let known = study_state(default, 45.0)[i];
             let error = 100.0 * (known / limit - 1.0);
             let order = match observed {
                 true => format!("{order:.1}"),
@@ -230,24 +213,24 @@ fn extrapolation(rows: &[Row]) -> Result<String> {
 
 /// The solved two-layer tiers of a hinge with the size of their elements over that of the default
 /// tier's, the coarsest first.
-fn similar_meshes<'a>(rows: &'a [Row], hinge: &str) -> Vec<(f64, &'a StudySolution)> {
+fn similar_meshes<'a>(rows: &'a [Row], hinge: &str) -> Vec<(f64, &'a KeptSolution)> {
     let fold_size = |recipe: MeshRecipe| match recipe.plane {
         PlaneRecipe::Structured(plane) if recipe.layers == 2 => Some(plane.fold_size),
         _ => None,
     };
     let unit = fold_size(Tier::Default.recipe()).unwrap_or(1.0);
     of_tiers(rows, hinge)
-        .filter_map(|(case, solution)| Some((fold_size(case.recipe)? / unit, solution)))
+        .filter_map(|(case, solution)| Some((fold_size(case.solve.recipe)? / unit, solution)))
         .collect()
 }
 
 /// The rows of the mesh study of one hinge.
 fn of_tiers<'a>(rows: &'a [Row], hinge: &str) -> impl Iterator<Item = &'a Row> {
     rows.iter()
-        .filter(move |(case, _)| case.study == "mesh" && hinge_name(&case.design) == hinge)
+        .filter(move |(case, _)| case.study == "mesh" && hinge_name(&case.solve.design) == hinge)
 }
 
-fn tier<'a>(rows: &'a [Row], hinge: &str, name: &str) -> Option<&'a StudySolution> {
+fn tier<'a>(rows: &'a [Row], hinge: &str, name: &str) -> Option<&'a KeptSolution> {
     let mut found = of_tiers(rows, hinge).filter(|(case, _)| case.value == name);
     found.next().map(|(_, solution)| solution)
 }
@@ -256,7 +239,7 @@ fn tier<'a>(rows: &'a [Row], hinge: &str, name: &str) -> Option<&'a StudySolutio
 fn hinges(rows: &[Row]) -> Vec<String> {
     let mut names: Vec<_> = rows
         .iter()
-        .map(|(case, _)| hinge_name(&case.design))
+        .map(|(case, _)| hinge_name(&case.solve.design))
         .collect();
     names.dedup();
     names
@@ -281,7 +264,7 @@ fn tradeoff(rows: &[Row]) -> Result<String> {
         let Some((_, first)) = solved.first() else {
             continue;
         };
-        let sum = |of: fn(&StudySolution) -> f64| solved.iter().map(|(_, s)| of(s)).sum::<f64>();
+        let sum = |of: fn(&KeptSolution) -> f64| solved.iter().map(|(_, s)| of(s)).sum::<f64>();
         let cpu = sum(|s| s.cpu_seconds);
         let ray = cpu / solved.len() as f64;
         let row = cpu / sum(|s| s.samples.len() as f64);
@@ -315,10 +298,10 @@ fn paper_comparison(rows: &[Row]) -> Result<String> {
         let found = rows.iter().find(|(case, _)| {
             case.study == "mesh"
                 && case.value == "default"
-                && case.design.w_lig == w_lig
-                && (case.design.alpha.to_degrees() - 90.0).abs() < 1e-9
+                && case.solve.design.w_lig == w_lig
+                && (case.solve.design.alpha.to_degrees() - 90.0).abs() < 1e-9
         });
-        found.map(|(_, solution)| (solution.at(45.0), solution.at(50.0)[4]))
+        found.map(|(_, solution)| (study_state(solution, 45.0), study_state(solution, 50.0)[4]))
     };
     let mut text = "\n## Beside the paper (90 deg, default tier)\n\n\
         | quantity | here | paper |\n|---|---|---|\n"
@@ -366,8 +349,12 @@ fn panels(rows: &[Row]) -> Vec<StudyPanel> {
             panel.values.push(case.value.clone());
             panel.values.len() - 1
         });
-        let percent = 100.0 * (solution.at(45.0)[0] / against.at(45.0)[0] - 1.0);
-        let line = panel.lines.entry(hinge_name(&case.design)).or_default();
+        let percent =
+            100.0 * (study_state(solution, 45.0)[0] / study_state(against, 45.0)[0] - 1.0);
+        let line = panel
+            .lines
+            .entry(hinge_name(&case.solve.design))
+            .or_default();
         line.push((value as f64, percent));
     }
     panels.into_values().collect()
@@ -377,5 +364,5 @@ fn panels(rows: &[Row]) -> Vec<StudyPanel> {
 fn is_compared(case: &StudyCase, other: &StudyCase) -> bool {
     other.study == case.study
         && other.value == case.against
-        && hinge_name(&other.design) == hinge_name(&case.design)
+        && hinge_name(&other.solve.design) == hinge_name(&case.solve.design)
 }
