@@ -1,6 +1,7 @@
 //! `kirigami database`: plan, run, watch and collect a campaign of window solves.
 
 mod collect;
+mod extend;
 mod plan;
 mod restore;
 mod retry;
@@ -36,6 +37,7 @@ enum Action {
     Retry(retry::RetryCommand),
     Collect(CollectCommand),
     Restore(restore::RestoreCommand),
+    Extend(extend::ExtendCommand),
 }
 
 /// A campaign and the folder of its jobs.
@@ -58,6 +60,7 @@ impl DatabaseCommand {
             Action::Retry(command) => command.run(),
             Action::Collect(command) => command.run(),
             Action::Restore(command) => command.run(),
+            Action::Extend(command) => command.run(),
         }
     }
 }

@@ -3,6 +3,7 @@
 mod common;
 
 use common::Workplace;
+use std::time::{Duration, Instant};
 
 const CAMPAIGN: &str = "configs/campaigns/demo.toml";
 
@@ -69,6 +70,41 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
             .len();
         assert!(size > 500, "{made} is {size} bytes");
     }
+
+    let design = "configs/scenes/demo.toml --design runs/demo/design/state.json";
+    let replay = format!(
+        "replay {design} --ensemble runs/demo/surrogate-last.safetensors --tier tiny --out replay"
+    );
+    let page = work.output(&replay);
+    for expected in ["states of 12 hinges", "| M_theta |", "standard deviations"] {
+        assert!(page.contains(expected), "{page}");
+    }
+    let states = std::fs::read_to_string(work.path("replay/replay.csv")).unwrap();
+    assert!(states.lines().count() > 12 * 5, "{states}");
+    let again = Instant::now();
+    assert_eq!(work.output(&replay), page, "solved once");
+    assert!(again.elapsed() < Duration::from_secs(5), "solved once");
+
+    let study = "study path configs/scenes/demo.toml --routes 2 --tier tiny --out path";
+    assert!(work.output(study).contains("2 of 12 routes"));
+    assert!(work.path("path/path.png").exists());
+
+    // Six rays of little rotation do not cover what a design does.
+    let extend = format!("database extend {design} --rays configs/campaigns/further.csv");
+    assert!(work.output(&extend).contains("rays added"));
+    let further = std::fs::read_to_string(work.path("configs/campaigns/further.csv")).unwrap();
+    let rays = further.lines().count() - 1;
+    assert!((1..=12).contains(&rays), "{further}");
+    work.edit(
+        CAMPAIGN,
+        &[("seed = 1", "seed = 1\nfurther_rays = \"further.csv\"")],
+    );
+    let plan = work.output(&format!(
+        "database plan {CAMPAIGN} --folder runs/demo/campaign --json"
+    ));
+    let plan: serde_json::Value = serde_json::from_str(&plan).unwrap();
+    assert_eq!(plan["tally"]["open"].as_u64().unwrap() as usize, rays, "{plan}");
+    work.edit(CAMPAIGN, &[("\nfurther_rays = \"further.csv\"", "")]);
 
     // The folders belong to what was run in them.
     work.edit(CAMPAIGN, &[("name = \"demo\"", "name = \"other\"")]);

@@ -1,7 +1,9 @@
 //! A campaign: a material, a mesh tier and a box of rays become a list of jobs.
 
 use crate::StepControl;
+use crate::further_rays::{FurtherRaysError, read_further_rays};
 use crate::job::{FileError, JobSpec, ToolVersions};
+use crate::ray::Ray;
 use crate::sampling::{CommonDesign, RayBox};
 use crate::window_solve::{SolveError, WindowProblem};
 use hinge::config::{self, ConfigError};
@@ -19,13 +21,15 @@ pub struct Campaign {
     pub name: String,
     pub material: SheetMaterial,
     pub tier: Tier,
-    /// Number of rays, one job each.
+    /// Number of rays of the box, one job each.
     pub count: usize,
     pub seed: u64,
     /// Time limit of one solve.
     pub time_limit: Duration,
     pub design: CommonDesign,
     pub rays: RayBox,
+    /// Rays besides those of the box, solved after them.
+    pub further: Vec<Ray>,
 }
 
 /// Why a campaign cannot be read, planned, run or collected.
@@ -37,6 +41,8 @@ pub enum CampaignError {
     Invalid { path: PathBuf, reason: String },
     #[error(transparent)]
     Material(#[from] MaterialError),
+    #[error(transparent)]
+    FurtherRays(#[from] FurtherRaysError),
     #[error(transparent)]
     Tool(#[from] ToolError),
     #[error(transparent)]
@@ -81,6 +87,7 @@ struct CampaignFile {
     count: usize,
     seed: u64,
     time_limit_s: f64,
+    further_rays: Option<PathBuf>,
     design: CommonDesign,
     rays: RayBox,
 }
@@ -137,8 +144,12 @@ impl Campaign {
                 reason,
             });
         }
-        let material_path = path.parent().unwrap_or(Path::new("")).join(&file.material);
-        let material = SheetMaterial::load(&material_path)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let material = SheetMaterial::load(&folder.join(&file.material))?;
+        let further = match &file.further_rays {
+            Some(rays) => read_further_rays(&folder.join(rays), &file.design)?,
+            None => Vec::new(),
+        };
         Ok(Self {
             name: file.name,
             material,
@@ -148,14 +159,22 @@ impl Campaign {
             time_limit: Duration::from_secs_f64(file.time_limit_s),
             design: file.design,
             rays: file.rays,
+            further,
         })
+    }
+
+    /// Number of jobs.
+    pub fn size(&self) -> usize {
+        self.count + self.further.len()
     }
 
     /// The jobs in the order they are run: any prefix of them is a usable database.
     pub fn jobs(&self, tools: &ToolVersions) -> Vec<JobSpec> {
-        self.rays
-            .rays(&self.design, self.count, self.seed)
+        let boxed = self.rays.rays(&self.design, self.count, self.seed);
+        let further = self.further.iter().copied();
+        boxed
             .into_iter()
+            .chain(further)
             .map(|ray| {
                 let problem = WindowProblem {
                     ray,

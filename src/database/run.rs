@@ -56,7 +56,7 @@ impl RunCommand {
             workers: self.jobs.unwrap_or_else(processors),
             time_limit: self.time_limit,
         };
-        let bar = Progress::new(campaign.count, "rays");
+        let bar = Progress::new(campaign.size(), "rays");
         let end = fe_driver::run(&campaign, &folder, &tools, &options, stop, &mut |now| {
             let tally = &now.tally;
             let message = format!("{} samples, {} failed", tally.rows, tally.failed);

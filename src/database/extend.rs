@@ -1,0 +1,135 @@
+//! `kirigami database extend`: new rays where a design went and the data did not.
+
+use crate::inspect::Inspected;
+use crate::routes::{HingeRoute, hinge_routes};
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use fe_driver::{Ray, add_further_rays};
+use hinge::HingeDeformation;
+use std::path::PathBuf;
+use surrogate::{Order, Surrogate};
+
+/// Add rays to a campaign where a designed sheet left the data, or networks disagree
+///
+/// A hinge is chosen if a state on its route lies outside the training domain, or if the forces of
+/// an ensemble (train --seeds) differ there by more than --doubt. Its ray goes through the furthest
+/// state of the route, and a tenth beyond. The rays are added to a CSV file, which a campaign names
+/// as further_rays. Example: kirigami database extend configs/scenes/pet-3x3.toml --design
+/// runs/pet-3x3/state.json --rays configs/campaigns/pet-0.5mm-rays.csv
+#[derive(Args)]
+pub struct ExtendCommand {
+    #[command(flatten)]
+    inspected: Inspected,
+    /// Further networks of the same training
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    ensemble: Vec<PathBuf>,
+    /// Greatest standard deviation of the ensemble's forces, over the root mean square of all
+    #[arg(long, value_name = "SHARE", default_value_t = 0.05)]
+    doubt: f64,
+    /// The CSV file that the rays are added to
+    #[arg(long, value_name = "FILE")]
+    rays: PathBuf,
+}
+
+/// How far a ray goes, over the state that asked for it.
+const BEYOND: f64 = 1.1;
+
+impl ExtendCommand {
+    pub fn run(&self) -> Result<()> {
+        let (scene, design) = self.inspected.read()?;
+        let surrogate = scene
+            .surrogate()
+            .context("the scene has no surrogate to extend the data of (hinge = \"surrogate\")")?;
+        let mut networks = vec![surrogate.clone()];
+        for path in &self.ensemble {
+            networks.push(Surrogate::load(path)?);
+        }
+        let routes = hinge_routes(&scene, &design)?;
+        ensure!(!routes.is_empty(), "the sheet has no hinges");
+        let doubts = doubts(&networks, &routes);
+        let domain = surrogate.domain();
+        let (mut outside, mut doubted, mut rays) = (0, 0, Vec::new());
+        for (route, doubt) in routes.iter().zip(doubts) {
+            let leaves = |state| !domain.contains(&route.design, state);
+            if route.states.iter().any(leaves) {
+                outside += 1;
+            } else if doubt > self.doubt {
+                doubted += 1;
+            } else {
+                continue;
+            }
+            rays.push(Ray {
+                design: route.design,
+                end: furthest(route).at(BEYOND),
+            });
+        }
+        let added = add_further_rays(&self.rays, &rays)?;
+        println!(
+            "of {} hinges {outside} leave the training domain and {doubted} are in doubt; {added} rays added to {}\n\
+             A campaign solves them that says further_rays = \"FILE\", relative to its own file.",
+            routes.len(),
+            self.rays.display()
+        );
+        Ok(())
+    }
+}
+
+/// The state of a route that is furthest from the undeformed one.
+fn furthest(route: &HingeRoute) -> HingeDeformation {
+    let size = |state: &HingeDeformation| {
+        let [eta_a, eta_s] = state.eta(route.design.w_lig);
+        eta_a * eta_a + eta_s * eta_s + state.theta * state.theta
+    };
+    let furthest = route
+        .states
+        .iter()
+        .max_by(|x, y| size(x).total_cmp(&size(y)));
+    furthest.copied().unwrap_or_default()
+}
+
+/// Per route, the greatest standard deviation of (w_lig F_a, w_lig F_s, M) over the networks, over
+/// the root mean square of all; zero with one network.
+fn doubts(networks: &[Surrogate], routes: &[HingeRoute]) -> Vec<f64> {
+    let n = networks.len() as f64;
+    let (mut squares, mut count) = (0.0, 0.0);
+    let deviations: Vec<f64> = routes
+        .iter()
+        .map(|route| {
+            let designs = vec![route.design; route.states.len()];
+            let w_lig = route.design.w_lig;
+            let forces: Vec<Vec<[f64; 3]>> = networks
+                .iter()
+                .map(|network| {
+                    let prepared = network.prepare(&designs);
+                    let energies = network.evaluate(&prepared, &route.states, Order::Forces);
+                    let moments = energies.iter().map(|energy| {
+                        let [f_a, f_s, m] = energy.forces;
+                        [w_lig * f_a, w_lig * f_s, m]
+                    });
+                    moments.collect()
+                })
+                .collect();
+            let mut greatest = 0.0_f64;
+            for k in 0..route.states.len() {
+                let mut variance = 0.0;
+                for c in 0..3 {
+                    let values = || forces.iter().map(|network| network[k][c]);
+                    let mean = values().sum::<f64>() / n;
+                    variance +=
+                        values().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+                    squares += mean * mean;
+                }
+                count += 1.0;
+                greatest = greatest.max(variance.sqrt());
+            }
+            greatest
+        })
+        .collect();
+    let scale = (squares / f64::max(count, 1.0))
+        .sqrt()
+        .max(f64::MIN_POSITIVE);
+    deviations
+        .iter()
+        .map(|deviation| deviation / scale)
+        .collect()
+}
