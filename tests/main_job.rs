@@ -103,7 +103,11 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
         "database plan {CAMPAIGN} --folder runs/demo/campaign --json"
     ));
     let plan: serde_json::Value = serde_json::from_str(&plan).unwrap();
-    assert_eq!(plan["tally"]["open"].as_u64().unwrap() as usize, rays, "{plan}");
+    assert_eq!(
+        plan["tally"]["open"].as_u64().unwrap() as usize,
+        rays,
+        "{plan}"
+    );
     work.edit(CAMPAIGN, &[("\nfurther_rays = \"further.csv\"", "")]);
 
     // The folders belong to what was run in them.

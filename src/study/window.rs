@@ -61,7 +61,7 @@ impl WindowStudy {
         }
         self.write("window.csv", &csv(&rows))?;
         self.write("window.md", &markdown(&rows, &failures)?)?;
-        self.write("tradeoff.md", &tradeoff(&rows)?)?;
+        self.write("tradeoff.md", &(tradeoff(&rows)? + &at_equal_error(&rows)?))?;
         let chart = charts::studies(&panels(&rows))?;
         let pictures = picture::save(&chart, &self.out.join("window"), 1600)?;
         println!("{} solves; {}", rows.len(), pictures[1].display());
@@ -287,6 +287,33 @@ fn tradeoff(rows: &[Row]) -> Result<String> {
             first.elements,
             7200.0 / ray,
         )?;
+    }
+    Ok(text)
+}
+
+/// The paper's element beside the cheapest tier that is no further off in W, hinge by hinge.
+fn at_equal_error(rows: &[Row]) -> Result<String> {
+    let mut text = "\nThe paper's element (15-node wedges, one layer) beside the cheapest tier that is no further off \
+        in W:\n\n| hinge | paper, CPU s | W | tier | CPU s | W | ratio |\n|---|---|---|---|---|---|---|\n"
+        .to_owned();
+    let is_paper = |row: &Row| row.0.study == "mesh" && row.0.value == Tier::Paper.name();
+    for paper in rows.iter().filter(|row| is_paper(row)) {
+        let hinge = hinge_name(&paper.0.solve.design);
+        let off = |row: &Row| difference(row, rows)[0];
+        let others = of_tiers(rows, &hinge).filter(|row| !is_paper(row) && off(row) <= off(paper));
+        let cheapest = others.min_by(|x, y| x.1.cpu_seconds.total_cmp(&y.1.cpu_seconds));
+        if let Some(cheapest) = cheapest {
+            let ([slow, quick], [much, little]) = (
+                [paper, cheapest].map(|row| row.1.cpu_seconds),
+                [paper, cheapest].map(|row| 100.0 * off(row)),
+            );
+            writeln!(
+                text,
+                "| {hinge} | {slow:.0} | {much:.1} % | {} | {quick:.1} | {little:.1} % | {:.0} |",
+                cheapest.0.value,
+                slow / quick
+            )?;
+        }
     }
     Ok(text)
 }
