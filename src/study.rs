@@ -1,5 +1,6 @@
 //! `kirigami study`: what the choices of each stage cost and are worth.
 
+mod gradient;
 mod path;
 mod window;
 
@@ -11,6 +12,7 @@ use clap::Subcommand;
 pub enum StudyCommand {
     Window(window::WindowStudy),
     Path(path::PathStudy),
+    Gradient(gradient::GradientStudy),
 }
 
 impl StudyCommand {
@@ -18,6 +20,7 @@ impl StudyCommand {
         match self {
             Self::Window(study) => study.run(),
             Self::Path(study) => study.run(),
+            Self::Gradient(study) => study.run(),
         }
     }
 }
