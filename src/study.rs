@@ -2,6 +2,7 @@
 
 mod gradient;
 mod path;
+mod solutions;
 mod window;
 
 use anyhow::Result;
@@ -13,6 +14,7 @@ pub enum StudyCommand {
     Window(window::WindowStudy),
     Path(path::PathStudy),
     Gradient(gradient::GradientStudy),
+    Solutions(solutions::SolutionStudy),
 }
 
 impl StudyCommand {
@@ -21,6 +23,7 @@ impl StudyCommand {
             Self::Window(study) => study.run(),
             Self::Path(study) => study.run(),
             Self::Gradient(study) => study.run(),
+            Self::Solutions(study) => study.run(),
         }
     }
 }

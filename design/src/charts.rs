@@ -27,6 +27,13 @@ impl PatternCoordinates {
         }
     }
 
+    /// r and tau in one row: what the pattern is, where the logits of one pattern are many.
+    pub fn values(&self) -> Vec<f64> {
+        let r = self.z.iter().map(|z| logistic(*z));
+        r.chain(self.ell.iter().flat_map(|ell| partial_sums(ell)))
+            .collect()
+    }
+
     /// The logits of given aspect ratios.
     pub fn z_of(r: &[f64]) -> Result<Vec<f64>, PatternError> {
         let inside = |r: f64| r > 0.0 && r < 1.0;

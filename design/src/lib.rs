@@ -39,6 +39,7 @@ pub mod results;
 pub mod scene;
 pub mod sheet;
 pub mod smooth_extrema;
+pub mod solution_set;
 mod stroke;
 mod svg_path;
 mod tangent;
