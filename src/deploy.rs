@@ -1,6 +1,6 @@
 //! `kirigami deploy`: the ideal deployment of a design in numbers.
 
-use crate::inspect::Inspected;
+use crate::inspect::Listed;
 use anyhow::{Context, Result};
 use clap::Args;
 use design::listing::DeploymentListing;
@@ -11,7 +11,7 @@ use design::listing::DeploymentListing;
 #[derive(Args)]
 pub struct DeployCommand {
     #[command(flatten)]
-    inspected: Inspected,
+    listed: Listed,
     /// Opening of the hinges (deg); by default the design's, if the scene's hinges are pins
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     opening_deg: Option<f64>,
@@ -19,11 +19,11 @@ pub struct DeployCommand {
 
 impl DeployCommand {
     pub fn run(&self) -> Result<()> {
-        let (scene, design) = self.inspected.read()?;
+        let (scene, design) = self.listed.read()?;
         let opening = (self.opening_deg.map(f64::to_radians))
             .or(design.opening)
             .context("this scene's hinges are no pins: give --opening-deg")?;
         let listing = DeploymentListing::new(&scene.problem()?, &design, opening)?;
-        self.inspected.print(listing)
+        self.listed.print(listing)
     }
 }

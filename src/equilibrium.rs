@@ -1,6 +1,6 @@
 //! `kirigami equilibrium`: the load path of a design in numbers.
 
-use crate::inspect::Inspected;
+use crate::inspect::Listed;
 use anyhow::Result;
 use clap::Args;
 use design::listing::EquilibriumListing;
@@ -11,13 +11,13 @@ use design::listing::EquilibriumListing;
 #[derive(Args)]
 pub struct EquilibriumCommand {
     #[command(flatten)]
-    inspected: Inspected,
+    listed: Listed,
 }
 
 impl EquilibriumCommand {
     pub fn run(&self) -> Result<()> {
-        let (scene, design) = self.inspected.read()?;
+        let (scene, design) = self.listed.read()?;
         let listing = EquilibriumListing::new(&scene.problem()?, &design)?;
-        self.inspected.print(listing)
+        self.listed.print(listing)
     }
 }

@@ -1,6 +1,6 @@
 //! `kirigami gradient`: objective and gradient of a design in numbers.
 
-use crate::inspect::Inspected;
+use crate::inspect::Listed;
 use anyhow::Result;
 use clap::Args;
 use design::listing::GradientListing;
@@ -11,12 +11,12 @@ use design::listing::GradientListing;
 #[derive(Args)]
 pub struct GradientCommand {
     #[command(flatten)]
-    inspected: Inspected,
+    listed: Listed,
 }
 
 impl GradientCommand {
     pub fn run(&self) -> Result<()> {
-        let (scene, design) = self.inspected.read()?;
-        self.inspected.print(GradientListing::new(&scene, &design)?)
+        let (scene, design) = self.listed.read()?;
+        self.listed.print(GradientListing::new(&scene, &design)?)
     }
 }

@@ -18,6 +18,13 @@ pub struct Inspected {
     /// Design (JSON): the state.json of a run, or a design alone; by default the scene's start
     #[arg(long, value_name = "FILE")]
     design: Option<PathBuf>,
+}
+
+/// A design whose numbers are listed.
+#[derive(Args)]
+pub struct Listed {
+    #[command(flatten)]
+    inspected: Inspected,
     /// Print every number as JSON
     #[arg(long)]
     json: bool,
@@ -31,6 +38,12 @@ impl Inspected {
             None => scene.start(),
         };
         Ok((scene, design))
+    }
+}
+
+impl Listed {
+    pub fn read(&self) -> Result<(Scene, DesignVector)> {
+        self.inspected.read()
     }
 
     pub fn print(&self, listing: impl Serialize + Display) -> Result<()> {

@@ -1,14 +1,14 @@
 //! Many window solves at once, each made once: what studies and replays are made of.
 
-use crate::database::processors;
+use crate::database::{Unfinished, processors};
 use crate::interrupt;
 use crate::progress::Progress;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::Args;
 use fe_driver::{FailureKind, KeptSolution, KeptSolve, KeptSolveError, Tools};
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
 /// How window solves are made.
@@ -47,6 +47,7 @@ impl SolveArgs {
     }
 
     fn solve_different(&self, solves: &[&KeptSolve], kept: &Path) -> Result<Vec<Outcome>> {
+        remove_scratch(kept)?;
         let tools = Tools::find()?;
         let stop = interrupt::stop_flag()?;
         let limit = Duration::from_secs(self.time_limit_s);
@@ -54,31 +55,52 @@ impl SolveArgs {
             .jobs
             .unwrap_or_else(processors)
             .clamp(1, solves.len().max(1));
-        let next = AtomicUsize::new(0);
+        let (next, halt) = (AtomicUsize::new(0), AtomicBool::new(false));
         let (tell, told) = mpsc::channel();
         let bar = Progress::new(solves.len(), "solves");
-        std::thread::scope(|scope| {
+        let mut outcomes: Vec<Option<Outcome>> = vec![None; solves.len()];
+        let ended = std::thread::scope(|scope| {
             for _ in 0..workers {
-                let (tell, next, tools) = (tell.clone(), &next, &tools);
+                let (tell, next, halt, tools) = (tell.clone(), &next, &halt, &tools);
                 scope.spawn(move || {
-                    while let Some((i, solve)) = following(next, solves) {
+                    while let Some((i, solve)) = following(next, halt, solves) {
                         let solution =
-                            in_scratch(kept, |work| solve.solution(kept, work, tools, limit, stop));
+                            in_scratch(kept, |work| solve.solution(kept, work, tools, limit, halt));
                         // Nobody listens any more once a solve has failed.
                         let _ = tell.send((i, solution));
                     }
                 });
             }
             drop(tell);
-            let mut outcomes: Vec<Option<Outcome>> = vec![None; solves.len()];
-            for (done, (i, solution)) in told.iter().enumerate() {
-                outcomes[i] = Some(outcome(solution).inspect_err(|_| {
-                    next.store(solves.len(), Ordering::Relaxed);
-                })?);
-                bar.show(done + 1, None, "");
+            let mut done = 0;
+            loop {
+                match told.recv_timeout(Duration::from_millis(100)) {
+                    Ok((i, solution)) => match outcome(solution) {
+                        Ok(outcome) => {
+                            outcomes[i] = Some(outcome);
+                            done += 1;
+                            bar.show(done, None, "");
+                        }
+                        Err(error) => {
+                            halt.store(true, Ordering::Relaxed);
+                            return Err(error);
+                        }
+                    },
+                    Err(RecvTimeoutError::Timeout) => {
+                        halt.fetch_or(stop.load(Ordering::Relaxed), Ordering::Relaxed);
+                    }
+                    Err(RecvTimeoutError::Disconnected) => return Ok(()),
+                }
             }
-            Ok(outcomes.into_iter().flatten().collect())
-        })
+        });
+        bar.finish();
+        let left = outcomes.iter().filter(|outcome| outcome.is_none()).count();
+        if stop.load(Ordering::Relaxed) && left > 0 {
+            let what = "solves";
+            bail!(Unfinished { left, what });
+        }
+        ended?;
+        Ok(outcomes.into_iter().flatten().collect())
     }
 }
 
@@ -101,9 +123,30 @@ fn outcome(solution: Result<KeptSolution>) -> Result<Outcome> {
 }
 
 /// The next solve that no worker has taken.
-fn following<'a>(next: &AtomicUsize, solves: &[&'a KeptSolve]) -> Option<(usize, &'a KeptSolve)> {
+fn following<'a>(
+    next: &AtomicUsize,
+    halt: &AtomicBool,
+    solves: &[&'a KeptSolve],
+) -> Option<(usize, &'a KeptSolve)> {
+    if halt.load(Ordering::Relaxed) {
+        return None;
+    }
     let i = next.fetch_add(1, Ordering::Relaxed);
     solves.get(i).map(|solve| (i, *solve))
+}
+
+/// How the folders begin in which solves are made.
+const SCRATCH: &str = "solving-";
+
+/// Removes the folders of solves that were killed.
+fn remove_scratch(kept: &Path) -> Result<()> {
+    for entry in std::fs::read_dir(kept)? {
+        let entry = entry?;
+        if entry.file_name().to_string_lossy().starts_with(SCRATCH) {
+            std::fs::remove_dir_all(entry.path())?;
+        }
+    }
+    Ok(())
 }
 
 /// Does `solve` in a folder of its own beside the solutions, which is removed afterwards.
@@ -111,6 +154,7 @@ fn in_scratch(
     kept: &Path,
     solve: impl FnOnce(&Path) -> Result<KeptSolution, KeptSolveError>,
 ) -> Result<KeptSolution> {
-    let work = tempfile::tempdir_in(kept).context("cannot make a folder to work in")?;
+    let work = tempfile::Builder::new().prefix(SCRATCH).tempdir_in(kept);
+    let work = work.context("cannot make a folder to work in")?;
     Ok(solve(work.path())?)
 }

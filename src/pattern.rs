@@ -1,6 +1,6 @@
 //! `kirigami pattern`: the flat sheet of a design in numbers.
 
-use crate::inspect::Inspected;
+use crate::inspect::Listed;
 use anyhow::Result;
 use clap::Args;
 use design::listing::PatternListing;
@@ -11,13 +11,13 @@ use design::listing::PatternListing;
 #[derive(Args)]
 pub struct PatternCommand {
     #[command(flatten)]
-    inspected: Inspected,
+    listed: Listed,
 }
 
 impl PatternCommand {
     pub fn run(&self) -> Result<()> {
-        let (scene, design) = self.inspected.read()?;
+        let (scene, design) = self.listed.read()?;
         let listing = PatternListing::new(&scene.problem()?, &design)?;
-        self.inspected.print(listing)
+        self.listed.print(listing)
     }
 }

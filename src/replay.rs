@@ -3,7 +3,7 @@
 use crate::comparison::{self, SCALE, spread_table};
 use crate::inspect::Inspected;
 use crate::kept_solves::{Outcome, SolveArgs};
-use crate::routes::{HingeRoute, hinge_routes};
+use crate::routes::{HingeRoute, ensemble, hinge_routes};
 use crate::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -53,11 +53,7 @@ impl ReplayCommand {
         let surrogate = scene
             .surrogate()
             .context("the scene has no surrogate to compare with (hinge = \"surrogate\")")?;
-        let networks: Vec<_> = self
-            .ensemble
-            .iter()
-            .map(|path| Surrogate::load(path))
-            .collect::<Result<_, _>>()?;
+        let networks = ensemble(surrogate, &self.ensemble)?;
         let routes = hinge_routes(&scene, &design)?;
         let solves: Vec<KeptSolve> = routes
             .iter()
@@ -77,18 +73,13 @@ impl ReplayCommand {
         }
         ensure!(!replayed.is_empty(), "no hinge was solved:\n{failures}");
         let page = page(&replayed, self.tier, &failures)?;
-        self.write("replay.md", &page)?;
-        self.write("replay.csv", &csv(&replayed)?)?;
+        run_folder::write(&self.out, "replay.md", &page)?;
+        run_folder::write(&self.out, "replay.csv", &csv(&replayed)?)?;
         let groups: Vec<_> = replayed.iter().map(|hinge| &hinge.states[..]).collect();
         let axes = ["finite elements", "surrogate"];
         comparison::draw(&groups, axes, &self.out.join("replay"))?;
         println!("{page}\nwritten to {}", self.out.display());
         Ok(())
-    }
-
-    fn write(&self, name: &str, text: &str) -> Result<()> {
-        let path = self.out.join(name);
-        std::fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
     }
 }
 
@@ -181,7 +172,7 @@ fn page(replayed: &[Replayed], tier: Tier, failures: &str) -> Result<String> {
          {states} states of {} hinges on the routes they take in the sheet, windows of tier {tier}; {:.0} % of the \
          states inside the training domain. Differences of the surrogate from the finite elements are root mean \
          squares, relative to that of the finite elements: {SCALE}.\n\n{}\n\
-         Energy of all hinges at full load: {learned:.1} N mm by the surrogate, {solved:.1} N mm by finite \
+         Energy of these hinges at full load: {learned:.1} N mm by the surrogate, {solved:.1} N mm by finite \
          elements ({:+.2} %).\n",
         replayed.len(),
         100.0 * inside,
@@ -238,6 +229,10 @@ fn estimate(replayed: &[Replayed]) -> Result<String> {
             .flat_map(|hinge| hinge.states.iter().zip(&hinge.spread))
     };
     for (i, name) in COMPARED.iter().enumerate() {
+        if pairs().any(|(_, spread)| spread[i].is_nan()) {
+            writeln!(text, "| {name} | not predicted by all | | |")?;
+            continue;
+        }
         let within = |count: f64| {
             let met = pairs().filter(|(state, spread)| {
                 (state.value[i] - state.reference[i]).abs() <= count * spread[i]

@@ -8,6 +8,8 @@ use design::scene::Scene;
 use fe_driver::{DeformationPath, KeptSolve, StepControl};
 use hinge::{HingeDeformation, HingeDesign, SheetMaterial};
 use mesher::Tier;
+use std::path::PathBuf;
+use surrogate::Surrogate;
 
 /// What one hinge of a sheet does on the way to full load.
 #[derive(Clone, Debug)]
@@ -38,6 +40,21 @@ pub fn hinge_routes(scene: &Scene, design: &DesignVector) -> Result<Vec<HingeRou
         states: path.iter().map(|step| step.deformations[hinge]).collect(),
     });
     Ok(routes.collect())
+}
+
+/// Further networks that were trained on the data of `surrogate`, whose spread estimates its error.
+pub fn ensemble(surrogate: &Surrogate, files: &[PathBuf]) -> Result<Vec<Surrogate>> {
+    let load = |path: &PathBuf| {
+        let network = Surrogate::load(path)?;
+        let (own, other) = (surrogate.card(), network.card());
+        ensure!(
+            own.dataset_hash == other.dataset_hash && own.split_hash == other.split_hash,
+            "{} was not trained on the data of the scene's weights: no ensemble with them",
+            path.display()
+        );
+        Ok(network)
+    };
+    files.iter().map(load).collect()
 }
 
 impl HingeRoute {

@@ -21,3 +21,10 @@ pub fn hold(folder: &Path) -> Result<File> {
         }
     }
 }
+
+/// Writes a text of the folder, whole or not at all.
+pub fn write(folder: &Path, name: &str, text: &str) -> Result<()> {
+    let path = folder.join(name);
+    hinge::files::write(&path, text.as_bytes())
+        .with_context(|| format!("cannot write {}", path.display()))
+}

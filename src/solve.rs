@@ -140,7 +140,7 @@ fn watched<T>(folder: &Path, solve: impl FnOnce() -> T) -> T {
     let done = AtomicBool::new(false);
     std::thread::scope(|scope| {
         scope.spawn(|| {
-            let bar = Progress::new(PARTS as usize, "lambda / 1000");
+            let bar = Progress::new(PARTS as usize, "1000 lambda");
             while !done.load(Ordering::Relaxed) {
                 bar.show((PARTS * reached(folder)) as usize, None, "");
                 std::thread::sleep(Duration::from_millis(100));

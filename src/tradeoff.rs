@@ -7,6 +7,8 @@ use std::path::PathBuf;
 /// Join what the studies say of speed against accuracy into one page
 ///
 /// Each study leaves a tradeoff.md in its folder: one row a choice, with its cost and its error.
+/// The folders are window, tiers, path, surrogate and sheet, each where a study was told to write
+/// by --out, for example: kirigami study window --out docs/results/window
 #[derive(Args)]
 pub struct TradeoffCommand {
     /// Folder that holds the folders of the studies
@@ -19,8 +21,8 @@ pub struct TradeoffCommand {
 
 const HEADING: &str = "# Speed against accuracy
 
-Each table is the output of the command that it names, on two cores of a busy machine; `kirigami tradeoff` joins
-them. CPU times are comparable within a table.
+Each table is the output of the command that it names; `kirigami tradeoff` joins them. CPU times are comparable within
+a table.
 ";
 
 /// The folders of the studies, in the order of the page.
@@ -41,7 +43,8 @@ impl TradeoffCommand {
         }
         ensure!(
             found > 0,
-            "{} holds no tradeoff.md of {}: run `kirigami study` first",
+            "{0} holds no tradeoff.md in the folders {1}: make them, for example by `kirigami study window --out \
+             {0}/window`, `kirigami dataset compare A B --out {0}/tiers`",
             self.results.display(),
             STUDIES.join(", ")
         );

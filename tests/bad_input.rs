@@ -116,6 +116,41 @@ fn a_solver_that_fails_is_quoted_and_what_is_finished_is_kept() {
 }
 
 #[test]
+fn a_study_of_which_nothing_was_solved_is_an_error() {
+    use std::os::unix::fs::PermissionsExt;
+    let work = Workplace::new();
+    let fake = work.path("ccx");
+    let script = "#!/bin/sh\n[ \"$1\" = -v ] && echo 'This is Version 2.20' && exit 0\n\
+                  echo ' *ERROR reading *SOLID SECTION'; exit 201\n";
+    std::fs::write(&fake, script).unwrap();
+    std::fs::set_permissions(&fake, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let study = |work: &Workplace| {
+        let mut study = work.kirigami("study window --quick --out study");
+        failure(study.env("KIRIGAMI_CCX", &fake))
+    };
+    let message = study(&work);
+    assert!(message.contains("before its first increment"), "{message}");
+    // A broken solver is no result to keep, and a full disk ends the study.
+    let kept = || {
+        std::fs::read_dir(work.path("study/solutions"))
+            .unwrap()
+            .count()
+    };
+    assert_eq!(kept(), 0);
+    std::fs::write(
+        &fake,
+        script.replace(
+            "echo ' *ERR",
+            "echo '1 1 1U 4 0. 0. 0.005' > window.sta; echo 'No space left on device *ERR",
+        ),
+    )
+    .unwrap();
+    let message = study(&work);
+    assert!(message.contains("No space left"), "{message}");
+    assert_eq!(kept(), 0);
+}
+
+#[test]
 fn weights_that_are_none_are_refused() {
     let work = Workplace::new();
     let scene = "configs/scenes/demo.toml";

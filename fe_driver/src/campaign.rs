@@ -103,10 +103,11 @@ impl CampaignFile {
         if self.name.is_empty() {
             return Some("name is empty".to_owned());
         }
-        if !(1..=MAX_COUNT).contains(&self.count) {
+        let least = usize::from(self.further_rays.is_none());
+        if !(least..=MAX_COUNT).contains(&self.count) {
             let count = self.count;
             return Some(format!(
-                "count = {count} violates 1 <= count <= {MAX_COUNT}"
+                "count = {count} violates {least} <= count <= {MAX_COUNT}"
             ));
         }
         let seconds = self.time_limit_s;

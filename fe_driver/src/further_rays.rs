@@ -42,47 +42,74 @@ struct Row {
 /// Reads the rays of hinges that have `common` in common.
 pub fn read_further_rays(path: &Path, common: &CommonDesign) -> Result<Vec<Ray>, FurtherRaysError> {
     let mut rays = Vec::new();
-    for row in read_rows(path)? {
+    for (i, row) in read_rows(path)?.into_iter().enumerate() {
         let ray = row.ray(common);
         if let Some(reason) = row.defect(&ray) {
             return Err(FurtherRaysError::Ray {
                 path: path.to_owned(),
-                row: rays.len() + 1,
+                row: i + 1,
                 reason,
             });
         }
-        rays.push(ray);
+        // A ray that stands twice is one job.
+        if !rays.contains(&ray) {
+            rays.push(ray);
+        }
     }
     Ok(rays)
 }
 
-/// Adds rays to the file, which is made if it is not there; rays with a cut angle over 90 degrees
-/// are mirrored. Returns how many were not in it.
-pub fn add_further_rays(path: &Path, rays: &[Ray]) -> Result<usize, FurtherRaysError> {
+/// What became of rays that were to be added.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Added {
+    pub added: usize,
+    /// In the file before.
+    pub known: usize,
+    /// Rays that a window cannot follow: closings, or beyond what a campaign accepts.
+    pub refused: usize,
+}
+
+/// Adds rays to the end of the file, which is made if it is not there.
+pub fn add_further_rays(path: &Path, rays: &[Ray]) -> Result<Added, FurtherRaysError> {
     let mut rows = match path.exists() {
         true => read_rows(path)?,
         false => Vec::new(),
     };
-    let before = rows.len();
-    for row in rays.iter().map(Row::of) {
-        if !rows.contains(&row) {
+    let mut count = Added::default();
+    let mut writer = csv::WriterBuilder::new()
+        .has_headers(rows.is_empty())
+        .from_writer(Vec::new());
+    for ray in rays {
+        let row = Row::of(ray);
+        if row.defect(ray).is_some() {
+            count.refused += 1;
+        } else if rows.contains(&row) {
+            count.known += 1;
+        } else {
+            count.added += 1;
+            let unwritable = |source| FurtherRaysError::Csv {
+                path: path.to_owned(),
+                source,
+            };
+            writer.serialize(row).map_err(unwritable)?;
             rows.push(row);
         }
     }
-    let unwritable = |source| FurtherRaysError::Csv {
+    let lines = writer.into_inner().unwrap_or_default();
+    let unwritable = |source| FurtherRaysError::Write {
         path: path.to_owned(),
         source,
     };
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for row in &rows {
-        writer.serialize(row).map_err(unwritable)?;
+    let mut bytes = match rows.len() > count.added {
+        true => std::fs::read(path).map_err(unwritable)?,
+        false => Vec::new(),
+    };
+    if bytes.last().is_some_and(|last| *last != b'\n') {
+        bytes.push(b'\n');
     }
-    let bytes = writer.into_inner().unwrap_or_default();
-    hinge::files::write(path, &bytes).map_err(|source| FurtherRaysError::Write {
-        path: path.to_owned(),
-        source,
-    })?;
-    Ok(rows.len() - before)
+    bytes.extend(lines);
+    hinge::files::write(path, &bytes).map_err(unwritable)?;
+    Ok(count)
 }
 
 fn read_rows(path: &Path) -> Result<Vec<Row>, FurtherRaysError> {
@@ -119,9 +146,13 @@ impl Row {
 
     fn ray(&self, common: &CommonDesign) -> Ray {
         let theta = self.theta_deg.to_radians();
-        Ray {
+        let ray = Ray {
             design: common.hinge(self.w_lig, self.alpha_deg.to_radians()),
             end: HingeDeformation::from_eta(self.eta_a, self.eta_s, theta, self.w_lig),
+        };
+        match ray.design.alpha > FRAC_PI_2 {
+            true => ray.mirrored(),
+            false => ray,
         }
     }
 
@@ -136,6 +167,9 @@ impl Row {
         }
         if !(-1.0 < self.eta_a && self.eta_a < 1.0 && self.eta_s.abs() < 1.0) {
             return Some("violates |eta_a| < 1, |eta_s| < 1 (over w_lig, not mm)".to_owned());
+        }
+        if !(0.0..=120.0).contains(&self.theta_deg) {
+            return Some("violates 0 <= theta_deg <= 120: the window knows no contact".to_owned());
         }
         ray.design.validate().err().map(|error| error.to_string())
     }
@@ -162,16 +196,40 @@ mod tests {
     fn rays_are_added_once_mirrored_and_read_back() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rays.csv");
-        assert_eq!(
-            add_further_rays(&path, &[ray(80.0), ray(100.0)]).unwrap(),
-            2
+        let added = add_further_rays(&path, &[ray(80.0), ray(100.0)]).unwrap();
+        assert_eq!((added.added, added.known, added.refused), (2, 0, 0));
+        let text = format!(
+            "# of a design\n{}# by hand",
+            std::fs::read_to_string(&path).unwrap()
         );
-        assert_eq!(add_further_rays(&path, &[ray(80.0), ray(70.0)]).unwrap(), 1);
+        std::fs::write(&path, text).unwrap();
+        let mut closing = ray(60.0);
+        closing.end.theta = -0.1;
+        let added = add_further_rays(&path, &[ray(80.0), ray(70.0), closing]).unwrap();
+        assert_eq!((added.added, added.known, added.refused), (1, 1, 1));
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(
+            text.contains("# of a design") && text.contains("# by hand"),
+            "{text}"
+        );
         let rays = read_further_rays(&path, &COMMON).unwrap();
         assert_eq!(rays.len(), 3);
         assert!((rays[0].design.w_lig - 17.1235).abs() < 1e-12);
         assert!((rays[1].design.alpha.to_degrees() - 80.0).abs() < 1e-9);
         assert!((rays[1].end.s + rays[0].end.s).abs() < 1e-9);
+    }
+
+    #[test]
+    fn rays_that_stand_twice_are_one_and_obtuse_ones_are_mirrored() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rays.csv");
+        let header = "w_lig,alpha_deg,eta_a,eta_s,theta_deg";
+        let text = format!("{header}\n18,80,-0.3,0.1,20\n18,80,-0.3,0.1,20\n18,120,0,0.1,20\n");
+        std::fs::write(&path, text).unwrap();
+        let rays = read_further_rays(&path, &COMMON).unwrap();
+        assert_eq!(rays.len(), 2);
+        assert!((rays[1].design.alpha.to_degrees() - 60.0).abs() < 1e-9);
+        assert!(rays[1].end.s < 0.0);
     }
 
     #[test]
@@ -182,6 +240,8 @@ mod tests {
         for (text, expected) in [
             ("w_lig,alpha\n1,2\n".to_owned(), "unknown field"),
             (format!("{header}\n18,90,-5.4,0,20\n"), "|eta_a| < 1"),
+            (format!("{header}\n18,90,0,0,-20\n"), "no contact"),
+            (format!("{header}\n18,90,0,0,2000\n"), "theta_deg <= 120"),
             (
                 format!("{header}\n18,90,0,0,20\n18,90,0,0,0\n"),
                 "ray 2: it ends where",

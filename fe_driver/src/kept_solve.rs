@@ -1,6 +1,7 @@
 //! Window solves that are made once: studies and replays can be stopped, and go on where they were.
 
 use crate::deck::StepControl;
+use crate::failure::FailureKind;
 use crate::job::{FileError, read_json, write_json};
 use crate::path::DeformationPath;
 use crate::window_solve::{SolveError, Tools, WindowModel};
@@ -25,12 +26,12 @@ pub struct KeptSolve {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KeptSolution {
     pub elements: usize,
-    /// Of the solver (s).
-    pub cpu_seconds: f64,
+    /// Of the solver (s), where the system tells it.
+    pub cpu_seconds: Option<f64>,
     /// Share of the time from the mesh to the samples in which the solver did not run.
     pub overhead: f64,
-    /// Largest resident memory of the solver (MiB).
-    pub peak_memory_mib: f64,
+    /// Largest resident memory of the solver (MiB), where the system tells it.
+    pub peak_memory_mib: Option<f64>,
     pub iterations: usize,
     pub samples: Vec<HingeSample>,
     /// Why the path was not followed to its end.
@@ -94,16 +95,18 @@ impl KeptSolve {
         let solution = model.solve(&tools.ccx, work, limit, stop)?;
         let stopped = match solution.stopped {
             None => None,
-            Some(reason @ (SolveError::Diverged { .. } | SolveError::EnergyImbalance { .. })) => {
-                Some(reason.to_string())
-            }
-            Some(other) => return Err(other),
+            Some(reason) => match FailureKind::of(&reason) {
+                Some(FailureKind::Diverged | FailureKind::EnergyImbalance) => {
+                    Some(reason.to_string())
+                }
+                _ => return Err(reason),
+            },
         };
         Ok(KeptSolution {
             elements: mesh.elements.len(),
-            cpu_seconds: solution.cpu_seconds.unwrap_or(f64::NAN),
+            cpu_seconds: solution.cpu_seconds,
             overhead: 1.0 - solution.solver_seconds / start.elapsed().as_secs_f64(),
-            peak_memory_mib: solution.peak_memory_mib.unwrap_or(f64::NAN),
+            peak_memory_mib: solution.peak_memory_mib,
             iterations: solution.iterations,
             samples: solution.samples,
             stopped,

@@ -37,7 +37,7 @@ pub use deck::{StepControl, deck};
 pub use doctor::{Diagnosis, doctor};
 pub use failure::{FailureKind, Rung, UnknownFailure};
 pub use finished::{FinishedJob, finished_jobs};
-pub use further_rays::{FurtherRaysError, add_further_rays};
+pub use further_rays::{Added, FurtherRaysError, add_further_rays};
 pub use job::{FileError, JobSpec, ToolVersions};
 pub use kept_solve::{KeptSolution, KeptSolve, KeptSolveError};
 pub use ledger::{Status, Tally, Throughput, refuse_changed, status};

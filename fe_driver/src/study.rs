@@ -191,9 +191,9 @@ mod tests {
         };
         KeptSolution {
             elements: 1,
-            cpu_seconds: 1.0,
+            cpu_seconds: Some(1.0),
             overhead: 0.01,
-            peak_memory_mib: 100.0,
+            peak_memory_mib: Some(100.0),
             iterations: 1,
             samples: [0.25, 0.5, 1.0].map(sample).to_vec(),
             stopped: None,

@@ -97,9 +97,11 @@ impl HingeDesign {
     /// Gap (mm) between the flanks of the main cut at the window's rim, in the plane of the sheet;
     /// negative where they pass through each other, as they may: the window knows no contact.
     pub fn flank_gap(&self, deformation: &HingeDeformation) -> f64 {
-        let normal = [self.alpha.sin(), self.alpha.cos()];
+        let [sin, cos] = [self.alpha.sin(), self.alpha.cos()];
+        // From O to the rim, whose centre is w_lig from O.
+        let flank = (self.r_win.powi(2) - (self.w_lig * cos).powi(2)).sqrt() - self.w_lig * sin;
         let HingeDeformation { a, s, theta } = deformation;
-        self.kerf + normal[0] * a + normal[1] * s + 2.0 * self.r_win * (0.5 * theta).sin()
+        self.kerf + sin * a + cos * s + 2.0 * flank * (0.5 * theta).sin()
     }
 
     /// Radius of the hole drilled about O (mm).
@@ -177,9 +179,9 @@ mod tests {
         let gap = |a, theta| PAPER.flank_gap(&HingeDeformation { a, s: 0.0, theta });
         assert_eq!(gap(0.0, 0.0), 0.2);
         assert!((gap(-0.2, 0.0)).abs() < 1e-15);
-        assert!(gap(0.0, -0.0019) > 0.0 && gap(0.0, -0.0021) < 0.0);
-        // Opening by pi parts the ends of the flanks by the whole diameter.
-        assert!((gap(0.0, PI) - 200.2).abs() < 1e-12);
+        // The flanks are 100 - 18 mm long.
+        assert!(gap(0.0, -0.0024) > 0.0 && gap(0.0, -0.0025) < 0.0);
+        assert!((gap(0.0, PI) - 164.2).abs() < 1e-12);
         // Shear closes an oblique cut from one side and opens it from the other.
         let oblique = HingeDesign {
             alpha: PI / 4.0,

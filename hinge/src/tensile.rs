@@ -1,6 +1,7 @@
 //! A measured tensile curve (CSV) as the hardening table of a material.
 //!
-//! Two kinds of columns are understood; lines that start with `#` are comments:
+//! Two pairs of columns are understood, others are passed over; lines that start with `#` are
+//! comments:
 //!
 //! | columns | meaning |
 //! |---|---|
@@ -10,15 +11,24 @@
 //! Engineering values are converted while the specimen is uniform, that is up to the greatest
 //! stress (Considere): sigma = s (1 + e), eps_p = ln(1 + e) - sigma / E. The yield stress is that
 //! at a plastic strain of 0.2 % (Rp0.2, ISO 6892-1), from where plastic strain is counted. What
-//! follows the neck must be measured on it, and given as true stress.
+//! follows the neck must be measured on it, and given as true stress. A curve that does not begin
+//! with the slope of Young's modulus is refused: it is in other units, or has a toe or the
+//! compliance of the machine in it.
 
-use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// Plastic strain at the yield stress Rp0.2.
 const OFFSET: f64 = 0.002;
 /// Most rows of a converted table; a testing machine records thousands.
 const MOST_ROWS: usize = 40;
+/// Share of the greatest stress at which the first slope is read.
+const FIRST_SHARE: f64 = 0.2;
+/// How far the first slope may be from Young's modulus, as a factor: units are off by hundreds.
+const SLOPE_FACTOR: f64 = 2.0;
+/// How far a strain may fall back from one row to the next: the noise of an extensometer.
+const NOISE: f64 = 1e-3;
+/// No sheet strains further, as a share.
+const GREATEST_STRAIN: f64 = 10.0;
 
 /// A file that is no tensile curve.
 #[derive(Debug, thiserror::Error)]
@@ -26,37 +36,62 @@ pub enum TensileError {
     #[error("{path}: {source}", path = .path.display())]
     Read { path: PathBuf, source: csv::Error },
     #[error(
-        "{path}: its columns must be true_stress_mpa and plastic_strain, or \
-         engineering_stress_mpa and engineering_strain",
+        "{path} has the columns {found}: name either true_stress_mpa and plastic_strain, or \
+         engineering_stress_mpa and engineering_strain, in the first line, separated by commas",
         path = .path.display()
     )]
-    Columns { path: PathBuf },
-    #[error("{path}, line {line}: {what}", path = .path.display())]
+    Columns { path: PathBuf, found: String },
+    #[error("{path}:{line}: {what}", path = .path.display())]
     Row {
         path: PathBuf,
         line: u64,
-        what: &'static str,
+        what: String,
     },
+    #[error("{path} has no rows", path = .path.display())]
+    Empty { path: PathBuf },
     #[error(
-        "{path}: the curve ends before a plastic strain of 0.2 %: is the strain in per cent, or \
-         Young's modulus ({young} MPa) too low?",
+        "{path} begins with a slope of {slope:.3e} MPa, but young = {young:.3e} MPa: is the strain in \
+         per cent, the stress not in MPa, or is there a toe or the machine's compliance in it?",
         path = .path.display()
     )]
-    NoYield { path: PathBuf, young: f64 },
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Row {
-    true_stress_mpa: Option<f64>,
-    plastic_strain: Option<f64>,
-    engineering_stress_mpa: Option<f64>,
-    engineering_strain: Option<f64>,
+    Slope {
+        path: PathBuf,
+        slope: f64,
+        young: f64,
+    },
+    #[error(
+        "{path} ends before a plastic strain of 0.2 %: there is no hardening in it to read",
+        path = .path.display()
+    )]
+    NoYield { path: PathBuf },
 }
 
 /// Reads the hardening table of a material of Young's modulus `young` (MPa): rows [true stress
 /// (MPa), true plastic strain].
 pub(crate) fn read_tensile(path: &Path, young: f64) -> Result<Vec<[f64; 2]>, TensileError> {
+    let (rows, is_engineering) = read_rows(path)?;
+    if rows.is_empty() {
+        let path = path.to_owned();
+        return Err(TensileError::Empty { path });
+    }
+    if !is_engineering {
+        return Ok(rows);
+    }
+    let slope = first_slope(&rows);
+    if !(young / SLOPE_FACTOR..=young * SLOPE_FACTOR).contains(&slope) {
+        return Err(TensileError::Slope {
+            path: path.to_owned(),
+            slope,
+            young,
+        });
+    }
+    converted(&rows, young).ok_or_else(|| TensileError::NoYield {
+        path: path.to_owned(),
+    })
+}
+
+/// Rows [stress, strain], and whether they are engineering values.
+fn read_rows(path: &Path) -> Result<(Vec<[f64; 2]>, bool), TensileError> {
     let unreadable = |source| TensileError::Read {
         path: path.to_owned(),
         source,
@@ -67,38 +102,56 @@ pub(crate) fn read_tensile(path: &Path, young: f64) -> Result<Vec<[f64; 2]>, Ten
         .from_path(path)
         .map_err(unreadable)?;
     let headers = reader.headers().map_err(unreadable)?.clone();
-    let (mut table, mut engineering) = (Vec::new(), Vec::new());
-    for record in reader.into_records() {
-        let record = record.map_err(unreadable)?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let row: Row = record.deserialize(Some(&headers)).map_err(unreadable)?;
-        let (rows, pair) = match (
-            row.true_stress_mpa.zip(row.plastic_strain),
-            row.engineering_stress_mpa.zip(row.engineering_strain),
-        ) {
-            (Some((stress, strain)), None) => (&mut table, [stress, strain]),
-            (None, Some((stress, strain))) => (&mut engineering, [stress, strain]),
-            _ => {
-                let path = path.to_owned();
-                return Err(TensileError::Columns { path });
-            }
-        };
-        if !pair.iter().all(|number| number.is_finite()) {
-            return Err(TensileError::Row {
+    let place = |name| headers.iter().position(|header| header == name);
+    let table = place("true_stress_mpa").zip(place("plastic_strain"));
+    let engineering = place("engineering_stress_mpa").zip(place("engineering_strain"));
+    let ((stress, strain), is_engineering) = match (table, engineering) {
+        (Some(columns), None) => (columns, false),
+        (None, Some(columns)) => (columns, true),
+        _ => {
+            return Err(TensileError::Columns {
                 path: path.to_owned(),
-                line,
-                what: "a number is not finite",
+                found: headers.iter().collect::<Vec<_>>().join(", "),
             });
         }
-        rows.push(pair);
+    };
+    let mut rows: Vec<[f64; 2]> = Vec::new();
+    for record in reader.into_records() {
+        let record = record.map_err(unreadable)?;
+        let refuse = |what| TensileError::Row {
+            path: path.to_owned(),
+            line: record.position().map_or(0, csv::Position::line),
+            what,
+        };
+        let number = |column| {
+            let text = record.get(column).unwrap_or_default();
+            let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+            number.ok_or_else(|| refuse(format!("`{text}` is not a number")))
+        };
+        let row = [number(stress)?, number(strain)?];
+        if !(-0.1..=GREATEST_STRAIN).contains(&row[1]) {
+            return Err(refuse(format!(
+                "strain = {} violates -0.1 <= strain <= {GREATEST_STRAIN}: is it in per cent?",
+                row[1]
+            )));
+        }
+        if rows.last().is_some_and(|before| row[1] < before[1] - NOISE) {
+            return Err(refuse("the strain falls from row to row: sort them".into()));
+        }
+        rows.push(row);
     }
-    if engineering.is_empty() {
-        return Ok(table);
-    }
-    converted(&engineering, young).ok_or_else(|| TensileError::NoYield {
-        path: path.to_owned(),
-        young,
-    })
+    Ok((rows, is_engineering))
+}
+
+/// Slope (MPa) from the first row to the first of a fifth of the greatest stress; not a number for
+/// a curve without slope.
+fn first_slope(curve: &[[f64; 2]]) -> f64 {
+    let greatest = curve.iter().map(|row| row[0]).fold(0.0, f64::max);
+    let start = curve[0];
+    let risen = curve
+        .iter()
+        .find(|row| row[0] >= start[0] + FIRST_SHARE * greatest);
+    risen.map_or(f64::NAN, |row| (row[0] - start[0]) / (row[1] - start[1]))
 }
 
 /// The hardening table of an engineering curve; `None` if it never yields.
@@ -136,33 +189,56 @@ fn converted(curve: &[[f64; 2]], young: f64) -> Option<Vec<[f64; 2]>> {
 mod tests {
     use super::*;
 
+    /// Reads a table of its own file.
     fn read(text: &str, young: f64) -> Result<Vec<[f64; 2]>, TensileError> {
-        let name = format!("kirigami-tensile-{}", text.len());
-        let path = std::env::temp_dir().join(name);
+        let digest: u64 = text
+            .bytes()
+            .fold(7, |sum, b| sum.wrapping_mul(31) + u64::from(b));
+        let path = std::env::temp_dir().join(format!("kirigami-tensile-{digest:x}.csv"));
         std::fs::write(&path, text).unwrap();
-        read_tensile(&path, young)
+        let table = read_tensile(&path, young);
+        std::fs::remove_file(path).unwrap();
+        table
     }
 
-    #[test]
-    fn a_true_curve_is_the_table() {
-        let text = "# comment\ntrue_stress_mpa, plastic_strain\n44.0, 0\n33.6, 0.05\n";
-        assert_eq!(read(text, 3000.0).unwrap(), [[44.0, 0.0], [33.6, 0.05]]);
-    }
+    const YOUNG: f64 = 70e3;
 
-    /// sigma = 200 + 1000 eps_p on a modulus of 70 GPa, recorded as a machine would.
-    #[test]
-    fn an_engineering_curve_gives_back_the_law_it_was_made_of() {
-        let young = 70e3;
-        let mut text = "engineering_strain,engineering_stress_mpa\n0,0\n0.001,70\n".to_owned();
+    /// sigma = 200 + 1000 eps_p on a modulus of 70 GPa, recorded as a machine would, in units of
+    /// `stress` MPa and `strain`.
+    fn recorded(stress_unit: f64, strain_unit: f64) -> Vec<String> {
+        let mut rows = vec![
+            "0,0".to_owned(),
+            format!("{},{}", 0.001 / strain_unit, 70.0 / stress_unit),
+        ];
         for i in 0..=2000 {
             let plastic = 1e-4 * f64::from(i);
             let stress = 200.0 + 1000.0 * plastic;
-            let stretch = (plastic + stress / young).exp();
-            text += &format!("{},{}\n", stretch - 1.0, stress / stretch);
+            let stretch = (plastic + stress / YOUNG).exp();
+            let strain = (stretch - 1.0) / strain_unit;
+            rows.push(format!("{strain},{}", stress / stretch / stress_unit));
         }
         // The specimen necks and breaks.
-        text += "0.24,300\n0.26,100\n";
-        let table = read(&text, young).unwrap();
+        rows.push(format!("{},{}", 0.24 / strain_unit, 300.0 / stress_unit));
+        rows.push(format!("{},{}", 0.26 / strain_unit, 100.0 / stress_unit));
+        rows
+    }
+
+    fn with_header(rows: &[String]) -> String {
+        format!(
+            "engineering_strain,engineering_stress_mpa\n{}\n",
+            rows.join("\n")
+        )
+    }
+
+    #[test]
+    fn a_true_curve_is_the_table_whatever_stands_beside_it() {
+        let text = "# comment\ntime_s, true_stress_mpa, plastic_strain\n0,44.0, 0\n1,33.6, 0.05\n";
+        assert_eq!(read(text, 3000.0).unwrap(), [[44.0, 0.0], [33.6, 0.05]]);
+    }
+
+    #[test]
+    fn an_engineering_curve_gives_back_the_law_it_was_made_of() {
+        let table = read(&with_header(&recorded(1.0, 1.0)), YOUNG).unwrap();
         assert!(
             (10..=MOST_ROWS + 1).contains(&table.len()),
             "{}",
@@ -177,25 +253,63 @@ mod tests {
     }
 
     #[test]
+    fn other_units_and_disordered_rows_are_refused() {
+        for (stress, strain, expected) in [
+            (1.0, 0.01, "per cent"),
+            (1.0, 0.001, "per cent"),
+            (1000.0, 1.0, "not in MPa"),
+            (1e-6, 1.0, "not in MPa"),
+        ] {
+            let text = with_header(&recorded(stress, strain));
+            let message = read(&text, YOUNG).unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+        let mut rows = recorded(1.0, 1.0);
+        rows.reverse();
+        let message = read(&with_header(&rows), YOUNG).unwrap_err().to_string();
+        assert!(message.contains(":3: the strain falls"), "{message}");
+        // The machine's compliance: half a per cent on the way to yield.
+        let soft = ["0,0", "0.004,100", "0.008,200", "0.1,250", "0.2,260"].map(str::to_owned);
+        let message = read(&with_header(&soft), YOUNG).unwrap_err().to_string();
+        assert!(message.contains("compliance"), "{message}");
+    }
+
+    #[test]
     fn what_is_no_curve_is_refused_with_the_reason() {
-        let cases = [
-            ("stress,strain\n1,2\n", "unknown field"),
+        let engineering = "engineering_stress_mpa,engineering_strain";
+        for (text, expected) in [
             (
-                "true_stress_mpa,engineering_strain\n1,2\n",
-                "its columns must be",
+                "stress,strain\n1,2\n".to_owned(),
+                "has the columns stress, strain",
             ),
             (
-                "true_stress_mpa,plastic_strain\n44,nan\n",
-                "line 2: a number is not finite",
+                "true_stress_mpa,engineering_strain\n1,2\n".to_owned(),
+                "name either",
             ),
-            ("true_stress_mpa,plastic_strain\n44,x\n", "line: 2"),
             (
-                "engineering_stress_mpa,engineering_strain\n0,0\n30,0.01\n",
+                format!("{engineering},true_stress_mpa,plastic_strain\n1,2,3,4\n"),
+                "name either",
+            ),
+            (
+                "true_stress_mpa,plastic_strain\n44,nan\n".to_owned(),
+                ":2: `nan` is not",
+            ),
+            (
+                "true_stress_mpa,plastic_strain\n44,\n".to_owned(),
+                ":2: `` is not",
+            ),
+            (
+                "true_stress_mpa,plastic_strain\n44,0\n50,60\n".to_owned(),
+                "per cent",
+            ),
+            (format!("{engineering}\n0,0\n30,-2\n"), "violates"),
+            (format!("{engineering}\n"), "no rows"),
+            (
+                format!("{engineering}\n0,0\n30,0.01\n"),
                 "ends before a plastic strain",
             ),
-        ];
-        for (text, expected) in cases {
-            let message = read(text, 3000.0).unwrap_err().to_string();
+        ] {
+            let message = read(&text, 3000.0).unwrap_err().to_string();
             assert!(message.contains(expected), "{message}");
         }
         let missing = read_tensile(Path::new("/no/such/curve.csv"), 3000.0).unwrap_err();

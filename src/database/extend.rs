@@ -1,10 +1,10 @@
 //! `kirigami database extend`: new rays where a design went and the data did not.
 
 use crate::inspect::Inspected;
-use crate::routes::{HingeRoute, hinge_routes};
+use crate::routes::{HingeRoute, ensemble, hinge_routes};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use fe_driver::{Ray, add_further_rays};
+use fe_driver::{Added, Ray, add_further_rays};
 use hinge::HingeDeformation;
 use std::path::PathBuf;
 use surrogate::{Order, Surrogate};
@@ -13,7 +13,7 @@ use surrogate::{Order, Surrogate};
 ///
 /// A hinge is chosen if a state on its route lies outside the training domain, or if the forces of
 /// an ensemble (train --seeds) differ there by more than --doubt. Its ray goes through the furthest
-/// state of the route, and a tenth beyond. The rays are added to a CSV file, which a campaign names
+/// such state, and a tenth beyond. The rays are added to a CSV file, which a campaign names
 /// as further_rays. Example: kirigami database extend configs/scenes/pet-3x3.toml --design
 /// runs/pet-3x3/state.json --rays configs/campaigns/pet-0.5mm-rays.csv
 #[derive(Args)]
@@ -41,31 +41,37 @@ impl ExtendCommand {
             .surrogate()
             .context("the scene has no surrogate to extend the data of (hinge = \"surrogate\")")?;
         let mut networks = vec![surrogate.clone()];
-        for path in &self.ensemble {
-            networks.push(Surrogate::load(path)?);
-        }
+        networks.extend(ensemble(surrogate, &self.ensemble)?);
         let routes = hinge_routes(&scene, &design)?;
         ensure!(!routes.is_empty(), "the sheet has no hinges");
         let doubts = doubts(&networks, &routes);
         let domain = surrogate.domain();
         let (mut outside, mut doubted, mut rays) = (0, 0, Vec::new());
         for (route, doubt) in routes.iter().zip(doubts) {
-            let leaves = |state| !domain.contains(&route.design, state);
-            if route.states.iter().any(leaves) {
+            let leaves = |state: &&HingeDeformation| !domain.contains(&route.design, state);
+            let left: Vec<_> = route.states.iter().filter(leaves).copied().collect();
+            let through = if !left.is_empty() {
                 outside += 1;
+                furthest(&left, route.design.w_lig)
             } else if doubt > self.doubt {
                 doubted += 1;
+                furthest(&route.states, route.design.w_lig)
             } else {
                 continue;
-            }
+            };
             rays.push(Ray {
                 design: route.design,
-                end: furthest(route).at(BEYOND),
+                end: through.at(BEYOND),
             });
         }
-        let added = add_further_rays(&self.rays, &rays)?;
+        let Added {
+            added,
+            known,
+            refused,
+        } = add_further_rays(&self.rays, &rays)?;
         println!(
-            "of {} hinges {outside} leave the training domain and {doubted} are in doubt; {added} rays added to {}\n\
+            "of {} hinges {outside} leave the training domain and {doubted} are in doubt; {added} rays added to {}, \
+             {known} stood there, {refused} no window can follow (they close, or are beyond |eta| = 1)\n\
              A campaign solves them that says further_rays = \"FILE\", relative to its own file.",
             routes.len(),
             self.rays.display()
@@ -74,16 +80,13 @@ impl ExtendCommand {
     }
 }
 
-/// The state of a route that is furthest from the undeformed one.
-fn furthest(route: &HingeRoute) -> HingeDeformation {
+/// The state that is furthest from the undeformed one.
+fn furthest(states: &[HingeDeformation], w_lig: f64) -> HingeDeformation {
     let size = |state: &HingeDeformation| {
-        let [eta_a, eta_s] = state.eta(route.design.w_lig);
+        let [eta_a, eta_s] = state.eta(w_lig);
         eta_a * eta_a + eta_s * eta_s + state.theta * state.theta
     };
-    let furthest = route
-        .states
-        .iter()
-        .max_by(|x, y| size(x).total_cmp(&size(y)));
+    let furthest = states.iter().max_by(|x, y| size(x).total_cmp(&size(y)));
     furthest.copied().unwrap_or_default()
 }
 

@@ -30,8 +30,11 @@ pub struct RunCommand {
 
 /// A run that ended before its work did.
 #[derive(Debug, thiserror::Error)]
-#[error("stopped with {0} rays left; run again to go on")]
-pub struct Unfinished(usize);
+#[error("stopped with {left} {what} left; run again to go on")]
+pub struct Unfinished {
+    pub left: usize,
+    pub what: &'static str,
+}
 
 impl RunCommand {
     pub fn new(campaign: PathBuf, folder: PathBuf) -> Self {
@@ -66,7 +69,8 @@ impl RunCommand {
         bar.finish();
         print_tally(&end.tally);
         if end.tally.to_run() > 0 {
-            bail!(Unfinished(end.tally.to_run()));
+            let (left, what) = (end.tally.to_run(), "rays");
+            bail!(Unfinished { left, what });
         }
         ensure!(
             end.tally.complete + end.tally.partial > 0,

@@ -1,6 +1,7 @@
 //! `kirigami dataset compare`: what a database is worth, beside a finer one of the same rays.
 
 use crate::comparison::{self, SCALE, each_relative, spread_table};
+use crate::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use dataset::{COMPARED, ComparedRay, ComparedState, Database, compare};
@@ -43,18 +44,17 @@ impl CompareCommand {
             .with_context(|| format!("cannot make the folder {}", self.out.display()))?;
         let tiers = [&judged, &reference].map(|database| database.manifest().tier.clone());
         let summary = summary(&rays, &tiers)?;
-        self.write("compare.csv", &csv(&rays)?)?;
-        self.write("compare.md", &format!("{summary}{}", worst(&rays)?))?;
-        self.write("tradeoff.md", &summary)?;
+        run_folder::write(&self.out, "compare.csv", &csv(&rays)?)?;
+        run_folder::write(
+            &self.out,
+            "compare.md",
+            &format!("{summary}{}", worst(&rays)?),
+        )?;
+        run_folder::write(&self.out, "tradeoff.md", &summary)?;
         let axes = [tiers[1].as_str(), &tiers[0]];
         comparison::draw(&groups(&rays), axes, &self.out.join("compare"))?;
         println!("{summary}\nwritten to {}", self.out.display());
         Ok(())
-    }
-
-    fn write(&self, name: &str, text: &str) -> Result<()> {
-        let path = self.out.join(name);
-        std::fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
     }
 }
 

@@ -9,7 +9,7 @@
 use crate::charts::{self, TaylorLine};
 use crate::progress::Progress;
 use crate::{picture, run_folder};
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use clap::Args;
 use design::check::TaylorRemainders;
 use design::scene::{Scene, SceneConfig};
@@ -18,8 +18,8 @@ use std::path::PathBuf;
 
 /// Taylor remainders of the design gradient, scene by scene
 ///
-/// At the start of each scene the loss is followed along random unit directions of the whole
-/// design: z, ell and omega. Writes gradient.csv, gradient.md and a picture. Example: kirigami
+/// About the start of each scene, with noise so that nothing is special about it, the loss is
+/// followed along random unit directions of the whole design: z, ell and omega. Writes gradient.csv, gradient.md and a picture. Example: kirigami
 /// study gradient configs/scenes/linear-7x7.toml configs/scenes/demo.toml
 #[derive(Args)]
 pub struct GradientStudy {
@@ -68,8 +68,8 @@ impl GradientStudy {
         }
         bar.finish();
         let page = page(&verified, self.directions)?;
-        self.write("gradient.md", &page)?;
-        self.write("gradient.csv", &csv(&verified)?)?;
+        run_folder::write(&self.out, "gradient.md", &page)?;
+        run_folder::write(&self.out, "gradient.csv", &csv(&verified)?)?;
         let lines: Vec<_> = verified
             .iter()
             .map(|it| TaylorLine {
@@ -110,11 +110,6 @@ impl GradientStudy {
             steps,
             remainders,
         })
-    }
-
-    fn write(&self, name: &str, text: &str) -> Result<()> {
-        let path = self.out.join(name);
-        std::fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
     }
 }
 

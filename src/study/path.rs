@@ -4,7 +4,7 @@ use crate::charts::{self, SeparationChart};
 use crate::kept_solves::SolveArgs;
 use crate::routes::{HingeRoute, hinge_routes};
 use crate::{picture, run_folder};
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use clap::Args;
 use design::inverse_design::stored_design;
 use design::scene::Scene;
@@ -51,6 +51,7 @@ struct Pair {
 
 impl PathStudy {
     pub fn run(&self) -> Result<()> {
+        ensure!(self.routes > 0, "--routes must be at least 1");
         let _held = run_folder::hold(&self.out)?;
         let mut routes = Vec::new();
         for path in &self.scenes {
@@ -139,13 +140,13 @@ impl PathStudy {
         if !failures.is_empty() {
             write!(page, "\nNot solved:\n\n{failures}")?;
         }
-        self.write("path.md", &page)?;
-        self.write("path.csv", &csv)?;
+        run_folder::write(&self.out, "path.md", &page)?;
+        run_folder::write(&self.out, "path.csv", &csv)?;
         let tradeoff = format!(
             "## Path dependence\n\n{}",
             summary(pairs, all, fits, self.tier)?
         );
-        self.write("tradeoff.md", &tradeoff)?;
+        run_folder::write(&self.out, "tradeoff.md", &tradeoff)?;
         let chart = |pairs, fit, quantity| SeparationChart {
             pairs,
             fit,
@@ -159,11 +160,6 @@ impl PathStudy {
         picture::save(&charts::separations(&charts)?, &self.out.join("path"), 1600)?;
         println!("{page}\nwritten to {}", self.out.display());
         Ok(())
-    }
-
-    fn write(&self, name: &str, text: &str) -> Result<()> {
-        let path = self.out.join(name);
-        std::fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
     }
 }
 

@@ -81,8 +81,12 @@ impl SolutionStudy {
             .map(|value| value / curvatures[0])
             .collect();
         let page = page(&solutions, &families, &plane, &shares, best)?;
-        self.write("solutions.md", &page)?;
-        self.write("solutions.csv", &csv(&solutions, &families, &plane)?)?;
+        run_folder::write(&self.out, "solutions.md", &page)?;
+        run_folder::write(
+            &self.out,
+            "solutions.csv",
+            &csv(&solutions, &families, &plane)?,
+        )?;
         let place = |points: &[usize]| -> Vec<_> {
             points
                 .iter()
@@ -177,11 +181,6 @@ impl SolutionStudy {
             bar.finish();
             Ok(solutions)
         })
-    }
-
-    fn write(&self, name: &str, text: &str) -> Result<()> {
-        let path = self.out.join(name);
-        std::fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::charts::{self, StudyPanel};
 use crate::kept_solves::SolveArgs;
 use crate::{picture, run_folder};
-use anyhow::{Context, Result};
+use anyhow::{Result, ensure};
 use clap::Args;
 use fe_driver::{
     KeptSolution, Richardson, StudyCase, richardson, study_cases, study_difference, study_state,
@@ -59,12 +59,25 @@ impl WindowStudy {
                 Err(reason) => writeln!(failures, "* {}: {reason}", title(&case))?,
             }
         }
-        self.write("window.csv", &csv(&rows))?;
-        self.write("window.md", &markdown(&rows, &failures)?)?;
-        self.write("tradeoff.md", &(tradeoff(&rows)? + &at_equal_error(&rows)?))?;
+        ensure!(
+            !rows.is_empty(),
+            "no case was solved; the first: {}",
+            failures.lines().next().unwrap_or_default()
+        );
+        run_folder::write(&self.out, "window.csv", &csv(&rows))?;
+        run_folder::write(&self.out, "window.md", &markdown(&rows, &failures)?)?;
+        run_folder::write(
+            &self.out,
+            "tradeoff.md",
+            &(tradeoff(&rows)? + &at_equal_error(&rows)?),
+        )?;
         let chart = charts::studies(&panels(&rows))?;
         let pictures = picture::save(&chart, &self.out.join("window"), 1600)?;
         println!("{} solves; {}", rows.len(), pictures[1].display());
+        match failures.lines().count() {
+            0 => {}
+            count => println!("{count} cases were not solved: see window.md"),
+        }
         Ok(())
     }
 
@@ -81,11 +94,6 @@ impl WindowStudy {
                 r_win: 100.0,
             })
             .collect()
-    }
-
-    fn write(&self, name: &str, text: &str) -> Result<()> {
-        let path = self.out.join(name);
-        std::fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
     }
 }
 
@@ -104,6 +112,11 @@ fn hinge_name(design: &HingeDesign) -> String {
     format!("{} mm, {alpha_deg:.0} deg", design.w_lig)
 }
 
+/// Of the solver (s); not a number where the system does not tell it.
+fn cpu_seconds(solution: &KeptSolution) -> f64 {
+    solution.cpu_seconds.unwrap_or(f64::NAN)
+}
+
 /// One line a solve.
 fn csv(rows: &[Row]) -> String {
     let mut text = "study,value,w_lig_mm,alpha_deg,elements,cpu_seconds,iterations,\
@@ -116,7 +129,7 @@ fn csv(rows: &[Row]) -> String {
         let [dw, df, dm, dd, _] = difference(row, rows);
         let (design, study, value) = (&case.solve.design, case.study, &case.value);
         let alpha_deg = design.alpha.to_degrees();
-        let (elements, cpu) = (solution.elements, solution.cpu_seconds);
+        let (elements, cpu) = (solution.elements, cpu_seconds(solution));
         let (w_lig, iterations) = (design.w_lig, solution.iterations);
         text += &format!(
             "{study},{value},{w_lig},{alpha_deg:.0},{elements},{cpu:.1},{iterations},\
@@ -160,11 +173,16 @@ fn markdown(rows: &[Row], failures: &str) -> Result<String> {
         writeln!(
             text,
             "| {} | {} | {:.1} | {w:.2} | {uz:.2} | {dw:.2} % | {df:.2} % | {dm:.2} % | {dd:.2} % |",
-            case.value, solution.elements, solution.cpu_seconds
+            case.value,
+            solution.elements,
+            cpu_seconds(solution)
         )?;
     }
     text += &extrapolation(rows)?;
-    text += &paper_comparison(rows)?;
+    let is_paper = |row: &Row| row.0.solve.material.name == "pet-0.5mm";
+    if rows.iter().all(is_paper) {
+        text += &paper_comparison(rows)?;
+    }
     if !failures.is_empty() {
         write!(text, "\n## Solves that did not reach the end\n\n{failures}")?;
     }
@@ -247,15 +265,18 @@ fn hinges(rows: &[Row]) -> Vec<String> {
 
 /// One row a tier: what it costs, and its largest difference from the finest over the hinges.
 fn tradeoff(rows: &[Row]) -> Result<String> {
-    let mut text = "## Window tier\n\n\
+    let mesh = rows.iter().find(|(case, _)| case.study == "mesh");
+    let against = mesh.map_or("none", |(case, _)| case.against);
+    let mut text = format!(
+        "## Window tier\n\n\
         Pure rotations to 60 degrees; CPU time and memory are those of CalculiX, the mean and the \
-        greatest over the hinges. Differences from the tier `reference` are root mean squares \
+        greatest over the hinges. Differences from the tier `{against}` are root mean squares \
         over the ray, the greatest over the hinges. Driver is the share of the time from the mesh to the \
         samples in which CalculiX does not run (median). Two cores solve two rays at a time. \
         `kirigami study window`.\n\n\
         | tier | hinges | elements | CPU s a ray | CPU s a row | rays an hour, 2 cores | memory, MiB \
         | driver | W | F_a | M_theta | D |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n"
-        .to_owned();
+    );
     for name in Tier::ALL.map(Tier::name) {
         let solved: Vec<_> = rows
             .iter()
@@ -265,18 +286,22 @@ fn tradeoff(rows: &[Row]) -> Result<String> {
             continue;
         };
         let sum = |of: fn(&KeptSolution) -> f64| solved.iter().map(|(_, s)| of(s)).sum::<f64>();
-        let cpu = sum(|s| s.cpu_seconds);
+        let cpu = sum(cpu_seconds);
         let ray = cpu / solved.len() as f64;
         let row = cpu / sum(|s| s.samples.len() as f64);
-        let memory = solved.iter().map(|(_, s)| s.peak_memory_mib);
+        let memory = solved.iter().filter_map(|(_, s)| s.peak_memory_mib);
         let memory = memory.fold(0.0, f64::max);
         let mut overheads: Vec<_> = solved.iter().map(|(_, s)| 100.0 * s.overhead).collect();
         overheads.sort_by(f64::total_cmp);
         let overhead = overheads[overheads.len() / 2];
-        let mut worst = [0.0_f64; 5];
+        let mut worst = [f64::NEG_INFINITY; 5];
         for row in &solved {
             let differences = difference(row, rows);
-            worst = std::array::from_fn(|i| worst[i].max(100.0 * differences[i]));
+            // What was compared with nothing stays unknown.
+            worst = std::array::from_fn(|i| match differences[i].is_nan() {
+                true => f64::NAN,
+                false => (100.0 * differences[i]).max(worst[i]),
+            });
         }
         let [w, f_a, m, d, _] = worst;
         writeln!(
@@ -301,10 +326,10 @@ fn at_equal_error(rows: &[Row]) -> Result<String> {
         let hinge = hinge_name(&paper.0.solve.design);
         let off = |row: &Row| difference(row, rows)[0];
         let others = of_tiers(rows, &hinge).filter(|row| !is_paper(row) && off(row) <= off(paper));
-        let cheapest = others.min_by(|x, y| x.1.cpu_seconds.total_cmp(&y.1.cpu_seconds));
+        let cheapest = others.min_by(|x, y| cpu_seconds(&x.1).total_cmp(&cpu_seconds(&y.1)));
         if let Some(cheapest) = cheapest {
             let ([slow, quick], [much, little]) = (
-                [paper, cheapest].map(|row| row.1.cpu_seconds),
+                [paper, cheapest].map(|row| cpu_seconds(&row.1)),
                 [paper, cheapest].map(|row| 100.0 * off(row)),
             );
             writeln!(
@@ -339,13 +364,16 @@ fn paper_comparison(rows: &[Row]) -> Result<String> {
             "| u_z(50 deg), 18 mm | {uz:.1} mm | 25 mm, measured 25.5 |"
         )?;
     }
+    let thickness = rows
+        .first()
+        .map_or(f64::NAN, |(case, _)| case.solve.material.thickness);
     if let (Some((narrow, uz_narrow)), Some((wide, uz_wide))) = (at(5.0), at(25.0)) {
         let middle = |from: f64, to: f64, w_lig: f64| {
             from * (to / from).powf((w_lig / 5.0).ln() / 5.0_f64.ln())
         };
         let [w7, w23] = [7.0, 23.0].map(|w_lig| middle(narrow[0], wide[0], w_lig));
         let [d7, d23] = [7.0, 23.0].map(|w_lig| middle(narrow[3], wide[3], w_lig));
-        let [u7, u23] = [7.0, 23.0].map(|w_lig| middle(uz_narrow, uz_wide, w_lig) / 0.5);
+        let [u7, u23] = [7.0, 23.0].map(|w_lig| middle(uz_narrow, uz_wide, w_lig) / thickness);
         writeln!(
             text,
             "| W(45 deg), 7 mm | {w7:.1} N mm | 36.4 (5 to 9 mm) |"
