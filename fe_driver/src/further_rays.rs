@@ -114,10 +114,13 @@ pub fn add_further_rays(path: &Path, rays: &[Ray]) -> Result<Added, FurtherRaysE
 
 fn read_rows(path: &Path) -> Result<Vec<Row>, FurtherRaysError> {
     let rows = || -> Result<Vec<Row>, csv::Error> {
+        let mut bytes = std::fs::read(path)?;
+        // A comment that ends the file without a line break would be read as a row.
+        bytes.push(b'\n');
         let mut reader = csv::ReaderBuilder::new()
             .trim(csv::Trim::All)
             .comment(Some(b'#'))
-            .from_path(path)?;
+            .from_reader(bytes.as_slice());
         reader.deserialize().collect()
     };
     rows().map_err(|source| FurtherRaysError::Csv {
