@@ -3,6 +3,7 @@
 mod gradient;
 mod path;
 mod solutions;
+mod surrogate;
 mod window;
 
 use anyhow::Result;
@@ -15,6 +16,7 @@ pub enum StudyCommand {
     Path(path::PathStudy),
     Gradient(gradient::GradientStudy),
     Solutions(solutions::SolutionStudy),
+    Surrogate(surrogate::SurrogateStudy),
 }
 
 impl StudyCommand {
@@ -24,6 +26,7 @@ impl StudyCommand {
             Self::Path(study) => study.run(),
             Self::Gradient(study) => study.run(),
             Self::Solutions(study) => study.run(),
+            Self::Surrogate(study) => study.run(),
         }
     }
 }

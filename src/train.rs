@@ -51,7 +51,7 @@ pub struct TrainCommand {
     /// Go on with a training that was stopped
     #[arg(long, conflicts_with = "seeds")]
     resume: bool,
-    /// Trainings with as many seeds; the one of the least validation loss is taken, and the spread
+    /// Trainings with as many seeds; the one of the least validation error is taken, and the spread
     /// tells how far its forces can be trusted
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=64))]
     seeds: u64,
@@ -99,14 +99,14 @@ impl TrainCommand {
                 seed,
                 ..config.clone()
             };
-            members.push(self.train(&database, &config, start)?);
+            members.push(fit(&database, &config, self.backend, start, &state)?);
         }
         if members.len() > 1 {
             self.write_members(&members, &database, config.seed)?;
         }
         let best = members
             .into_iter()
-            .min_by(|left, right| least_loss(left).total_cmp(&least_loss(right)))
+            .min_by(|left, right| least_error(left).total_cmp(&least_error(right)))
             .context("`--seeds` must be at least 1")?;
         self.write(&best, &database)?;
         std::fs::remove_file(&state).ok();
@@ -140,36 +140,6 @@ impl TrainCommand {
             );
         }
         Ok(())
-    }
-
-    /// One training, kept on disk every now and then and when it is stopped.
-    fn train(&self, database: &Database, config: &TrainingConfig, start: Start) -> Result<Trained> {
-        let (state, stop) = (self.state(), interrupt::stop_flag()?);
-        let mut training = Training::new(database, config, self.backend, start)?;
-        let bar = Progress::new(config.epochs, "epochs");
-        let mut saved = Instant::now();
-        while !training.is_finished() {
-            let epoch = training.epoch()?;
-            let message = format!(
-                "loss {:.2e}, validation {:.2e}",
-                epoch.training_loss, epoch.validation_loss
-            );
-            bar.show(epoch.epoch, None, &message);
-            let stopping = stop.load(Ordering::Relaxed);
-            if stopping || saved.elapsed() > SAVE_EVERY {
-                training.save(&state)?;
-                saved = Instant::now();
-            }
-            if stopping && !training.is_finished() {
-                bail!(
-                    "stopped after {} of {} epochs; go on with --resume",
-                    epoch.epoch,
-                    epoch.epochs
-                );
-            }
-        }
-        bar.finish();
-        Ok(training.finish()?)
     }
 
     /// Weights, last weights, curves and plots of one training, and its errors to the screen.
@@ -235,12 +205,20 @@ impl TrainCommand {
     }
 
     fn write_curve(&self, history: &[Epoch]) -> Result<()> {
-        let mut csv = String::from("epoch,training_loss,validation_loss,learning_rate,elapsed_s\n");
+        let mut csv = String::from(
+            "epoch,training_loss,validation_loss,validation_error,validation_damage_error,learning_rate,elapsed_s\n",
+        );
         for e in history {
             writeln!(
                 csv,
-                "{},{:e},{:e},{:e},{:.3}",
-                e.epoch, e.training_loss, e.validation_loss, e.learning_rate, e.elapsed_s
+                "{},{:e},{:e},{:e},{:e},{:e},{:.3}",
+                e.epoch,
+                e.training_loss,
+                e.validation_loss,
+                e.validation_errors[0],
+                e.validation_errors[1],
+                e.learning_rate,
+                e.elapsed_s
             )?;
         }
         let stem = self.beside("learning-curve");
@@ -254,6 +232,42 @@ impl TrainCommand {
         )?;
         Ok(())
     }
+}
+
+/// One training, kept in the file `state` every now and then and when it is stopped.
+pub fn fit(
+    database: &Database,
+    config: &TrainingConfig,
+    backend: Backend,
+    start: Start,
+    state: &Path,
+) -> Result<Trained> {
+    let stop = interrupt::stop_flag()?;
+    let mut training = Training::new(database, config, backend, start)?;
+    let bar = Progress::new(config.epochs, "epochs");
+    let mut saved = Instant::now();
+    while !training.is_finished() {
+        let epoch = training.epoch()?;
+        let message = format!(
+            "loss {:.2e}, validation {:.2e}",
+            epoch.training_loss, epoch.validation_loss
+        );
+        bar.show(epoch.epoch, None, &message);
+        let stopping = stop.load(Ordering::Relaxed);
+        if stopping || saved.elapsed() > SAVE_EVERY {
+            training.save(state)?;
+            saved = Instant::now();
+        }
+        if stopping && !training.is_finished() {
+            bail!(
+                "stopped after {} of {} epochs, which are kept; go on with --resume, or with the same study",
+                epoch.epoch,
+                epoch.epochs
+            );
+        }
+    }
+    bar.finish();
+    Ok(training.finish()?)
 }
 
 fn write(path: &Path, text: &str) -> Result<()> {
@@ -282,10 +296,16 @@ fn parity_chart(parity: &Parity) -> Result<String> {
     charts::parity(&charts, ["finite elements", "surrogate"])
 }
 
-/// The least validation loss of a training.
-fn least_loss(trained: &Trained) -> f64 {
-    let losses = trained.history.iter().map(|epoch| epoch.validation_loss);
-    losses.fold(f64::INFINITY, f64::min)
+/// The product of the validation errors of the networks that were kept.
+fn least_error(trained: &Trained) -> f64 {
+    let least = |network: usize| {
+        let errors = trained
+            .history
+            .iter()
+            .map(|it| it.validation_errors[network]);
+        errors.fold(f64::INFINITY, f64::min)
+    };
+    least(0) * least(1)
 }
 
 /// The errors of each quantity.

@@ -72,7 +72,7 @@ pub enum DatasetError {
         source: serde_json::Error,
     },
     #[error(
-        "{path} has the format version {found}, this program reads {FORMAT_VERSION}; \
+        "{path} has the format version {found}, this program reads 2 to {FORMAT_VERSION}; \
          collect the campaign again",
         path = .path.display()
     )]
@@ -149,6 +149,16 @@ impl Database {
     /// The same rows split by another plan.
     pub fn split(&self, plan: &SplitPlan) -> Result<Self, DatasetError> {
         Self::merge(std::slice::from_ref(self), plan, Mixing::Allowed)
+    }
+
+    /// The same parts for validation and test, and no more than the first `training` of the
+    /// training rays. Ids are hashes, so that their order means nothing.
+    pub fn thinned(&self, training: usize) -> Self {
+        let mut thinned = self.clone();
+        let split = &mut thinned.manifest.split;
+        split.training = split.training.iter().take(training).cloned().collect();
+        thinned.manifest.split_hash = split.hash();
+        thinned
     }
 
     fn assemble(
@@ -231,6 +241,8 @@ fn refuse_mixed(rows: &[Row], mixing: Mixing) -> Result<(), DatasetError> {
         ];
         let mixable = [
             ("material", row.material.clone()),
+            ("material_hash", row.material_hash.clone()),
+            ("settings_hash", row.settings_hash.clone()),
             ("tier", row.tier.clone()),
         ];
         let mixable = mixable.into_iter().filter(|_| mixing == Mixing::Refused);

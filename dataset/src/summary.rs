@@ -1,6 +1,7 @@
 //! What a database holds, as text to print.
 
 use crate::database::Database;
+use crate::noise::noise;
 use crate::rows::Row;
 use crate::schema;
 use crate::split::{Part, geometry};
@@ -21,6 +22,12 @@ impl fmt::Display for Database {
             manifest.material,
             manifest.tier,
             manifest.cpu_s,
+        )?;
+        writeln!(
+            f,
+            "material law {}, campaign settings {}",
+            known(&manifest.material_hashes),
+            known(&manifest.settings_hashes),
         )?;
         for (reason, count) in &manifest.rejected {
             writeln!(f, "rejected {count} rows: {reason:?}")?;
@@ -50,6 +57,19 @@ impl fmt::Display for Database {
             )?;
         }
         Ok(())
+    }
+}
+
+/// Hashes for people.
+fn known(hashes: &BTreeSet<String>) -> String {
+    let known: Vec<&str> = hashes
+        .iter()
+        .map(String::as_str)
+        .filter(|hash| !hash.is_empty())
+        .collect();
+    match known.is_empty() {
+        true => "not known".into(),
+        false => known.join(" + "),
     }
 }
 
@@ -93,6 +113,19 @@ impl fmt::Display for Details<'_> {
             covered(rows, |row| [row.design.w_lig, row.design.alpha]),
             covered(rows, |row| [row.design.w_lig, row.sample.theta]),
         )?;
+        writeln!(
+            f,
+            "noise along rays   {:>10} {:>10}  of the root mean square",
+            "all", "median"
+        )?;
+        for (name, [all, median]) in noise(rows) {
+            writeln!(
+                f,
+                "{name:18} {:8.3} % {:8.3} %",
+                100.0 * all,
+                100.0 * median
+            )?;
+        }
         writeln!(f, "states solved more than once: {}", repeated(rows))
     }
 }
