@@ -10,7 +10,7 @@ use crate::hinge_law::{Contact, HingeEnergy, Order, PreparedLaw};
 use crate::panel_vectors::gather;
 use crate::sheet::Sheet;
 use crate::stroke::Stroke;
-use crate::tangent::TangentPattern;
+use crate::tangent::{TangentPattern, elimination_order};
 use hinge::HingeDeformation;
 
 pub use crate::load_step::{LoadStep, Status};
@@ -66,7 +66,7 @@ pub enum Method {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverSettings {
     pub method: Method,
-    /// Residual of a converged state, relative to the greatest force.
+    /// Residual of a converged state, relative to the greatest force, where rounding leaves no more.
     pub tolerance: f64,
     /// Residual of an almost converged state.
     pub loose_tolerance: f64,
@@ -128,7 +128,7 @@ pub struct EquilibriumSolver {
     pub(crate) grid: Grid,
     pub(crate) settings: SolverSettings,
     pub(crate) steps: usize,
-    /// Numbers of the free degrees of freedom, three per panel.
+    /// Numbers of the free degrees of freedom, three entries a panel.
     pub(crate) free: Box<[Option<usize>]>,
     /// Prescribed motions at full load.
     pub(crate) supports: Box<[Support]>,
@@ -187,12 +187,7 @@ impl EquilibriumSolver {
         if !holds_rigid_body(grid, supports) {
             return Err(EquilibriumError::Unsupported);
         }
-        let mut numbers = 0..;
-        let free: Vec<Option<usize>> = supported
-            .as_flattened()
-            .iter()
-            .map(|&supported| if supported { None } else { numbers.next() })
-            .collect();
+        let free = elimination_order(grid, supported.as_flattened());
         Ok(Self {
             grid,
             settings,

@@ -48,6 +48,11 @@ pub trait PreparedLaw {
         false
     }
 
+    /// Deformation, of translations over w_lig, that is lost in the law's own rounding.
+    fn resolution(&self) -> f64 {
+        0.0
+    }
+
     /// Which hinges are in a state that the law was made for.
     fn inside(&self, deformations: &[HingeDeformation]) -> Vec<bool> {
         vec![true; deformations.len()]
