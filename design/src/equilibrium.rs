@@ -12,6 +12,7 @@ use crate::sheet::Sheet;
 use crate::stroke::Stroke;
 use crate::tangent::{TangentPattern, elimination_order};
 use hinge::HingeDeformation;
+use serde::{Deserialize, Serialize};
 
 pub use crate::load_step::{LoadStep, Status};
 
@@ -53,7 +54,8 @@ pub enum EquilibriumError {
 }
 
 /// How equilibria are sought.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Method {
     /// Newton's method on the sparse tangent.
     #[default]

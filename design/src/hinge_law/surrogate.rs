@@ -48,6 +48,10 @@ impl HingeLaw for SurrogateLaw {
     fn damage_scale(&self) -> Option<f64> {
         Some(self.surrogate.damage_scale())
     }
+
+    fn domain(&self) -> Option<&TrainingDomain> {
+        Some(self.surrogate.domain())
+    }
 }
 
 struct PreparedSurrogate<'a> {

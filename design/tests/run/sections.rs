@@ -143,3 +143,19 @@ fn constants_are_condensed_from_weights() {
     let expected = CondensedLaw::new(weights, 20.0_f64.to_radians());
     assert_eq!(energies(&*mechanics.law), energies(&expected));
 }
+
+#[test]
+fn equilibria_are_sought_by_either_method() {
+    let folder = tempfile::tempdir().unwrap();
+    let by = |solver: &str| {
+        let section = format!("[solver]\n{solver}\n[objective]");
+        path(&read(folder.path(), &with(&[("[objective]", &section)])))
+    };
+    let newton = by("method = \"newton\"");
+    let lbfgs = by("method = { lbfgs = { max_iterations = 20000 } }");
+    let total = |path: &[LoadStep]| path.iter().map(|step| step.iterations).sum::<usize>();
+    assert!(total(&lbfgs) > 5 * total(&newton));
+    for (x, y) in std::iter::zip(&newton[3].configuration, &lbfgs[3].configuration) {
+        assert!((x[2] - y[2]).abs() < 1e-6, "{x:?} {y:?}");
+    }
+}
