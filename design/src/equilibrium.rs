@@ -10,8 +10,9 @@ use crate::hinge_law::{Contact, HingeEnergy, Order, PreparedLaw};
 use crate::panel_vectors::gather;
 use crate::sheet::Sheet;
 use crate::stroke::Stroke;
-use crate::tangent::TangentPattern;
+use crate::tangent::{TangentPattern, elimination_order};
 use hinge::HingeDeformation;
+use serde::{Deserialize, Serialize};
 
 pub use crate::load_step::{LoadStep, Status};
 
@@ -53,7 +54,8 @@ pub enum EquilibriumError {
 }
 
 /// How equilibria are sought.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Method {
     /// Newton's method on the sparse tangent.
     #[default]
@@ -66,7 +68,7 @@ pub enum Method {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverSettings {
     pub method: Method,
-    /// Residual of a converged state, relative to the greatest force.
+    /// Residual of a converged state, relative to the greatest force, where rounding leaves no more.
     pub tolerance: f64,
     /// Residual of an almost converged state.
     pub loose_tolerance: f64,
@@ -128,7 +130,7 @@ pub struct EquilibriumSolver {
     pub(crate) grid: Grid,
     pub(crate) settings: SolverSettings,
     pub(crate) steps: usize,
-    /// Numbers of the free degrees of freedom, three per panel.
+    /// Numbers of the free degrees of freedom, three entries a panel.
     pub(crate) free: Box<[Option<usize>]>,
     /// Prescribed motions at full load.
     pub(crate) supports: Box<[Support]>,
@@ -187,12 +189,7 @@ impl EquilibriumSolver {
         if !holds_rigid_body(grid, supports) {
             return Err(EquilibriumError::Unsupported);
         }
-        let mut numbers = 0..;
-        let free: Vec<Option<usize>> = supported
-            .as_flattened()
-            .iter()
-            .map(|&supported| if supported { None } else { numbers.next() })
-            .collect();
+        let free = elimination_order(grid, supported.as_flattened());
         Ok(Self {
             grid,
             settings,

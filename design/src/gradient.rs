@@ -14,6 +14,7 @@ use crate::pattern::{CutPattern, Outline, PatternError};
 use crate::plane::add;
 use crate::sheet::{Sheet, SheetError, SheetGradient, SheetOptions};
 use crate::topology::PanelCorner;
+use hinge::TrainingDomain;
 use serde::Serialize;
 
 /// Why a design has no value.
@@ -58,6 +59,16 @@ pub enum Model {
     Ideal { opening: f64 },
     /// Equilibria under load.
     Equilibrium(Mechanics),
+}
+
+impl Model {
+    /// What the hinge law was trained on.
+    pub fn domain(&self) -> Option<&TrainingDomain> {
+        match self {
+            Self::Ideal { .. } => None,
+            Self::Equilibrium(mechanics) => mechanics.law.domain(),
+        }
+    }
 }
 
 /// A design problem: everything that is fixed before the design begins.

@@ -19,7 +19,7 @@ pub use contact::{Contact, InvalidContact};
 pub use linear::{InvalidStiffness, LinearLaw};
 pub use surrogate::SurrogateLaw;
 
-use hinge::{HingeDeformation, HingeDesign};
+use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
 
 /// A stored-energy function of the hinge deformation, for any hinge design.
 pub trait HingeLaw: Send + Sync {
@@ -28,6 +28,11 @@ pub trait HingeLaw: Send + Sync {
 
     /// D_s of (17), for a law that predicts damage.
     fn damage_scale(&self) -> Option<f64> {
+        None
+    }
+
+    /// What the law was trained on, if it was.
+    fn domain(&self) -> Option<&TrainingDomain> {
         None
     }
 }
@@ -46,6 +51,11 @@ pub trait PreparedLaw {
     /// Whether the law is (11), with the constants (k_a, k_s, k_theta) at every hinge.
     fn has_constants(&self) -> bool {
         false
+    }
+
+    /// Deformation, of translations over w_lig, that is lost in the law's own rounding.
+    fn resolution(&self) -> f64 {
+        0.0
     }
 
     /// Which hinges are in a state that the law was made for.

@@ -16,7 +16,6 @@ use crate::plane::{I, complex, cross, dot, point, turn, turn_less_one};
 use crate::sheet::{Panel, Sheet};
 use faer::c64;
 use hinge::HingeDeformation;
-use surrogate::HingeEnergy;
 
 /// A rigid motion (u_x, u_y, phi) of every panel away from the flat sheet (mm, mm, rad).
 pub type Configuration = Vec<[f64; 3]>;
@@ -68,6 +67,8 @@ pub struct HingeMotion {
     theta: f64,
     /// a + i s
     translation: c64,
+    /// Of `translation` and of `theta`.
+    rounding: [f64; 2],
     /// e^(-i beta), the flat sheet seen from the cut frame.
     frame: c64,
     /// e^(i theta/2)
@@ -102,17 +103,23 @@ impl HingeMotion {
         );
         let ([ax, ay, phi_a], [bx, by, phi_b]) = (configuration[a], configuration[b]);
         let (theta, phibar) = (phi_b - phi_a, 0.5 * (phi_a + phi_b));
-        let (frame, half) = (complex(hinge.e_sec).conj(), turn(0.5 * theta));
-        let mean = frame * turn(-phibar);
+        let frame = complex(hinge.e_sec).conj();
+        let (turned_back, opened) = (turn_less_one(-phibar), turn_less_one(0.5 * theta));
+        let (mean, half) = (frame + frame * turned_back, 1.0 + opened);
         let attachment = complex(hinge.attachment);
         let (rho_a, rho_b) = (frame * (attachment - c_a), frame * (attachment - c_b));
         let (shift, offset) = (c64::new(bx - ax, by - ay), c_b - c_a);
+        let terms = [
+            mean * shift,
+            frame * turned_back * offset,
+            opened * rho_b,
+            -opened.conj() * rho_a,
+        ];
+        let sizes: f64 = terms.iter().map(|z| z.re.abs() + z.im.abs()).sum();
         Self {
             theta,
-            translation: mean * shift
-                + frame * turn_less_one(-phibar) * offset
-                + turn_less_one(0.5 * theta) * rho_b
-                - turn_less_one(-0.5 * theta) * rho_a,
+            translation: terms.iter().sum(),
+            rounding: [sizes, phi_a.abs() + phi_b.abs()].map(|size| f64::EPSILON * size),
             frame,
             half,
             mean,
@@ -128,6 +135,11 @@ impl HingeMotion {
             s: self.translation.im,
             theta: self.theta,
         }
+    }
+
+    /// Rounding of a and s (mm) and of theta (rad), which are differences of greater numbers.
+    pub fn rounding(&self) -> [f64; 2] {
+        self.rounding
     }
 
     /// d(a + i s)/dy for y = (Delta u_x, Delta u_y, phibar, theta).
@@ -159,31 +171,42 @@ impl HingeMotion {
         [translation.re, translation.im, y[3]]
     }
 
-    /// The 6 x 6 tangent of the energy in the motions of panels A and B: J^T K J + f . d2(eps).
-    pub fn stiffness(&self, energy: &HingeEnergy) -> [[f64; 6]; 6] {
-        let rates = self.translation_rates();
+    /// The 6 x 6 tangent J^T K J + f . d2(eps) of an energy with the stiffness K = `tangent` and the
+    /// forces f in the motions of panels A and B.
+    pub fn stiffness(&self, tangent: &[[f64; 3]; 3], forces: [f64; 3]) -> [[f64; 6]; 6] {
+        // In z = (Delta u_x, Delta u_y, phi_k, phi_l), of which the six motions are copies.
+        let [x, y, mean, relative] = self.translation_rates();
+        let rates = [x, y, 0.5 * mean - relative, 0.5 * mean + relative];
         let jacobian = [
             rates.map(|rate| rate.re),
             rates.map(|rate| rate.im),
-            [0.0, 0.0, 0.0, 1.0],
+            [0.0, 0.0, -1.0, 1.0],
         ];
-        let mut by_y: [[f64; 4]; 4] = std::array::from_fn(|i| {
-            std::array::from_fn(|j| {
-                (0..3)
-                    .flat_map(|p| (0..3).map(move |q| (p, q)))
-                    .map(|(p, q)| jacobian[p][i] * energy.tangent[p][q] * jacobian[q][j])
-                    .sum()
-            })
+        let product: [[f64; 4]; 3] = tangent
+            .map(|row| std::array::from_fn(|j| (0..3).map(|q| row[q] * jacobian[q][j]).sum()));
+        let mut by_z: [[f64; 4]; 4] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| (0..3).map(|p| jacobian[p][i] * product[p][j]).sum())
         });
-        let force = c64::new(energy.forces[0], energy.forces[1]);
-        for (axis, mean) in [self.mean, I * self.mean].into_iter().enumerate() {
-            let mixed = dot(force, -I * mean);
-            by_y[axis][2] += mixed;
-            by_y[2][axis] += mixed;
+        let force = c64::new(forces[0], forces[1]);
+        for (axis, rate) in [x, y].into_iter().enumerate() {
+            let mixed = 0.5 * dot(force, -I * rate);
+            for angle in [2, 3] {
+                by_z[axis][angle] += mixed;
+                by_z[angle][axis] += mixed;
+            }
         }
-        by_y[2][2] -= dot(force, self.separation);
-        by_y[3][3] -= 0.25 * dot(force, self.arm_b - self.arm_a);
-        congruence(&by_y)
+        let turned = -0.25 * dot(force, self.separation);
+        let opened = -0.25 * dot(force, self.arm_b - self.arm_a);
+        for (i, j) in [(2, 2), (2, 3), (3, 2), (3, 3)] {
+            by_z[i][j] += if i == j {
+                turned + opened
+            } else {
+                turned - opened
+            };
+        }
+        const COPIES: [(usize, f64); 6] =
+            [(0, -1.0), (1, -1.0), (2, 1.0), (0, 1.0), (1, 1.0), (3, 1.0)];
+        COPIES.map(|(i, sign)| COPIES.map(|(j, other)| sign * other * by_z[i][j]))
     }
 
     /// The gradient of `weights . (a, s, theta)` in the flat geometry.
@@ -220,22 +243,4 @@ impl HingeMotion {
 /// y = (Delta u_x, Delta u_y, phibar, theta) of a motion of panels A and B.
 fn relative_motion([ax, ay, phi_a, bx, by, phi_b]: [f64; 6]) -> [f64; 4] {
     [bx - ax, by - ay, 0.5 * (phi_a + phi_b), phi_b - phi_a]
-}
-
-/// T^T K T with T the map of [`relative_motion`].
-fn congruence(by_y: &[[f64; 4]; 4]) -> [[f64; 6]; 6] {
-    let columns: [[f64; 4]; 6] = std::array::from_fn(|j| {
-        let mut unit = [0.0; 6];
-        unit[j] = 1.0;
-        relative_motion(unit)
-    });
-    let product = columns
-        .map(|column| by_y.map(|row| std::iter::zip(row, column).map(|(k, t)| k * t).sum::<f64>()));
-    std::array::from_fn(|i| {
-        std::array::from_fn(|j| {
-            std::iter::zip(columns[i], product[j])
-                .map(|(t, k)| t * k)
-                .sum()
-        })
-    })
 }

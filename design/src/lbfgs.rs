@@ -49,7 +49,7 @@ impl Potential<'_> {
         let mut gradient = self.scaled(&state, &scale);
         let mut memory: VecDeque<Pair> = VecDeque::with_capacity(MEMORY);
         let mut iterations = 0;
-        while state.residual > settings.tolerance && iterations < max_iterations {
+        while !state.is_balanced(settings.tolerance) && iterations < max_iterations {
             let direction = descent(&gradient, &memory, self.panel_size);
             let Some((next, fraction)) = self.wolfe_step(&state, &gradient, &direction, &scale)
             else {
@@ -79,7 +79,7 @@ impl Potential<'_> {
         let state = state.ok_or(failure(residual, iterations))?;
         let tangent = self.tangent(&state);
         Ok(Minimum {
-            factor: self.factorise(&tangent),
+            factor: self.factorise(&tangent, Vec::new()),
             tangent,
             state,
             iterations,

@@ -37,32 +37,15 @@ struct Reached {
     configuration: Configuration,
     /// Of the configuration.
     rate: Vec<[f64; 3]>,
+    /// Of the hinges, and their rates.
+    forces: Vec<[f64; 3]>,
+    force_rates: Vec<[f64; 3]>,
     /// Greatest rate of rotation (rad).
     speed: f64,
     /// Whether the path sped up on the way here.
     faster: bool,
     /// Greatest force so far, under load control that of the full load (N).
     force: f64,
-}
-
-impl Reached {
-    fn new(
-        at: f64,
-        configuration: Configuration,
-        rate: Vec<[f64; 3]>,
-        speed_before: f64,
-        force: f64,
-    ) -> Self {
-        let speed = rate.iter().fold(0.0, |most, rate| rate[2].abs().max(most));
-        Self {
-            at,
-            configuration,
-            rate,
-            speed,
-            faster: speed > speed_before,
-            force,
-        }
-    }
 }
 
 impl EquilibriumSolver {
@@ -76,7 +59,15 @@ impl EquilibriumSolver {
             "the solver's grid is the sheet's"
         );
         let mut path: Vec<LoadStep> = Vec::with_capacity(self.steps);
-        let mut reached = self.flat(sheet);
+        let Some(mut reached) = self.flat(sheet) else {
+            let flat = vec![[0.0; 3]; self.grid.panel_count()];
+            return vec![LoadStep {
+                load_factor: 0.0,
+                status: Status::Diverged,
+                residual: f64::INFINITY,
+                ..LoadStep::ideal(sheet.sheet, flat)
+            }];
+        };
         for i in 1..=self.steps {
             let step = self.advance(sheet, &mut reached, i as f64 / self.steps as f64);
             let diverged = step.status == Status::Diverged;
@@ -88,20 +79,40 @@ impl EquilibriumSolver {
         path
     }
 
-    /// The flat sheet, where the path begins.
-    fn flat(&self, sheet: HingedSheet) -> Reached {
+    /// The flat sheet, where the path begins; `None` if its energy is not finite.
+    fn flat(&self, sheet: HingedSheet) -> Option<Reached> {
         let potential = self.potential(sheet, 0.0, 0.0);
         let force = match self.drive {
             None => potential.greatest(self.loads.iter().copied()),
             Some(_) => 0.0,
         };
-        let flat = vec![[0.0; 3]; self.grid.panel_count()];
-        let state = potential.state(flat.clone());
-        let rate = state.map_or(flat.clone(), |state| {
-            let factor = potential.factorise(&potential.tangent(&state));
-            self.rate(&potential, &state, factor.as_ref())
-        });
-        Reached::new(0.0, flat, rate, f64::INFINITY, force)
+        let state = potential.state(vec![[0.0; 3]; self.grid.panel_count()])?;
+        let factor = potential.factorise(&potential.tangent(&state), Vec::new());
+        let reached = self.arrived(&potential, 0.0, &state, factor.as_ref(), f64::INFINITY);
+        Some(Reached { force, ..reached })
+    }
+
+    /// A point of the path that was reached from one of the speed `speed_before`.
+    fn arrived(
+        &self,
+        potential: &Potential,
+        at: f64,
+        state: &State,
+        factor: Option<&HeldFactor>,
+        speed_before: f64,
+    ) -> Reached {
+        let rate = self.rate(potential, state, factor);
+        let speed = rate.iter().fold(0.0, |most, rate| rate[2].abs().max(most));
+        Reached {
+            at,
+            configuration: state.configuration.clone(),
+            forces: state.forces(),
+            force_rates: potential.force_rates(state, &rate),
+            rate,
+            speed,
+            faster: speed > speed_before,
+            force: state.force,
+        }
     }
 
     /// The load step to `to`, in as many increments as it takes; moves `reached` there.
@@ -110,11 +121,9 @@ impl EquilibriumSolver {
         let least = increment * 0.5_f64.powi(self.settings.max_halvings as i32);
         let (mut iterations, mut jumped, mut last_leap) = (0, false, 0.0);
         loop {
-            increment = increment.min(to - reached.at);
-            // From the flat sheet, soft and soon stiff, Newton's method finds its own way better.
-            if reached.at > 0.0 {
-                increment = increment.min((LONGEST_INCREMENT / reached.speed).max(least));
-            }
+            increment = (to - reached.at)
+                .min(increment)
+                .min((LONGEST_INCREMENT / reached.speed).max(least));
             // The last increment ends exactly, so that rounding leaves no sliver of load behind.
             let at = if to - reached.at < 1.5 * increment {
                 to
@@ -122,9 +131,9 @@ impl EquilibriumSolver {
                 reached.at + increment
             };
             let potential = self.potential(sheet, at, reached.force);
-            let start = self.predicted(reached, at);
+            let (start, forces) = self.predicted(reached, at);
             let minimum = match self.settings.method {
-                Method::Newton => potential.minimise(start, &self.settings),
+                Method::Newton => potential.minimise(start, forces, &self.settings),
                 Method::Lbfgs { max_iterations } => {
                     potential.minimise_lbfgs(start, &self.settings, max_iterations)
                 }
@@ -141,9 +150,8 @@ impl EquilibriumSolver {
                 }
             };
             iterations += minimum.iterations;
-            let rate = self.rate(&potential, &minimum.state, minimum.factor.as_ref());
-            let configuration = minimum.state.configuration.clone();
-            let arrived = Reached::new(at, configuration, rate, reached.speed, minimum.state.force);
+            let (state, factor) = (&minimum.state, minimum.factor.as_ref());
+            let arrived = self.arrived(&potential, at, state, factor, reached.speed);
             if let Some(leap) = self.leap(reached, &arrived, minimum.unstable) {
                 if increment > least {
                     (increment, last_leap) = (0.5 * increment, leap);
@@ -192,7 +200,7 @@ impl EquilibriumSolver {
         let law = sheet.law;
         if jumped {
             Status::LimitPoint
-        } else if minimum.state.residual > self.settings.tolerance || !stable {
+        } else if !minimum.state.is_balanced(self.settings.tolerance) || !stable {
             Status::Almost
         } else if law.inside(&minimum.state.deformations()).contains(&false) {
             Status::LeftDomain
@@ -218,20 +226,21 @@ impl EquilibriumSolver {
         }
     }
 
-    /// Where the rate at `reached` leads, the supports and the stroke as they are at `at`.
-    fn predicted(&self, reached: &Reached, at: f64) -> Configuration {
+    /// Where the rates at `reached` lead, configuration and hinge forces, the supports and the stroke as
+    /// they are at `at`.
+    fn predicted(&self, reached: &Reached, at: f64) -> (Configuration, Vec<[f64; 3]>) {
         let ahead = at - reached.at;
         // A stroke is kept whatever the rotation.
         let cut = match self.drive {
-            None if reached.at == 0.0 => 0.0,
             None => (LONGEST_INCREMENT / (ahead * reached.speed)).min(1.0),
             Some(_) => 1.0,
         };
         let mut configuration = moved(&reached.configuration, &reached.rate, cut * ahead);
+        let forces = moved(&reached.forces, &reached.force_rates, cut * ahead);
         for support in &self.supports {
             configuration[support.panel][support.dof.index()] = at * support.value;
         }
-        configuration
+        (configuration, forces)
     }
 
     /// The rate of the configuration along the path. Where the tangent is singular only supports and

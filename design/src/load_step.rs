@@ -13,7 +13,8 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
-    /// A stable equilibrium, inside the hinge law's domain.
+    /// A stable equilibrium to the tolerance, or to the rounding of hinges that are stiff beside the
+    /// load, inside the hinge law's domain.
     Converged,
     /// A stable equilibrium, with hinges in states that the hinge law was not made for.
     LeftDomain,
@@ -44,6 +45,8 @@ pub struct LoadStep {
     pub status: Status,
     /// Greatest unbalanced force over the greatest force.
     pub residual: f64,
+    /// The part of it that rounding may leave: no state is nearer to equilibrium.
+    pub rounding: f64,
     /// Newton iterations, all increments together.
     pub iterations: usize,
     /// Pivots of the tangent that are not positive: 0 in a state that is stable under dead loads, and
@@ -91,6 +94,7 @@ impl LoadStep {
             potential: 0.0,
             status: Status::Converged,
             residual: 0.0,
+            rounding: 0.0,
             iterations: 0,
             negative_pivots: 0,
             pivot_ratio: 1.0,
@@ -119,6 +123,7 @@ impl LoadStep {
             potential: state.stored - state.load_factor * work,
             status,
             residual: state.residual,
+            rounding: state.rounding,
             iterations,
             negative_pivots: factor.map_or(0, |factor| factor.negative_pivots),
             pivot_ratio: factor.map_or(0.0, |factor| factor.pivot_ratio),

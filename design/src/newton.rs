@@ -3,11 +3,16 @@
 //! With S the diagonal of the tangent at the start, a step solves (H + sigma S) d = -grad Pi with the
 //! smallest sigma found that makes the matrix positive definite, is cut to a length in which the
 //! rotations stay moderate, and is accepted if Pi falls by a part of what the model predicts.
+//!
+//! Where hinges are much stiffer in translation than in rotation, a step along the mechanism stretches
+//! them to second order, and the forces f of that stretch, large and gone with the next step, would
+//! spoil the geometric part f . d2(eps) of H. It counts instead with the forces expected by their rates
+//! (Magisano, Leonetti and Garcea 2017), until the state is stationary or no step from it is found.
 
 use crate::equilibrium::SolverSettings;
 use crate::kinematics::Configuration;
 use crate::panel_vectors::spread;
-use crate::potential::{Potential, State};
+use crate::potential::{Potential, State, moved};
 use crate::stroke::{HeldFactor, dot};
 
 /// Longest step: rotations in rad, hinge translations in panel sizes.
@@ -44,38 +49,45 @@ pub(crate) struct Failure {
 }
 
 impl Potential<'_> {
-    /// A minimum near `start`.
+    /// A minimum near `start`, where the hinge forces are expected to be `forces`.
     pub fn minimise(
         &self,
         start: Configuration,
+        forces: Vec<[f64; 3]>,
         settings: &SolverSettings,
     ) -> Result<Minimum, Failure> {
         let mut state = self.state(start).ok_or(Failure {
             residual: f64::INFINITY,
             iterations: 0,
         })?;
-        let mut tangent = self.tangent(&state);
-        let scale = self.pattern.shift_scale(&tangent);
+        state.expected = Some(forces);
+        let (mut scale, mut memory) = (None, Vec::new());
         let (mut longest, mut unstable) = (LONGEST_STEP, false);
         for iterations in 0..settings.max_iterations {
-            let factor = self.factorise(&tangent);
+            let stationary = state.is_balanced(settings.tolerance);
+            if stationary {
+                state.expected = None;
+            }
+            let tangent = self.tangent(&state);
+            let scale = scale.get_or_insert_with(|| self.pattern.shift_scale(&tangent));
+            let factor = self.factorise(&tangent, std::mem::take(&mut memory));
             let stable = factor
                 .as_ref()
                 .filter(|factor| factor.unstable_directions() == 0);
             unstable |= stable.is_none();
-            let stationary = state.residual <= settings.tolerance;
             let next = match stable {
                 Some(_) if stationary => None,
                 Some(factor) => self.step(&state, factor, &mut longest, settings),
-                None if stationary => self.escape(&state, &tangent, &scale),
+                None if stationary => self.escape(&state, &tangent, scale),
                 None => self
-                    .shifted_factor(&tangent, &scale)
+                    .shifted_factor(&tangent, scale)
                     .and_then(|factor| self.step(&state, &factor, &mut longest, settings)),
             };
             let residual = state.residual;
             match next {
                 Some(next) => state = next,
-                None if residual <= settings.loose_tolerance => {
+                None if state.expected.is_some() => state.expected = None,
+                None if stationary || residual <= settings.loose_tolerance => {
                     return Ok(Minimum {
                         state,
                         tangent,
@@ -91,7 +103,7 @@ impl Potential<'_> {
                     });
                 }
             }
-            tangent = self.tangent(&state);
+            memory = factor.map_or(Vec::new(), |held| held.factor.values);
         }
         Err(Failure {
             residual: state.residual,
@@ -116,7 +128,7 @@ impl Potential<'_> {
         let length = self.length(state, &motion);
         let mut fraction = (*longest / length).min(1.0);
         while fraction > SHORTEST_FRACTION {
-            if let Some(next) = self.moved(state, &motion, fraction) {
+            if let Some(mut next) = self.moved(state, &motion, fraction) {
                 let fall = state.potential - next.potential;
                 let predicted = -slope * fraction * (1.0 - 0.5 * fraction);
                 // Where Pi is lost in rounding, its slope along the step is not.
@@ -128,6 +140,8 @@ impl Potential<'_> {
                     let progress = factor.shifted
                         || state.residual > settings.loose_tolerance
                         || next.residual <= 0.5 * state.residual;
+                    let rates = self.force_rates(state, &motion);
+                    next.expected = Some(moved(&state.forces(), &rates, fraction));
                     return progress.then_some(next);
                 }
             }
@@ -137,9 +151,10 @@ impl Potential<'_> {
         None
     }
 
-    /// The factors of the tangent, bordered if the sheet is driven.
-    pub fn factorise(&self, tangent: &[f64]) -> Option<HeldFactor> {
-        let factor = self.pattern.factorise(tangent)?;
+    /// The factors of the tangent in `memory` that earlier ones have left, bordered if the sheet is
+    /// driven.
+    pub fn factorise(&self, tangent: &[f64], memory: Vec<f64>) -> Option<HeldFactor> {
+        let factor = self.pattern.factorise(tangent, memory)?;
         HeldFactor::new(self.pattern, factor, self.control.stroke())
     }
 
@@ -150,7 +165,7 @@ impl Potential<'_> {
             let shifted = self
                 .pattern
                 .shifted(tangent, scale.iter().map(|entry| shift * entry));
-            match self.factorise(&shifted) {
+            match self.factorise(&shifted, Vec::new()) {
                 Some(mut factor) if factor.unstable_directions() == 0 => {
                     factor.shifted = true;
                     return Some(factor);

@@ -21,7 +21,8 @@ pub(crate) fn turn(phi: f64) -> c64 {
 
 /// e^(i phi) - 1 without the loss of digits at small phi.
 pub(crate) fn turn_less_one(phi: f64) -> c64 {
-    I * turn(0.5 * phi) * (2.0 * (0.5 * phi).sin())
+    let (sin, cos) = (0.5 * phi).sin_cos();
+    2.0 * sin * c64::new(-sin, cos)
 }
 
 pub(crate) fn dot(a: c64, b: c64) -> f64 {

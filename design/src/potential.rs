@@ -55,15 +55,30 @@ pub(crate) struct State {
     pub potential: f64,
     /// Sum of the sizes of the terms of `potential`.
     pub magnitude: f64,
+    /// Hinge forces expected on the way here, by their rates, if they shall stand for those that are in
+    /// f . d2(eps) of the tangent.
+    pub expected: Option<Vec<[f64; 3]>>,
     /// d Pi / d q over the free degrees of freedom.
     pub gradient: Vec<f64>,
     /// Greatest unbalanced force over `force`.
     pub residual: f64,
+    /// Greatest force that rounding of a hinge's deformation leaves unbalanced, over `force`.
+    pub rounding: f64,
     /// The greatest force (N).
     pub force: f64,
 }
 
 impl State {
+    /// Whether no more is unbalanced than the tolerance allows or rounding leaves.
+    pub fn is_balanced(&self, tolerance: f64) -> bool {
+        self.residual <= tolerance.max(self.rounding)
+    }
+
+    /// (F_a, F_s, M_theta) per hinge.
+    pub fn forces(&self) -> Vec<[f64; 3]> {
+        self.energies.iter().map(|energy| energy.forces).collect()
+    }
+
     pub fn deformations(&self) -> Vec<HingeDeformation> {
         self.motions.iter().map(HingeMotion::deformation).collect()
     }
@@ -115,12 +130,18 @@ impl Potential<'_> {
         let loads = load_factor.abs() * self.greatest(self.loads.iter().copied());
         let hinges = self.greatest(energies.iter().map(|energy| energy.forces));
         let force = self.force.max(loads).max(hinges);
+        let over_force = |unbalanced: f64| match unbalanced {
+            0.0 => 0.0,
+            _ => unbalanced / force,
+        };
         let state = State {
             stored: energies.iter().map(|energy| energy.w).sum(),
             potential: terms.clone().sum(),
             magnitude: terms.map(f64::abs).sum(),
-            residual: if left == 0.0 { 0.0 } else { left / force },
+            residual: over_force(left),
+            rounding: over_force(self.rounding(&motions, &energies)),
             force,
+            expected: None,
             gradient,
             load_factor,
             configuration,
@@ -129,6 +150,18 @@ impl Potential<'_> {
         };
         let finite = state.potential.is_finite() && state.gradient.iter().all(|g| g.is_finite());
         finite.then_some(state)
+    }
+
+    /// The greatest force that the rounding of kinematics and law puts into a hinge (N).
+    fn rounding(&self, motions: &[HingeMotion], energies: &[HingeEnergy]) -> f64 {
+        let resolution = self.sheet.law.resolution();
+        let hinges = self.sheet.sheet.hinges.iter().zip(motions).zip(energies);
+        self.greatest(hinges.map(|((hinge, motion), energy)| {
+            let [length, angle] = motion.rounding();
+            let length = length + resolution * hinge.w_lig;
+            let deformation = [length, length, angle + resolution];
+            std::array::from_fn(|c| energy.tangent[c][c].abs() * deformation[c])
+        }))
     }
 
     /// The zeta that leaves the least unbalanced.
@@ -146,15 +179,29 @@ impl Potential<'_> {
     /// Greatest of forces and moments, as a force (N).
     pub fn greatest(&self, forces: impl Iterator<Item = [f64; 3]>) -> f64 {
         forces
-            .map(|[x, y, moment]| x.hypot(y).max(moment.abs() / self.panel_size))
+            .map(|[x, y, moment]| (x * x + y * y).sqrt().max(moment.abs() / self.panel_size))
             .fold(0.0, f64::max)
     }
 
-    /// H of (20).
+    /// H of (20); away from an equilibrium with the forces that were expected on the way to the state.
     pub fn tangent(&self, state: &State) -> Vec<f64> {
-        let blocks = std::iter::zip(&state.motions, &state.energies);
-        self.pattern
-            .assemble(blocks.map(|(motion, energy)| motion.stiffness(energy)))
+        let hinges = state.motions.iter().zip(&state.energies).enumerate();
+        self.pattern.assemble(hinges.map(|(h, (motion, energy))| {
+            let forces = (state.expected.as_ref()).map_or(energy.forces, |expected| expected[h]);
+            motion.stiffness(&energy.tangent, forces)
+        }))
+    }
+
+    /// The rates of the hinge forces under a motion of all panels.
+    pub fn force_rates(&self, state: &State, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let hinges = state.motions.iter().zip(&state.energies);
+        std::iter::zip(&self.sheet.sheet.hinges, hinges)
+            .map(|(hinge, (hinge_motion, energy))| {
+                let rates = hinge_motion.rates(at_hinge(hinge, motion));
+                let along = |row: [f64; 3]| std::iter::zip(row, rates).map(|(k, e)| k * e).sum();
+                energy.tangent.map(along)
+            })
+            .collect()
     }
 
     /// H times a motion of all panels, those of the supports included.
@@ -164,7 +211,7 @@ impl Potential<'_> {
         for (hinge, (hinge_motion, energy)) in std::iter::zip(&self.sheet.sheet.hinges, hinges) {
             let motions = at_hinge(hinge, motion);
             let force = hinge_motion
-                .stiffness(energy)
+                .stiffness(&energy.tangent, energy.forces)
                 .map(|row| std::iter::zip(row, motions).map(|(k, q)| k * q).sum());
             add_at_hinge(&mut forces, hinge, force);
         }
@@ -181,14 +228,14 @@ impl Potential<'_> {
             .map(|(hinge, hinge_motion)| {
                 let motions = at_hinge(hinge, motion);
                 let [along, across, _] = hinge_motion.rates(motions);
-                let translation = along.hypot(across) / self.panel_size;
+                let translation = (along * along + across * across).sqrt() / self.panel_size;
                 translation.max(motions[2].abs()).max(motions[5].abs())
             })
             .fold(0.0, f64::max)
     }
 }
 
-/// A configuration and a fraction of a motion.
+/// What has reached `configuration`, after a fraction of a motion.
 pub(crate) fn moved(
     configuration: &[[f64; 3]],
     motion: &[[f64; 3]],

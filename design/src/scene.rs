@@ -18,7 +18,7 @@ pub use hinge_model::{
 };
 pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 
-use crate::equilibrium::SolverSettings;
+use crate::equilibrium::{Method, SolverSettings};
 use crate::gradient::DesignError;
 use crate::objective::OutlinePoints;
 use crate::sheet::{Centroid, CutProcess, HingePoint, SheetOptions};
@@ -133,12 +133,16 @@ pub struct OptimiserConfig {
 pub struct SolverConfig {
     /// Residual of a converged state, relative to the greatest force.
     pub tolerance: f64,
+    /// `"newton"`, or `{ lbfgs = { max_iterations = 20000 } }` as the paper.
+    pub method: Method,
 }
 
 impl Default for SolverConfig {
     fn default() -> Self {
-        let tolerance = SolverSettings::default().tolerance;
-        Self { tolerance }
+        let SolverSettings {
+            tolerance, method, ..
+        } = SolverSettings::default();
+        Self { tolerance, method }
     }
 }
 

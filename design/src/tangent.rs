@@ -1,18 +1,20 @@
 //! The sparse symmetric tangent H of (20): assembly from hinges and LDL^T, with the symbolic analysis
-//! done once per topology and set of supports.
+//! done once per topology and set of supports, whose free degrees of freedom are numbered in the order
+//! of elimination.
 
 use crate::grid::Grid;
 use crate::topology::hinge_sites;
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
 use faer::mat::MatMut;
-use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky, supernodal::SupernodalLdltRef,
 };
+use faer::sparse::linalg::{SupernodalThreshold, amd};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, Par, Side};
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 
 /// Free degrees of freedom from which the supernodal factorisation is the faster one (measured).
@@ -29,8 +31,10 @@ const LEAST_PIVOT_RATIO: f64 = 1e-13;
 pub(crate) struct TangentPattern {
     matrix: SymbolicSparseColMat<usize>,
     cholesky: SymbolicCholesky<usize>,
+    /// Memory that factorisation and solution work in.
+    scratch: StackReq,
     /// Where the entries of each hinge's 6 x 6 block go; none for supported or upper entries.
-    slots: Vec<[[Option<usize>; 6]; 6]>,
+    slots: Vec<[[Option<u32>; 6]; 6]>,
     /// Where the diagonal entries are.
     diagonal: Vec<usize>,
 }
@@ -38,52 +42,99 @@ pub(crate) struct TangentPattern {
 /// LDL^T of a tangent.
 #[derive(Clone, Debug)]
 pub(crate) struct Factor {
-    values: Vec<f64>,
+    pub values: Vec<f64>,
     /// Pivots that are not positive beyond rounding: the number of unstable directions.
     pub negative_pivots: usize,
     /// Smallest pivot over its diagonal entry: how close to singular.
     pub pivot_ratio: f64,
 }
 
+thread_local! {
+    /// Kept from one factorisation to the next: fresh memory would cost page faults.
+    static SCRATCH: RefCell<MemBuffer> = RefCell::new(MemBuffer::new(StackReq::EMPTY));
+}
+
+/// Numbers for the free degrees of freedom of the panels, three entries a panel, in an order of
+/// elimination that fills the factor little (approximate minimum degree).
+pub(crate) fn elimination_order(grid: Grid, supported: &[bool]) -> Vec<Option<usize>> {
+    let mut numbers = 0..;
+    let mut free: Vec<Option<usize>> = (supported.iter())
+        .map(|&supported| if supported { None } else { numbers.next() })
+        .collect();
+    let matrix = sparsity(grid, &free);
+    let (dimension, entries) = (matrix.ncols(), matrix.row_idx().len());
+    let (mut order, mut rank) = (vec![0; dimension], vec![0; dimension]);
+    let scratch = amd::order_scratch::<usize>(dimension, entries);
+    amd::order(
+        &mut order,
+        &mut rank,
+        matrix.as_ref(),
+        amd::Control::default(),
+        MemStack::new(&mut MemBuffer::new(scratch)),
+    )
+    .expect("indices fit in usize");
+    free.iter_mut()
+        .flatten()
+        .for_each(|number| *number = rank[*number]);
+    free
+}
+
+/// The numbers of the six degrees of freedom at each hinge.
+fn at_hinges(grid: Grid, free: &[Option<usize>]) -> Vec<[Option<usize>; 6]> {
+    let numbers = |panels: [usize; 2]| std::array::from_fn(|d| free[3 * panels[d / 3] + d % 3]);
+    let sites = hinge_sites(grid);
+    sites
+        .iter()
+        .map(|site| numbers([site.a.0, site.b.0]))
+        .collect()
+}
+
+/// Where the lower triangle has entries; the diagonal is always there, for the shift.
+fn sparsity(grid: Grid, free: &[Option<usize>]) -> SymbolicSparseColMat<usize> {
+    let dimension = free.iter().flatten().count();
+    let mut columns: Vec<BTreeSet<usize>> = (0..dimension).map(|i| [i].into()).collect();
+    for numbers in at_hinges(grid, free) {
+        for &column in numbers.iter().flatten() {
+            let lower = numbers.iter().flatten().filter(|&&row| row >= column);
+            columns[column].extend(lower);
+        }
+    }
+    let mut starts = vec![0];
+    let mut rows = Vec::new();
+    for column in &columns {
+        rows.extend(column.iter().copied());
+        starts.push(rows.len());
+    }
+    SymbolicSparseColMat::new_checked(dimension, dimension, starts, None, rows)
+}
+
 impl TangentPattern {
-    /// `free[3 k + d]` numbers the free degrees of freedom of panel k, in any order from 0.
+    /// `free[3 k + d]` numbers the free degrees of freedom of panel k, as [`elimination_order`] does.
     pub fn new(grid: Grid, free: &[Option<usize>]) -> Self {
-        let dimension = free.iter().flatten().count();
-        let numbers: Vec<[Option<usize>; 6]> = hinge_sites(grid)
-            .iter()
-            .map(|site| std::array::from_fn(|d| free[3 * [site.a.0, site.b.0][d / 3] + d % 3]))
-            .collect();
-        // The diagonal is always there, for the shift.
-        let mut columns: Vec<BTreeSet<usize>> = (0..dimension).map(|i| [i].into()).collect();
-        for numbers in &numbers {
-            for &column in numbers.iter().flatten() {
-                let lower = numbers.iter().flatten().filter(|&&row| row >= column);
-                columns[column].extend(lower);
-            }
-        }
-        let mut starts = vec![0];
-        let mut rows = Vec::new();
-        for column in &columns {
-            rows.extend(column.iter().copied());
-            starts.push(rows.len());
-        }
+        let matrix = sparsity(grid, free);
+        let (starts, rows) = (matrix.col_ptr(), matrix.row_idx());
         let slot = |row: usize, column: usize| {
             let range = starts[column]..starts[column + 1];
             let offset = rows[range.clone()].binary_search(&row).ok()?;
-            Some(range.start + offset)
+            Some((range.start + offset) as u32)
         };
-        let slots = numbers
+        let slots = at_hinges(grid, free)
             .iter()
             .map(|numbers| {
                 std::array::from_fn(|i| std::array::from_fn(|j| slot(numbers[i]?, numbers[j]?)))
             })
             .collect();
+        let dimension = matrix.ncols();
         let diagonal = starts[..dimension].to_vec();
-        let matrix = SymbolicSparseColMat::new_checked(dimension, dimension, starts, None, rows);
+        // Without an ordering of its own faer analyses the upper triangle, whichever side it is told.
+        let upper = matrix
+            .transpose()
+            .to_col_major()
+            .expect("indices fit in usize");
         let cholesky = factorize_symbolic_cholesky(
-            matrix.as_ref(),
-            Side::Lower,
-            SymmetricOrdering::Amd,
+            upper.as_ref(),
+            Side::Upper,
+            SymmetricOrdering::Identity,
             CholeskySymbolicParams {
                 supernodal_flop_ratio_threshold: if dimension < SUPERNODAL_FROM {
                     SupernodalThreshold::FORCE_SIMPLICIAL
@@ -94,12 +145,27 @@ impl TangentPattern {
             },
         )
         .expect("indices fit in usize and the factor in memory");
+        let scratch = StackReq::any_of(&[
+            cholesky.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default()),
+            cholesky.solve_in_place_scratch::<f64>(1, Par::Seq),
+        ]);
         Self {
             matrix,
             cholesky,
+            scratch,
             slots,
             diagonal,
         }
+    }
+
+    /// Lends this thread's memory for `work`, which must not ask for it again.
+    fn with_scratch<T>(&self, work: impl FnOnce(&mut MemStack) -> T) -> T {
+        SCRATCH.with_borrow_mut(|memory| {
+            if !MemStack::new(memory).can_hold(self.scratch) {
+                *memory = MemBuffer::new(self.scratch);
+            }
+            work(MemStack::new(memory))
+        })
     }
 
     /// The lower triangle of H from the 6 x 6 blocks of the hinges.
@@ -109,7 +175,7 @@ impl TangentPattern {
             for (slots, entries) in std::iter::zip(slots, block) {
                 for (slot, entry) in std::iter::zip(slots, entries) {
                     if let Some(slot) = slot {
-                        values[*slot] += entry;
+                        values[*slot as usize] += entry;
                     }
                 }
             }
@@ -168,66 +234,58 @@ impl TangentPattern {
         (product, bound)
     }
 
-    /// LDL^T; `None` if a pivot vanishes or is not finite.
-    pub fn factorise(&self, values: &[f64]) -> Option<Factor> {
-        let mut factor = vec![0.0; self.cholesky.len_val()];
-        let scratch = self
-            .cholesky
-            .factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
-        self.cholesky
-            .factorize_numeric_ldlt(
-                &mut factor,
-                SparseColMatRef::new(self.matrix.as_ref(), values),
-                Side::Lower,
-                LdltRegularization::default(),
-                Par::Seq,
-                MemStack::new(&mut MemBuffer::new(scratch)),
-                Default::default(),
-            )
-            .ok()?;
-        let ratios = self.pivot_ratios(values, &factor);
-        if ratios
-            .iter()
-            .any(|ratio| !ratio.is_finite() || *ratio == 0.0)
-        {
-            return None;
+    /// LDL^T, in `memory` that an earlier factor has left; `None` if a pivot vanishes or is not finite.
+    pub fn factorise(&self, values: &[f64], memory: Vec<f64>) -> Option<Factor> {
+        let mut factor = memory;
+        factor.resize(self.cholesky.len_val(), 0.0);
+        self.with_scratch(|stack| {
+            self.cholesky
+                .factorize_numeric_ldlt(
+                    &mut factor,
+                    SparseColMatRef::new(self.matrix.as_ref(), values),
+                    Side::Lower,
+                    LdltRegularization::default(),
+                    Par::Seq,
+                    stack,
+                    Default::default(),
+                )
+                .ok()
+                .map(|_| ())
+        })?;
+        let (mut negative_pivots, mut pivot_ratio) = (0, 1.0_f64);
+        for (pivot, &slot) in std::iter::zip(self.pivots(&factor), &self.diagonal) {
+            // Over the diagonal entry of H that it began as.
+            let ratio = pivot / values[slot].abs();
+            if !ratio.is_finite() || ratio == 0.0 {
+                return None;
+            }
+            negative_pivots += usize::from(ratio <= LEAST_PIVOT_RATIO);
+            pivot_ratio = pivot_ratio.min(ratio);
         }
         Some(Factor {
-            negative_pivots: ratios
-                .iter()
-                .filter(|ratio| **ratio <= LEAST_PIVOT_RATIO)
-                .count(),
-            pivot_ratio: ratios.iter().copied().fold(1.0, f64::min),
+            negative_pivots,
+            pivot_ratio,
             values: factor,
         })
     }
 
-    /// Each pivot of D over the diagonal entry of H it began as, in the order of elimination.
-    fn pivot_ratios(&self, values: &[f64], factor: &[f64]) -> Vec<f64> {
-        let pivots: Vec<f64> = match self.cholesky.raw() {
+    /// The diagonal of D.
+    fn pivots(&self, factor: &[f64]) -> Vec<f64> {
+        let mut pivots = Vec::with_capacity(self.diagonal.len());
+        match self.cholesky.raw() {
             SymbolicCholeskyRaw::Simplicial(symbolic) => {
                 let starts = &symbolic.col_ptr()[..symbolic.ncols()];
-                starts.iter().map(|&start| factor[start]).collect()
+                pivots.extend(starts.iter().map(|&start| factor[start]));
             }
             SymbolicCholeskyRaw::Supernodal(symbolic) => {
                 let ldlt = SupernodalLdltRef::new(symbolic, factor);
-                (0..symbolic.n_supernodes())
-                    .flat_map(|s| {
-                        let block = ldlt.supernode(s).val();
-                        (0..block.ncols()).map(move |j| block[(j, j)])
-                    })
-                    .collect()
+                for s in 0..symbolic.n_supernodes() {
+                    let block = ldlt.supernode(s).val();
+                    pivots.extend((0..block.ncols()).map(|j| block[(j, j)]));
+                }
             }
-        };
-        let diagonal = self.diagonal(values);
+        }
         pivots
-            .iter()
-            .enumerate()
-            .map(|(i, pivot)| {
-                let row = self.cholesky.perm().map_or(i, |perm| perm.arrays().0[i]);
-                pivot / diagonal[row].abs()
-            })
-            .collect()
     }
 
     /// Estimate of the condition number of H scaled to a unit diagonal, in the 1-norm (Hager 1984).
@@ -277,14 +335,15 @@ impl TangentPattern {
 
     /// Solves with the factor, in place.
     pub fn solve(&self, factor: &Factor, rhs: &mut [f64]) {
-        let scratch = self.cholesky.solve_in_place_scratch::<f64>(1, Par::Seq);
         let rows = rhs.len();
-        LdltRef::new(&self.cholesky, &factor.values).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(rhs, rows, 1),
-            Par::Seq,
-            MemStack::new(&mut MemBuffer::new(scratch)),
-        );
+        self.with_scratch(|stack| {
+            LdltRef::new(&self.cholesky, &factor.values).solve_in_place_with_conj(
+                Conj::No,
+                MatMut::from_column_major_slice_mut(rhs, rows, 1),
+                Par::Seq,
+                stack,
+            );
+        });
     }
 }
 
@@ -297,11 +356,8 @@ mod tests {
 
     /// Clamped in panel 0.
     fn pattern(grid: Grid) -> TangentPattern {
-        let free = |i: usize| i.checked_sub(3);
-        let pattern = TangentPattern::new(
-            grid,
-            &(0..3 * grid.panel_count()).map(free).collect::<Vec<_>>(),
-        );
+        let supported: Vec<bool> = (0..3 * grid.panel_count()).map(|i| i < 3).collect();
+        let pattern = TangentPattern::new(grid, &elimination_order(grid, &supported));
         let large = pattern.diagonal.len() >= SUPERNODAL_FROM;
         assert_eq!(large, grid.m == 12);
         pattern
@@ -321,7 +377,7 @@ mod tests {
     fn solutions_satisfy_their_equations() {
         for pattern in GRIDS.map(pattern) {
             let values = positive(&pattern);
-            let factor = pattern.factorise(&values).unwrap();
+            let factor = pattern.factorise(&values, Vec::new()).unwrap();
             assert_eq!(factor.negative_pivots, 0);
             let rhs: Vec<f64> = (0..pattern.diagonal.len())
                 .map(|i| (i as f64).cos())
@@ -337,17 +393,15 @@ mod tests {
     fn negative_pivots_are_counted_and_zero_ones_refused() {
         for pattern in GRIDS.map(pattern) {
             let dimension = pattern.diagonal.len();
+            let factorise = |values: &[f64]| pattern.factorise(values, Vec::new());
             let opposite: Vec<f64> = positive(&pattern).iter().map(|value| -value).collect();
-            assert_eq!(
-                pattern.factorise(&opposite).unwrap().negative_pivots,
-                dimension
-            );
+            assert_eq!(factorise(&opposite).unwrap().negative_pivots, dimension);
             let zero = vec![0.0; opposite.len()];
             let signs = (0..dimension).map(|i| if i % 5 == 2 { -1.0 } else { 2.0 });
-            let signed = pattern.factorise(&pattern.shifted(&zero, signs)).unwrap();
+            let signed = factorise(&pattern.shifted(&zero, signs)).unwrap();
             assert_eq!(signed.negative_pivots, (dimension + 2) / 5);
-            assert!(pattern.factorise(&zero).is_none());
-            assert!(pattern.factorise(&vec![f64::NAN; zero.len()]).is_none());
+            assert!(factorise(&zero).is_none());
+            assert!(factorise(&vec![f64::NAN; zero.len()]).is_none());
         }
     }
 }

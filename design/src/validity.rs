@@ -6,6 +6,7 @@ use crate::kinematics::deployed_corners;
 use crate::pattern::CutPattern;
 use crate::polygon::{area, common};
 use crate::sheet::{Panel, Sheet};
+use hinge::{HingeDesign, TrainingDomain};
 use serde::Serialize;
 
 /// Measures of a flat sheet.
@@ -20,19 +21,36 @@ pub struct Validity {
     pub overlap: f64,
     /// Shortest side r L or (1 - r) L of a void (mm).
     pub least_void_side: f64,
-    /// Least distance between two hinges of one panel (mm); windows need about 2 r_win.
+    /// Least distance between two hinges of one panel (mm).
     pub least_hinge_spacing: f64,
     /// mm
     pub r_win: f64,
+    /// Hinges nearer to another of their panels than 2 r_win, which their windows need.
+    pub crowded_hinges: usize,
     /// Least and greatest cut angle (deg).
     pub alpha_deg: [f64; 2],
+    /// Cut angles that the hinge law was trained on (deg); none for a law without training.
+    pub trained_alpha_deg: Option<[f64; 2]>,
+    /// Hinges of other cut angles or ligament widths than the law was trained on.
+    pub untrained_hinges: usize,
 }
 
 impl Validity {
-    pub fn new(pattern: &CutPattern, sheet: &Sheet) -> Self {
+    /// `domain` is that of the hinge law, if it has one.
+    pub fn new(pattern: &CutPattern, sheet: &Sheet, domain: Option<&TrainingDomain>) -> Self {
         let areas = sheet.panels.iter().map(Panel::area);
         let outline = sheet.outline.area();
         let alphas = sheet.hinges.iter().map(|hinge| hinge.alpha.to_degrees());
+        let spacings = hinge_spacings(sheet);
+        let r_win = sheet.options.process.r_win;
+        let untrained = |domain: &TrainingDomain| {
+            let trained = |design: &&HingeDesign| domain.contains(design, &Default::default());
+            sheet
+                .designs()
+                .iter()
+                .filter(|design| !trained(design))
+                .count()
+        };
         let flat = vec![[0.0; 3]; sheet.panels.len()];
         Self {
             least_panel_area: areas.clone().fold(f64::INFINITY, f64::min),
@@ -40,12 +58,15 @@ impl Validity {
             overlap: overlap(sheet, &flat),
             least_void_side: (pattern.void_sides().as_flattened().iter().copied())
                 .fold(f64::INFINITY, f64::min),
-            least_hinge_spacing: least_hinge_spacing(sheet),
-            r_win: sheet.options.process.r_win,
+            crowded_hinges: spacings.iter().filter(|s| **s < 2.0 * r_win).count(),
+            least_hinge_spacing: spacings.into_iter().fold(f64::INFINITY, f64::min),
+            r_win,
             alpha_deg: [
                 alphas.clone().fold(f64::INFINITY, f64::min),
                 alphas.fold(f64::NEG_INFINITY, f64::max),
             ],
+            trained_alpha_deg: domain.map(|domain| domain.alpha.map(f64::to_degrees)),
+            untrained_hinges: domain.map_or(0, untrained),
         }
     }
 }
@@ -72,17 +93,21 @@ pub fn overlap(sheet: &Sheet, configuration: &[[f64; 3]]) -> f64 {
     shared.fold(0.0, f64::max) / mean
 }
 
-fn least_hinge_spacing(sheet: &Sheet) -> f64 {
+/// The distance of each hinge to the nearest other one of its two panels (mm).
+fn hinge_spacings(sheet: &Sheet) -> Vec<f64> {
     let mut of_panel = vec![Vec::new(); sheet.panels.len()];
-    for hinge in &sheet.hinges {
-        of_panel[hinge.panel_a()].push(hinge.corner);
-        of_panel[hinge.panel_b()].push(hinge.corner);
+    for (h, hinge) in sheet.hinges.iter().enumerate() {
+        of_panel[hinge.panel_a()].push(h);
+        of_panel[hinge.panel_b()].push(h);
     }
-    let mut least = f64::INFINITY;
-    for corners in of_panel {
-        for (i, p) in corners.iter().enumerate() {
-            for q in &corners[..i] {
-                least = least.min(f64::hypot(q[0] - p[0], q[1] - p[1]));
+    let mut least = vec![f64::INFINITY; sheet.hinges.len()];
+    for hinges in of_panel {
+        for (i, &one) in hinges.iter().enumerate() {
+            for &other in &hinges[..i] {
+                let [p, q] = [one, other].map(|h| sheet.hinges[h].corner);
+                let apart = f64::hypot(q[0] - p[0], q[1] - p[1]);
+                least[one] = least[one].min(apart);
+                least[other] = least[other].min(apart);
             }
         }
     }

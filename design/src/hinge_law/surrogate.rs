@@ -17,6 +17,10 @@ const BARRIER_STIFFNESS: f64 = 100.0;
 /// Intervals narrower than this (of one training row, say) count as this wide.
 const NARROWEST_INTERVAL: f64 = 0.01;
 
+/// The standardised features (13) are of order one, and so are the units of the layers behind them: a
+/// deformation is lost in a few of their last digits.
+const RESOLUTION: f64 = 16.0 * f64::EPSILON;
+
 /// The learned hinge law.
 #[derive(Clone, Debug)]
 pub struct SurrogateLaw {
@@ -44,6 +48,10 @@ impl HingeLaw for SurrogateLaw {
     fn damage_scale(&self) -> Option<f64> {
         Some(self.surrogate.damage_scale())
     }
+
+    fn domain(&self) -> Option<&TrainingDomain> {
+        Some(self.surrogate.domain())
+    }
 }
 
 struct PreparedSurrogate<'a> {
@@ -68,6 +76,10 @@ impl PreparedLaw for PreparedSurrogate<'_> {
 
     fn damage(&self, deformations: &[HingeDeformation]) -> Vec<HingeDamage> {
         self.surrogate.damage(self.prepared.designs(), deformations)
+    }
+
+    fn resolution(&self) -> f64 {
+        RESOLUTION
     }
 
     fn inside(&self, deformations: &[HingeDeformation]) -> Vec<bool> {

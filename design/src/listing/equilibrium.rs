@@ -22,6 +22,8 @@ pub struct StepListing {
     pub status: Status,
     /// Greatest unbalanced force over the greatest force.
     pub residual: f64,
+    /// The part of it that rounding may leave.
+    pub rounding: f64,
     pub iterations: usize,
     pub negative_pivots: usize,
     /// Estimate, of the tangent scaled to a unit diagonal; none where it could not be factored.
@@ -90,6 +92,7 @@ impl StepListing {
             load_factor: step.load_factor,
             status: step.status,
             residual: step.residual,
+            rounding: step.rounding,
             iterations: step.iterations,
             negative_pivots: step.negative_pivots,
             condition: condition.is_finite().then_some(condition),

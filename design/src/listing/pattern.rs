@@ -75,7 +75,7 @@ impl PatternListing {
             panel_centroid: sheet.panels.iter().map(|panel| panel.centroid).collect(),
             hinges: sheet.hinges.iter().map(HingeListing::new).collect(),
             void_sides: pattern.void_sides(),
-            validity: Validity::new(&pattern, &sheet),
+            validity: Validity::new(&pattern, &sheet, problem.model.domain()),
             spans: Span::of_sheet(&sheet),
             r: pattern.r,
             tau: pattern.tau,
@@ -115,7 +115,10 @@ impl fmt::Display for PatternListing {
             least_void_side,
             least_hinge_spacing,
             r_win,
+            crowded_hinges,
             alpha_deg: [least, greatest],
+            trained_alpha_deg,
+            untrained_hinges,
         } = self.validity;
         let (panels, hinges) = (self.panel_area.len(), self.hinges.len());
         writeln!(
@@ -129,9 +132,18 @@ impl fmt::Display for PatternListing {
         writeln!(f, "least void side      {least_void_side:>12.4} mm")?;
         writeln!(
             f,
-            "least hinge spacing  {least_hinge_spacing:>12.4} mm (windows: 2 x {r_win} mm)"
+            "least hinge spacing  {least_hinge_spacing:>12.4} mm (windows: 2 x {r_win} mm; \
+             {crowded_hinges} of {hinges} hinges closer)"
         )?;
-        writeln!(f, "cut angles           {least:>12.1} to {greatest:.1} deg")?;
+        write!(f, "cut angles           {least:>12.1} to {greatest:.1} deg")?;
+        match trained_alpha_deg {
+            Some([least, greatest]) => writeln!(
+                f,
+                " (trained on {least:.1} to {greatest:.1}; {untrained_hinges} of {hinges} hinges \
+                 outside in angle or width)"
+            )?,
+            None => writeln!(f)?,
+        }
         for (name, span) in std::iter::zip(["across columns", "across rows"], &self.spans) {
             let (lambda, theta) = (span.lambda_max, span.theta_max.to_degrees());
             writeln!(f, "{name:<20} {lambda:>12.4} lambda_max at {theta:.1} deg")?;

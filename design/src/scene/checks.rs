@@ -3,6 +3,7 @@
 //! The ranges are wider than any sheet that is cut and narrower than a slip of a factor 1000.
 
 use super::{HingeModel, SceneConfig, SheetConfig};
+use crate::equilibrium::Method;
 use crate::pattern::{Outline, PatternError};
 use crate::polygon::edges;
 use crate::target::Target;
@@ -235,6 +236,10 @@ fn search(scene: &SceneConfig) -> Result<(), String> {
         within(key, weight, [0.0, 1e9], "")?;
     }
     within("solver.tolerance", scene.solver.tolerance, [1e-14, 0.1], "")?;
+    if let Method::Lbfgs { max_iterations } = scene.solver.method {
+        let key = "solver.method.lbfgs.max_iterations";
+        counted(key, max_iterations, 10_000_000)?;
+    }
     let optimiser = &scene.optimiser;
     counted("optimiser.steps", optimiser.steps, 10_000_000)?;
     within(

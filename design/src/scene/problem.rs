@@ -1,7 +1,7 @@
 //! From a scene to the design problem it poses and the design its search starts from.
 
 use super::hinge_model::LoadedHinge;
-use super::{Scene, SceneError};
+use super::{Scene, SceneError, SolverConfig};
 use crate::chamfer::Chamfer;
 use crate::design_vector::{DesignVector, WidthChart};
 use crate::equilibrium::{EquilibriumError, EquilibriumSolver, SolverSettings};
@@ -133,8 +133,9 @@ impl Scene {
     }
 
     fn solver(&self) -> Result<EquilibriumSolver, EquilibriumError> {
-        let tolerance = self.config.solver.tolerance;
+        let SolverConfig { tolerance, method } = self.config.solver;
         let settings = SolverSettings {
+            method,
             tolerance,
             loose_tolerance: tolerance.max(SolverSettings::default().loose_tolerance),
             ..SolverSettings::default()

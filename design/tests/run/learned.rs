@@ -9,7 +9,7 @@ use design::scene::Scene;
 use std::path::Path;
 
 /// Puts the random weights and their card, changed, beside the scene.
-fn weights(folder: &Path, changes: &[(&str, &str)]) {
+pub fn weights(folder: &Path, changes: &[(&str, &str)]) {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases");
     std::fs::copy(
         cases.join("chi_tiny.safetensors"),
@@ -51,7 +51,7 @@ fn refusal(card: &[(&str, &str)], scene: &[(&str, &str)]) -> String {
 }
 
 #[test]
-fn weights_of_another_hinge_or_material_are_refused() {
+pub fn weights_of_another_hinge_or_material_are_refused() {
     let message = refusal(&[("film", "steel")], &[]);
     assert!(
         message.contains("the material `steel`, the scene's is `film`"),

@@ -3,6 +3,7 @@
 mod learned;
 mod outer_loop;
 mod results;
+mod sections;
 
 use design::inverse_design::{Designed, InverseDesignError, StepRecord, inverse_design};
 use design::scene::Scene;

@@ -41,7 +41,7 @@ impl PreparedLaw for Rotational {
     }
 }
 
-fn assert_finite(path: &[LoadStep]) {
+pub fn assert_finite(path: &[LoadStep]) {
     for step in path {
         let numbers = step
             .configuration
@@ -56,7 +56,7 @@ fn assert_finite(path: &[LoadStep]) {
         assert!(!step.residual.is_nan() && !step.pivot_ratio.is_nan());
         if !matches!(step.status, Status::Diverged | Status::Almost) {
             assert!(
-                step.residual <= 1e-10 && step.negative_pivots == 0,
+                step.residual <= step.rounding.max(1e-10) && step.negative_pivots == 0,
                 "{:?}",
                 step.status
             );

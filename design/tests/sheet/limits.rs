@@ -9,6 +9,7 @@ use design::opening_limits::{CONTACT, Span};
 use design::pattern::{CutPattern, Outline};
 use design::sheet::Sheet;
 use design::validity::{Validity, overlap};
+use hinge::TrainingDomain;
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 
 fn random(random: &mut Random, grid: Grid, size: f64) -> (CutPattern, Sheet) {
@@ -30,7 +31,7 @@ fn patterns_are_valid_and_open_without_overlap_up_to_the_second_contact() {
     for (m, n) in [(2, 2), (3, 3), (2, 7), (5, 4), (9, 8)] {
         for size in [0.5, 3.0] {
             let (pattern, sheet) = random(&mut numbers, Grid { m, n }, size);
-            let valid = Validity::new(&pattern, &sheet);
+            let valid = Validity::new(&pattern, &sheet, None);
             assert!(valid.area_error.abs() < 1e-13 && valid.overlap < 1e-12);
             assert!(valid.least_panel_area > 0.0 && valid.least_void_side > 0.0);
             let [least, greatest] = valid.alpha_deg;
@@ -69,5 +70,35 @@ fn the_greatest_stretch_is_that_of_six_and_no_opening_exceeds_it() {
             assert!((stretch - span.stretch(theta)).abs() < 1e-12);
             assert!(stretch <= span.lambda_max + 1e-12);
         }
+    }
+}
+
+/// Hinges of a uniform sheet stand a pitch apart, their cuts at 90 degrees.
+#[test]
+fn windows_and_cut_angles_are_held_against_the_hinges() {
+    let pattern = cases::pattern(&case("p0_3x3_uniform"));
+    let domain = |alpha, w_lig| TrainingDomain {
+        eta_a: [-0.1, 0.1],
+        eta_s: [-0.1, 0.1],
+        theta: [0.0, 1.0],
+        w_lig,
+        alpha,
+    };
+    let measured = |r_win: f64, domain: &TrainingDomain| {
+        let mut options = AT_CORNER;
+        options.process.r_win = r_win;
+        let sheet = Sheet::new(&pattern, &[0.1; 12], options).unwrap();
+        Validity::new(&pattern, &sheet, Some(domain))
+    };
+    let trained = domain([1.0, 2.0], [0.05, 0.2]);
+    let roomy = measured(0.3, &trained);
+    assert_eq!((roomy.crowded_hinges, roomy.untrained_hinges), (0, 0));
+    assert!((roomy.trained_alpha_deg.unwrap()[0] - 1.0_f64.to_degrees()).abs() < 1e-12);
+    assert_eq!(measured(0.8, &trained).crowded_hinges, 12);
+    for elsewhere in [
+        domain([1.6, 2.0], [0.05, 0.2]),
+        domain([1.0, 2.0], [0.2, 0.3]),
+    ] {
+        assert_eq!(measured(0.3, &elsewhere).untrained_hinges, 12);
     }
 }

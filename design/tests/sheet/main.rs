@@ -5,9 +5,12 @@ mod cases;
 mod closed_forms;
 mod driven;
 mod equilibrium;
+mod extreme_sheets;
 mod extremes;
 mod gradient;
+mod invariance;
 mod kinematics;
+
 mod limits;
 mod pattern;
 mod pullbacks;

@@ -1,0 +1,161 @@
+//! The sections of a scene that the shipped scenes leave out: each does what its plain equivalent does.
+
+use super::{read, with};
+use design::equilibrium::LoadStep;
+use design::gradient::Model;
+use design::hinge_law::{CondensedLaw, HingeLaw, Order};
+use design::scene::Scene;
+use hinge::HingeDeformation;
+use std::path::Path;
+use surrogate::Surrogate;
+
+const PULL: &str = "[[loads]]\npanel = [2, 1]\nforce = [2.0, 0.0]";
+
+fn path(scene: &Scene) -> Vec<LoadStep> {
+    let problem = scene.problem().unwrap();
+    problem.deploy(&scene.start()).unwrap().path
+}
+
+/// The same equilibria with either text in place of the pull.
+fn assert_alike(one: &str, other: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    let [one, other] = [one, other].map(|text| path(&read(folder.path(), &with(&[(PULL, text)]))));
+    for (one, other) in std::iter::zip(one, other) {
+        assert_ne!(one.configuration[5], [0.0; 3]);
+        let pairs = std::iter::zip(&one.configuration, &other.configuration);
+        for (x, y) in pairs.flat_map(|(one, other)| std::iter::zip(one, other)) {
+            assert!((x - y).abs() < 1e-9, "{x} {y}");
+        }
+    }
+}
+
+#[test]
+fn edge_loads_are_shared_by_the_panels_of_the_edge() {
+    let panels = (0..3).map(|row| format!("[[loads]]\npanel = [2, {row}]\nforce = [1.2, -0.4]\n"));
+    assert_alike(
+        "[[edge_loads]]\nedge = \"right\"\ntraction = [0.003, -0.001]",
+        &panels.collect::<String>(),
+    );
+}
+
+#[test]
+fn opening_couples_turn_the_panels_of_a_hinge_apart() {
+    // [1, 1] is an even panel, A of the hinge; [2, 1] is B.
+    assert_alike(
+        "[[opening_couples]]\npanels = [[2, 1], [1, 1]]\ncouple = 150.0",
+        "[[loads]]\npanel = [1, 1]\ncouple = -150.0\n[[loads]]\npanel = [2, 1]\ncouple = 150.0",
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let everywhere = with(&[(PULL, "[[opening_couples]]\ncouple = 60.0")]);
+    let opened = path(&read(folder.path(), &everywhere));
+    // Couples in balance open every hinge by M / k_theta.
+    for deformation in &opened[3].deformations {
+        assert!(
+            (deformation.theta - 60.0 / 300.0).abs() < 1e-8,
+            "{deformation:?}"
+        );
+    }
+}
+
+#[test]
+fn a_start_is_given_by_values_or_by_logits() {
+    let folder = tempfile::tempdir().unwrap();
+    let start = |section: &str| {
+        let changes = [("start_noise = 0.05\n", ""), ("[process]", section)];
+        read(folder.path(), &with(&changes)).start()
+    };
+    let values = start(
+        "[start]\nr = [0.3, 0.5, 0.6, 0.9]\ntau = [[0.2, 0.6], [0.3, 0.7], [0.5, 0.6], [0.1, 0.2]]\n\
+         w_lig = [12.0, 13.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0, 20.0, 21.0, 22.0, 23.0]\n[process]",
+    );
+    let logits: Vec<String> = [0.3_f64, 0.5, 0.6, 0.9]
+        .map(|r| (r / (1.0 - r)).ln().to_string())
+        .to_vec();
+    let ell = [
+        [0.2, 0.4, 0.4],
+        [0.3, 0.4, 0.3],
+        [0.5, 0.1, 0.4],
+        [0.1, 0.1, 0.8],
+    ];
+    let ell = ell.map(|edge: [f64; 3]| edge.map(f64::ln));
+    let from_logits = start(&format!(
+        "[start]\nz = [{}]\nell = {ell:?}\n[process]",
+        logits.join(", ")
+    ));
+    let pattern = |design: &design::design_vector::DesignVector| {
+        let pattern = &design.pattern;
+        [pattern.z.as_slice(), &pattern.ell.concat()].concat()
+    };
+    for (one, other) in std::iter::zip(pattern(&values), pattern(&from_logits)) {
+        assert!((one - other).abs() < 1e-12);
+    }
+    // Widths grow with the hinges' numbers; those left out are alike.
+    assert!(values.omega.windows(2).all(|pair| pair[0] < pair[1]));
+    assert!(from_logits.omega.windows(2).all(|pair| pair[0] == pair[1]));
+    let refused = with(&[("[process]", "[start]\nr = [0.3, 0.5, 1.6, 0.9]\n[process]")]);
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, refused).unwrap();
+    let message = Scene::read(&path).unwrap_err().to_string();
+    assert!(message.contains("r[2] = 1.6 violates"), "{message}");
+}
+
+#[test]
+fn a_target_is_drawn_in_an_svg_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let svg = "<svg><path d=\"M 0 0 H 40 V 20 H 0 Z\"/></svg>";
+    std::fs::write(folder.path().join("outline.svg"), svg).unwrap();
+    let scene = read(
+        folder.path(),
+        &with(&[(
+            "[target.circle]\ncentre = [700.0, 550.0]\nradius = 750.0",
+            "[target.svg]\nfile = \"outline.svg\"\ncentre = [700.0, 550.0]\nheight = 900.0",
+        )]),
+    );
+    assert!((scene.target.length() - 2.0 * (1800.0 + 900.0)).abs() < 1e-9);
+    for [x, y] in scene.target.points() {
+        let (x, y) = ((x - 700.0).abs() / 900.0, (y - 550.0).abs() / 450.0);
+        assert!((x.max(y) - 1.0).abs() < 1e-9, "{x} {y}");
+    }
+}
+
+#[test]
+fn constants_are_condensed_from_weights() {
+    let folder = tempfile::tempdir().unwrap();
+    super::learned::weights(folder.path(), &[]);
+    let scene = read(
+        folder.path(),
+        &with(&[(
+            "[linear]\nk_a = 400.0\nk_s = 250.0\nk_theta = 300.0",
+            "[condensed]\nweights = \"tiny.safetensors\"\nsecant_deg = 20.0",
+        )]),
+    );
+    let problem = scene.problem().unwrap();
+    let (_, sheet) = problem.cut(&scene.start()).unwrap();
+    let Model::Equilibrium(mechanics) = &problem.model else {
+        panic!("the scene has mechanics");
+    };
+    let states = vec![HingeDeformation::from([0.3, -0.2, 0.4]); 12];
+    let energies = |law: &dyn HingeLaw| {
+        let prepared = law.prepare(&sheet.designs());
+        prepared.energies(&states, Order::Design)
+    };
+    let weights = Surrogate::load(Path::new(&folder.path().join("tiny.safetensors"))).unwrap();
+    let expected = CondensedLaw::new(weights, 20.0_f64.to_radians());
+    assert_eq!(energies(&*mechanics.law), energies(&expected));
+}
+
+#[test]
+fn equilibria_are_sought_by_either_method() {
+    let folder = tempfile::tempdir().unwrap();
+    let by = |solver: &str| {
+        let section = format!("[solver]\n{solver}\n[objective]");
+        path(&read(folder.path(), &with(&[("[objective]", &section)])))
+    };
+    let newton = by("method = \"newton\"");
+    let lbfgs = by("method = { lbfgs = { max_iterations = 20000 } }");
+    let total = |path: &[LoadStep]| path.iter().map(|step| step.iterations).sum::<usize>();
+    assert!(total(&lbfgs) > 5 * total(&newton));
+    for (x, y) in std::iter::zip(&newton[3].configuration, &lbfgs[3].configuration) {
+        assert!((x[2] - y[2]).abs() < 1e-6, "{x:?} {y:?}");
+    }
+}

@@ -1,0 +1,232 @@
+//! Sheets at the limits of their design space and of their motion.
+
+use crate::cases::{self, AT_CORNER, case};
+use crate::closed_forms::{clamp, opening_moments, path};
+use crate::extremes::{Rotational, assert_finite, snapping};
+use crate::random::Random;
+use crate::taylor::{GRID, SIDE, problem, start, tiny};
+use design::actuation::{Dof, Load};
+use design::charts::PatternCoordinates;
+use design::check::TaylorRemainders;
+use design::equilibrium::{EquilibriumSolver, HingedSheet, LoadStep, SolverSettings, Status};
+use design::gradient::{DesignError, Mechanics, Model};
+use design::grid::Grid;
+use design::hinge_law::{HingeLaw, LinearLaw};
+use design::listing::EquilibriumListing;
+use design::opening_limits::Span;
+use design::pattern::{CutPattern, Outline, PatternError};
+use design::sheet::{HingePoint, Sheet, SheetError};
+use std::f64::consts::{FRAC_PI_2, SQRT_2};
+
+fn pull(panel: usize, value: f64) -> Load {
+    Load {
+        panel,
+        dof: Dof::UX,
+        value,
+    }
+}
+
+#[test]
+fn ten_thousand_panels_find_their_equilibrium() {
+    let grid = Grid { m: 100, n: 100 };
+    let mut coordinates = PatternCoordinates::uniform(grid);
+    let mut random = Random::new(29);
+    coordinates
+        .z
+        .iter_mut()
+        .for_each(|z| *z = random.number(0.5));
+    let pattern = CutPattern::new(grid, Outline::rectangle(100.0, 100.0), &coordinates).unwrap();
+    let sheet = Sheet::new(&pattern, &vec![0.1; grid.hinge_count()], AT_CORNER).unwrap();
+    let law = LinearLaw::uniform([1e4, 1e4, 1.0], grid.hinge_count()).unwrap();
+    let path = path(&sheet, &law, &clamp(5000), &[pull(5099, 100.0)], 2);
+    assert_finite(&path);
+    assert!(path.iter().all(|step| step.status == Status::Converged));
+}
+
+/// Cuts that all but collide make a sheet or say why not; the sheet finds its equilibria or says so.
+#[test]
+fn r_and_tau_close_to_their_limits_make_a_sheet_or_are_named() {
+    let mut random = Random::new(31);
+    let (mut cut, mut refused) = (0, 0);
+    for size in [6.0, 12.0, 25.0, 45.0] {
+        for (m, n) in [(2, 2), (3, 3), (5, 4)] {
+            let grid = Grid { m, n };
+            let mut coordinates = PatternCoordinates::uniform(grid);
+            let edges = coordinates.ell.iter_mut().flatten();
+            let all = coordinates.z.iter_mut().chain(edges);
+            all.for_each(|x| *x = size * random.number(1.0).signum() + random.number(0.5));
+            let outline = Outline::rectangle(3.0, 2.0);
+            let pattern = match CutPattern::new(grid, outline, &coordinates) {
+                Ok(pattern) => pattern,
+                Err(PatternError::Collision { .. }) => {
+                    refused += 1;
+                    continue;
+                }
+                Err(other) => panic!("{other}"),
+            };
+            let widths = vec![0.01; grid.hinge_count()];
+            let sheet = match Sheet::new(&pattern, &widths, AT_CORNER) {
+                Ok(sheet) => sheet,
+                Err(SheetError::PanelArea { .. } | SheetError::CutAngle { .. }) => {
+                    refused += 1;
+                    continue;
+                }
+                Err(other) => panic!("{other}"),
+            };
+            let area: f64 = sheet.panels.iter().map(|panel| panel.area()).sum();
+            assert!((area / outline.area() - 1.0).abs() < 1e-12);
+            let law = LinearLaw::uniform([90.0, 40.0, 0.8], grid.hinge_count()).unwrap();
+            assert_finite(&path(&sheet, &law, &clamp(0), &[pull(m * n - 1, 0.5)], 3));
+            cut += 1;
+        }
+    }
+    assert!(cut > 3 && refused > 3, "{cut} {refused}");
+}
+
+/// The opening moments do work on the mechanism alone, through the dead centre at 90 degrees, where a
+/// uniform sheet is longest, and on to where it is short again; however soft and stiff the hinges are.
+#[test]
+fn loads_along_the_mechanism_lead_through_its_dead_centre() {
+    let sheet = cases::sheet(&case("p0_3x3_uniform"));
+    let span = Span::of_sheet(&sheet)[0];
+    for constants in [[90.0, 40.0, 0.8], [1e6, 1e6, 1e-3]] {
+        let (law, theta) = (LinearLaw::uniform(constants, 12).unwrap(), 2.6);
+        let loads = opening_moments(&sheet, 4, constants[2] * theta);
+        let path = path(&sheet, &law, &clamp(4), &loads, 13);
+        for step in &path {
+            assert_eq!(step.status, Status::Converged);
+            let opening = step.load_factor * theta;
+            let centre =
+                |k: usize| [0, 1].map(|c| sheet.panels[k].centroid[c] + step.configuration[k][c]);
+            let ([ax, ay], [bx, by]) = (centre(3), centre(5));
+            let stretch = f64::hypot(bx - ax, by - ay) / 2.0;
+            assert!((stretch - span.stretch(opening)).abs() < 1e-7, "{opening}");
+        }
+        assert!((span.theta_max - FRAC_PI_2).abs() < 1e-12);
+    }
+}
+
+/// Beyond lambda_max only the springs are left to give: the sheet stiffens and stays whole.
+#[test]
+fn a_sheet_pulled_past_its_greatest_stretch_stiffens() {
+    let sheet = cases::sheet(&case("p0_3x3_uniform"));
+    let law = LinearLaw::uniform([90.0, 40.0, 0.8], 12).unwrap();
+    let settings = SolverSettings::default();
+    let loads = [pull(5, 1.0)];
+    let solver = EquilibriumSolver::new(sheet.grid, &clamp(3), &loads, 12, settings).unwrap();
+    let stroke = 2.0 * (1.25 * SQRT_2 - 1.0);
+    let driven = solver.driven(stroke).unwrap().path(HingedSheet {
+        sheet: &sheet,
+        law: &*law.prepare(&sheet.designs()),
+        contact: None,
+    });
+    assert_finite(&driven);
+    let stiffness = |i: usize| driven[i].load_factor - driven[i - 1].load_factor;
+    assert!(driven.iter().all(|step| step.status == Status::Converged));
+    assert!(stiffness(11) > 4.0 * stiffness(1));
+    // The same under load.
+    let load = driven[11].load_factor;
+    let loaded = path(&sheet, &law, &clamp(3), &[pull(5, load)], 12);
+    assert_finite(&loaded);
+    assert!((loaded[11].configuration[5][0] / stroke - 1.0).abs() < 1e-7);
+}
+
+/// A learned energy loses its digits at small deformations, and its domain at large ones: neither is
+/// taken for an equilibrium that is not there.
+#[test]
+fn a_learned_sheet_answers_loads_of_any_size() {
+    let pattern = CutPattern::new(
+        Grid { m: 3, n: 3 },
+        Outline::rectangle(SIDE, SIDE),
+        &start().pattern,
+    );
+    let options = design::sheet::SheetOptions {
+        hinge_point: HingePoint::CutTip,
+        ..AT_CORNER
+    };
+    let sheet = Sheet::new(&pattern.unwrap(), &[16.0; 12], options).unwrap();
+    let law = tiny();
+    let deployed = |force: f64| path(&sheet, &law, &clamp(3), &[pull(5, force)], 2);
+    let compliance = |force: f64| {
+        let path = deployed(force);
+        let status: Vec<Status> = path.iter().map(|step| step.status).collect();
+        assert_eq!(status, [Status::Converged; 2], "{force:e}");
+        path[1].configuration[5][0] / force
+    };
+    let expected = compliance(1e-5);
+    for (force, error) in [(1e-6, 1e-3), (1e-7, 1e-3), (1e-9, 0.1)] {
+        let found = compliance(force);
+        assert!(
+            (found / expected - 1.0).abs() < error,
+            "{force:e}: {found} {expected}"
+        );
+    }
+    for force in [1e6, -1e6] {
+        let path: Vec<LoadStep> = deployed(force);
+        assert_finite(&path);
+        let last = &path[path.len() - 1];
+        assert_ne!(last.status, Status::Converged);
+        assert!(last.status == Status::Diverged || last.inside.contains(&false));
+    }
+}
+
+/// Weights so great that the flat sheet has no energy: the path ends before it begins.
+#[test]
+fn a_sheet_without_a_finite_energy_has_no_path() {
+    let law = Rotational(|theta| [f64::INFINITY, theta, 1.0]);
+    let sheet = cases::sheet(&case("p1_3x3_random"));
+    let path = path(&sheet, &law, &clamp(3), &[pull(5, 1.0)], 3);
+    assert_eq!((path.len(), path[0].status), (1, Status::Diverged));
+    assert_finite(&path);
+}
+
+#[test]
+fn a_sheet_on_pins_has_no_equilibria_to_list() {
+    let pins = problem(Model::Ideal { opening: 0.5 }, HingePoint::Corner);
+    let error = EquilibriumListing::new(&pins, &start()).unwrap_err();
+    assert!(matches!(error, DesignError::NoMechanics));
+}
+
+/// Past the limit point of its load a driven sheet has an indefinite tangent; its gradient is exact.
+#[test]
+fn the_gradient_is_exact_where_the_tangent_is_indefinite() {
+    let design = start();
+    let driven = |steps: usize, stroke: f64| {
+        let mut problem = problem(Model::Ideal { opening: 0.0 }, HingePoint::Corner);
+        let (_, sheet) = problem.cut(&design).unwrap();
+        let (supports, loads) = (clamp(4), opening_moments(&sheet, 4, 1500.0));
+        let settings = SolverSettings::default();
+        let solver = EquilibriumSolver::new(GRID, &supports, &loads, steps, settings).unwrap();
+        problem.model = Model::Equilibrium(Mechanics {
+            law: Box::new(Rotational(|theta| {
+                snapping(theta).map(|part| 1500.0 * part)
+            })),
+            contact: None,
+            solver: solver.driven(stroke).unwrap(),
+        });
+        problem
+    };
+    let path = driven(60, 0.15).deploy(&design).unwrap().path;
+    let softens = |step: &&LoadStep| step.negative_pivots == 1;
+    let past = path
+        .iter()
+        .take_while(|step| step.status == Status::Converged);
+    let steps = 1 + past
+        .enumerate()
+        .filter(|(_, step)| softens(step))
+        .last()
+        .unwrap()
+        .0;
+    let problem = driven(steps, 0.15 * steps as f64 / 60.0);
+    let evaluation = problem.evaluate(&design).unwrap();
+    assert_eq!(evaluation.deployment.final_step().negative_pivots, 1);
+    let (x, gradient) = (design.to_flat(), evaluation.gradient.to_flat());
+    let direction = Random::new(37).numbers(x.len(), 1.0);
+    let loss = |x: &[f64]| problem.loss(&design.with_flat(x));
+    let remainders = TaylorRemainders::of(loss, &x, &gradient, &direction, 1e-3, 4).unwrap();
+    let orders = remainders.orders();
+    assert!(
+        orders.iter().all(|order| (1.95..2.05).contains(order)),
+        "{orders:?}"
+    );
+}

@@ -1,0 +1,241 @@
+//! What a sheet does not depend on: units, the way the scene is turned, left or right; and energy, which
+//! the loads put in and the hinges keep.
+
+use crate::cases::{AT_CORNER, case, coordinates, difference, outline, pattern};
+use crate::closed_forms::{clamp, path};
+use crate::random::Random;
+use crate::taylor::tiny;
+use design::actuation::{Dof, Load, Support};
+use design::charts::PatternCoordinates;
+use design::equilibrium::{LoadStep, Status};
+use design::grid::{Endpoint, Grid};
+use design::hinge_law::{HingeLaw, LinearLaw};
+use design::pattern::{CutPattern, Outline};
+use design::sheet::{Hinge, HingePoint, Sheet, SheetOptions};
+use std::f64::consts::PI;
+
+const CONSTANTS: [f64; 3] = [90.0, 40.0, 0.8];
+
+/// The random 3 x 3 sheet with another outline, hinges `w_lig` wide.
+fn on(outline: Outline, w_lig: f64, hinge_point: HingePoint) -> Sheet {
+    let case = case("p1_3x3_random");
+    let grid = Grid { m: 3, n: 3 };
+    let pattern = CutPattern::new(grid, outline, &coordinates(&case)).unwrap();
+    let options = SheetOptions {
+        hinge_point,
+        ..AT_CORNER
+    };
+    Sheet::new(&pattern, &[w_lig; 12], options).unwrap()
+}
+
+fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
+    let (sin, cos) = angle.sin_cos();
+    [cos * x - sin * y, sin * x + cos * y]
+}
+
+/// A force and a couple, clamped on the other side.
+fn pulled(
+    sheet: &Sheet,
+    law: &dyn HingeLaw,
+    force: [f64; 2],
+    couple: f64,
+    steps: usize,
+) -> Vec<LoadStep> {
+    let load = |panel, dof, value| Load { panel, dof, value };
+    let loads = [
+        load(5, Dof::UX, force[0]),
+        load(5, Dof::UY, force[1]),
+        load(7, Dof::Phi, couple),
+    ];
+    path(sheet, law, &clamp(3), &loads, steps)
+}
+
+#[test]
+fn another_unit_of_length_or_force_gives_the_same_shape() {
+    let original = outline(&case("p1_3x3_random"));
+    let [k_a, k_s, k_theta] = CONSTANTS;
+    let deployed = |length: f64, force: f64| {
+        let outline = Outline {
+            corners: original.corners.map(|corner| corner.map(|x| length * x)),
+        };
+        let sheet = on(outline, 0.1 * length, HingePoint::CutTip);
+        let constants = [k_a / length, k_s / length, k_theta * length].map(|k| force * k);
+        let law = LinearLaw::uniform(constants, 12).unwrap();
+        let path = pulled(
+            &sheet,
+            &law,
+            [1.2 * force, 0.3 * force],
+            0.2 * force * length,
+            5,
+        );
+        assert!(path.iter().all(|step| step.status == Status::Converged));
+        let last = path[4].configuration.iter();
+        let scaled: Vec<[f64; 3]> = last
+            .map(|[x, y, phi]| [x / length, y / length, *phi])
+            .collect();
+        (scaled, path[4].potential / (force * length))
+    };
+    let (expected, potential) = deployed(1.0, 1.0);
+    // From metres to millimetres and back, from newtons to kilonewtons and to micronewtons.
+    for (length, force) in [(1e3, 1.0), (1e-3, 1.0), (1.0, 1e-3), (1e3, 1e6)] {
+        let (found, energy) = deployed(length, force);
+        assert!(difference(&found, &expected) < 1e-8, "{length} {force}");
+        assert!((energy / potential - 1.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn a_scene_that_is_turned_as_a_whole_deploys_alike() {
+    let square = Outline::rectangle(300.0, 300.0);
+    let laws: [(&dyn HingeLaw, HingePoint, f64); 2] = [
+        (
+            &LinearLaw::uniform([20.0, 12.0, 1500.0], 12).unwrap(),
+            HingePoint::Corner,
+            12.0,
+        ),
+        (&tiny(), HingePoint::CutTip, 1.0),
+    ];
+    for (law, hinge_point, force) in laws {
+        let deployed = |angle: f64| {
+            let outline = Outline {
+                corners: square.corners.map(|corner| turned(corner, angle)),
+            };
+            let sheet = on(outline, 16.0, hinge_point);
+            pulled(&sheet, law, turned([force, 0.0], angle), 20.0 * force, 4)
+        };
+        let expected = deployed(0.0);
+        for angle in [0.4, 0.5 * PI, -2.9] {
+            for (found, expected) in std::iter::zip(deployed(angle), &expected) {
+                let back = |[x, y, phi]: &[f64; 3]| {
+                    let [x, y] = turned([*x, *y], -angle);
+                    [x, y, *phi]
+                };
+                let found_back: Vec<[f64; 3]> = found.configuration.iter().map(back).collect();
+                assert!(difference(&found_back, &expected.configuration) < 1e-6);
+                assert!((found.potential / expected.potential - 1.0).abs() < 1e-9);
+            }
+        }
+    }
+}
+
+/// (x, y) -> (-x, y) swaps the sides of every cut: r becomes 1 - r, the edges left and right change
+/// places, a hinge keeps theta and a, turns s round and has alpha from the other side.
+#[test]
+fn a_mirrored_sheet_deploys_as_the_mirror_image() {
+    let grid = Grid { m: 4, n: 3 };
+    let mut random = Random::new(23);
+    let drawn = PatternCoordinates {
+        z: random.numbers(grid.aspect_ratio_count(), 0.8),
+        ell: [4, 3, 4, 3].map(|count| random.numbers(count, 0.4)),
+    };
+    let reversed = |values: &[f64]| values.iter().rev().copied().collect::<Vec<f64>>();
+    let [bottom, right, top, left] = &drawn.ell;
+    let mirrored = PatternCoordinates {
+        z: (drawn.z.chunks(grid.m - 1))
+            .flat_map(|row| row.iter().rev().map(|z| -z))
+            .collect(),
+        ell: [reversed(bottom), left.clone(), reversed(top), right.clone()],
+    };
+    let stiffness: Vec<[f64; 3]> = (0..grid.hinge_count())
+        .map(|_| CONSTANTS.map(|k| k * (1.0 + random.number(0.3))))
+        .collect();
+    let sheet = |coordinates: &PatternCoordinates| {
+        let pattern = CutPattern::new(grid, Outline::rectangle(4.0, 3.0), coordinates).unwrap();
+        Sheet::new(&pattern, &vec![0.1; grid.hinge_count()], AT_CORNER).unwrap()
+    };
+    let (one, other) = (sheet(&drawn), sheet(&mirrored));
+    // Of the hinges of `other`, those of `one` that they are images of.
+    let image = |hinge: &Hinge| {
+        let [i, j] = hinge.site.vertex;
+        let endpoint = match ((i + j) % 2 == 0, hinge.site.endpoint) {
+            (true, endpoint) => endpoint,
+            (false, Endpoint::X) => Endpoint::XPrime,
+            (false, Endpoint::XPrime) => Endpoint::X,
+        };
+        let same = |h: &Hinge| h.site.vertex == [grid.m - i, j] && h.site.endpoint == endpoint;
+        one.hinges.iter().position(same).unwrap()
+    };
+    let images: Vec<usize> = other.hinges.iter().map(image).collect();
+    for (hinge, &image) in std::iter::zip(&other.hinges, &images) {
+        assert!((hinge.alpha + one.hinges[image].alpha - PI).abs() < 1e-12);
+    }
+    let mirrored_stiffness = images.iter().map(|&image| stiffness[image]).collect();
+    let deployed = |sheet: &Sheet, stiffness: Vec<[f64; 3]>, [held, loaded]: [usize; 2], side| {
+        let load = |dof, value| Load {
+            panel: loaded,
+            dof,
+            value,
+        };
+        let loads = [
+            load(Dof::UX, side * 1.2),
+            load(Dof::UY, 0.4),
+            load(Dof::Phi, side * 0.1),
+        ];
+        let law = LinearLaw::new(stiffness).unwrap();
+        path(sheet, &law, &clamp(held), &loads, 4)
+    };
+    let [held, loaded] = [grid.m, 2 * grid.m - 1];
+    let expected = deployed(&one, stiffness, [held, loaded], 1.0);
+    let found = deployed(&other, mirrored_stiffness, [loaded, held], -1.0);
+    for (found, expected) in std::iter::zip(found, expected) {
+        assert_eq!(found.status, Status::Converged);
+        for (k, [x, y, phi]) in found.configuration.iter().enumerate() {
+            let (p, q) = (k % grid.m, k / grid.m);
+            let image = expected.configuration[q * grid.m + grid.m - 1 - p];
+            assert!(difference(&[[-x, *y, -phi]], &[image]) < 1e-9);
+        }
+        for (eps, &image) in std::iter::zip(&found.deformations, &images) {
+            let other = expected.deformations[image];
+            assert!(difference(&[[eps.a, -eps.s, eps.theta]], &[other.to_array()]) < 1e-9);
+        }
+    }
+}
+
+/// By parts, the work of the loads along the path is zeta f . q at its end less the integral of
+/// f . q over zeta, here by Simpson's rule.
+#[test]
+fn hinges_store_the_work_of_the_loads() {
+    let sheet = on(Outline::rectangle(300.0, 300.0), 16.0, HingePoint::CutTip);
+    let linear = LinearLaw::uniform([20.0, 12.0, 1500.0], 12).unwrap();
+    let laws: [(&dyn HingeLaw, f64); 2] = [(&linear, 12.0), (&tiny(), 0.5)];
+    for (law, force) in laws {
+        let lost = |steps: usize| {
+            let path = pulled(&sheet, law, [force, 0.0], 20.0 * force, steps);
+            let work = |step: &LoadStep| {
+                assert_eq!(step.status, Status::Converged);
+                force * (step.configuration[5][0] + 20.0 * step.configuration[7][2])
+            };
+            let works: Vec<f64> = std::iter::once(0.0).chain(path.iter().map(work)).collect();
+            let weights = |i: usize| match i {
+                _ if i == 0 || i == steps => 1.0,
+                _ if i % 2 == 1 => 4.0,
+                _ => 2.0,
+            };
+            let sum: f64 = (works.iter().enumerate())
+                .map(|(i, work)| weights(i) * work)
+                .sum();
+            let done = works[steps] - sum / (3.0 * steps as f64);
+            let stored: f64 = path[steps - 1].energies.iter().sum();
+            (done / stored - 1.0).abs()
+        };
+        let [coarse, fine] = [lost(20), lost(40)];
+        assert!(fine < 1e-5 && coarse > 6.0 * fine, "{coarse:e} {fine:e}");
+    }
+}
+
+/// A moving support that brings the sheet where a load has brought it holds it by that load.
+#[test]
+fn a_moved_panel_is_held_by_the_load_that_moved_it() {
+    let sheet = Sheet::new(&pattern(&case("p1_3x3_random")), &[0.1; 12], AT_CORNER).unwrap();
+    let law = LinearLaw::uniform(CONSTANTS, 12).unwrap();
+    let loaded = pulled(&sheet, &law, [1.5, 0.0], 0.0, 6);
+    let way = loaded[5].configuration[5][0];
+    let moved = Support {
+        panel: 5,
+        dof: Dof::UX,
+        value: way,
+    };
+    let supports = [clamp(3).as_slice(), &[moved]].concat();
+    let held = path(&sheet, &law, &supports, &[], 6);
+    assert!(difference(&held[5].configuration, &loaded[5].configuration) < 1e-8);
+}
