@@ -63,6 +63,15 @@ impl History {
     }
 }
 
+impl Drop for History {
+    /// Gives the shard free at once: a solver that is just being started shares the open file, and
+    /// with it the lock, until it has become another program.
+    fn drop(&mut self) {
+        // An error means that it is not locked any more.
+        let _ = self.file.unlock();
+    }
+}
+
 /// Seconds since 1970.
 pub(crate) fn now() -> u64 {
     SystemTime::now()
