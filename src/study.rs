@@ -2,6 +2,7 @@
 
 mod gradient;
 mod path;
+mod sheet;
 mod solutions;
 mod surrogate;
 mod window;
@@ -12,6 +13,7 @@ use clap::Subcommand;
 /// Measure what the choices of a stage cost and are worth
 #[derive(Subcommand)]
 pub enum StudyCommand {
+    Sheet(sheet::SheetStudy),
     Window(window::WindowStudy),
     Path(path::PathStudy),
     Gradient(gradient::GradientStudy),
@@ -22,6 +24,7 @@ pub enum StudyCommand {
 impl StudyCommand {
     pub fn run(&self) -> Result<()> {
         match self {
+            Self::Sheet(study) => study.run(),
             Self::Window(study) => study.run(),
             Self::Path(study) => study.run(),
             Self::Gradient(study) => study.run(),

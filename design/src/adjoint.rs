@@ -52,6 +52,10 @@ pub(crate) fn adjoint(
         residual: 0.0,
     };
     for (i, (step, mut by_q)) in std::iter::zip(path, by_configurations).enumerate() {
+        let is_read = by_path.iter().any(|hinge| hinge[i] != [0.0; 5]);
+        if !is_read && i + 1 < path.len() {
+            continue;
+        }
         let hinges = || sheet.sheet.hinges.iter().enumerate();
         let motions: Vec<HingeMotion> = hinges()
             .map(|(h, _)| HingeMotion::new(sheet.sheet, h, &step.configuration))

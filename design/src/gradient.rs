@@ -144,30 +144,41 @@ impl DesignProblem {
 
     /// Lines 2-5 of Algorithm 1. A path that diverges ends early; see [`LoadStep::status`].
     pub fn deploy(&self, design: &DesignVector) -> Result<Deployment, DesignError> {
+        Ok(self.deploy_prepared(design)?.0)
+    }
+
+    /// The deployment, and the hinge law prepared for its sheet.
+    fn deploy_prepared(
+        &self,
+        design: &DesignVector,
+    ) -> Result<(Deployment, Option<Box<dyn PreparedLaw + '_>>), DesignError> {
         let (pattern, sheet) = self.cut(design)?;
-        let path = match &self.model {
+        let (path, law) = match &self.model {
             Model::Ideal { opening } => {
                 let theta = design.opening.unwrap_or(*opening);
                 if !theta.is_finite() {
                     return Err(DesignError::Opening(theta));
                 }
-                vec![LoadStep::ideal(&sheet, ideal_deployment(&sheet, theta))]
+                let ideal = LoadStep::ideal(&sheet, ideal_deployment(&sheet, theta));
+                (vec![ideal], None)
             }
             Model::Equilibrium(mechanics) => {
                 let law = mechanics.law.prepare(&sheet.designs());
-                mechanics.solver.path(mechanics.hinged(&sheet, &*law))
+                let path = mechanics.solver.path(mechanics.hinged(&sheet, &*law));
+                (path, Some(law))
             }
         };
-        Ok(Deployment {
+        let deployment = Deployment {
             pattern,
             sheet,
             path,
-        })
+        };
+        Ok((deployment, law))
     }
 
     /// L(theta) and its gradient.
     pub fn evaluate(&self, design: &DesignVector) -> Result<Evaluation, DesignError> {
-        let deployment = self.deploy(design)?;
+        let (deployment, law) = self.deploy_prepared(design)?;
         let outline = self.objective.outline.of(&deployment.sheet);
         let judgement = self.judge(&deployment, &outline)?;
         let (sheet, last) = (&deployment.sheet, deployment.final_step());
@@ -182,7 +193,7 @@ impl DesignProblem {
                 by_opening = design.opening.map(|_| slope);
             }
             Model::Equilibrium(mechanics) => {
-                let law = mechanics.law.prepare(&sheet.designs());
+                let law = law.ok_or(DesignError::NoMechanics)?;
                 let sums = adjoint(
                     &mechanics.solver,
                     mechanics.hinged(sheet, &*law),

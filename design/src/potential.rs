@@ -33,6 +33,9 @@ pub(crate) struct Potential<'a> {
     pub force: f64,
 }
 
+/// Hinges of a panel at most, whose roundings add up.
+const HINGES_OF_A_PANEL: f64 = 4.0;
+
 /// What is given of the loads.
 #[derive(Clone, Copy)]
 pub(crate) enum Control<'a> {
@@ -62,7 +65,7 @@ pub(crate) struct State {
     pub gradient: Vec<f64>,
     /// Greatest unbalanced force over `force`.
     pub residual: f64,
-    /// Greatest force that rounding of a hinge's deformation leaves unbalanced, over `force`.
+    /// Greatest force that the rounding of hinge deformations leaves unbalanced, over `force`.
     pub rounding: f64,
     /// The greatest force (N).
     pub force: f64,
@@ -152,16 +155,17 @@ impl Potential<'_> {
         finite.then_some(state)
     }
 
-    /// The greatest force that the rounding of kinematics and law puts into a hinge (N).
+    /// The greatest force that the rounding of kinematics and law leaves on a panel (N).
     fn rounding(&self, motions: &[HingeMotion], energies: &[HingeEnergy]) -> f64 {
         let resolution = self.sheet.law.resolution();
         let hinges = self.sheet.sheet.hinges.iter().zip(motions).zip(energies);
-        self.greatest(hinges.map(|((hinge, motion), energy)| {
-            let [length, angle] = motion.rounding();
-            let length = length + resolution * hinge.w_lig;
-            let deformation = [length, length, angle + resolution];
-            std::array::from_fn(|c| energy.tangent[c][c].abs() * deformation[c])
-        }))
+        HINGES_OF_A_PANEL
+            * self.greatest(hinges.map(|((hinge, motion), energy)| {
+                let [length, angle] = motion.rounding();
+                let length = length + resolution * hinge.w_lig;
+                let deformation = [length, length, angle + resolution];
+                std::array::from_fn(|c| energy.tangent[c][c].abs() * deformation[c])
+            }))
     }
 
     /// The zeta that leaves the least unbalanced.

@@ -1,0 +1,192 @@
+//! What `pattern`, `deploy`, `equilibrium` and `gradient` print with `--json`, against the reference
+//! cases. The cases have panels of 1 x 1; here they are 100 mm wide, with the constants of (11) that
+//! make the same shape of them.
+
+mod common;
+
+use common::Workplace;
+use serde_json::Value;
+use std::path::Path;
+
+/// Size of a panel (mm).
+const SIZE: f64 = 100.0;
+
+fn case(name: &str) -> Value {
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("design/tests/cases");
+    let text = std::fs::read_to_string(cases.join(format!("{name}.json"))).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
+/// What a command prints of a scene with the given sections.
+fn printed(work: &Workplace, command: &str, sections: &str, options: &str) -> Value {
+    let scene = format!(
+        "title = \"Case\"\nmaterial = \"configs/materials/pet-0.5mm.toml\"\noutput = \"run\"\n{sections}\n\
+         [process]\nfillet_ratio = 0.16\nkerf = 0.2\nr_win = 100.0\n\
+         [ligament]\nstart = 15.0\nrange = [5.0, 25.0]\n\
+         [optimiser]\nsteps = 1\nlearning_rate = 0.1\n"
+    );
+    std::fs::write(work.path("case.toml"), scene).unwrap();
+    let text = work.output(&format!("{command} case.toml --json {options}"));
+    serde_json::from_str(&text).unwrap()
+}
+
+/// Every number of `found` is `scale` times that of `expected`, to `error` of `scale`.
+fn assert_close(found: &Value, expected: &Value, scale: f64, error: f64, place: &str) {
+    match (found, expected) {
+        (Value::Array(found), Value::Array(expected)) => {
+            assert_eq!(found.len(), expected.len(), "{place}");
+            for (i, (found, expected)) in std::iter::zip(found, expected).enumerate() {
+                assert_close(found, expected, scale, error, &format!("{place}[{i}]"));
+            }
+        }
+        (Value::Number(found), Value::Number(expected)) => {
+            let (found, expected) = (found.as_f64().unwrap(), expected.as_f64().unwrap());
+            assert!(
+                (found - scale * expected).abs() <= error * scale,
+                "{place}: {found} {expected}"
+            );
+        }
+        _ => assert_eq!(found, expected, "{place}"),
+    }
+}
+
+/// (u_x, u_y, phi) of panels: lengths are scaled, angles are not.
+fn assert_motions(found: &Value, expected: &Value, error: f64) {
+    let all = |value: &Value| value.as_array().unwrap().clone();
+    assert_eq!(all(found).len(), all(expected).len());
+    for (found, expected) in std::iter::zip(all(found), all(expected)) {
+        for (d, scale) in [SIZE, SIZE, 1.0].into_iter().enumerate() {
+            assert_close(&found[d], &expected[d], scale, error, "q");
+        }
+    }
+}
+
+fn sheet(case: &Value, start: &Value) -> String {
+    let corners = case["outline_corners"].as_array().unwrap().iter();
+    let corners: Vec<[f64; 2]> = corners
+        .map(|corner| [0, 1].map(|axis| SIZE * corner[axis].as_f64().unwrap()))
+        .collect();
+    let (m, n, z, ell) = (&case["M"], &case["N"], &start["z"], &start["ell"]);
+    format!("[sheet]\ncorners = {corners:?}\npanels = [{m}, {n}]\n[start]\nz = {z}\nell = {ell}")
+}
+
+#[test]
+fn patterns_and_deployments() {
+    let work = Workplace::new();
+    for name in ["p0_3x3_uniform", "p1_3x3_random", "p2_4x7_random"] {
+        let case = case(name);
+        let sections = format!(
+            "hinge = \"pin\"\n{}\n[pin]\nopening_deg = 30.0\n\
+             [target.circle]\ncentre = [150.0, 150.0]\nradius = 200.0\n\
+             [objective]\ncoverage = 0.5\ntarget_points = 100\n",
+            sheet(&case, &case)
+        );
+        let pattern = printed(&work, "pattern", &sections, "");
+        assert!(
+            work.error("equilibrium case.toml")
+                .contains("hinge = \"pin\"")
+        );
+        let (length, area) = (SIZE, SIZE * SIZE);
+        for (key, scale) in [
+            ("M", 1.0),
+            ("N", 1.0),
+            ("r", 1.0),
+            ("tau", 1.0),
+            ("points_x", length),
+            ("points_xp", length),
+            ("panel_corners", length),
+            ("panel_centroid", length),
+            ("panel_area", area),
+            ("void_sides", length),
+        ] {
+            assert_close(&pattern[key], &case[key], scale, 1e-12, key);
+        }
+        let hinges = |value: &Value| value["hinges"].as_array().unwrap().clone();
+        for (found, expected) in std::iter::zip(hinges(&pattern), hinges(&case)) {
+            for (key, scale) in [
+                ("k", 1.0),
+                ("l", 1.0),
+                ("corner_k", 1.0),
+                ("corner_l", 1.0),
+                ("vertex", 1.0),
+                ("endpoint", 1.0),
+                ("position", length),
+                ("e_sec", 1.0),
+                ("m_hat", 1.0),
+                ("alpha", 1.0),
+            ] {
+                assert_close(&found[key], &expected[key], scale, 1e-12, key);
+            }
+        }
+        for expected in case["deployments"].as_array().unwrap() {
+            let opening = format!("--opening-deg {}", expected["theta_deg"]);
+            let found = printed(&work, "deploy", &sections, &opening);
+            assert_motions(&found["q"], &expected["q"], 1e-12);
+            for (key, scale) in [
+                ("theta_deg", 1.0),
+                ("outline_vertices", length),
+                ("outline_panel_corner", 1.0),
+                ("outline_free_panel_corner", 1.0),
+            ] {
+                assert_close(&found[key], &expected[key], scale, 1e-12, key);
+            }
+        }
+    }
+}
+
+#[test]
+fn equilibria_objective_and_gradient() {
+    let work = Workplace::new();
+    let case = case("g0_3x3_linear_path");
+    let theta = &case["theta"];
+    let widths = case["w_lig"].as_array().unwrap().iter();
+    let widths: Vec<f64> = widths.map(|w| SIZE * w.as_f64().unwrap()).collect();
+    // W of a panel of 100 mm is 100 times that of one of 1 mm: forces stay.
+    let sections = format!(
+        "hinge = \"linear\"\nload_steps = 5\n{}\nw_lig = {widths:?}\n\
+         [linear]\nk_a = 1.0\nk_s = 0.6\nk_theta = 100.0\n\
+         [contact]\nstiffness = 1.0\nphi_min_deg = -179.0\nphi_cut_deg = -178.0\n\
+         [[supports]]\npanel = [0, 1]\nkind = \"clamp\"\n\
+         [[loads]]\npanel = [2, 1]\nforce = [1.2, 0.0]\n\
+         [[loads]]\npanel = [2, 2]\ncouple = 20.0\n\
+         [target.circle]\ncentre = [170.0, 150.0]\nradius = 220.0\n\
+         [objective]\ncoverage = 0.5\ncompression = 0.3\nshear = 0.2\noutline = \"all\"\n\
+         target_points = 160\n",
+        sheet(&case, theta)
+    );
+    let equilibrium = printed(&work, "equilibrium", &sections, "");
+    let steps = equilibrium["steps"].as_array().unwrap();
+    let path = case["q_path"].as_array().unwrap();
+    assert_eq!(steps.len(), path.len());
+    for (step, expected) in std::iter::zip(steps, path) {
+        assert_eq!(step["status"], "converged");
+        assert_motions(&step["q"], expected, 1e-8);
+    }
+    assert!(work.error("deploy case.toml").contains("--opening-deg"));
+    let gradient = printed(&work, "gradient", &sections, "");
+    work.edit("case.toml", &[("force = [1.2, 0.0]", "force = [1.2, nan]")]);
+    assert!(work.error("gradient case.toml").contains("loads[0].force"));
+    let area = SIZE * SIZE;
+    let (terms, expected) = (&gradient["terms"], &case["terms"]);
+    assert_close(&gradient["loss"], &case["loss"], area, 1e-8, "loss");
+    assert_close(
+        &terms["chamfer"],
+        &expected["chamfer"],
+        area,
+        1e-8,
+        "chamfer",
+    );
+    assert_close(
+        &terms["compression"],
+        &expected["comp"],
+        1.0,
+        1e-8,
+        "compression",
+    );
+    assert_close(&terms["shear"], &expected["shear"], 1.0, 1e-8, "shear");
+    let (found, expected) = (&gradient["grad"], &case["grad"]);
+    for key in ["z", "ell"] {
+        assert_close(&found["pattern"][key], &expected[key], area, 1e-8, key);
+    }
+    assert_close(&found["omega"], &expected["omega"], area, 1e-8, "omega");
+}
