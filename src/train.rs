@@ -51,7 +51,7 @@ pub struct TrainCommand {
     /// Go on with a training that was stopped
     #[arg(long, conflicts_with = "seeds")]
     resume: bool,
-    /// Trainings with as many seeds; the one of the least validation loss is taken, and the spread
+    /// Trainings with as many seeds; the one of the least validation error is taken, and the spread
     /// tells how far its forces can be trusted
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=64))]
     seeds: u64,
@@ -106,7 +106,7 @@ impl TrainCommand {
         }
         let best = members
             .into_iter()
-            .min_by(|left, right| least_loss(left).total_cmp(&least_loss(right)))
+            .min_by(|left, right| least_error(left).total_cmp(&least_error(right)))
             .context("`--seeds` must be at least 1")?;
         self.write(&best, &database)?;
         std::fs::remove_file(&state).ok();
@@ -235,12 +235,20 @@ impl TrainCommand {
     }
 
     fn write_curve(&self, history: &[Epoch]) -> Result<()> {
-        let mut csv = String::from("epoch,training_loss,validation_loss,learning_rate,elapsed_s\n");
+        let mut csv = String::from(
+            "epoch,training_loss,validation_loss,validation_error,validation_damage_error,learning_rate,elapsed_s\n",
+        );
         for e in history {
             writeln!(
                 csv,
-                "{},{:e},{:e},{:e},{:.3}",
-                e.epoch, e.training_loss, e.validation_loss, e.learning_rate, e.elapsed_s
+                "{},{:e},{:e},{:e},{:e},{:e},{:.3}",
+                e.epoch,
+                e.training_loss,
+                e.validation_loss,
+                e.validation_errors[0],
+                e.validation_errors[1],
+                e.learning_rate,
+                e.elapsed_s
             )?;
         }
         let stem = self.beside("learning-curve");
@@ -282,10 +290,16 @@ fn parity_chart(parity: &Parity) -> Result<String> {
     charts::parity(&charts)
 }
 
-/// The least validation loss of a training.
-fn least_loss(trained: &Trained) -> f64 {
-    let losses = trained.history.iter().map(|epoch| epoch.validation_loss);
-    losses.fold(f64::INFINITY, f64::min)
+/// The product of the validation errors of the networks that were kept.
+fn least_error(trained: &Trained) -> f64 {
+    let least = |network: usize| {
+        let errors = trained
+            .history
+            .iter()
+            .map(|it| it.validation_errors[network]);
+        errors.fold(f64::INFINITY, f64::min)
+    };
+    least(0) * least(1)
 }
 
 /// The errors of each quantity.

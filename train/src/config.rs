@@ -12,7 +12,8 @@ pub struct TrainingConfig {
     pub embedding: Vec<usize>,
     /// Units of each hidden layer of the damage head chi_D.
     pub damage: Vec<usize>,
-    /// Whether mirror images of the rows are added, to each part of the split by itself.
+    /// Whether the networks keep the mirror symmetry of hinges by construction: a row then speaks
+    /// for its mirror image too.
     pub mirror: bool,
     /// Passes over the training rows.
     pub epochs: usize,
@@ -21,7 +22,7 @@ pub struct TrainingConfig {
     pub patience: Option<usize>,
     /// Rows in one optimiser step.
     pub batch_size: usize,
-    /// Adam's learning rate at the first step.
+    /// The learning rate at the first step.
     pub learning_rate: f64,
     /// The learning rate that the cosine schedule ends at.
     pub learning_rate_end: f64,
@@ -46,6 +47,8 @@ impl TrainingConfig {
     /// Refuses impossible values, naming the key and the rule.
     pub fn validate(&self) -> Result<(), InvalidConfig> {
         let sizes = |widths: &[usize]| widths.iter().all(|width| (1..=4096).contains(width));
+        let mut units = self.embedding.iter().chain(&self.damage);
+        let pairs = units.all(|units| units % 2 == 0) && !self.damage.is_empty();
         let rates = 0.0 < self.learning_rate && self.learning_rate <= 1.0;
         let rate_end =
             0.0 <= self.learning_rate_end && self.learning_rate_end <= self.learning_rate;
@@ -61,6 +64,13 @@ impl TrainingConfig {
                 format!("{:?}", self.damage),
                 "each layer of 1 to 4096 units",
                 sizes(&self.damage),
+            ),
+            (
+                "mirror",
+                self.mirror.to_string(),
+                "an even number of units in each layer and a damage head with a hidden layer, for \
+                 units that are mirror images of each other",
+                !self.mirror || pairs,
             ),
             (
                 "epochs",
@@ -140,9 +150,11 @@ mod tests {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/training");
         let demo: TrainingConfig = hinge::config::read(&folder.join("demo.toml")).unwrap();
         type Change = fn(&mut TrainingConfig);
-        let changes: [(Change, &str); 10] = [
+        let changes: [(Change, &str); 12] = [
             (|c| c.embedding.clear(), "embedding"),
             (|c| c.damage[0] = 0, "damage"),
+            (|c| c.embedding[1] = 7, "mirror"),
+            (|c| c.damage.clear(), "mirror"),
             (|c| c.epochs = 0, "epochs"),
             (|c| c.patience = Some(0), "patience"),
             (|c| c.batch_size = 0, "batch_size"),

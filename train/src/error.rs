@@ -47,6 +47,11 @@ pub enum TrainError {
         expected: [Vec<usize>; 2],
         found: [Vec<usize>; 2],
     },
+    #[error(
+        "the weights to begin from do not keep the mirror symmetry; set `mirror = false` in the \
+         configuration, or begin afresh"
+    )]
+    NotSymmetric,
     #[error(transparent)]
     State(#[from] StateError),
 }

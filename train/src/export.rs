@@ -1,17 +1,17 @@
 //! From Burn's networks to the layers of a weight file.
 
 use crate::error::TrainError;
-use crate::networks::{Dense, Mlp};
+use crate::networks::{Affine, Mlp};
 use surrogate::{Layer, Tensor};
 
 /// The layers in float64, weights as (outputs, inputs).
 pub(crate) fn layers(network: &Mlp) -> Result<Vec<Layer>, TrainError> {
-    network.layers.iter().map(layer).collect()
+    network.affine().into_iter().map(layer).collect()
 }
 
-fn layer(dense: &Dense) -> Result<Layer, TrainError> {
-    let weight = dense.weight.val().inner().transpose();
-    let bias = dense.bias.val().inner();
+fn layer(affine: Affine) -> Result<Layer, TrainError> {
+    let weight = affine.weight.inner().transpose();
+    let bias = affine.bias.inner();
     Ok(Layer {
         weight: Tensor {
             shape: weight.dims().to_vec(),
@@ -107,9 +107,9 @@ mod tests {
     /// |burn - kernel| / |kernel| over all rows, for W, F_a, F_s, M_theta, D and D_peak.
     fn disagreement(backend: Backend, dtype: DType) -> [f64; 6] {
         let options = TensorCreationOptions::new(backend.device()).with_dtype(dtype);
-        let networks = Networks::new(&[64, 64, 32], &[64, 64], 2, 1, &options);
+        let networks = Networks::new(&[64, 64, 32], &[64, 64], 2, true, 1, &options);
         let rows: Vec<Row> = (0..200).map(row).collect();
-        let scales = Scales::of(&rows).unwrap();
+        let scales = Scales::of(&rows, false).unwrap();
         let samples: Vec<_> = rows.iter().map(|row| scales.sample(row)).collect();
         let predicted = predict(&networks, &Batch::new(&samples, &options));
         let column = |tensor: &burn::tensor::Tensor<2>, k: usize, scale: f64| -> Vec<f64> {

@@ -6,37 +6,56 @@
 //! ```
 //!
 //! Every line is an ordinary tensor operation, so one reverse pass through them gives the
-//! parameter gradient of a loss in the forces.
+//! parameter gradient of a loss in the forces. The undeformed states, the deformed ones and the
+//! three tangents pass each layer in one product.
 
-use crate::networks::{Mlp, tanh};
+use crate::networks::{Affine, tanh};
 use burn::tensor::Tensor;
 
-/// The values of `network` and its derivatives in the first three inputs, each (n, outputs).
-pub(crate) fn with_tangents(network: &Mlp, inputs: Tensor<2>) -> (Tensor<2>, [Tensor<2>; 3]) {
-    let (first, following) = network
-        .layers
+/// chi of some hinges.
+pub(crate) struct Embedding {
+    /// Undeformed and deformed, (2, n, outputs).
+    pub values: Tensor<3>,
+    /// Derivatives of the deformed in the first three inputs, (3, n, outputs).
+    pub tangents: Tensor<3>,
+}
+
+/// `inputs` are those of the undeformed and of the deformed states, (2, n, 5).
+pub(crate) fn with_tangents(layers: &[Affine], inputs: Tensor<3>) -> Embedding {
+    let (first, following) = layers
         .split_first()
         .expect("the configuration asks for a layer or more");
-    let rows = inputs.dims()[0] as i64;
-    let mut values = first.forward(inputs);
-    let mut tangents = [0, 1, 2].map(|k| {
-        let row = first.weight.val().narrow(0, k, 1);
-        row.expand([rows, -1])
-    });
+    let [_, n, features] = inputs.dims();
+    let inputs = inputs.reshape([2 * n, features]);
+    let values = first.forward(inputs);
+    let mut values = values.clone().reshape([2, n, values.dims()[1]]);
+    let mut tangents = first.weight.clone().narrow(0, 0, 3).unsqueeze_dim::<3>(1);
     for layer in following {
         let activation = tanh(values);
-        let slope = activation.clone().square().neg().add_scalar(1.0);
-        tangents = tangents.map(|tangent| (slope.clone() * tangent).matmul(layer.weight.val()));
-        values = layer.forward(activation);
+        let slope = activation
+            .clone()
+            .narrow(0, 1, 1)
+            .square()
+            .neg()
+            .add_scalar(1.0);
+        let block = Tensor::cat(vec![activation, slope * tangents], 0);
+        let [blocks, _, units] = block.dims();
+        let product = block
+            .reshape([blocks * n, units])
+            .matmul(layer.weight.clone());
+        let outputs = product.dims()[1];
+        let product = product.reshape([blocks, n, outputs]);
+        values = product.clone().narrow(0, 0, 2) + layer.bias.clone().unsqueeze();
+        tangents = product.narrow(0, 2, 3);
     }
-    (values, tangents)
+    Embedding { values, tangents }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::backend::Backend;
-    use crate::networks::Networks;
+    use crate::networks::{Networks, forward};
     use crate::samples::Batch;
     use crate::samples::tests::samples;
     use burn::tensor::{DType, TensorCreationOptions};
@@ -46,19 +65,23 @@ mod tests {
         let step = 1e-5;
         for &backend in Backend::ALL {
             let options = TensorCreationOptions::new(backend.device()).with_dtype(DType::F64);
-            let network = Networks::new(&[9, 8, 4], &[3], 1, 5, &options).chi;
-            let (_, tangents) = with_tangents(&network, Batch::new(&samples(6), &options).inputs);
-            for (k, tangent) in tangents.into_iter().enumerate() {
-                let moved = |step: f64| {
-                    let mut samples = samples(6);
-                    samples
-                        .iter_mut()
-                        .for_each(|sample| sample.inputs[k] += step);
-                    network.forward(Batch::new(&samples, &options).inputs)
-                };
-                let difference = (moved(step) - moved(-step)).div_scalar(2.0 * step);
-                let error: f64 = (difference - tangent).abs().max().into_scalar();
-                assert!(error < 1e-9, "{backend}, input {k}: {error:e}");
+            for symmetric in [false, true] {
+                let chi = Networks::new(&[8, 6, 4], &[2], 1, symmetric, 5, &options).chi;
+                let layers = chi.affine();
+                let embedding = with_tangents(&layers, Batch::new(&samples(6), &options).states);
+                for k in 0..3 {
+                    let moved = |step: f64| {
+                        let mut samples = samples(6);
+                        samples
+                            .iter_mut()
+                            .for_each(|sample| sample.inputs[k] += step);
+                        forward(&layers, Batch::new(&samples, &options).deformed())
+                    };
+                    let difference = (moved(step) - moved(-step)).div_scalar(2.0 * step);
+                    let tangent = embedding.tangents.clone().narrow(0, k, 1).squeeze_dim(0);
+                    let error: f64 = (difference - tangent).abs().max().into_scalar();
+                    assert!(error < 1e-9, "{backend}, input {k}: {error:e}");
+                }
             }
         }
     }

@@ -10,10 +10,12 @@
 //! | `config` | the training configuration |
 //! | `backend` | Burn backends, chosen at run time |
 //! | `samples` | rows as the network sees them: standardised, scaled, batched |
+//! | `mirror` | mirror symmetry by construction |
 //! | `networks` | chi and chi_D |
 //! | `force_tangents` | chi and its derivatives in (eta_a, eta_s, theta) |
 //! | `loss` | (15) |
-//! | `training` | the loop: Adam, schedule, best epoch |
+//! | `optimiser` | Muon and Adam, learning rate |
+//! | `training` | the loop: steps, best epoch |
 //! | `state` | a training on disk, to go on from |
 //! | `validation` | errors on rows held out |
 //! | `bins` | the same by rotation, width, angle and distance from the edge |
@@ -29,7 +31,9 @@ mod error;
 mod export;
 mod force_tangents;
 mod loss;
+mod mirror;
 mod networks;
+mod optimiser;
 mod samples;
 mod state;
 mod stiffness;

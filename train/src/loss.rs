@@ -8,8 +8,8 @@
 //! Where D_peak is predicted too, the last term is the mean of both.
 
 use crate::config::TrainingConfig;
-use crate::force_tangents::with_tangents;
-use crate::networks::Networks;
+use crate::force_tangents::{Embedding, with_tangents};
+use crate::networks::{Networks, forward};
 use crate::samples::Batch;
 use burn::tensor::Tensor;
 use burn::tensor::activation::softplus;
@@ -26,13 +26,16 @@ pub(crate) struct Prediction {
 
 /// W = |r|^2 with r = chi(xi) - chi(xi0), so dW/dx_k = 2 r . T_k.
 pub(crate) fn predict(networks: &Networks, batch: &Batch) -> Prediction {
-    let (values, tangents) = with_tangents(&networks.chi, batch.inputs.clone());
-    let r = values - networks.chi.forward(batch.origin.clone());
-    let slopes = tangents.map(|tangent| (r.clone() * tangent).sum_dim(1).mul_scalar(2.0));
+    let [_, n, _] = batch.states.dims();
+    let Embedding { values, tangents } =
+        with_tangents(&networks.chi.affine(), batch.states.clone());
+    let r = values.clone().narrow(0, 1, 1) - values.narrow(0, 0, 1);
+    let slopes = (r.clone() * tangents).sum_dim(2).mul_scalar(2.0);
+    let damage = forward(&networks.chi_d.affine(), batch.deformed());
     Prediction {
-        energy: r.square().sum_dim(1),
-        forces: Tensor::cat(slopes.into(), 1) * batch.force_factors.clone(),
-        damage: softplus(networks.chi_d.forward(batch.inputs.clone()), 1.0),
+        energy: r.square().sum_dim(2).reshape([n, 1]),
+        forces: slopes.reshape([3, n]).transpose() * batch.force_factors.clone(),
+        damage: softplus(damage, 1.0),
     }
 }
 
@@ -60,8 +63,8 @@ mod tests {
     fn config() -> TrainingConfig {
         TrainingConfig {
             seed: 0,
-            embedding: vec![7, 6, 4],
-            damage: vec![5],
+            embedding: vec![8, 6, 4],
+            damage: vec![6],
             mirror: false,
             epochs: 1,
             batch_size: 8,
@@ -93,15 +96,22 @@ mod tests {
 
     #[test]
     fn the_parameter_gradient_is_that_of_finite_differences() {
+        for symmetric in [false, true] {
+            check_parameter_gradient(symmetric);
+        }
+    }
+
+    fn check_parameter_gradient(symmetric: bool) {
         let options =
             TensorCreationOptions::new(Backend::default().device()).with_dtype(DType::F64);
         let config = config();
-        let networks = Networks::new(&config.embedding, &config.damage, 2, 3, &options);
+        let (embedding, damage) = (&config.embedding, &config.damage);
+        let networks = Networks::new(embedding, damage, 2, symmetric, 3, &options);
         let batch = Batch::new(&samples(8), &options);
         let gradients = loss(&networks, &batch, &config).backward();
         let step = 1e-5;
         for (head, index) in [(false, 0), (false, 1), (false, 2), (true, 0), (true, 1)] {
-            let Dense { weight, bias } = layer(&mut networks.clone(), head, index).clone();
+            let Dense { weight, bias, .. } = layer(&mut networks.clone(), head, index).clone();
             let weight_direction = direction(weight.val().dims(), &options);
             let bias_direction = direction([1, bias.val().dims()[0]], &options).squeeze_dim(0);
             let moved = |step: f64| -> f64 {

@@ -1,5 +1,6 @@
 //! The embedding chi and the damage head chi_D of (14) as Burn modules.
 
+use crate::mirror::Fold;
 use burn::module::{Module, Param};
 use burn::tensor::activation::sigmoid;
 use burn::tensor::{DType, Tensor, TensorCreationOptions, TensorData};
@@ -23,120 +24,179 @@ pub(crate) struct Mlp {
     pub layers: Vec<Dense>,
 }
 
-/// y = x W + b
+/// What is trained of a layer: all of it, or the half that its mirror symmetry leaves free.
 #[derive(Module, Debug)]
 pub(crate) struct Dense {
-    /// (inputs, outputs)
     pub weight: Param<Tensor<2>>,
     pub bias: Param<Tensor<1>>,
+    #[module(skip)]
+    fold: Fold,
 }
 
-/// In float32, tanh x = 2 sigmoid(2 x) - 1: half the time of the backends' own, whose library call
-/// does not vectorise, at an absolute error of one rounding.
-pub(crate) fn tanh(x: Tensor<2>) -> Tensor<2> {
-    match x.dtype() {
-        DType::F32 => sigmoid(x.mul_scalar(2.0)).mul_scalar(2.0).sub_scalar(1.0),
-        _ => x.tanh(),
-    }
+/// A layer as it is evaluated: y = x W + b.
+#[derive(Clone, Debug)]
+pub(crate) struct Affine {
+    /// (inputs, outputs)
+    pub weight: Tensor<2>,
+    pub bias: Tensor<1>,
 }
 
 impl Networks {
     /// Xavier's uniform weights and zero biases. They come from our own generator, so that a seed
-    /// gives the same weights on every backend.
+    /// gives the same weights on every backend. `symmetric` networks have an even number of units
+    /// in each layer.
     pub fn new(
         embedding: &[usize],
         damage: &[usize],
         damage_outputs: usize,
+        symmetric: bool,
         seed: u64,
         options: &TensorCreationOptions,
     ) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let head: Vec<usize> = damage.iter().copied().chain([damage_outputs]).collect();
+        let mut network = |widths: &[usize], folds: Vec<Fold>| {
+            let inputs = std::iter::once(INPUTS).chain(widths.iter().copied());
+            let layers = inputs
+                .zip(widths)
+                .zip(folds)
+                .map(|((inputs, &outputs), fold)| {
+                    Dense::new([inputs, outputs], fold, &mut rng, options)
+                });
+            Mlp {
+                layers: layers.collect(),
+            }
+        };
         Self {
-            chi: Mlp::new(embedding, &mut rng, options),
-            chi_d: Mlp::new(&head, &mut rng, options),
+            chi: network(embedding, folds(embedding.len(), symmetric)),
+            chi_d: network(&head, head_folds(head.len(), symmetric)),
         }
     }
 
     /// Layers of a weight file.
-    pub fn of_layers(chi: &[Layer], chi_d: &[Layer], options: &TensorCreationOptions) -> Self {
-        let network = |layers: &[Layer]| Mlp {
-            layers: layers
-                .iter()
-                .map(|layer| Dense::of(layer, options))
-                .collect(),
+    pub fn of_layers(
+        chi: &[Layer],
+        chi_d: &[Layer],
+        symmetric: bool,
+        options: &TensorCreationOptions,
+    ) -> Self {
+        let network = |layers: &[Layer], folds: Vec<Fold>| {
+            let layers = layers.iter().zip(folds);
+            Mlp {
+                layers: layers
+                    .map(|(layer, fold)| Dense::of(layer, fold, options))
+                    .collect(),
+            }
         };
         Self {
-            chi: network(chi),
-            chi_d: network(chi_d),
+            chi: network(chi, folds(chi.len(), symmetric)),
+            chi_d: network(chi_d, head_folds(chi_d.len(), symmetric)),
         }
-    }
-
-    /// Units of each layer: of chi, and of the hidden layers of the damage head.
-    pub fn widths(&self) -> [Vec<usize>; 2] {
-        let units = |network: &Mlp| -> Vec<usize> {
-            let layers = network.layers.iter();
-            layers.map(|layer| layer.bias.val().dims()[0]).collect()
-        };
-        let mut damage = units(&self.chi_d);
-        damage.pop();
-        [units(&self.chi), damage]
     }
 }
 
-impl Mlp {
-    fn new(widths: &[usize], rng: &mut ChaCha8Rng, options: &TensorCreationOptions) -> Self {
-        let inputs = std::iter::once(INPUTS).chain(widths.iter().copied());
-        let layers = inputs
-            .zip(widths)
-            .map(|(inputs, &outputs)| Dense::new(inputs, outputs, rng, options))
-            .collect();
-        Self { layers }
+/// The layers of chi.
+fn folds(layers: usize, symmetric: bool) -> Vec<Fold> {
+    let mut folds = vec![Fold::Hidden; layers];
+    folds[..1].fill(Fold::First);
+    if !symmetric {
+        folds.fill(Fold::Whole);
     }
+    folds
+}
 
-    /// Values alone; [`crate::force_tangents`] has the derivatives too.
-    pub fn forward(&self, inputs: Tensor<2>) -> Tensor<2> {
-        let mut values = inputs;
-        for (index, layer) in self.layers.iter().enumerate() {
-            if index > 0 {
-                values = tanh(values);
-            }
-            values = layer.forward(values);
-        }
-        values
+/// The same of chi_D, whose outputs are no pairs.
+fn head_folds(layers: usize, symmetric: bool) -> Vec<Fold> {
+    let mut folds = folds(layers, symmetric);
+    if symmetric {
+        folds[layers - 1..].fill(Fold::Invariant);
+    }
+    folds
+}
+
+/// Units of each layer: of chi, and of the hidden layers of the damage head.
+pub(crate) fn widths([chi, chi_d]: [&[Layer]; 2]) -> [Vec<usize>; 2] {
+    let units = |layers: &[Layer]| -> Vec<usize> {
+        layers.iter().map(|layer| layer.bias.values.len()).collect()
+    };
+    let mut damage = units(chi_d);
+    damage.pop();
+    [units(chi), damage]
+}
+
+impl Mlp {
+    /// The layers as they are evaluated.
+    pub fn affine(&self) -> Vec<Affine> {
+        self.layers.iter().map(Dense::affine).collect()
     }
 }
 
 impl Dense {
     fn new(
-        inputs: usize,
-        outputs: usize,
+        [inputs, outputs]: [usize; 2],
+        fold: Fold,
         rng: &mut ChaCha8Rng,
         options: &TensorCreationOptions,
     ) -> Self {
         let bound = (6.0 / (inputs + outputs) as f64).sqrt();
+        let [inputs, outputs] = fold.shape([inputs, outputs]);
         let weights = (0..inputs * outputs).map(|_| rng.random_range(-bound..bound));
         let weights = TensorData::new(weights.collect::<Vec<f64>>(), [inputs, outputs]);
         Self {
             weight: Param::from_tensor(Tensor::from_data(weights, options.clone())),
             bias: Param::from_tensor(Tensor::zeros([outputs], options.clone())),
+            fold,
         }
     }
 
     /// Weight files hold (outputs, inputs).
-    fn of(layer: &Layer, options: &TensorCreationOptions) -> Self {
+    fn of(layer: &Layer, fold: Fold, options: &TensorCreationOptions) -> Self {
         let tensor = |tensor: &surrogate::Tensor| {
             TensorData::new(tensor.values.clone(), tensor.shape.clone())
         };
         let weight: Tensor<2> = Tensor::from_data(tensor(&layer.weight), options.clone());
-        let bias = Tensor::from_data(tensor(&layer.bias), options.clone());
+        let Affine { weight, bias } = fold.fold(Affine {
+            weight: weight.transpose(),
+            bias: Tensor::from_data(tensor(&layer.bias), options.clone()),
+        });
         Self {
-            weight: Param::from_tensor(weight.transpose().detach()),
-            bias: Param::from_tensor(bias),
+            weight: Param::from_tensor(weight.detach()),
+            bias: Param::from_tensor(bias.detach()),
+            fold,
         }
     }
 
+    fn affine(&self) -> Affine {
+        self.fold.unfold(Affine {
+            weight: self.weight.val(),
+            bias: self.bias.val(),
+        })
+    }
+}
+
+impl Affine {
     pub fn forward(&self, inputs: Tensor<2>) -> Tensor<2> {
-        inputs.matmul(self.weight.val()) + self.bias.val().unsqueeze()
+        inputs.matmul(self.weight.clone()) + self.bias.clone().unsqueeze()
+    }
+}
+
+/// The values of a network; [`crate::force_tangents`] has the derivatives too.
+pub(crate) fn forward(layers: &[Affine], inputs: Tensor<2>) -> Tensor<2> {
+    let mut values = inputs;
+    for (index, layer) in layers.iter().enumerate() {
+        if index > 0 {
+            values = tanh(values);
+        }
+        values = layer.forward(values);
+    }
+    values
+}
+
+/// In float32, tanh x = 2 sigmoid(2 x) - 1: half the time of the backends' own, whose library call
+/// does not vectorise, at an absolute error of one rounding.
+pub(crate) fn tanh<const D: usize>(x: Tensor<D>) -> Tensor<D> {
+    match x.dtype() {
+        DType::F32 => sigmoid(x.mul_scalar(2.0)).mul_scalar(2.0).sub_scalar(1.0),
+        _ => x.tanh(),
     }
 }

@@ -1,6 +1,7 @@
 //! Rows as the network sees them: standardised features, scaled targets, batches.
 
 use crate::error::TrainError;
+use crate::mirror;
 use burn::tensor::{Tensor, TensorCreationOptions, TensorData};
 use dataset::Row;
 use hinge::HingeDeformation;
@@ -39,8 +40,8 @@ pub(crate) struct Sample {
 
 /// Samples as tensors, one row each.
 pub(crate) struct Batch {
-    pub inputs: Tensor<2>,
-    pub origin: Tensor<2>,
+    /// Undeformed and deformed, (2, n, 5).
+    pub states: Tensor<3>,
     pub force_factors: Tensor<2>,
     /// (n, 1)
     pub energy: Tensor<2>,
@@ -51,7 +52,9 @@ pub(crate) struct Batch {
 
 impl Scales {
     /// Refuses features and targets with nothing to scale.
-    pub fn of(rows: &[Row]) -> Result<Self, TrainError> {
+    ///
+    /// `symmetric`: the rows hold their mirror images.
+    pub fn of(rows: &[Row], symmetric: bool) -> Result<Self, TrainError> {
         let count = rows.len() as f64;
         let root_mean_square = |target: &'static str, value: fn(&Row) -> f64| {
             let sum: f64 = rows.iter().map(|row| value(row).powi(2)).sum();
@@ -79,8 +82,12 @@ impl Scales {
                 });
             }
         }
+        let mut standardisation = Standardisation { mean, std };
+        if symmetric {
+            mirror::centre(&mut standardisation);
+        }
         Ok(Self {
-            standardisation: Standardisation { mean, std },
+            standardisation,
             energy: root_mean_square("W", |row| row.sample.w)?,
             forces: [
                 root_mean_square("F_a", |row| row.sample.f_a)?,
@@ -96,13 +103,13 @@ impl Scales {
     }
 
     /// The scales that weights were trained with; those of the forces from the rows.
-    pub fn of_card(card: &Card, rows: &[Row]) -> Result<Self, TrainError> {
+    pub fn of_card(card: &Card, rows: &[Row], symmetric: bool) -> Result<Self, TrainError> {
         Ok(Self {
             standardisation: card.standardisation,
             energy: card.energy_scale,
             damage: card.damage_scale,
             peak: card.peak_scale,
-            ..Self::of(rows)?
+            ..Self::of(rows, symmetric)?
         })
     }
 
@@ -168,14 +175,20 @@ fn row_features(row: &Row) -> [f64; 5] {
 
 impl Batch {
     pub fn new(samples: &[Sample], options: &TensorCreationOptions) -> Self {
+        let undeformed = columns(samples, options, |sample| sample.origin);
+        let deformed = columns(samples, options, |sample| sample.inputs);
         Self {
-            inputs: columns(samples, options, |sample| sample.inputs),
-            origin: columns(samples, options, |sample| sample.origin),
+            states: Tensor::stack(vec![undeformed, deformed], 0),
             force_factors: columns(samples, options, |sample| sample.force_factors),
             energy: columns(samples, options, |sample| [sample.energy]),
             forces: columns(samples, options, |sample| sample.forces),
             damage: columns(samples, options, |sample| sample.damage),
         }
+    }
+
+    /// Inputs of the deformed states, (n, 5).
+    pub fn deformed(&self) -> Tensor<2> {
+        self.states.clone().narrow(0, 1, 1).squeeze_dim(0)
     }
 }
 

@@ -1,4 +1,5 @@
-//! The training loop: Adam with a cosine schedule, the epoch of the least validation loss kept.
+//! The training loop: steps of the optimiser on a cosine schedule, of each network the
+//! epoch with the least validation error kept.
 
 use crate::backend::Backend;
 use crate::bins::error_bins;
@@ -6,21 +7,21 @@ use crate::config::TrainingConfig;
 use crate::error::TrainError;
 use crate::export::layers;
 use crate::loss::loss;
-use crate::networks::Networks;
+use crate::mirror;
+use crate::networks::{Networks, widths};
+use crate::optimiser::{learning_rate, optimiser};
 use crate::samples::{Batch, Sample, Scales};
 use crate::state::{self, Progress, State};
 use crate::stiffness::StiffnessCheck;
 use crate::validation::Parity;
-use burn::grad_clipping::GradientClippingConfig;
-use burn::optim::{AdamConfig, GradientsParams, ModuleOptimizer};
-use burn::tensor::TensorCreationOptions;
+use burn::optim::{GradientsParams, ModuleOptimizer};
+use burn::tensor::{DType, TensorCreationOptions};
 use dataset::{Database, Manifest, Part, Row, with_mirrored};
 use hinge::TrainingDomain;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::PI;
 use std::path::Path;
 use std::time::Instant;
 use surrogate::{Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS};
@@ -36,9 +37,11 @@ pub struct Epoch {
     pub training_loss: f64,
     /// (15) on the validation part at the end of the epoch.
     pub validation_loss: f64,
+    /// Geometric means of the relative errors there: of W and the forces, and of the damages.
+    pub validation_errors: [f64; 2],
     /// At the end of the epoch.
     pub learning_rate: f64,
-    /// Whether no epoch before had a smaller validation loss.
+    /// Whether one of the two was less than in every epoch before.
     pub best: bool,
     /// Time that the training took so far (s).
     pub elapsed_s: f64,
@@ -47,7 +50,7 @@ pub struct Epoch {
 /// A trained surrogate and what is known about it.
 #[derive(Clone, Debug)]
 pub struct Trained {
-    /// Of the epoch with the least validation loss.
+    /// Each network of the epoch with its least validation error.
     pub surrogate: Surrogate,
     /// Of the last epoch.
     pub last: Surrogate,
@@ -56,7 +59,7 @@ pub struct Trained {
     pub test_errors: TestErrors,
     /// Targets and predictions on the test part.
     pub parity: Parity,
-    /// On the test part without its mirror images.
+    /// On the test part.
     pub stiffness: StiffnessCheck,
 }
 
@@ -88,13 +91,11 @@ pub struct Training {
     elapsed_s: f64,
 }
 
-/// The rows of the three parts, mirrored if asked for.
+/// The rows of the three parts.
 struct Parts {
     training: Vec<Row>,
     validation: Vec<Row>,
     test: Vec<Row>,
-    /// As solved: without mirror images.
-    solved_test: Vec<Row>,
 }
 
 /// Fits (14) to the database by minimising (15); section 2.4.
@@ -123,7 +124,7 @@ impl Training {
     ) -> Result<Self, TrainError> {
         config.validate()?;
         let began = Instant::now();
-        let parts = Parts::of(database, config.mirror)?;
+        let parts = Parts::of(database)?;
         let state = match start {
             Start::State(path) => Some(State::read(path)?),
             Start::Fresh | Start::Weights(_) => None,
@@ -133,35 +134,30 @@ impl Training {
             Start::Weights(weights) => Some(weights.card()),
             Start::State(_) => state.as_ref().map(|state| &state.progress.card),
         };
-        let scales = match base {
-            Some(card) => Scales::of_card(card, &parts.training)?,
-            None => Scales::of(&parts.training)?,
+        let described = match config.mirror {
+            true => with_mirrored(&parts.training),
+            false => parts.training.clone(),
         };
-        let mut card = card(database.manifest(), &parts.training, &scales, config)?;
+        let scales = match base {
+            Some(card) => Scales::of_card(card, &described, config.mirror)?,
+            None => Scales::of(&described, config.mirror)?,
+        };
+        let mut card = card(database.manifest(), &described, &scales, config)?;
         let options = TensorCreationOptions::new(backend.device());
-        let mut networks = Networks::new(
-            &config.embedding,
-            &config.damage,
-            scales.damage_outputs(),
-            config.seed,
-            &options,
-        );
-        if let Start::Weights(weights) = start {
-            let [chi, chi_d] = weights.layers();
-            let given = Networks::of_layers(chi, chi_d, &options);
-            if given.widths() != networks.widths() {
-                return Err(TrainError::OtherSizes {
-                    expected: networks.widths(),
-                    found: given.widths(),
-                });
+        let networks = match start {
+            Start::Weights(weights) => {
+                card.fine_tuned_from = Some(weights.card().dataset_hash.clone());
+                given(weights, config, &options)?
             }
-            networks = given;
-            card.fine_tuned_from = Some(weights.card().dataset_hash.clone());
-        }
-        let clipping = GradientClippingConfig::Norm(config.gradient_norm_max as f32);
-        let adam = AdamConfig::new()
-            .with_epsilon(1e-8)
-            .with_grad_clipping(Some(clipping));
+            Start::Fresh | Start::State(_) => Networks::new(
+                &config.embedding,
+                &config.damage,
+                scales.damage_outputs(),
+                config.mirror,
+                config.seed,
+                &options,
+            ),
+        };
         let mut training = Self {
             config: config.clone(),
             options,
@@ -173,7 +169,7 @@ impl Training {
             parts,
             scales,
             card,
-            optimiser: adam.init(),
+            optimiser: optimiser(config),
             best: networks.clone(),
             networks,
             history: Vec::new(),
@@ -216,19 +212,28 @@ impl Training {
         if !validation_loss.is_finite() {
             return Err(diverged);
         }
-        let losses = self.history.iter().map(|epoch| epoch.validation_loss);
+        let errors = validation.mean_errors();
+        let better = [0, 1].map(|network| {
+            let before = self.history.iter().map(|it| it.validation_errors[network]);
+            errors[network] < before.fold(f64::INFINITY, f64::min)
+        });
+        // The two networks share nothing, and the damage head overfits sooner.
+        if better[0] {
+            self.best.chi = self.networks.chi.clone();
+        }
+        if better[1] {
+            self.best.chi_d = self.networks.chi_d.clone();
+        }
         let report = Epoch {
             epoch,
             epochs: self.config.epochs,
             training_loss,
             validation_loss,
+            validation_errors: errors,
             learning_rate,
-            best: validation_loss < losses.fold(f64::INFINITY, f64::min),
+            best: better.contains(&true),
             elapsed_s: self.elapsed_s + self.began.elapsed().as_secs_f64(),
         };
-        if report.best {
-            self.best = self.networks.clone();
-        }
         self.history.push(report);
         Ok(report)
     }
@@ -242,7 +247,7 @@ impl Training {
         let last = export(&self.networks, &self.card)?;
         let last_errors = Parity::of(&last, &self.parts.test).errors();
         Ok(Trained {
-            stiffness: StiffnessCheck::of(&best, &self.parts.solved_test),
+            stiffness: StiffnessCheck::of(&best, &self.parts.test),
             surrogate: best.with_test_errors(test_errors, bins),
             last: last.with_test_errors(last_errors, Vec::new()),
             history: self.history,
@@ -268,7 +273,7 @@ impl Training {
         Ok(())
     }
 
-    /// Steps of Adam over the samples in an order that the seed and the epoch decide; the mean of
+    /// Steps over the samples in an order that the seed and the epoch decide; the mean of
     /// (15) as it was met.
     fn descend(&mut self, epoch: usize) -> Result<f64, TrainError> {
         let mut order: Vec<usize> = (0..self.samples.len()).collect();
@@ -295,31 +300,48 @@ impl Training {
         self.samples.len().div_ceil(self.config.batch_size)
     }
 
-    /// Half a cosine from `learning_rate` at the first step to `learning_rate_end` after the last.
     fn learning_rate(&self, step: usize) -> f64 {
-        let steps = (self.config.epochs * self.steps_per_epoch()) as f64;
-        let share = 0.5 * (1.0 + (PI * step as f64 / steps).cos());
-        let end = self.config.learning_rate_end;
-        end + share * (self.config.learning_rate - end)
+        learning_rate(
+            &self.config,
+            step,
+            self.config.epochs * self.steps_per_epoch(),
+        )
     }
 }
 
 impl Parts {
-    fn of(database: &Database, mirror: bool) -> Result<Self, TrainError> {
-        let part = |part, name| {
-            let rows = database.part(part);
-            match rows.is_empty() {
-                true => Err(TrainError::NoRows { part: name }),
-                false if mirror => Ok(with_mirrored(&rows)),
-                false => Ok(rows),
-            }
+    fn of(database: &Database) -> Result<Self, TrainError> {
+        let part = |part, name| match database.part(part) {
+            rows if rows.is_empty() => Err(TrainError::NoRows { part: name }),
+            rows => Ok(rows),
         };
         Ok(Self {
             training: part(Part::Training, "training")?,
             validation: part(Part::Validation, "validation")?,
             test: part(Part::Test, "test")?,
-            solved_test: database.part(Part::Test),
         })
+    }
+}
+
+/// The networks of weights to begin from, which must be such as the configuration asks for.
+fn given(
+    weights: &Surrogate,
+    config: &TrainingConfig,
+    options: &TensorCreationOptions,
+) -> Result<Networks, TrainError> {
+    let [chi, chi_d] = weights.layers();
+    let expected = [config.embedding.clone(), config.damage.clone()];
+    let found = widths([chi, chi_d]);
+    if found != expected {
+        return Err(TrainError::OtherSizes { expected, found });
+    }
+    let exact = options.clone().with_dtype(DType::F64);
+    let folded = Networks::of_layers(chi, chi_d, config.mirror, &exact);
+    let unchanged = layers(&folded.chi)? == chi && layers(&folded.chi_d)? == chi_d;
+    let centred = !config.mirror || mirror::is_centred(&weights.card().standardisation);
+    match unchanged && centred {
+        true => Ok(Networks::of_layers(chi, chi_d, config.mirror, options)),
+        false => Err(TrainError::NotSymmetric),
     }
 }
 

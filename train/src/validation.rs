@@ -106,6 +106,25 @@ impl Parity {
         .map(|(points, scale, weight)| weight * (rms_error(points) / scale).powi(2))
         .sum()
     }
+
+    /// Geometric means of the relative root mean square errors: of W and the forces, and of the
+    /// damages. A few states of large force, which rule the loss, count no more than they should.
+    pub(crate) fn mean_errors(&self) -> [f64; 2] {
+        let mean = |quantities: &[&[ParityPoint]]| {
+            let given = quantities.iter().filter(|points| !points.is_empty());
+            let errors: Vec<f64> = given
+                .map(|points| fit_error(points).relative_rmse)
+                .collect();
+            errors
+                .iter()
+                .product::<f64>()
+                .powf(1.0 / errors.len() as f64)
+        };
+        [
+            mean(&[&self.energy, &self.f_a, &self.f_s, &self.m_theta]),
+            mean(&[&self.damage, &self.damage_peak]),
+        ]
+    }
 }
 
 /// Zero if there are no values.
