@@ -104,6 +104,9 @@ impl CardCommand {
         let surrogate = Surrogate::load(&self.weights)?;
         let card = surrogate.card();
         println!("material {}, tier {}", card.material, card.tier);
+        let known = |hash: &Option<String>| hash.clone().unwrap_or_else(|| "not known".into());
+        println!("material law      {}", known(&card.material_hash));
+        println!("campaign settings {}", known(&card.settings_hash));
         println!("database {}", card.dataset_hash);
         println!("split    {}", card.split_hash);
         if let Some(base) = &card.fine_tuned_from {

@@ -72,7 +72,7 @@ pub enum DatasetError {
         source: serde_json::Error,
     },
     #[error(
-        "{path} has the format version {found}, this program reads {FORMAT_VERSION}; \
+        "{path} has the format version {found}, this program reads 2 to {FORMAT_VERSION}; \
          collect the campaign again",
         path = .path.display()
     )]
@@ -231,6 +231,8 @@ fn refuse_mixed(rows: &[Row], mixing: Mixing) -> Result<(), DatasetError> {
         ];
         let mixable = [
             ("material", row.material.clone()),
+            ("material_hash", row.material_hash.clone()),
+            ("settings_hash", row.settings_hash.clone()),
             ("tier", row.tier.clone()),
         ];
         let mixable = mixable.into_iter().filter(|_| mixing == Mixing::Refused);

@@ -9,8 +9,10 @@ use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Version of the database that this crate reads and writes.
-pub const FORMAT_VERSION: u32 = 2;
+/// Version of the database that this crate writes; it reads the one before too.
+///
+/// 3: rows and manifest tell the hashes of the material law and of the campaign's settings.
+pub const FORMAT_VERSION: u32 = 3;
 
 /// Everything about a database but its rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,6 +37,12 @@ pub struct Manifest {
     pub rejected: BTreeMap<Rejection, usize>,
     /// All of them, where they were mixed: "a + b".
     pub material: String,
+    /// Hashes of the material laws; none, or an empty one, where they are not known.
+    #[serde(default)]
+    pub material_hashes: BTreeSet<String>,
+    /// The same of the campaigns' settings.
+    #[serde(default)]
+    pub settings_hashes: BTreeSet<String>,
     pub tier: String,
     /// What all hinges share.
     pub hinge: HingeConstants,
@@ -87,6 +95,8 @@ impl Manifest {
             material: every(rows, |row| &row.material),
             tier: every(rows, |row| &row.tier),
             hinge: first.design.constants(),
+            material_hashes: rows.iter().map(|row| row.material_hash.clone()).collect(),
+            settings_hashes: rows.iter().map(|row| row.settings_hash.clone()).collect(),
             gmsh: rows.iter().map(|row| row.gmsh.clone()).collect(),
             ccx: rows.iter().map(|row| row.ccx.clone()).collect(),
             domain,

@@ -81,7 +81,7 @@ fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
     };
     let bytes = read_bytes(path)?;
     let version: Version = serde_json::from_slice(&bytes).map_err(malformed)?;
-    if version.format_version != u64::from(FORMAT_VERSION) {
+    if !(2..=u64::from(FORMAT_VERSION)).contains(&version.format_version) {
         return Err(DatasetError::UnknownVersion {
             path: path.to_owned(),
             found: version.format_version,

@@ -13,6 +13,10 @@ pub struct Row {
     pub failure: String,
     /// Name of the sheet material.
     pub material: String,
+    /// [`hinge::SheetMaterial::law_hash`] of it; empty if not known.
+    pub material_hash: String,
+    /// Hash of what the jobs of a campaign share but the material; empty if not known.
+    pub settings_hash: String,
     /// Tier of the window mesh that was asked.
     pub tier: String,
     /// Tier that solved the row: a finer one if the asked one failed.
@@ -81,6 +85,8 @@ pub(crate) mod tests {
             },
             failure: if index == 1 { "diverged" } else { "" }.into(),
             material: "film".into(),
+            material_hash: "f11f".into(),
+            settings_hash: "5e77".into(),
             tier: "default".into(),
             solved_tier: "default".into(),
             gmsh: "4.8.4".into(),

@@ -66,7 +66,12 @@ pub(crate) const NUMBERS: [Number; 22] = numbers! {
     "cpu_s" ["s"] = cpu_s;
 };
 
-pub(crate) const TEXTS: [Text; 7] = texts! { job failure material tier solved_tier gmsh ccx };
+pub(crate) const TEXTS: [Text; 9] = texts! {
+    job failure material material_hash settings_hash tier solved_tier gmsh ccx
+};
+
+/// Columns that tables of format version 2 lack.
+const SINCE_VERSION_3: [&str; 2] = ["material_hash", "settings_hash"];
 
 /// The ratios of (13), written for whoever reads the table and computed again when it is read.
 const RATIOS: [&str; 2] = ["eta_a", "eta_s"];
@@ -95,12 +100,15 @@ pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {
     Ok(DataFrame::new(rows.len(), columns)?)
 }
 
-/// The rows of a table; every column must be there, of its type, without gaps,
+/// The rows of a table; every column of its version must be there, of its type, without gaps,
 /// and every number finite.
 pub(crate) fn from_frame(frame: &DataFrame) -> Result<Vec<Row>, DatasetError> {
     let mut rows = vec![blank(); frame.height()];
     for column in &TEXTS {
-        let series = frame.column(column.name)?;
+        let series = match frame.column(column.name) {
+            Err(_) if SINCE_VERSION_3.contains(&column.name) => continue,
+            series => series?,
+        };
         fill(
             &mut rows,
             column.name,
@@ -149,6 +157,8 @@ pub(crate) fn blank() -> Row {
         sample: HingeSample::default(),
         failure: String::new(),
         material: String::new(),
+        material_hash: String::new(),
+        settings_hash: String::new(),
         tier: String::new(),
         solved_tier: String::new(),
         gmsh: String::new(),

@@ -22,6 +22,12 @@ impl fmt::Display for Database {
             manifest.tier,
             manifest.cpu_s,
         )?;
+        writeln!(
+            f,
+            "material law {}, campaign settings {}",
+            known(&manifest.material_hashes),
+            known(&manifest.settings_hashes),
+        )?;
         for (reason, count) in &manifest.rejected {
             writeln!(f, "rejected {count} rows: {reason:?}")?;
         }
@@ -50,6 +56,19 @@ impl fmt::Display for Database {
             )?;
         }
         Ok(())
+    }
+}
+
+/// Hashes for people.
+fn known(hashes: &BTreeSet<String>) -> String {
+    let known: Vec<&str> = hashes
+        .iter()
+        .map(String::as_str)
+        .filter(|hash| !hash.is_empty())
+        .collect();
+    match known.is_empty() {
+        true => "not known".into(),
+        false => known.join(" + "),
     }
 }
 

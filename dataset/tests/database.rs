@@ -163,7 +163,7 @@ fn a_missing_malformed_or_later_manifest_is_refused() {
     let (_folder, path, _) = written();
     let manifest = path.with_extension("json");
     let text = std::fs::read_to_string(&manifest).unwrap();
-    let later = text.replace("\"format_version\": 2", "\"format_version\": 9");
+    let later = text.replace("\"format_version\": 3", "\"format_version\": 9");
     std::fs::write(&manifest, later).unwrap();
     let error = Database::read(&path).unwrap_err();
     assert!(
@@ -180,6 +180,26 @@ fn a_missing_malformed_or_later_manifest_is_refused() {
         Database::read(&path),
         Err(DatasetError::Read { .. })
     ));
+}
+
+#[test]
+fn a_database_of_the_version_before_is_read_and_its_hashes_are_not_known() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/version_2.parquet");
+    let database = Database::read(&path).unwrap();
+    assert_eq!(database.rows().len(), 8);
+    assert!(
+        database
+            .rows()
+            .iter()
+            .all(|row| row.material_hash.is_empty())
+    );
+    assert!(database.to_string().contains("material law not known"));
+    assert!(
+        collect(rows())
+            .unwrap()
+            .to_string()
+            .contains("material law f11f")
+    );
 }
 
 /// What reading says to these bytes with a manifest that vouches for them.

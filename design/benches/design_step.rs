@@ -170,6 +170,8 @@ fn network() -> SurrogateLaw {
             r_win: 100.0,
         },
         material: "none".into(),
+        material_hash: None,
+        settings_hash: None,
         tier: "none".into(),
         dataset_hash: "none".into(),
         fine_tuned_from: None,

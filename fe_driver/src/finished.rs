@@ -2,7 +2,7 @@
 
 use crate::campaign::CampaignError;
 use crate::failure::FailureKind;
-use crate::job::ToolVersions;
+use crate::job::{JobSpec, ToolVersions};
 use crate::ledger::CampaignFolder;
 use hinge::{HingeDesign, HingeSample};
 use mesher::Tier;
@@ -15,6 +15,11 @@ pub struct FinishedJob {
     pub design: HingeDesign,
     /// Name of the sheet material.
     pub material: String,
+    /// [`hinge::SheetMaterial::law_hash`] of it; empty if not known.
+    pub material_hash: String,
+    /// Hash of everything that jobs of one campaign share but the material: mesh, step control,
+    /// programs; empty if not known.
+    pub settings_hash: String,
     /// Tier that was asked.
     pub tier: Tier,
     /// Tier that the samples were solved with: a finer one if the asked one failed.
@@ -52,6 +57,8 @@ fn finished(folder: &CampaignFolder, id: String) -> Result<Option<FinishedJob>, 
     Ok(Some(FinishedJob {
         id,
         design: spec.problem.ray.design,
+        material_hash: spec.problem.material.law_hash(),
+        settings_hash: settings_hash(&spec),
         material: spec.problem.material.name,
         tier: spec.problem.tier,
         solved_tier: record.tier,
@@ -60,4 +67,17 @@ fn finished(folder: &CampaignFolder, id: String) -> Result<Option<FinishedJob>, 
         cpu_seconds: record.cpu_seconds,
         failure: record.failure,
     }))
+}
+
+fn settings_hash(spec: &JobSpec) -> String {
+    let problem = &spec.problem;
+    let settings = (
+        problem.tier,
+        &spec.mesh,
+        &problem.step,
+        &spec.tools,
+        spec.recipe_version,
+    );
+    let text = serde_json::to_vec(&settings).expect("settings are numbers and text");
+    blake3::hash(&text).to_hex()[..16].to_owned()
 }

@@ -12,6 +12,8 @@ pub fn rows_of(job: &FinishedJob) -> impl Iterator<Item = Row> {
         sample: *sample,
         failure: job.failure.map_or(String::new(), |kind| kind.to_string()),
         material: job.material.clone(),
+        material_hash: job.material_hash.clone(),
+        settings_hash: job.settings_hash.clone(),
         tier: job.tier.to_string(),
         solved_tier: job.solved_tier.to_string(),
         gmsh: job.tools.gmsh.clone(),
@@ -38,6 +40,8 @@ fn job_of(rows: &[Row]) -> Result<FinishedJob> {
         id: row.job.clone(),
         design: row.design,
         material: row.material.clone(),
+        material_hash: row.material_hash.clone(),
+        settings_hash: row.settings_hash.clone(),
         tier: row.tier.parse()?,
         solved_tier: row.solved_tier.parse()?,
         tools: ToolVersions {

@@ -109,6 +109,8 @@ fn card() -> Card {
             r_win: 100.0,
         },
         material: "benchmark".into(),
+        material_hash: None,
+        settings_hash: None,
         tier: "none".into(),
         dataset_hash: "none".into(),
         fine_tuned_from: None,

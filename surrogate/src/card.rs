@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 
 /// Version of the weight file and its card that this crate writes; it reads those before too.
 ///
-/// 1: the damage head predicts D. 2: it may predict D_peak too; errors by bins.
-pub const FORMAT_VERSION: u32 = 2;
+/// 1: the damage head predicts D. 2: it may predict D_peak too; errors by bins. 3: the hashes of
+/// the material law and of the campaign's settings.
+pub const FORMAT_VERSION: u32 = 3;
 
 /// The units of everything a surrogate takes and returns.
 pub const UNITS: &str = "mm, N, MPa, N mm, rad";
@@ -38,6 +39,12 @@ pub struct Card {
     pub hinge: HingeConstants,
     /// Name of the sheet material.
     pub material: String,
+    /// [`hinge::SheetMaterial::law_hash`] of it, if known: a material may change and keep its name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material_hash: Option<String>,
+    /// Hash of the settings of the campaign that the rows were solved in, if known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub settings_hash: Option<String>,
     /// Tier of the window mesh that the rows were solved with.
     pub tier: String,
     /// Hash of the database file.

@@ -145,6 +145,15 @@ fn missing_files_are_named() {
 }
 
 #[test]
+fn weights_of_format_version_3_tell_what_they_were_trained_on() {
+    let hashed = Surrogate::load(&cases().join("chi_hashed.safetensors")).unwrap();
+    let card = hashed.card();
+    assert_eq!(card.material_hash.as_deref(), Some("0123456789abcdef"));
+    assert_eq!(card.settings_hash.as_deref(), Some("fedcba9876543210"));
+    assert_eq!(with_peak().card().material_hash, None);
+}
+
+#[test]
 fn cards_of_other_versions_shapes_and_trainings_are_refused() {
     let with_card = |from: &str, to: &str| {
         let mut file = File::new();

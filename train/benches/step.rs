@@ -66,6 +66,8 @@ fn database() -> Database {
             },
             failure: String::new(),
             material: "benchmark".into(),
+            material_hash: String::new(),
+            settings_hash: String::new(),
             tier: "none".into(),
             solved_tier: "none".into(),
             gmsh: "none".into(),

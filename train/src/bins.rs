@@ -88,6 +88,8 @@ mod tests {
             },
             failure: String::new(),
             material: String::new(),
+            material_hash: String::new(),
+            settings_hash: String::new(),
             tier: String::new(),
             solved_tier: String::new(),
             gmsh: String::new(),

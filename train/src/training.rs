@@ -22,6 +22,7 @@ use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::Instant;
 use surrogate::{Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS};
@@ -368,6 +369,8 @@ fn card(
         domain: domain.ok_or(TrainError::NoRows { part: "training" })?,
         hinge: manifest.hinge,
         material: manifest.material.clone(),
+        material_hash: the_only(&manifest.material_hashes),
+        settings_hash: the_only(&manifest.settings_hashes),
         tier: manifest.tier.clone(),
         dataset_hash: manifest.hash.clone(),
         fine_tuned_from: None,
@@ -377,6 +380,15 @@ fn card(
         test_errors: TestErrors::default(),
         error_bins: Vec::new(),
     })
+}
+
+/// The hash that all rows share, if they do and it is known.
+fn the_only(hashes: &BTreeSet<String>) -> Option<String> {
+    let mut hashes = hashes.iter();
+    match (hashes.next(), hashes.next()) {
+        (Some(hash), None) if !hash.is_empty() => Some(hash.clone()),
+        _ => None,
+    }
 }
 
 fn export(networks: &Networks, card: &Card) -> Result<Surrogate, TrainError> {

@@ -65,6 +65,8 @@ fn rows(jobs: usize) -> Vec<Row> {
                 sample: sample(&design, end.at(lambda), lambda),
                 failure: String::new(),
                 material: "closed form".into(),
+                material_hash: String::new(),
+                settings_hash: String::new(),
                 tier: "exact".into(),
                 solved_tier: "exact".into(),
                 gmsh: "none".into(),

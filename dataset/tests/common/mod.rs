@@ -25,6 +25,8 @@ pub fn row(job: usize, lambda: f64) -> Row {
         },
         failure: if job == 2 { "diverged" } else { "" }.into(),
         material: "film".into(),
+        material_hash: "f11f".into(),
+        settings_hash: "5e77".into(),
         tier: "default".into(),
         solved_tier: if job == 3 { "fine" } else { "default" }.into(),
         gmsh: "4.8.4".into(),

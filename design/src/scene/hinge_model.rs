@@ -280,6 +280,14 @@ fn same_hinge(
             card.material, material.name
         ));
     }
+    let law = material.law_hash();
+    if let Some(trained) = card.material_hash.as_ref().filter(|hash| **hash != law) {
+        return Err(format!(
+            "another law of the material `{}` ({trained}, the scene's is {law}): its numbers have \
+             changed since; train again, or use the material file of the training",
+            material.name
+        ));
+    }
     for (key, trained, found) in [
         (
             "fillet_ratio",

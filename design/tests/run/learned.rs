@@ -57,6 +57,15 @@ fn weights_of_another_hinge_or_material_are_refused() {
         message.contains("the material `steel`, the scene's is `film`"),
         "{message}"
     );
+    let changed = (
+        "\"tier\"",
+        "\"material_hash\": \"0123456789abcdef\", \"tier\"",
+    );
+    let message = refusal(&[changed], &[]);
+    assert!(
+        message.contains("another law of the material `film`"),
+        "{message}"
+    );
     let message = refusal(&[], &[("kerf = 0.2", "kerf = 0.3")]);
     assert!(
         message.contains("kerf = 0.2, the scene has process.kerf = 0.3"),
