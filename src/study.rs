@@ -1,5 +1,6 @@
 //! `kirigami study`: what the choices of each stage cost and are worth.
 
+mod surrogate;
 mod window;
 
 use anyhow::Result;
@@ -9,12 +10,14 @@ use clap::Subcommand;
 #[derive(Subcommand)]
 pub enum StudyCommand {
     Window(window::WindowStudy),
+    Surrogate(surrogate::SurrogateStudy),
 }
 
 impl StudyCommand {
     pub fn run(&self) -> Result<()> {
         match self {
             Self::Window(study) => study.run(),
+            Self::Surrogate(study) => study.run(),
         }
     }
 }

@@ -99,7 +99,7 @@ impl TrainCommand {
                 seed,
                 ..config.clone()
             };
-            members.push(self.train(&database, &config, start)?);
+            members.push(fit(&database, &config, self.backend, start, &state)?);
         }
         if members.len() > 1 {
             self.write_members(&members, &database, config.seed)?;
@@ -140,36 +140,6 @@ impl TrainCommand {
             );
         }
         Ok(())
-    }
-
-    /// One training, kept on disk every now and then and when it is stopped.
-    fn train(&self, database: &Database, config: &TrainingConfig, start: Start) -> Result<Trained> {
-        let (state, stop) = (self.state(), interrupt::stop_flag()?);
-        let mut training = Training::new(database, config, self.backend, start)?;
-        let bar = Progress::new(config.epochs, "epochs");
-        let mut saved = Instant::now();
-        while !training.is_finished() {
-            let epoch = training.epoch()?;
-            let message = format!(
-                "loss {:.2e}, validation {:.2e}",
-                epoch.training_loss, epoch.validation_loss
-            );
-            bar.show(epoch.epoch, None, &message);
-            let stopping = stop.load(Ordering::Relaxed);
-            if stopping || saved.elapsed() > SAVE_EVERY {
-                training.save(&state)?;
-                saved = Instant::now();
-            }
-            if stopping && !training.is_finished() {
-                bail!(
-                    "stopped after {} of {} epochs; go on with --resume",
-                    epoch.epoch,
-                    epoch.epochs
-                );
-            }
-        }
-        bar.finish();
-        Ok(training.finish()?)
     }
 
     /// Weights, last weights, curves and plots of one training, and its errors to the screen.
@@ -262,6 +232,42 @@ impl TrainCommand {
         )?;
         Ok(())
     }
+}
+
+/// One training, kept in the file `state` every now and then and when it is stopped.
+pub fn fit(
+    database: &Database,
+    config: &TrainingConfig,
+    backend: Backend,
+    start: Start,
+    state: &Path,
+) -> Result<Trained> {
+    let stop = interrupt::stop_flag()?;
+    let mut training = Training::new(database, config, backend, start)?;
+    let bar = Progress::new(config.epochs, "epochs");
+    let mut saved = Instant::now();
+    while !training.is_finished() {
+        let epoch = training.epoch()?;
+        let message = format!(
+            "loss {:.2e}, validation {:.2e}",
+            epoch.training_loss, epoch.validation_loss
+        );
+        bar.show(epoch.epoch, None, &message);
+        let stopping = stop.load(Ordering::Relaxed);
+        if stopping || saved.elapsed() > SAVE_EVERY {
+            training.save(state)?;
+            saved = Instant::now();
+        }
+        if stopping && !training.is_finished() {
+            bail!(
+                "stopped after {} of {} epochs, which are kept; go on with --resume, or with the same study",
+                epoch.epoch,
+                epoch.epochs
+            );
+        }
+    }
+    bar.finish();
+    Ok(training.finish()?)
 }
 
 fn write(path: &Path, text: &str) -> Result<()> {

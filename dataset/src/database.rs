@@ -151,6 +151,16 @@ impl Database {
         Self::merge(std::slice::from_ref(self), plan, Mixing::Allowed)
     }
 
+    /// The same parts for validation and test, and no more than the first `training` of the
+    /// training rays. Ids are hashes, so that their order means nothing.
+    pub fn thinned(&self, training: usize) -> Self {
+        let mut thinned = self.clone();
+        let split = &mut thinned.manifest.split;
+        split.training = split.training.iter().take(training).cloned().collect();
+        thinned.manifest.split_hash = split.hash();
+        thinned
+    }
+
     fn assemble(
         rows: Vec<Row>,
         gates: &Gates,

@@ -12,6 +12,7 @@
 //! | `split` | training, validation and test by geometry |
 //! | `mirror` | the mirror image of a row |
 //! | `manifest` | what stands beside the Parquet file |
+//! | `noise` | scatter of the increments of a ray |
 //! | `parquet` | reading and writing |
 //! | `csv` | CSV, also of other solvers |
 //! | `summary` | counts, ranges, histograms and coverage, to print |
@@ -21,6 +22,7 @@ mod database;
 mod gates;
 mod manifest;
 mod mirror;
+mod noise;
 mod parquet;
 mod rows;
 mod schema;
@@ -32,6 +34,7 @@ pub use database::{Database, DatasetError, Mixing};
 pub use gates::{Gates, Rejection};
 pub use manifest::{FORMAT_VERSION, Manifest};
 pub use mirror::with_mirrored;
+pub use noise::noise;
 pub use rows::Row;
 pub use split::{Part, Split, SplitPlan};
 pub use summary::Details;

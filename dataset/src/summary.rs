@@ -1,6 +1,7 @@
 //! What a database holds, as text to print.
 
 use crate::database::Database;
+use crate::noise::noise;
 use crate::rows::Row;
 use crate::schema;
 use crate::split::{Part, geometry};
@@ -112,6 +113,19 @@ impl fmt::Display for Details<'_> {
             covered(rows, |row| [row.design.w_lig, row.design.alpha]),
             covered(rows, |row| [row.design.w_lig, row.sample.theta]),
         )?;
+        writeln!(
+            f,
+            "noise along rays   {:>10} {:>10}  of the root mean square",
+            "all", "median"
+        )?;
+        for (name, [all, median]) in noise(rows) {
+            writeln!(
+                f,
+                "{name:18} {:8.3} % {:8.3} %",
+                100.0 * all,
+                100.0 * median
+            )?;
+        }
         writeln!(f, "states solved more than once: {}", repeated(rows))
     }
 }

@@ -183,6 +183,18 @@ fn a_missing_malformed_or_later_manifest_is_refused() {
 }
 
 #[test]
+fn a_thinned_database_keeps_what_it_is_tested_on() {
+    let whole = collect(rows()).unwrap();
+    let thinned = whole.thinned(3);
+    assert_eq!(thinned.manifest().split.jobs(Part::Training).len(), 3);
+    assert_eq!(thinned.part(Part::Training).len(), 15);
+    assert_eq!(thinned.part(Part::Test), whole.part(Part::Test));
+    assert_eq!(thinned.part(Part::Validation), whole.part(Part::Validation));
+    assert_ne!(thinned.manifest().split_hash, whole.manifest().split_hash);
+    assert_eq!(whole.thinned(1000).manifest(), whole.manifest());
+}
+
+#[test]
 fn a_database_of_the_version_before_is_read_and_its_hashes_are_not_known() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/version_2.parquet");
     let database = Database::read(&path).unwrap();

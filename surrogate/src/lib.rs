@@ -35,6 +35,7 @@ pub use damage::HingeDamage;
 pub use energy::{HingeEnergy, Order, Prepared};
 pub use features::{FEATURE_NAMES, Standardisation, features};
 pub use network::{InvalidWeights, Layer, Network, Tensor};
+pub use tanh::tanh_in_place;
 pub use weights::WeightsError;
 
 use hinge::{HingeDeformation, HingeDesign, TrainingDomain};

@@ -3,7 +3,7 @@
 
 use dataset::{Database, Gates, Row, SplitPlan};
 use hinge::{HingeDesign, HingeSample};
-use train::{Backend, TrainingConfig, train};
+use train::{Backend, Precision, TrainingConfig, train};
 
 fn main() {
     divan::main();
@@ -28,6 +28,7 @@ fn ten_steps(bencher: divan::Bencher, backend: Backend, embedding: &[usize], dam
         mirror: false,
         epochs: 1,
         batch_size: 256,
+        precision: Precision::F32,
         learning_rate: 1e-3,
         learning_rate_end: 1e-3,
         gradient_norm_max: 1.0,

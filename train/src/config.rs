@@ -20,6 +20,9 @@ pub struct TrainingConfig {
     /// Epochs without a lesser validation loss after which the training stops; never, if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub patience: Option<usize>,
+    /// What the networks are trained in; weights and kernel are float64 in any case.
+    #[serde(default)]
+    pub precision: Precision,
     /// Rows in one optimiser step.
     pub batch_size: usize,
     /// The learning rate at the first step.
@@ -32,6 +35,15 @@ pub struct TrainingConfig {
     pub energy_weight: f64,
     /// w_D of (15): the weight of the damage.
     pub damage_weight: f64,
+}
+
+/// Type of the numbers of a training.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Precision {
+    #[default]
+    F32,
+    F64,
 }
 
 /// A value that no training can have.

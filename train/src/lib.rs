@@ -41,7 +41,7 @@ mod training;
 mod validation;
 
 pub use backend::{Backend, UnknownBackend};
-pub use config::{InvalidConfig, TrainingConfig};
+pub use config::{InvalidConfig, Precision, TrainingConfig};
 pub use ensemble::EnsembleCheck;
 pub use error::TrainError;
 pub use state::StateError;

@@ -55,6 +55,7 @@ pub(crate) fn loss(networks: &Networks, batch: &Batch, config: &TrainingConfig) 
 mod tests {
     use super::*;
     use crate::backend::Backend;
+    use crate::config::Precision;
     use crate::networks::Dense;
     use crate::samples::tests::samples;
     use burn::module::Param;
@@ -68,6 +69,7 @@ mod tests {
             mirror: false,
             epochs: 1,
             batch_size: 8,
+            precision: Precision::F32,
             learning_rate: 1e-3,
             learning_rate_end: 1e-3,
             gradient_norm_max: 1.0,

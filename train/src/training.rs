@@ -3,7 +3,7 @@
 
 use crate::backend::Backend;
 use crate::bins::error_bins;
-use crate::config::TrainingConfig;
+use crate::config::{Precision, TrainingConfig};
 use crate::error::TrainError;
 use crate::export::layers;
 use crate::loss::loss;
@@ -144,7 +144,11 @@ impl Training {
             None => Scales::of(&described, config.mirror)?,
         };
         let mut card = card(database.manifest(), &described, &scales, config)?;
-        let options = TensorCreationOptions::new(backend.device());
+        let dtype = match config.precision {
+            Precision::F32 => DType::F32,
+            Precision::F64 => DType::F64,
+        };
+        let options = TensorCreationOptions::new(backend.device()).with_dtype(dtype);
         let networks = match start {
             Start::Weights(weights) => {
                 card.fine_tuned_from = Some(weights.card().dataset_hash.clone());

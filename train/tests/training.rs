@@ -12,7 +12,7 @@ use hinge::{HingeDeformation, HingeDesign, HingeSample};
 use std::path::Path;
 use surrogate::{Order, Surrogate};
 use train::{
-    Backend, EnsembleCheck, Epoch, Start, StateError, TrainError, Trained, Training,
+    Backend, EnsembleCheck, Epoch, Precision, Start, StateError, TrainError, Trained, Training,
     TrainingConfig, train,
 };
 
@@ -90,6 +90,7 @@ fn config(epochs: usize) -> TrainingConfig {
         mirror: true,
         epochs,
         batch_size: 64,
+        precision: Precision::F32,
         learning_rate: 5e-3,
         learning_rate_end: 1e-5,
         gradient_norm_max: 1.0,

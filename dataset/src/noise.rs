@@ -1,0 +1,101 @@
+//! What no surrogate can learn: how far the increments of a ray scatter about a smooth curve.
+//!
+//! ```text
+//! e_i = y_i - sum over j in {i-2, i-1, i+1, i+2} of c_j y_j      (cubic through the neighbours)
+//! noise^2 = mean of e_i^2 / (1 + sum of c_j^2)
+//! ```
+//!
+//! which is the variance of y where the curve is a cubic and the errors are independent. Where the
+//! curve bends more sharply, as where the ligament buckles, the estimate is too large. Noise that
+//! one mesh gives all increments of a ray is not seen.
+
+use crate::rows::Row;
+use crate::schema::NUMBERS;
+
+/// Quantities that a surrogate is trained on, by the names of their columns.
+const QUANTITIES: [&str; 6] = ["W", "F_a", "F_s", "M_theta", "D", "D_peak"];
+
+/// Scatter of each quantity over its root mean square: over all increments, and the median.
+pub fn noise(rows: &[Row]) -> Vec<(&'static str, [f64; 2])> {
+    let columns = NUMBERS
+        .iter()
+        .filter(|column| QUANTITIES.contains(&column.name));
+    columns
+        .map(|column| {
+            let rays = rows.chunk_by(|left, right| left.job == right.job);
+            let mut scatter: Vec<f64> = rays
+                .flat_map(|ray| ray.windows(5))
+                .map(|window| scatter(window, column.get).abs())
+                .collect();
+            scatter.sort_by(f64::total_cmp);
+            let scale = root_mean_square(rows.iter().map(column.get));
+            let median = scatter.get(scatter.len() / 2).copied().unwrap_or(0.0);
+            let all = root_mean_square(scatter.into_iter());
+            let relative = |value: f64| if scale > 0.0 { value / scale } else { 0.0 };
+            (column.name, [relative(all), relative(median)])
+        })
+        .collect()
+}
+
+/// e_i / sqrt(1 + sum of c_j^2) in the middle of five rows.
+fn scatter(window: &[Row], value: fn(&Row) -> f64) -> f64 {
+    let lambda = |i: usize| window[i].sample.lambda;
+    let neighbours = [0, 1, 3, 4];
+    let coefficients = neighbours.map(|j| {
+        let others = neighbours.into_iter().filter(|&k| k != j);
+        others
+            .map(|k| (lambda(2) - lambda(k)) / (lambda(j) - lambda(k)))
+            .product::<f64>()
+    });
+    let terms = neighbours.into_iter().zip(coefficients);
+    let smooth: f64 = terms.map(|(j, c)| c * value(&window[j])).sum();
+    let squares: f64 = coefficients.iter().map(|c| c * c).sum();
+    (value(&window[2]) - smooth) / (1.0 + squares).sqrt()
+}
+
+fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
+    let (count, sum) = values.fold((0.0, 0.0), |(n, sum), value| (n + 1.0, sum + value * value));
+    if count > 0.0 {
+        f64::sqrt(sum / count)
+    } else {
+        0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rows::tests::rows;
+
+    #[test]
+    fn a_cubic_has_no_noise_and_noise_is_found_at_its_size() {
+        let mut rows = rows(200);
+        for row in &mut rows {
+            row.sample.w = 1.0 + row.sample.lambda.powi(3);
+        }
+        let of = |rows: &[Row]| noise(rows)[0];
+        let (name, [all, median]) = of(&rows);
+        assert_eq!(name, "W");
+        assert!(all < 1e-12 && median < 1e-12);
+        let scale = root_mean_square(rows.iter().map(|row| row.sample.w));
+        for (k, row) in rows.iter_mut().enumerate() {
+            // Independent enough: the signs of the digits of an irrational number.
+            let sign = if (0.618_033_988_7 * (k * k) as f64).fract() < 0.5 {
+                1.0
+            } else {
+                -1.0
+            };
+            row.sample.w += 0.01 * sign;
+        }
+        let (_, [all, _]) = of(&rows);
+        assert!((all * scale / 0.01 - 1.0).abs() < 0.1, "{all}");
+    }
+
+    #[test]
+    fn short_rays_and_zeros_have_none() {
+        let mut short: Vec<Row> = rows(2).into_iter().step_by(4).collect();
+        assert!(noise(&short).iter().all(|(_, values)| *values == [0.0; 2]));
+        short.iter_mut().for_each(|row| row.sample.d = 0.0);
+        assert!(noise(&[]).iter().all(|(_, values)| *values == [0.0; 2]));
+    }
+}

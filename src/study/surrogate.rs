@@ -1,0 +1,355 @@
+//! `kirigami study surrogate`: what rays, network size, epochs and precision are worth.
+
+use crate::charts::{self, Curve};
+use crate::{picture, run_folder, train};
+use ::train::{Backend, Precision, Start, TrainingConfig};
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use dataset::{Database, Part};
+use hinge::{HingeDeformation, HingeDesign};
+use serde::{Deserialize, Serialize};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use surrogate::{Order, Surrogate, TestErrors};
+
+/// Accuracy of the surrogate against its cost: rays, network size, epochs, precision
+///
+/// Every network is trained on the same geometries but for their number, and tested on the same
+/// unseen ones. What is fitted is kept in the folder, so the study can be stopped and goes on where
+/// it was. Writes surrogate.csv, surrogate.md, tradeoff.md and surrogate.svg. Example:
+/// kirigami study surrogate data/hinges.parquet --quick
+#[derive(Args)]
+pub struct SurrogateStudy {
+    /// Database (Parquet with its manifest)
+    #[arg(value_name = "DATABASE")]
+    database: PathBuf,
+    /// Two sizes, a tenth of the epochs
+    #[arg(long)]
+    quick: bool,
+    /// Folder of the training configurations small.toml, medium.toml and paper.toml
+    #[arg(long, value_name = "FOLDER", default_value = "configs/training")]
+    configs: PathBuf,
+    /// Folder for the tables, the chart and the fits
+    #[arg(long, value_name = "FOLDER", default_value = "runs/study-surrogate")]
+    out: PathBuf,
+}
+
+/// Shipped configurations, the cheapest first.
+const SIZES: [&str; 3] = ["small", "medium", "paper"];
+
+/// Numbers of rays, of those there are; all of them come last.
+const RAYS: [usize; 5] = [50, 100, 200, 400, 800];
+
+/// One network.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Case {
+    size: String,
+    /// For training.
+    rays: usize,
+    config: TrainingConfig,
+    /// Of the database and of the split.
+    hashes: [String; 2],
+}
+
+/// What it gave.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Fit {
+    case: Case,
+    errors: TestErrors,
+    training_s: f64,
+    /// Time of energy, forces and tangent of one hinge, of 275 at once (us).
+    kernel_us: f64,
+}
+
+impl SurrogateStudy {
+    pub fn run(&self) -> Result<()> {
+        let database = Database::read(&self.database)?;
+        let _held = run_folder::hold(&self.out)?;
+        let kept = self.out.join("fits");
+        std::fs::create_dir_all(&kept)
+            .with_context(|| format!("cannot make the folder {}", kept.display()))?;
+        let cases = self.cases(&database)?;
+        let mut fits: Vec<Fit> = Vec::new();
+        for (done, case) in cases.iter().enumerate() {
+            eprintln!("{} of {}: {}", done + 1, cases.len(), case.name());
+            fits.push(case.fit(&kept, &database)?);
+            self.write(&fits)?;
+        }
+        println!(
+            "{} fits; see {}",
+            fits.len(),
+            self.out.join("surrogate.md").display()
+        );
+        Ok(())
+    }
+
+    /// Every size with every number of rays; with all rays, a quarter of the epochs and the other
+    /// precision too.
+    fn cases(&self, database: &Database) -> Result<Vec<Case>> {
+        let all = database.manifest().split.jobs(Part::Training).len();
+        let rays: Vec<usize> = RAYS
+            .into_iter()
+            .filter(|&rays| rays < all)
+            .chain([all])
+            .collect();
+        let sizes = match self.quick {
+            true => &SIZES[..2],
+            false => &SIZES[..],
+        };
+        let mut cases = Vec::new();
+        for size in sizes {
+            let path = self.configs.join(format!("{size}.toml"));
+            let mut config: TrainingConfig = hinge::config::read(&path)?;
+            if self.quick {
+                config.epochs = config.epochs.div_ceil(10);
+            }
+            let case = |rays: usize, config: &TrainingConfig| {
+                let split = database.thinned(rays);
+                Case {
+                    size: (*size).into(),
+                    rays,
+                    config: config.clone(),
+                    hashes: [&split.manifest().hash, &split.manifest().split_hash]
+                        .map(String::clone),
+                }
+            };
+            cases.extend(rays.iter().map(|&rays| case(rays, &config)));
+            let hasty = TrainingConfig {
+                epochs: config.epochs.div_ceil(4),
+                ..config.clone()
+            };
+            cases.push(case(all, &hasty));
+            let exact = TrainingConfig {
+                precision: Precision::F64,
+                ..hasty
+            };
+            cases.push(case(all, &exact));
+        }
+        Ok(cases)
+    }
+
+    fn write(&self, fits: &[Fit]) -> Result<()> {
+        let write = |name: &str, text: &str| {
+            let path = self.out.join(name);
+            std::fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
+        };
+        write("surrogate.csv", &csv(fits)?)?;
+        write("surrogate.md", &markdown(fits)?)?;
+        write("tradeoff.md", &tradeoff(fits)?)?;
+        let chart = charts::against_rays(&curves(fits))?;
+        picture::save(&chart, &self.out.join("surrogate"), 1600)?;
+        Ok(())
+    }
+}
+
+impl Case {
+    fn precision(&self) -> &'static str {
+        match self.config.precision {
+            Precision::F32 => "f32",
+            Precision::F64 => "f64",
+        }
+    }
+
+    fn name(&self) -> String {
+        let (size, rays, epochs) = (&self.size, self.rays, self.config.epochs);
+        format!("{size}-{rays}-rays-{epochs}-epochs-{}", self.precision())
+    }
+
+    /// The kept fit, if it is of this very case, or a new one.
+    fn fit(&self, folder: &Path, database: &Database) -> Result<Fit> {
+        let path = folder.join(self.name()).with_added_extension("json");
+        let kept = std::fs::read(&path).ok();
+        let kept = kept.and_then(|bytes| serde_json::from_slice::<Fit>(&bytes).ok());
+        if let Some(fit) = kept.filter(|fit| fit.case == *self) {
+            return Ok(fit);
+        }
+        let state = path.with_extension("state");
+        let start = match state.exists() {
+            true => Start::State(&state),
+            false => Start::Fresh,
+        };
+        let database = database.thinned(self.rays);
+        let trained = train::fit(&database, &self.config, Backend::default(), start, &state)?;
+        let fit = Fit {
+            case: self.clone(),
+            errors: trained.test_errors,
+            training_s: trained.history.last().map_or(0.0, |epoch| epoch.elapsed_s),
+            kernel_us: kernel_us(&trained.surrogate)?,
+        };
+        hinge::files::write(&path, &serde_json::to_vec_pretty(&fit)?)
+            .with_context(|| format!("cannot write {}", path.display()))?;
+        std::fs::remove_file(&state).ok();
+        Ok(fit)
+    }
+}
+
+/// The fastest of many evaluations of 275 hinges, a hinge.
+fn kernel_us(surrogate: &Surrogate) -> Result<f64> {
+    const HINGES: usize = 275;
+    let constants = surrogate.card().hinge;
+    let share = |step: f64, k: usize| (step * k as f64).fract();
+    let designs: Vec<HingeDesign> = (0..HINGES)
+        .map(|k| constants.hinge(5.0 + 20.0 * share(0.618, k), 0.8 + 1.5 * share(0.414, k)))
+        .collect();
+    let states: Vec<HingeDeformation> = (0..HINGES)
+        .map(|k| HingeDeformation::from([-share(0.732, k), share(0.236, k), share(0.89, k)]))
+        .collect();
+    let prepared = surrogate.prepare(&designs);
+    let mut fastest = Duration::MAX;
+    for _ in 0..100 {
+        let began = Instant::now();
+        let energies = surrogate.evaluate(&prepared, &states, Order::Tangent);
+        fastest = fastest.min(began.elapsed());
+        ensure!(energies.len() == HINGES, "the kernel lost hinges");
+    }
+    Ok(1e6 * fastest.as_secs_f64() / HINGES as f64)
+}
+
+/// Relative root mean square errors (%): W, F_a, F_s, M_theta, D, D_peak.
+fn percents(errors: &TestErrors) -> [f64; 6] {
+    let TestErrors {
+        energy,
+        f_a,
+        f_s,
+        m_theta,
+        damage,
+        damage_peak,
+        ..
+    } = errors;
+    [energy, f_a, f_s, m_theta, damage, damage_peak].map(|error| 100.0 * error.relative_rmse)
+}
+
+/// Root mean square of the three forces' errors (%).
+fn forces(errors: &TestErrors) -> f64 {
+    let [_, f_a, f_s, m_theta, ..] = percents(errors);
+    ((f_a * f_a + f_s * f_s + m_theta * m_theta) / 3.0).sqrt()
+}
+
+fn csv(fits: &[Fit]) -> Result<String> {
+    let mut text = "size,precision,training_rays,epochs,test_rows,w_percent,w_median_percent,\
+        f_a_percent,f_s_percent,m_theta_percent,d_percent,d_peak_percent,training_s,kernel_us\n"
+        .to_owned();
+    for Fit {
+        case,
+        errors,
+        training_s,
+        kernel_us,
+    } in fits
+    {
+        let [w, f_a, f_s, m_theta, d, d_peak] = percents(errors);
+        let median = 100.0 * errors.energy.median;
+        writeln!(
+            text,
+            "{},{},{},{},{},{w:.4},{median:.4},{f_a:.4},{f_s:.4},{m_theta:.4},{d:.4},{d_peak:.4},\
+             {training_s:.1},{kernel_us:.2}",
+            case.size,
+            case.precision(),
+            case.rays,
+            case.config.epochs,
+            errors.rows
+        )?;
+    }
+    Ok(text)
+}
+
+fn markdown(fits: &[Fit]) -> Result<String> {
+    let mut text = "# Accuracy of the surrogate against its cost\n\n\
+        Relative root mean square errors on geometries that no training saw, the same for every \
+        row; the kernel gives energy, forces and tangent.\n\n\
+        | size | precision | rays | epochs | W | median | F_a | F_s | M | D | D_peak | training | \
+        kernel |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
+        .to_owned();
+    for Fit {
+        case,
+        errors,
+        training_s,
+        kernel_us,
+    } in fits
+    {
+        let [w, f_a, f_s, m_theta, d, d_peak] = percents(errors);
+        writeln!(
+            text,
+            "| {} | {} | {} | {} | {w:.2} % | {:.2} % | {f_a:.1} % | {f_s:.1} % | {m_theta:.1} % | \
+             {d:.1} % | {d_peak:.1} % | {training_s:.0} s | {kernel_us:.1} us |",
+            case.size,
+            case.precision(),
+            case.rays,
+            case.config.epochs,
+            100.0 * errors.energy.median,
+        )?;
+    }
+    text += "\nThe energy's error falls with the number n of rays as n^-p:\n\n";
+    for curve in curves(fits) {
+        if let [(first, error), .., (last, least)] = curve.energy[..] {
+            let p = (error / least).ln() / (last / first).ln();
+            let doubled = 100.0 * (1.0 - 2.0_f64.powf(-p));
+            writeln!(
+                text,
+                "* {}: p = {p:.2}; twice the rays would take {doubled:.0} % of the error away",
+                curve.title
+            )?;
+        }
+    }
+    text += "\n![errors against rays](surrogate.png)\n";
+    Ok(text)
+}
+
+/// One row a choice, against the most accurate network of the study.
+fn tradeoff(fits: &[Fit]) -> Result<String> {
+    let mut text = "## Surrogate\n\n\
+        | network | rays | epochs | training | kernel, us a hinge | W | forces | damage | good for \
+        |\n|---|---|---|---|---|---|---|---|---|\n"
+        .to_owned();
+    for Fit {
+        case,
+        errors,
+        training_s,
+        kernel_us,
+    } in fits
+    {
+        let [w, .., d, _] = percents(errors);
+        writeln!(
+            text,
+            "| {} {} | {} | {} | {training_s:.0} s | {kernel_us:.1} | {w:.2} % | {:.1} % | \
+             {d:.1} % | {} |",
+            case.size,
+            case.precision(),
+            case.rays,
+            case.config.epochs,
+            forces(errors),
+            match case.size.as_str() {
+                "small" => "first designs, many seeds",
+                "medium" => "everyday design",
+                _ => "the last design before cutting",
+            }
+        )?;
+    }
+    Ok(text)
+}
+
+/// Errors against rays, of each size at its own epochs.
+fn curves(fits: &[Fit]) -> Vec<Curve> {
+    let mut curves: Vec<Curve> = Vec::new();
+    let longest = |size: &str| {
+        let epochs = fits.iter().filter(|fit| fit.case.size == size);
+        epochs.map(|fit| fit.case.config.epochs).max()
+    };
+    for Fit { case, errors, .. } in fits {
+        if longest(&case.size) != Some(case.config.epochs) {
+            continue;
+        }
+        if curves.last().is_none_or(|curve| curve.title != case.size) {
+            curves.push(Curve {
+                title: case.size.clone(),
+                ..Curve::default()
+            });
+        }
+        if let Some(curve) = curves.last_mut() {
+            let rays = case.rays as f64;
+            curve.energy.push((rays, percents(errors)[0]));
+            curve.forces.push((rays, forces(errors)));
+        }
+    }
+    curves
+}
