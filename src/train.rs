@@ -184,11 +184,13 @@ impl TrainCommand {
         println!(
             "forces of {} networks: they differ by {:.3}, their mean errs by {:.3} (in units of the \
              forces' RMS);\nthe tenth of the states where they differ most holds {:.0} % of the \
-             squared error\n",
+             squared error; \
+             the logarithms of deviation and error correlate by {:.2}\n",
             members.len(),
             check.deviation,
             check.error,
-            100.0 * check.error_in_top_tenth
+            100.0 * check.error_in_top_tenth,
+            check.correlation
         );
         Ok(())
     }

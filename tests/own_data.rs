@@ -50,7 +50,7 @@ fn workplace() -> Workplace {
         &[
             ("[64, 64, 32]", "[24, 24, 12]"),
             ("epochs = 300", "epochs = 150"),
-            ("batch_size = 128", "batch_size = 32"),
+            ("batch_size = 64", "batch_size = 32"),
         ],
     );
     work

@@ -83,7 +83,7 @@ pub struct TestErrors {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ErrorBin {
-    /// `theta_deg`, `w_lig`, `alpha_deg`, or `edge`: the distance from the nearest side of the
+    /// `eta_a`, `eta_s`, `theta_deg`, `w_lig`, `alpha_deg`, or `edge`: the distance from the nearest side of the
     /// training domain over that side's length.
     pub quantity: String,
     /// Lower and upper end; the upper belongs to the next bin.

@@ -20,7 +20,11 @@ struct File {
 
 impl File {
     fn new() -> Self {
-        let bytes = std::fs::read(cases().join("chi_tiny.safetensors")).unwrap();
+        Self::of("chi_tiny")
+    }
+
+    fn of(name: &str) -> Self {
+        let bytes = std::fs::read(cases().join(name).with_extension("safetensors")).unwrap();
         let file = SafeTensors::deserialize(&bytes).unwrap();
         let tensors = file.iter().map(|(name, view)| {
             let tensor = (view.dtype(), view.shape().to_vec(), view.data().to_vec());
@@ -29,7 +33,7 @@ impl File {
         Self {
             folder: tempfile::tempdir().unwrap(),
             tensors: tensors.collect(),
-            card: std::fs::read_to_string(cases().join("chi_tiny.json")).unwrap(),
+            card: std::fs::read_to_string(cases().join(name).with_extension("json")).unwrap(),
         }
     }
 
@@ -161,7 +165,7 @@ fn cards_of_other_versions_shapes_and_trainings_are_refused() {
         file.card = file.card.replace(from, to);
         file.load().unwrap_err()
     };
-    for found in [0, 3] {
+    for found in [0, 4] {
         let error = with_card(
             "\"format_version\": 1",
             &format!("\"format_version\": {found}"),
@@ -314,4 +318,39 @@ fn zero_and_huge_weights_stay_finite() {
     };
     assert_eq!(scaled(0.0), 0.0);
     assert!(scaled(1e100).is_finite());
+}
+
+#[test]
+fn the_second_damage_output_is_checked_like_the_first() {
+    let with = |factor: f64| {
+        let mut file = File::of("chi_peak");
+        let last = file
+            .tensors
+            .keys()
+            .filter(|name| name.starts_with("chi_d.") && name.ends_with("bias"));
+        let last = last.max().unwrap().clone();
+        let mut biases = file.values(&last);
+        assert_eq!(biases.len(), 2);
+        biases[1] *= factor;
+        file.set(&last, &[2], &biases);
+        file
+    };
+    for factor in [f64::NAN, f64::INFINITY] {
+        let error = with(factor).invalid();
+        assert!(
+            matches!(error, InvalidWeights::NotFinite { index: 1, .. }),
+            "{error}"
+        );
+    }
+    let state = HingeDeformation::from([1.0, -2.0, 0.7]);
+    for factor in [0.0, 1e100, -1e100] {
+        let surrogate = with(factor).load().unwrap();
+        let damage = surrogate.damage(&[design(18.0, 1.2)], &[state])[0];
+        assert!(
+            damage
+                .d_peak
+                .is_some_and(|peak| peak >= 0.0 && peak.is_finite())
+        );
+        assert!(damage.peak_gradient.iter().all(|slope| slope.is_finite()));
+    }
 }

@@ -11,12 +11,15 @@ const BINS: usize = 5;
 /// What a row is binned by.
 type Quantity<'a> = &'a dyn Fn(&Row) -> f64;
 
-/// Errors on `rows`, of which `parity` tells targets and predictions, by rotation, ligament width,
-/// cut angle, and distance from the edge of the domain; bins without a row are left out.
+/// Errors on `rows`, of which `parity` tells targets and predictions, by compression, shear,
+/// rotation, ligament width, cut angle, and distance from the edge of the domain; bins without a
+/// row are left out.
 pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain) -> Vec<ErrorBin> {
     let degrees = |[least, greatest]: [f64; 2]| [least.to_degrees(), greatest.to_degrees()];
     let edge = |row: &Row| edge_distance(row, domain);
-    let quantities: [(&str, [f64; 2], Quantity); 4] = [
+    let quantities: [(&str, [f64; 2], Quantity); 6] = [
+        ("eta_a", domain.eta_a, &|row| row.eta()[0]),
+        ("eta_s", domain.eta_s, &|row| row.eta()[1]),
         ("theta_deg", degrees(domain.theta), &|row| {
             row.sample.theta.to_degrees()
         }),
@@ -118,7 +121,7 @@ mod tests {
             ..Parity::default()
         };
         let bins = error_bins(&parity, &rows, &DOMAIN);
-        for quantity in ["theta_deg", "w_lig", "alpha_deg", "edge"] {
+        for quantity in ["eta_a", "eta_s", "theta_deg", "w_lig", "alpha_deg", "edge"] {
             let of = bins.iter().filter(|bin| bin.quantity == quantity);
             assert_eq!(
                 of.map(|bin| bin.errors.rows).sum::<usize>(),

@@ -19,6 +19,8 @@ pub struct EnsembleCheck {
     /// Share of the squared error on the tenth of the rows with the greatest deviation: a tenth
     /// if the deviation tells nothing.
     pub error_in_top_tenth: f64,
+    /// Correlation over the rows of the logarithms of deviation and error.
+    pub correlation: f64,
 }
 
 impl EnsembleCheck {
@@ -44,6 +46,11 @@ impl EnsembleCheck {
                 [deviation, error]
             })
             .collect();
+        let logarithms = |k: usize| {
+            let squares = of_rows.iter().map(move |row| row[k]);
+            squares.map(|square| square.max(f64::MIN_POSITIVE).ln())
+        };
+        let correlation = correlation(logarithms(0).zip(logarithms(1)));
         of_rows.sort_by(|left, right| right[0].total_cmp(&left[0]));
         let sum = |rows: &[[f64; 2]], k: usize| rows.iter().map(|row| row[k]).sum::<f64>();
         let top = &of_rows[..rows.len().div_ceil(10)];
@@ -51,7 +58,26 @@ impl EnsembleCheck {
             deviation: (sum(&of_rows, 0) / rows.len() as f64).sqrt(),
             error: (sum(&of_rows, 1) / rows.len() as f64).sqrt(),
             error_in_top_tenth: sum(top, 1) / sum(&of_rows, 1),
+            correlation,
         }
+    }
+}
+
+/// Pearson's; zero if one of the two is constant.
+fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
+    let mean = |value: fn((f64, f64)) -> f64| {
+        let (count, sum) = pairs
+            .clone()
+            .fold((0.0, 0.0), |(n, sum), pair| (n + 1.0, sum + value(pair)));
+        sum / count
+    };
+    let (x, y) = (mean(|pair| pair.0), mean(|pair| pair.1));
+    let covariance = mean(|(x, y)| x * y) - x * y;
+    let variances = (mean(|(x, _)| x * x) - x * x) * (mean(|(_, y)| y * y) - y * y);
+    if variances > 0.0 {
+        covariance / variances.sqrt()
+    } else {
+        0.0
     }
 }
 
@@ -63,4 +89,18 @@ fn forces(surrogate: &Surrogate, rows: &[Row]) -> Vec<[f64; 3]> {
     let prepared = surrogate.prepare(&designs);
     let energies = surrogate.evaluate(&prepared, &states, Order::Forces);
     energies.iter().map(|energy| energy.forces).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn correlation_is_one_on_a_line_and_zero_of_a_constant() {
+        let line = [1.0, 2.0, 4.0].map(|x| (x, 3.0 * x - 1.0));
+        assert!((correlation(line.into_iter()) - 1.0).abs() < 1e-12);
+        let falling = line.map(|(x, y)| (x, -y));
+        assert!((correlation(falling.into_iter()) + 1.0).abs() < 1e-12);
+        assert_eq!(correlation(line.map(|(x, _)| (x, 5.0)).into_iter()), 0.0);
+    }
 }

@@ -18,7 +18,7 @@
 //! | `training` | the loop: steps, best epoch |
 //! | `state` | a training on disk, to go on from |
 //! | `validation` | errors on rows held out |
-//! | `bins` | the same by rotation, width, angle and distance from the edge |
+//! | `bins` | the same by compression, shear, rotation, width, angle and distance from the edge |
 //! | `stiffness` | the learned tangent against the finite elements |
 //! | `ensemble` | networks of other seeds as a measure of error |
 //! | `export` | Burn to `surrogate` |

@@ -1,8 +1,8 @@
 //! Muon for the matrices of the embedding, Adam for everything else.
 //!
 //! Muon takes the nearest orthogonal matrix of the averaged gradient, so that directions in which
-//! the loss is flat move as far as steep ones. The forces are fitted to a third of Adam's error in
-//! the same number of steps; the damage head, which overfits with it, stays with Adam.
+//! the loss is flat move as far as steep ones. In the same number of steps the forces are fitted to
+//! about half of Adam's error; the damage head, which overfits with it, stays with Adam.
 
 use crate::config::TrainingConfig;
 use burn::grad_clipping::GradientClippingConfig;

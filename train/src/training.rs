@@ -1,5 +1,5 @@
-//! The training loop: steps of the optimiser on a cosine schedule, of each network the
-//! epoch with the least validation error kept.
+//! The training loop: steps on a cosine schedule; each network is kept from the epoch of its least
+//! validation error.
 
 use crate::backend::Backend;
 use crate::bins::error_bins;
