@@ -1,0 +1,79 @@
+//! The errors of a surrogate against the number of rays it was trained on.
+
+use super::*;
+
+/// Test errors of one network size against the number of training rays.
+#[derive(Default)]
+pub struct Curve {
+    pub title: String,
+    /// (rays, error of W in percent)
+    pub energy: Vec<(f64, f64)>,
+    /// (rays, error of the forces in percent)
+    pub forces: Vec<(f64, f64)>,
+}
+
+/// Errors against rays, both on logarithmic axes: the energy's beside the forces'.
+pub fn against_rays(curves: &[Curve]) -> Result<String> {
+    drawn((1000, 420), |root| {
+        type Points = fn(&Curve) -> &[(f64, f64)];
+        let quantities: [(&str, Points); 2] = [
+            ("energy W", |curve| &curve.energy),
+            ("forces", |curve| &curve.forces),
+        ];
+        for (area, (title, points)) in root.split_evenly((1, 2)).iter().zip(quantities) {
+            let lines: Vec<_> = curves
+                .iter()
+                .map(|it| (it.title.as_str(), points(it)))
+                .collect();
+            rays_chart(area, title, &lines)?;
+        }
+        Ok(())
+    })
+}
+
+fn rays_chart(area: &Area, title: &str, lines: &[(&str, &[(f64, f64)])]) -> DrawResult {
+    let all = || lines.iter().flat_map(|(_, points)| *points);
+    let margin = |values: Vec<f64>| {
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let greatest = values.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        (0.8 * least.min(greatest)..1.25 * greatest).log_scale()
+    };
+    let mut chart = ChartBuilder::on(area)
+        .caption(title, (FONT, 15))
+        .margin(10)
+        .x_label_area_size(38)
+        .y_label_area_size(56)
+        .build_cartesian_2d(
+            margin(all().map(|point| point.0).collect()),
+            margin(all().map(|point| point.1).collect()),
+        )?;
+    chart
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .label_style((FONT, 12))
+        .x_desc("training rays")
+        .y_desc("error on unseen geometries, %")
+        .draw()?;
+    for (&(name, points), &colour) in lines.iter().zip(SLICES.iter().cycle()) {
+        chart
+            .draw_series(LineSeries::new(
+                points.iter().copied(),
+                colour.stroke_width(2),
+            ))?
+            .label(name)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+        chart.draw_series(
+            points
+                .iter()
+                .map(|&point| Circle::new(point, 3, colour.filled())),
+        )?;
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .label_font((FONT, 13))
+        .border_style(GUIDE)
+        .background_style(WHITE)
+        .draw()?;
+    Ok(())
+}
