@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Workplace, failure};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const DEMO: &str = "configs/campaigns/demo.toml";
 const SCENE: &str = "configs/scenes/linear-7x7.toml";
@@ -92,19 +92,23 @@ fn missing_programs_tell_how_to_get_them() {
     );
 }
 
+/// A ccx that answers with its version, and else does `body` and fails.
+fn failing_ccx(work: &Workplace, body: &str) -> PathBuf {
+    use std::os::unix::fs::PermissionsExt;
+    let path = work.path("ccx");
+    let script = format!(
+        "#!/bin/sh\n[ \"$1\" = -v ] && echo 'This is Version 2.20' && exit 0\n{body}; exit 201\n"
+    );
+    std::fs::write(&path, script).unwrap();
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+    path
+}
+
 #[test]
 fn a_solver_that_fails_is_quoted_and_what_is_finished_is_kept() {
-    use std::os::unix::fs::PermissionsExt;
     let work = Workplace::new();
-    let fake = work.path("ccx");
-    let script = "#!/bin/sh\n[ \"$1\" = -v ] && echo 'This is Version 2.20' && exit 0\n\
-                  echo ' *ERROR reading *SOLID SECTION'; exit 201\n";
-    std::fs::write(&fake, script).unwrap();
-    std::fs::set_permissions(&fake, std::fs::Permissions::from_mode(0o755)).unwrap();
-    let message = failure(
-        work.kirigami("solve --tier tiny")
-            .env("KIRIGAMI_CCX", &fake),
-    );
+    let ccx = failing_ccx(&work, "echo ' *ERROR reading *SOLID SECTION'");
+    let message = failure(work.kirigami("solve --tier tiny").env("KIRIGAMI_CCX", &ccx));
     assert!(
         message.contains("*ERROR reading *SOLID SECTION"),
         "{message}"
@@ -117,35 +121,22 @@ fn a_solver_that_fails_is_quoted_and_what_is_finished_is_kept() {
 
 #[test]
 fn a_study_of_which_nothing_was_solved_is_an_error() {
-    use std::os::unix::fs::PermissionsExt;
     let work = Workplace::new();
-    let fake = work.path("ccx");
-    let script = "#!/bin/sh\n[ \"$1\" = -v ] && echo 'This is Version 2.20' && exit 0\n\
-                  echo ' *ERROR reading *SOLID SECTION'; exit 201\n";
-    std::fs::write(&fake, script).unwrap();
-    std::fs::set_permissions(&fake, std::fs::Permissions::from_mode(0o755)).unwrap();
-    let study = |work: &Workplace| {
+    let study = |ccx: PathBuf| {
         let mut study = work.kirigami("study window --quick --out study");
-        failure(study.env("KIRIGAMI_CCX", &fake))
+        failure(study.env("KIRIGAMI_CCX", ccx))
     };
-    let message = study(&work);
-    assert!(message.contains("before its first increment"), "{message}");
     // A broken solver is no result to keep, and a full disk ends the study.
     let kept = || {
         std::fs::read_dir(work.path("study/solutions"))
             .unwrap()
             .count()
     };
+    let message = study(failing_ccx(&work, "echo ' *ERROR reading *SOLID SECTION'"));
+    assert!(message.contains("before its first increment"), "{message}");
     assert_eq!(kept(), 0);
-    std::fs::write(
-        &fake,
-        script.replace(
-            "echo ' *ERR",
-            "echo '1 1 1U 4 0. 0. 0.005' > window.sta; echo 'No space left on device *ERR",
-        ),
-    )
-    .unwrap();
-    let message = study(&work);
+    let full = "echo '1 1 1U 4 0. 0. 0.005' > window.sta; echo 'No space left on device'";
+    let message = study(failing_ccx(&work, full));
     assert!(message.contains("No space left"), "{message}");
     assert_eq!(kept(), 0);
 }
