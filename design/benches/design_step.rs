@@ -14,7 +14,7 @@ use design::hinge_law::{HingeLaw, LinearLaw, SurrogateLaw};
 use design::objective::{Objective, OutlinePoints};
 use design::path_functionals::PerFunctional;
 use design::pattern::Outline;
-use design::sheet::{Centroid, CutProcess, HingePoint, SheetOptions};
+use design::sheet::{Centroid, HingePoint, SheetOptions};
 use divan::{Bencher, black_box};
 use hinge::{HingeConstants, TrainingDomain};
 use surrogate::{Card, FEATURE_NAMES, Layer, Surrogate, Tensor, TestErrors};
@@ -81,7 +81,7 @@ fn problem(
         options: SheetOptions {
             hinge_point,
             centroid: Centroid::Area,
-            process: CutProcess {
+            process: HingeConstants {
                 fillet_ratio: 0.16,
                 kerf: 0.2,
                 r_win: 100.0,

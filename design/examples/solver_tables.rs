@@ -16,7 +16,8 @@ use design::hinge_law::LinearLaw;
 use design::objective::{Objective, OutlinePoints};
 use design::path_functionals::PerFunctional;
 use design::pattern::Outline;
-use design::sheet::{Centroid, CutProcess, HingePoint, SheetOptions};
+use design::sheet::{Centroid, HingePoint, SheetOptions};
+use hinge::HingeConstants;
 use std::time::Instant;
 
 const TIGHT: f64 = 1e-13;
@@ -70,7 +71,7 @@ fn problem(grid: Grid, stiffness: f64, settings: SolverSettings) -> DesignProble
         options: SheetOptions {
             hinge_point: HingePoint::Corner,
             centroid: Centroid::Area,
-            process: CutProcess {
+            process: HingeConstants {
                 fillet_ratio: 0.16,
                 kerf: 0.2,
                 r_win: 100.0,

@@ -373,7 +373,8 @@ mod tests {
     use crate::objective::{Objective, OutlinePoints};
     use crate::path_functionals::PerFunctional;
     use crate::pattern::Outline;
-    use crate::sheet::{Centroid, CutProcess, HingePoint, SheetOptions};
+    use crate::sheet::{Centroid, HingePoint, SheetOptions};
+    use hinge::HingeConstants;
 
     fn problem(grid: Grid) -> DesignProblem {
         DesignProblem {
@@ -386,7 +387,7 @@ mod tests {
             options: SheetOptions {
                 hinge_point: HingePoint::Corner,
                 centroid: Centroid::Area,
-                process: CutProcess {
+                process: HingeConstants {
                     fillet_ratio: 0.16,
                     kerf: 0.01,
                     r_win: 0.3,

@@ -21,10 +21,10 @@ pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 use crate::equilibrium::{Method, SolverSettings};
 use crate::gradient::DesignError;
 use crate::objective::OutlinePoints;
-use crate::sheet::{Centroid, CutProcess, HingePoint, SheetOptions};
+use crate::sheet::{Centroid, HingePoint, SheetOptions};
 use crate::target::{Target, TargetError, TargetShape};
 use hinge::config::ConfigError;
-use hinge::{MaterialError, SheetMaterial};
+use hinge::{HingeConstants, MaterialError, SheetMaterial};
 use hinge_model::LoadedHinge;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -53,7 +53,7 @@ pub struct SceneConfig {
     /// Where the search starts; by default the uniform sheet.
     #[serde(default)]
     pub start: StartConfig,
-    pub process: CutProcess,
+    pub process: HingeConstants,
     /// Read if `hinge = "pin"`.
     pub pin: Option<PinConfig>,
     /// Constants of (11); read if `hinge = "linear"`.

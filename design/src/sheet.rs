@@ -15,7 +15,7 @@ use crate::pattern::{CutPattern, Outline};
 use crate::plane::{I, add, complex, cross, dot, point};
 use crate::topology::{HingeSite, PanelCorner, hinge_sites, panel_endpoints};
 use faer::c64;
-use hinge::HingeDesign;
+use hinge::{HingeConstants, HingeDesign};
 use serde::{Deserialize, Serialize};
 
 /// Why a pattern and its ligament widths make no sheet.
@@ -53,24 +53,12 @@ pub enum Centroid {
     Vertices,
 }
 
-/// Constants of the cutting process that enter every hinge design (7).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CutProcess {
-    /// Hole radius at the cut tips, as a multiple of w_lig.
-    pub fillet_ratio: f64,
-    /// mm
-    pub kerf: f64,
-    /// mm
-    pub r_win: f64,
-}
-
 /// Choices that turn a pattern into a sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SheetOptions {
     pub hinge_point: HingePoint,
     pub centroid: Centroid,
-    pub process: CutProcess,
+    pub process: HingeConstants,
 }
 
 /// A rigid panel in the flat sheet.
@@ -186,21 +174,8 @@ impl Sheet {
 
     /// The design vectors g of the hinges; (7).
     pub fn designs(&self) -> Vec<HingeDesign> {
-        let CutProcess {
-            fillet_ratio,
-            kerf,
-            r_win,
-        } = self.options.process;
-        self.hinges
-            .iter()
-            .map(|hinge| HingeDesign {
-                w_lig: hinge.w_lig,
-                alpha: hinge.alpha,
-                fillet_ratio,
-                kerf,
-                r_win,
-            })
-            .collect()
+        let design = |hinge: &Hinge| self.options.process.hinge(hinge.w_lig, hinge.alpha);
+        self.hinges.iter().map(design).collect()
     }
 
     /// The panel corners on the outline, counter-clockwise from the south-west: (panel, corner).

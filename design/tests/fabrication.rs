@@ -13,9 +13,9 @@ use design::charts::PatternCoordinates;
 use design::fabrication::{CutLines, FabricationError, write_dxf, write_svg};
 use design::grid::Grid;
 use design::pattern::{CutPattern, Outline};
-use design::sheet::{Centroid, CutProcess, HingePoint, Sheet, SheetOptions};
+use design::sheet::{Centroid, HingePoint, Sheet, SheetOptions};
 use dxf::entities::EntityType;
-use hinge::SheetMaterial;
+use hinge::{HingeConstants, SheetMaterial};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -41,7 +41,7 @@ fn sheet(grid: Grid, coordinates: &PatternCoordinates, w_lig: f64) -> (CutPatter
     let options = SheetOptions {
         hinge_point: HingePoint::CutTip,
         centroid: Centroid::Area,
-        process: CutProcess {
+        process: HingeConstants {
             fillet_ratio: FILLET_RATIO,
             kerf: KERF,
             r_win: 100.0,

@@ -4,10 +4,10 @@ use crate::StepControl;
 use crate::further_rays::{FurtherRaysError, read_further_rays};
 use crate::job::{FileError, JobSpec, ToolVersions};
 use crate::ray::Ray;
-use crate::sampling::{CommonDesign, RayBox};
+use crate::sampling::RayBox;
 use crate::window_solve::{SolveError, WindowProblem};
 use hinge::config::{self, ConfigError};
-use hinge::{InvalidDesign, MaterialError, SheetMaterial};
+use hinge::{HingeConstants, InvalidDesign, MaterialError, SheetMaterial};
 use mesher::Tier;
 use mesher::tool::ToolError;
 use serde::Deserialize;
@@ -26,7 +26,7 @@ pub struct Campaign {
     pub seed: u64,
     /// Time limit of one solve.
     pub time_limit: Duration,
-    pub design: CommonDesign,
+    pub design: HingeConstants,
     pub rays: RayBox,
     /// Rays besides those of the box, solved after them.
     pub further: Vec<Ray>,
@@ -88,7 +88,7 @@ struct CampaignFile {
     seed: u64,
     time_limit_s: f64,
     further_rays: Option<PathBuf>,
-    design: CommonDesign,
+    design: HingeConstants,
     rays: RayBox,
 }
 

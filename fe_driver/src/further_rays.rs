@@ -4,8 +4,7 @@
 //! row, named by the campaign's key `further_rays`; lines that start with `#` are comments.
 
 use crate::ray::Ray;
-use crate::sampling::CommonDesign;
-use hinge::HingeDeformation;
+use hinge::{HingeConstants, HingeDeformation};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
@@ -40,7 +39,10 @@ struct Row {
 }
 
 /// Reads the rays of hinges that have `common` in common.
-pub fn read_further_rays(path: &Path, common: &CommonDesign) -> Result<Vec<Ray>, FurtherRaysError> {
+pub fn read_further_rays(
+    path: &Path,
+    common: &HingeConstants,
+) -> Result<Vec<Ray>, FurtherRaysError> {
     let mut rays = Vec::new();
     for (i, row) in read_rows(path)?.into_iter().enumerate() {
         let ray = row.ray(common);
@@ -147,7 +149,7 @@ impl Row {
         }
     }
 
-    fn ray(&self, common: &CommonDesign) -> Ray {
+    fn ray(&self, common: &HingeConstants) -> Ray {
         let theta = self.theta_deg.to_radians();
         let ray = Ray {
             design: common.hinge(self.w_lig, self.alpha_deg.to_radians()),
@@ -182,7 +184,7 @@ impl Row {
 mod tests {
     use super::*;
 
-    const COMMON: CommonDesign = CommonDesign {
+    const COMMON: HingeConstants = HingeConstants {
         fillet_ratio: 0.16,
         kerf: 0.2,
         r_win: 100.0,

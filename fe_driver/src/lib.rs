@@ -47,7 +47,7 @@ pub use ray::Ray;
 pub use restore::restore;
 pub use retry::retry;
 pub use run::{Progress, RunOptions, run};
-pub use sampling::{CommonDesign, RayBox};
+pub use sampling::RayBox;
 pub use shard::{InvalidShard, Shard};
 pub use sta::{Attempt, read_sta};
 pub use study::{

@@ -14,7 +14,7 @@
 //! (1 + eta_a)^2 + eta_s^2 <= 1.
 
 use crate::ray::Ray;
-use hinge::{HingeDeformation, HingeDesign};
+use hinge::{HingeConstants, HingeDeformation};
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -26,31 +26,6 @@ const BLOCK: usize = 40;
 const ROTATION_EVERY: usize = 8;
 /// Coordinates of the hypercube: log w_lig, alpha, theta, eta_a, eta_s.
 const DIMENSIONS: usize = 5;
-
-/// What the hinges of a campaign have in common.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CommonDesign {
-    /// Radius of the hole about O, over w_lig.
-    pub fillet_ratio: f64,
-    /// mm
-    pub kerf: f64,
-    /// mm
-    pub r_win: f64,
-}
-
-impl CommonDesign {
-    /// The hinge of width `w_lig` (mm) and cut angle `alpha` (rad).
-    pub(crate) fn hinge(&self, w_lig: f64, alpha: f64) -> HingeDesign {
-        HingeDesign {
-            w_lig,
-            alpha,
-            fillet_ratio: self.fillet_ratio,
-            kerf: self.kerf,
-            r_win: self.r_win,
-        }
-    }
-}
 
 /// The box of designs and ray ends.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -72,7 +47,7 @@ pub struct RayBox {
 
 impl RayBox {
     /// The first `count` rays of the campaign with this seed.
-    pub fn rays(&self, common: &CommonDesign, count: usize, seed: u64) -> Vec<Ray> {
+    pub fn rays(&self, common: &HingeConstants, count: usize, seed: u64) -> Vec<Ray> {
         (0..count.div_ceil(BLOCK) as u64)
             .flat_map(|block| {
                 let mut random = ChaCha8Rng::seed_from_u64(seed);
@@ -86,7 +61,7 @@ impl RayBox {
     }
 
     /// The ray at a point of the unit cube.
-    fn ray(&self, common: &CommonDesign, point: [f64; DIMENSIONS], pure_rotation: bool) -> Ray {
+    fn ray(&self, common: &HingeConstants, point: [f64; DIMENSIONS], pure_rotation: bool) -> Ray {
         let [log_w, alpha, theta, eta_a, eta_s] = point;
         let between = |[from, to]: [f64; 2], share: f64| from + (to - from) * share;
         let w_lig = between(self.w_lig.map(f64::ln), log_w).exp();
@@ -173,7 +148,7 @@ mod tests {
         theta_deg: [5.0, 75.0],
         full_range_deg: 30.0,
     };
-    const COMMON: CommonDesign = CommonDesign {
+    const COMMON: HingeConstants = HingeConstants {
         fillet_ratio: 0.16,
         kerf: 0.2,
         r_win: 100.0,

@@ -4,12 +4,13 @@ use design::actuation::{Dof, Load, Support};
 use design::charts::PatternCoordinates;
 use design::grid::Grid;
 use design::pattern::{CutPattern, Outline};
-use design::sheet::{Centroid, CutProcess, HingePoint, Sheet, SheetOptions};
+use design::sheet::{Centroid, HingePoint, Sheet, SheetOptions};
+use hinge::HingeConstants;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 /// What a window needs besides w_lig and alpha; no case reads it.
-pub const PROCESS: CutProcess = CutProcess {
+pub const PROCESS: HingeConstants = HingeConstants {
     fillet_ratio: 0.16,
     kerf: 0.2,
     r_win: 100.0,
