@@ -86,9 +86,9 @@ pub enum SolveError {
     Mesh(#[from] MeshError),
     #[error(transparent)]
     Solver(#[from] ToolError),
-    #[error("the solver ended with {status} before its first increment; its log ends:\n{tail}")]
+    #[error("the solver ended with {status} before its first increment\nits log ends:\n{tail}")]
     NotStarted { status: ExitStatus, tail: String },
-    #[error("the solver diverged at lambda = {lambda}; its log ends:\n{tail}")]
+    #[error("the solver diverged at lambda = {lambda}\nits log ends:\n{tail}")]
     Diverged { lambda: f64, tail: String },
     #[error("the solver claims to have finished, but its output ends at lambda = {lambda}")]
     Truncated { lambda: f64 },

@@ -56,7 +56,11 @@ impl WindowStudy {
         for (case, outcome) in cases.into_iter().zip(outcomes) {
             match outcome {
                 Ok(solution) => rows.push((case, solution)),
-                Err(reason) => writeln!(failures, "* {}: {reason}", title(&case))?,
+                Err(reason) => {
+                    // What the log ends with is for who runs a case alone.
+                    let reason = reason.lines().next().unwrap_or_default();
+                    writeln!(failures, "* {}: {reason}", title(&case))?;
+                }
             }
         }
         ensure!(
