@@ -1,13 +1,16 @@
 //! A campaign that is killed again and again, or whose folder is lost: the database is the same.
 
 mod common;
+#[path = "../fe_driver/tests/common/processes.rs"]
+mod processes;
 
 use common::Workplace;
 use dataset::{Database, Row};
+use processes::left_running;
 use std::os::unix::fs::PermissionsExt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 const CAMPAIGN: &str = "configs/campaigns/demo.toml";
 
@@ -197,20 +200,4 @@ fn a_run_that_ends_early_says_so_by_its_exit_code() {
         .output(&format!("database plan {arguments} --json"));
     let plan: serde_json::Value = serde_json::from_str(&plan).unwrap();
     assert_eq!(plan["reasons"], serde_json::json!({}));
-}
-
-/// Working folders under `folder` of processes that still run, given a moment to die of SIGKILL.
-fn left_running(folder: &Path) -> Vec<PathBuf> {
-    let running = || -> Vec<PathBuf> {
-        let processes = std::fs::read_dir("/proc").unwrap().flatten();
-        processes
-            .filter_map(|process| std::fs::read_link(process.path().join("cwd")).ok())
-            .filter(|cwd| cwd.starts_with(folder))
-            .collect()
-    };
-    let deadline = Instant::now() + Duration::from_secs(5);
-    while !running().is_empty() && Instant::now() < deadline {
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    running()
 }

@@ -2,7 +2,7 @@
 
 use crate::campaign::CampaignError;
 use crate::failure::FailureKind;
-use crate::job::{JobSpec, ToolVersions};
+use crate::job::{JobSpec, ToolVersions, short_hash};
 use crate::ledger::CampaignFolder;
 use hinge::{HingeDesign, HingeSample};
 use mesher::Tier;
@@ -71,13 +71,11 @@ fn finished(folder: &CampaignFolder, id: String) -> Result<Option<FinishedJob>, 
 
 fn settings_hash(spec: &JobSpec) -> String {
     let problem = &spec.problem;
-    let settings = (
+    short_hash(&(
         problem.tier,
         &spec.mesh,
         &problem.step,
         &spec.tools,
         spec.recipe_version,
-    );
-    let text = serde_json::to_vec(&settings).expect("settings are numbers and text");
-    blake3::hash(&text).to_hex()[..16].to_owned()
+    ))
 }

@@ -33,6 +33,12 @@ impl ToolVersions {
     }
 }
 
+/// What tells things apart that decide a result: 16 hexadecimal digits of the hash of their JSON.
+pub(crate) fn short_hash(decisive: &impl Serialize) -> String {
+    let text = serde_json::to_vec(decisive).expect("what decides a result is numbers and text");
+    blake3::hash(&text).to_hex()[..16].to_owned()
+}
+
 /// Everything that decides the result of a job; what its id is a hash of.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JobSpec {
@@ -55,8 +61,7 @@ impl JobSpec {
 
     /// The id: 16 hexadecimal digits.
     pub fn id(&self) -> String {
-        let text = serde_json::to_vec(self).expect("a spec is numbers and text");
-        blake3::hash(&text).to_hex()[..16].to_owned()
+        short_hash(self)
     }
 
     /// What differs from `other`, in words; empty if only the ray does.

@@ -2,7 +2,7 @@
 
 use crate::deck::StepControl;
 use crate::failure::FailureKind;
-use crate::job::{FileError, read_json, write_json};
+use crate::job::{FileError, read_json, short_hash, write_json};
 use crate::path::DeformationPath;
 use crate::window_solve::{SolveError, Tools, WindowModel};
 use hinge::{HingeDesign, HingeSample, SheetMaterial};
@@ -71,9 +71,7 @@ impl KeptSolve {
 
     /// Its name is the same only for what solves the same.
     fn file(&self, kept: &Path) -> PathBuf {
-        let text = serde_json::to_vec(self).expect("a solve is numbers and text");
-        let id = &blake3::hash(&text).to_hex()[..16];
-        kept.join(id).with_extension("json")
+        kept.join(short_hash(self)).with_extension("json")
     }
 
     fn solve(

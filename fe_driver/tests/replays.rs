@@ -3,6 +3,7 @@
 
 mod common;
 
+use common::processes::left_running;
 use common::{TWO_WORKERS, campaign, fake_ccx, jobs, run_with};
 use fe_driver::{
     Campaign, CampaignError, Ccx, FailureKind, FinishedJob, RunOptions, Shard, Tally, ToolVersions,
@@ -10,7 +11,7 @@ use fe_driver::{
 };
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 const RAYS: usize = 3;
 
@@ -313,20 +314,4 @@ fn what_was_collected_is_not_solved_again() {
     other.material.young += 1.0;
     let error = restore(&other, folder, &collected).unwrap_err();
     assert!(matches!(error, CampaignError::Stranger(_)), "{error}");
-}
-
-/// Working folders under `folder` of processes that still run, given a moment to die of SIGKILL.
-fn left_running(folder: &Path) -> Vec<PathBuf> {
-    let running = || -> Vec<PathBuf> {
-        let processes = std::fs::read_dir("/proc").unwrap().flatten();
-        processes
-            .filter_map(|process| std::fs::read_link(process.path().join("cwd")).ok())
-            .filter(|cwd| cwd.starts_with(folder))
-            .collect()
-    };
-    let deadline = Instant::now() + Duration::from_secs(5);
-    while !running().is_empty() && Instant::now() < deadline {
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    running()
 }

@@ -1,6 +1,8 @@
 //! What the tests share: the shipped film, the paper's hinge, a problem to solve, fake solvers.
 #![allow(dead_code)] // every test program uses a part
 
+pub mod processes;
+
 use fe_driver::{
     Campaign, CampaignError, Ccx, FinishedJob, Ray, RunOptions, Shard, StepControl, Tally, Tools,
     WindowProblem, finished_jobs, run,
