@@ -208,17 +208,19 @@ impl TrainCommand {
 
     fn write_curve(&self, history: &[Epoch]) -> Result<()> {
         let mut csv = String::from(
-            "epoch,training_loss,validation_loss,validation_error,validation_damage_error,learning_rate,elapsed_s\n",
+            "epoch,training_loss,validation_loss,validation_error,validation_d_error,\
+             validation_d_peak_error,learning_rate,elapsed_s\n",
         );
         for e in history {
             writeln!(
                 csv,
-                "{},{:e},{:e},{:e},{:e},{:e},{:.3}",
+                "{},{:e},{:e},{:e},{:e},{:e},{:e},{:.3}",
                 e.epoch,
                 e.training_loss,
                 e.validation_loss,
                 e.validation_errors[0],
                 e.validation_errors[1],
+                e.validation_errors[2],
                 e.learning_rate,
                 e.elapsed_s
             )?;
@@ -298,7 +300,7 @@ fn parity_chart(parity: &Parity) -> Result<String> {
     charts::parity(&charts, ["finite elements", "surrogate"])
 }
 
-/// The product of the validation errors of the networks that were kept.
+/// The product of the validation errors of the networks of W and of D that were kept.
 fn least_error(trained: &Trained) -> f64 {
     let least = |network: usize| {
         let errors = trained

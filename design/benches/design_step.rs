@@ -17,7 +17,7 @@ use design::pattern::Outline;
 use design::sheet::{Centroid, HingePoint, SheetOptions};
 use divan::{Bencher, black_box};
 use hinge::{HingeConstants, TrainingDomain};
-use surrogate::{Card, FEATURE_NAMES, Layer, Surrogate, Tensor, TestErrors};
+use surrogate::{Card, FEATURE_NAMES, Layer, Layers, Surrogate, Tensor, TestErrors};
 
 fn main() {
     divan::main();
@@ -157,6 +157,7 @@ fn network() -> SurrogateLaw {
         energy_scale: 85.0,
         damage_scale: 0.01,
         peak_scale: None,
+        damage_sharpness: 8.0,
         domain: TrainingDomain {
             eta_a: [-0.5, 0.5],
             eta_s: [-0.5, 0.5],
@@ -180,8 +181,12 @@ fn network() -> SurrogateLaw {
         test_errors: TestErrors::default(),
         error_bins: Vec::new(),
     };
-    let chi = layers(&[5, 256, 256, 256, 128]);
-    SurrogateLaw::new(Surrogate::from_parts(chi, layers(&[5, 256, 256, 1]), card).unwrap())
+    let networks = Layers {
+        chi: layers(&[5, 256, 256, 256, 128]),
+        chi_d: layers(&[5, 256, 256, 1]),
+        chi_p: None,
+    };
+    SurrogateLaw::new(Surrogate::from_parts(networks, card).unwrap())
 }
 
 fn assert_equilibria(problem: &DesignProblem, design: &DesignVector) {

@@ -5,7 +5,7 @@
 
 use hinge::{HingeConstants, HingeDeformation, HingeDesign, TrainingDomain};
 use surrogate::{
-    Card, FEATURE_NAMES, FORMAT_VERSION, Layer, Order, Standardisation, Surrogate, Tensor,
+    Card, FEATURE_NAMES, FORMAT_VERSION, Layer, Layers, Order, Standardisation, Surrogate, Tensor,
     TestErrors, UNITS,
 };
 
@@ -36,8 +36,11 @@ fn damage(bencher: divan::Bencher) {
 
 fn case() -> (Surrogate, Vec<HingeDesign>, Vec<HingeDeformation>) {
     let surrogate = Surrogate::from_parts(
-        layers(&[5, 256, 256, 256, 128]),
-        layers(&[5, 256, 256, 2]),
+        Layers {
+            chi: layers(&[5, 256, 256, 256, 128]),
+            chi_d: layers(&[5, 256, 256, 1]),
+            chi_p: Some(layers(&[5, 256, 256, 1])),
+        },
         card(),
     )
     .expect("the weights are finite and the shapes fit");
@@ -96,6 +99,7 @@ fn card() -> Card {
         energy_scale: 85.0,
         damage_scale: 0.012,
         peak_scale: Some(0.3),
+        damage_sharpness: 8.0,
         domain: TrainingDomain {
             eta_a: [-0.5, 0.25],
             eta_s: [-0.35, 0.35],

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 /// Version of the weight file and its card that this crate writes; it reads those before too.
 ///
 /// 1: the damage head predicts D. 2: it may predict D_peak too; errors by bins. 3: the hashes of
-/// the material law and of the campaign's settings.
-pub const FORMAT_VERSION: u32 = 3;
+/// the material law and of the campaign's settings. 4: D_peak has a head of its own; beta.
+pub const FORMAT_VERSION: u32 = 4;
 
 /// The units of everything a surrogate takes and returns.
 pub const UNITS: &str = "mm, N, MPa, N mm, rad";
@@ -30,9 +30,13 @@ pub struct Card {
     pub energy_scale: f64,
     /// D_s of (14).
     pub damage_scale: f64,
-    /// The same of D_peak, if the damage head predicts it.
+    /// The same of D_peak, if there is a head for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peak_scale: Option<f64>,
+    /// beta of the damage heads: how sharply they tell a ligament that yields from one that does
+    /// not.
+    #[serde(default = "one")]
+    pub damage_sharpness: f64,
     /// The box of states in the training rows.
     pub domain: TrainingDomain,
     /// The parts of the hinge design that are no feature of (13); the weights hold for these alone.
@@ -74,7 +78,7 @@ pub struct TestErrors {
     pub f_s: FitError,
     pub m_theta: FitError,
     pub damage: FitError,
-    /// Zero where the damage head does not predict it.
+    /// Zero where no head predicts it.
     #[serde(default)]
     pub damage_peak: FitError,
 }
@@ -102,7 +106,7 @@ pub struct FitError {
 }
 
 impl Card {
-    /// One scale for each output of the damage head.
+    /// Of D, and of D_peak if there is a head for it.
     pub(crate) fn damage_scales(&self) -> Vec<f64> {
         std::iter::once(self.damage_scale)
             .chain(self.peak_scale)
@@ -128,8 +132,12 @@ impl Card {
             }
         }
         let damages = self.damage_scales().into_iter();
-        let scales = std::iter::once(("w_scale".into(), self.energy_scale))
-            .chain(damages.map(|scale| ("d_scale".into(), scale)));
+        let scales = [
+            ("w_scale".into(), self.energy_scale),
+            ("damage_sharpness".into(), self.damage_sharpness),
+        ]
+        .into_iter()
+        .chain(damages.map(|scale| ("d_scale".into(), scale)));
         let deviations = FEATURE_NAMES.iter().zip(self.standardisation.std);
         let deviations = deviations.map(|(name, std)| (format!("feat_std of {name}"), std));
         for (name, value) in scales.chain(deviations) {
@@ -162,4 +170,9 @@ impl Card {
         }
         Ok(())
     }
+}
+
+/// The sharpness of the weights of before version 4.
+fn one() -> f64 {
+    1.0
 }

@@ -1,8 +1,10 @@
 //! D of (14), its peak, and their gradients in the hinge deformation and in (w_lig, alpha).
 //!
 //! ```text
-//! (D, D_peak) = (D_s, D_peak,s) softplus(chi_D(xi)),   softplus(y) = log(1 + e^y)
+//! D = D_s softplus(beta chi_D(xi)) / beta,   softplus(y) = log(1 + e^y)
 //! ```
+//!
+//! and D_peak likewise, with a network and a scale of its own.
 
 use crate::features::{FEATURES, features, pull_back};
 use crate::network::Network;
@@ -17,69 +19,45 @@ pub struct HingeDamage {
     /// dD/d(a, s, theta, w_lig, alpha).
     pub gradient: [f64; FEATURES],
     /// D_peak, the plastic strain where it is greatest over that at fracture: at one it tears.
-    /// `None` from weights of format version 1, whose head does not predict it.
+    /// `None` from weights that do not predict it.
     pub d_peak: Option<f64>,
     /// dD_peak/d(a, s, theta, w_lig, alpha); zero where there is no D_peak.
     pub peak_gradient: [f64; FEATURES],
 }
 
-/// See [`crate::Surrogate::damage`]; one scale for each output of `chi_d`.
+/// One damage and its gradient in (a, s, theta, w_lig, alpha), of each hinge.
+///
+/// `head` has one output; `sharpness` is beta.
 pub(crate) fn evaluate(
-    chi_d: &Network,
-    scales: &[f64],
+    head: &Network,
+    scale: f64,
+    sharpness: f64,
     designs: &[HingeDesign],
     deformations: &[HingeDeformation],
-) -> Vec<HingeDamage> {
-    assert_eq!(
-        designs.len(),
-        deformations.len(),
-        "one deformation for each hinge"
-    );
-    let mut damages = vec![HingeDamage::default(); designs.len()];
+) -> Vec<(f64, [f64; FEATURES])> {
     let size = chunk_size(designs.len(), 0);
-    let states = designs.chunks(size).zip(deformations.chunks(size));
+    let mut damages = Vec::with_capacity(designs.len());
     Passes::lent(|passes| {
-        for (damages, (designs, deformations)) in damages.chunks_mut(size).zip(states) {
+        for (designs, deformations) in designs.chunks(size).zip(deformations.chunks(size)) {
             let states = || designs.iter().zip(deformations);
             let xi: Vec<_> = states().map(|(g, eps)| features(g, eps)).collect();
-            passes.forward(chi_d, &xi, 0..0);
-            for (output, &scale) in scales.iter().enumerate() {
-                let values = differentiate(passes, chi_d, output);
-                for ((damage, (g, eps)), (hinge, value)) in damages
-                    .iter_mut()
-                    .zip(states())
-                    .zip(values.iter().enumerate())
-                {
-                    let gradient = passes.gradient(hinge).map(|slope| scale * slope);
-                    let gradient = pull_back(gradient, g, eps);
-                    match output {
-                        0 => (damage.d, damage.gradient) = (scale * value, gradient),
-                        _ => {
-                            damage.d_peak = Some(scale * value);
-                            damage.peak_gradient = gradient;
-                        }
-                    }
-                }
-            }
+            passes.forward(head, &xi, 0..0);
+            let outputs = passes.outputs().flatten();
+            let outputs: Vec<f64> = outputs.map(|&y| sharpness * y).collect();
+            let slopes: Vec<f64> = outputs.iter().map(|&y| logistic(y)).collect();
+            passes.reverse(head, &slopes, &mut []);
+            damages.extend(
+                states()
+                    .zip(outputs)
+                    .enumerate()
+                    .map(|(hinge, ((g, eps), y))| {
+                        let gradient = passes.gradient(hinge).map(|slope| scale * slope);
+                        (scale / sharpness * softplus(y), pull_back(gradient, g, eps))
+                    }),
+            );
         }
     });
     damages
-}
-
-/// The softplus of one output for each hinge of the chunk, leaving its gradient in `passes`.
-fn differentiate(passes: &mut Passes, chi_d: &Network, output: usize) -> Vec<f64> {
-    let mut seed = Vec::new();
-    let mut values = Vec::new();
-    for (index, block) in passes.outputs().enumerate() {
-        if index == output {
-            seed.extend(block.iter().map(|&y| logistic(y)));
-            values.extend(block.iter().map(|&y| softplus(y)));
-        } else {
-            seed.extend(block.iter().map(|_| 0.0));
-        }
-    }
-    passes.reverse(chi_d, &seed, &mut []);
-    values
 }
 
 /// log(1 + e^y) without overflow.

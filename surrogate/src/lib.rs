@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! W(eps; g) = W_s |chi(xi(eps, g)) - chi(xi(0, g))|^2
-//! D(eps; g) = D_s softplus(chi_D(xi(eps, g))),   and D_peak likewise from a second output
+//! D(eps; g) = D_s softplus(beta chi_D(xi(eps, g))) / beta,   and D_peak likewise with chi_P
 //! xi(eps, g) = [a / w_lig, s / w_lig, theta, log w_lig, alpha]                  (13)
 //! ```
 //!
@@ -41,31 +41,56 @@ pub use weights::WeightsError;
 use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
 use std::path::Path;
 
-/// The two networks of (14) with everything needed to evaluate and to describe them.
+/// The networks of (14) with everything needed to evaluate and to describe them.
 #[derive(Clone, Debug)]
 pub struct Surrogate {
     /// The embedding chi, of any number of outputs.
     chi: Network,
-    /// The damage head chi_D: D, and D_peak if it has a second output.
+    /// The damage head chi_D, of one output.
     chi_d: Network,
+    /// The same of D_peak, where the card has a scale for it.
+    chi_p: Option<Network>,
     card: Card,
+}
+
+/// The networks of a surrogate as weight files hold them, each from its first layer to its last.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layers {
+    /// The embedding chi.
+    pub chi: Vec<Layer>,
+    /// The damage head chi_D.
+    pub chi_d: Vec<Layer>,
+    /// The head of D_peak.
+    pub chi_p: Option<Vec<Layer>>,
 }
 
 impl Surrogate {
     /// Joins networks and card.
     ///
-    /// The networks take the standardised features; `chi_d` has one output for each damage scale
-    /// of the card.
-    pub fn from_parts(
-        chi: Vec<Layer>,
-        chi_d: Vec<Layer>,
-        card: Card,
-    ) -> Result<Self, InvalidWeights> {
+    /// The networks take the standardised features; each head has one output, and there is one of
+    /// D_peak if the card has a scale for it.
+    pub fn from_parts(layers: Layers, card: Card) -> Result<Self, InvalidWeights> {
         card.validate()?;
-        let chi = Network::new("chi", chi, None, &card.standardisation)?;
-        let outputs = Some(card.damage_scales().len());
-        let chi_d = Network::new("chi_d", chi_d, outputs, &card.standardisation)?;
-        Ok(Self { chi, chi_d, card })
+        let Layers { chi, chi_d, chi_p } = layers;
+        let network =
+            |name, layers, outputs| Network::new(name, layers, outputs, &card.standardisation);
+        let chi = network("chi", chi, None)?;
+        let chi_d = network("chi_d", chi_d, Some(1))?;
+        let chi_p = match (chi_p, card.peak_scale) {
+            (None, None) => None,
+            (layers, Some(_)) => Some(network("chi_p", layers.unwrap_or_default(), Some(1))?),
+            (Some(_), None) => {
+                return Err(InvalidWeights::Missing {
+                    tensor: "d_scale of chi_p".into(),
+                });
+            }
+        };
+        Ok(Self {
+            chi,
+            chi_d,
+            chi_p,
+            card,
+        })
     }
 
     /// The same surrogate with errors on its card, which can only be measured once it exists.
@@ -90,9 +115,14 @@ impl Surrogate {
         &self.card
     }
 
-    /// The layers of chi and of chi_D, as they are written.
-    pub fn layers(&self) -> [&[Layer]; 2] {
-        [self.chi.layers(), self.chi_d.layers()]
+    /// The networks as they are written.
+    pub fn layers(&self) -> Layers {
+        let layers = |network: &Network| network.layers().to_vec();
+        Layers {
+            chi: layers(&self.chi),
+            chi_d: layers(&self.chi_d),
+            chi_p: self.chi_p.as_ref().map(layers),
+        }
     }
 
     /// The box of hinge states in the training data.
@@ -143,11 +173,27 @@ impl Surrogate {
         designs: &[HingeDesign],
         deformations: &[HingeDeformation],
     ) -> Vec<HingeDamage> {
-        damage::evaluate(
-            &self.chi_d,
-            &self.card.damage_scales(),
-            designs,
-            deformations,
-        )
+        assert_eq!(
+            designs.len(),
+            deformations.len(),
+            "one deformation for each hinge"
+        );
+        let sharpness = self.card.damage_sharpness;
+        let evaluate =
+            |head, scale| damage::evaluate(head, scale, sharpness, designs, deformations);
+        let averages = evaluate(&self.chi_d, self.card.damage_scale).into_iter();
+        let mut damages: Vec<HingeDamage> = averages
+            .map(|(d, gradient)| HingeDamage {
+                d,
+                gradient,
+                ..HingeDamage::default()
+            })
+            .collect();
+        if let (Some(chi_p), Some(scale)) = (&self.chi_p, self.card.peak_scale) {
+            for (damage, (peak, gradient)) in damages.iter_mut().zip(evaluate(chi_p, scale)) {
+                (damage.d_peak, damage.peak_gradient) = (Some(peak), gradient);
+            }
+        }
+        damages
     }
 }

@@ -4,17 +4,20 @@
 //! |---|---|
 //! | `chi.N.weight`, `chi.N.bias` | (out, in), (out) of layer N of the embedding |
 //! | `chi_d.N.weight`, `chi_d.N.bias` | the same of the damage head |
+//! | `chi_p.N.weight`, `chi_p.N.bias` | the same of the head of D_peak, if there is one |
 //! | `feat_mean`, `feat_std` | (5), in the order of (13) |
 //! | `w_scale` | (1), N mm |
-//! | `d_scale` | (1) or (2), dimensionless: of D and of D_peak, as many as `chi_d` has outputs |
+//! | `d_scale` | (1) or (2), dimensionless: of D, and of D_peak if there is a head for it |
+//!
+//! Before version 4, D_peak was a second output of `chi_d`.
 //!
 //! Tensors are float64 when written; float32 is read too. The scaling stands in both files, so
 //! that a card beside the wrong weights is noticed.
 
-use crate::Surrogate;
 use crate::card::{Card, FORMAT_VERSION};
 use crate::features::Standardisation;
 use crate::network::{InvalidWeights, Layer, Tensor};
+use crate::{Layers, Surrogate};
 use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensorError, SafeTensors};
 use std::collections::BTreeMap;
@@ -73,13 +76,20 @@ pub enum WeightsError {
 /// See [`Surrogate::load`].
 pub(crate) fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
     let mut tensors = read_tensors(weights)?;
-    let card = read_card(weights)?;
+    let mut card = read_card(weights)?;
     let invalid = |source| WeightsError::Invalid {
         path: weights.to_owned(),
         source,
     };
     let chi = take_layers(&mut tensors, "chi").map_err(invalid)?;
-    let chi_d = take_layers(&mut tensors, "chi_d").map_err(invalid)?;
+    let mut chi_d = take_layers(&mut tensors, "chi_d").map_err(invalid)?;
+    let chi_p = match (card.peak_scale, card.format_version) {
+        (None, _) => None,
+        (Some(_), ..4) => Some(second_output(&mut chi_d).map_err(invalid)?),
+        (Some(_), 4..) => Some(take_layers(&mut tensors, "chi_p").map_err(invalid)?),
+    };
+    // In memory there is one version.
+    card.format_version = FORMAT_VERSION;
     for (tensor, expected) in scaling(&card) {
         let found = take(&mut tensors, tensor).map_err(invalid)?;
         if found.shape != expected.shape {
@@ -101,17 +111,42 @@ pub(crate) fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
             path: weights.to_owned(),
             tensor,
         }),
-        None => Surrogate::from_parts(chi, chi_d, card).map_err(invalid),
+        None => Surrogate::from_parts(Layers { chi, chi_d, chi_p }, card).map_err(invalid),
     }
+}
+
+/// Leaves the first of two outputs in a network, and returns a network of the second.
+fn second_output(network: &mut [Layer]) -> Result<Vec<Layer>, InvalidWeights> {
+    let mut second = network.to_vec();
+    let index = network.len() - 1;
+    for (layer, output) in [(&mut network[index], 0), (&mut second[index], 1)] {
+        for (name, Tensor { shape, values }) in
+            [("weight", &mut layer.weight), ("bias", &mut layer.bias)]
+        {
+            let row = values.len() / 2;
+            if shape.first() != Some(&2) || values.len() != 2 * row {
+                return Err(InvalidWeights::Shape {
+                    tensor: format!("chi_d.{index}.{name}"),
+                    expected: "two outputs, of D and of D_peak".into(),
+                    found: shape.clone(),
+                });
+            }
+            *values = values[output * row..][..row].to_vec();
+            shape[0] = 1;
+        }
+    }
+    Ok(second)
 }
 
 /// See [`Surrogate::save`].
 pub(crate) fn save(surrogate: &Surrogate, weights: &Path) -> Result<(), WeightsError> {
     let mut tensors: Vec<(String, Tensor)> = Vec::new();
-    for (name, network) in [("chi", &surrogate.chi), ("chi_d", &surrogate.chi_d)] {
-        for (index, layer) in network.layers().iter().enumerate() {
-            tensors.push((format!("{name}.{index}.weight"), layer.weight.clone()));
-            tensors.push((format!("{name}.{index}.bias"), layer.bias.clone()));
+    let Layers { chi, chi_d, chi_p } = surrogate.layers();
+    let networks = [("chi", chi), ("chi_d", chi_d)];
+    for (name, layers) in networks.into_iter().chain(chi_p.map(|it| ("chi_p", it))) {
+        for (index, Layer { weight, bias }) in layers.into_iter().enumerate() {
+            tensors.push((format!("{name}.{index}.weight"), weight));
+            tensors.push((format!("{name}.{index}.bias"), bias));
         }
     }
     for (name, tensor) in scaling(&surrogate.card) {

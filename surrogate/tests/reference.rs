@@ -5,7 +5,7 @@ mod common;
 use common::{cases, design, tiny, with_peak};
 use hinge::{HingeDeformation, HingeDesign};
 use serde_json::Value;
-use surrogate::{HingeEnergy, Order};
+use surrogate::{HingeEnergy, Order, Surrogate};
 
 /// The reference states, from an independent implementation.
 fn states() -> Vec<Value> {
@@ -202,14 +202,41 @@ fn every_derivative_is_that_of_finite_differences() {
 }
 
 #[test]
-fn a_second_output_leaves_the_first_as_it_was() {
+fn a_head_for_d_peak_leaves_d_as_it_was() {
     let (designs, deformations) = hinges(&states());
     let one = tiny().damage(&designs, &deformations);
-    let two = with_peak().damage(&designs, &deformations);
+    let with_peak = Surrogate::load(&cases().join("chi_peak.safetensors")).unwrap();
+    let two = with_peak.damage(&designs, &deformations);
     for (one, two) in one.iter().zip(&two) {
         assert_close("D", &[two.d], &[one.d], 1e-14);
         assert_close("dD", &two.gradient, &one.gradient, 1e-14);
         assert_eq!((one.d_peak, one.peak_gradient), (None, [0.0; 5]));
+    }
+}
+
+#[test]
+fn a_sharp_damage_is_that_of_a_scale_and_a_head_scaled() {
+    let (designs, deformations) = hinges(&states());
+    let sharp = with_peak();
+    let beta = sharp.card().damage_sharpness;
+    assert_eq!(beta, 8.0);
+    let (mut layers, mut card) = (sharp.layers(), sharp.card().clone());
+    card.damage_sharpness = 1.0;
+    card.damage_scale /= beta;
+    for tensor in layers
+        .chi_d
+        .last_mut()
+        .map(|it| [&mut it.weight, &mut it.bias])
+        .unwrap()
+    {
+        tensor.values.iter_mut().for_each(|value| *value *= beta);
+    }
+    let plain = Surrogate::from_parts(layers, card).unwrap();
+    let sharp = sharp.damage(&designs, &deformations);
+    let plain = plain.damage(&designs, &deformations);
+    for (sharp, plain) in sharp.iter().zip(&plain) {
+        assert_close("D", &[sharp.d], &[plain.d], 1e-15);
+        assert_close("dD", &sharp.gradient, &plain.gradient, 1e-14);
     }
 }
 

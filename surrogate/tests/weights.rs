@@ -154,7 +154,42 @@ fn weights_of_format_version_3_tell_what_they_were_trained_on() {
     let card = hashed.card();
     assert_eq!(card.material_hash.as_deref(), Some("0123456789abcdef"));
     assert_eq!(card.settings_hash.as_deref(), Some("fedcba9876543210"));
-    assert_eq!(with_peak().card().material_hash, None);
+    assert_eq!(tiny().card().material_hash, None);
+}
+
+#[test]
+fn a_second_output_of_before_version_4_becomes_a_head_of_its_own() {
+    let before = Surrogate::load(&cases().join("chi_hashed.safetensors")).unwrap();
+    let layers = before.layers();
+    let (d, peak) = (&layers.chi_d[2], &layers.chi_p.as_ref().unwrap()[2]);
+    assert_eq!((&d.weight.shape, &peak.bias.shape), (&vec![1, 6], &vec![1]));
+    assert_ne!(d.weight.values, peak.weight.values);
+    assert_eq!(layers.chi_d[..2], layers.chi_p.unwrap()[..2]);
+    assert_eq!(before.card().damage_sharpness, 1.0);
+    let mut file = File::of("chi_hashed");
+    file.set("chi_d.2.bias", &[3], &[0.0; 3]);
+    let error = file.invalid();
+    assert!(error.to_string().contains("two outputs"), "{error}");
+}
+
+#[test]
+fn a_head_without_a_scale_and_a_scale_without_a_head_are_refused() {
+    let mut file = File::of("chi_heads");
+    file.tensors.retain(|name, _| !name.starts_with("chi_p."));
+    let tensor = "chi_p.0.weight".into();
+    assert_eq!(file.invalid(), InvalidWeights::Missing { tensor });
+    let mut file = File::of("chi_heads");
+    file.card = file.card.replace("\"peak_scale\": 0.31,", "");
+    let scale = file.values("d_scale")[0];
+    file.set("d_scale", &[1], &[scale]);
+    match file.load().unwrap_err() {
+        WeightsError::Extra { tensor, .. } => assert_eq!(tensor, "chi_p.0.bias"),
+        other => panic!("{other}"),
+    }
+    let mut layers = tiny().layers();
+    layers.chi_p = Some(layers.chi_d.clone());
+    let error = Surrogate::from_parts(layers, tiny().card().clone()).unwrap_err();
+    assert!(error.to_string().contains("chi_p"), "{error}");
 }
 
 #[test]
@@ -165,7 +200,7 @@ fn cards_of_other_versions_shapes_and_trainings_are_refused() {
         file.card = file.card.replace(from, to);
         file.load().unwrap_err()
     };
-    for found in [0, 4] {
+    for found in [0, 5] {
         let error = with_card(
             "\"format_version\": 1",
             &format!("\"format_version\": {found}"),
@@ -176,7 +211,7 @@ fn cards_of_other_versions_shapes_and_trainings_are_refused() {
         );
     }
     let error = with_card("\"damage_scale\"", "\"peak_scale\": 0.3, \"damage_scale\"");
-    assert!(error.to_string().contains("`d_scale`"), "{error}");
+    assert!(error.to_string().contains("two outputs"), "{error}");
     let error = with_card("\"material\"", "\"materiel\"");
     assert!(error.to_string().contains("materiel"), "{error}");
     let error = with_card("\"energy_scale\": 85.0", "\"energy_scale\": 86.0");
@@ -321,24 +356,17 @@ fn zero_and_huge_weights_stay_finite() {
 }
 
 #[test]
-fn the_second_damage_output_is_checked_like_the_first() {
+fn the_head_of_d_peak_is_checked_like_that_of_d() {
     let with = |factor: f64| {
-        let mut file = File::of("chi_peak");
-        let last = file
-            .tensors
-            .keys()
-            .filter(|name| name.starts_with("chi_d.") && name.ends_with("bias"));
-        let last = last.max().unwrap().clone();
-        let mut biases = file.values(&last);
-        assert_eq!(biases.len(), 2);
-        biases[1] *= factor;
-        file.set(&last, &[2], &biases);
+        let mut file = File::of("chi_heads");
+        let bias = file.values("chi_p.2.bias")[0];
+        file.set("chi_p.2.bias", &[1], &[factor * bias]);
         file
     };
     for factor in [f64::NAN, f64::INFINITY] {
         let error = with(factor).invalid();
         assert!(
-            matches!(error, InvalidWeights::NotFinite { index: 1, .. }),
+            matches!(&error, InvalidWeights::NotFinite { tensor, .. } if tensor == "chi_p.2.bias"),
             "{error}"
         );
     }

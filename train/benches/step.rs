@@ -34,6 +34,7 @@ fn ten_steps(bencher: divan::Bencher, backend: Backend, embedding: &[usize], dam
         gradient_norm_max: 1.0,
         energy_weight: 0.5,
         damage_weight: 0.1,
+        damage_sharpness: 8.0,
         patience: None,
     };
     bencher.bench(|| train(&database, &config, backend, &mut |_| {}));

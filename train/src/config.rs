@@ -10,7 +10,7 @@ pub struct TrainingConfig {
     pub seed: u64,
     /// Units of each layer of chi after the five features; the last is the embedding, linear.
     pub embedding: Vec<usize>,
-    /// Units of each hidden layer of the damage head chi_D.
+    /// Units of each hidden layer of the damage heads, of D and of D_peak.
     pub damage: Vec<usize>,
     /// Whether the networks keep the mirror symmetry of hinges by construction: a row then speaks
     /// for its mirror image too.
@@ -35,6 +35,8 @@ pub struct TrainingConfig {
     pub energy_weight: f64,
     /// w_D of (15): the weight of the damage.
     pub damage_weight: f64,
+    /// beta of the damage heads, D = D_s softplus(beta y) / beta: 1 or more.
+    pub damage_sharpness: f64,
 }
 
 /// Type of the numbers of a training.
@@ -132,6 +134,12 @@ impl TrainingConfig {
                 "0 <= damage_weight < infinity",
                 0.0 <= self.damage_weight && self.damage_weight.is_finite(),
             ),
+            (
+                "damage_sharpness",
+                self.damage_sharpness.to_string(),
+                "1 <= damage_sharpness <= 1000",
+                (1.0..=1000.0).contains(&self.damage_sharpness),
+            ),
         ];
         match checks.into_iter().find(|(.., holds)| !holds) {
             Some((key, value, rule, _)) => Err(InvalidConfig { key, value, rule }),
@@ -162,7 +170,7 @@ mod tests {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/training");
         let demo: TrainingConfig = hinge::config::read(&folder.join("demo.toml")).unwrap();
         type Change = fn(&mut TrainingConfig);
-        let changes: [(Change, &str); 12] = [
+        let changes: [(Change, &str); 13] = [
             (|c| c.embedding.clear(), "embedding"),
             (|c| c.damage[0] = 0, "damage"),
             (|c| c.embedding[1] = 7, "mirror"),
@@ -175,6 +183,7 @@ mod tests {
             (|c| c.gradient_norm_max = 0.0, "gradient_norm_max"),
             (|c| c.energy_weight = 1.5, "energy_weight"),
             (|c| c.damage_weight = f64::INFINITY, "damage_weight"),
+            (|c| c.damage_sharpness = 0.5, "damage_sharpness"),
         ];
         for (change, key) in changes {
             let mut config = demo.clone();

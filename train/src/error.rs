@@ -48,6 +48,11 @@ pub enum TrainError {
         found: [Vec<usize>; 2],
     },
     #[error(
+        "the weights to begin from have `damage_sharpness = {found}`; set it so in the \
+         configuration, or begin afresh"
+    )]
+    OtherSharpness { found: f64 },
+    #[error(
         "the weights to begin from do not keep the mirror symmetry; set `mirror = false` in the \
          configuration, or begin afresh"
     )]

@@ -1,12 +1,17 @@
 //! From Burn's networks to the layers of a weight file.
 
 use crate::error::TrainError;
-use crate::networks::{Affine, Mlp};
-use surrogate::{Layer, Tensor};
+use crate::networks::{Affine, Mlp, Networks};
+use surrogate::{Layer, Layers, Tensor};
 
-/// The layers in float64, weights as (outputs, inputs).
-pub(crate) fn layers(network: &Mlp) -> Result<Vec<Layer>, TrainError> {
-    network.affine().into_iter().map(layer).collect()
+/// In float64, weights as (outputs, inputs).
+pub(crate) fn layers(networks: &Networks) -> Result<Layers, TrainError> {
+    let layers = |network: &Mlp| network.affine().into_iter().map(layer).collect();
+    Ok(Layers {
+        chi: layers(&networks.chi)?,
+        chi_d: layers(&networks.chi_d)?,
+        chi_p: networks.chi_p.as_ref().map(layers).transpose()?,
+    })
 }
 
 fn layer(affine: Affine) -> Result<Layer, TrainError> {
@@ -29,13 +34,14 @@ mod tests {
     use super::*;
     use crate::backend::Backend;
     use crate::loss::predict;
-    use crate::networks::Networks;
     use crate::samples::{Batch, Scales};
     use crate::validation::Parity;
     use burn::tensor::{DType, TensorCreationOptions};
     use dataset::Row;
     use hinge::{HingeConstants, HingeDesign, HingeSample, TrainingDomain};
     use surrogate::{Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS};
+
+    const SHARPNESS: f64 = 4.0;
 
     fn row(index: usize) -> Row {
         let wave = |speed: f64| (speed * index as f64 + 0.3).sin();
@@ -81,6 +87,7 @@ mod tests {
             energy_scale: scales.energy,
             damage_scale: scales.damage,
             peak_scale: scales.peak,
+            damage_sharpness: SHARPNESS,
             fine_tuned_from: None,
             domain: TrainingDomain {
                 eta_a: [0.0; 2],
@@ -104,18 +111,17 @@ mod tests {
             test_errors: TestErrors::default(),
             error_bins: Vec::new(),
         };
-        let (chi, chi_d) = (layers(&networks.chi), layers(&networks.chi_d));
-        Surrogate::from_parts(chi.unwrap(), chi_d.unwrap(), card).unwrap()
+        Surrogate::from_parts(layers(networks).unwrap(), card).unwrap()
     }
 
     /// |burn - kernel| / |kernel| over all rows, for W, F_a, F_s, M_theta, D and D_peak.
     fn disagreement(backend: Backend, dtype: DType) -> [f64; 6] {
         let options = TensorCreationOptions::new(backend.device()).with_dtype(dtype);
-        let networks = Networks::new(&[64, 64, 32], &[64, 64], 2, true, 1, &options);
+        let networks = Networks::new(&[64, 64, 32], &[64, 64], true, true, 1, &options);
         let rows: Vec<Row> = (0..200).map(row).collect();
         let scales = Scales::of(&rows, false).unwrap();
         let samples: Vec<_> = rows.iter().map(|row| scales.sample(row)).collect();
-        let predicted = predict(&networks, &Batch::new(&samples, &options));
+        let predicted = predict(&networks, &Batch::new(&samples, &options), SHARPNESS);
         let column = |tensor: &burn::tensor::Tensor<2>, k: usize, scale: f64| -> Vec<f64> {
             let column = tensor.clone().inner().narrow(1, k, 1);
             let values: Vec<f64> = column.try_into_vec_as().unwrap();

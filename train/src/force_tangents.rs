@@ -66,7 +66,7 @@ mod tests {
         for &backend in Backend::ALL {
             let options = TensorCreationOptions::new(backend.device()).with_dtype(DType::F64);
             for symmetric in [false, true] {
-                let chi = Networks::new(&[8, 6, 4], &[2], 1, symmetric, 5, &options).chi;
+                let chi = Networks::new(&[8, 6, 4], &[2], true, symmetric, 5, &options).chi;
                 let layers = chi.affine();
                 let embedding = with_tangents(&layers, Batch::new(&samples(6), &options).states);
                 for k in 0..3 {

@@ -5,7 +5,9 @@
 //!     + w_D |D - D*|^2 / D_s^2                                                     (15)
 //! ```
 //!
-//! Where D_peak is predicted too, the last term is the mean of both.
+//! Where D_peak is predicted too, the last term is the mean of both. The damages are
+//! softplus(beta y) / beta of what their heads give: a sharp beta lets a ligament be exactly as
+//! undamaged as it is before it yields, without ado in the network.
 
 use crate::config::TrainingConfig;
 use crate::force_tangents::{Embedding, with_tangents};
@@ -25,23 +27,25 @@ pub(crate) struct Prediction {
 }
 
 /// W = |r|^2 with r = chi(xi) - chi(xi0), so dW/dx_k = 2 r . T_k.
-pub(crate) fn predict(networks: &Networks, batch: &Batch) -> Prediction {
+pub(crate) fn predict(networks: &Networks, batch: &Batch, damage_sharpness: f64) -> Prediction {
     let [_, n, _] = batch.states.dims();
     let Embedding { values, tangents } =
         with_tangents(&networks.chi.affine(), batch.states.clone());
     let r = values.clone().narrow(0, 1, 1) - values.narrow(0, 0, 1);
     let slopes = (r.clone() * tangents).sum_dim(2).mul_scalar(2.0);
-    let damage = forward(&networks.chi_d.affine(), batch.deformed());
+    let heads = networks.heads();
+    let damages = heads.map(|head| forward(&head.affine(), batch.deformed()));
+    let damages = Tensor::cat(damages.collect(), 1);
     Prediction {
         energy: r.square().sum_dim(2).reshape([n, 1]),
         forces: slopes.reshape([3, n]).transpose() * batch.force_factors.clone(),
-        damage: softplus(damage, 1.0),
+        damage: softplus(damages, damage_sharpness),
     }
 }
 
 /// (15) as a tensor of one number.
 pub(crate) fn loss(networks: &Networks, batch: &Batch, config: &TrainingConfig) -> Tensor<1> {
-    let predicted = predict(networks, batch);
+    let predicted = predict(networks, batch, config.damage_sharpness);
     let mean_square =
         |found: Tensor<2>, target: &Tensor<2>| (found - target.clone()).square().mean();
     let outputs = predicted.damage.dims()[1];
@@ -75,6 +79,7 @@ mod tests {
             gradient_norm_max: 1.0,
             energy_weight: 0.3,
             damage_weight: 0.7,
+            damage_sharpness: 8.0,
             patience: None,
         }
     }
@@ -108,7 +113,7 @@ mod tests {
             TensorCreationOptions::new(Backend::default().device()).with_dtype(DType::F64);
         let config = config();
         let (embedding, damage) = (&config.embedding, &config.damage);
-        let networks = Networks::new(embedding, damage, 2, symmetric, 3, &options);
+        let networks = Networks::new(embedding, damage, true, symmetric, 3, &options);
         let batch = Batch::new(&samples(8), &options);
         let gradients = loss(&networks, &batch, &config).backward();
         let step = 1e-5;

@@ -1,20 +1,22 @@
-//! The embedding chi and the damage head chi_D of (14) as Burn modules.
+//! The embedding chi and the damage heads chi_D and chi_P of (14) as Burn modules.
 
 use crate::mirror::Fold;
 use burn::module::{Module, Param};
 use burn::tensor::{Tensor, TensorCreationOptions, TensorData};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use surrogate::{Layer, tanh_in_place};
+use surrogate::{Layer, Layers, tanh_in_place};
 
 /// The features of (13).
 const INPUTS: usize = 5;
 
-/// Both networks; they share nothing but their inputs.
+/// The networks share nothing but their inputs: D_peak, which scatters more, would teach D to
+/// overfit.
 #[derive(Module, Debug)]
 pub(crate) struct Networks {
     pub chi: Mlp,
     pub chi_d: Mlp,
+    pub chi_p: Option<Mlp>,
 }
 
 /// y = tanh(... tanh(x W_0 + b_0) ...) W_L + b_L
@@ -47,13 +49,13 @@ impl Networks {
     pub fn new(
         embedding: &[usize],
         damage: &[usize],
-        damage_outputs: usize,
+        with_peak: bool,
         symmetric: bool,
         seed: u64,
         options: &TensorCreationOptions,
     ) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let head: Vec<usize> = damage.iter().copied().chain([damage_outputs]).collect();
+        let head: Vec<usize> = damage.iter().copied().chain([1]).collect();
         let mut network = |widths: &[usize], folds: Vec<Fold>| {
             let inputs = std::iter::once(INPUTS).chain(widths.iter().copied());
             let layers = inputs
@@ -69,16 +71,12 @@ impl Networks {
         Self {
             chi: network(embedding, folds(embedding.len(), symmetric)),
             chi_d: network(&head, head_folds(head.len(), symmetric)),
+            chi_p: with_peak.then(|| network(&head, head_folds(head.len(), symmetric))),
         }
     }
 
     /// Layers of a weight file.
-    pub fn of_layers(
-        chi: &[Layer],
-        chi_d: &[Layer],
-        symmetric: bool,
-        options: &TensorCreationOptions,
-    ) -> Self {
+    pub fn of_layers(layers: &Layers, symmetric: bool, options: &TensorCreationOptions) -> Self {
         let network = |layers: &[Layer], folds: Vec<Fold>| {
             let layers = layers.iter().zip(folds);
             Mlp {
@@ -87,10 +85,18 @@ impl Networks {
                     .collect(),
             }
         };
+        let head = |layers: &[Layer]| network(layers, head_folds(layers.len(), symmetric));
+        let Layers { chi, chi_d, chi_p } = layers;
         Self {
             chi: network(chi, folds(chi.len(), symmetric)),
-            chi_d: network(chi_d, head_folds(chi_d.len(), symmetric)),
+            chi_d: head(chi_d),
+            chi_p: chi_p.as_deref().map(head),
         }
+    }
+
+    /// The damage heads.
+    pub fn heads(&self) -> impl Iterator<Item = &Mlp> {
+        std::iter::once(&self.chi_d).chain(&self.chi_p)
     }
 }
 
@@ -104,7 +110,7 @@ fn folds(layers: usize, symmetric: bool) -> Vec<Fold> {
     folds
 }
 
-/// The same of chi_D, whose outputs are no pairs.
+/// The same of the damage heads, whose outputs are no pairs.
 fn head_folds(layers: usize, symmetric: bool) -> Vec<Fold> {
     let mut folds = folds(layers, symmetric);
     if symmetric {
@@ -113,14 +119,14 @@ fn head_folds(layers: usize, symmetric: bool) -> Vec<Fold> {
     folds
 }
 
-/// Units of each layer: of chi, and of the hidden layers of the damage head.
-pub(crate) fn widths([chi, chi_d]: [&[Layer]; 2]) -> [Vec<usize>; 2] {
+/// Units of each layer: of chi, and of the hidden layers of the damage heads.
+pub(crate) fn widths(layers: &Layers) -> [Vec<usize>; 2] {
     let units = |layers: &[Layer]| -> Vec<usize> {
         layers.iter().map(|layer| layer.bias.values.len()).collect()
     };
-    let mut damage = units(chi_d);
+    let mut damage = units(&layers.chi_d);
     damage.pop();
-    [units(chi), damage]
+    [units(&layers.chi), damage]
 }
 
 impl Mlp {

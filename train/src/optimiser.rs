@@ -2,7 +2,7 @@
 //!
 //! Muon takes the nearest orthogonal matrix of the averaged gradient, so that directions in which
 //! the loss is flat move as far as steep ones. In the same number of steps the forces are fitted to
-//! about half of Adam's error; the damage head, which overfits with it, stays with Adam.
+//! about half of Adam's error; the damage heads, which overfit with it, stay with Adam.
 
 use crate::config::TrainingConfig;
 use burn::grad_clipping::GradientClippingConfig;

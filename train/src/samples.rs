@@ -113,11 +113,6 @@ impl Scales {
         })
     }
 
-    /// Outputs of the damage head.
-    pub fn damage_outputs(&self) -> usize {
-        1 + usize::from(self.peak.is_some())
-    }
-
     /// One row in these scales.
     pub fn sample(&self, row: &Row) -> Sample {
         let Standardisation { mean, std } = self.standardisation;

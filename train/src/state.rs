@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use surrogate::Card;
 
 /// Version of the file; a state is no archive, so no other version is read.
-const FORMAT_VERSION: u32 = 2;
+const FORMAT_VERSION: u32 = 3;
 
 /// Why a training cannot go on, or cannot be kept.
 #[derive(Debug, thiserror::Error)]

@@ -38,11 +38,12 @@ pub struct Epoch {
     pub training_loss: f64,
     /// (15) on the validation part at the end of the epoch.
     pub validation_loss: f64,
-    /// Geometric means of the relative errors there: of W and the forces, and of the damages.
-    pub validation_errors: [f64; 2],
+    /// Relative errors of each network there: of W and the forces (their geometric mean), of D,
+    /// and of D_peak (zero if it is not predicted).
+    pub validation_errors: [f64; 3],
     /// At the end of the epoch.
     pub learning_rate: f64,
-    /// Whether one of the two was less than in every epoch before.
+    /// Whether one of them was less than in every epoch before.
     pub best: bool,
     /// Time that the training took so far (s).
     pub elapsed_s: f64,
@@ -157,7 +158,7 @@ impl Training {
             Start::Fresh | Start::State(_) => Networks::new(
                 &config.embedding,
                 &config.damage,
-                scales.damage_outputs(),
+                scales.peak.is_some(),
                 config.mirror,
                 config.seed,
                 &options,
@@ -217,17 +218,20 @@ impl Training {
         if !validation_loss.is_finite() {
             return Err(diverged);
         }
-        let errors = validation.mean_errors();
-        let better = [0, 1].map(|network| {
+        let errors = validation.network_errors();
+        let better = [0, 1, 2].map(|network| {
             let before = self.history.iter().map(|it| it.validation_errors[network]);
             errors[network] < before.fold(f64::INFINITY, f64::min)
         });
-        // The two networks share nothing, and the damage head overfits sooner.
+        // The networks share nothing, and the damage heads overfit sooner.
         if better[0] {
             self.best.chi = self.networks.chi.clone();
         }
         if better[1] {
             self.best.chi_d = self.networks.chi_d.clone();
+        }
+        if better[2] {
+            self.best.chi_p = self.networks.chi_p.clone();
         }
         let report = Epoch {
             epoch,
@@ -334,18 +338,22 @@ fn given(
     config: &TrainingConfig,
     options: &TensorCreationOptions,
 ) -> Result<Networks, TrainError> {
-    let [chi, chi_d] = weights.layers();
+    let given = weights.layers();
     let expected = [config.embedding.clone(), config.damage.clone()];
-    let found = widths([chi, chi_d]);
+    let found = widths(&given);
     if found != expected {
         return Err(TrainError::OtherSizes { expected, found });
     }
+    let found = weights.card().damage_sharpness;
+    if found != config.damage_sharpness {
+        return Err(TrainError::OtherSharpness { found });
+    }
     let exact = options.clone().with_dtype(DType::F64);
-    let folded = Networks::of_layers(chi, chi_d, config.mirror, &exact);
-    let unchanged = layers(&folded.chi)? == chi && layers(&folded.chi_d)? == chi_d;
+    let folded = Networks::of_layers(&given, config.mirror, &exact);
+    let unchanged = layers(&folded)? == given;
     let centred = !config.mirror || mirror::is_centred(&weights.card().standardisation);
     match unchanged && centred {
-        true => Ok(Networks::of_layers(chi, chi_d, config.mirror, options)),
+        true => Ok(Networks::of_layers(&given, config.mirror, options)),
         false => Err(TrainError::NotSymmetric),
     }
 }
@@ -370,6 +378,7 @@ fn card(
         energy_scale: scales.energy,
         damage_scale: scales.damage,
         peak_scale: scales.peak,
+        damage_sharpness: config.damage_sharpness,
         domain: domain.ok_or(TrainError::NoRows { part: "training" })?,
         hinge: manifest.hinge,
         material: manifest.material.clone(),
@@ -396,6 +405,5 @@ fn the_only(hashes: &BTreeSet<String>) -> Option<String> {
 }
 
 fn export(networks: &Networks, card: &Card) -> Result<Surrogate, TrainError> {
-    let (chi, chi_d) = (layers(&networks.chi)?, layers(&networks.chi_d)?);
-    Ok(Surrogate::from_parts(chi, chi_d, card.clone())?)
+    Ok(Surrogate::from_parts(layers(networks)?, card.clone())?)
 }

@@ -89,7 +89,8 @@ impl Parity {
     pub(crate) fn loss(&self, scales: &Scales, config: &TrainingConfig) -> f64 {
         let [f_a, f_s, m_theta] = scales.forces;
         let force_weight = (1.0 - config.energy_weight) / 3.0;
-        let damage_weight = config.damage_weight / scales.damage_outputs() as f64;
+        let damages = 1 + usize::from(scales.peak.is_some());
+        let damage_weight = config.damage_weight / damages as f64;
         [
             (&self.energy, scales.energy, config.energy_weight),
             (&self.f_a, f_a, force_weight),
@@ -107,22 +108,17 @@ impl Parity {
         .sum()
     }
 
-    /// Geometric means of the relative root mean square errors: of W and the forces, and of the
-    /// damages. A few states of large force, which rule the loss, count no more than they should.
-    pub(crate) fn mean_errors(&self) -> [f64; 2] {
-        let mean = |quantities: &[&[ParityPoint]]| {
-            let given = quantities.iter().filter(|points| !points.is_empty());
-            let errors: Vec<f64> = given
-                .map(|points| fit_error(points).relative_rmse)
-                .collect();
-            errors
-                .iter()
-                .product::<f64>()
-                .powf(1.0 / errors.len() as f64)
-        };
+    /// The relative root mean square errors of each network: the geometric mean of those of W and
+    /// the forces, so that a few states of large force, which rule the loss, count no more than
+    /// they should; that of D; and that of D_peak, zero if it is not predicted.
+    pub(crate) fn network_errors(&self) -> [f64; 3] {
+        let error = |points: &[ParityPoint]| fit_error(points).relative_rmse;
+        let potential = [&self.energy, &self.f_a, &self.f_s, &self.m_theta];
+        let product: f64 = potential.iter().map(|points| error(points)).product();
         [
-            mean(&[&self.energy, &self.f_a, &self.f_s, &self.m_theta]),
-            mean(&[&self.damage, &self.damage_peak]),
+            product.powf(0.25),
+            error(&self.damage),
+            error(&self.damage_peak),
         ]
     }
 }
