@@ -12,6 +12,7 @@ mod equilibrium;
 mod gradient;
 mod inspect;
 mod interrupt;
+mod kept_fits;
 mod kept_solves;
 mod mesh;
 mod pattern;

@@ -5,6 +5,7 @@ mod path;
 mod sheet;
 mod solutions;
 mod surrogate;
+mod trust;
 mod window;
 
 use anyhow::Result;
@@ -19,6 +20,7 @@ pub enum StudyCommand {
     Gradient(gradient::GradientStudy),
     Solutions(solutions::SolutionStudy),
     Surrogate(surrogate::SurrogateStudy),
+    Trust(trust::TrustStudy),
 }
 
 impl StudyCommand {
@@ -30,6 +32,7 @@ impl StudyCommand {
             Self::Gradient(study) => study.run(),
             Self::Solutions(study) => study.run(),
             Self::Surrogate(study) => study.run(),
+            Self::Trust(study) => study.run(),
         }
     }
 }

@@ -14,7 +14,8 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use surrogate::{ErrorBin, FitError, Surrogate, TestErrors};
 use train::{
-    Backend, EnsembleCheck, Epoch, Parity, Start, StiffnessCheck, Trained, Training, TrainingConfig,
+    Backend, EnsembleCheck, Epoch, Parity, Start, StiffnessCheck, Trained, Training,
+    TrainingConfig, disagreements,
 };
 
 /// Train the surrogate hinge energy on a database
@@ -180,7 +181,7 @@ impl TrainCommand {
             .iter()
             .map(|member| member.surrogate.clone())
             .collect();
-        let check = EnsembleCheck::of(&surrogates, &database.part(Part::Test));
+        let check = EnsembleCheck::of(&disagreements(&surrogates, &database.part(Part::Test)));
         println!(
             "forces of {} networks: they differ by {:.3}, their mean errs by {:.3} (in units of the \
              forces' RMS);\nthe tenth of the states where they differ most holds {:.0} % of the \

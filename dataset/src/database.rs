@@ -5,6 +5,7 @@ use crate::manifest::{FORMAT_VERSION, Manifest};
 use crate::rows::Row;
 use crate::split::{Part, SplitPlan};
 use crate::{parquet, schema};
+use hinge::TrainingDomain;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -159,6 +160,28 @@ impl Database {
         split.training = split.training.iter().take(training).cloned().collect();
         thinned.manifest.split_hash = split.hash();
         thinned
+    }
+
+    /// The same split, but for training and validation no state outside the box.
+    pub fn within(&self, domain: &TrainingDomain) -> Result<Self, DatasetError> {
+        let split = &self.manifest.split;
+        let test = split.jobs(Part::Test);
+        let inside = |row: &&Row| {
+            test.contains(&row.job) || domain.contains(&row.design, &row.sample.deformation())
+        };
+        let rows: Vec<Row> = self.rows.iter().filter(inside).cloned().collect();
+        let jobs: BTreeSet<&str> = rows.iter().map(|row| row.job.as_str()).collect();
+        let mut split = split.clone();
+        for part in [&mut split.training, &mut split.validation] {
+            part.retain(|job| jobs.contains(job.as_str()));
+        }
+        let Manifest {
+            gates, split_plan, ..
+        } = &self.manifest;
+        let mut within = Self::assemble(rows, gates, split_plan, Mixing::Allowed)?;
+        within.manifest.split_hash = split.hash();
+        within.manifest.split = split;
+        Ok(within)
     }
 
     fn assemble(

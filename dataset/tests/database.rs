@@ -4,6 +4,7 @@ mod common;
 
 use common::{collect, row, rows};
 use dataset::{Database, DatasetError, Part, Rejection, Row};
+use hinge::TrainingDomain;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
@@ -192,6 +193,26 @@ fn a_thinned_database_keeps_what_it_is_tested_on() {
     assert_eq!(thinned.part(Part::Validation), whole.part(Part::Validation));
     assert_ne!(thinned.manifest().split_hash, whole.manifest().split_hash);
     assert_eq!(whole.thinned(1000).manifest(), whole.manifest());
+}
+
+#[test]
+fn a_database_within_a_box_is_tested_outside_it_too() {
+    let whole = collect(rows()).unwrap();
+    let domain = whole.manifest().domain;
+    let half = TrainingDomain {
+        theta: [0.0, 0.5 * domain.theta[1]],
+        ..domain
+    };
+    let within = whole.within(&half).unwrap();
+    assert_eq!(within.part(Part::Test), whole.part(Part::Test));
+    assert_ne!(within.manifest().hash, whole.manifest().hash);
+    for part in [Part::Training, Part::Validation] {
+        let (rows, all) = (within.part(part), whole.part(part));
+        let inside = |row: &&Row| row.sample.theta <= half.theta[1];
+        assert_eq!(rows, all.iter().filter(inside).cloned().collect::<Vec<_>>());
+        assert!(!rows.is_empty() && rows.len() < all.len());
+    }
+    assert_eq!(whole.within(&domain).unwrap().manifest(), whole.manifest());
 }
 
 #[test]

@@ -22,6 +22,25 @@ pub struct TrainingDomain {
 impl TrainingDomain {
     /// Whether the state of one hinge lies in the box.
     pub fn contains(&self, design: &HingeDesign, deformation: &HingeDeformation) -> bool {
+        self.sides(design, deformation)
+            .iter()
+            .all(|([least, greatest], value)| (least..=greatest).contains(&value))
+    }
+
+    /// How far the state lies from the nearest side, over the length of that side: 1/2 in the
+    /// middle of the box, 0 at its edge, and less than 0 outside, where the side that is farthest
+    /// off counts.
+    pub fn depth(&self, design: &HingeDesign, deformation: &HingeDeformation) -> f64 {
+        let sides = self.sides(design, deformation).into_iter();
+        sides
+            .map(|([least, greatest], value)| {
+                (value - least).min(greatest - value) / (greatest - least)
+            })
+            .fold(0.5, f64::min)
+    }
+
+    /// Each side of the box with the coordinate along it.
+    fn sides(&self, design: &HingeDesign, deformation: &HingeDeformation) -> [([f64; 2], f64); 5] {
         let [eta_a, eta_s] = deformation.eta(design.w_lig);
         [
             (self.eta_a, eta_a),
@@ -30,8 +49,6 @@ impl TrainingDomain {
             (self.w_lig, design.w_lig),
             (self.alpha, design.alpha),
         ]
-        .iter()
-        .all(|([least, greatest], value)| (least..=greatest).contains(&value))
     }
 
     /// The smallest box that holds every state and the undeformed one, where W and its gradient
@@ -94,7 +111,16 @@ mod tests {
         assert_eq!(domain.eta_a, [-0.5, 0.25]);
         assert_eq!(domain.theta, [0.0, 1.2]);
         assert!(states.iter().all(|(g, e)| domain.contains(g, e)));
-        assert!(!domain.contains(&wide, &HingeDeformation::from_eta(0.0, 0.0, 1.3, 25.0)));
+        let beyond = HingeDeformation::from_eta(0.0, 0.0, 1.26, 25.0);
+        assert!(!domain.contains(&wide, &beyond));
+        assert!((domain.depth(&wide, &beyond) + 0.05).abs() < 1e-12);
+        let middle = HingeDesign {
+            w_lig: 15.0,
+            alpha: 1.5,
+            ..narrow
+        };
+        let state = HingeDeformation::from_eta(-0.125, 0.0, 0.48, 15.0);
+        assert!((domain.depth(&middle, &state) - 0.4).abs() < 1e-12);
         assert!(TrainingDomain::covering([]).is_none());
     }
 }

@@ -1,13 +1,13 @@
 //! `kirigami study surrogate`: what rays, network size, epochs and precision are worth.
 
 use crate::charts::{self, Curve};
-use crate::{picture, run_folder, train};
-use ::train::{Backend, Precision, Start, TrainingConfig};
-use anyhow::{Context, Result, ensure};
+use crate::kept_fits::kept_fit;
+use crate::{picture, run_folder};
+use ::train::{Precision, TrainingConfig};
+use anyhow::{Result, ensure};
 use clap::Args;
 use dataset::{Database, Part};
 use hinge::{HingeDeformation, HingeDesign};
-use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -42,18 +42,14 @@ const SIZES: [&str; 3] = ["small", "medium", "paper"];
 const RAYS: [usize; 5] = [50, 100, 200, 400, 800];
 
 /// One network.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Case {
     size: String,
     /// For training.
     rays: usize,
     config: TrainingConfig,
-    /// Of the database and of the split.
-    hashes: [String; 2],
 }
 
 /// What it gave.
-#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Fit {
     case: Case,
     errors: TestErrors,
@@ -66,14 +62,12 @@ impl SurrogateStudy {
     pub fn run(&self) -> Result<()> {
         let database = Database::read(&self.database)?;
         let _held = run_folder::hold(&self.out)?;
-        let kept = self.out.join("fits");
-        std::fs::create_dir_all(&kept)
-            .with_context(|| format!("cannot make the folder {}", kept.display()))?;
         let cases = self.cases(&database)?;
+        let count = cases.len();
         let mut fits: Vec<Fit> = Vec::new();
-        for (done, case) in cases.iter().enumerate() {
-            eprintln!("{} of {}: {}", done + 1, cases.len(), case.name());
-            fits.push(case.fit(&kept, &database)?);
+        for (done, case) in cases.into_iter().enumerate() {
+            eprintln!("{} of {count}: {}", done + 1, case.name());
+            fits.push(case.fit(&self.out.join("fits"), &database)?);
             self.write(&fits)?;
         }
         println!(
@@ -104,15 +98,10 @@ impl SurrogateStudy {
             if self.quick {
                 config.epochs = config.epochs.div_ceil(10);
             }
-            let case = |rays: usize, config: &TrainingConfig| {
-                let split = database.thinned(rays);
-                Case {
-                    size: (*size).into(),
-                    rays,
-                    config: config.clone(),
-                    hashes: [&split.manifest().hash, &split.manifest().split_hash]
-                        .map(String::clone),
-                }
+            let case = |rays: usize, config: &TrainingConfig| Case {
+                size: (*size).into(),
+                rays,
+                config: config.clone(),
             };
             cases.extend(rays.iter().map(|&rays| case(rays, &config)));
             let hasty = TrainingConfig {
@@ -130,10 +119,7 @@ impl SurrogateStudy {
     }
 
     fn write(&self, fits: &[Fit]) -> Result<()> {
-        let write = |name: &str, text: &str| {
-            let path = self.out.join(name);
-            std::fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
-        };
+        let write = |name: &str, text: &str| run_folder::write(&self.out, name, text);
         write("surrogate.csv", &csv(fits)?)?;
         write("surrogate.md", &markdown(fits)?)?;
         write("tradeoff.md", &tradeoff(fits)?)?;
@@ -156,31 +142,15 @@ impl Case {
         format!("{size}-{rays}-rays-{epochs}-epochs-{}", self.precision())
     }
 
-    /// The kept fit, if it is of this very case, or a new one.
-    fn fit(&self, folder: &Path, database: &Database) -> Result<Fit> {
-        let path = folder.join(self.name()).with_added_extension("json");
-        let kept = std::fs::read(&path).ok();
-        let kept = kept.and_then(|bytes| serde_json::from_slice::<Fit>(&bytes).ok());
-        if let Some(fit) = kept.filter(|fit| fit.case == *self) {
-            return Ok(fit);
-        }
-        let state = path.with_extension("state");
-        let start = match state.exists() {
-            true => Start::State(&state),
-            false => Start::Fresh,
-        };
-        let database = database.thinned(self.rays);
-        let trained = train::fit(&database, &self.config, Backend::default(), start, &state)?;
-        let fit = Fit {
-            case: self.clone(),
-            errors: trained.test_errors,
-            training_s: trained.history.last().map_or(0.0, |epoch| epoch.elapsed_s),
-            kernel_us: kernel_us(&trained.surrogate)?,
-        };
-        hinge::files::write(&path, &serde_json::to_vec_pretty(&fit)?)
-            .with_context(|| format!("cannot write {}", path.display()))?;
-        std::fs::remove_file(&state).ok();
-        Ok(fit)
+    fn fit(self, folder: &Path, database: &Database) -> Result<Fit> {
+        let thinned = database.thinned(self.rays);
+        let surrogate = kept_fit(folder, &self.name(), &thinned, &self.config)?;
+        Ok(Fit {
+            errors: surrogate.card().test_errors,
+            training_s: surrogate.card().training_s.unwrap_or_default(),
+            kernel_us: kernel_us(&surrogate)?,
+            case: self,
+        })
     }
 }
 

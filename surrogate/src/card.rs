@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 /// Version of the weight file and its card that this crate writes; it reads those before too.
 ///
 /// 1: the damage head predicts D. 2: it may predict D_peak too; errors by bins. 3: the hashes of
-/// the material law and of the campaign's settings. 4: D_peak has a head of its own; beta.
+/// the material law and of the campaign's settings. 4: D_peak has a head of its own; beta;
+/// the time of the training.
 pub const FORMAT_VERSION: u32 = 4;
 
 /// The units of everything a surrogate takes and returns.
@@ -60,6 +61,9 @@ pub struct Card {
     pub split_hash: String,
     /// The training configuration, as it was read.
     pub training: serde_json::Value,
+    /// Time that the training took (s), if known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub training_s: Option<f64>,
     /// Errors on the test split.
     pub test_errors: TestErrors,
     /// The same by bins of single quantities.

@@ -16,7 +16,11 @@ type Quantity<'a> = &'a dyn Fn(&Row) -> f64;
 /// row are left out.
 pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain) -> Vec<ErrorBin> {
     let degrees = |[least, greatest]: [f64; 2]| [least.to_degrees(), greatest.to_degrees()];
-    let edge = |row: &Row| edge_distance(row, domain);
+    let edge = |row: &Row| {
+        domain
+            .depth(&row.design, &row.sample.deformation())
+            .max(0.0)
+    };
     let quantities: [(&str, [f64; 2], Quantity); 6] = [
         ("eta_a", domain.eta_a, &|row| row.eta()[0]),
         ("eta_s", domain.eta_s, &|row| row.eta()[1]),
@@ -51,23 +55,6 @@ pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain)
 /// The bin of a value; what lies beyond the ends belongs to the bins there.
 fn bin_of(value: f64, least: f64, width: f64) -> usize {
     (((value - least) / width).max(0.0) as usize).min(BINS - 1)
-}
-
-/// Distance of a state from the nearest side of the domain over the length of that side: from 0
-/// at (or beyond) the edge to 1/2 in the middle.
-fn edge_distance(row: &Row, domain: &TrainingDomain) -> f64 {
-    let [eta_a, eta_s] = row.eta();
-    [
-        (eta_a, domain.eta_a),
-        (eta_s, domain.eta_s),
-        (row.sample.theta, domain.theta),
-        (row.design.w_lig, domain.w_lig),
-        (row.design.alpha, domain.alpha),
-    ]
-    .into_iter()
-    .map(|(value, [least, greatest])| (value - least).min(greatest - value) / (greatest - least))
-    .fold(0.5, f64::min)
-    .max(0.0)
 }
 
 #[cfg(test)]
@@ -132,12 +119,5 @@ mod tests {
         let widest = bins.iter().rfind(|bin| bin.quantity == "w_lig").unwrap();
         assert_eq!(widest.range, [21.0, 25.0]);
         assert!((widest.errors.energy.relative_rmse - 0.4).abs() < 1e-12);
-    }
-
-    #[test]
-    fn the_edge_is_the_nearest_side() {
-        assert_eq!(edge_distance(&row(15.0, 0.5), &DOMAIN), 0.5);
-        assert_eq!(edge_distance(&row(6.0, 0.5), &DOMAIN), 0.05);
-        assert_eq!(edge_distance(&row(15.0, 1.7), &DOMAIN), 0.0);
     }
 }

@@ -9,55 +9,72 @@ use crate::validation::root_mean_square;
 use dataset::Row;
 use surrogate::{Order, Surrogate};
 
-/// Whether the members' disagreement about the forces tells their error, on rows held out.
+/// What the members say of the forces in one state, and what is true.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disagreement {
+    pub deviation: f64,
+    /// Of the members' mean.
+    pub error: f64,
+}
+
+/// Whether the members' disagreement tells their error, over many states.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnsembleCheck {
-    /// Root mean square over the rows of the deviation.
+    /// Root mean square of the deviation.
     pub deviation: f64,
-    /// Root mean square over the rows of the error of the members' mean.
+    /// The same of the error.
     pub error: f64,
-    /// Share of the squared error on the tenth of the rows with the greatest deviation: a tenth
+    /// Share of the squared error on the tenth of the states with the greatest deviation: a tenth
     /// if the deviation tells nothing.
     pub error_in_top_tenth: f64,
-    /// Correlation over the rows of the logarithms of deviation and error.
+    /// Correlation of the logarithms of deviation and error.
     pub correlation: f64,
 }
 
+/// One for each row; sigma_c is the root mean square of a force over all of them.
+///
+/// `members` must not be empty.
+pub fn disagreements(members: &[Surrogate], rows: &[Row]) -> Vec<Disagreement> {
+    let forces: Vec<Vec<[f64; 3]>> = members.iter().map(|it| forces(it, rows)).collect();
+    let targets: Vec<[f64; 3]> = rows
+        .iter()
+        .map(|row| [row.sample.f_a, row.sample.f_s, row.sample.m_theta])
+        .collect();
+    let scales = [0, 1, 2].map(|c| root_mean_square(targets.iter().map(|f| f[c])));
+    let count = members.len() as f64;
+    let of_row = |row: usize| {
+        let [mut deviation, mut error] = [0.0; 2];
+        for (c, scale) in scales.into_iter().enumerate() {
+            let mean = forces.iter().map(|member| member[row][c]).sum::<f64>() / count;
+            let square = |value: f64| ((value - mean) / scale).powi(2);
+            let squares = forces.iter().map(|member| square(member[row][c]));
+            deviation += squares.sum::<f64>() / count;
+            error += square(targets[row][c]);
+        }
+        Disagreement {
+            deviation: deviation.sqrt(),
+            error: error.sqrt(),
+        }
+    };
+    (0..rows.len()).map(of_row).collect()
+}
+
 impl EnsembleCheck {
-    /// `members` must not be empty, nor `rows`.
-    pub fn of(members: &[Surrogate], rows: &[Row]) -> Self {
-        let forces: Vec<Vec<[f64; 3]>> = members.iter().map(|it| forces(it, rows)).collect();
-        let targets: Vec<[f64; 3]> = rows
-            .iter()
-            .map(|row| [row.sample.f_a, row.sample.f_s, row.sample.m_theta])
-            .collect();
-        let scales = [0, 1, 2].map(|c| root_mean_square(targets.iter().map(|f| f[c])));
-        let count = members.len() as f64;
-        let mut of_rows: Vec<[f64; 2]> = (0..rows.len())
-            .map(|row| {
-                let [mut deviation, mut error] = [0.0; 2];
-                for (c, scale) in scales.into_iter().enumerate() {
-                    let mean = forces.iter().map(|member| member[row][c]).sum::<f64>() / count;
-                    let square = |value: f64| ((value - mean) / scale).powi(2);
-                    let squares = forces.iter().map(|member| square(member[row][c]));
-                    deviation += squares.sum::<f64>() / count;
-                    error += square(targets[row][c]);
-                }
-                [deviation, error]
-            })
-            .collect();
-        let logarithms = |k: usize| {
-            let squares = of_rows.iter().map(move |row| row[k]);
-            squares.map(|square| square.max(f64::MIN_POSITIVE).ln())
-        };
-        let correlation = correlation(logarithms(0).zip(logarithms(1)));
-        of_rows.sort_by(|left, right| right[0].total_cmp(&left[0]));
-        let sum = |rows: &[[f64; 2]], k: usize| rows.iter().map(|row| row[k]).sum::<f64>();
-        let top = &of_rows[..rows.len().div_ceil(10)];
+    /// `states` must not be empty.
+    pub fn of(states: &[Disagreement]) -> Self {
+        let logarithm = |value: f64| value.max(f64::MIN_POSITIVE).ln();
+        let pairs = states.iter();
+        let pairs = pairs.map(|it| (logarithm(it.deviation), logarithm(it.error)));
+        let correlation = correlation(pairs);
+        let mut sorted = states.to_vec();
+        sorted.sort_by(|left, right| right.deviation.total_cmp(&left.deviation));
+        let squared_error =
+            |states: &[Disagreement]| states.iter().map(|it| it.error.powi(2)).sum::<f64>();
+        let top = &sorted[..states.len().div_ceil(10)];
         Self {
-            deviation: (sum(&of_rows, 0) / rows.len() as f64).sqrt(),
-            error: (sum(&of_rows, 1) / rows.len() as f64).sqrt(),
-            error_in_top_tenth: sum(top, 1) / sum(&of_rows, 1),
+            deviation: root_mean_square(states.iter().map(|it| it.deviation)),
+            error: root_mean_square(states.iter().map(|it| it.error)),
+            error_in_top_tenth: squared_error(top) / squared_error(states),
             correlation,
         }
     }
@@ -102,5 +119,20 @@ mod tests {
         let falling = line.map(|(x, y)| (x, -y));
         assert!((correlation(falling.into_iter()) + 1.0).abs() < 1e-12);
         assert_eq!(correlation(line.map(|(x, _)| (x, 5.0)).into_iter()), 0.0);
+    }
+
+    #[test]
+    fn a_deviation_that_is_half_the_error_tells_it_fully() {
+        let states: Vec<_> = (1..=20)
+            .map(|k| Disagreement {
+                deviation: 0.5 * f64::from(k),
+                error: f64::from(k),
+            })
+            .collect();
+        let check = EnsembleCheck::of(&states);
+        assert!((check.error - 2.0 * check.deviation).abs() < 1e-12);
+        assert!((check.correlation - 1.0).abs() < 1e-12);
+        let share = (19.0 * 19.0 + 20.0 * 20.0) / 2870.0;
+        assert!((check.error_in_top_tenth - share).abs() < 1e-12);
     }
 }

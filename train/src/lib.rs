@@ -42,7 +42,7 @@ mod validation;
 
 pub use backend::{Backend, UnknownBackend};
 pub use config::{InvalidConfig, Precision, TrainingConfig};
-pub use ensemble::EnsembleCheck;
+pub use ensemble::{Disagreement, EnsembleCheck, disagreements};
 pub use error::TrainError;
 pub use state::StateError;
 pub use stiffness::StiffnessCheck;

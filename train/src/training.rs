@@ -248,7 +248,8 @@ impl Training {
     }
 
     /// Exports the best and the last networks and measures the best on the test part.
-    pub fn finish(self) -> Result<Trained, TrainError> {
+    pub fn finish(mut self) -> Result<Trained, TrainError> {
+        self.card.training_s = self.history.last().map(|epoch| epoch.elapsed_s);
         let best = export(&self.best, &self.card)?;
         let parity = Parity::of(&best, &self.parts.test);
         let test_errors = parity.errors();
@@ -390,6 +391,7 @@ fn card(
         split_hash: manifest.split_hash.clone(),
         training: serde_json::to_value(config)
             .expect("a configuration of numbers and lists is always JSON"),
+        training_s: None,
         test_errors: TestErrors::default(),
         error_bins: Vec::new(),
     })

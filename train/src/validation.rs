@@ -56,6 +56,33 @@ impl Parity {
         parity
     }
 
+    /// The mean of what several networks predict of the same rows.
+    pub fn mean(members: &[Self]) -> Self {
+        let mean = |points: fn(&Self) -> &[ParityPoint]| {
+            let count = members.len() as f64;
+            let of_row = |row: usize, target: f64| ParityPoint {
+                target,
+                predicted: members
+                    .iter()
+                    .map(|it| points(it)[row].predicted)
+                    .sum::<f64>()
+                    / count,
+            };
+            let targets = members.iter().take(1).flat_map(points).enumerate();
+            targets
+                .map(|(row, point)| of_row(row, point.target))
+                .collect()
+        };
+        Self {
+            energy: mean(|it| &it.energy),
+            f_a: mean(|it| &it.f_a),
+            f_s: mean(|it| &it.f_s),
+            m_theta: mean(|it| &it.m_theta),
+            damage: mean(|it| &it.damage),
+            damage_peak: mean(|it| &it.damage_peak),
+        }
+    }
+
     /// The errors by quantity.
     pub fn errors(&self) -> TestErrors {
         TestErrors {

@@ -1,0 +1,353 @@
+//! `kirigami study trust`: how far the forces of a surrogate can be relied on, and who tells.
+
+use crate::charts::{self, Calibration};
+use crate::kept_fits::kept_fit;
+use crate::{picture, run_folder};
+use ::train::{Disagreement, EnsembleCheck, Parity, TrainingConfig, disagreements};
+use anyhow::{Result, ensure};
+use clap::Args;
+use dataset::{Database, Part, Row};
+use hinge::TrainingDomain;
+use std::fmt::Write;
+use std::path::PathBuf;
+use surrogate::{FitError, Surrogate, TestErrors};
+
+/// Seed spread, the ensemble's deviation as an estimate of error, and what happens outside the box
+///
+/// Trains networks of several seeds on the database, and as many on the states within a smaller
+/// box, which are then asked about what lies outside it. Writes trust.csv, trust.md, tradeoff.md
+/// and a picture. Example: kirigami study trust data/hinges.parquet --seeds 2
+#[derive(Args)]
+pub struct TrustStudy {
+    /// Database (Parquet with its manifest)
+    #[arg(value_name = "DATABASE")]
+    database: PathBuf,
+    /// Training configuration (TOML)
+    #[arg(
+        long,
+        value_name = "FILE",
+        default_value = "configs/training/medium.toml"
+    )]
+    config: PathBuf,
+    /// Networks in each ensemble, at least two
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u64).range(2..=64))]
+    seeds: u64,
+    /// Folder for the tables, the picture and the networks
+    #[arg(long, value_name = "FOLDER", default_value = "runs/study-trust")]
+    out: PathBuf,
+}
+
+/// Share of each of the box's sides that the smaller one keeps, about the undeformed state or from
+/// the middle of the designs on.
+const KEPT: f64 = 0.75;
+
+/// Bins of the distance outside, as a share of the box's side; the first is inside.
+const OUTSIDE: [f64; 4] = [0.0, 0.05, 0.15, 0.35];
+
+/// An ensemble, and what it says of some rows.
+struct Answers {
+    members: Vec<Surrogate>,
+    rows: Vec<Row>,
+    forces: Vec<Disagreement>,
+}
+
+impl TrustStudy {
+    pub fn run(&self) -> Result<()> {
+        let config: TrainingConfig = hinge::config::read(&self.config)?;
+        let database = Database::read(&self.database)?;
+        let _held = run_folder::hold(&self.out)?;
+        let smaller = smaller(&database.manifest().domain);
+        let within = database.within(&smaller)?;
+        let test = database.part(Part::Test);
+        let whole = self.answers("whole", &config, &database, test.clone())?;
+        let inner = self.answers("inner", &config, &within, test)?;
+        self.write(&whole, &inner)?;
+        println!("see {}", self.out.join("trust.md").display());
+        Ok(())
+    }
+
+    fn answers(
+        &self,
+        name: &str,
+        config: &TrainingConfig,
+        database: &Database,
+        rows: Vec<Row>,
+    ) -> Result<Answers> {
+        let member = |seed: u64| {
+            eprintln!("{name} box, network {} of {}", seed + 1, self.seeds);
+            let config = TrainingConfig {
+                seed,
+                ..config.clone()
+            };
+            let name = format!("{name}-{seed}");
+            kept_fit(&self.out.join("fits"), &name, database, &config)
+        };
+        let members: Vec<Surrogate> = (0..self.seeds).map(member).collect::<Result<_>>()?;
+        ensure!(!rows.is_empty(), "the database has no rows to test with");
+        Ok(Answers {
+            forces: disagreements(&members, &rows),
+            members,
+            rows,
+        })
+    }
+
+    fn write(&self, whole: &Answers, inner: &Answers) -> Result<()> {
+        let tenths = whole.tenths();
+        let mut page = "# How far a surrogate can be trusted\n\nErrors on geometries that no \
+                        network saw.\n\n## Networks of several seeds\n\n"
+            .to_owned();
+        page += &whole.spread()?;
+        page += "\n## The ensemble's deviation as an estimate of its error\n\n";
+        page += &whole.calibration(&tenths)?;
+        page += "\n## Outside the box\n\n";
+        page += &inner.outside()?;
+        let write = |name: &str, text: &str| run_folder::write(&self.out, name, text);
+        write("trust.md", &page)?;
+        write("trust.csv", &inner.csv(whole)?)?;
+        write("tradeoff.md", &whole.tradeoff()?)?;
+        let outside = inner.by_distance();
+        let chart = charts::calibration(&[
+            Calibration {
+                title: "inside the box, tenths by deviation",
+                points: &tenths,
+            },
+            Calibration {
+                title: "ever farther outside the box",
+                points: &outside
+                    .iter()
+                    .map(|(_, of)| [of.deviation, of.error])
+                    .collect::<Vec<_>>(),
+            },
+        ])?;
+        picture::save(&chart, &self.out.join("trust"), 1600)?;
+        Ok(())
+    }
+}
+
+/// The box with [`KEPT`] of each side. Solved cut angles end at the right angle, beyond which
+/// everything is a mirror image, so that end stays.
+fn smaller(domain: &TrainingDomain) -> TrainingDomain {
+    let towards_zero = |side: [f64; 2]| side.map(|end| KEPT * end);
+    let [narrow, wide] = domain.w_lig;
+    let [acute, right] = domain.alpha;
+    let margin = 0.5 * (1.0 - KEPT) * (wide - narrow);
+    TrainingDomain {
+        eta_a: towards_zero(domain.eta_a),
+        eta_s: towards_zero(domain.eta_s),
+        theta: towards_zero(domain.theta),
+        w_lig: [narrow + margin, wide - margin],
+        alpha: [right - KEPT * (right - acute), right],
+    }
+}
+
+/// The errors of the table, in percent.
+fn percents(errors: &TestErrors) -> [f64; 6] {
+    let TestErrors {
+        energy,
+        f_a,
+        f_s,
+        m_theta,
+        damage,
+        damage_peak,
+        ..
+    } = *errors;
+    [energy, f_a, f_s, m_theta, damage, damage_peak]
+        .map(|FitError { relative_rmse, .. }| 100.0 * relative_rmse)
+}
+
+impl Answers {
+    /// The errors of each network, and of the mean of their answers.
+    fn spread(&self) -> Result<String> {
+        let parities: Vec<Parity> = self
+            .members
+            .iter()
+            .map(|it| Parity::of(it, &self.rows))
+            .collect();
+        let mut text =
+            "| network | W | F_a | F_s | M | D | D_peak | worst bin of theta or w_lig, W \
+                        |\n|---|---|---|---|---|---|---|---|\n"
+                .to_owned();
+        let mut line = |name: &str, errors: &TestErrors, worst: Option<f64>| {
+            let [w, f_a, f_s, m, d, peak] = percents(errors);
+            let worst = worst.map_or(String::new(), |worst| format!("{worst:.2} %"));
+            writeln!(
+                text,
+                "| {name} | {w:.2} % | {f_a:.1} % | {f_s:.1} % | {m:.1} % | {d:.1} % | {peak:.1} % \
+                 | {worst} |"
+            )
+        };
+        for (seed, (member, parity)) in self.members.iter().zip(&parities).enumerate() {
+            let worst = worst_bin(member);
+            line(&format!("seed {seed}"), &parity.errors(), Some(worst))?;
+        }
+        line("mean of them", &Parity::mean(&parities).errors(), None)?;
+        Ok(text)
+    }
+
+    /// Deviation and error of the forces, each a root mean square, of the tenth of the states
+    /// where they deviate least, of the next tenth, and so on.
+    fn tenths(&self) -> Vec<[f64; 2]> {
+        let mut sorted = self.forces.clone();
+        sorted.sort_by(|x, y| x.deviation.total_cmp(&y.deviation));
+        sorted
+            .chunks(sorted.len().div_ceil(10))
+            .map(|states| {
+                let EnsembleCheck {
+                    deviation, error, ..
+                } = EnsembleCheck::of(states);
+                [deviation, error]
+            })
+            .collect()
+    }
+
+    fn calibration(&self, tenths: &[[f64; 2]]) -> Result<String> {
+        let check = EnsembleCheck::of(&self.forces);
+        let mut text = format!(
+            "Forces in units of their root mean square. Over all states the networks deviate by \
+             {:.4} and their mean errs by {:.4}: the error is {:.1} times the deviation. The tenth \
+             of the states with the greatest deviation holds {:.0} % of the squared error; the \
+             logarithms of the two correlate by {:.2}.\n\n\
+             | tenth | deviation | error | error / deviation |\n|---|---|---|---|\n",
+            check.deviation,
+            check.error,
+            check.error / check.deviation,
+            100.0 * check.error_in_top_tenth,
+            check.correlation
+        );
+        for (tenth, [deviation, error]) in tenths.iter().enumerate() {
+            let ratio = error / deviation;
+            let tenth = tenth + 1;
+            writeln!(
+                text,
+                "| {tenth} | {deviation:.5} | {error:.5} | {ratio:.1} |"
+            )?;
+        }
+        text += "\n![deviation and error](trust.png)\n";
+        Ok(text)
+    }
+
+    /// The states by their distance outside the box of these networks: name of the bin, check.
+    fn by_distance(&self) -> Vec<(String, EnsembleCheck)> {
+        let bins = self.bins().into_iter();
+        bins.map(|(name, rows)| {
+            let states: Vec<Disagreement> = rows.iter().map(|&row| self.forces[row]).collect();
+            (name, EnsembleCheck::of(&states))
+        })
+        .collect()
+    }
+
+    fn bins(&self) -> Vec<(String, Vec<usize>)> {
+        let distance = |row: &Row| {
+            let domain = self.members[0].domain();
+            (-domain.depth(&row.design, &row.sample.deformation())).max(0.0)
+        };
+        let distances: Vec<f64> = self.rows.iter().map(distance).collect();
+        let lower = std::iter::once(-1.0).chain(OUTSIDE);
+        let bins = lower.zip(OUTSIDE).map(|(lower, upper)| {
+            let name = match upper {
+                0.0 => "inside".into(),
+                _ => format!("{:.0} to {:.0} %", 100.0 * lower, 100.0 * upper),
+            };
+            let inside = |&row: &usize| lower < distances[row] && distances[row] <= upper;
+            (name, (0..distances.len()).filter(inside).collect())
+        });
+        let bins = bins.filter(|(_, rows): &(_, Vec<usize>)| !rows.is_empty());
+        bins.collect()
+    }
+
+    fn outside(&self) -> Result<String> {
+        let mut text = format!(
+            "Networks trained within {:.0} % of each side of the box, asked about the test \
+             geometries whole. Distances outside are those of the coordinate that is farthest off, \
+             over the side of the smaller box; errors are relative to the states of the bin (W) and \
+             to all (forces).\n\n\
+             | outside | states | W | forces, error | forces, deviation |\n|---|---|---|---|---|\n",
+            100.0 * KEPT
+        );
+        for ((name, rows), (_, check)) in self.bins().into_iter().zip(self.by_distance()) {
+            let of_bin: Vec<Row> = rows.iter().map(|&row| self.rows[row].clone()).collect();
+            let energy = Parity::of(&self.members[0], &of_bin).errors().energy;
+            writeln!(
+                text,
+                "| {name} | {} | {:.2} % | {:.2} % | {:.2} % |",
+                rows.len(),
+                100.0 * energy.relative_rmse,
+                100.0 * check.error / f64::sqrt(3.0),
+                100.0 * check.deviation / f64::sqrt(3.0)
+            )?;
+        }
+        text += "\nA design says which share of its hinge states lies outside, and a barrier keeps \
+                 the energy coercive there.\n";
+        Ok(text)
+    }
+
+    /// Every state of the test: distance outside the smaller box, deviation and error of the
+    /// forces for the networks of that box and of the whole one.
+    fn csv(&self, whole: &Answers) -> Result<String> {
+        let mut text = "w_lig_mm,alpha_deg,eta_a,eta_s,theta_deg,depth_in_smaller_box,\
+            deviation_smaller,error_smaller,deviation_whole,error_whole\n"
+            .to_owned();
+        let domain = self.members[0].domain();
+        let states = self.rows.iter().zip(&self.forces).zip(&whole.forces);
+        for ((row, inner), whole) in states {
+            let deformation = row.sample.deformation();
+            let [eta_a, eta_s] = row.eta();
+            writeln!(
+                text,
+                "{:.4},{:.3},{eta_a:.5},{eta_s:.5},{:.3},{:.4},{:.4e},{:.4e},{:.4e},{:.4e}",
+                row.design.w_lig,
+                row.design.alpha.to_degrees(),
+                deformation.theta.to_degrees(),
+                domain.depth(&row.design, &deformation),
+                inner.deviation,
+                inner.error,
+                whole.deviation,
+                whole.error
+            )?;
+        }
+        Ok(text)
+    }
+
+    fn tradeoff(&self) -> Result<String> {
+        let parities: Vec<Parity> = self
+            .members
+            .iter()
+            .map(|it| Parity::of(it, &self.rows))
+            .collect();
+        let count = self.members.len();
+        let rms = |quantity: usize| {
+            let squares = parities
+                .iter()
+                .map(|it| percents(&it.errors())[quantity].powi(2));
+            (squares.sum::<f64>() / count as f64).sqrt()
+        };
+        let mean = percents(&Parity::mean(&parities).errors());
+        let mut text =
+            "## Ensemble\n\n| networks | evaluations | W | F_a | F_s | M | D | good for \
+                        |\n|---|---|---|---|---|---|---|---|\n"
+                .to_owned();
+        let mut line = |networks: usize, errors: [f64; 5], what: &str| {
+            let [w, f_a, f_s, m, d] = errors;
+            writeln!(
+                text,
+                "| {networks} | {networks} | {w:.2} % | {f_a:.1} % | {f_s:.1} % | {m:.1} % | \
+                 {d:.1} % | {what} |"
+            )
+        };
+        line(1, std::array::from_fn(rms), "design")?;
+        line(
+            count,
+            std::array::from_fn(|k| mean[k]),
+            "an estimate of error; the last digit",
+        )?;
+        Ok(text)
+    }
+}
+
+/// Greatest error of W in a bin of rotation or of ligament width (%).
+fn worst_bin(surrogate: &Surrogate) -> f64 {
+    let bins = surrogate.card().error_bins.iter();
+    bins.filter(|bin| ["theta_deg", "w_lig"].contains(&bin.quantity.as_str()))
+        .map(|bin| 100.0 * bin.errors.energy.relative_rmse)
+        .fold(0.0, f64::max)
+}
