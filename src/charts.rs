@@ -2,6 +2,7 @@
 
 mod calibration;
 mod costs;
+mod front;
 mod learning_curve;
 mod parity;
 mod rays;
@@ -13,6 +14,7 @@ mod window;
 
 pub use calibration::{Calibration, calibration};
 pub use costs::{CostPanel, costs};
+pub use front::{FrontPanel, front};
 pub use learning_curve::learning_curve;
 pub use parity::{ParityChart, parity};
 pub use rays::{Curve, against_rays};

@@ -1,6 +1,8 @@
 //! `kirigami study`: what the choices of each stage cost and are worth.
 
+mod chain;
 mod gradient;
+mod noise;
 mod path;
 mod sheet;
 mod solutions;
@@ -14,8 +16,10 @@ use clap::Subcommand;
 /// Measure what the choices of a stage cost and are worth
 #[derive(Subcommand)]
 pub enum StudyCommand {
+    Chain(chain::ChainStudy),
     Sheet(sheet::SheetStudy),
     Window(window::WindowStudy),
+    Noise(noise::NoiseStudy),
     Path(path::PathStudy),
     Gradient(gradient::GradientStudy),
     Solutions(solutions::SolutionStudy),
@@ -26,8 +30,10 @@ pub enum StudyCommand {
 impl StudyCommand {
     pub fn run(&self) -> Result<()> {
         match self {
+            Self::Chain(study) => study.run(),
             Self::Sheet(study) => study.run(),
             Self::Window(study) => study.run(),
+            Self::Noise(study) => study.run(),
             Self::Path(study) => study.run(),
             Self::Gradient(study) => study.run(),
             Self::Solutions(study) => study.run(),

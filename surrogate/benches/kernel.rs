@@ -120,6 +120,7 @@ fn card() -> Card {
         fine_tuned_from: None,
         split_hash: "none".into(),
         training: Default::default(),
+        training_rays: None,
         training_s: None,
         test_errors: TestErrors::default(),
         error_bins: Vec::new(),

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// 1: the damage head predicts D. 2: it may predict D_peak too; errors by bins. 3: the hashes of
 /// the material law and of the campaign's settings. 4: D_peak has a head of its own; beta;
-/// the time of the training.
+/// what the training took.
 pub const FORMAT_VERSION: u32 = 4;
 
 /// The units of everything a surrogate takes and returns.
@@ -61,6 +61,9 @@ pub struct Card {
     pub split_hash: String,
     /// The training configuration, as it was read.
     pub training: serde_json::Value,
+    /// Rays that it was trained on, if known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub training_rays: Option<usize>,
     /// Time that the training took (s), if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub training_s: Option<f64>,

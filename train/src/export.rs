@@ -108,6 +108,7 @@ mod tests {
             dataset_hash: String::new(),
             split_hash: String::new(),
             training: serde_json::Value::Null,
+            training_rays: None,
             training_s: None,
             test_errors: TestErrors::default(),
             error_bins: Vec::new(),

@@ -391,6 +391,7 @@ fn card(
         split_hash: manifest.split_hash.clone(),
         training: serde_json::to_value(config)
             .expect("a configuration of numbers and lists is always JSON"),
+        training_rays: Some(manifest.split.training.len()),
         training_s: None,
         test_errors: TestErrors::default(),
         error_bins: Vec::new(),

@@ -13,7 +13,7 @@ use std::path::Path;
 use surrogate::{Order, Surrogate};
 use train::{
     Backend, EnsembleCheck, Epoch, Precision, Start, StateError, TrainError, Trained, Training,
-    TrainingConfig, train,
+    TrainingConfig, disagreements, train,
 };
 
 fn sample(design: &HingeDesign, eps: HingeDeformation, lambda: f64) -> HingeSample {
@@ -441,9 +441,9 @@ fn members_of_an_ensemble_agree_with_themselves_alone() {
             .surrogate
     };
     let first = member(1);
-    let same = EnsembleCheck::of(&[first.clone(), first.clone()], &rows);
+    let same = EnsembleCheck::of(&disagreements(&[first.clone(), first.clone()], &rows));
     assert!(same.deviation < 1e-12 && same.error > 0.0, "{same:?}");
-    let different = EnsembleCheck::of(&[first, member(2)], &rows);
+    let different = EnsembleCheck::of(&disagreements(&[first, member(2)], &rows));
     assert!(different.deviation > 0.01, "{different:?}");
     assert!(different.error_in_top_tenth > 0.0 && different.error_in_top_tenth < 1.0);
 }

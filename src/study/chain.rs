@@ -1,0 +1,307 @@
+//! `kirigami study chain`: one task, from windows to the deployed sheet, with every choice of the
+//! chain in turn.
+//!
+//! Each choice is judged twice by the finest of everything. Its *prediction*: the design that the
+//! reference makes is deployed with the choice. Its *design*: what is designed with the choice is
+//! deployed with the reference, as a cut sheet would be.
+
+mod page;
+
+use crate::{interrupt, run_folder};
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use dataset::Database;
+use design::design_vector::DesignVector;
+use design::gradient::{DesignProblem, Model};
+use design::hinge_law::Order;
+use design::inverse_design::inverse_design;
+use design::kinematics::deployed_corners;
+use design::outline_error::outline_error;
+use design::scene::{CondensedConfig, HingeModel, Scene, SceneConfig, SurrogateFile};
+use design::sheet::HingePoint;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use surrogate::Surrogate;
+
+/// The whole chain on one sheet: what each of its choices costs, and its error in the result
+///
+/// Every network that is named is put into the scene in turn, then every other choice is varied
+/// with the scene's own network. Writes chain.csv, chain.md, tradeoff.md and a picture. Example:
+/// kirigami study chain configs/scenes/pet-3x3.toml --reference paper.safetensors small.safetensors
+#[derive(Args)]
+pub struct ChainStudy {
+    /// Scene (TOML) with the learned hinge law
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    /// Networks to be judged
+    #[arg(value_name = "WEIGHTS")]
+    networks: Vec<PathBuf>,
+    /// The most accurate network, which judges
+    #[arg(long, value_name = "WEIGHTS")]
+    reference: PathBuf,
+    /// Databases that the networks were trained on, for the cost of their windows
+    #[arg(long, value_name = "DATABASE", num_args = 1..)]
+    databases: Vec<PathBuf>,
+    /// Folder for the tables, the picture and the designs
+    #[arg(long, value_name = "FOLDER", default_value = "runs/study-chain")]
+    out: PathBuf,
+}
+
+/// Of the reference.
+const TOLERANCE: f64 = 1e-12;
+const LOAD_STEPS: usize = 40;
+
+/// A choice, and what came of it.
+struct Row {
+    kind: &'static str,
+    choice: String,
+    /// CPU time of the windows that the network was trained on (s), if known.
+    windows_s: Option<f64>,
+    /// Of the network (s), if known.
+    training_s: Option<f64>,
+    /// Of one step of the design, equilibria and gradient (s).
+    step_s: f64,
+    prediction: Difference,
+    /// Root mean square distance from the target (mm): as the choice has it, and as it is.
+    outline: [f64; 2],
+    /// Greatest damage of a hinge of its design, as it is.
+    damage: f64,
+}
+
+/// Of the reference's design, deployed with a choice, from the same deployed with the reference.
+struct Difference {
+    /// Root mean square of the panel corners (mm), and over the side of a square sheet of this area.
+    shape: [f64; 2],
+    /// Root mean square of the rotations of the hinges (deg).
+    rotation_deg: f64,
+    /// Root mean square over that of the reference: of (F_a, F_s), and of D if it is predicted.
+    force: f64,
+    damage: Option<f64>,
+}
+
+/// A deployed sheet in the numbers that are compared.
+struct Deployed {
+    corners: Vec<[f64; 2]>,
+    rotations: Vec<f64>,
+    forces: Vec<f64>,
+    /// Greatest of each hinge along the path; empty if it is not predicted.
+    damage: Vec<f64>,
+    outline: f64,
+}
+
+impl ChainStudy {
+    pub fn run(&self) -> Result<()> {
+        let base: SceneConfig = hinge::config::read(&self.scene)?;
+        ensure!(
+            base.hinge == HingeModel::Surrogate,
+            "{} does not have the learned hinge law (hinge = \"surrogate\")",
+            self.scene.display()
+        );
+        let _held = run_folder::hold(&self.out)?;
+        let databases: Vec<Database> = self
+            .databases
+            .iter()
+            .map(|path| Database::read(path))
+            .collect::<Result<_, _>>()?;
+        let judge = self.judge(&base)?;
+        let reference = self.design(&judge, "reference")?;
+        let problem = judge.problem()?;
+        let sheet = problem.outline.area().sqrt();
+        let truth = Deployed::of(&judge, &problem, &reference)?;
+        let mut rows = Vec::new();
+        for (kind, choice, config) in self.choices(&base)? {
+            eprintln!("{kind}: {choice}");
+            let scene = self.scene_of(config, &format!("{kind}-{choice}"))?;
+            let design = self.design(&scene, &choice)?;
+            let chosen = scene.problem()?;
+            let began = Instant::now();
+            chosen.evaluate(&reference)?;
+            let step_s = began.elapsed().as_secs_f64();
+            let predicted = Deployed::of(&scene, &chosen, &reference)?;
+            let own = Deployed::of(&scene, &chosen, &design)?;
+            let made = Deployed::of(&judge, &problem, &design)?;
+            let network = scene.surrogate();
+            rows.push(Row {
+                kind,
+                choice,
+                windows_s: network.and_then(|it| windows_s(it, &databases)),
+                training_s: network.and_then(|it| it.card().training_s),
+                step_s,
+                prediction: predicted.difference(&truth, sheet),
+                outline: [own.outline, made.outline],
+                damage: made.damage.iter().copied().fold(0.0, f64::max),
+            });
+        }
+        page::write(&self.out, &truth, &rows)
+    }
+
+    /// The scene with the finest of everything.
+    fn judge(&self, base: &SceneConfig) -> Result<Scene> {
+        let mut config = with_weights(base, &self.reference)?;
+        config.solver.tolerance = TOLERANCE;
+        config.load_steps = LOAD_STEPS;
+        self.scene_of(config, "reference")
+    }
+
+    /// Its designs go to a folder of this study.
+    fn scene_of(&self, mut config: SceneConfig, name: &str) -> Result<Scene> {
+        let folder = name.replace(|c: char| !c.is_ascii_alphanumeric() && c != '.', "-");
+        config.output = std::path::absolute(self.out.join("designs").join(folder))?;
+        Ok(Scene::new(config, &self.scene)?)
+    }
+
+    fn design(&self, scene: &Scene, name: &str) -> Result<DesignVector> {
+        let designed = inverse_design(scene, interrupt::stop_flag()?, &mut |_| ());
+        Ok(designed.with_context(|| format!("with {name}"))?.design)
+    }
+
+    fn choices(&self, base: &SceneConfig) -> Result<Vec<(&'static str, String, SceneConfig)>> {
+        let mut choices = Vec::new();
+        for path in &self.networks {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            choices.push(("network", name.into(), with_weights(base, path)?));
+        }
+        let mut add = |kind, choice: String, change: &dyn Fn(&mut SceneConfig)| {
+            let mut config = base.clone();
+            change(&mut config);
+            choices.push((kind, choice, config));
+        };
+        for tolerance in [1e-10, 1e-6, 1e-3] {
+            let choice = format!("{tolerance:.0e}");
+            add("tolerance", choice, &|config| {
+                config.solver.tolerance = tolerance
+            });
+        }
+        for steps in [20, 10, 5] {
+            let choice = steps.to_string();
+            add("load steps", choice, &|config| config.load_steps = steps);
+        }
+        let weights = self.own_weights(base)?;
+        for secant_deg in [20.0, 0.0] {
+            let choice = format!("linear, secant at {secant_deg} deg");
+            add("hinge law", choice, &|config| {
+                config.hinge = HingeModel::Linear;
+                config.hinge_point = Some(HingePoint::CutTip);
+                config.surrogate = None;
+                config.objective.damage = 0.0;
+                config.condensed = Some(CondensedConfig {
+                    weights: weights.clone(),
+                    secant_deg,
+                });
+            });
+        }
+        add("hinge point", "corner".into(), &|config| {
+            config.hinge_point = Some(HingePoint::Corner);
+        });
+        Ok(choices)
+    }
+
+    /// The weights that the scene names, wherever it is read from.
+    fn own_weights(&self, base: &SceneConfig) -> Result<PathBuf> {
+        let named = base.surrogate.as_ref();
+        let named = &named.context("the scene names no weights")?.weights;
+        let folder = self.scene.parent().unwrap_or(Path::new(""));
+        Ok(std::path::absolute(folder.join(named))?)
+    }
+}
+
+fn with_weights(base: &SceneConfig, weights: &Path) -> Result<SceneConfig> {
+    let weights = std::path::absolute(weights)?;
+    Ok(SceneConfig {
+        surrogate: Some(SurrogateFile { weights }),
+        ..base.clone()
+    })
+}
+
+/// CPU time of the windows of the rays that the network was trained on.
+fn windows_s(network: &Surrogate, databases: &[Database]) -> Option<f64> {
+    let card = network.card();
+    let manifests = databases.iter().map(Database::manifest);
+    let own = manifests
+        .into_iter()
+        .find(|it| it.hash == card.dataset_hash)?;
+    Some(own.cpu_s * card.training_rays? as f64 / own.rays as f64)
+}
+
+impl Deployed {
+    fn of(scene: &Scene, problem: &DesignProblem, design: &DesignVector) -> Result<Self> {
+        let deployment = problem.deploy(design)?;
+        let last = deployment.final_step();
+        let designs = deployment.sheet.designs();
+        let forces = match &problem.model {
+            Model::Equilibrium(mechanics) => mechanics
+                .law
+                .prepare(&designs)
+                .energies(&last.deformations, Order::Forces),
+            _ => Vec::new(),
+        };
+        let mut damage: Vec<f64> = Vec::new();
+        for step in &deployment.path {
+            damage.resize(step.damage.len(), 0.0);
+            for (greatest, found) in damage.iter_mut().zip(&step.damage) {
+                *greatest = greatest.max(found.d);
+            }
+        }
+        Ok(Self {
+            corners: deployed_corners(&deployment.sheet, &last.configuration).concat(),
+            rotations: last.deformations.iter().map(|eps| eps.theta).collect(),
+            forces: forces
+                .iter()
+                .flat_map(|energy| [energy.forces[0], energy.forces[1]])
+                .collect(),
+            damage,
+            outline: outline_error(scene, &deployment),
+        })
+    }
+
+    fn difference(&self, truth: &Self, sheet: f64) -> Difference {
+        let corners = |deployed: &Self| deployed.corners.concat();
+        // Of points, so that the squares of both coordinates add up.
+        let shape = rms_difference(&corners(self), &corners(truth)) * f64::sqrt(2.0);
+        let relative = |one: &[f64], other: &[f64]| rms_difference(one, other) / rms(other);
+        Difference {
+            shape: [shape, shape / sheet],
+            rotation_deg: rms_difference(&self.rotations, &truth.rotations).to_degrees(),
+            force: relative(&self.forces, &truth.forces),
+            damage: (!self.damage.is_empty()).then(|| relative(&self.damage, &truth.damage)),
+        }
+    }
+}
+
+fn rms(values: &[f64]) -> f64 {
+    let squares: f64 = values.iter().map(|x| x * x).sum();
+    (squares / values.len().max(1) as f64).sqrt()
+}
+
+fn rms_difference(one: &[f64], other: &[f64]) -> f64 {
+    rms(&one
+        .iter()
+        .zip(other)
+        .map(|(x, y)| x - y)
+        .collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn deployed(shift: f64) -> Deployed {
+        Deployed {
+            corners: vec![[shift, 0.0], [2.0, shift]],
+            rotations: vec![0.1, 0.2 + shift],
+            forces: vec![3.0, 4.0 + shift],
+            damage: vec![0.01],
+            outline: 0.0,
+        }
+    }
+
+    #[test]
+    fn differences_are_those_of_points_and_relative_to_the_truth() {
+        let found = deployed(0.5).difference(&deployed(0.0), 5.0);
+        assert!((found.shape[0] - 0.5).abs() < 1e-12, "each corner by 0.5");
+        assert!((found.shape[1] - 0.1).abs() < 1e-12);
+        assert!((found.rotation_deg - (0.5 / 2.0_f64.sqrt()).to_degrees()).abs() < 1e-12);
+        assert!((found.force - 0.1).abs() < 1e-12);
+        assert_eq!(found.damage, Some(0.0));
+    }
+}
