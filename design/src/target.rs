@@ -130,6 +130,12 @@ impl Target {
         [sum(0), sum(1)].map(|sum| sum / self.points.len() as f64)
     }
 
+    /// Extent of the samples along x (mm).
+    pub fn width(&self) -> f64 {
+        let across = || self.points.iter().map(|point| point[0]);
+        across().fold(f64::NEG_INFINITY, f64::max) - across().fold(f64::INFINITY, f64::min)
+    }
+
     /// Length of the outline itself (mm).
     pub fn length(&self) -> f64 {
         self.length
@@ -269,6 +275,8 @@ mod tests {
         };
         let rectangle = sample(shape, 100).unwrap();
         assert!((rectangle.length() - 1000.0).abs() < 1e-9);
+        let (sin, cos) = 15.4_f64.to_radians().sin_cos();
+        assert!((rectangle.width() - (300.0 * cos + 200.0 * sin)).abs() < 1e-9);
         let p = rectangle.points();
         assert_eq!(p.len(), 100);
         assert!(

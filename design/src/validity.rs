@@ -74,6 +74,20 @@ impl Validity {
 /// The greatest area that two neighbouring panels share in a configuration, over the mean panel
 /// area. Panels that are no neighbours, not even across a corner, are not compared.
 pub fn overlap(sheet: &Sheet, configuration: &[[f64; 3]]) -> f64 {
+    let mean = sheet.outline.area() / sheet.panels.len() as f64;
+    shared_areas(sheet, configuration)
+        .into_iter()
+        .fold(0.0, f64::max)
+        / mean
+}
+
+/// The areas that neighbouring panels share in a configuration, all together over the sheet's area.
+pub fn total_overlap(sheet: &Sheet, configuration: &[[f64; 3]]) -> f64 {
+    shared_areas(sheet, configuration).iter().sum::<f64>() / sheet.outline.area()
+}
+
+/// The area that each two neighbours share, across edges and corners (mm^2).
+fn shared_areas(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<f64> {
     let Grid { m, n } = sheet.grid;
     let corners = deployed_corners(sheet, configuration);
     let panels = (0..n).flat_map(|q| (0..m).map(move |p| (p, q)));
@@ -89,8 +103,7 @@ pub fn overlap(sheet: &Sheet, configuration: &[[f64; 3]]) -> f64 {
         let [one, other] = [(p, q), (s, t)].map(|(p, q)| &corners[sheet.grid.panel(p, q)]);
         area(&common(one, other))
     });
-    let mean = sheet.panels.iter().map(Panel::area).sum::<f64>() / sheet.panels.len() as f64;
-    shared.fold(0.0, f64::max) / mean
+    shared.collect()
 }
 
 /// The distance of each hinge to the nearest other one of its two panels (mm).

@@ -144,7 +144,8 @@ impl State<'_> {
                 let head = [[68.0, 0.0], [50.0, 8.0], [50.0, -8.0]];
                 page.canvas.polygon(&head.map(at), &fill);
                 let [x, y] = at([84.0 + 26.0 * c.abs(), 0.0]);
-                let force = format!("{} N", number(f64::hypot(load.force[0], load.force[1])));
+                let force = f64::hypot(load.force[0], load.force[1]);
+                let force = format!("{} N", number(to_four_digits(force)));
                 let below = [x, y - 5.0 * u];
                 page.canvas
                     .text(below, 14.0 * u, Anchor::Middle, &label, &force);
@@ -162,6 +163,11 @@ impl State<'_> {
             }
         }
     }
+}
+
+fn to_four_digits(value: f64) -> f64 {
+    let scale = 10f64.powf(3.0 - value.log10().floor());
+    (value * scale).round() / scale
 }
 
 /// Unit vector of a force; zero if there is none.
