@@ -4,6 +4,7 @@ mod chain;
 mod gradient;
 mod noise;
 mod path;
+mod polyester;
 mod sheet;
 mod solutions;
 mod surrogate;
@@ -21,6 +22,7 @@ pub enum StudyCommand {
     Window(window::WindowStudy),
     Noise(noise::NoiseStudy),
     Path(path::PathStudy),
+    Polyester(polyester::PolyesterStudy),
     Gradient(gradient::GradientStudy),
     Solutions(solutions::SolutionStudy),
     Surrogate(surrogate::SurrogateStudy),
@@ -35,6 +37,7 @@ impl StudyCommand {
             Self::Window(study) => study.run(),
             Self::Noise(study) => study.run(),
             Self::Path(study) => study.run(),
+            Self::Polyester(study) => study.run(),
             Self::Gradient(study) => study.run(),
             Self::Solutions(study) => study.run(),
             Self::Surrogate(study) => study.run(),

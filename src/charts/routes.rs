@@ -1,0 +1,125 @@
+//! The paths of a sheet's hinges in the plane of (eta_a, eta_s).
+
+use super::*;
+use hinge::TrainingDomain;
+
+/// The hinges of one design.
+pub struct RoutePanel<'a> {
+    pub title: String,
+    /// States (eta_a, eta_s) of each hinge, from the first load step on.
+    pub routes: Vec<Vec<[f64; 2]>>,
+    /// The one that is drawn thick.
+    pub monitored: usize,
+    pub domain: TrainingDomain,
+    /// The damage behind the paths, in any unit.
+    pub damage: Box<dyn Fn([f64; 2]) -> f64 + 'a>,
+}
+
+/// Cells of the damage behind the paths, along each axis.
+const CELLS: usize = 60;
+
+/// Two panels in a row, all of one range and one scale of damage.
+pub fn routes(panels: &[RoutePanel]) -> Result<String> {
+    let points = || panels.iter().flat_map(|it| it.routes.iter().flatten());
+    let within = |k: usize| points().map(move |point| point[k]).chain([0.0]);
+    let (across, up) = (padded(within(0)), padded(within(1)));
+    let centres = |range: &Range<f64>| -> Vec<f64> {
+        let step = (range.end - range.start) / CELLS as f64;
+        let centre = |k: usize| range.start + (k as f64 + 0.5) * step;
+        (0..CELLS).map(centre).collect()
+    };
+    let (columns, lines) = (centres(&across), centres(&up));
+    let planes: Vec<Vec<f64>> = panels
+        .iter()
+        .map(|panel| {
+            let line = |y: &f64| columns.iter().map(|x| (panel.damage)([*x, *y])).collect();
+            lines.iter().flat_map(|y| -> Vec<f64> { line(y) }).collect()
+        })
+        .collect();
+    let most = planes.iter().flatten().copied().fold(1e-12, f64::max);
+    let rows = panels.len().div_ceil(2).max(1);
+    drawn((1080, 420 * rows as u32), |root| {
+        let areas = root.split_evenly((rows, 2));
+        for ((area, panel), plane) in areas.iter().zip(panels).zip(&planes) {
+            let shades = plane.iter().map(|value| value / most).collect();
+            route_chart(area, panel, [across.clone(), up.clone()], shades)?;
+        }
+        Ok(())
+    })
+}
+
+fn route_chart(
+    area: &Area,
+    panel: &RoutePanel,
+    [across, up]: [Range<f64>; 2],
+    shades: Vec<f64>,
+) -> DrawResult {
+    let mut chart = ChartBuilder::on(area)
+        .caption(&panel.title, (FONT, 15))
+        .margin(10)
+        .x_label_area_size(38)
+        .y_label_area_size(56)
+        .build_cartesian_2d(across.clone(), up.clone())?;
+    let steps = [&across, &up].map(|range| (range.end - range.start) / CELLS as f64);
+    chart.draw_series(shades.iter().enumerate().map(|(cell, shade)| {
+        let (i, j) = ((cell % CELLS) as f64, (cell / CELLS) as f64);
+        let (x, y) = (across.start + i * steps[0], up.start + j * steps[1]);
+        // Opaque and a little larger than its cell: no seams.
+        let corner = (x + 1.1 * steps[0], y + 1.1 * steps[1]);
+        Rectangle::new([(x, y), corner], tint(0.75 * shade.sqrt()).filled())
+    }))?;
+    chart
+        .configure_mesh()
+        .disable_mesh()
+        .label_style((FONT, 12))
+        .x_desc("eta_a = a / w_lig")
+        .y_desc("eta_s = s / w_lig")
+        .draw()?;
+    let inside = |value: f64, range: &Range<f64>| value.clamp(range.start, range.end);
+    let [x0, x1] = panel.domain.eta_a.map(|x| inside(x, &across));
+    let [y0, y1] = panel.domain.eta_s.map(|y| inside(y, &up));
+    let frame = [(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)];
+    chart.draw_series(LineSeries::new(frame, GUIDE))?;
+    for (hinge, route) in panel.routes.iter().enumerate() {
+        let width = if hinge == panel.monitored { 3 } else { 1 };
+        let points = std::iter::once((0.0, 0.0)).chain(route.iter().map(|[x, y]| (*x, *y)));
+        chart.draw_series(LineSeries::new(points, POINT.stroke_width(width)))?;
+        let ends = route.last().map(|[x, y]| (*x, *y));
+        chart.draw_series(
+            ends.into_iter()
+                .map(|end| Circle::new(end, 3, POINT.filled())),
+        )?;
+    }
+    Ok(())
+}
+
+/// From white to the colour of damage.
+fn tint(share: f64) -> RGBColor {
+    let mix = |channel: u8| (255.0 + share * (f64::from(channel) - 255.0)).round() as u8;
+    RGBColor(mix(VALIDATION.0), mix(VALIDATION.1), mix(VALIDATION.2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_hinge_has_an_end() {
+        let panel = RoutePanel {
+            title: "shape alone".into(),
+            routes: vec![vec![[-0.1, 0.1], [-0.2, 0.1]], vec![[0.05, -0.1]]],
+            monitored: 0,
+            domain: TrainingDomain {
+                eta_a: [-0.8, 0.25],
+                eta_s: [-0.4, 0.4],
+                theta: [0.0, 1.3],
+                w_lig: [5.0, 25.0],
+                alpha: [0.8, 2.3],
+            },
+            damage: Box::new(|[x, y]| x * x + y * y),
+        };
+        let svg = routes(&[panel]).unwrap();
+        assert_eq!(svg.matches("<circle").count(), 2);
+        assert!(routes(&[]).is_ok());
+    }
+}

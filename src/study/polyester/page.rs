@@ -1,0 +1,203 @@
+//! The tables and the pictures of the study.
+
+use super::Row;
+use crate::charts::{self, RoutePanel};
+use crate::{picture, run_folder};
+use anyhow::Result;
+use design::sheet::HingePoint;
+use mesher::Tier;
+use std::fmt::Write;
+use std::path::Path;
+use surrogate::Surrogate;
+
+/// What the paper reports of the same sheet: shape alone, with both functionals.
+const PAPER: [(&str, &str, &str); 11] = [
+    ("ligaments, mm", "17.4 +- 2.4", "21.6 +- 0.7"),
+    ("panel areas over the uniform sheet's", "", "0.8 to 3.2"),
+    ("share of tension", "43 %", "53 %"),
+    ("share of compression", "16.9 %", "10.6 %"),
+    ("interfaces in tension", "7 of 12", "8 of 12"),
+    ("most compressed interface, N", "13.9", "6.9"),
+    ("peak force, N", "23.9", "25.8"),
+    ("mean force, N", "10.2", "7.2"),
+    ("path samples inside the domain", "60.2 %", "95.9 %"),
+    ("least eta_a", "-0.711", "-0.175"),
+    ("mean damage at the path's maximum, D_s", "0.175", "0.033"),
+];
+
+pub(super) fn write(out: &Path, rows: &[Row], surrogate: &Surrogate, tier: Tier) -> Result<()> {
+    let page = markdown(rows, tier)?;
+    run_folder::write(out, "polyester.md", &page)?;
+    run_folder::write(out, "polyester.csv", &csv(rows)?)?;
+    let panels: Vec<RoutePanel> = rows
+        .iter()
+        .map(|row| RoutePanel {
+            title: format!("{}, {}", name(row.point), row.objective),
+            routes: row.routes.iter().map(eta).collect(),
+            monitored: row.monitored,
+            domain: *surrogate.domain(),
+            damage: damage_plane(surrogate, row),
+        })
+        .collect();
+    picture::save(&charts::routes(&panels)?, &out.join("polyester"), 1700)?;
+    for (k, row) in rows.iter().enumerate() {
+        let svg = std::fs::read_to_string(row.folder.join("deployed.svg"))?;
+        picture::save(&svg, &out.join(format!("deployed-{}", k + 1)), 1000)?;
+    }
+    println!("{page}\nwritten to {}", out.display());
+    Ok(())
+}
+
+fn name(point: HingePoint) -> &'static str {
+    match point {
+        HingePoint::CutTip => "at the cut's tip",
+        HingePoint::Corner => "at the corner",
+    }
+}
+
+/// (eta_a, eta_s) of every state.
+fn eta(route: &crate::routes::HingeRoute) -> Vec<[f64; 2]> {
+    let states = route.states.iter();
+    states.map(|state| state.eta(route.design.w_lig)).collect()
+}
+
+/// D / D_s over (eta_a, eta_s) at the design and the final opening of the monitored hinge.
+fn damage_plane(surrogate: &Surrogate, row: &Row) -> Box<dyn Fn([f64; 2]) -> f64> {
+    let (surrogate, route) = (surrogate.clone(), row.routes[row.monitored].clone());
+    Box::new(move |[eta_a, eta_s]| {
+        let (design, theta) = (route.design, route.end().theta);
+        let state = hinge::HingeDeformation::from_eta(eta_a, eta_s, theta, design.w_lig);
+        surrogate.damage(&[design], &[state])[0].d / surrogate.damage_scale()
+    })
+}
+
+/// The quantities of the table, in the order of [`PAPER`].
+fn quantities(row: &Row) -> [String; 11] {
+    let count = row.w_lig.len() as f64;
+    let mean = row.w_lig.iter().sum::<f64>() / count;
+    let squares = row.w_lig.iter().map(|w| (w - mean).powi(2)).sum::<f64>();
+    let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
+    let greatest = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::NEG_INFINITY, f64::max);
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let tension = row.forces.iter().filter(|[normal, _]| *normal > 0.0);
+    let etas = row.routes.iter().flat_map(eta).map(|[eta_a, _]| eta_a);
+    [
+        format!("{mean:.1} +- {:.1}", (squares / count).sqrt()),
+        format!(
+            "{:.2} to {:.2}",
+            least(&mut row.areas.iter().copied()),
+            greatest(&mut row.areas.iter().copied())
+        ),
+        percent(row.shares.tension),
+        percent(row.shares.compression),
+        format!("{} of {}", tension.count(), row.forces.len()),
+        format!(
+            "{:.1}",
+            -least(&mut row.forces.iter().map(|[normal, _]| *normal)).min(0.0)
+        ),
+        format!(
+            "{:.1}",
+            greatest(&mut row.forces.iter().map(|[_, force]| *force))
+        ),
+        format!(
+            "{:.1}",
+            row.forces.iter().map(|[_, force]| force).sum::<f64>() / count
+        ),
+        percent(row.share_inside),
+        format!("{:.3}", least(&mut etas.collect::<Vec<_>>().into_iter())),
+        format!("{:.3}", row.damage.iter().sum::<f64>() / count),
+    ]
+}
+
+fn markdown(rows: &[Row], tier: Tier) -> Result<String> {
+    let mut text = "# The polyester sheet with the learned hinge\n\nThe load is that at which the \
+                    worst hinge of the uniform sheet opens by the given angle. \
+                    `kirigami study polyester`.\n\n| |"
+        .to_owned();
+    for row in rows {
+        write!(text, " {}, {} |", name(row.point), row.objective)?;
+    }
+    text += " paper, shape alone | paper, with both |\n|---|";
+    text += &"---|".repeat(rows.len() + 2);
+    text += "\n| load, over the scene's |";
+    for row in rows {
+        write!(text, " {:.3} |", row.load)?;
+    }
+    text += " 1 | 1 |\n| outline error, start to design, mm |";
+    for row in rows {
+        let [before, after] = row.outline;
+        write!(text, " {before:.1} to {after:.1} |")?;
+    }
+    text += " | |\n| worst opening, deg |";
+    for row in rows {
+        let openings = row
+            .routes
+            .iter()
+            .map(|route| route.end().theta.to_degrees());
+        write!(text, " {:.1} |", openings.fold(0.0, f64::max))?;
+    }
+    text += " 35 | |\n";
+    let columns: Vec<_> = rows.iter().map(quantities).collect();
+    for (k, (quantity, alone, both)) in PAPER.iter().enumerate() {
+        write!(text, "| {quantity} |")?;
+        for column in &columns {
+            write!(text, " {} |", column[k])?;
+        }
+        writeln!(text, " {alone} | {both} |")?;
+    }
+    writeln!(
+        text,
+        "\n## The monitored hinge, replayed\n\nThe hinge that the shape alone damages most, on its \
+         route in each sheet, windows of tier {tier}.\n\n| design | hinge | opening, deg | | W, N mm \
+         | M, N mm | D | D_peak |\n|---|---|---|---|---|---|---|---|"
+    )?;
+    for row in rows {
+        let opening = row.routes[row.monitored].end().theta.to_degrees();
+        let design = format!("{}, {}", name(row.point), row.objective);
+        let mut line = |by: &str, [w, m, d, peak]: [f64; 4]| {
+            writeln!(
+                text,
+                "| {design} | {} | {opening:.1} | {by} | {w:.2} | {m:.1} | {d:.5} | {peak:.4} |",
+                row.monitored
+            )
+        };
+        line("surrogate", row.learned)?;
+        match row.replayed {
+            Some(values) => line("finite elements", values)?,
+            None => line("finite elements: not solved", [f64::NAN; 4])?,
+        }
+    }
+    text += "\n## Deployed\n\n";
+    for (k, row) in rows.iter().enumerate() {
+        let design = format!("{}, {}", name(row.point), row.objective);
+        writeln!(text, "![{design}](deployed-{}.png)\n{design}\n", k + 1)?;
+    }
+    text += "\n![paths of the hinges](polyester.png)\n\nThe paths of all hinges, the monitored one \
+             thick, over the predicted damage of the monitored hinge at its final opening; the \
+             frame is the training domain.\n";
+    Ok(text)
+}
+
+/// One line a hinge of a design.
+fn csv(rows: &[Row]) -> Result<String> {
+    let mut text =
+        "point,objective,hinge,w_lig_mm,theta_deg,eta_a,eta_s,f_n,force,damage_over_ds\n"
+            .to_owned();
+    for row in rows {
+        for (hinge, route) in row.routes.iter().enumerate() {
+            let end = route.end();
+            let [eta_a, eta_s] = end.eta(route.design.w_lig);
+            let [normal, force] = row.forces[hinge];
+            writeln!(
+                text,
+                "{},{},{hinge},{:.4},{:.4},{eta_a:.5},{eta_s:.5},{normal:.4},{force:.4},{:.6}",
+                name(row.point),
+                row.objective,
+                row.w_lig[hinge],
+                end.theta.to_degrees(),
+                row.damage[hinge]
+            )?;
+        }
+    }
+    Ok(text)
+}
