@@ -1,15 +1,15 @@
-//! The outer loop, Algorithm 1: Adam on theta = (z, ell, omega), one value and gradient a step.
+//! The outer loop, Algorithm 1: Adam or L-BFGS on theta = (z, ell, omega).
 //!
 //! A design whose sheet finds no equilibrium ends nothing: the step from the last design that had
 //! one is halved until there is one again. The state is saved in the run folder about once a second
 //! and at the end, and a run takes up there: steps depend on nothing but the scene, the files it names
 //! and the state, so a run that was stopped follows the trajectory of one that was not.
 
-use crate::adam::Adam;
 use crate::design_vector::DesignVector;
 use crate::gradient::{DesignError, DesignProblem, Evaluation};
 use crate::outline_error::outline_error;
 use crate::scene::{Scene, SceneConfig, SceneError};
+use crate::search::Search;
 use hinge::files;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -37,9 +37,11 @@ pub struct StepRecord {
     pub damage: f64,
     pub compression: f64,
     pub shear: f64,
+    /// Of the panels, unweighted; 0 if the scene does not weigh it.
+    pub panel_shape: f64,
     /// Share of the hinge states of the path that the hinge law was made for.
     pub share_inside: f64,
-    /// How often the step was halved, and why.
+    /// How often the step was halved, and what had no value before.
     pub halvings: u32,
     pub setback: Option<String>,
 }
@@ -52,6 +54,8 @@ pub enum Ended {
     Completed,
     /// It was asked to stop; the next run continues.
     Stopped,
+    /// No step from the last design lowers the loss: a minimum, or a kink that L-BFGS cannot leave.
+    Settled,
     /// No step from the last design, however small, leads to a design with an equilibrium.
     Stuck { reason: String },
 }
@@ -118,9 +122,9 @@ struct State {
     scene: SceneConfig,
     /// The last design that was evaluated.
     design: DesignVector,
-    /// What Adam proposes next.
+    /// What the search proposes next.
     proposal: DesignVector,
-    adam: Adam,
+    search: Search,
     best: DesignVector,
     history: Vec<StepRecord>,
 }
@@ -186,11 +190,16 @@ pub fn inverse_design(
         if stop.load(Ordering::Relaxed) {
             break Ended::Stopped;
         }
-        match evaluate_or_back_off(&problem, &state.design, state.proposal.clone()) {
+        let proposal = state.proposal.clone();
+        match evaluate_or_back_off(&problem, &state.search, &state.design, proposal) {
             Ok((design, evaluation, setback)) => {
                 progress(state.accept(scene, design, &evaluation, setback));
             }
-            Err(reason) => break Ended::Stuck { reason },
+            Err(reason) => match (state.search.retry(), reason) {
+                (Some(increment), _) => state.propose(&increment),
+                (None, Some(reason)) => break Ended::Stuck { reason },
+                (None, None) => break Ended::Settled,
+            },
         }
         if saved.elapsed() > SAVE_EVERY {
             state.write(&path)?;
@@ -228,24 +237,32 @@ struct Setback {
     reason: Option<String>,
 }
 
-/// Evaluates the proposal, or the nearest point halfway back to `good` that has a finite loss.
+/// Evaluates the proposal, or the first point on halving the way back to `good` that has a finite
+/// loss which the search accepts. The error says why the last point had none, if it had none.
 fn evaluate_or_back_off(
     problem: &DesignProblem,
+    search: &Search,
     good: &DesignVector,
     mut proposal: DesignVector,
-) -> Result<(DesignVector, Evaluation, Setback), String> {
+) -> Result<(DesignVector, Evaluation, Setback), Option<String>> {
     let mut setback = Setback::default();
     loop {
+        let fraction = 0.5f64.powi(setback.halvings as i32);
         let reason = match problem.evaluate(&proposal) {
-            Ok(evaluation) if is_finite(&evaluation) => return Ok((proposal, evaluation, setback)),
-            Ok(_) => "the loss or its gradient is not finite".to_owned(),
-            Err(error) => error.to_string(),
+            Ok(evaluation) if !is_finite(&evaluation) => {
+                Some("the loss or its gradient is not finite".to_owned())
+            }
+            Ok(evaluation) if search.accepts(evaluation.loss, fraction) => {
+                return Ok((proposal, evaluation, setback));
+            }
+            Ok(_) => None,
+            Err(error) => Some(error.to_string()),
         };
         if setback.halvings == MAX_HALVINGS {
             return Err(reason);
         }
         setback.halvings += 1;
-        setback.reason.get_or_insert(reason);
+        setback.reason = setback.reason.or(reason);
         let halfway: Vec<f64> = std::iter::zip(good.to_flat(), proposal.to_flat())
             .map(|(good, proposed)| 0.5 * (good + proposed))
             .collect();
@@ -262,7 +279,7 @@ impl State {
         let design = scene.start();
         Self {
             scene: scene.config.clone(),
-            adam: Adam::new(design.to_flat().len(), scene.config.optimiser.learning_rate),
+            search: Search::new(&scene.config.optimiser, design.to_flat().len()),
             proposal: design.clone(),
             best: design.clone(),
             design,
@@ -286,12 +303,11 @@ impl State {
         if evaluation.loss < least {
             self.best = design.clone();
         }
-        let increment = self.adam.increment(&evaluation.gradient.to_flat());
-        let proposal: Vec<f64> = std::iter::zip(design.to_flat(), increment)
-            .map(|(coordinate, increment)| coordinate + increment)
-            .collect();
-        self.proposal = design.with_flat(&proposal);
+        let gradient = evaluation.gradient.to_flat();
+        let x = design.to_flat();
+        let increment = self.search.increment(&x, evaluation.loss, &gradient);
         self.design = design;
+        self.propose(&increment);
         let path = &evaluation.terms.path;
         self.history.push(StepRecord {
             step: self.history.len(),
@@ -301,11 +317,19 @@ impl State {
             damage: path.damage,
             compression: path.compression,
             shear: path.shear,
+            panel_shape: evaluation.terms.panel_shape,
             share_inside: evaluation.deployment.share_inside(),
             halvings: setback.halvings,
             setback: setback.reason,
         });
         &self.history[self.history.len() - 1]
+    }
+
+    fn propose(&mut self, increment: &[f64]) {
+        let proposal: Vec<f64> = std::iter::zip(self.design.to_flat(), increment)
+            .map(|(coordinate, increment)| coordinate + increment)
+            .collect();
+        self.proposal = self.design.with_flat(&proposal);
     }
 
     /// The state of an earlier run of the same scene, which may since ask for more steps.
@@ -338,7 +362,7 @@ impl State {
         let same_size = designs.iter().all(|design| design.same_shape(&scene_start));
         let path = path.to_owned();
         match state.history.first() {
-            Some(first) if same_size && state.adam.len() == n => {
+            Some(first) if same_size && state.search.fits(n) => {
                 if first.loss != start.loss {
                     return Err(InverseDesignError::OtherModel {
                         path,
@@ -366,7 +390,8 @@ impl State {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::chamfer::Chamfer;
+    use crate::adam::Adam;
+    use crate::chamfer::{Chamfer, Precision};
     use crate::design_vector::WidthChart;
     use crate::gradient::Model;
     use crate::grid::Grid;
@@ -399,9 +424,11 @@ mod tests {
                 chamfer: Chamfer {
                     coverage_weight: 0.5,
                     smoothing: 0.0,
+                    precision: Precision::Samples,
                 },
                 outline: OutlinePoints::Free,
                 centred: false,
+                panel_shape: 0.0,
                 weights: PerFunctional::default(),
                 temperatures: PerFunctional::default(),
             },
@@ -415,7 +442,8 @@ mod tests {
         let proposed = |z: f64| {
             let mut proposal = good.clone();
             proposal.pattern.z.fill(z);
-            evaluate_or_back_off(&problem(grid), &good, proposal)
+            let adam = Search::Adam(Adam::new(0, 0.1));
+            evaluate_or_back_off(&problem(grid), &adam, &good, proposal)
         };
         let (design, _, setback) = proposed(1.0).unwrap();
         assert_eq!((design.pattern.z[0], setback.halvings), (1.0, 0));
@@ -423,6 +451,7 @@ mod tests {
         let (design, _, setback) = proposed(100.0).unwrap();
         assert_eq!((design.pattern.z[0], setback.halvings), (25.0, 2));
         assert!(setback.reason.unwrap().contains("two cuts collide"));
-        assert!(proposed(1e9).err().unwrap().contains("two cuts collide"));
+        let reason = proposed(1e9).err().unwrap().unwrap();
+        assert!(reason.contains("two cuts collide"));
     }
 }

@@ -1,5 +1,6 @@
 //! The target outline T of (16): a closed curve, sampled densely and evenly by arc length.
 
+use crate::polygon;
 use crate::svg_path::{self, SvgPathError};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -128,6 +129,17 @@ impl Target {
     pub fn mean(&self) -> [f64; 2] {
         let sum = |axis: usize| self.points.iter().map(|point| point[axis]).sum::<f64>();
         [sum(0), sum(1)].map(|sum| sum / self.points.len() as f64)
+    }
+
+    /// Distance of a point to the curve through the samples (mm).
+    pub fn distance(&self, point: [f64; 2]) -> f64 {
+        let [x, y] = polygon::nearest_on_outline(point, &self.points);
+        f64::hypot(point[0] - x, point[1] - y)
+    }
+
+    /// Area within the curve through the samples (mm^2).
+    pub fn area(&self) -> f64 {
+        polygon::area(&self.points).abs()
     }
 
     /// Length of the outline itself (mm).
