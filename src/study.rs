@@ -1,5 +1,6 @@
 //! `kirigami study`: what the choices of each stage cost and are worth.
 
+mod approaches;
 mod gradient;
 mod path;
 mod sheet;
@@ -18,6 +19,7 @@ pub enum StudyCommand {
     Path(path::PathStudy),
     Gradient(gradient::GradientStudy),
     Solutions(solutions::SolutionStudy),
+    Approaches(approaches::ApproachStudy),
     Surrogate(surrogate::SurrogateStudy),
 }
 
@@ -29,6 +31,7 @@ impl StudyCommand {
             Self::Path(study) => study.run(),
             Self::Gradient(study) => study.run(),
             Self::Solutions(study) => study.run(),
+            Self::Approaches(study) => study.run(),
             Self::Surrogate(study) => study.run(),
         }
     }

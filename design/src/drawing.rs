@@ -3,6 +3,8 @@
 mod deployed;
 mod flat;
 mod page;
+mod side_by_side;
 
 pub use deployed::deployed;
 pub use flat::flat;
+pub use side_by_side::{Column, side_by_side};
