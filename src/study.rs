@@ -4,6 +4,7 @@ mod approaches;
 mod gradient;
 mod path;
 mod sheet;
+mod silhouettes;
 mod solutions;
 mod surrogate;
 mod window;
@@ -20,6 +21,7 @@ pub enum StudyCommand {
     Gradient(gradient::GradientStudy),
     Solutions(solutions::SolutionStudy),
     Approaches(approaches::ApproachStudy),
+    Silhouettes(silhouettes::SilhouetteStudy),
     Surrogate(surrogate::SurrogateStudy),
 }
 
@@ -32,6 +34,7 @@ impl StudyCommand {
             Self::Gradient(study) => study.run(),
             Self::Solutions(study) => study.run(),
             Self::Approaches(study) => study.run(),
+            Self::Silhouettes(study) => study.run(),
             Self::Surrogate(study) => study.run(),
         }
     }
