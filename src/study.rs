@@ -2,6 +2,7 @@
 
 mod approaches;
 mod gradient;
+mod optimisers;
 mod path;
 mod sheet;
 mod silhouettes;
@@ -22,6 +23,7 @@ pub enum StudyCommand {
     Solutions(solutions::SolutionStudy),
     Approaches(approaches::ApproachStudy),
     Silhouettes(silhouettes::SilhouetteStudy),
+    Optimisers(optimisers::OptimiserStudy),
     Surrogate(surrogate::SurrogateStudy),
 }
 
@@ -35,6 +37,7 @@ impl StudyCommand {
             Self::Solutions(study) => study.run(),
             Self::Approaches(study) => study.run(),
             Self::Silhouettes(study) => study.run(),
+            Self::Optimisers(study) => study.run(),
             Self::Surrogate(study) => study.run(),
         }
     }
