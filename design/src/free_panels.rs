@@ -31,7 +31,7 @@ use faer::{Mat, Side};
 /// Weights of the penalties beside the Chamfer distance over the sheet's area.
 const OVERLAP_WEIGHT: f64 = 10.0;
 const VOID_WEIGHT: f64 = 1.0;
-/// Points at which the cover of the sheet is asked, along a panel and in all; the softness of the
+/// Points along the side of a panel at which the cover of the sheet is asked; the softness of the
 /// panels' borders is a quarter of their spacing.
 const SAMPLES_A_PANEL: usize = 6;
 

@@ -62,6 +62,7 @@ impl ApproachStudy {
     pub fn run(&self) -> Result<()> {
         let config: SceneConfig = hinge::config::read(&self.scene)?;
         let _held = run_folder::hold(&self.out)?;
+        // Of a circle as large as the target.
         let radius =
             (Scene::new(config.clone(), &self.scene)?.target.area() / std::f64::consts::PI).sqrt();
         let mut outcomes = Vec::new();
