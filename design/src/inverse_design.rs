@@ -5,6 +5,7 @@
 //! and at the end, and a run takes up there: steps depend on nothing but the scene, the files it names
 //! and the state, so a run that was stopped follows the trajectory of one that was not.
 
+use crate::backing_off::{MAX_HALVINGS, Setback, evaluate_or_back_off};
 use crate::design_vector::DesignVector;
 use crate::gradient::{DesignError, DesignProblem, Evaluation};
 use crate::outline_error::outline_error;
@@ -16,8 +17,6 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How often the step is halved before the run gives up.
-const MAX_HALVINGS: u32 = 12;
 const SAVE_EVERY: Duration = Duration::from_secs(1);
 const STATE_FILE: &str = "state.json";
 
@@ -41,7 +40,7 @@ pub struct StepRecord {
     pub panel_shape: f64,
     /// Share of the hinge states of the path that the hinge law was made for.
     pub share_inside: f64,
-    /// How often the step was halved, and what had no value before.
+    /// How often the step was halved, one that was given up included, and what had no value.
     pub halvings: u32,
     pub setback: Option<String>,
 }
@@ -190,16 +189,11 @@ pub fn inverse_design(
         if stop.load(Ordering::Relaxed) {
             break Ended::Stopped;
         }
-        let proposal = state.proposal.clone();
-        match evaluate_or_back_off(&problem, &state.search, &state.design, proposal) {
+        match state.next(&problem) {
             Ok((design, evaluation, setback)) => {
                 progress(state.accept(scene, design, &evaluation, setback));
             }
-            Err(reason) => match (state.search.retry(), reason) {
-                (Some(increment), _) => state.propose(&increment),
-                (None, Some(reason)) => break Ended::Stuck { reason },
-                (None, None) => break Ended::Settled,
-            },
+            Err(ended) => break ended,
         }
         if saved.elapsed() > SAVE_EVERY {
             state.write(&path)?;
@@ -230,50 +224,6 @@ pub fn forget(scene: &Scene) -> Result<(), InverseDesignError> {
     }
 }
 
-/// What kept a step from its full length.
-#[derive(Default)]
-struct Setback {
-    halvings: u32,
-    reason: Option<String>,
-}
-
-/// Evaluates the proposal, or the first point on halving the way back to `good` that has a finite
-/// loss which the search accepts. The error says why the last point had none, if it had none.
-fn evaluate_or_back_off(
-    problem: &DesignProblem,
-    search: &Search,
-    good: &DesignVector,
-    mut proposal: DesignVector,
-) -> Result<(DesignVector, Evaluation, Setback), Option<String>> {
-    let mut setback = Setback::default();
-    loop {
-        let fraction = 0.5f64.powi(setback.halvings as i32);
-        let reason = match problem.evaluate(&proposal) {
-            Ok(evaluation) if !is_finite(&evaluation) => {
-                Some("the loss or its gradient is not finite".to_owned())
-            }
-            Ok(evaluation) if search.accepts(evaluation.loss, fraction) => {
-                return Ok((proposal, evaluation, setback));
-            }
-            Ok(_) => None,
-            Err(error) => Some(error.to_string()),
-        };
-        if setback.halvings == MAX_HALVINGS {
-            return Err(reason);
-        }
-        setback.halvings += 1;
-        setback.reason = setback.reason.or(reason);
-        let halfway: Vec<f64> = std::iter::zip(good.to_flat(), proposal.to_flat())
-            .map(|(good, proposed)| 0.5 * (good + proposed))
-            .collect();
-        proposal = proposal.with_flat(&halfway);
-    }
-}
-
-fn is_finite(evaluation: &Evaluation) -> bool {
-    evaluation.loss.is_finite() && evaluation.gradient.to_flat().iter().all(|g| g.is_finite())
-}
-
 impl State {
     fn new(scene: &Scene) -> Self {
         let design = scene.start();
@@ -284,6 +234,31 @@ impl State {
             best: design.clone(),
             design,
             history: Vec::new(),
+        }
+    }
+
+    /// Evaluates what is proposed, or as much of it as the search accepts, or why the run ends here.
+    fn next(
+        &mut self,
+        problem: &DesignProblem,
+    ) -> Result<(DesignVector, Evaluation, Setback), Ended> {
+        let mut rejected = 0;
+        loop {
+            let proposal = self.proposal.clone();
+            match evaluate_or_back_off(problem, &self.search, &self.design, proposal) {
+                Ok((design, evaluation, mut setback)) => {
+                    setback.halvings += rejected;
+                    return Ok((design, evaluation, setback));
+                }
+                Err(reason) => match (self.search.retry(), reason) {
+                    (Some(increment), _) => {
+                        self.propose(&increment);
+                        rejected += MAX_HALVINGS + 1;
+                    }
+                    (None, Some(reason)) => return Err(Ended::Stuck { reason }),
+                    (None, None) => return Err(Ended::Settled),
+                },
+            }
         }
     }
 
@@ -384,74 +359,5 @@ impl State {
                 path: path.to_owned(),
                 source,
             })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::adam::Adam;
-    use crate::chamfer::{Chamfer, Precision};
-    use crate::design_vector::WidthChart;
-    use crate::gradient::Model;
-    use crate::grid::Grid;
-    use crate::objective::{Objective, OutlinePoints};
-    use crate::path_functionals::PerFunctional;
-    use crate::pattern::Outline;
-    use crate::sheet::{Centroid, HingePoint, SheetOptions};
-    use hinge::HingeConstants;
-
-    fn problem(grid: Grid) -> DesignProblem {
-        DesignProblem {
-            grid,
-            outline: Outline::rectangle(2.0, 2.0),
-            widths: WidthChart {
-                w_minus: 0.05,
-                w_plus: 0.1,
-            },
-            options: SheetOptions {
-                hinge_point: HingePoint::Corner,
-                centroid: Centroid::Area,
-                process: HingeConstants {
-                    fillet_ratio: 0.16,
-                    kerf: 0.01,
-                    r_win: 0.3,
-                },
-            },
-            model: Model::Ideal { opening: 0.5 },
-            objective: Objective {
-                target: vec![[3.0, 3.0]],
-                chamfer: Chamfer {
-                    coverage_weight: 0.5,
-                    smoothing: 0.0,
-                    precision: Precision::Samples,
-                },
-                outline: OutlinePoints::Free,
-                centred: false,
-                panel_shape: 0.0,
-                weights: PerFunctional::default(),
-                temperatures: PerFunctional::default(),
-            },
-        }
-    }
-
-    #[test]
-    fn a_proposal_without_value_is_halved_until_it_has_one_or_no_more() {
-        let grid = Grid { m: 2, n: 2 };
-        let good = DesignVector::uniform(grid);
-        let proposed = |z: f64| {
-            let mut proposal = good.clone();
-            proposal.pattern.z.fill(z);
-            let adam = Search::Adam(Adam::new(0, 0.1));
-            evaluate_or_back_off(&problem(grid), &adam, &good, proposal)
-        };
-        let (design, _, setback) = proposed(1.0).unwrap();
-        assert_eq!((design.pattern.z[0], setback.halvings), (1.0, 0));
-        // The logistic chart rounds to 1 near z = 37.
-        let (design, _, setback) = proposed(100.0).unwrap();
-        assert_eq!((design.pattern.z[0], setback.halvings), (25.0, 2));
-        assert!(setback.reason.unwrap().contains("two cuts collide"));
-        let reason = proposed(1e9).err().unwrap().unwrap();
-        assert!(reason.contains("two cuts collide"));
     }
 }

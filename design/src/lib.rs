@@ -3,6 +3,7 @@
 pub mod actuation;
 mod adam;
 mod adjoint;
+mod backing_off;
 mod canvas;
 pub mod chamfer;
 pub mod charts;
