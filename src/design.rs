@@ -61,13 +61,7 @@ impl DesignCommand {
         let stop = interrupt::stop_flag()?;
         let bar = Progress::new(scene.config.optimiser.steps, "design steps");
         let designed = inverse_design(&scene, stop, &mut |step: &StepRecord| {
-            let message = format!(
-                "loss {:.4}, outline {:.2} mm, {:.0} % inside the domain",
-                step.loss,
-                step.outline_error,
-                100.0 * step.share_inside
-            );
-            bar.show(step.step, None, &message);
+            bar.show(step.step, None, &told(step));
         })?;
         bar.finish();
         let report = write_results(&scene, &designed)?;
@@ -79,7 +73,7 @@ impl DesignCommand {
             println!("{report}\nwritten to {}", folder.display());
         }
         match designed.ended {
-            Ended::Completed => Ok(()),
+            Ended::Completed | Ended::Settled => Ok(()),
             Ended::Stopped => bail!("stopped; run again to go on"),
             Ended::Stuck { reason } => bail!("the search is stuck: {reason}"),
         }
@@ -102,6 +96,27 @@ impl DesignCommand {
         }
         Ok(Scene::new(config, &self.scene)?)
     }
+}
+
+/// A step in one line: the loss and its terms where they are not zero, boundary error, domain.
+fn told(step: &StepRecord) -> String {
+    let terms = [
+        ("Chamfer", step.chamfer),
+        ("damage", step.damage),
+        ("compression", step.compression),
+        ("shear", step.shear),
+        ("panel shape", step.panel_shape),
+    ];
+    let terms: Vec<String> = (terms.iter().filter(|(_, value)| *value != 0.0))
+        .map(|(name, value)| format!("{name} {value:.4}"))
+        .collect();
+    format!(
+        "loss {:.4} ({}), outline {:.2} mm, {:.0} % inside the domain",
+        step.loss,
+        terms.join(", "),
+        step.outline_error,
+        100.0 * step.share_inside
+    )
 }
 
 /// Gives every picture of the run folder its PNG.

@@ -1,11 +1,14 @@
 //! `kirigami study`: what the choices of each stage cost and are worth.
 
+mod approaches;
 mod chain;
 mod gradient;
 mod noise;
+mod optimisers;
 mod path;
 mod polyester;
 mod sheet;
+mod silhouettes;
 mod solutions;
 mod surrogate;
 mod trust;
@@ -25,6 +28,9 @@ pub enum StudyCommand {
     Polyester(polyester::PolyesterStudy),
     Gradient(gradient::GradientStudy),
     Solutions(solutions::SolutionStudy),
+    Approaches(approaches::ApproachStudy),
+    Silhouettes(silhouettes::SilhouetteStudy),
+    Optimisers(optimisers::OptimiserStudy),
     Surrogate(surrogate::SurrogateStudy),
     Trust(trust::TrustStudy),
 }
@@ -40,6 +46,9 @@ impl StudyCommand {
             Self::Polyester(study) => study.run(),
             Self::Gradient(study) => study.run(),
             Self::Solutions(study) => study.run(),
+            Self::Approaches(study) => study.run(),
+            Self::Silhouettes(study) => study.run(),
+            Self::Optimisers(study) => study.run(),
             Self::Surrogate(study) => study.run(),
             Self::Trust(study) => study.run(),
         }

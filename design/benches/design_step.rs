@@ -5,7 +5,7 @@
 //! The panel in the middle of the west edge is clamped, that in the middle of the east edge is pulled.
 
 use design::actuation::{Dof, Load, Support};
-use design::chamfer::Chamfer;
+use design::chamfer::{Chamfer, Precision};
 use design::design_vector::{DesignVector, WidthChart};
 use design::equilibrium::{EquilibriumSolver, SolverSettings, Status};
 use design::gradient::{DesignProblem, Mechanics, Model};
@@ -97,9 +97,11 @@ fn problem(
             chamfer: Chamfer {
                 coverage_weight: 0.5,
                 smoothing: 0.0,
+                precision: Precision::Samples,
             },
             outline: OutlinePoints::Free,
             centred: true,
+            panel_shape: 0.0,
             weights: PerFunctional {
                 damage: 1.0,
                 compression: 0.1,

@@ -6,7 +6,7 @@
 //! differences of fourth order, of losses at the tightest tolerance.
 
 use design::actuation::{Dof, Load, Support};
-use design::chamfer::Chamfer;
+use design::chamfer::{Chamfer, Precision};
 use design::charts::PatternCoordinates;
 use design::design_vector::{DesignVector, WidthChart};
 use design::equilibrium::{EquilibriumSolver, Method, SolverSettings};
@@ -83,9 +83,11 @@ fn problem(grid: Grid, stiffness: f64, settings: SolverSettings) -> DesignProble
             chamfer: Chamfer {
                 coverage_weight: 0.5,
                 smoothing: 0.05,
+                precision: Precision::Samples,
             },
             outline: OutlinePoints::Free,
             centred: true,
+            panel_shape: 0.0,
             weights: per(0.1, 0.1),
             temperatures: per(0.02, 0.02),
         },

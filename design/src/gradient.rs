@@ -183,6 +183,7 @@ impl DesignProblem {
         let judgement = self.judge(&deployment, &outline)?;
         let (sheet, last) = (&deployment.sheet, deployment.final_step());
         let mut by_sheet = SheetGradient::zeros(self.grid);
+        by_sheet.corners.clone_from(&judgement.by_corners);
         let by_last = outline_pullback(sheet, last, &outline, &judgement.by_outline, &mut by_sheet);
         let (mut by_opening, mut adjoint_residual) = (None, 0.0);
         let mut sensitivities = Sensitivities::default();
@@ -239,6 +240,7 @@ impl DesignProblem {
     /// a gradient there keeps its weight.
     pub fn balanced(mut self, start: &DesignVector) -> Result<Self, DesignError> {
         let asked = self.objective.weights;
+        let panel_shape = std::mem::take(&mut self.objective.panel_shape);
         let mut gradient = |weights: PerFunctional| {
             self.objective.weights = weights;
             Ok::<_, DesignError>(self.evaluate(start)?.gradient.to_flat())
@@ -277,6 +279,7 @@ impl DesignProblem {
             shear: balanced(asked.shear, PerFunctional { shear: 1.0, ..none })?,
         };
         self.objective.weights = weights;
+        self.objective.panel_shape = panel_shape;
         Ok(self)
     }
 

@@ -3,7 +3,7 @@
 use crate::polygon::edges;
 
 /// Lines over the height of both outlines: the areas are good to about a part in 10^5.
-const LINES: usize = 4000;
+pub(crate) const LINES: usize = 4000;
 
 /// Area common to two closed polygons over the area of both together; 0 if neither has any.
 pub fn intersection_over_union(one: &[[f64; 2]], other: &[[f64; 2]]) -> f64 {
@@ -22,7 +22,7 @@ pub fn intersection_over_union(one: &[[f64; 2]], other: &[[f64; 2]]) -> f64 {
 }
 
 /// The intervals of a horizontal line in a polygon, by its even crossings.
-fn crossings(polygon: &[[f64; 2]], y: f64) -> Vec<[f64; 2]> {
+pub(crate) fn crossings(polygon: &[[f64; 2]], y: f64) -> Vec<[f64; 2]> {
     let mut xs: Vec<f64> = edges(polygon)
         .filter(|(p, q)| (p[1] <= y) != (q[1] <= y))
         .map(|(p, q)| p[0] + (q[0] - p[0]) * (y - p[1]) / (q[1] - p[1]))
@@ -31,7 +31,7 @@ fn crossings(polygon: &[[f64; 2]], y: f64) -> Vec<[f64; 2]> {
     xs.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()
 }
 
-fn length(intervals: &[[f64; 2]]) -> f64 {
+pub(crate) fn length(intervals: &[[f64; 2]]) -> f64 {
     intervals.iter().map(|[from, to]| to - from).sum()
 }
 

@@ -1,23 +1,22 @@
-//! The outer loop, Algorithm 1: Adam on theta = (z, ell, omega), one value and gradient a step.
+//! The outer loop, Algorithm 1: Adam or L-BFGS on theta = (z, ell, omega).
 //!
 //! A design whose sheet finds no equilibrium ends nothing: the step from the last design that had
 //! one is halved until there is one again. The state is saved in the run folder about once a second
 //! and at the end, and a run takes up there: steps depend on nothing but the scene, the files it names
 //! and the state, so a run that was stopped follows the trajectory of one that was not.
 
-use crate::adam::Adam;
+use crate::backing_off::{MAX_HALVINGS, Setback, evaluate_or_back_off};
 use crate::design_vector::DesignVector;
 use crate::gradient::{DesignError, DesignProblem, Evaluation};
 use crate::outline_error::outline_error;
 use crate::scene::{Scene, SceneConfig, SceneError};
+use crate::search::Search;
 use hinge::files;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How often the step is halved before the run gives up.
-const MAX_HALVINGS: u32 = 12;
 const SAVE_EVERY: Duration = Duration::from_secs(1);
 const STATE_FILE: &str = "state.json";
 
@@ -37,9 +36,11 @@ pub struct StepRecord {
     pub damage: f64,
     pub compression: f64,
     pub shear: f64,
+    /// Of the panels, unweighted; 0 if the scene does not weigh it.
+    pub panel_shape: f64,
     /// Share of the hinge states of the path that the hinge law was made for.
     pub share_inside: f64,
-    /// How often the step was halved, and why.
+    /// How often the step was halved, one that was given up included, and what had no value.
     pub halvings: u32,
     pub setback: Option<String>,
 }
@@ -52,6 +53,8 @@ pub enum Ended {
     Completed,
     /// It was asked to stop; the next run continues.
     Stopped,
+    /// No step from the last design lowers the loss: a minimum, or a kink that L-BFGS cannot leave.
+    Settled,
     /// No step from the last design, however small, leads to a design with an equilibrium.
     Stuck { reason: String },
 }
@@ -118,9 +121,9 @@ struct State {
     scene: SceneConfig,
     /// The last design that was evaluated.
     design: DesignVector,
-    /// What Adam proposes next.
+    /// What the search proposes next.
     proposal: DesignVector,
-    adam: Adam,
+    search: Search,
     best: DesignVector,
     history: Vec<StepRecord>,
 }
@@ -186,11 +189,11 @@ pub fn inverse_design(
         if stop.load(Ordering::Relaxed) {
             break Ended::Stopped;
         }
-        match evaluate_or_back_off(&problem, &state.design, state.proposal.clone()) {
+        match state.next(&problem) {
             Ok((design, evaluation, setback)) => {
                 progress(state.accept(scene, design, &evaluation, setback));
             }
-            Err(reason) => break Ended::Stuck { reason },
+            Err(ended) => break ended,
         }
         if saved.elapsed() > SAVE_EVERY {
             state.write(&path)?;
@@ -221,52 +224,41 @@ pub fn forget(scene: &Scene) -> Result<(), InverseDesignError> {
     }
 }
 
-/// What kept a step from its full length.
-#[derive(Default)]
-struct Setback {
-    halvings: u32,
-    reason: Option<String>,
-}
-
-/// Evaluates the proposal, or the nearest point halfway back to `good` that has a finite loss.
-fn evaluate_or_back_off(
-    problem: &DesignProblem,
-    good: &DesignVector,
-    mut proposal: DesignVector,
-) -> Result<(DesignVector, Evaluation, Setback), String> {
-    let mut setback = Setback::default();
-    loop {
-        let reason = match problem.evaluate(&proposal) {
-            Ok(evaluation) if is_finite(&evaluation) => return Ok((proposal, evaluation, setback)),
-            Ok(_) => "the loss or its gradient is not finite".to_owned(),
-            Err(error) => error.to_string(),
-        };
-        if setback.halvings == MAX_HALVINGS {
-            return Err(reason);
-        }
-        setback.halvings += 1;
-        setback.reason.get_or_insert(reason);
-        let halfway: Vec<f64> = std::iter::zip(good.to_flat(), proposal.to_flat())
-            .map(|(good, proposed)| 0.5 * (good + proposed))
-            .collect();
-        proposal = proposal.with_flat(&halfway);
-    }
-}
-
-fn is_finite(evaluation: &Evaluation) -> bool {
-    evaluation.loss.is_finite() && evaluation.gradient.to_flat().iter().all(|g| g.is_finite())
-}
-
 impl State {
     fn new(scene: &Scene) -> Self {
         let design = scene.start();
         Self {
             scene: scene.config.clone(),
-            adam: Adam::new(design.to_flat().len(), scene.config.optimiser.learning_rate),
+            search: Search::new(&scene.config.optimiser, design.to_flat().len()),
             proposal: design.clone(),
             best: design.clone(),
             design,
             history: Vec::new(),
+        }
+    }
+
+    /// Evaluates what is proposed, or as much of it as the search accepts, or why the run ends here.
+    fn next(
+        &mut self,
+        problem: &DesignProblem,
+    ) -> Result<(DesignVector, Evaluation, Setback), Ended> {
+        let mut rejected = 0;
+        loop {
+            let proposal = self.proposal.clone();
+            match evaluate_or_back_off(problem, &self.search, &self.design, proposal) {
+                Ok((design, evaluation, mut setback)) => {
+                    setback.halvings += rejected;
+                    return Ok((design, evaluation, setback));
+                }
+                Err(reason) => match (self.search.retry(), reason) {
+                    (Some(increment), _) => {
+                        self.propose(&increment);
+                        rejected += MAX_HALVINGS + 1;
+                    }
+                    (None, Some(reason)) => return Err(Ended::Stuck { reason }),
+                    (None, None) => return Err(Ended::Settled),
+                },
+            }
         }
     }
 
@@ -286,12 +278,11 @@ impl State {
         if evaluation.loss < least {
             self.best = design.clone();
         }
-        let increment = self.adam.increment(&evaluation.gradient.to_flat());
-        let proposal: Vec<f64> = std::iter::zip(design.to_flat(), increment)
-            .map(|(coordinate, increment)| coordinate + increment)
-            .collect();
-        self.proposal = design.with_flat(&proposal);
+        let gradient = evaluation.gradient.to_flat();
+        let x = design.to_flat();
+        let increment = self.search.increment(&x, evaluation.loss, &gradient);
         self.design = design;
+        self.propose(&increment);
         let path = &evaluation.terms.path;
         self.history.push(StepRecord {
             step: self.history.len(),
@@ -301,11 +292,19 @@ impl State {
             damage: path.damage,
             compression: path.compression,
             shear: path.shear,
+            panel_shape: evaluation.terms.panel_shape,
             share_inside: evaluation.deployment.share_inside(),
             halvings: setback.halvings,
             setback: setback.reason,
         });
         &self.history[self.history.len() - 1]
+    }
+
+    fn propose(&mut self, increment: &[f64]) {
+        let proposal: Vec<f64> = std::iter::zip(self.design.to_flat(), increment)
+            .map(|(coordinate, increment)| coordinate + increment)
+            .collect();
+        self.proposal = self.design.with_flat(&proposal);
     }
 
     /// The state of an earlier run of the same scene, which may since ask for more steps.
@@ -338,7 +337,7 @@ impl State {
         let same_size = designs.iter().all(|design| design.same_shape(&scene_start));
         let path = path.to_owned();
         match state.history.first() {
-            Some(first) if same_size && state.adam.len() == n => {
+            Some(first) if same_size && state.search.fits(n) => {
                 if first.loss != start.loss {
                     return Err(InverseDesignError::OtherModel {
                         path,
@@ -360,69 +359,5 @@ impl State {
                 path: path.to_owned(),
                 source,
             })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::chamfer::Chamfer;
-    use crate::design_vector::WidthChart;
-    use crate::gradient::Model;
-    use crate::grid::Grid;
-    use crate::objective::{Objective, OutlinePoints};
-    use crate::path_functionals::PerFunctional;
-    use crate::pattern::Outline;
-    use crate::sheet::{Centroid, HingePoint, SheetOptions};
-    use hinge::HingeConstants;
-
-    fn problem(grid: Grid) -> DesignProblem {
-        DesignProblem {
-            grid,
-            outline: Outline::rectangle(2.0, 2.0),
-            widths: WidthChart {
-                w_minus: 0.05,
-                w_plus: 0.1,
-            },
-            options: SheetOptions {
-                hinge_point: HingePoint::Corner,
-                centroid: Centroid::Area,
-                process: HingeConstants {
-                    fillet_ratio: 0.16,
-                    kerf: 0.01,
-                    r_win: 0.3,
-                },
-            },
-            model: Model::Ideal { opening: 0.5 },
-            objective: Objective {
-                target: vec![[3.0, 3.0]],
-                chamfer: Chamfer {
-                    coverage_weight: 0.5,
-                    smoothing: 0.0,
-                },
-                outline: OutlinePoints::Free,
-                centred: false,
-                weights: PerFunctional::default(),
-                temperatures: PerFunctional::default(),
-            },
-        }
-    }
-
-    #[test]
-    fn a_proposal_without_value_is_halved_until_it_has_one_or_no_more() {
-        let grid = Grid { m: 2, n: 2 };
-        let good = DesignVector::uniform(grid);
-        let proposed = |z: f64| {
-            let mut proposal = good.clone();
-            proposal.pattern.z.fill(z);
-            evaluate_or_back_off(&problem(grid), &good, proposal)
-        };
-        let (design, _, setback) = proposed(1.0).unwrap();
-        assert_eq!((design.pattern.z[0], setback.halvings), (1.0, 0));
-        // The logistic chart rounds to 1 near z = 37.
-        let (design, _, setback) = proposed(100.0).unwrap();
-        assert_eq!((design.pattern.z[0], setback.halvings), (25.0, 2));
-        assert!(setback.reason.unwrap().contains("two cuts collide"));
-        assert!(proposed(1e9).err().unwrap().contains("two cuts collide"));
     }
 }

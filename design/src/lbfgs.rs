@@ -7,14 +7,12 @@
 use crate::equilibrium::SolverSettings;
 use crate::hinge_law::Order;
 use crate::kinematics::Configuration;
+use crate::lbfgs_memory::Memory;
 use crate::newton::{Failure, Minimum};
 use crate::panel_vectors::{gather, spread};
 use crate::potential::{Potential, State, moved};
 use crate::stroke::dot;
-use std::collections::VecDeque;
 
-/// Pairs of steps and gradient changes that are remembered.
-const MEMORY: usize = 20;
 /// Part of the predicted fall that a step must achieve, and of the slope that it may leave.
 const WOLFE: [f64; 2] = [1e-4, 0.9];
 /// Trial steps of one line search.
@@ -23,13 +21,6 @@ const TRIALS: usize = 40;
 const FIRST_STEP: f64 = 1e-3;
 /// Change of Pi over the sum of its terms' sizes below which it is rounding.
 const LEVEL: f64 = 1e-13;
-
-/// A step and the change of the gradient over it, in scaled coordinates.
-struct Pair {
-    step: Vec<f64>,
-    change: Vec<f64>,
-    product: f64,
-}
 
 impl Potential<'_> {
     /// A minimum near `start`, within `max_iterations`.
@@ -47,10 +38,10 @@ impl Potential<'_> {
         let scale = vec![[1.0, 1.0, 1.0 / self.panel_size]; state.configuration.len()];
         let scale = gather(self.free, &scale);
         let mut gradient = self.scaled(&state, &scale);
-        let mut memory: VecDeque<Pair> = VecDeque::with_capacity(MEMORY);
+        let mut memory = Memory::default();
         let mut iterations = 0;
         while !state.is_balanced(settings.tolerance) && iterations < max_iterations {
-            let direction = descent(&gradient, &memory, self.panel_size);
+            let direction = memory.direction(&gradient, FIRST_STEP * self.panel_size);
             let Some((next, fraction)) = self.wolfe_step(&state, &gradient, &direction, &scale)
             else {
                 break;
@@ -60,15 +51,7 @@ impl Potential<'_> {
                 .map(|(to, from)| to - from)
                 .collect();
             let step: Vec<f64> = direction.iter().map(|d| fraction * d).collect();
-            let product = dot(&step, &change);
-            if product > 0.0 {
-                memory.truncate(MEMORY - 1);
-                memory.push_front(Pair {
-                    step,
-                    change,
-                    product,
-                });
-            }
+            memory.remember(step, change);
             (state, gradient, iterations) = (next, next_gradient, iterations + 1);
         }
         if state.residual > settings.loose_tolerance {
@@ -144,30 +127,4 @@ impl Potential<'_> {
         }
         None
     }
-}
-
-/// Minus the inverse Hessian that the memory suggests, times the gradient (two-loop recursion).
-fn descent(gradient: &[f64], memory: &VecDeque<Pair>, panel_size: f64) -> Vec<f64> {
-    let mut direction: Vec<f64> = gradient.iter().map(|g| -g).collect();
-    let mut weights = Vec::with_capacity(memory.len());
-    for pair in memory {
-        let weight = dot(&pair.step, &direction) / pair.product;
-        add(&mut direction, &pair.change, -weight);
-        weights.push(weight);
-    }
-    let size = match memory.front() {
-        Some(last) => last.product / dot(&last.change, &last.change),
-        None => FIRST_STEP * panel_size / dot(gradient, gradient).sqrt(),
-    };
-    direction.iter_mut().for_each(|d| *d *= size);
-    for (pair, weight) in std::iter::zip(memory, weights).rev() {
-        let along = dot(&pair.change, &direction) / pair.product;
-        add(&mut direction, &pair.step, weight - along);
-    }
-    direction
-}
-
-/// sum += weight * vector
-fn add(sum: &mut [f64], vector: &[f64], weight: f64) {
-    std::iter::zip(sum, vector).for_each(|(sum, v)| *sum += weight * v);
 }

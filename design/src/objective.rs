@@ -1,8 +1,9 @@
 //! The design objective (16): the Chamfer distance of the deployed outline to the target, and
-//! functionals of the deformation path of the hinges.
+//! functionals of the deformation path of the hinges; and how well-shaped the panels are.
 
 use crate::chamfer::Chamfer;
 use crate::equilibrium::LoadStep;
+use crate::panel_shape::panel_shape;
 use crate::path_functionals::{HingePath, PathFunctionals, PerFunctional};
 use crate::sheet::Sheet;
 use crate::topology::PanelCorner;
@@ -41,6 +42,8 @@ pub struct Objective {
     pub weights: PerFunctional,
     /// Temperatures of the path extrema.
     pub temperatures: PerFunctional,
+    /// Weight of the panels' shape (mm^2).
+    pub panel_shape: f64,
 }
 
 /// The unweighted terms of the objective.
@@ -49,6 +52,7 @@ pub struct Terms {
     /// mm^2
     pub chamfer: f64,
     pub path: PerFunctional,
+    pub panel_shape: f64,
 }
 
 /// The objective and its partial derivatives at a deployment.
@@ -61,6 +65,8 @@ pub struct Judgement {
     pub by_outline: Vec<[f64; 2]>,
     /// Gradient in (a, s, theta, w_lig, alpha) per hinge and load step.
     pub by_path: Vec<Vec<[f64; 5]>>,
+    /// Gradient in the flat corners of every panel.
+    pub by_corners: Vec<[[f64; 2]; 4]>,
 }
 
 impl Objective {
@@ -73,6 +79,37 @@ impl Objective {
         path: &[LoadStep],
         damage_scale: f64,
     ) -> Judgement {
+        let (chamfer, by_outline) = self.shape(outline);
+        let functionals = PathFunctionals {
+            weights: self.weights,
+            temperatures: self.temperatures,
+            damage_scale,
+        };
+        let (values, by_path) = functionals.evaluate(&hinge_paths(sheet, path));
+        // Panels that are not weighed may have any shape.
+        let (shape, mut by_corners) = match self.panel_shape {
+            0.0 => (0.0, vec![[[0.0; 2]; 4]; sheet.panels.len()]),
+            _ => panel_shape(&sheet.panels),
+        };
+        let entries = by_corners.as_flattened_mut().as_flattened_mut();
+        entries
+            .iter_mut()
+            .for_each(|entry| *entry *= self.panel_shape);
+        Judgement {
+            loss: chamfer + functionals.weighted(&values) + self.panel_shape * shape,
+            terms: Terms {
+                chamfer,
+                path: values,
+                panel_shape: shape,
+            },
+            by_outline,
+            by_path,
+            by_corners,
+        }
+    }
+
+    /// The Chamfer distance of the points P to the target (mm^2), and its gradient in them.
+    pub(crate) fn shape(&self, outline: &[[f64; 2]]) -> (f64, Vec<[f64; 2]>) {
         let origin = if self.centred {
             mean(outline)
         } else {
@@ -90,21 +127,7 @@ impl Objective {
                 gradient[1] -= y;
             }
         }
-        let functionals = PathFunctionals {
-            weights: self.weights,
-            temperatures: self.temperatures,
-            damage_scale,
-        };
-        let (values, by_path) = functionals.evaluate(&hinge_paths(sheet, path));
-        Judgement {
-            loss: chamfer + functionals.weighted(&values),
-            terms: Terms {
-                chamfer,
-                path: values,
-            },
-            by_outline,
-            by_path,
-        }
+        (chamfer, by_outline)
     }
 }
 

@@ -1,24 +1,25 @@
 //! How far the deployed outline lies from the target, as people state it: a root mean square length.
 
-use crate::chamfer::Chamfer;
+use crate::chamfer::{Chamfer, Precision};
 use crate::gradient::Deployment;
 use crate::kinematics::{Configuration, deployed};
+use crate::objective::OutlinePoints;
 use crate::scene::Scene;
 use crate::sheet::Sheet;
 use crate::topology::PanelCorner;
 
-/// Root mean square distance of the deployed outline points P to the target (mm).
+/// Root mean square distance of the deployed outline points P to the curve through the target's
+/// samples (mm).
 ///
-/// It is the root of the first sum of the Chamfer distance. The second, coverage, also counts how far
+/// It is the root of the first sum of the Chamfer distance to the curve. The second, coverage, also counts how far
 /// apart the points of P are, so that it stays large on a coarse sheet that meets its target.
 pub fn outline_error(scene: &Scene, deployment: &Deployment) -> f64 {
-    let sheet = &deployment.sheet;
-    let configuration = placed(scene, sheet, &deployment.final_step().configuration);
+    let outline = deployed_outline(scene, deployment, scene.config.objective.outline);
     let precision = Chamfer {
         coverage_weight: 0.0,
         smoothing: 0.0,
+        precision: Precision::Curve,
     };
-    let outline = outline(scene, sheet, &configuration);
     let (squared, _) = precision.evaluate(&outline, scene.target.points());
     squared.sqrt()
 }
@@ -28,7 +29,8 @@ pub fn outline_error(scene: &Scene, deployment: &Deployment) -> f64 {
 pub(crate) fn placed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> Configuration {
     let mut placed = configuration.to_vec();
     if scene.config.supports.is_empty() {
-        let points = outline(scene, sheet, configuration);
+        let points = scene.config.objective.outline.of(sheet);
+        let points = corners(sheet, points, configuration);
         for axis in 0..2 {
             let sum: f64 = points.iter().map(|point| point[axis]).sum();
             let shift = scene.target.mean()[axis] - sum / points.len() as f64;
@@ -38,17 +40,15 @@ pub(crate) fn placed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -
     placed
 }
 
-/// The whole deployed outline, free corners or not, where the objective compares it (mm).
-pub fn deployed_outline(scene: &Scene, deployment: &Deployment) -> Vec<[f64; 2]> {
+/// The deployed outline through `points`, where the objective compares it (mm).
+pub fn deployed_outline(
+    scene: &Scene,
+    deployment: &Deployment,
+    points: OutlinePoints,
+) -> Vec<[f64; 2]> {
     let sheet = &deployment.sheet;
     let configuration = placed(scene, sheet, &deployment.final_step().configuration);
-    corners(sheet, sheet.outline_corners(), &configuration)
-}
-
-/// The deployed points P (mm).
-fn outline(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<[f64; 2]> {
-    let points = scene.config.objective.outline.of(sheet);
-    corners(sheet, points, configuration)
+    corners(sheet, points.of(sheet), &configuration)
 }
 
 fn corners(sheet: &Sheet, corners: Vec<PanelCorner>, configuration: &[[f64; 3]]) -> Vec<[f64; 2]> {

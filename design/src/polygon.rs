@@ -54,6 +54,12 @@ pub(crate) fn distance_to_polygon(point: [f64; 2], polygon: &[[f64; 2]]) -> f64 
 
 /// Distance from a point to the segment from `a` to `b` (mm).
 pub(crate) fn distance_to_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+    let [x, y] = nearest_on_segment(point, a, b);
+    f64::hypot(point[0] - x, point[1] - y)
+}
+
+/// The point of the segment from `a` to `b` that is nearest to `point`.
+pub(crate) fn nearest_on_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     let (d, e) = (
         [b[0] - a[0], b[1] - a[1]],
         [point[0] - a[0], point[1] - a[1]],
@@ -64,7 +70,15 @@ pub(crate) fn distance_to_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> 
     } else {
         0.0
     };
-    f64::hypot(e[0] - along * d[0], e[1] - along * d[1])
+    [a[0] + along * d[0], a[1] + along * d[1]]
+}
+
+/// The point of a closed polygon's border that is nearest to `point`.
+pub(crate) fn nearest_on_outline(point: [f64; 2], polygon: &[[f64; 2]]) -> [f64; 2] {
+    let squared = |[x, y]: [f64; 2]| (x - point[0]).powi(2) + (y - point[1]).powi(2);
+    let feet = edges(polygon).map(|(a, b)| nearest_on_segment(point, a, b));
+    let nearest = feet.min_by(|p, q| squared(*p).total_cmp(&squared(*q)));
+    nearest.unwrap_or(point)
 }
 
 /// The edges of a closed polygon.

@@ -22,7 +22,7 @@ pub struct Report {
     pub ended: Ended,
     /// Steps made, the start not counted.
     pub steps: usize,
-    /// Steps that had to be halved.
+    /// Steps that had to be halved because a design had no value.
     pub setbacks: usize,
     pub before: Scores,
     /// Of the best design.
@@ -44,6 +44,8 @@ pub struct Scores {
     pub damage: f64,
     pub compression: f64,
     pub shear: f64,
+    /// Of the panels, unweighted; 0 if the scene does not weigh it.
+    pub panel_shape: f64,
     /// Share of the hinge states of the path that the hinge law was made for.
     pub share_inside: f64,
 }
@@ -94,7 +96,7 @@ impl Report {
             setbacks: designed
                 .history
                 .iter()
-                .filter(|record| record.halvings > 0)
+                .filter(|record| record.setback.is_some())
                 .count(),
             before: Scores::of(scene, &designed.start),
             after: Scores::of(scene, &designed.best),
@@ -114,6 +116,7 @@ impl Scores {
             damage: terms.path.damage,
             compression: terms.path.compression,
             shear: terms.path.shear,
+            panel_shape: terms.panel_shape,
             share_inside: evaluation.deployment.share_inside(),
         }
     }
@@ -174,6 +177,11 @@ impl fmt::Display for Report {
             Ended::Stopped => {
                 writeln!(f, "stopped after {} steps; run again to go on", self.steps)?
             }
+            Ended::Settled => writeln!(
+                f,
+                "settled after {} steps: none lowers the loss any more",
+                self.steps
+            )?,
             Ended::Stuck { reason } => writeln!(f, "stuck after {} steps: {reason}", self.steps)?,
         }
         writeln!(f, "\n{:<24}{:>12}{:>12}", "", "start", "best")?;
@@ -187,6 +195,7 @@ impl fmt::Display for Report {
             ("compression", before.compression, after.compression),
             ("shear", before.shear, after.shear),
             ("damage", before.damage, after.damage),
+            ("panel shape", before.panel_shape, after.panel_shape),
             ("loss (mm^2)", before.loss, after.loss),
             (
                 "inside domain (%)",

@@ -18,9 +18,11 @@ pub use hinge_model::{
 };
 pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 
+use crate::chamfer::Precision;
 use crate::equilibrium::{Method, SolverSettings};
 use crate::gradient::DesignError;
 use crate::objective::OutlinePoints;
+use crate::search::SearchMethod;
 use crate::sheet::{Centroid, HingePoint, SheetOptions};
 use crate::target::{Target, TargetError, TargetShape};
 use hinge::config::ConfigError;
@@ -97,13 +99,21 @@ pub struct ObjectiveConfig {
     /// Of (19).
     #[serde(default)]
     pub shear: f64,
-    /// Whether the weights are relative to the gradient of the Chamfer distance at the start instead:
-    /// at the weight 1 a functional pulls as hard as the shape.
+    /// Of panels stretched more than eight to one or sharper than 14 degrees, which the outline alone
+    /// does not mind; never relative to a gradient.
+    #[serde(default)]
+    pub panel_shape: f64,
+    /// Whether the weights of (17)-(19) are relative to the gradient of the Chamfer distance at the
+    /// start instead: at the weight 1 a functional pulls as hard as the shape.
     #[serde(default)]
     pub balance: bool,
     /// Temperature of the minima in the Chamfer distance (mm^2); 0 is the hard minimum of the paper.
     #[serde(default)]
     pub smoothing: f64,
+    /// What the outline's distance is measured to: the `samples` of the target, as the paper, or the
+    /// `curve` through them.
+    #[serde(default)]
+    pub precision: Precision,
     /// Which panel corners on the outline are compared with the target: `free`, those that belong
     /// to no hinge, or `all`.
     #[serde(default)]
@@ -117,8 +127,11 @@ pub struct ObjectiveConfig {
 #[serde(deny_unknown_fields)]
 pub struct OptimiserConfig {
     pub steps: usize,
-    /// Of Adam, in the chart coordinates.
+    /// Length of the first step, in every chart coordinate; of Adam that of the later ones too.
     pub learning_rate: f64,
+    /// `adam`, as the paper, or `lbfgs`.
+    #[serde(default)]
+    pub method: SearchMethod,
     /// Standard deviation of the random start about the uniform sheet, in the chart coordinates.
     #[serde(default)]
     pub start_noise: f64,

@@ -1,5 +1,6 @@
 //! The target outline T of (16): a closed curve, sampled densely and evenly by arc length.
 
+use crate::polygon;
 use crate::svg_path::{self, SvgPathError};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -134,6 +135,17 @@ impl Target {
     pub fn width(&self) -> f64 {
         let across = || self.points.iter().map(|point| point[0]);
         across().fold(f64::NEG_INFINITY, f64::max) - across().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Distance of a point to the curve through the samples (mm).
+    pub fn distance(&self, point: [f64; 2]) -> f64 {
+        let [x, y] = polygon::nearest_on_outline(point, &self.points);
+        f64::hypot(point[0] - x, point[1] - y)
+    }
+
+    /// Area within the curve through the samples (mm^2).
+    pub fn area(&self) -> f64 {
+        polygon::area(&self.points).abs()
     }
 
     /// Length of the outline itself (mm).

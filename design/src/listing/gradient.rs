@@ -3,6 +3,7 @@
 use crate::design_vector::DesignVector;
 use crate::gradient::{DesignError, Evaluation, Sensitivities};
 use crate::intersection_over_union::intersection_over_union;
+use crate::objective::OutlinePoints;
 use crate::outline_error::{deployed_outline, outline_error};
 use crate::path_functionals::PerFunctional;
 use crate::scene::{Scene, SceneError};
@@ -49,7 +50,7 @@ impl GradientListing {
         let problem = scene.problem()?;
         let evaluation = problem.evaluate(design)?;
         let outline_error = outline_error(scene, &evaluation.deployment);
-        let outline = deployed_outline(scene, &evaluation.deployment);
+        let outline = deployed_outline(scene, &evaluation.deployment, OutlinePoints::All);
         let Evaluation {
             loss,
             terms,

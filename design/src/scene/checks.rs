@@ -231,6 +231,7 @@ fn search(scene: &SceneConfig) -> Result<(), String> {
         ("objective.damage", objective.damage),
         ("objective.compression", objective.compression),
         ("objective.shear", objective.shear),
+        ("objective.panel_shape", objective.panel_shape),
         ("objective.smoothing", objective.smoothing),
     ] {
         within(key, weight, [0.0, 1e9], "")?;

@@ -99,6 +99,7 @@ impl Scene {
             chamfer: Chamfer {
                 coverage_weight: config.coverage,
                 smoothing: config.smoothing,
+                precision: config.precision,
             },
             outline: config.outline,
             // A sheet on pins is held nowhere.
@@ -109,6 +110,7 @@ impl Scene {
                 shear: config.shear * unit,
             },
             temperatures: TEMPERATURES,
+            panel_shape: config.panel_shape * self.mean_panel_area(),
         }
     }
 

@@ -27,11 +27,42 @@ fn the_loss_falls_and_the_best_design_is_returned() {
     assert_eq!(least, designed.best.loss);
 }
 
+const LBFGS: (&str, &str) = ("steps = 25", "steps = 25\nmethod = \"lbfgs\"");
+
+#[test]
+fn every_step_of_lbfgs_lowers_the_loss() {
+    let folder = tempfile::tempdir().unwrap();
+    let curve = ("coverage = 0.5", "coverage = 0.5\nprecision = \"curve\"");
+    let designed = run(&read(folder.path(), &with(&[LBFGS, curve])), None).unwrap();
+    let falls = |pair: &[StepRecord]| pair[1].loss < pair[0].loss;
+    assert!(designed.history.windows(2).all(falls));
+    assert!(designed.best.loss < 0.8 * designed.start.loss);
+}
+
+#[test]
+fn lbfgs_settles_where_nothing_is_lower() {
+    let folder = tempfile::tempdir().unwrap();
+    let many = ("steps = 25", "steps = 3000\nmethod = \"lbfgs\"");
+    let designed = run(&read(folder.path(), &with(&[many])), None).unwrap();
+    assert_eq!(designed.ended, Ended::Settled);
+    assert!(
+        designed
+            .history
+            .iter()
+            .all(|record| record.setback.is_none())
+    );
+}
+
 #[test]
 fn a_stopped_run_resumes_to_the_same_trajectory() {
+    resumes(SCENE);
+    resumes(&with(&[LBFGS]));
+}
+
+fn resumes(text: &str) {
     let [whole, parts] = [(); 2].map(|()| tempfile::tempdir().unwrap());
-    let uninterrupted = run(&read(whole.path(), SCENE), None).unwrap();
-    let scene = read(parts.path(), SCENE);
+    let uninterrupted = run(&read(whole.path(), text), None).unwrap();
+    let scene = read(parts.path(), text);
     let stopped = run(&scene, Some(9)).unwrap();
     assert_eq!(stopped.ended, Ended::Stopped);
     assert_eq!(stopped.history.len(), 10);
@@ -58,7 +89,7 @@ fn more_steps_may_be_asked_for_but_not_another_scene() {
     let state = std::fs::read_to_string(&path).unwrap();
     let mut state: serde_json::Value = serde_json::from_str(&state).unwrap();
     state["scene"]["optimiser"]["steps"] = 25.into();
-    state["adam"]["mean"] = serde_json::json!([0.0]);
+    state["search"]["adam"]["mean"] = serde_json::json!([0.0]);
     std::fs::write(&path, state.to_string()).unwrap();
     let error = run_with(&[]).err().unwrap().to_string();
     assert!(error.contains("another size"), "{error}");

@@ -1,7 +1,7 @@
 //! Objective and gradient against an independent implementation.
 
 use crate::cases::{self, AT_CORNER, case, difference, get};
-use design::chamfer::Chamfer;
+use design::chamfer::{Chamfer, Precision};
 use design::design_vector::{DesignVector, WidthChart};
 use design::equilibrium::{EquilibriumSolver, SolverSettings};
 use design::gradient::{DesignProblem, Mechanics, Model};
@@ -52,9 +52,11 @@ fn a_pulled_sheet_with_path_functionals() {
             chamfer: Chamfer {
                 coverage_weight: get(&case, "w_cov"),
                 smoothing: 0.0,
+                precision: Precision::Samples,
             },
             outline: OutlinePoints::All,
             centred: false,
+            panel_shape: 0.0,
             weights: per_functional(&case["weights"]),
             temperatures: per_functional(&case["softmax_temperature"]),
         },

@@ -3,7 +3,7 @@
 use crate::cases::PROCESS;
 use crate::random::Random;
 use design::actuation::{Dof, Load, Support};
-use design::chamfer::Chamfer;
+use design::chamfer::{Chamfer, Precision};
 use design::charts::PatternCoordinates;
 use design::check::TaylorRemainders;
 use design::design_vector::{DesignVector, WidthChart};
@@ -86,9 +86,11 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
             chamfer: Chamfer {
                 coverage_weight: 0.5,
                 smoothing: 500.0,
+                precision: Precision::Samples,
             },
             outline: OutlinePoints::Free,
             centred: true,
+            panel_shape: 200.0,
             weights: PerFunctional {
                 damage: 300.0,
                 compression: 1e4,

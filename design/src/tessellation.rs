@@ -1,0 +1,178 @@
+//! Whether panels, wherever their corners are, make one sheet: the three conditions of section 3.1.
+//!
+//! Every hinge keeps its two panels joined, no two panels overlap, and in the flat sheet they cover
+//! it. Areas are summed along horizontal lines, so that panels of any shape count as they are drawn.
+
+use crate::gradient::Deployment;
+use crate::grid::Grid;
+use crate::intersection_over_union::{LINES, crossings, length};
+use crate::kinematics::deployed_corners;
+use crate::outline_error::placed;
+use crate::pattern::Outline;
+use crate::plane::{complex, cross, dot};
+use crate::polygon::area;
+use crate::scene::Scene;
+use crate::topology::hinge_sites;
+
+/// Panels by their corners, flat and deployed (mm).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tessellation {
+    pub grid: Grid,
+    pub outline: Outline,
+    pub flat: Vec<[[f64; 2]; 4]>,
+    pub deployed: Vec<[[f64; 2]; 4]>,
+}
+
+/// What keeps panels from being one sheet; zero where nothing does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Defects {
+    /// Greatest distance of two corners that a hinge joins, over the sheet's side, flat and deployed.
+    pub gap: [f64; 2],
+    /// Area that is covered twice or more, over the sheet's, flat and deployed.
+    pub overlap: [f64; 2],
+    /// Area of the flat sheet that no panel covers, over the sheet's.
+    pub void: f64,
+}
+
+/// How badly the worst panels of a flat sheet are shaped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorstPanels {
+    /// Least angle of a corner (deg).
+    pub sharpest_deg: f64,
+    /// Shortest edge over the side of a square panel of the mean area.
+    pub shortest: f64,
+    /// Least area over the mean.
+    pub least: f64,
+}
+
+impl Tessellation {
+    /// Of a sheet, deployed where the objective compares it with the target.
+    pub fn of(scene: &Scene, deployment: &Deployment) -> Self {
+        let sheet = &deployment.sheet;
+        let configuration = placed(scene, sheet, &deployment.final_step().configuration);
+        Self {
+            grid: sheet.grid,
+            outline: sheet.outline,
+            flat: sheet.panels.iter().map(|panel| panel.corners).collect(),
+            deployed: deployed_corners(sheet, &configuration),
+        }
+    }
+
+    pub fn defects(&self) -> Defects {
+        let sheet = self.outline.area();
+        let (flat_overlap, void) = self.overlap_and_void(&self.flat);
+        let (deployed_overlap, _) = self.overlap_and_void(&self.deployed);
+        Defects {
+            gap: [&self.flat, &self.deployed].map(|panels| self.gap(panels) / sheet.sqrt()),
+            overlap: [flat_overlap / sheet, deployed_overlap / sheet],
+            void: void / sheet,
+        }
+    }
+
+    pub fn worst_panels(&self) -> WorstPanels {
+        let mean = self.outline.area() / self.flat.len() as f64;
+        let mut worst = WorstPanels {
+            sharpest_deg: f64::INFINITY,
+            shortest: f64::INFINITY,
+            least: f64::INFINITY,
+        };
+        for panel in &self.flat {
+            for j in 0..4 {
+                let [before, corner, after] = [j, j + 1, j + 2].map(|j| complex(panel[j % 4]));
+                let (back, ahead) = (before - corner, after - corner);
+                let angle = cross(ahead, back).atan2(dot(ahead, back));
+                worst.sharpest_deg = worst.sharpest_deg.min(angle.to_degrees());
+                worst.shortest = worst.shortest.min(back.norm() / mean.sqrt());
+            }
+            worst.least = worst.least.min(area(panel) / mean);
+        }
+        worst
+    }
+
+    fn gap(&self, panels: &[[[f64; 2]; 4]]) -> f64 {
+        let gaps = hinge_sites(self.grid).into_iter().map(|site| {
+            let [p, q] = [site.a, site.b].map(|(panel, corner)| panels[panel][corner]);
+            f64::hypot(p[0] - q[0], p[1] - q[1])
+        });
+        gaps.fold(0.0, f64::max)
+    }
+
+    /// Area covered twice or more, and area of the sheet that is not covered (mm^2).
+    fn overlap_and_void(&self, panels: &[[[f64; 2]; 4]]) -> (f64, f64) {
+        let corners = || panels.iter().flatten().chain(&self.outline.corners);
+        let low = corners().map(|p| p[1]).fold(f64::INFINITY, f64::min);
+        let high = corners().map(|p| p[1]).fold(f64::NEG_INFINITY, f64::max);
+        let spacing = (high - low) / LINES as f64;
+        let (mut overlap, mut void) = (0.0, 0.0);
+        for i in 0..LINES {
+            let y = low + spacing * (i as f64 + 0.5);
+            let mut covered: Vec<[f64; 2]> = (panels.iter())
+                .flat_map(|panel| crossings(panel, y))
+                .collect();
+            covered.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            overlap += spacing * twice(&covered);
+            let sheet = crossings(&self.outline.corners, y);
+            void += spacing * (length(&sheet) - once(&covered, &sheet));
+        }
+        (overlap, void)
+    }
+}
+
+/// Length that intervals, sorted by their starts, share with those before them.
+fn twice(sorted: &[[f64; 2]]) -> f64 {
+    let (mut reached, mut twice) = (f64::NEG_INFINITY, 0.0);
+    for [from, to] in sorted {
+        twice += (reached.min(*to) - from).max(0.0);
+        reached = reached.max(*to);
+    }
+    twice
+}
+
+/// Length of `within` that the sorted intervals cover.
+fn once(sorted: &[[f64; 2]], within: &[[f64; 2]]) -> f64 {
+    let mut once = 0.0;
+    for [low, high] in within {
+        let mut reached = *low;
+        for [from, to] in sorted {
+            once += (to.min(*high) - from.max(reached)).max(0.0);
+            reached = reached.max(*to);
+        }
+    }
+    once
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shifted_panels_gape_overlap_and_leave_a_void() {
+        let square = |x: f64, y: f64| [[x, y], [x + 1.0, y], [x + 1.0, y + 1.0], [x, y + 1.0]];
+        let tiles = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+        let flat: Vec<_> = tiles.iter().map(|&[x, y]| square(x, y)).collect();
+        let mut moved = flat.clone();
+        moved[3] = square(0.8, 1.0);
+        let mut tessellation = Tessellation {
+            grid: Grid { m: 2, n: 2 },
+            outline: Outline::rectangle(2.0, 2.0),
+            deployed: flat.clone(),
+            flat,
+        };
+        let whole = tessellation.defects();
+        let squares = WorstPanels {
+            sharpest_deg: 90.0,
+            shortest: 1.0,
+            least: 1.0,
+        };
+        assert_eq!(tessellation.worst_panels(), squares);
+        assert_eq!(
+            (whole.gap, whole.overlap, whole.void),
+            ([0.0; 2], [0.0; 2], 0.0)
+        );
+        tessellation.flat = moved;
+        let defects = tessellation.defects();
+        assert!((defects.gap[0] - 0.1).abs() < 1e-12 && defects.gap[1] == 0.0);
+        assert!((defects.overlap[0] - 0.05).abs() < 1e-12 && defects.overlap[1] == 0.0);
+        assert!((defects.void - 0.05).abs() < 1e-12);
+    }
+}
