@@ -1,5 +1,6 @@
 //! Charts of trainings, studies and replays, as SVG: what they share, and one file a kind.
 
+mod capacity;
 mod costs;
 mod learning_curve;
 mod parity;
@@ -10,6 +11,7 @@ mod solutions;
 mod taylor;
 mod window;
 
+pub use capacity::{CapacityCurve, capacity};
 pub use costs::{CostPanel, costs};
 pub use learning_curve::learning_curve;
 pub use parity::{ParityChart, parity};

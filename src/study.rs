@@ -1,6 +1,9 @@
 //! `kirigami study`: what the choices of each stage cost and are worth.
 
+mod actuations;
+mod capacity;
 mod gradient;
+mod localisation;
 mod path;
 mod sheet;
 mod solutions;
@@ -18,6 +21,9 @@ pub enum StudyCommand {
     Path(path::PathStudy),
     Gradient(gradient::GradientStudy),
     Solutions(solutions::SolutionStudy),
+    Actuations(actuations::ActuationStudy),
+    Capacity(capacity::CapacityStudy),
+    Localisation(localisation::LocalisationStudy),
     Surrogate(surrogate::SurrogateStudy),
 }
 
@@ -29,6 +35,9 @@ impl StudyCommand {
             Self::Path(study) => study.run(),
             Self::Gradient(study) => study.run(),
             Self::Solutions(study) => study.run(),
+            Self::Actuations(study) => study.run(),
+            Self::Capacity(study) => study.run(),
+            Self::Localisation(study) => study.run(),
             Self::Surrogate(study) => study.run(),
         }
     }
