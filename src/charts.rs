@@ -1,6 +1,7 @@
 //! Charts of trainings, studies and replays, as SVG: what they share, and one file a kind.
 
 mod calibration;
+mod capacity;
 mod costs;
 mod front;
 mod learning_curve;
@@ -14,6 +15,7 @@ mod taylor;
 mod window;
 
 pub use calibration::{Calibration, calibration};
+pub use capacity::{CapacityCurve, capacity};
 pub use costs::{CostPanel, costs};
 pub use front::{FrontPanel, front};
 pub use learning_curve::learning_curve;

@@ -1,8 +1,11 @@
 //! `kirigami study`: what the choices of each stage cost and are worth.
 
+mod actuations;
 mod approaches;
+mod capacity;
 mod chain;
 mod gradient;
+mod localisation;
 mod noise;
 mod optimisers;
 mod path;
@@ -31,6 +34,9 @@ pub enum StudyCommand {
     Approaches(approaches::ApproachStudy),
     Silhouettes(silhouettes::SilhouetteStudy),
     Optimisers(optimisers::OptimiserStudy),
+    Actuations(actuations::ActuationStudy),
+    Capacity(capacity::CapacityStudy),
+    Localisation(localisation::LocalisationStudy),
     Surrogate(surrogate::SurrogateStudy),
     Trust(trust::TrustStudy),
 }
@@ -49,6 +55,9 @@ impl StudyCommand {
             Self::Approaches(study) => study.run(),
             Self::Silhouettes(study) => study.run(),
             Self::Optimisers(study) => study.run(),
+            Self::Actuations(study) => study.run(),
+            Self::Capacity(study) => study.run(),
+            Self::Localisation(study) => study.run(),
             Self::Surrogate(study) => study.run(),
             Self::Trust(study) => study.run(),
         }

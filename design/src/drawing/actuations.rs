@@ -29,7 +29,7 @@ const WIDTH_PX: f64 = 2400.0;
 /// Colours of the families of voids; further ones are drawn as the last.
 const FAMILIES: [&str; 3] = ["#e3a857", "#7cb3a6", "#b49fd1"];
 const PLAIN: &str = "#f4f5f7";
-/// Colours of panels of a half, one and twice the area of a panel of the start.
+/// Colours of panels of a quarter of, once and four times their area at the start.
 const AREAS: [[f64; 3]; 3] = [
     [180.0, 83.0, 9.0],
     [250.0, 250.0, 250.0],
@@ -312,12 +312,12 @@ fn legend(canvas: &mut Canvas, layout: &Layout) {
     };
     text(canvas, layout.left[0], "\u{25b2} pin   \u{25cf} roller");
     for step in 0..=16 {
-        let ratio = 2f64.powf(step as f64 / 8.0 - 1.0);
+        let ratio = 2f64.powf(step as f64 / 4.0 - 2.0);
         let x = layout.left[1] + 26.0 * u + 6.0 * u * f64::from(step);
         swatch(canvas, x, &format!("fill=\"{}\"", area_colour(ratio)));
     }
-    text(canvas, layout.left[1], "\u{bd}");
-    text(canvas, layout.left[1] + 138.0 * u, "2 \u{d7} area");
+    text(canvas, layout.left[1], "\u{bc}");
+    text(canvas, layout.left[1] + 138.0 * u, "4 \u{d7} area");
     for (k, colour) in FAMILIES.iter().enumerate() {
         let x = layout.left[2] + 70.0 * u * k as f64;
         swatch(canvas, x, &format!("fill=\"{colour}\""));
@@ -339,7 +339,7 @@ fn legend(canvas: &mut Canvas, layout: &Layout) {
 
 /// Brown where a panel has shrunk, white where it has kept its area, green where it has grown.
 fn area_colour(ratio: f64) -> String {
-    let position = (ratio.log2() + 1.0).clamp(0.0, 2.0);
+    let position = (0.5 * ratio.log2() + 1.0).clamp(0.0, 2.0);
     let stop = (position as usize).min(1);
     let f = position - stop as f64;
     let [r, g, b] = [0, 1, 2]
@@ -354,7 +354,7 @@ mod tests {
     #[test]
     fn panels_are_coloured_by_the_logarithm_of_their_area() {
         assert_eq!(area_colour(1.0), "#fafafa");
-        assert_eq!(area_colour(0.5), area_colour(0.1));
-        assert_eq!(area_colour(2.0), "#15803d");
+        assert_eq!(area_colour(0.25), area_colour(0.1));
+        assert_eq!(area_colour(4.0), "#15803d");
     }
 }

@@ -1,0 +1,348 @@
+//! `kirigami study capacity`: what a cut pattern carries before its deployment degenerates; section 3.2.
+
+use crate::charts::{self, CapacityCurve};
+use crate::progress::Progress;
+use crate::{interrupt, picture, run_folder};
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use design::degeneration::{Degeneration, last_jump};
+use design::design_vector::DesignVector;
+use design::drawing;
+use design::gradient::Deployment;
+use design::inverse_design::{StepRecord, inverse_design};
+use design::outline_error::outline_error;
+use design::scene::{HingeModel, ObjectiveConfig, PinConfig, Scene, SceneConfig};
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+
+/// A sheet under a pull and a growing transverse load, designed in four ways
+///
+/// The first load of the scene is held and the second is rho times as great; every rho is a deployment
+/// of its own from the flat sheet, and the rho from which on the sheet is no longer deployed is found by
+/// bisection. Writes capacity.csv, capacity.md and pictures. Example: kirigami study capacity
+#[derive(Args)]
+pub struct CapacityStudy {
+    /// Scene (TOML) with the two loads, the second as it is at rho = 1
+    #[arg(value_name = "SCENE", default_value = "configs/scenes/capacity.toml")]
+    scene: PathBuf,
+    /// Greatest rho
+    #[arg(long, value_name = "RHO", default_value_t = 6.0)]
+    to: f64,
+    /// Folder for the table, the picture and the runs
+    #[arg(long, value_name = "FOLDER", default_value = "runs/study-capacity")]
+    out: PathBuf,
+}
+
+/// Of the sweep.
+const SPACING: f64 = 0.25;
+/// Halvings of it about the capacity.
+const HALVINGS: usize = 8;
+/// Where the kinematic search starts: the opening of the target (deg).
+const OPENING_DEG: f64 = 70.0;
+/// The paper's capacities.
+const PAPER: [f64; 4] = [1.66, 1.80, 1.29, 2.95];
+
+/// A way to find a pattern.
+struct Strategy {
+    name: &'static str,
+    /// What is searched; none leaves the sheet uniform.
+    search: Option<SceneConfig>,
+}
+
+/// A deployment under rho.
+struct Point {
+    rho: f64,
+    /// Mean and least opening (deg).
+    opening_deg: [f64; 2],
+    /// Root mean square distance of the outline to the target over the target's width (%).
+    boundary: f64,
+    degeneration: Option<Degeneration>,
+    last_jump: Option<f64>,
+}
+
+/// What a strategy's pattern carries.
+struct Capacity {
+    name: &'static str,
+    points: Vec<Point>,
+    /// The greatest rho that is carried and the deployment just above it; none if all are.
+    limit: Option<(f64, Point)>,
+}
+
+impl CapacityStudy {
+    pub fn run(&self) -> Result<()> {
+        // The patterns are compared at rho = 1.
+        ensure!(
+            (1.0..=1e3).contains(&self.to),
+            "--to must be between 1 and 1000"
+        );
+        let config: SceneConfig = hinge::config::read(&self.scene)?;
+        ensure!(
+            config.loads.len() == 2,
+            "{}: needs two loads",
+            self.scene.display()
+        );
+        let _held = run_folder::hold(&self.out)?;
+        let stop = interrupt::stop_flag()?;
+        let strategies = strategies(&config);
+        let searches = strategies
+            .iter()
+            .filter(|strategy| strategy.search.is_some())
+            .count();
+        let bar = Progress::new(searches * config.optimiser.steps, "design steps");
+        let mut done = 0;
+        let mut designs = Vec::new();
+        for (i, strategy) in strategies.iter().enumerate() {
+            let Some(search) = &strategy.search else {
+                designs.push(self.scene_of(&config)?.start());
+                continue;
+            };
+            let mut search = search.clone();
+            search.output = std::path::absolute(&self.out)?.join(format!("runs/{i}"));
+            let designed =
+                inverse_design(&self.scene_of(&search)?, stop, &mut |_: &StepRecord| {
+                    done += 1;
+                    bar.show(done, None, strategy.name);
+                })?;
+            ensure!(!stop.load(Ordering::Relaxed), "stopped; run again to go on");
+            designs.push(DesignVector {
+                opening: None,
+                ..designed.design
+            });
+        }
+        bar.finish();
+        let values: Vec<f64> = (0..)
+            .map(|i| SPACING * f64::from(i))
+            .take_while(|rho| *rho <= self.to)
+            .collect();
+        let bar = Progress::new(strategies.len() * values.len(), "deployments");
+        let mut capacities: Vec<Capacity> = Vec::new();
+        for (i, (strategy, design)) in std::iter::zip(strategies, designs).enumerate() {
+            let mut points = Vec::new();
+            for &rho in &values {
+                ensure!(!stop.load(Ordering::Relaxed), "stopped; run again to go on");
+                points.push(self.point(&config, &design, rho)?);
+                bar.show(values.len() * i + points.len(), None, strategy.name);
+            }
+            let limit = self.limit(&config, &design, &points)?;
+            if let Some((_, above)) = &limit {
+                let (scene, deployment) = self.deploy(&config, &design, above.rho)?;
+                let configuration = &deployment.final_step().configuration;
+                let svg = drawing::deployed(&scene, &deployment.sheet, configuration);
+                picture::save(&svg, &self.out.join(format!("above-{}", i + 1)), 1600)?;
+            }
+            capacities.push(Capacity {
+                name: strategy.name,
+                limit,
+                points,
+            });
+        }
+        bar.finish();
+        let curves: Vec<CapacityCurve> = capacities.iter().map(Capacity::curve).collect();
+        picture::save(
+            &charts::capacity(&curves)?,
+            &self.out.join("capacity"),
+            2000,
+        )?;
+        run_folder::write(&self.out, "capacity.csv", &csv(&capacities)?)?;
+        let page = page(&capacities, self.to)?;
+        run_folder::write(&self.out, "capacity.md", &page)?;
+        println!("{page}\nwritten to {}", self.out.display());
+        Ok(())
+    }
+
+    fn scene_of(&self, config: &SceneConfig) -> Result<Scene> {
+        Ok(Scene::new(config.clone(), &self.scene)?)
+    }
+
+    /// A design under rho, from the flat sheet.
+    fn deploy(
+        &self,
+        config: &SceneConfig,
+        design: &DesignVector,
+        rho: f64,
+    ) -> Result<(Scene, Deployment)> {
+        let mut config = shape_alone(config);
+        config.loads[1].force = config.loads[1].force.map(|force| rho * force);
+        config.loads[1].couple *= rho;
+        let scene = self.scene_of(&config)?;
+        let deployment = scene.problem()?.deploy(design)?;
+        Ok((scene, deployment))
+    }
+
+    fn point(&self, config: &SceneConfig, design: &DesignVector, rho: f64) -> Result<Point> {
+        let (scene, deployment) = self.deploy(config, design, rho)?;
+        let states = &deployment.final_step().deformations;
+        let openings = || states.iter().map(|state| state.theta.to_degrees());
+        Ok(Point {
+            rho,
+            opening_deg: [
+                openings().sum::<f64>() / states.len() as f64,
+                openings().fold(f64::INFINITY, f64::min),
+            ],
+            boundary: 100.0 * outline_error(&scene, &deployment) / scene.target.width(),
+            degeneration: Degeneration::of(&deployment),
+            last_jump: last_jump(&deployment),
+        })
+    }
+
+    /// Halves the interval of the sweep in which the deployment first degenerates.
+    fn limit(
+        &self,
+        config: &SceneConfig,
+        design: &DesignVector,
+        points: &[Point],
+    ) -> Result<Option<(f64, Point)>> {
+        let Some(first) = points.iter().position(|point| point.degeneration.is_some()) else {
+            return Ok(None);
+        };
+        let mut above = self.point(config, design, points[first].rho)?;
+        let mut carried = (above.rho - SPACING).max(0.0);
+        for _ in 0..HALVINGS {
+            let point = self.point(config, design, 0.5 * (carried + above.rho))?;
+            if point.degeneration.is_some() {
+                above = point;
+            } else {
+                carried = point.rho;
+            }
+        }
+        Ok(Some((carried, above)))
+    }
+}
+
+/// The four ways to design of section 3.2.
+fn strategies(config: &SceneConfig) -> [Strategy; 4] {
+    let mut kinematic = shape_alone(config);
+    kinematic.hinge = HingeModel::Pin;
+    kinematic.pin = Some(PinConfig {
+        opening_deg: OPENING_DEG,
+    });
+    kinematic.supports.clear();
+    kinematic.loads.clear();
+    let searches = [
+        None,
+        Some(kinematic),
+        Some(shape_alone(config)),
+        Some(config.clone()),
+    ];
+    let names = [
+        "uniform sheet",
+        "shape by kinematics alone",
+        "shape through equilibrium",
+        "with compression and shear",
+    ];
+    let mut searches = searches.into_iter();
+    names.map(|name| Strategy {
+        name,
+        search: searches.next().flatten(),
+    })
+}
+
+/// The scene without the terms on the hinge deformation.
+fn shape_alone(config: &SceneConfig) -> SceneConfig {
+    let mut config = config.clone();
+    config.objective = ObjectiveConfig {
+        compression: 0.0,
+        shear: 0.0,
+        balance: false,
+        ..config.objective
+    };
+    config
+}
+
+impl Capacity {
+    fn curve(&self) -> CapacityCurve<'_> {
+        CapacityCurve {
+            name: self.name,
+            limit: self.limit.as_ref().map(|(carried, _)| *carried),
+            openings: self
+                .points
+                .iter()
+                .map(|it| (it.rho, it.opening_deg[1]))
+                .collect(),
+            errors: self.points.iter().map(|it| (it.rho, it.boundary)).collect(),
+        }
+    }
+
+    /// The boundary error at rho = 1 (%).
+    fn boundary(&self) -> Option<f64> {
+        let point = self.points.iter().find(|point| point.rho == 1.0)?;
+        Some(point.boundary)
+    }
+}
+
+fn page(capacities: &[Capacity], to: f64) -> Result<String> {
+    let mut text = "# Load capacity\n\n\
+        The sheet of `configs/scenes/capacity.toml`: a pull of 247.7 N on the mid panel of the free edge, rho times as much \
+        outwards on the mid panel of the top border, every rho a deployment of its own. A sheet is deployed while every void is \
+        open at full load. `kirigami study capacity`.\n\n\
+        ![opening and boundary error against rho](capacity.png)\n\n\
+        | pattern | carries rho | paper | just above | last jump on the way there, load factor | boundary rms at rho = 1, % |\n\
+        |---|---|---|---|---|---|\n"
+        .to_owned();
+    for (capacity, paper) in capacities.iter().zip(PAPER) {
+        let [carries, above, jump] = match &capacity.limit {
+            None => [format!("over {to}"), "-".into(), "-".into()],
+            Some((carried, above)) => [
+                format!("{carried:.3}"),
+                above.degeneration.map_or("-".into(), |why| why.to_string()),
+                above
+                    .last_jump
+                    .map_or("none".into(), |jump| format!("{jump:.2}")),
+            ],
+        };
+        let boundary = capacity.boundary().context("the sweep has no rho = 1")?;
+        writeln!(
+            text,
+            "| {} | {carries} | {paper:.2} | {above} | {jump} | {boundary:.3} |",
+            capacity.name
+        )?;
+    }
+    if let [_, kinematic, shape, full] = capacities {
+        let gain = |over: &Capacity| -> String {
+            let carried = |it: &Capacity| it.limit.as_ref().map(|(carried, _)| *carried);
+            match (carried(full), carried(over)) {
+                (Some(most), Some(least)) => format!("{:.2} times", most / least),
+                (None, Some(least)) => format!("over {:.2} times", to / least),
+                _ => "unknown".into(),
+            }
+        };
+        let boundary = |it: &Capacity| it.boundary().unwrap_or(f64::NAN);
+        write!(
+            text,
+            "\nCompression and shear in the objective: {} the capacity of the shape term alone (the paper: 2.3), {} that of the \
+             geometric pattern (1.64). Matching the target through equilibrium: {:.2} times the boundary error of the \
+             geometric pattern (0.5).\n",
+            gain(shape),
+            gain(kinematic),
+            boundary(shape) / boundary(kinematic),
+        )?;
+    }
+    Ok(text)
+}
+
+/// One line a deployment of the sweep.
+fn csv(capacities: &[Capacity]) -> Result<String> {
+    let mut text =
+        "pattern,rho,mean_opening_deg,least_opening_deg,boundary_percent,last_jump,degeneration\n"
+            .to_owned();
+    for capacity in capacities {
+        for point in &capacity.points {
+            let [mean, least] = point.opening_deg;
+            writeln!(
+                text,
+                "{},{},{mean:.3},{least:.3},{:.4},{},{}",
+                capacity.name,
+                point.rho,
+                point.boundary,
+                point
+                    .last_jump
+                    .map_or(String::new(), |jump| format!("{jump:.3}")),
+                point
+                    .degeneration
+                    .map_or(String::new(), |why| why.to_string()),
+            )?;
+        }
+    }
+    Ok(text)
+}
