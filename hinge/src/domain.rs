@@ -119,7 +119,7 @@ mod tests {
             alpha: 1.5,
             ..narrow
         };
-        let state = HingeDeformation::from_eta(-0.125, 0.0, 0.48, 15.0);
+        let state = HingeDeformation::from_eta(-0.125, -0.1, 0.48, 15.0);
         assert!((domain.depth(&middle, &state) - 0.4).abs() < 1e-12);
         assert!(TrainingDomain::covering([]).is_none());
     }
