@@ -1,7 +1,7 @@
 //! Networks kept in the folder of a study: what is trained once is not trained again.
 
 use crate::train;
-use ::train::{Backend, Start, TrainingConfig};
+use ::train::{Backend, Start, TrainError, TrainingConfig};
 use anyhow::{Context, Result};
 use dataset::Database;
 use std::path::Path;
@@ -32,11 +32,13 @@ pub fn kept_fit(
         return Ok(kept);
     }
     let state = path.with_extension("state");
-    let start = match state.exists() {
-        true => Start::State(&state),
-        false => Start::Fresh,
+    let fit = |start| train::fit(database, config, Backend::default(), start, &state);
+    let trained = match state.exists().then(|| fit(Start::State(&state))) {
+        // The state of another training, or a damaged one, is worth nothing here.
+        Some(Err(error)) if error.is::<TrainError>() => fit(Start::Fresh)?,
+        Some(trained) => trained?,
+        None => fit(Start::Fresh)?,
     };
-    let trained = train::fit(database, config, Backend::default(), start, &state)?;
     trained.surrogate.save(&path)?;
     std::fs::remove_file(&state).ok();
     Ok(trained.surrogate)

@@ -1,8 +1,7 @@
 //! The routes that the hinges of a deployed sheet take, as windows to be solved.
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 use design::design_vector::DesignVector;
-use design::equilibrium::Status;
 use design::gradient::{Deployment, Model};
 use design::scene::Scene;
 use fe_driver::{DeformationPath, KeptSolve, StepControl};
@@ -28,11 +27,9 @@ pub fn hinge_routes(scene: &Scene, design: &DesignVector) -> Result<Vec<HingeRou
         matches!(problem.model, Model::Equilibrium(_)),
         "the scene has no hinge law that could say where its hinges go (hinge = \"pin\")"
     );
-    let Deployment { sheet, path, .. } = problem.deploy(design)?;
-    match path.last().map(|step| step.status) {
-        Some(Status::Diverged) | None => bail!("the design has no equilibrium at full load"),
-        Some(_) => {}
-    }
+    let deployment = problem.deploy(design)?;
+    deployment.at_full_load()?;
+    let Deployment { sheet, path, .. } = deployment;
     let designs = sheet.designs().into_iter().enumerate();
     let routes = designs.map(|(hinge, design)| HingeRoute {
         hinge,

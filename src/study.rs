@@ -17,8 +17,11 @@ mod surrogate;
 mod trust;
 mod window;
 
-use anyhow::Result;
+use crate::interrupt;
+use anyhow::{Result, bail};
 use clap::Subcommand;
+use design::inverse_design::{Designed, Ended, StepRecord, inverse_design};
+use design::scene::Scene;
 
 /// Measure what the choices of a stage cost and are worth
 #[derive(Subcommand)]
@@ -61,5 +64,16 @@ impl StudyCommand {
             Self::Surrogate(study) => study.run(),
             Self::Trust(study) => study.run(),
         }
+    }
+}
+
+/// The finished search of a scene; one that was stopped or is stuck is no result.
+fn designed(scene: &Scene, progress: &mut dyn FnMut(&StepRecord)) -> Result<Designed> {
+    let designed = inverse_design(scene, interrupt::stop_flag()?, progress)?;
+    let title = &scene.config.title;
+    match &designed.ended {
+        Ended::Completed | Ended::Settled => Ok(designed),
+        Ended::Stopped => bail!("stopped; run again to go on"),
+        Ended::Stuck { reason } => bail!("{title}: the search is stuck: {reason}"),
     }
 }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// Join what the studies say of speed against accuracy into one page
 ///
 /// Each study leaves a tradeoff.md in its folder: one row a choice, with its cost and its error.
-/// The folders are window, tiers, path, surrogate and sheet, each where a study was told to write
+/// The folders are chain, window, tiers, path, surrogate, trust and sheet, each where a study was told to write
 /// by --out, for example: kirigami study window --out docs/results/window
 #[derive(Args)]
 pub struct TradeoffCommand {
@@ -26,7 +26,15 @@ a table.
 ";
 
 /// The folders of the studies, in the order of the page.
-const STUDIES: [&str; 5] = ["window", "tiers", "path", "surrogate", "sheet"];
+const STUDIES: [&str; 7] = [
+    "chain",
+    "window",
+    "tiers",
+    "path",
+    "surrogate",
+    "trust",
+    "sheet",
+];
 
 impl TradeoffCommand {
     pub fn run(&self) -> Result<()> {

@@ -179,6 +179,7 @@ impl Database {
             gates, split_plan, ..
         } = &self.manifest;
         let mut within = Self::assemble(rows, gates, split_plan, Mixing::Allowed)?;
+        within.manifest.rejected = self.manifest.rejected.clone();
         within.manifest.split_hash = split.hash();
         within.manifest.split = split;
         Ok(within)

@@ -3,7 +3,8 @@
 //! Every hinge is an interface of two panels. In the frame of (a, s, theta) its force has a normal part
 //! f_n = dW/da, positive in tension, and a tangential part f_t = dW/ds. What is transmitted is the sum of
 //! |f_n| and |f_t| over the interfaces. With the springs of (11) the energy of an interface splits into
-//! f_n a / 2, f_s s / 2 and M theta / 2, rotation being the last.
+//! f_n a / 2, f_s s / 2 and M theta / 2, rotation being the last; of other laws these products are no
+//! energies, and only the shares of the force mean something.
 
 use crate::gradient::{Deployment, DesignError, DesignProblem, Model};
 use crate::hinge_law::Order;
@@ -136,7 +137,7 @@ impl ForceTransmission {
     }
 
     /// Spearman's rank correlation of the force of an interface and the share of its energy that is
-    /// not stored in rotation.
+    /// not stored in rotation; zero if one of the two is the same everywhere.
     pub fn rank_correlation(&self) -> f64 {
         let force = self.interfaces.iter().map(Interface::force).collect();
         let share = |it: &Interface| it.translational / (it.translational + it.rotational);
@@ -147,7 +148,7 @@ impl ForceTransmission {
     }
 
     /// How many times more likely than chance a neighbour of a strongly loaded panel is strongly loaded;
-    /// a panel is as loaded as its interfaces together.
+    /// a panel is as loaded as its interfaces together. One where there are too few panels to tell.
     pub fn clustering(&self) -> f64 {
         let mut loads = vec![0.0; self.centroids.len()];
         for interface in &self.interfaces {
@@ -167,7 +168,8 @@ impl ForceTransmission {
             }
         }
         let chance = (strong.len() as f64 - 1.0) / (loads.len() as f64 - 1.0);
-        both / beside / chance
+        let ratio = both / beside / chance;
+        if ratio.is_finite() { ratio } else { 1.0 }
     }
 }
 
@@ -190,7 +192,7 @@ fn ranks(values: Vec<f64>) -> Vec<f64> {
     ranks
 }
 
-/// Pearson's correlation.
+/// Pearson's correlation; zero if one of the two is constant.
 fn correlation(x: &[f64], y: &[f64]) -> f64 {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (mean_x, mean_y) = (mean(x), mean(y));
@@ -199,7 +201,12 @@ fn correlation(x: &[f64], y: &[f64]) -> f64 {
         let (dx, dy) = (x - mean_x, y - mean_y);
         (xy, xx, yy) = (xy + dx * dy, xx + dx * dx, yy + dy * dy);
     }
-    xy / (xx * yy).sqrt()
+    let variances = xx * yy;
+    if variances > 0.0 {
+        xy / variances.sqrt()
+    } else {
+        0.0
+    }
 }
 
 #[cfg(test)]

@@ -197,7 +197,12 @@ impl<'a> FreePanels<'a> {
             add_weighted(&mut by_corners, &gradient, OVERLAP_WEIGHT);
         }
         if self.enforcement == Enforcement::Tiling {
-            let (value, gradient) = void(&corners, &self.samples, self.softness());
+            let outline = self
+                .sheet
+                .outline
+                .corners
+                .map(|corner| corner.map(|x| x / self.side));
+            let (value, gradient) = void(&corners, &outline, &self.samples, self.softness());
             loss += VOID_WEIGHT * value;
             add_weighted(&mut by_corners, &gradient, VOID_WEIGHT);
         }

@@ -120,6 +120,30 @@ impl Deployment {
         self.path.last().expect("a path has at least one step")
     }
 
+    /// The state at full load, or the error that it was not reached.
+    pub fn at_full_load(&self) -> Result<&LoadStep, DesignError> {
+        let last = self.final_step();
+        match last.status {
+            Status::Diverged => Err(DesignError::NoEquilibrium {
+                reached: last.load_factor,
+                residual: last.residual,
+            }),
+            _ => Ok(last),
+        }
+    }
+
+    /// Greatest D of each hinge along the path; empty where the hinge law predicts none.
+    pub fn greatest_damage(&self) -> Vec<f64> {
+        let mut greatest: Vec<f64> = Vec::new();
+        for step in &self.path {
+            greatest.resize(step.damage.len(), 0.0);
+            for (greatest, damage) in greatest.iter_mut().zip(&step.damage) {
+                *greatest = greatest.max(damage.d);
+            }
+        }
+        greatest
+    }
+
     /// Share of the hinge states of the path that the hinge law was made for.
     pub fn share_inside(&self) -> f64 {
         let inside = || self.path.iter().flat_map(|step| &step.inside);
@@ -291,13 +315,7 @@ impl DesignProblem {
         if self.objective.target.is_empty() {
             return Err(DesignError::EmptyTarget);
         }
-        let (sheet, last) = (&deployment.sheet, deployment.final_step());
-        if last.status == Status::Diverged {
-            return Err(DesignError::NoEquilibrium {
-                reached: last.load_factor,
-                residual: last.residual,
-            });
-        }
+        let (sheet, last) = (&deployment.sheet, deployment.at_full_load()?);
         let points: Vec<[f64; 2]> = outline
             .iter()
             .map(|&(panel, corner)| {

@@ -60,7 +60,8 @@ impl Memory {
         }
         let size = match self.pairs.front() {
             Some(last) => last.product / dot(&last.change, &last.change),
-            None => first_length / dot(gradient, gradient).sqrt(),
+            // Without a gradient there is no direction.
+            None => first_length / dot(gradient, gradient).sqrt().max(f64::MIN_POSITIVE),
         };
         direction.iter_mut().for_each(|d| *d *= size);
         for (pair, weight) in std::iter::zip(&self.pairs, weights).rev() {

@@ -43,25 +43,29 @@ pub(crate) fn overlap(panels: &Corners) -> (f64, Vec<[[f64; 2]; 4]>) {
 /// The mean over `samples` of the square of what the panels leave uncovered there, and its gradient.
 ///
 /// A panel covers a point by the product over its edges of sigma(depth/softness), so that panels
-/// that share an edge cover it together exactly once.
+/// that share an edge cover it together exactly once. The whole sheet, of this outline, covers a
+/// point near its border as softly.
 pub(crate) fn void(
     panels: &Corners,
+    outline: &[[f64; 2]; 4],
     samples: &[[f64; 2]],
     softness: f64,
 ) -> (f64, Vec<[[f64; 2]; 4]>) {
+    let within = |panel: &[[f64; 2]; 4], sample: [f64; 2]| -> [f64; 4] {
+        std::array::from_fn(|edge| 1.0 / (1.0 + (outside(panel, edge, sample) / softness).exp()))
+    };
     let share = 1.0 / samples.len() as f64;
     let (mut value, mut gradient) = (0.0, vec![[[0.0; 2]; 4]; panels.len()]);
     for &sample in samples {
         let covers: Vec<_> = (panels.iter().enumerate())
             .filter_map(|(k, panel)| {
-                let edges: [f64; 4] = std::array::from_fn(|edge| {
-                    1.0 / (1.0 + (outside(panel, edge, sample) / softness).exp())
-                });
+                let edges = within(panel, sample);
                 let cover: f64 = edges.iter().product();
                 (cover > 1e-12).then_some((k, edges, cover))
             })
             .collect();
-        let lack = 1.0 - covers.iter().map(|(_, _, cover)| cover).sum::<f64>();
+        let whole: f64 = within(outline, sample).iter().product();
+        let lack = whole - covers.iter().map(|(_, _, cover)| cover).sum::<f64>();
         if lack <= 0.0 {
             continue;
         }
@@ -118,7 +122,10 @@ mod tests {
     #[test]
     fn gradients_agree_with_differences() {
         let x = PANELS.as_flattened().as_flattened();
-        for penalty in [overlap, |panels: &Corners| void(panels, &SAMPLES, 0.05)] {
+        let outline = [[0.0, 0.0], [2.5, 0.0], [2.5, 1.5], [0.0, 1.5]];
+        let void = |panels: &Corners| void(panels, &outline, &SAMPLES, 0.05);
+        let penalties: [&dyn Fn(&Corners) -> _; 2] = [&overlap, &void];
+        for penalty in penalties {
             let (value, gradient) = penalty(&PANELS);
             assert!(value > 0.0);
             for (i, found) in gradient.as_flattened().as_flattened().iter().enumerate() {
@@ -132,11 +139,20 @@ mod tests {
     #[test]
     fn a_tiling_neither_overlaps_nor_leaves_a_void() {
         let square = |x: f64| [[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]];
-        let samples = [[0.5, 0.5], [1.0, 0.4], [1.02, 0.6], [1.5, 0.5]];
+        // The last are as near to the border as half a softness.
+        let samples = [
+            [0.5, 0.5],
+            [1.0, 0.4],
+            [1.02, 0.6],
+            [1.995, 0.5],
+            [0.5, 0.005],
+        ];
+        let outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]];
+        let void = |panels: &Corners| void(panels, &outline, &samples, 0.01).0;
         let tiled = [square(0.0), square(1.0)];
         assert_eq!(overlap(&tiled).0, 0.0);
-        assert!(void(&tiled, &samples, 0.01).0 < 1e-20);
+        assert!(void(&tiled) < 1e-20);
         assert!((overlap(&[square(0.0), square(0.9)]).0 - 0.01).abs() < 1e-12);
-        assert!(void(&[square(0.0), square(1.2)], &samples, 0.01).0 > 0.2);
+        assert!(void(&[square(0.0), square(1.2)]) > 0.2);
     }
 }

@@ -78,16 +78,9 @@ impl Report {
         cuts: &Result<CutLines, FabricationError>,
     ) -> Self {
         let deployment = &designed.best.deployment;
-        let damage = greatest_damage(scene, deployment);
+        let damage = deployment.greatest_damage();
         let hinges: Vec<HingeRow> = (0..deployment.sheet.hinges.len())
-            .map(|h| {
-                HingeRow::new(
-                    scene,
-                    deployment,
-                    h,
-                    damage.as_ref().map(|damage| damage[h]),
-                )
-            })
+            .map(|h| HingeRow::new(scene, deployment, h, damage.get(h).copied()))
             .collect();
         Self {
             title: scene.config.title.clone(),
@@ -150,22 +143,6 @@ fn shortest_edge(sheet: &Sheet, hinge: &Hinge) -> f64 {
         .flat_map(|&panel| edges(&sheet.panels[panel].corners))
         .map(|(p, q)| f64::hypot(q[0] - p[0], q[1] - p[1]))
         .fold(f64::INFINITY, f64::min)
-}
-
-/// The greatest damage of each hinge along the path, if the hinge law predicts any.
-fn greatest_damage(scene: &Scene, deployment: &Deployment) -> Option<Vec<f64>> {
-    let surrogate = scene.surrogate()?;
-    let designs = deployment.sheet.designs();
-    let mut greatest = vec![0.0; designs.len()];
-    for step in &deployment.path {
-        for (greatest, damage) in greatest
-            .iter_mut()
-            .zip(surrogate.damage(&designs, &step.deformations))
-        {
-            *greatest = f64::max(*greatest, damage.d);
-        }
-    }
-    Some(greatest)
 }
 
 impl fmt::Display for Report {

@@ -1,7 +1,7 @@
 //! How the next design is proposed: by Adam, as Algorithm 1, or by L-BFGS with backtracking.
 //!
-//! L-BFGS needs a fraction of Adam's steps where the loss is smooth, that is where it is measured to
-//! the target's curve; on the kinks of a distance to samples it settles early.
+//! L-BFGS needs a fraction of Adam's evaluations through an equilibrium; on pins it settles a little
+//! above Adam's loss.
 
 use crate::adam::Adam;
 use crate::lbfgs_memory::Memory;

@@ -118,11 +118,13 @@ impl Tessellation {
     }
 }
 
-/// Length that intervals, sorted by their starts, share with those before them.
+/// Length that two or more intervals cover, which are sorted by their starts.
 fn twice(sorted: &[[f64; 2]]) -> f64 {
-    let (mut reached, mut twice) = (f64::NEG_INFINITY, 0.0);
+    let (mut reached, mut reached_twice, mut twice) = (f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0);
     for [from, to] in sorted {
-        twice += (reached.min(*to) - from).max(0.0);
+        let shared = reached.min(*to);
+        twice += (shared - from.max(reached_twice)).max(0.0);
+        reached_twice = f64::max(reached_twice, shared);
         reached = reached.max(*to);
     }
     twice
@@ -144,6 +146,13 @@ fn once(sorted: &[[f64; 2]], within: &[[f64; 2]]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_three_cover_counts_once() {
+        assert_eq!(twice(&[[0.0, 1.0], [0.0, 1.0], [0.0, 1.0]]), 1.0);
+        assert_eq!(twice(&[[0.0, 2.0], [0.5, 1.0], [0.8, 3.0]]), 1.5);
+        assert_eq!(twice(&[[0.0, 1.0], [1.0, 2.0]]), 0.0);
+    }
 
     #[test]
     fn shifted_panels_gape_overlap_and_leave_a_void() {

@@ -39,7 +39,8 @@ fn calibration_chart(area: &Area, panel: &Calibration, range: Range<f64>) -> Dra
     let ends = [range.start, range.end].map(|end| (end, end));
     chart.draw_series(LineSeries::new(ends, GUIDE))?;
     let points = panel.points.iter().map(|point| point.map(|x| 100.0 * x));
-    let points: Vec<(f64, f64)> = points.map(|[x, y]| (x, y)).collect();
+    let points = points.map(|[x, y]| (x, y));
+    let points: Vec<(f64, f64)> = points.filter(|(x, y)| *x > 0.0 && *y > 0.0).collect();
     chart.draw_series(LineSeries::new(points.iter().copied(), POINT))?;
     chart.draw_series(points.iter().map(|&p| Circle::new(p, 4, POINT.filled())))?;
     Ok(())

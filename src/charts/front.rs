@@ -25,6 +25,7 @@ fn front_chart(area: &Area, panel: &FrontPanel) -> DrawResult {
     let points: Vec<(&str, (f64, f64))> = panel
         .points
         .iter()
+        .filter(|(_, cost, error)| cost.is_finite() && error.is_finite())
         .map(|(name, cost, error)| (name.as_str(), (*cost, error.max(LEAST))))
         .collect();
     let across = decades(points.iter().map(|(_, (cost, _))| *cost));

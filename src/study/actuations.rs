@@ -3,12 +3,13 @@
 mod page;
 
 use crate::progress::Progress;
-use crate::{interrupt, picture, run_folder};
-use anyhow::{Context, Result, ensure};
+use crate::study::designed;
+use crate::{picture, run_folder};
+use anyhow::{Context, Result};
 use clap::Args;
 use design::drawing::{ActuationRow, actuations};
 use design::force_transmission::ForceTransmission;
-use design::inverse_design::{Designed, StepRecord, inverse_design};
+use design::inverse_design::Designed;
 use design::objective::Objective;
 use design::outline_error::outline_error;
 use design::scene::{Scene, SceneConfig};
@@ -16,7 +17,6 @@ use design::tension_routes::{TensionRoute, tension_routes};
 use design::threshold::least_passing;
 use design::void_families::{VoidFamilies, disjoint_voids};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 
 /// One sheet opened onto one rectangle by five actuations: where the forces go
 ///
@@ -144,8 +144,7 @@ impl Search {
         }
         config.output = self.out.join(format!("runs/{label}-{factor:.4}"));
         let scene = Scene::new(config, path)?;
-        let stop = interrupt::stop_flag()?;
-        let designed = inverse_design(&scene, stop, &mut |step: &StepRecord| {
+        let designed = designed(&scene, &mut |step| {
             self.done += 1;
             let message = format!(
                 "case {label}, load x {factor:.3}: outline {:.1} mm",
@@ -153,7 +152,6 @@ impl Search {
             );
             self.bar.show(self.done, None, &message);
         })?;
-        ensure!(!stop.load(Ordering::Relaxed), "stopped; run again to go on");
         Ok((scene, designed))
     }
 }

@@ -1,12 +1,13 @@
 //! `kirigami study approaches`: what holds a sheet together while its cuts are sought; section 3.1.
 
-use crate::{interrupt, picture, run_folder};
-use anyhow::{Context, Result, bail};
+use crate::study::designed;
+use crate::{picture, run_folder};
+use anyhow::{Context, Result};
 use clap::Args;
 use design::chamfer::Precision;
 use design::drawing::{Column, side_by_side};
 use design::free_panels::{Enforcement, FreePanels};
-use design::inverse_design::{Ended, forget, inverse_design};
+use design::inverse_design::forget;
 use design::scene::{Scene, SceneConfig};
 use design::search::SearchMethod;
 use design::tessellation::{Defects, Tessellation};
@@ -17,7 +18,7 @@ use std::time::Instant;
 /// Free panel corners, with what can be done about their validity, against the charts
 ///
 /// Four approaches to one target from one start with the same steps, each at the better of two
-/// learning rates; then the charts alone to convergence. Writes approaches.csv, approaches.md and a
+/// learning rates; then the charts alone until L-BFGS settles. Writes approaches.csv, approaches.md and a
 /// picture. Example: kirigami study approaches configs/scenes/pin-7x7.toml
 #[derive(Args)]
 pub struct ApproachStudy {
@@ -99,7 +100,7 @@ impl ApproachStudy {
             config.objective.precision = Precision::Curve;
             config.optimiser.steps = CONVERGED_STEPS;
             config.optimiser.method = SearchMethod::Lbfgs;
-            let name = format!("charts to convergence, coverage {coverage}");
+            let name = format!("charts until L-BFGS settles, coverage {coverage}");
             outcomes.push(self.chart(config, &name, "")?);
         }
         let page = page(&outcomes, &drawn, self.steps, radius)?;
@@ -150,12 +151,7 @@ impl ApproachStudy {
         config.output = std::path::absolute(&self.out)?.join("runs").join(folder);
         let scene = Scene::new(config, &self.scene)?;
         forget(&scene)?;
-        let designed = inverse_design(&scene, interrupt::stop_flag()?, &mut |_| {})?;
-        match designed.ended {
-            Ended::Completed | Ended::Settled => {}
-            Ended::Stopped => bail!("stopped"),
-            Ended::Stuck { reason } => bail!("the search is stuck: {reason}"),
-        }
+        let designed = designed(&scene, &mut |_| {})?;
         let tessellation = Tessellation::of(&scene, &designed.best.deployment);
         let pattern = &designed.design.pattern;
         let opening = designed.design.opening.unwrap_or_default();
@@ -213,7 +209,7 @@ fn page(outcomes: &[Outcome], drawn: &[usize], steps: usize, radius: f64) -> Res
     let mut text = format!(
         "# Validity by construction\n\n\
          One target, one start, {steps} steps of Adam, each approach at two learning rates, the one of the lesser loss in \
-         bold and in the picture; below them the charts to convergence, by L-BFGS and with the distance measured to the \
+         bold and in the picture; below them the charts until L-BFGS settles, with the distance measured to the \
          target's curve. Boundary: root mean square \
          distance of the free outline corners to the circle, in % of its radius. Gaps in % of the sheet's side, flat and \
          deployed; overlaps (flat and deployed) and voids in % of its area. `kirigami study approaches`.\n\n\

@@ -2,6 +2,7 @@
 
 use crate::charts::{self, CapacityCurve};
 use crate::progress::Progress;
+use crate::study::designed;
 use crate::{interrupt, picture, run_folder};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -9,7 +10,6 @@ use design::degeneration::{Degeneration, last_jump};
 use design::design_vector::DesignVector;
 use design::drawing;
 use design::gradient::Deployment;
-use design::inverse_design::{StepRecord, inverse_design};
 use design::outline_error::outline_error;
 use design::scene::{HingeModel, ObjectiveConfig, PinConfig, Scene, SceneConfig};
 use std::fmt::Write;
@@ -99,12 +99,10 @@ impl CapacityStudy {
             };
             let mut search = search.clone();
             search.output = std::path::absolute(&self.out)?.join(format!("runs/{i}"));
-            let designed =
-                inverse_design(&self.scene_of(&search)?, stop, &mut |_: &StepRecord| {
-                    done += 1;
-                    bar.show(done, None, strategy.name);
-                })?;
-            ensure!(!stop.load(Ordering::Relaxed), "stopped; run again to go on");
+            let designed = designed(&self.scene_of(&search)?, &mut |_| {
+                done += 1;
+                bar.show(done, None, strategy.name);
+            })?;
             designs.push(DesignVector {
                 opening: None,
                 ..designed.design

@@ -7,6 +7,7 @@
 
 mod page;
 
+use crate::study::designed;
 use crate::{interrupt, run_folder};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -14,12 +15,13 @@ use dataset::Database;
 use design::design_vector::DesignVector;
 use design::gradient::{DesignProblem, Model};
 use design::hinge_law::Order;
-use design::inverse_design::inverse_design;
 use design::kinematics::deployed_corners;
 use design::outline_error::outline_error;
 use design::scene::{CondensedConfig, HingeModel, Scene, SceneConfig, SurrogateFile};
 use design::sheet::HingePoint;
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 use surrogate::Surrogate;
 
@@ -108,31 +110,40 @@ impl ChainStudy {
         let problem = judge.problem()?;
         let sheet = problem.outline.area().sqrt();
         let truth = Deployed::of(&judge, &problem, &reference)?;
-        let mut rows = Vec::new();
+        let (mut rows, mut failures) = (Vec::new(), String::new());
+        let stop = interrupt::stop_flag()?;
         for (kind, choice, config) in self.choices(&base)? {
             eprintln!("{kind}: {choice}");
             let scene = self.scene_of(config, &format!("{kind}-{choice}"))?;
-            let design = self.design(&scene, &choice)?;
-            let chosen = scene.problem()?;
-            let began = Instant::now();
-            chosen.evaluate(&reference)?;
-            let step_s = began.elapsed().as_secs_f64();
-            let predicted = Deployed::of(&scene, &chosen, &reference)?;
-            let own = Deployed::of(&scene, &chosen, &design)?;
-            let made = Deployed::of(&judge, &problem, &design)?;
-            let network = scene.surrogate();
-            rows.push(Row {
-                kind,
-                choice,
-                windows_s: network.and_then(|it| windows_s(it, &databases)),
-                training_s: network.and_then(|it| it.card().training_s),
-                step_s,
-                prediction: predicted.difference(&truth, sheet),
-                outline: [own.outline, made.outline],
-                damage: made.damage.iter().copied().fold(0.0, f64::max),
-            });
+            let judged = || -> Result<Row> {
+                let design = self.design(&scene, &choice)?;
+                let chosen = scene.problem()?;
+                let began = Instant::now();
+                chosen.evaluate(&reference)?;
+                let step_s = began.elapsed().as_secs_f64();
+                let predicted = Deployed::of(&scene, &chosen, &reference)?;
+                let own = Deployed::of(&scene, &chosen, &design)?;
+                let made = Deployed::of(&judge, &problem, &design)?;
+                let network = scene.surrogate();
+                Ok(Row {
+                    kind,
+                    choice: choice.clone(),
+                    windows_s: network.and_then(|it| windows_s(it, &databases)),
+                    training_s: network.and_then(|it| it.card().training_s),
+                    step_s,
+                    prediction: predicted.difference(&truth, sheet),
+                    outline: [own.outline, made.outline],
+                    damage: made.damage.iter().copied().fold(0.0, f64::max),
+                })
+            };
+            match judged() {
+                Ok(row) => rows.push(row),
+                Err(error) if stop.load(Ordering::Relaxed) => return Err(error),
+                // That a choice leads nowhere is a result.
+                Err(error) => writeln!(failures, "* {kind}, {choice}: {error:#}")?,
+            }
         }
-        page::write(&self.out, &truth, &rows)
+        page::write(&self.out, &truth, &rows, &failures)
     }
 
     /// The scene with the finest of everything.
@@ -151,14 +162,19 @@ impl ChainStudy {
     }
 
     fn design(&self, scene: &Scene, name: &str) -> Result<DesignVector> {
-        let designed = inverse_design(scene, interrupt::stop_flag()?, &mut |_| ());
+        let designed = designed(scene, &mut |_| ());
         Ok(designed.with_context(|| format!("with {name}"))?.design)
     }
 
     fn choices(&self, base: &SceneConfig) -> Result<Vec<(&'static str, String, SceneConfig)>> {
-        let mut choices = Vec::new();
+        let mut choices: Vec<(&'static str, String, SceneConfig)> = Vec::new();
         for path in &self.networks {
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            let known = choices.iter().any(|(_, choice, _)| *choice == name);
+            ensure!(
+                !known,
+                "two networks are called {name}: rename one of the files"
+            );
             choices.push(("network", name.into(), with_weights(base, path)?));
         }
         let mut add = |kind, choice: String, change: &dyn Fn(&mut SceneConfig)| {
@@ -226,7 +242,7 @@ fn windows_s(network: &Surrogate, databases: &[Database]) -> Option<f64> {
 impl Deployed {
     fn of(scene: &Scene, problem: &DesignProblem, design: &DesignVector) -> Result<Self> {
         let deployment = problem.deploy(design)?;
-        let last = deployment.final_step();
+        let last = deployment.at_full_load()?;
         let designs = deployment.sheet.designs();
         let forces = match &problem.model {
             Model::Equilibrium(mechanics) => mechanics
@@ -235,13 +251,6 @@ impl Deployed {
                 .energies(&last.deformations, Order::Forces),
             _ => Vec::new(),
         };
-        let mut damage: Vec<f64> = Vec::new();
-        for step in &deployment.path {
-            damage.resize(step.damage.len(), 0.0);
-            for (greatest, found) in damage.iter_mut().zip(&step.damage) {
-                *greatest = greatest.max(found.d);
-            }
-        }
         Ok(Self {
             corners: deployed_corners(&deployment.sheet, &last.configuration).concat(),
             rotations: last.deformations.iter().map(|eps| eps.theta).collect(),
@@ -249,7 +258,7 @@ impl Deployed {
                 .iter()
                 .flat_map(|energy| [energy.forces[0], energy.forces[1]])
                 .collect(),
-            damage,
+            damage: deployment.greatest_damage(),
             outline: outline_error(scene, &deployment),
         })
     }

@@ -220,7 +220,7 @@ mod tests {
             let ray = |k: usize| {
                 let x = k as f64;
                 let state = |share: usize| {
-                    let sign = if share % 3 == 0 { 1.0 } else { -1.0 };
+                    let sign = if share.is_multiple_of(3) { 1.0 } else { -1.0 };
                     [1.0 + 0.1 * x - 0.03 * x * x + noise * sign * signs[k]; 6]
                 };
                 (0..SHARES).map(state).collect()

@@ -1,16 +1,16 @@
 //! `kirigami study optimisers`: Adam against L-BFGS at equal cost.
 
 use crate::progress::Progress;
-use crate::{interrupt, run_folder};
+use crate::run_folder;
+use crate::study::designed;
 use anyhow::{Result, ensure};
 use clap::Args;
 use design::chamfer::Precision;
-use design::inverse_design::{Ended, StepRecord, forget, inverse_design};
+use design::inverse_design::{Ended, StepRecord, forget};
 use design::scene::{Scene, SceneConfig};
 use design::search::SearchMethod;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 
 /// Adam and L-BFGS on scenes, at an equal number of evaluations of the loss and its gradient
 ///
@@ -78,9 +78,7 @@ impl OptimiserStudy {
             .join(format!("{name}-{precision:?}-{method:?}").to_lowercase());
         let scene = Scene::new(config, path)?;
         forget(&scene)?;
-        let stop = interrupt::stop_flag()?;
-        let designed = inverse_design(&scene, stop, &mut |_| {})?;
-        ensure!(!stop.load(Ordering::Relaxed), "stopped");
+        let designed = designed(&scene, &mut |_| {})?;
         let within = |budget| afforded(&designed.history, budget);
         let best = |budget: usize| {
             let steps = within(budget).iter();

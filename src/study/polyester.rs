@@ -5,12 +5,12 @@ mod page;
 
 use crate::kept_solves::{Outcome, SolveArgs};
 use crate::routes::{HingeRoute, hinge_routes};
-use crate::{interrupt, run_folder};
+use crate::run_folder;
+use crate::study::designed;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::force_transmission::{ForceTransmission, TransmissionShares};
 use design::gradient::Deployment;
-use design::inverse_design::inverse_design;
 use design::outline_error::outline_error;
 use design::scene::{HingeModel, Scene, SceneConfig, SurrogateFile};
 use design::sheet::{HingePoint, Panel};
@@ -133,7 +133,7 @@ impl PolyesterStudy {
             scale_loads(&mut config, factor);
             let scene = Scene::new(config, &self.scene)?;
             let deployment = scene.problem()?.deploy(&scene.start())?;
-            let last = deployment.final_step();
+            let last = deployment.at_full_load()?;
             let openings = last.deformations.iter().map(|eps| eps.theta);
             Ok(openings.fold(0.0, f64::max) >= limit)
         };
@@ -156,7 +156,7 @@ impl PolyesterStudy {
         config.output = std::path::absolute(self.out.join("designs").join(folder))?;
         let folder = config.output.clone();
         let scene = Scene::new(config, &self.scene)?;
-        let designed = inverse_design(&scene, interrupt::stop_flag()?, &mut |_| ())?;
+        let designed = designed(&scene, &mut |_| ())?;
         design::results::write_results(&scene, &designed)?;
         let problem = scene.problem()?;
         let (start, best) = (&designed.start.deployment, &designed.best.deployment);
@@ -177,7 +177,7 @@ impl PolyesterStudy {
             shares: transmission.shares(),
             forces: interfaces.map(|it| [it.normal, it.force()]).collect(),
             share_inside: best.share_inside(),
-            damage: greatest_damage(best).iter().map(|d| d / scale).collect(),
+            damage: best.greatest_damage().iter().map(|d| d / scale).collect(),
             monitored: 0,
             learned: [0.0; 4],
             replayed: None,
@@ -212,16 +212,6 @@ fn scale_loads(config: &mut SceneConfig, factor: f64) {
 fn areas(deployment: &Deployment) -> Vec<f64> {
     let panels = deployment.sheet.panels.iter();
     panels.map(Panel::area).collect()
-}
-
-fn greatest_damage(deployment: &Deployment) -> Vec<f64> {
-    let mut greatest = vec![0.0_f64; deployment.sheet.hinges.len()];
-    for step in &deployment.path {
-        for (greatest, damage) in greatest.iter_mut().zip(&step.damage) {
-            *greatest = greatest.max(damage.d);
-        }
-    }
-    greatest
 }
 
 fn worst(damage: &[f64]) -> usize {

@@ -1,12 +1,12 @@
 //! `kirigami study silhouettes`: one sheet onto several drawn targets; Fig. 2.
 
 use crate::progress::Progress;
-use crate::{interrupt, picture, run_folder};
+use crate::study::designed;
+use crate::{picture, run_folder};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use design::drawing::{Column, side_by_side};
 use design::intersection_over_union::intersection_over_union;
-use design::inverse_design::{Ended, inverse_design};
 use design::objective::OutlinePoints;
 use design::outline_error::deployed_outline;
 use design::scene::{Scene, SceneConfig};
@@ -101,17 +101,12 @@ impl SilhouetteStudy {
         config.output = std::path::absolute(&self.out)?.join("runs").join(folder);
         let scene = Scene::new(config, &self.scene)?;
         let began = std::time::Instant::now();
-        let designed = inverse_design(&scene, interrupt::stop_flag()?, &mut |step| {
+        let designed = designed(&scene, &mut |step| {
             show(
                 step.step,
                 &format!("{name}, outline {:.1} mm", step.outline_error),
             );
         })?;
-        match designed.ended {
-            Ended::Completed | Ended::Settled => {}
-            Ended::Stopped => bail!("stopped; run again to go on"),
-            Ended::Stuck { reason } => bail!("{name}: the search is stuck: {reason}"),
-        }
         let seconds = began.elapsed().as_secs_f64();
         let (deployment, target) = (&designed.best.deployment, scene.target.points());
         let outline = |points| deployed_outline(&scene, deployment, points);

@@ -176,23 +176,9 @@ fn kernel_us(surrogate: &Surrogate) -> Result<f64> {
     Ok(1e6 * fastest.as_secs_f64() / HINGES as f64)
 }
 
-/// Relative root mean square errors (%): W, F_a, F_s, M_theta, D, D_peak.
-fn percents(errors: &TestErrors) -> [f64; 6] {
-    let TestErrors {
-        energy,
-        f_a,
-        f_s,
-        m_theta,
-        damage,
-        damage_peak,
-        ..
-    } = errors;
-    [energy, f_a, f_s, m_theta, damage, damage_peak].map(|error| 100.0 * error.relative_rmse)
-}
-
 /// Root mean square of the three forces' errors (%).
 fn forces(errors: &TestErrors) -> f64 {
-    let [_, f_a, f_s, m_theta, ..] = percents(errors);
+    let [_, f_a, f_s, m_theta, ..] = errors.percents();
     ((f_a * f_a + f_s * f_s + m_theta * m_theta) / 3.0).sqrt()
 }
 
@@ -207,7 +193,7 @@ fn csv(fits: &[Fit]) -> Result<String> {
         kernel_us,
     } in fits
     {
-        let [w, f_a, f_s, m_theta, d, d_peak] = percents(errors);
+        let [w, f_a, f_s, m_theta, d, d_peak] = errors.percents();
         let median = 100.0 * errors.energy.median;
         writeln!(
             text,
@@ -237,7 +223,7 @@ fn markdown(fits: &[Fit]) -> Result<String> {
         kernel_us,
     } in fits
     {
-        let [w, f_a, f_s, m_theta, d, d_peak] = percents(errors);
+        let [w, f_a, f_s, m_theta, d, d_peak] = errors.percents();
         writeln!(
             text,
             "| {} | {} | {} | {} | {w:.2} % | {:.2} % | {f_a:.1} % | {f_s:.1} % | {m_theta:.1} % | \
@@ -278,7 +264,7 @@ fn tradeoff(fits: &[Fit]) -> Result<String> {
         kernel_us,
     } in fits
     {
-        let [w, .., d, _] = percents(errors);
+        let [w, .., d, _] = errors.percents();
         writeln!(
             text,
             "| {} {} | {} | {} | {training_s:.0} s | {kernel_us:.1} | {w:.2} % | {:.1} % | \
@@ -317,7 +303,7 @@ fn curves(fits: &[Fit]) -> Vec<Curve> {
         }
         if let Some(curve) = curves.last_mut() {
             let rays = case.rays as f64;
-            curve.energy.push((rays, percents(errors)[0]));
+            curve.energy.push((rays, errors.percents()[0]));
             curve.forces.push((rays, forces(errors)));
         }
     }

@@ -10,7 +10,7 @@ use dataset::{Database, Part, Row};
 use hinge::TrainingDomain;
 use std::fmt::Write;
 use std::path::PathBuf;
-use surrogate::{FitError, Surrogate, TestErrors};
+use surrogate::{Surrogate, TestErrors};
 
 /// Seed spread, the ensemble's deviation as an estimate of error, and what happens outside the box
 ///
@@ -42,7 +42,7 @@ pub struct TrustStudy {
 const KEPT: f64 = 0.75;
 
 /// Bins of the distance outside, as a share of the box's side; the first is inside.
-const OUTSIDE: [f64; 4] = [0.0, 0.05, 0.15, 0.35];
+const OUTSIDE: [f64; 4] = [0.0, 0.05, 0.15, f64::INFINITY];
 
 /// An ensemble, and what it says of some rows.
 struct Answers {
@@ -140,21 +140,6 @@ fn smaller(domain: &TrainingDomain) -> TrainingDomain {
     }
 }
 
-/// The errors of the table, in percent.
-fn percents(errors: &TestErrors) -> [f64; 6] {
-    let TestErrors {
-        energy,
-        f_a,
-        f_s,
-        m_theta,
-        damage,
-        damage_peak,
-        ..
-    } = *errors;
-    [energy, f_a, f_s, m_theta, damage, damage_peak]
-        .map(|FitError { relative_rmse, .. }| 100.0 * relative_rmse)
-}
-
 impl Answers {
     /// The errors of each network, and of the mean of their answers.
     fn spread(&self) -> Result<String> {
@@ -168,7 +153,7 @@ impl Answers {
                         |\n|---|---|---|---|---|---|---|---|\n"
                 .to_owned();
         let mut line = |name: &str, errors: &TestErrors, worst: Option<f64>| {
-            let [w, f_a, f_s, m, d, peak] = percents(errors);
+            let [w, f_a, f_s, m, d, peak] = errors.percents();
             let worst = worst.map_or(String::new(), |worst| format!("{worst:.2} %"));
             writeln!(
                 text,
@@ -203,7 +188,7 @@ impl Answers {
     fn calibration(&self, tenths: &[[f64; 2]]) -> Result<String> {
         let check = EnsembleCheck::of(&self.forces);
         let mut text = format!(
-            "Forces in units of their root mean square. Over all states the networks deviate by \
+            "Forces in units of their root mean square, the mean over the three. Over all states the networks deviate by \
              {:.4} and their mean errs by {:.4}: the error is {:.1} times the deviation. The tenth \
              of the states with the greatest deviation holds {:.0} % of the squared error; the \
              logarithms of the two correlate by {:.2}.\n\n\
@@ -246,6 +231,7 @@ impl Answers {
         let bins = lower.zip(OUTSIDE).map(|(lower, upper)| {
             let name = match upper {
                 0.0 => "inside".into(),
+                f64::INFINITY => format!("over {:.0} %", 100.0 * lower),
                 _ => format!("{:.0} to {:.0} %", 100.0 * lower, 100.0 * upper),
             };
             let inside = |&row: &usize| lower < distances[row] && distances[row] <= upper;
@@ -259,25 +245,35 @@ impl Answers {
         let mut text = format!(
             "Networks trained within {:.0} % of each side of the box, asked about the test \
              geometries whole. Distances outside are those of the coordinate that is farthest off, \
-             over the side of the smaller box; errors are relative to the states of the bin (W) and \
-             to all (forces).\n\n\
-             | outside | states | W | forces, error | forces, deviation |\n|---|---|---|---|---|\n",
+             over the side of the smaller box; errors are those of the networks' mean, root mean \
+             squares relative to the states of the bin (W) and to all (forces): a few states of \
+             great force, near the edge of the smaller box, can rule them, so that the median state \
+             stands beside them.\n\n\
+             | outside | states | W | forces, error | median state | forces, deviation |\n\
+             |---|---|---|---|---|---|\n",
             100.0 * KEPT
         );
         for ((name, rows), (_, check)) in self.bins().into_iter().zip(self.by_distance()) {
             let of_bin: Vec<Row> = rows.iter().map(|&row| self.rows[row].clone()).collect();
-            let energy = Parity::of(&self.members[0], &of_bin).errors().energy;
+            let parities: Vec<Parity> = self
+                .members
+                .iter()
+                .map(|it| Parity::of(it, &of_bin))
+                .collect();
+            let [energy, ..] = Parity::mean(&parities).errors().percents();
+            let mut errors: Vec<f64> = rows.iter().map(|&row| self.forces[row].error).collect();
+            errors.sort_by(f64::total_cmp);
             writeln!(
                 text,
-                "| {name} | {} | {:.2} % | {:.2} % | {:.2} % |",
+                "| {name} | {} | {energy:.2} % | {:.2} % | {:.2} % | {:.2} % |",
                 rows.len(),
-                100.0 * energy.relative_rmse,
-                100.0 * check.error / f64::sqrt(3.0),
-                100.0 * check.deviation / f64::sqrt(3.0)
+                100.0 * check.error,
+                100.0 * errors[errors.len() / 2],
+                100.0 * check.deviation
             )?;
         }
-        text += "\nA design says which share of its hinge states lies outside, and a barrier keeps \
-                 the energy coercive there.\n";
+        text += "\nA design says which share of its hinge states lies inside, and a barrier keeps \
+                 the energy coercive outside.\n";
         Ok(text)
     }
 
@@ -318,10 +314,10 @@ impl Answers {
         let rms = |quantity: usize| {
             let squares = parities
                 .iter()
-                .map(|it| percents(&it.errors())[quantity].powi(2));
+                .map(|it| it.errors().percents()[quantity].powi(2));
             (squares.sum::<f64>() / count as f64).sqrt()
         };
-        let mean = percents(&Parity::mean(&parities).errors());
+        let mean = Parity::mean(&parities).errors().percents();
         let mut text =
             "## Ensemble\n\n| networks | evaluations | W | F_a | F_s | M | D | good for \
                         |\n|---|---|---|---|---|---|---|---|\n"

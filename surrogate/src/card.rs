@@ -112,6 +112,22 @@ pub struct FitError {
     pub median: f64,
 }
 
+impl TestErrors {
+    /// Relative root mean square errors (%): W, F_a, F_s, M_theta, D, D_peak.
+    pub fn percents(&self) -> [f64; 6] {
+        let Self {
+            energy,
+            f_a,
+            f_s,
+            m_theta,
+            damage,
+            damage_peak,
+            ..
+        } = *self;
+        [energy, f_a, f_s, m_theta, damage, damage_peak].map(|error| 100.0 * error.relative_rmse)
+    }
+}
+
 impl Card {
     /// Of D, and of D_peak if there is a head for it.
     pub(crate) fn damage_scales(&self) -> Vec<f64> {

@@ -1,8 +1,8 @@
 //! Networks of other seeds as a measure of what the data leave open.
 //!
 //! ```text
-//! deviation^2 = sum over members and force components of |F_m,c - mean_m F_c|^2 / (M sigma_c^2)
-//! error^2     = sum over force components of |mean_m F_c - F_c*|^2 / sigma_c^2
+//! deviation^2 = mean over members and force components of |F_m,c - mean_m F_c|^2 / sigma_c^2
+//! error^2     = mean over force components of |mean_m F_c - F_c*|^2 / sigma_c^2
 //! ```
 
 use crate::validation::root_mean_square;
@@ -48,8 +48,8 @@ pub fn disagreements(members: &[Surrogate], rows: &[Row]) -> Vec<Disagreement> {
             let mean = forces.iter().map(|member| member[row][c]).sum::<f64>() / count;
             let square = |value: f64| ((value - mean) / scale).powi(2);
             let squares = forces.iter().map(|member| square(member[row][c]));
-            deviation += squares.sum::<f64>() / count;
-            error += square(targets[row][c]);
+            deviation += squares.sum::<f64>() / count / 3.0;
+            error += square(targets[row][c]) / 3.0;
         }
         Disagreement {
             deviation: deviation.sqrt(),

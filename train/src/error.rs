@@ -41,11 +41,11 @@ pub enum TrainError {
     Backend(#[from] TensorReadError),
     #[error(
         "the weights to begin from have the layers {found:?}, the configuration asks for \
-         {expected:?} (embedding and damage)"
+         {expected:?} (embedding and damage heads)"
     )]
     OtherSizes {
-        expected: [Vec<usize>; 2],
-        found: [Vec<usize>; 2],
+        expected: Vec<Vec<usize>>,
+        found: Vec<Vec<usize>>,
     },
     #[error(
         "the weights to begin from have `damage_sharpness = {found}`; set it so in the \

@@ -11,7 +11,7 @@
 //! | `backend` | Burn backends, chosen at run time |
 //! | `samples` | rows as the network sees them: standardised, scaled, batched |
 //! | `mirror` | mirror symmetry by construction |
-//! | `networks` | chi and chi_D |
+//! | `networks` | chi, chi_D and chi_P |
 //! | `force_tangents` | chi and its derivatives in (eta_a, eta_s, theta) |
 //! | `loss` | (15) |
 //! | `optimiser` | Muon and Adam, learning rate |

@@ -119,14 +119,20 @@ fn head_folds(layers: usize, symmetric: bool) -> Vec<Fold> {
     folds
 }
 
-/// Units of each layer: of chi, and of the hidden layers of the damage heads.
-pub(crate) fn widths(layers: &Layers) -> [Vec<usize>; 2] {
+/// Units of each layer: of chi, and of the hidden layers of each damage head.
+pub(crate) fn widths(layers: &Layers) -> Vec<Vec<usize>> {
     let units = |layers: &[Layer]| -> Vec<usize> {
         layers.iter().map(|layer| layer.bias.values.len()).collect()
     };
-    let mut damage = units(&layers.chi_d);
-    damage.pop();
-    [units(&layers.chi), damage]
+    let head = |layers: &[Layer]| {
+        let mut units = units(layers);
+        units.pop();
+        units
+    };
+    let peak = layers.chi_p.as_deref().map(head);
+    let mut all = vec![units(&layers.chi), head(&layers.chi_d)];
+    all.extend(peak);
+    all
 }
 
 impl Mlp {

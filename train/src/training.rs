@@ -340,7 +340,9 @@ fn given(
     options: &TensorCreationOptions,
 ) -> Result<Networks, TrainError> {
     let given = weights.layers();
-    let expected = [config.embedding.clone(), config.damage.clone()];
+    let heads = 1 + usize::from(given.chi_p.is_some());
+    let mut expected = vec![config.damage.clone(); 1 + heads];
+    expected[0] = config.embedding.clone();
     let found = widths(&given);
     if found != expected {
         return Err(TrainError::OtherSizes { expected, found });

@@ -107,7 +107,7 @@ pub fn page(cases: &[Case], families: &VoidFamilies) -> Result<String> {
     let mut text = "# One sheet, five actuations\n\n\
         15 x 10 panels of polyester film, 6096 x 4064 mm, opened onto the rectangle of the uniform sheet at 70 degrees, as in \
         section 3.2 of the paper, whose numbers stand in brackets. The scenes are `configs/scenes/actuation-1.toml` to `-5`; \
-        with `--tune` a load is the least, to 4 %, whose design reaches the target to 1.2 % of its width, else the scene's. \
+        with `--tune` a load is found by bisection, to 4 %, between designs that do not and do reach the target to 1.2 % of its width, else the scene's. \
         `kirigami study actuations --tune`.\n\n\
         ![the five designs](actuations.png)\n\n\
         | case | drive, N | rotation's energy, % | non-rotational, % | compression, % | tension, % | shear, % | boundary rms, % \

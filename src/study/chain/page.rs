@@ -7,10 +7,14 @@ use anyhow::Result;
 use std::fmt::Write;
 use std::path::Path;
 
-pub(super) fn write(out: &Path, truth: &Deployed, rows: &[Row]) -> Result<()> {
+pub(super) fn write(out: &Path, truth: &Deployed, rows: &[Row], failures: &str) -> Result<()> {
     run_folder::write(out, "chain.csv", &csv(rows)?)?;
     let table = table(truth, rows)?;
-    let page = format!("# The whole chain on one sheet\n\n{table}\n![cost and error](chain.png)\n");
+    let mut page = format!("# The whole chain on one sheet\n\n{table}\n");
+    if !failures.is_empty() {
+        page += &format!("No result:\n\n{failures}\n");
+    }
+    page += "![cost and error](chain.png)\n";
     run_folder::write(out, "chain.md", &page)?;
     run_folder::write(
         out,

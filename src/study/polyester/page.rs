@@ -123,7 +123,7 @@ fn markdown(rows: &[Row], tier: Tier) -> Result<String> {
     for row in rows {
         write!(text, " {:.3} |", row.load)?;
     }
-    text += " 1 | 1 |\n| outline error, start to design, mm |";
+    text += " 27.85 N | |\n| outline error, start to design, mm |";
     for row in rows {
         let [before, after] = row.outline;
         write!(text, " {before:.1} to {after:.1} |")?;
@@ -136,7 +136,7 @@ fn markdown(rows: &[Row], tier: Tier) -> Result<String> {
             .map(|route| route.end().theta.to_degrees());
         write!(text, " {:.1} |", openings.fold(0.0, f64::max))?;
     }
-    text += " 35 | |\n";
+    text += " | |\n";
     let columns: Vec<_> = rows.iter().map(quantities).collect();
     for (k, (quantity, alone, both)) in PAPER.iter().enumerate() {
         write!(text, "| {quantity} |")?;
@@ -164,7 +164,11 @@ fn markdown(rows: &[Row], tier: Tier) -> Result<String> {
         line("surrogate", row.learned)?;
         match row.replayed {
             Some(values) => line("finite elements", values)?,
-            None => line("finite elements: not solved", [f64::NAN; 4])?,
+            None => writeln!(
+                text,
+                "| {design} | {} | {opening:.1} | not solved by finite elements | - | - | - | - |",
+                row.monitored
+            )?,
         }
     }
     text += "\n## Deployed\n\n";
