@@ -8,6 +8,9 @@ pub struct FrontPanel {
     pub points: Vec<(String, f64, f64)>,
 }
 
+/// Room of a name, in decades.
+const NAME: [f64; 2] = [0.6, 0.09];
+
 /// Errors below this (%) are drawn at it.
 const LEAST: f64 = 1e-6;
 
@@ -47,10 +50,23 @@ fn front_chart(area: &Area, panel: &FrontPanel) -> DrawResult {
         .x_desc("cost, s")
         .y_desc("error of the deployed shape, % of the sheet")
         .draw()?;
+    let mut named: Vec<(f64, f64)> = Vec::new();
     chart.draw_series(points.iter().map(|(name, at)| {
+        // Names do not overlap: the first of a crowd has one.
+        let crowded = |other: &(f64, f64)| {
+            let apart = |x: f64, y: f64| (x / y).log10().abs();
+            apart(at.0, other.0) < NAME[0] && apart(at.1, other.1) < NAME[1]
+        };
+        let name = match named.iter().any(crowded) {
+            true => "",
+            false => {
+                named.push(*at);
+                *name
+            }
+        };
         EmptyElement::at(*at)
             + Circle::new((0, 0), 4, POINT.filled())
-            + Text::new((*name).to_owned(), (8, -6), (FONT, 11).into_font())
+            + Text::new(name.to_owned(), (8, -6), (FONT, 11).into_font())
     }))?;
     Ok(())
 }

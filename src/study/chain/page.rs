@@ -26,14 +26,18 @@ pub(super) fn write(out: &Path, truth: &Deployed, rows: &[Row], failures: &str) 
         points: rows
             .iter()
             .filter_map(|row| {
-                let name = format!("{} {}", row.kind, row.choice);
+                let name = match row.kind {
+                    "network" => row.choice.clone(),
+                    kind => format!("{kind} {}", row.choice),
+                };
                 Some((name, cost(row)?, 100.0 * row.prediction.shape[1]))
             })
             .collect(),
     };
     let chart = charts::front(&[
         front("windows and training", |row| {
-            Some(row.windows_s? + row.training_s?)
+            let network = row.kind == "network";
+            network.then_some(row.windows_s? + row.training_s?)
         }),
         front("one step of the design", |row| Some(row.step_s)),
     ])?;
