@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use design::inverse_design::{Ended, StepRecord, forget, inverse_design};
 use design::results::write_results;
-use design::scene::{Scene, SceneConfig, SurrogateFile};
+use design::scene::{Scene, SceneConfig};
 use std::path::{Path, PathBuf};
 
 /// Design a sheet: where to cut, and how wide to leave every ligament
@@ -85,8 +85,7 @@ impl DesignCommand {
     fn scene(&self) -> Result<Scene> {
         let mut config: SceneConfig = hinge::config::read(&self.scene)?;
         if let Some(weights) = &self.weights {
-            let weights = std::path::absolute(weights)?;
-            config.surrogate = Some(SurrogateFile { weights });
+            config.name_weights(weights)?;
         }
         if let Some(out) = &self.out {
             config.output = std::path::absolute(out)?;

@@ -190,6 +190,23 @@ pub enum SceneError {
     Balance { path: PathBuf, source: DesignError },
 }
 
+impl SceneConfig {
+    /// Names other weights, relative to the working folder.
+    pub fn name_weights(&mut self, weights: &Path) -> std::io::Result<()> {
+        let weights = std::path::absolute(weights)?;
+        self.surrogate = Some(SurrogateFile { weights });
+        Ok(())
+    }
+
+    /// Grows or shrinks the loads on panels, forces and couples alike.
+    pub fn scale_loads(&mut self, factor: f64) {
+        for load in &mut self.loads {
+            load.force = load.force.map(|force| factor * force);
+            load.couple *= factor;
+        }
+    }
+}
+
 impl Scene {
     /// Reads a scene with all that it names, and refuses what cannot be.
     pub fn read(path: &Path) -> Result<Self, SceneError> {

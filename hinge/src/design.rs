@@ -33,6 +33,13 @@ pub struct HingeConstants {
 }
 
 impl HingeConstants {
+    /// Of the paper's hinge specimens; section 4.1.
+    pub const PAPER: Self = Self {
+        fillet_ratio: 0.16,
+        kerf: 0.2,
+        r_win: 100.0,
+    };
+
     /// The hinge of width `w_lig` (mm) and cut angle `alpha` (rad).
     pub fn hinge(&self, w_lig: f64, alpha: f64) -> HingeDesign {
         HingeDesign {

@@ -138,10 +138,7 @@ impl Search {
         path: &Path,
     ) -> Result<(Scene, Designed)> {
         let mut config = config.clone();
-        for load in &mut config.loads {
-            load.force = load.force.map(|force| factor * force);
-            load.couple *= factor;
-        }
+        config.scale_loads(factor);
         config.output = self.out.join(format!("runs/{label}-{factor:.4}"));
         let scene = Scene::new(config, path)?;
         let designed = designed(&scene, &mut |step| {

@@ -13,11 +13,11 @@ use anyhow::{Context, Result, ensure};
 use clap::Args;
 use dataset::Database;
 use design::design_vector::DesignVector;
-use design::gradient::{DesignProblem, Model};
-use design::hinge_law::Order;
+use design::force_transmission::ForceTransmission;
+use design::gradient::DesignProblem;
 use design::kinematics::deployed_corners;
 use design::outline_error::outline_error;
-use design::scene::{CondensedConfig, HingeModel, Scene, SceneConfig, SurrogateFile};
+use design::scene::{CondensedConfig, HingeModel, Scene, SceneConfig};
 use design::sheet::HingePoint;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -228,11 +228,9 @@ impl ChainStudy {
 }
 
 fn with_weights(base: &SceneConfig, weights: &Path) -> Result<SceneConfig> {
-    let weights = std::path::absolute(weights)?;
-    Ok(SceneConfig {
-        surrogate: Some(SurrogateFile { weights }),
-        ..base.clone()
-    })
+    let mut config = base.clone();
+    config.name_weights(weights)?;
+    Ok(config)
 }
 
 /// CPU time of the windows of the rays that the network was trained on.
@@ -249,20 +247,12 @@ impl Deployed {
     fn of(scene: &Scene, problem: &DesignProblem, design: &DesignVector) -> Result<Self> {
         let deployment = problem.deploy(design)?;
         let last = deployment.at_full_load()?;
-        let designs = deployment.sheet.designs();
-        let forces = match &problem.model {
-            Model::Equilibrium(mechanics) => mechanics
-                .law
-                .prepare(&designs)
-                .energies(&last.deformations, Order::Forces),
-            _ => Vec::new(),
-        };
+        let transmission = ForceTransmission::new(problem, &deployment)?;
         Ok(Self {
             corners: deployed_corners(&deployment.sheet, &last.configuration).concat(),
             rotations: last.deformations.iter().map(|eps| eps.theta).collect(),
-            forces: forces
-                .iter()
-                .flat_map(|energy| [energy.forces[0], energy.forces[1]])
+            forces: (transmission.interfaces.iter())
+                .flat_map(|it| [it.normal, it.tangential])
                 .collect(),
             damage: deployment.greatest_damage(),
             outline: outline_error(scene, &deployment),

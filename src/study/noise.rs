@@ -133,14 +133,9 @@ impl Neighbour {
             Self::Blunter(k) => (w_lig, alpha + k * STEPS[1], eta_s),
             Self::Mirrored => (w_lig, PI - alpha, -eta_s),
         };
-        let constants = HingeConstants {
-            fillet_ratio: 0.16,
-            kerf: 0.2,
-            r_win: 100.0,
-        };
         let end = HingeDeformation::from_eta(eta_a, eta_s, theta_deg.to_radians(), w_lig);
         KeptSolve {
-            design: constants.hinge(w_lig, alpha),
+            design: HingeConstants::PAPER.hinge(w_lig, alpha),
             path: DeformationPath::straight(end),
             material: material.clone(),
             recipe: tier.recipe(),

@@ -12,7 +12,7 @@ use clap::Args;
 use design::force_transmission::{ForceTransmission, TransmissionShares};
 use design::gradient::Deployment;
 use design::outline_error::outline_error;
-use design::scene::{HingeModel, Scene, SceneConfig, SurrogateFile};
+use design::scene::{HingeModel, Scene, SceneConfig};
 use design::sheet::{HingePoint, Panel};
 use design::threshold::least_passing;
 use mesher::Tier;
@@ -84,7 +84,7 @@ impl PolyesterStudy {
             let mut config = base.clone();
             config.hinge_point = Some(point);
             let load = self.load(&config)?;
-            scale_loads(&mut config, load);
+            config.scale_loads(load);
             let mut alone = config.clone();
             (alone.objective.damage, alone.objective.compression) = (0.0, 0.0);
             for (objective, config) in [("shape alone", alone), ("with the hinges' paths", config)]
@@ -111,8 +111,7 @@ impl PolyesterStudy {
             self.scene.display()
         );
         if let Some(weights) = &self.weights {
-            let weights = std::path::absolute(weights)?;
-            config.surrogate = Some(SurrogateFile { weights });
+            config.name_weights(weights)?;
         }
         Ok(config)
     }
@@ -130,7 +129,7 @@ impl PolyesterStudy {
         let limit = self.opening_deg.to_radians();
         let reaches = |factor: f64| -> Result<bool> {
             let mut config = config.clone();
-            scale_loads(&mut config, factor);
+            config.scale_loads(factor);
             let scene = Scene::new(config, &self.scene)?;
             let deployment = scene.problem()?.deploy(&scene.start())?;
             let last = deployment.at_full_load()?;
@@ -199,13 +198,6 @@ impl PolyesterStudy {
             row.replayed = replayed(&outcome);
         }
         Ok(())
-    }
-}
-
-fn scale_loads(config: &mut SceneConfig, factor: f64) {
-    for load in &mut config.loads {
-        load.force = load.force.map(|force| factor * force);
-        load.couple *= factor;
     }
 }
 

@@ -49,6 +49,8 @@ struct Answers {
     members: Vec<Surrogate>,
     rows: Vec<Row>,
     forces: Vec<Disagreement>,
+    /// Of each member.
+    parities: Vec<Parity>,
 }
 
 impl TrustStudy {
@@ -86,6 +88,7 @@ impl TrustStudy {
         ensure!(!rows.is_empty(), "the database has no rows to test with");
         Ok(Answers {
             forces: disagreements(&members, &rows),
+            parities: members.iter().map(|it| Parity::of(it, &rows)).collect(),
             members,
             rows,
         })
@@ -115,7 +118,7 @@ impl TrustStudy {
                 title: "ever farther outside the box",
                 points: &outside
                     .iter()
-                    .map(|(_, of)| [of.deviation, of.error])
+                    .map(|(.., of)| [of.deviation, of.error])
                     .collect::<Vec<_>>(),
             },
         ])?;
@@ -143,11 +146,6 @@ fn smaller(domain: &TrainingDomain) -> TrainingDomain {
 impl Answers {
     /// The errors of each network, and of the mean of their answers.
     fn spread(&self) -> Result<String> {
-        let parities: Vec<Parity> = self
-            .members
-            .iter()
-            .map(|it| Parity::of(it, &self.rows))
-            .collect();
         let mut text =
             "| network | W | F_a | F_s | M | D | D_peak | worst bin of theta or w_lig, W \
                         |\n|---|---|---|---|---|---|---|---|\n"
@@ -161,11 +159,11 @@ impl Answers {
                  | {worst} |"
             )
         };
-        for (seed, (member, parity)) in self.members.iter().zip(&parities).enumerate() {
+        for (seed, (member, parity)) in self.members.iter().zip(&self.parities).enumerate() {
             let worst = worst_bin(member);
             line(&format!("seed {seed}"), &parity.errors(), Some(worst))?;
         }
-        line("mean of them", &Parity::mean(&parities).errors(), None)?;
+        line("mean of them", &Parity::mean(&self.parities).errors(), None)?;
         Ok(text)
     }
 
@@ -211,17 +209,8 @@ impl Answers {
         Ok(text)
     }
 
-    /// The states by their distance outside the box of these networks: name of the bin, check.
-    fn by_distance(&self) -> Vec<(String, EnsembleCheck)> {
-        let bins = self.bins().into_iter();
-        bins.map(|(name, rows)| {
-            let states: Vec<Disagreement> = rows.iter().map(|&row| self.forces[row]).collect();
-            (name, EnsembleCheck::of(&states))
-        })
-        .collect()
-    }
-
-    fn bins(&self) -> Vec<(String, Vec<usize>)> {
+    /// The rows by their distance outside the box of these networks: name of the bin, rows, check.
+    fn by_distance(&self) -> Vec<(String, Vec<usize>, EnsembleCheck)> {
         let distance = |row: &Row| {
             let domain = self.members[0].domain();
             (-domain.depth(&row.design, &row.sample.deformation())).max(0.0)
@@ -238,7 +227,11 @@ impl Answers {
             (name, (0..distances.len()).filter(inside).collect())
         });
         let bins = bins.filter(|(_, rows): &(_, Vec<usize>)| !rows.is_empty());
-        bins.collect()
+        bins.map(|(name, rows)| {
+            let states: Vec<Disagreement> = rows.iter().map(|&row| self.forces[row]).collect();
+            (name, rows, EnsembleCheck::of(&states))
+        })
+        .collect()
     }
 
     fn outside(&self) -> Result<String> {
@@ -253,7 +246,7 @@ impl Answers {
              |---|---|---|---|---|---|\n",
             100.0 * KEPT
         );
-        for ((name, rows), (_, check)) in self.bins().into_iter().zip(self.by_distance()) {
+        for (name, rows, check) in self.by_distance() {
             let of_bin: Vec<Row> = rows.iter().map(|&row| self.rows[row].clone()).collect();
             let parities: Vec<Parity> = self
                 .members
@@ -305,19 +298,15 @@ impl Answers {
     }
 
     fn tradeoff(&self) -> Result<String> {
-        let parities: Vec<Parity> = self
-            .members
-            .iter()
-            .map(|it| Parity::of(it, &self.rows))
-            .collect();
         let count = self.members.len();
         let rms = |quantity: usize| {
-            let squares = parities
+            let squares = self
+                .parities
                 .iter()
                 .map(|it| it.errors().percents()[quantity].powi(2));
             (squares.sum::<f64>() / count as f64).sqrt()
         };
-        let mean = Parity::mean(&parities).errors().percents();
+        let mean = Parity::mean(&self.parities).errors().percents();
         let mut text =
             "## Ensemble\n\n| networks | evaluations | W | F_a | F_s | M | D | good for \
                         |\n|---|---|---|---|---|---|---|---|\n"

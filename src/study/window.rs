@@ -8,7 +8,7 @@ use clap::Args;
 use fe_driver::{
     KeptSolution, Richardson, StudyCase, richardson, study_cases, study_difference, study_state,
 };
-use hinge::{HingeDesign, SheetMaterial};
+use hinge::{HingeConstants, HingeDesign, SheetMaterial};
 use mesher::{MeshRecipe, PlaneRecipe, Tier};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -90,12 +90,8 @@ impl WindowStudy {
         all.into_iter()
             .flatten()
             .filter(|hinge| !self.quick || *hinge == (18.0, 90.0))
-            .map(|(w_lig, alpha_deg)| HingeDesign {
-                w_lig,
-                alpha: f64::to_radians(alpha_deg),
-                fillet_ratio: 0.16,
-                kerf: 0.2,
-                r_win: 100.0,
+            .map(|(w_lig, alpha_deg)| {
+                HingeConstants::PAPER.hinge(w_lig, f64::to_radians(alpha_deg))
             })
             .collect()
     }

@@ -341,8 +341,10 @@ fn given(
 ) -> Result<Networks, TrainError> {
     let given = weights.layers();
     let heads = 1 + usize::from(given.chi_p.is_some());
-    let mut expected = vec![config.damage.clone(); 1 + heads];
-    expected[0] = config.embedding.clone();
+    let damage = std::iter::repeat_n(config.damage.clone(), heads);
+    let expected: Vec<_> = std::iter::once(config.embedding.clone())
+        .chain(damage)
+        .collect();
     let found = widths(&given);
     if found != expected {
         return Err(TrainError::OtherSizes { expected, found });
