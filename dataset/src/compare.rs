@@ -15,12 +15,31 @@ pub const COMPARED: [&str; 6] = ["W", "F_a", "F_s", "M_theta", "D", "D_peak"];
 /// One ray solved twice.
 #[derive(Clone, Debug)]
 pub struct ComparedRay<'a> {
-    /// The furthest row of the database that is judged.
-    pub end: &'a Row,
+    /// The rows of the database that is judged, in order of lambda, as far as both go; not empty.
+    pub rows: Vec<&'a Row>,
+    /// What the one it is judged by says at each of them.
+    pub references: Vec<HingeSample>,
     /// CPU time of the ray (s) in the database that is judged, and in the one it is judged by.
     pub cpu_s: [f64; 2],
-    /// The states of the database that is judged.
-    pub states: Vec<ComparedState>,
+}
+
+impl<'a> ComparedRay<'a> {
+    /// Each row with its reference.
+    pub fn pairs(&self) -> impl Iterator<Item = (&'a Row, &HingeSample)> {
+        std::iter::zip(self.rows.iter().copied(), &self.references)
+    }
+
+    pub fn states(&self) -> Vec<ComparedState> {
+        let states = self.pairs();
+        states
+            .map(|(row, reference)| ComparedState::new(&row.sample, reference))
+            .collect()
+    }
+
+    /// The furthest row that is compared.
+    pub fn end(&self) -> &'a Row {
+        self.rows[self.rows.len() - 1]
+    }
 }
 
 /// A state in both databases.
@@ -51,16 +70,15 @@ pub fn compare<'a>(judged: &'a Database, reference: &'a Database) -> Vec<Compare
     });
     pairs
         .filter_map(|(rows, reference)| {
-            let end = *rows.last()?;
             let samples: Vec<_> = reference.iter().map(|row| row.sample).collect();
-            let states = rows.iter().filter_map(|row| {
-                let there = HingeSample::at(&samples, row.sample.lambda)?;
-                Some(ComparedState::new(&row.sample, &there))
-            });
+            let (rows, references): (Vec<&Row>, Vec<HingeSample>) = rows
+                .iter()
+                .filter_map(|row| Some((*row, HingeSample::at(&samples, row.sample.lambda)?)))
+                .unzip();
             Some(ComparedRay {
-                end,
-                cpu_s: [end.cpu_s, reference.first()?.cpu_s],
-                states: states.collect(),
+                cpu_s: [rows.first()?.cpu_s, reference.first()?.cpu_s],
+                rows,
+                references,
             })
         })
         .collect()
@@ -158,8 +176,8 @@ mod tests {
         let (judged, reference) = (database(stiff.collect()), database(rows(6)));
         let rays = compare(&judged, &reference);
         assert_eq!(rays.len(), 6);
-        assert!(rays.iter().all(|ray| !ray.states.is_empty()));
-        let states: Vec<_> = rays.iter().flat_map(|ray| ray.states.clone()).collect();
+        assert!(rays.iter().all(|ray| ray.end().sample.lambda == 1.0));
+        let states: Vec<_> = rays.iter().flat_map(ComparedRay::states).collect();
         for difference in relative_rms(&states, [0.0; 6]) {
             assert!((difference - 0.03).abs() < 1e-12, "{difference}");
         }

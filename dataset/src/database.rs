@@ -32,6 +32,11 @@ pub enum DatasetError {
     )]
     TooFewGeometries { found: usize },
     #[error(
+        "{found} rays stand in both databases, the correction needs at least {needed}: solve more \
+         rays of the one on the mesh of the other"
+    )]
+    TooFewRays { found: usize, needed: usize },
+    #[error(
         "the shares validation = {validation} and test = {test} must each be above 0 and below 0.5"
     )]
     Shares { validation: f64, test: f64 },
@@ -175,14 +180,20 @@ impl Database {
         for part in [&mut split.training, &mut split.validation] {
             part.retain(|job| jobs.contains(job.as_str()));
         }
-        let Manifest {
-            gates, split_plan, ..
-        } = &self.manifest;
-        let mut within = Self::assemble(rows, gates, split_plan, Mixing::Allowed)?;
-        within.manifest.rejected = self.manifest.rejected.clone();
+        let mut within = self.with_rows(rows)?;
         within.manifest.split_hash = split.hash();
         within.manifest.split = split;
         Ok(within)
+    }
+
+    /// Other rows of the same jobs.
+    pub(crate) fn with_rows(&self, rows: Vec<Row>) -> Result<Self, DatasetError> {
+        let Manifest {
+            gates, split_plan, ..
+        } = &self.manifest;
+        let mut other = Self::assemble(rows, gates, split_plan, Mixing::Allowed)?;
+        other.manifest.rejected = self.manifest.rejected.clone();
+        Ok(other)
     }
 
     fn assemble(

@@ -15,9 +15,11 @@
 //! | `noise` | scatter of the increments of a ray |
 //! | `parquet` | reading and writing |
 //! | `compare` | the same rays solved twice |
+//! | `bridge` | rows of a coarse mesh corrected to a finer one |
 //! | `csv` | CSV, also of other solvers |
 //! | `summary` | counts, ranges, histograms and coverage, to print |
 
+mod bridge;
 mod compare;
 mod csv;
 mod database;
@@ -31,6 +33,7 @@ mod schema;
 mod split;
 mod summary;
 
+pub use bridge::{Bridge, left_out};
 pub use compare::{COMPARED, ComparedRay, ComparedState, compare, reference_rms, relative_rms};
 pub use csv::{ColumnMap, Constant, rows_from_csv};
 pub use database::{Database, DatasetError, Mixing};

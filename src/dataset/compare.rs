@@ -4,15 +4,15 @@ use crate::comparison::{self, SCALE, each_relative, spread_table};
 use crate::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use dataset::{COMPARED, ComparedRay, ComparedState, Database, compare};
+use dataset::{COMPARED, ComparedRay, ComparedState, Database, compare, left_out};
 use std::fmt::Write;
 use std::path::PathBuf;
 
 /// Judge a database by a finer one of the same rays
 ///
-/// Writes compare.md, compare.csv (one line a ray), tradeoff.md and a picture. Example: the default
-/// tier by the reference tier, `kirigami dataset compare data/pet-0.5mm/hinges.parquet
-/// data/pet-0.5mm/reference.parquet`
+/// Writes compare.md, compare.csv (one line a ray), tradeoff.md and a picture, and tells what `dataset
+/// correct` would make of it. Example: the default tier by the reference tier, `kirigami dataset
+/// compare data/pet-0.5mm/hinges.parquet data/pet-0.5mm/reference.parquet`
 #[derive(Args)]
 pub struct CompareCommand {
     /// The database that is judged (Parquet with its manifest)
@@ -40,47 +40,66 @@ impl CompareCommand {
             self.database.display(),
             self.reference.display()
         );
+        let states: Vec<_> = rays.iter().map(ComparedRay::states).collect();
         std::fs::create_dir_all(&self.out)
             .with_context(|| format!("cannot make the folder {}", self.out.display()))?;
         let tiers = [&judged, &reference].map(|database| database.manifest().tier.clone());
-        let summary = summary(&rays, &tiers)?;
-        run_folder::write(&self.out, "compare.csv", &csv(&rays)?)?;
+        let mut summary = summary(&rays, &states, &tiers)?;
+        match correction(&rays) {
+            Ok(text) => summary += &text,
+            Err(reason) => eprintln!("not corrected: {reason}"),
+        }
+        run_folder::write(&self.out, "compare.csv", &csv(&rays, &states)?)?;
         run_folder::write(
             &self.out,
             "compare.md",
-            &format!("{summary}{}", worst(&rays)?),
+            &format!("{summary}{}", worst(&rays, &states)?),
         )?;
         run_folder::write(&self.out, "tradeoff.md", &summary)?;
         let axes = [tiers[1].as_str(), &tiers[0]];
-        comparison::draw(&groups(&rays), axes, &self.out.join("compare"))?;
+        comparison::draw(&groups(&states), axes, &self.out.join("compare"))?;
         println!("{summary}\nwritten to {}", self.out.display());
         Ok(())
     }
 }
 
 /// One line a quantity: the difference over all states, and how it is spread over the rays.
-fn summary(rays: &[ComparedRay], [judged, reference]: &[String; 2]) -> Result<String> {
-    let states = rays.iter().map(|ray| ray.states.len()).sum::<usize>();
+fn summary(
+    rays: &[ComparedRay],
+    states: &[Vec<ComparedState>],
+    [judged, reference]: &[String; 2],
+) -> Result<String> {
+    let count = rays.iter().map(|ray| ray.rows.len()).sum::<usize>();
     let cpu = [0, 1].map(|i| rays.iter().map(|ray| ray.cpu_s[i]).sum::<f64>() / rays.len() as f64);
     let heading = format!(
         "## Tier {judged} by tier {reference}, over the whole box\n\n\
-         {states} states of {} rays, {:.1} and {:.1} CPU s a ray. Differences are root mean squares relative \
+         {count} states of {} rays, {:.1} and {:.1} CPU s a ray. Differences are root mean squares relative \
          to that of the tier {reference}: {SCALE}. `kirigami dataset compare`.\n\n\
          ",
         rays.len(),
         cpu[0],
         cpu[1],
     );
-    Ok(heading + &spread_table(&groups(rays), "ray")?)
+    Ok(heading + &spread_table(&groups(states), "ray")?)
 }
 
-fn groups<'a>(rays: &'a [ComparedRay]) -> Vec<&'a [ComparedState]> {
-    rays.iter().map(|ray| ray.states.as_slice()).collect()
+/// What is left of the differences if every ray is corrected by the others.
+pub fn correction(rays: &[ComparedRay]) -> Result<String> {
+    let table = spread_table(&groups(&left_out(rays)?), "ray")?;
+    Ok(format!(
+        "\nThe same, each ray corrected by what the others tell of the two tiers. `kirigami dataset \
+         correct`.\n\n{table}"
+    ))
+}
+
+fn groups(states: &[Vec<ComparedState>]) -> Vec<&[ComparedState]> {
+    states.iter().map(Vec::as_slice).collect()
 }
 
 /// The rays that differ most in W.
-fn worst(rays: &[ComparedRay]) -> Result<String> {
-    let mut ranked: Vec<_> = each_relative(&groups(rays)).into_iter().zip(rays).collect();
+fn worst(rays: &[ComparedRay], states: &[Vec<ComparedState>]) -> Result<String> {
+    let differences = each_relative(&groups(states));
+    let mut ranked: Vec<_> = differences.into_iter().zip(rays).collect();
     ranked.sort_by(|(x, _), (y, _)| y[0].total_cmp(&x[0]));
     let mut text = format!(
         "\nThe {} rays that differ most in W:\n\n| w_lig, mm | alpha, deg | eta_a | eta_s | theta, deg \
@@ -95,14 +114,14 @@ fn worst(rays: &[ComparedRay]) -> Result<String> {
         writeln!(
             text,
             "| {w_lig:.1} | {alpha:.0} | {eta_a:.2} | {eta_s:.2} | {theta:.0} | {:.1} | {} |",
-            ray.end.sample.w,
+            ray.end().sample.w,
             differences.join(" | ")
         )?;
     }
     Ok(text)
 }
 
-fn csv(rays: &[ComparedRay]) -> Result<String> {
+fn csv(rays: &[ComparedRay], states: &[Vec<ComparedState>]) -> Result<String> {
     let mut text = format!(
         "w_lig_mm,alpha_deg,eta_a,eta_s,theta_deg,w_end_n_mm,cpu_s,reference_cpu_s,{}\n",
         COMPARED
@@ -110,14 +129,14 @@ fn csv(rays: &[ComparedRay]) -> Result<String> {
             .join(",")
             .to_lowercase()
     );
-    for (ray, differences) in rays.iter().zip(each_relative(&groups(rays))) {
+    for (ray, differences) in rays.iter().zip(each_relative(&groups(states))) {
         let place = place(ray).map(|x| format!("{x:.5}"));
         let differences = differences.map(|x| format!("{x:.5}"));
         writeln!(
             text,
             "{},{:.4},{:.2},{:.2},{}",
             place.join(","),
-            ray.end.sample.w,
+            ray.end().sample.w,
             ray.cpu_s[0],
             ray.cpu_s[1],
             differences.join(",")
@@ -128,8 +147,9 @@ fn csv(rays: &[ComparedRay]) -> Result<String> {
 
 /// w_lig (mm), alpha (deg), and the end of a ray: eta_a, eta_s, theta (deg).
 fn place(ray: &ComparedRay) -> [f64; 5] {
-    let (design, sample) = (&ray.end.design, &ray.end.sample);
-    let [eta_a, eta_s] = ray.end.eta();
+    let end = ray.end();
+    let (design, sample) = (&end.design, &end.sample);
+    let [eta_a, eta_s] = end.eta();
     [
         design.w_lig,
         design.alpha.to_degrees(),

@@ -1,0 +1,336 @@
+//! What a coarse mesh makes of the energy, learned from few rays that a finer one solved too, and
+//! taken back: a multiplicative bridge between two fidelities,
+//!
+//! ```text
+//! W' = (1 + q) W,     F' = dW'/d(a, s, theta) = (1 + q) F + W dq/d(a, s, theta),     q = c . terms
+//! ```
+//!
+//! and for each damage a q of its own. The terms are the monomials of degree two and less in w_lig,
+//! alpha - pi/2, eta_a, eta_s and theta, each over its range, that the mirror symmetry allows. c is
+//! fitted to the energy alone, by least squares relative to it; the forces follow, and stay its
+//! gradient. (Fernandez-Godino et al., "Review of multi-fidelity models", 2016, section 2.)
+
+use crate::compare::{ComparedRay, ComparedState};
+use crate::database::{Database, DatasetError};
+use crate::rows::Row;
+use faer::Side;
+use faer::linalg::solvers::{Llt, Solve};
+use faer::prelude::*;
+use hinge::HingeSample;
+use std::f64::consts::FRAC_PI_2;
+
+/// The terms, as products of two of (w_lig, alpha, eta_a, eta_s, theta, 1).
+const TERMS: [[usize; 2]; 13] = [
+    [5, 5],
+    [0, 5],
+    [2, 5],
+    [4, 5],
+    [0, 0],
+    [0, 2],
+    [0, 4],
+    [2, 2],
+    [2, 4],
+    [4, 4],
+    [1, 1],
+    [1, 3],
+    [3, 3],
+];
+/// Share of the root mean square below which a value is not judged by its own size.
+const LEAST_SCALE: f64 = 0.3;
+/// Pulls every coefficient to zero as one state that is off by it does: too little to be seen, but
+/// for terms that the rays say nothing of.
+const RIDGE: f64 = 1.0;
+
+/// Coefficients of the [`TERMS`].
+type Coefficients = [f64; TERMS.len()];
+
+/// Takes rows of one mesh to another.
+#[derive(Clone, Debug)]
+pub struct Bridge {
+    /// Middle and half the range of (w_lig, alpha, eta_a, eta_s, theta).
+    ranges: [[f64; 2]; 5],
+    energy: Coefficients,
+    damage: Coefficients,
+    damage_peak: Coefficients,
+}
+
+impl Bridge {
+    /// The bridge from the mesh of the rays to that of their references.
+    pub fn fit(rays: &[ComparedRay]) -> Result<Self, DatasetError> {
+        let (found, needed) = (rays.len(), TERMS.len());
+        if found < needed {
+            return Err(DatasetError::TooFewRays { found, needed });
+        }
+        let pairs = || rays.iter().flat_map(ComparedRay::pairs);
+        let blank = [0.0; TERMS.len()];
+        let unfitted = Self {
+            ranges: ranges(pairs().map(|(row, _)| row)),
+            energy: blank,
+            damage: blank,
+            damage_peak: blank,
+        };
+        let fit = |value: fn(&HingeSample) -> f64| {
+            let values = pairs().map(|(row, reference)| {
+                let terms = unfitted.terms(row).0;
+                (terms, value(&row.sample), value(reference))
+            });
+            least_squares(&values.collect::<Vec<_>>())
+        };
+        Ok(Self {
+            energy: fit(|sample| sample.w),
+            damage: fit(|sample| sample.d),
+            damage_peak: fit(|sample| sample.d_peak),
+            ..unfitted
+        })
+    }
+
+    /// The sample of a row as the finer mesh would have it. What is not a value of the surrogate stays
+    /// as it was solved.
+    pub fn corrected(&self, row: &Row) -> HingeSample {
+        let (terms, slopes) = self.terms(row);
+        let factor = |c: &Coefficients| 1.0 + dot(c, &terms);
+        let slope = |i: usize| dot(&self.energy, &slopes.map(|of| of[i]));
+        let x = &row.sample;
+        let energy = factor(&self.energy);
+        HingeSample {
+            w: energy * x.w,
+            f_a: energy * x.f_a + x.w * slope(0),
+            f_s: energy * x.f_s + x.w * slope(1),
+            m_theta: energy * x.m_theta + x.w * slope(2),
+            d: factor(&self.damage).max(0.0) * x.d,
+            d_peak: factor(&self.damage_peak).max(0.0) * x.d_peak,
+            ..*x
+        }
+    }
+
+    /// The terms at a row, and their gradients in (a, s, theta).
+    fn terms(&self, row: &Row) -> (Coefficients, [[f64; 3]; TERMS.len()]) {
+        let scaled = |i: usize, value: f64| {
+            let [middle, half] = self.ranges[i];
+            (value - middle) / half
+        };
+        let at = coordinates(row);
+        let mut x = [1.0; 6];
+        (0..5).for_each(|i| x[i] = scaled(i, at[i]));
+        let mut by = [[0.0; 3]; 6];
+        by[2][0] = 1.0 / (self.ranges[2][1] * row.design.w_lig);
+        by[3][1] = 1.0 / (self.ranges[3][1] * row.design.w_lig);
+        by[4][2] = 1.0 / self.ranges[4][1];
+        (
+            TERMS.map(|[i, j]| x[i] * x[j]),
+            TERMS.map(|[i, j]| std::array::from_fn(|d| by[i][d] * x[j] + x[i] * by[j][d])),
+        )
+    }
+}
+
+impl Database {
+    /// Every row as the mesh of `reference` would have it, by the rays that stand in both.
+    pub fn corrected(&self, bridge: &Bridge, reference: &Self) -> Result<Self, DatasetError> {
+        let tiers = [self, reference].map(|database| database.manifest().tier.as_str());
+        let tier = format!("{} corrected to {}", tiers[0], tiers[1]);
+        let rows = self.rows().iter().map(|row| Row {
+            sample: bridge.corrected(row),
+            tier: tier.clone(),
+            ..row.clone()
+        });
+        self.with_rows(rows.collect())
+    }
+}
+
+/// Each ray corrected by a bridge that was fitted to the others alone: what a correction is worth where
+/// nothing was solved twice.
+pub fn left_out(rays: &[ComparedRay]) -> Result<Vec<Vec<ComparedState>>, DatasetError> {
+    (0..rays.len())
+        .map(|i| {
+            let others = [&rays[..i], &rays[i + 1..]].concat();
+            let bridge = Bridge::fit(&others)?;
+            let states = rays[i]
+                .pairs()
+                .map(|(row, reference)| ComparedState::new(&bridge.corrected(row), reference));
+            Ok(states.collect())
+        })
+        .collect()
+}
+
+/// w_lig (mm), alpha - pi/2 (rad), eta_a, eta_s, theta (rad).
+fn coordinates(row: &Row) -> [f64; 5] {
+    let [eta_a, eta_s] = row.eta();
+    let design = &row.design;
+    [
+        design.w_lig,
+        design.alpha - FRAC_PI_2,
+        eta_a,
+        eta_s,
+        row.sample.theta,
+    ]
+}
+
+/// Middle and half the range of each coordinate; the middle is 0 but for the width, so that the mirror
+/// image has the opposite alpha and eta_s. A coordinate that does not vary is left unscaled.
+fn ranges<'a>(rows: impl Iterator<Item = &'a Row>) -> [[f64; 2]; 5] {
+    let mut least = [f64::INFINITY; 5];
+    let mut greatest = [f64::NEG_INFINITY; 5];
+    for row in rows {
+        for (i, value) in coordinates(row).into_iter().enumerate() {
+            least[i] = least[i].min(value);
+            greatest[i] = greatest[i].max(value);
+        }
+    }
+    std::array::from_fn(|i| {
+        let [middle, half] = match i {
+            0 => [
+                0.5 * (least[i] + greatest[i]),
+                0.5 * (greatest[i] - least[i]),
+            ],
+            _ => [0.0, greatest[i].abs().max(least[i].abs())],
+        };
+        [middle, if half > 0.0 { half } else { 1.0 }]
+    })
+}
+
+/// c of (1 + c . terms) value = reference, each equation relative to its reference.
+fn least_squares(states: &[(Coefficients, f64, f64)]) -> Coefficients {
+    let squares: f64 = states
+        .iter()
+        .map(|(.., reference)| reference * reference)
+        .sum();
+    let least = LEAST_SCALE * (squares / states.len() as f64).sqrt();
+    let mut normal = RIDGE * Mat::<f64>::identity(TERMS.len(), TERMS.len());
+    let mut right = Mat::<f64>::zeros(TERMS.len(), 1);
+    for (terms, value, reference) in states {
+        let scale = reference.hypot(least).max(f64::MIN_POSITIVE);
+        let row = terms.map(|term| term * value / scale);
+        for i in 0..TERMS.len() {
+            right[(i, 0)] += row[i] * (reference - value) / scale;
+            for j in 0..TERMS.len() {
+                normal[(i, j)] += row[i] * row[j];
+            }
+        }
+    }
+    let factor = Llt::new(normal.as_ref(), Side::Lower).expect("the ridge makes it definite");
+    let solution = factor.solve(&right);
+    std::array::from_fn(|i| solution[(i, 0)])
+}
+
+fn dot(c: &Coefficients, terms: &Coefficients) -> f64 {
+    std::iter::zip(c, terms).map(|(c, term)| c * term).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compare::{compare, relative_rms};
+    use crate::gates::Gates;
+    use crate::rows::tests::rows;
+    use crate::split::SplitPlan;
+
+    const RAYS: usize = 40;
+
+    fn database(rows: Vec<Row>) -> Database {
+        Database::collect(rows, &Gates::default(), &SplitPlan::default()).unwrap()
+    }
+
+    /// The database of [`rows`] as a mesh would have it that errs by known q.
+    fn coarse() -> Database {
+        let rows = rows(RAYS).into_iter().map(|row| {
+            let x = row.sample;
+            let [eta_a, _] = row.eta();
+            let q = 0.03 + 0.02 * x.theta * x.theta - 0.5 * eta_a;
+            let slopes = [-0.5 / row.design.w_lig, 0.0, 0.04 * x.theta];
+            let sample = HingeSample {
+                w: x.w * (1.0 + q),
+                w_work: x.w * (1.0 + q),
+                f_a: x.f_a * (1.0 + q) + x.w * slopes[0],
+                f_s: x.f_s * (1.0 + q) + x.w * slopes[1],
+                m_theta: x.m_theta * (1.0 + q) + x.w * slopes[2],
+                d: 1.1 * x.d,
+                ..x
+            };
+            Row { sample, ..row }
+        });
+        database(rows.collect())
+    }
+
+    #[test]
+    fn an_error_of_the_mesh_is_taken_back_on_rays_that_were_not_solved_twice() {
+        let (coarse, fine) = (coarse(), database(rows(RAYS)));
+        let half = database(rows(RAYS / 2));
+        let bridge = Bridge::fit(&compare(&coarse, &half)).unwrap();
+        let corrected = coarse.corrected(&bridge, &fine).unwrap();
+        assert_eq!(corrected.manifest().tier, "default corrected to default");
+        assert_eq!(corrected.manifest().split, coarse.manifest().split);
+        let errors = |judged: &Database| {
+            let rays = compare(judged, &fine);
+            let states: Vec<_> = rays.iter().flat_map(ComparedRay::states).collect();
+            relative_rms(&states, [0.0; 6])
+        };
+        let (before, after) = (errors(&coarse), errors(&corrected));
+        // 1/(1 + q) is not of second degree; in forces that are small beside W dq/da it shows most.
+        for (before, after) in std::iter::zip(&before[..5], &after[..5]) {
+            assert!(*after < before / 3.0, "{before} {after}");
+        }
+        assert!(after[0] < 1e-3 && after[3] < 3e-3, "{after:?}");
+    }
+
+    #[test]
+    fn corrected_forces_are_the_gradient_of_the_corrected_energy() {
+        let (coarse, fine) = (coarse(), database(rows(RAYS)));
+        let bridge = Bridge::fit(&compare(&coarse, &fine)).unwrap();
+        let row = coarse.rows()[7].clone();
+        let moved = |[a, s, theta]: [f64; 3]| {
+            let x = row.sample;
+            // The solved energy to first order about the row.
+            let w = x.w + x.f_a * a + x.f_s * s + x.m_theta * theta;
+            let sample = HingeSample {
+                a: x.a + a,
+                s: x.s + s,
+                theta: x.theta + theta,
+                w,
+                ..x
+            };
+            bridge
+                .corrected(&Row {
+                    sample,
+                    ..row.clone()
+                })
+                .w
+        };
+        let found = bridge.corrected(&row);
+        for (i, found) in [found.f_a, found.f_s, found.m_theta]
+            .into_iter()
+            .enumerate()
+        {
+            let step: [f64; 3] = std::array::from_fn(|j| if i == j { 1e-6 } else { 0.0 });
+            let slope = (moved(step) - moved(step.map(|x| -x))) / 2e-6;
+            assert!(
+                (found - slope).abs() < 1e-6 * slope.abs().max(1.0),
+                "{found} {slope}"
+            );
+        }
+    }
+
+    #[test]
+    fn mirror_images_are_corrected_alike() {
+        let (coarse, fine) = (coarse(), database(rows(RAYS)));
+        let bridge = Bridge::fit(&compare(&coarse, &fine)).unwrap();
+        let row = &coarse.rows()[13];
+        let image = &crate::mirror::with_mirrored(std::slice::from_ref(row))[1];
+        let (there, here) = (bridge.corrected(image).mirrored(), bridge.corrected(row));
+        for (x, y) in [(there.w, here.w), (there.f_s, here.f_s), (there.d, here.d)] {
+            assert!((x - y).abs() < 1e-12 * y.abs().max(1.0), "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn fewer_rays_than_terms_are_an_error() {
+        let (coarse, fine) = (coarse(), database(rows(TERMS.len() - 1)));
+        let error = Bridge::fit(&compare(&coarse, &fine)).unwrap_err();
+        assert!(error.to_string().contains("at least 13"), "{error}");
+        assert_eq!(
+            left_out(&compare(&coarse, &database(rows(RAYS))))
+                .unwrap()
+                .len(),
+            RAYS
+        );
+    }
+}
