@@ -105,6 +105,7 @@ fn told(step: &StepRecord) -> String {
         ("compression", step.compression),
         ("shear", step.shear),
         ("panel shape", step.panel_shape),
+        ("outside", step.domain),
     ];
     let terms: Vec<String> = (terms.iter().filter(|(_, value)| *value != 0.0))
         .map(|(name, value)| format!("{name} {value:.4}"))

@@ -265,6 +265,7 @@ impl DesignProblem {
     pub fn balanced(mut self, start: &DesignVector) -> Result<Self, DesignError> {
         let asked = self.objective.weights;
         let panel_shape = std::mem::take(&mut self.objective.panel_shape);
+        let domain = self.objective.domain.take();
         let mut gradient = |weights: PerFunctional| {
             self.objective.weights = weights;
             Ok::<_, DesignError>(self.evaluate(start)?.gradient.to_flat())
@@ -304,6 +305,7 @@ impl DesignProblem {
         };
         self.objective.weights = weights;
         self.objective.panel_shape = panel_shape;
+        self.objective.domain = domain;
         Ok(self)
     }
 

@@ -38,6 +38,9 @@ pub struct StepRecord {
     pub shear: f64,
     /// Of the panels, unweighted; 0 if the scene does not weigh it.
     pub panel_shape: f64,
+    /// Of the states outside the training domain, unweighted; 0 if the scene does not weigh it.
+    #[serde(default)]
+    pub domain: f64,
     /// Share of the hinge states of the path that the hinge law was made for.
     pub share_inside: f64,
     /// How often the step was halved, one that was given up included, and what had no value.
@@ -293,6 +296,7 @@ impl State {
             compression: path.compression,
             shear: path.shear,
             panel_shape: evaluation.terms.panel_shape,
+            domain: evaluation.terms.domain,
             share_inside: evaluation.deployment.share_inside(),
             halvings: setback.halvings,
             setback: setback.reason,

@@ -10,6 +10,7 @@ pub mod charts;
 pub mod check;
 pub mod degeneration;
 pub mod design_vector;
+pub mod domain_penalty;
 pub mod drawing;
 pub mod equilibrium;
 pub mod fabrication;

@@ -2,6 +2,7 @@
 //! functionals of the deformation path of the hinges; and how well-shaped the panels are.
 
 use crate::chamfer::Chamfer;
+use crate::domain_penalty::DomainPenalty;
 use crate::equilibrium::LoadStep;
 use crate::panel_shape::panel_shape;
 use crate::path_functionals::{HingePath, PathFunctionals, PerFunctional};
@@ -44,6 +45,8 @@ pub struct Objective {
     pub temperatures: PerFunctional,
     /// Weight of the panels' shape (mm^2).
     pub panel_shape: f64,
+    /// `None` where the hinge law was not learned, or may be used anywhere.
+    pub domain: Option<DomainPenalty>,
 }
 
 /// The unweighted terms of the objective.
@@ -53,6 +56,7 @@ pub struct Terms {
     pub chamfer: f64,
     pub path: PerFunctional,
     pub panel_shape: f64,
+    pub domain: f64,
 }
 
 /// The objective and its partial derivatives at a deployment.
@@ -85,7 +89,11 @@ impl Objective {
             temperatures: self.temperatures,
             damage_scale,
         };
-        let (values, by_path) = functionals.evaluate(&hinge_paths(sheet, path));
+        let (values, mut by_path) = functionals.evaluate(&hinge_paths(sheet, path));
+        let (outside, weight) = match &self.domain {
+            Some(penalty) => (penalty.evaluate(sheet, path, &mut by_path), penalty.weight),
+            None => (0.0, 0.0),
+        };
         // Panels that are not weighed may have any shape.
         let (shape, mut by_corners) = match self.panel_shape {
             0.0 => (0.0, vec![[[0.0; 2]; 4]; sheet.panels.len()]),
@@ -96,11 +104,15 @@ impl Objective {
             .iter_mut()
             .for_each(|entry| *entry *= self.panel_shape);
         Judgement {
-            loss: chamfer + functionals.weighted(&values) + self.panel_shape * shape,
+            loss: chamfer
+                + functionals.weighted(&values)
+                + self.panel_shape * shape
+                + weight * outside,
             terms: Terms {
                 chamfer,
                 path: values,
                 panel_shape: shape,
+                domain: outside,
             },
             by_outline,
             by_path,

@@ -46,6 +46,8 @@ pub struct Scores {
     pub shear: f64,
     /// Of the panels, unweighted; 0 if the scene does not weigh it.
     pub panel_shape: f64,
+    /// Of the states outside the training domain, unweighted; 0 if the scene does not weigh it.
+    pub domain: f64,
     /// Share of the hinge states of the path that the hinge law was made for.
     pub share_inside: f64,
 }
@@ -110,6 +112,7 @@ impl Scores {
             compression: terms.path.compression,
             shear: terms.path.shear,
             panel_shape: terms.panel_shape,
+            domain: terms.domain,
             share_inside: evaluation.deployment.share_inside(),
         }
     }
@@ -173,6 +176,7 @@ impl fmt::Display for Report {
             ("shear", before.shear, after.shear),
             ("damage", before.damage, after.damage),
             ("panel shape", before.panel_shape, after.panel_shape),
+            ("outside domain", before.domain, after.domain),
             ("loss (mm^2)", before.loss, after.loss),
             (
                 "inside domain (%)",

@@ -103,6 +103,10 @@ pub struct ObjectiveConfig {
     /// does not mind; never relative to a gradient.
     #[serde(default)]
     pub panel_shape: f64,
+    /// Of states outside the box that the hinge law was learned in, 1 for each that is a tenth of a
+    /// side off; needs `hinge = "surrogate"`; never relative to a gradient.
+    #[serde(default)]
+    pub domain: f64,
     /// Whether the weights of (17)-(19) are relative to the gradient of the Chamfer distance at the
     /// start instead: at the weight 1 a functional pulls as hard as the shape.
     #[serde(default)]

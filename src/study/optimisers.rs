@@ -175,6 +175,7 @@ mod tests {
             compression: 0.0,
             shear: 0.0,
             panel_shape: 0.0,
+            domain: 0.0,
             share_inside: 1.0,
             halvings,
             setback: None,

@@ -232,9 +232,15 @@ fn search(scene: &SceneConfig) -> Result<(), String> {
         ("objective.compression", objective.compression),
         ("objective.shear", objective.shear),
         ("objective.panel_shape", objective.panel_shape),
+        ("objective.domain", objective.domain),
         ("objective.smoothing", objective.smoothing),
     ] {
         within(key, weight, [0.0, 1e9], "")?;
+    }
+    if objective.domain > 0.0 && scene.hinge != HingeModel::Surrogate {
+        return Err(
+            "objective.domain needs hinge = \"surrogate\": no other law has a domain".into(),
+        );
     }
     within("solver.tolerance", scene.solver.tolerance, [1e-14, 0.1], "")?;
     if let Method::Lbfgs { max_iterations } = scene.solver.method {

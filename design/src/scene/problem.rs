@@ -4,12 +4,14 @@ use super::hinge_model::LoadedHinge;
 use super::{Scene, SceneError, SolverConfig};
 use crate::chamfer::Chamfer;
 use crate::design_vector::{DesignVector, WidthChart};
+use crate::domain_penalty::DomainPenalty;
 use crate::equilibrium::{EquilibriumError, EquilibriumSolver, SolverSettings};
 use crate::gradient::{DesignProblem, Mechanics, Model};
 use crate::grid::Grid;
 use crate::hinge_law::{HingeLaw, SurrogateLaw};
 use crate::objective::Objective;
 use crate::path_functionals::PerFunctional;
+use hinge::TrainingDomain;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -27,13 +29,14 @@ impl Scene {
 
     /// Everything that is fixed before the design begins.
     pub fn problem(&self) -> Result<DesignProblem, SceneError> {
+        let model = self.model()?;
         let problem = DesignProblem {
             grid: self.grid(),
             outline: self.config.sheet.outline(),
             widths: self.width_chart(),
             options: self.sheet_options(),
-            model: self.model()?,
-            objective: self.objective(),
+            objective: self.objective(model.domain()),
+            model,
         };
         if !self.config.objective.balance {
             return Ok(problem);
@@ -80,7 +83,7 @@ impl Scene {
         self.config.sheet.outline().area() / self.grid().panel_count() as f64
     }
 
-    fn objective(&self) -> Objective {
+    fn objective(&self, domain: Option<&TrainingDomain>) -> Objective {
         let config = &self.config.objective;
         let unit = if config.balance {
             1.0
@@ -111,6 +114,10 @@ impl Scene {
             },
             temperatures: TEMPERATURES,
             panel_shape: config.panel_shape * self.mean_panel_area(),
+            domain: (domain.filter(|_| config.domain > 0.0)).map(|domain| DomainPenalty {
+                domain: *domain,
+                weight: config.domain * self.mean_panel_area(),
+            }),
         }
     }
 

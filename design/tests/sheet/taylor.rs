@@ -7,6 +7,7 @@ use design::chamfer::{Chamfer, Precision};
 use design::charts::PatternCoordinates;
 use design::check::TaylorRemainders;
 use design::design_vector::{DesignVector, WidthChart};
+use design::domain_penalty::DomainPenalty;
 use design::equilibrium::{EquilibriumSolver, SolverSettings, Status};
 use design::gradient::{DesignProblem, Mechanics, Model};
 use design::grid::Grid;
@@ -15,6 +16,7 @@ use design::objective::{Objective, OutlinePoints};
 use design::path_functionals::PerFunctional;
 use design::pattern::Outline;
 use design::sheet::{Centroid, HingePoint, SheetOptions};
+use hinge::TrainingDomain;
 use std::path::Path;
 use surrogate::Surrogate;
 
@@ -68,6 +70,18 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
         let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 60.0).sin_cos();
         [0.6 * SIDE * cos, 0.45 * SIDE * sin]
     });
+    // A box that most states are outside of; pins are anywhere.
+    let domain = DomainPenalty {
+        domain: TrainingDomain {
+            eta_a: [-0.02, 0.0],
+            eta_s: [-0.01, 0.01],
+            theta: [0.0, 0.02],
+            w_lig: [15.0, 17.0],
+            alpha: [1.5, 1.6],
+        },
+        weight: 1.0,
+    };
+    let domain = matches!(model, Model::Equilibrium(_)).then_some(domain);
     DesignProblem {
         grid: GRID,
         outline: Outline::rectangle(SIDE, SIDE),
@@ -91,6 +105,7 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
             outline: OutlinePoints::Free,
             centred: true,
             panel_shape: 200.0,
+            domain,
             weights: PerFunctional {
                 damage: 300.0,
                 compression: 1e4,
