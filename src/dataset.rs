@@ -4,9 +4,7 @@ mod compare;
 
 use anyhow::{Context, Result, ensure};
 use clap::{Args, Subcommand};
-use dataset::{
-    Bridge, ColumnMap, Database, Details, Gates, Mixing, SplitPlan, compare, rows_from_csv,
-};
+use dataset::{ColumnMap, Database, Details, Gates, Mixing, SplitPlan, compare, rows_from_csv};
 use std::path::{Path, PathBuf};
 
 /// Look at hinge databases, join them, split them, exchange them as CSV
@@ -203,10 +201,9 @@ impl CorrectCommand {
     fn run(&self) -> Result<()> {
         let database = Database::read(&self.database)?;
         let reference = Database::read(&self.reference)?;
-        let rays = compare(&database, &reference);
-        let corrected = database.corrected(&Bridge::fit(&rays)?, &reference)?;
+        let corrected = database.corrected(&reference)?;
         self.out.write(&corrected.split(&self.out.plan())?)?;
-        println!("{}", compare::correction(&rays)?);
+        println!("{}", compare::correction(&compare(&database, &reference))?);
         Ok(())
     }
 }

@@ -10,13 +10,14 @@
 //! fitted to the energy alone, by least squares relative to it; the forces follow, and stay its
 //! gradient. (Fernandez-Godino et al., "Review of multi-fidelity models", 2016, section 2.)
 
-use crate::compare::{ComparedRay, ComparedState};
+use crate::compare::{ComparedRay, ComparedState, compare};
 use crate::database::{Database, DatasetError};
 use crate::rows::Row;
 use faer::Side;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::prelude::*;
 use hinge::HingeSample;
+use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 
 /// The terms, as products of two of (w_lig, alpha, eta_a, eta_s, theta, 1).
@@ -46,7 +47,7 @@ type Coefficients = [f64; TERMS.len()];
 
 /// Takes rows of one mesh to another.
 #[derive(Clone, Debug)]
-pub struct Bridge {
+struct Bridge {
     /// Middle and half the range of (w_lig, alpha, eta_a, eta_s, theta).
     ranges: [[f64; 2]; 5],
     energy: Coefficients,
@@ -56,7 +57,7 @@ pub struct Bridge {
 
 impl Bridge {
     /// The bridge from the mesh of the rays to that of their references.
-    pub fn fit(rays: &[ComparedRay]) -> Result<Self, DatasetError> {
+    fn fit(rays: &[ComparedRay]) -> Result<Self, DatasetError> {
         let (found, needed) = (rays.len(), TERMS.len());
         if found < needed {
             return Err(DatasetError::TooFewRays { found, needed });
@@ -86,7 +87,7 @@ impl Bridge {
 
     /// The sample of a row as the finer mesh would have it. What is not a value of the surrogate stays
     /// as it was solved.
-    pub fn corrected(&self, row: &Row) -> HingeSample {
+    fn corrected(&self, row: &Row) -> HingeSample {
         let (terms, slopes) = self.terms(row);
         let factor = |c: &Coefficients| 1.0 + dot(c, &terms);
         let slope = |i: usize| dot(&self.energy, &slopes.map(|of| of[i]));
@@ -124,13 +125,19 @@ impl Bridge {
 }
 
 impl Database {
-    /// Every row as the mesh of `reference` would have it, by the rays that stand in both.
-    pub fn corrected(&self, bridge: &Bridge, reference: &Self) -> Result<Self, DatasetError> {
+    /// Every row as the mesh of `reference` would have it, by the rays that stand in both. These have cost
+    /// the time of both.
+    pub fn corrected(&self, reference: &Self) -> Result<Self, DatasetError> {
+        let rays = compare(self, reference);
+        let bridge = Bridge::fit(&rays)?;
         let tiers = [self, reference].map(|database| database.manifest().tier.as_str());
         let tier = format!("{} corrected to {}", tiers[0], tiers[1]);
+        let cpu_s = rays.iter().map(|ray| (&ray.end().job, ray.cpu_s[1]));
+        let cpu_s: BTreeMap<_, _> = cpu_s.collect();
         let rows = self.rows().iter().map(|row| Row {
             sample: bridge.corrected(row),
             tier: tier.clone(),
+            cpu_s: row.cpu_s + cpu_s.get(&row.job).unwrap_or(&0.0),
             ..row.clone()
         });
         self.with_rows(rows.collect())
@@ -219,7 +226,7 @@ fn dot(c: &Coefficients, terms: &Coefficients) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compare::{compare, relative_rms};
+    use crate::compare::relative_rms;
     use crate::gates::Gates;
     use crate::rows::tests::rows;
     use crate::split::SplitPlan;
@@ -255,8 +262,9 @@ mod tests {
     fn an_error_of_the_mesh_is_taken_back_on_rays_that_were_not_solved_twice() {
         let (coarse, fine) = (coarse(), database(rows(RAYS)));
         let half = database(rows(RAYS / 2));
-        let bridge = Bridge::fit(&compare(&coarse, &half)).unwrap();
-        let corrected = coarse.corrected(&bridge, &fine).unwrap();
+        let corrected = coarse.corrected(&half).unwrap();
+        // Ten seconds a ray, and half of the rays twice.
+        assert_eq!(corrected.manifest().cpu_s, 15.0 * RAYS as f64);
         assert_eq!(corrected.manifest().tier, "default corrected to default");
         assert_eq!(corrected.manifest().split, coarse.manifest().split);
         let errors = |judged: &Database| {

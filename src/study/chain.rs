@@ -23,12 +23,12 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
-use surrogate::Surrogate;
+use surrogate::{Surrogate, WeightsError};
 
 /// The whole chain on one sheet: what each of its choices costs, and its error in the result
 ///
-/// Every network that is named is put into the scene in turn, then every other choice is varied
-/// with the scene's own network. Writes chain.csv, chain.md, tradeoff.md and a picture. Example:
+/// Every network that is named is put into the scene in turn, one of another window mesh than the
+/// reference's as another window tier; then every other choice is varied with the scene's own network. Writes chain.csv, chain.md, tradeoff.md and a picture. Example:
 /// kirigami study chain configs/scenes/pet-3x3.toml --reference paper.safetensors small.safetensors
 #[derive(Args)]
 pub struct ChainStudy {
@@ -52,6 +52,9 @@ pub struct ChainStudy {
 /// Of the reference.
 const TOLERANCE: f64 = 1e-12;
 const LOAD_STEPS: usize = 40;
+
+const NETWORK: &str = "network";
+const WINDOW_TIER: &str = "window tier";
 
 /// Evaluations of which the fastest is the cost of a step.
 const REPEATS: usize = 5;
@@ -174,6 +177,8 @@ impl ChainStudy {
 
     fn choices(&self, base: &SceneConfig) -> Result<Vec<(&'static str, String, SceneConfig)>> {
         let mut choices: Vec<(&'static str, String, SceneConfig)> = Vec::new();
+        let tier = |weights| Ok::<_, WeightsError>(Surrogate::load(weights)?.card().tier.clone());
+        let finest = tier(&self.reference)?;
         for path in &self.networks {
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
             let known = choices.iter().any(|(_, choice, _)| *choice == name);
@@ -181,7 +186,11 @@ impl ChainStudy {
                 !known,
                 "two networks are called {name}: rename one of the files"
             );
-            choices.push(("network", name.into(), with_weights(base, path)?));
+            let kind = match tier(path)? == finest {
+                true => NETWORK,
+                false => WINDOW_TIER,
+            };
+            choices.push((kind, name.into(), with_weights(base, path)?));
         }
         let mut add = |kind, choice: String, change: &dyn Fn(&mut SceneConfig)| {
             let mut config = base.clone();

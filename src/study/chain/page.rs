@@ -1,6 +1,6 @@
 //! The tables and the chart of the study.
 
-use super::{Deployed, Row};
+use super::{Deployed, NETWORK, Row, WINDOW_TIER};
 use crate::charts::{self, FrontPanel};
 use crate::{picture, run_folder};
 use anyhow::Result;
@@ -27,7 +27,7 @@ pub(super) fn write(out: &Path, truth: &Deployed, rows: &[Row], failures: &str) 
             .iter()
             .filter_map(|row| {
                 let name = match row.kind {
-                    "network" => row.choice.clone(),
+                    NETWORK | WINDOW_TIER => row.choice.clone(),
                     kind => format!("{kind} {}", row.choice),
                 };
                 Some((name, cost(row)?, 100.0 * row.prediction.shape[1]))
@@ -36,8 +36,8 @@ pub(super) fn write(out: &Path, truth: &Deployed, rows: &[Row], failures: &str) 
     };
     let chart = charts::front(&[
         front("windows and training", |row| {
-            let network = row.kind == "network";
-            network.then_some(row.windows_s? + row.training_s?)
+            let trained = [NETWORK, WINDOW_TIER].contains(&row.kind);
+            trained.then_some(row.windows_s? + row.training_s?)
         }),
         front("one step of the design", |row| Some(row.step_s)),
     ])?;
