@@ -104,7 +104,7 @@ impl ActuationStudy {
             .collect();
         picture::save(&actuations(&rows), &self.out.join("actuations"), 2400)?;
         run_folder::write(&self.out, "actuations.csv", &page::csv(&cases)?)?;
-        let page = page::page(&cases, &families)?;
+        let page = page::page(&cases, &families, &self.scenes)?;
         run_folder::write(&self.out, "actuations.md", &page)?;
         println!("{page}\nwritten to {}", self.out.display());
         Ok(())

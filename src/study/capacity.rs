@@ -13,7 +13,7 @@ use design::gradient::Deployment;
 use design::outline_error::outline_error;
 use design::scene::{HingeModel, ObjectiveConfig, PinConfig, Scene, SceneConfig};
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 /// A sheet under a pull and a growing transverse load, designed in four ways
@@ -143,7 +143,7 @@ impl CapacityStudy {
             2000,
         )?;
         run_folder::write(&self.out, "capacity.csv", &csv(&capacities)?)?;
-        let page = page(&capacities, self.to)?;
+        let page = page(&capacities, &self.scene, self.to)?;
         run_folder::write(&self.out, "capacity.md", &page)?;
         println!("{page}\nwritten to {}", self.out.display());
         Ok(())
@@ -269,15 +269,17 @@ impl Capacity {
     }
 }
 
-fn page(capacities: &[Capacity], to: f64) -> Result<String> {
-    let mut text = "# Load capacity\n\n\
-        The sheet of `configs/scenes/capacity.toml`: a pull of 247.7 N on the mid panel of the free edge, rho times as much \
-        outwards on the mid panel of the top border, every rho a deployment of its own. A sheet is deployed while every void is \
+fn page(capacities: &[Capacity], scene: &Path, to: f64) -> Result<String> {
+    let mut text = format!(
+        "# Load capacity\n\n\
+        The sheet of `{}`: its first load is held, its second is rho times what is given there, every \
+        rho a deployment of its own. A sheet is deployed while every void is \
         open at full load. `kirigami study capacity`.\n\n\
         ![opening and boundary error against rho](capacity.png)\n\n\
         | pattern | carries rho | paper | just above | last jump on the way there, load factor | boundary rms at rho = 1, % |\n\
-        |---|---|---|---|---|---|\n"
-        .to_owned();
+        |---|---|---|---|---|---|\n",
+        scene.display()
+    );
     for (capacity, paper) in capacities.iter().zip(PAPER) {
         let [carries, above, jump] = match &capacity.limit {
             None => [format!("over {to}"), "-".into(), "-".into()],

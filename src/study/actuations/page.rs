@@ -5,6 +5,7 @@ use anyhow::{Context, Result};
 use design::validity::total_overlap;
 use design::void_families::VoidFamilies;
 use std::fmt::Write;
+use std::path::Path;
 
 /// Table 1 of the paper: drive (N), rotation's share of the energy, the non-rotational share over the
 /// quarter of interfaces that carry the most force, compression's share of the force (%).
@@ -102,17 +103,25 @@ impl Numbers {
     }
 }
 
-pub fn page(cases: &[Case], families: &VoidFamilies) -> Result<String> {
+pub fn page(cases: &[Case], families: &VoidFamilies, scenes: &Path) -> Result<String> {
     let numbers: Vec<Numbers> = cases.iter().map(Numbers::of).collect();
-    let mut text = "# One sheet, five actuations\n\n\
-        15 x 10 panels of polyester film, 6096 x 4064 mm, opened onto the rectangle of the uniform sheet at 70 degrees, as in \
-        section 3.2 of the paper, whose numbers stand in brackets. The scenes are `configs/scenes/actuation-1.toml` to `-5`; \
+    let scene = &cases.first().context("no case")?.scene;
+    let ([columns, rows], [width, height]) = (
+        scene.config.sheet.panels,
+        scene.config.sheet.size.unwrap_or_default(),
+    );
+    let mut text = format!(
+        "# One sheet, five actuations\n\n\
+        {columns} x {rows} panels of {}, {width:.0} x {height:.0} mm, opened onto one target by the scenes \
+        `{}/actuation-1.toml` to `-5`, as in section 3.2 of the paper, whose numbers stand in brackets; \
         with `--tune` a load is found by bisection, to 4 %, between designs that do not and do reach the target to 1.2 % of its width, else the scene's. \
         `kirigami study actuations --tune`.\n\n\
         ![the five designs](actuations.png)\n\n\
         | case | drive, N | rotation's energy, % | non-rotational, % | compression, % | tension, % | shear, % | boundary rms, % \
-        | from | overlap | mean opening, deg | least |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n"
-        .to_owned();
+        | from | overlap | mean opening, deg | least |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+        scene.material.name,
+        scenes.display()
+    );
     for ((case, n), paper) in cases.iter().zip(&numbers).zip(PAPER) {
         let [drive, rotation, non_rotational, compression] = paper;
         writeln!(
@@ -167,7 +176,11 @@ pub fn page(cases: &[Case], families: &VoidFamilies) -> Result<String> {
         spread(1)
     )?;
     distances(&mut text, cases)?;
-    text.push_str("\nVoids of the 35 disjoint unit cells of all designs (the paper: 725 x 297, 491 x 360, 411 x 226 mm):\n\n");
+    write!(
+        text,
+        "\nVoids of the {} disjoint unit cells of all designs (the paper: 725 x 297, 491 x 360, 411 x 226 mm):\n\n",
+        families.family.len() / cases.len()
+    )?;
     text.push_str("| family | mean void, mm | cells | in I | II | III | IV | V |\n|---|---|---|---|---|---|---|---|\n");
     for (k, [long, short]) in families.sides.iter().enumerate() {
         let members: Vec<bool> = families.family.iter().map(|f| *f == k).collect();
