@@ -102,6 +102,7 @@ fn problem(
             outline: OutlinePoints::Free,
             centred: true,
             panel_shape: 0.0,
+            shortest_edge: 0.0,
             domain: None,
             weights: PerFunctional {
                 damage: 1.0,

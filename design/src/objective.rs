@@ -45,6 +45,8 @@ pub struct Objective {
     pub temperatures: PerFunctional,
     /// Weight of the panels' shape (mm^2).
     pub panel_shape: f64,
+    /// Panel edges that are shorter count as badly shaped (mm).
+    pub shortest_edge: f64,
     /// `None` where the hinge law was not learned, or may be used anywhere.
     pub domain: Option<DomainPenalty>,
 }
@@ -97,7 +99,7 @@ impl Objective {
         // Panels that are not weighed may have any shape.
         let (shape, mut by_corners) = match self.panel_shape {
             0.0 => (0.0, vec![[[0.0; 2]; 4]; sheet.panels.len()]),
-            _ => panel_shape(&sheet.panels),
+            _ => panel_shape(&sheet.panels, self.shortest_edge),
         };
         let entries = by_corners.as_flattened_mut().as_flattened_mut();
         entries

@@ -100,7 +100,8 @@ pub struct ObjectiveConfig {
     #[serde(default)]
     pub shear: f64,
     /// Of panels stretched more than eight to one or sharper than 14 degrees, which the outline alone
-    /// does not mind; never relative to a gradient.
+    /// does not mind, and of edges too short for the windows of learned hinges at both ends; never
+    /// relative to a gradient.
     #[serde(default)]
     pub panel_shape: f64,
     /// Of states outside the box that the hinge law was learned in, 1 for each that is a tenth of a

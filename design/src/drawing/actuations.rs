@@ -2,7 +2,7 @@
 //! flat pattern, panels coloured by their area; the deployed sheet against its target, unit cells
 //! coloured by the family of their void; the forces within.
 
-use super::page::{ACCENT, INK, MUTED, PANELS, TEAL};
+use super::page::{ACCENT, INK, MUTED, PANELS, TEAL, bounds};
 use crate::canvas::{Anchor, Canvas};
 use crate::force_transmission::{ForceTransmission, Interface};
 use crate::gradient::Deployment;
@@ -82,8 +82,8 @@ pub fn actuations(rows: &[ActuationRow]) -> String {
             ],
             unit: u,
         };
-        let flat = extent(&row.start.outline.corners);
-        let open = extent(row.scene.target.points());
+        let flat = bounds(row.start.outline.corners);
+        let open = bounds(row.scene.target.points().iter().copied());
         boundary_values(&mut canvas, &cell(0, flat), row);
         flat_areas(&mut canvas, &cell(1, flat), row);
         deployed(&mut canvas, &cell(2, open), row);
@@ -107,8 +107,8 @@ struct Layout {
 impl Layout {
     fn of(rows: &[ActuationRow], first: &ActuationRow) -> Self {
         let size = |[low, high]: [[f64; 2]; 2]| [high[0] - low[0], high[1] - low[1]];
-        let flat = size(extent(&first.start.outline.corners));
-        let open = size(extent(first.scene.target.points()));
+        let flat = size(bounds(first.start.outline.corners));
+        let open = size(bounds(first.scene.target.points().iter().copied()));
         let gap = 0.12 * open[0];
         // Arrows reach beyond the flat sheet of the first column, and labels stand before it.
         let widths = [1.3 * flat[0], flat[0], open[0], open[0]];
@@ -155,18 +155,6 @@ impl Cell {
             width * self.unit
         )
     }
-}
-
-fn extent(points: &[[f64; 2]]) -> [[f64; 2]; 2] {
-    let all = |pick: fn(f64, f64) -> f64, from: f64| {
-        points.iter().fold([from; 2], |found, point| {
-            [pick(found[0], point[0]), pick(found[1], point[1])]
-        })
-    };
-    [
-        all(f64::min, f64::INFINITY),
-        all(f64::max, f64::NEG_INFINITY),
-    ]
 }
 
 fn boundary_values(canvas: &mut Canvas, cell: &Cell, row: &ActuationRow) {

@@ -24,6 +24,18 @@ pub(super) struct Page {
     edges: [f64; 2],
 }
 
+/// The least and the greatest coordinates.
+pub(super) fn bounds(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
+    let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    for point in points {
+        for axis in 0..2 {
+            bounds[0][axis] = bounds[0][axis].min(point[axis]);
+            bounds[1][axis] = bounds[1][axis].max(point[axis]);
+        }
+    }
+    bounds
+}
+
 impl Page {
     /// A page around `points`, with room for a title above, a scale bar below and, if asked for, a
     /// colour scale at the right.
@@ -33,13 +45,7 @@ impl Page {
         subtitle: &str,
         colour_scale: bool,
     ) -> Self {
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for point in points {
-            for axis in 0..2 {
-                low[axis] = low[axis].min(point[axis]);
-                high[axis] = high[axis].max(point[axis]);
-            }
-        }
+        let [low, high] = bounds(points);
         let right = if colour_scale { 130.0 } else { 40.0 };
         let content = f64::max(high[0] - low[0], 0.8 * (high[1] - low[1]));
         let unit = content / (1000.0 - 40.0 - right);

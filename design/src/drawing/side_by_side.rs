@@ -1,6 +1,6 @@
 //! Sheets side by side at one scale: flat above, deployed onto their targets below.
 
-use super::page::{ACCENT, INK, MUTED, PANELS};
+use super::page::{ACCENT, INK, MUTED, PANELS, bounds};
 use crate::canvas::{Anchor, Canvas};
 use crate::grid::Grid;
 use crate::polygon::{area, common};
@@ -24,18 +24,16 @@ pub struct Column<'a> {
 /// The picture; nothing of no columns.
 pub fn side_by_side(columns: &[Column]) -> String {
     let deployed = |column: &Column| {
-        bounds(
-            column
-                .tessellation
-                .deployed
-                .iter()
-                .flatten()
-                .chain(column.target),
-        )
+        let panels = column.tessellation.deployed.iter().flatten();
+        bounds(panels.chain(column.target).copied())
     };
     let flat = |column: &Column| {
         let sheet = column.tessellation;
-        bounds(sheet.flat.iter().flatten().chain(&sheet.outline.corners))
+        bounds(
+            (sheet.flat.iter().flatten())
+                .chain(&sheet.outline.corners)
+                .copied(),
+        )
     };
     let size = |of: &dyn Fn(&Column) -> [[f64; 2]; 2], axis: usize| {
         let sizes = columns
@@ -153,16 +151,4 @@ fn panels(
             }
         }
     }
-}
-
-/// The least and the greatest coordinates.
-fn bounds<'a>(points: impl IntoIterator<Item = &'a [f64; 2]>) -> [[f64; 2]; 2] {
-    let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    for point in points {
-        for axis in 0..2 {
-            bounds[0][axis] = bounds[0][axis].min(point[axis]);
-            bounds[1][axis] = bounds[1][axis].max(point[axis]);
-        }
-    }
-    bounds
 }
