@@ -86,8 +86,9 @@ struct ExportCommand {
 /// Correct every row to a finer mesh, by the rays that were solved on it too
 ///
 /// The energy is multiplied by what the finer mesh makes of it, a polynomial in geometry and
-/// deformation; the forces stay its gradient. Prints what is left of the differences where each ray
-/// is corrected by the others. Example: kirigami dataset correct data/pet-0.5mm/hinges.parquet
+/// deformation; the forces stay its gradient, and D and D_peak have factors of their own. The split
+/// stays, and so do the columns that no surrogate is trained on. Prints what is left of the
+/// differences where each ray is corrected by the others. Example: kirigami dataset correct data/pet-0.5mm/hinges.parquet
 /// data/pet-0.5mm/reference.parquet --out runs/corrected.parquet
 #[derive(Args)]
 struct CorrectCommand {
@@ -97,8 +98,12 @@ struct CorrectCommand {
     /// Some of its rays on a finer mesh
     #[arg(value_name = "REFERENCE")]
     reference: PathBuf,
-    #[command(flatten)]
-    out: OutArgs,
+    /// The Parquet file to write
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Replace an existing file
+    #[arg(long)]
+    replace: bool,
 }
 
 /// The database to write, and how its geometries are dealt out.
@@ -202,7 +207,7 @@ impl CorrectCommand {
         let database = Database::read(&self.database)?;
         let reference = Database::read(&self.reference)?;
         let corrected = database.corrected(&reference)?;
-        self.out.write(&corrected.split(&self.out.plan())?)?;
+        write(&corrected, &self.out, self.replace)?;
         println!("{}", compare::correction(&compare(&database, &reference))?);
         Ok(())
     }
@@ -218,11 +223,15 @@ impl OutArgs {
     }
 
     fn write(&self, database: &Database) -> Result<()> {
-        make_folder(&self.out)?;
-        database.write(&self.out, self.replace)?;
-        println!("{database}\nwritten to {}", self.out.display());
-        Ok(())
+        write(database, &self.out, self.replace)
     }
+}
+
+fn write(database: &Database, out: &Path, replace: bool) -> Result<()> {
+    make_folder(out)?;
+    database.write(out, replace)?;
+    println!("{database}\nwritten to {}", out.display());
+    Ok(())
 }
 
 fn make_folder(file: &Path) -> Result<()> {

@@ -210,3 +210,45 @@ fn a_measured_curve_is_a_material() {
     let error = work.error(&solve);
     assert!(error.contains("`plastic` or `tensile_csv`"), "{error}");
 }
+
+/// The shipped rays of the default mesh are worth half as much again, and more, once corrected by those of the finest.
+#[test]
+fn a_database_is_corrected_by_some_rays_of_a_finer_mesh() {
+    let work = Workplace::new();
+    let data = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm");
+    let [solved, reference] = ["hinges", "reference"].map(|name| {
+        let path = data.join(format!("{name}.parquet"));
+        path.display().to_string()
+    });
+    let compared = work.output(&format!(
+        "dataset compare {solved} {reference} --out compared"
+    ));
+    let energies: Vec<f64> = (compared.lines().filter(|line| line.starts_with("| W |")))
+        .map(|line| {
+            line.split([' ', '|'])
+                .filter_map(|word| word.parse().ok())
+                .next()
+                .unwrap()
+        })
+        .collect();
+    let [before, after] = energies[..] else {
+        panic!("{compared}");
+    };
+    assert!(after < before / 2.0, "{compared}");
+
+    work.output(&format!(
+        "dataset correct {solved} {reference} --out corrected.parquet"
+    ));
+    let summary = work.output("dataset summary corrected.parquet");
+    assert!(
+        summary.contains("default corrected to reference"),
+        "{summary}"
+    );
+    // What the campaign solved cannot be had back from it.
+    let campaign = "configs/campaigns/pet-0.5mm.toml";
+    let restore = format!("database restore {campaign} --from corrected.parquet --folder restored");
+    assert!(
+        work.error(&restore)
+            .contains("default corrected to reference")
+    );
+}

@@ -6,9 +6,10 @@
 //! ```
 //!
 //! and for each damage a q of its own. The terms are the monomials of degree two and less in w_lig,
-//! alpha - pi/2, eta_a, eta_s and theta, each over its range, that the mirror symmetry allows. c is
-//! fitted to the energy alone, by least squares relative to it; the forces follow, and stay its
-//! gradient. (Fernandez-Godino et al., "Review of multi-fidelity models", 2016, section 2.)
+//! alpha - pi/2, eta_a, eta_s and theta, each over its range, that the mirror symmetry allows; beyond
+//! the range of the rays that were solved twice q stays as it is at its end. c is fitted to the energy
+//! alone, by least squares relative to it; the forces follow, and stay its gradient.
+//! (Fernandez-Godino et al., "Review of multi-fidelity models", 2016, section 2.)
 
 use crate::compare::{ComparedRay, ComparedState, compare};
 use crate::database::{Database, DatasetError};
@@ -38,8 +39,8 @@ const TERMS: [[usize; 2]; 13] = [
 ];
 /// Share of the root mean square below which a value is not judged by its own size.
 const LEAST_SCALE: f64 = 0.3;
-/// Pulls every coefficient to zero as one state that is off by it does: too little to be seen, but
-/// for terms that the rays say nothing of.
+/// Weight of a pull of every coefficient to zero, that of one state: it decides only the terms that the
+/// rays leave open.
 const RIDGE: f64 = 1.0;
 
 /// Coefficients of the [`TERMS`].
@@ -57,12 +58,11 @@ struct Bridge {
 
 impl Bridge {
     /// The bridge from the mesh of the rays to that of their references.
-    fn fit(rays: &[ComparedRay]) -> Result<Self, DatasetError> {
-        let (found, needed) = (rays.len(), TERMS.len());
-        if found < needed {
-            return Err(DatasetError::TooFewRays { found, needed });
-        }
-        let pairs = || rays.iter().flat_map(ComparedRay::pairs);
+    fn fit(rays: &[ComparedRay]) -> Self {
+        let pairs = || {
+            let pairs = rays.iter().flat_map(ComparedRay::pairs);
+            pairs.filter(|(row, _)| as_asked(row))
+        };
         let blank = [0.0; TERMS.len()];
         let unfitted = Self {
             ranges: ranges(pairs().map(|(row, _)| row)),
@@ -77,17 +77,21 @@ impl Bridge {
             });
             least_squares(&values.collect::<Vec<_>>())
         };
-        Ok(Self {
+        Self {
             energy: fit(|sample| sample.w),
             damage: fit(|sample| sample.d),
             damage_peak: fit(|sample| sample.d_peak),
             ..unfitted
-        })
+        }
     }
 
-    /// The sample of a row as the finer mesh would have it. What is not a value of the surrogate stays
-    /// as it was solved.
+    /// The sample of a row as the finer mesh would have it. What no surrogate is trained on stays as it was
+    /// solved, the work of the reactions and the energy residual among it; so does a row that was
+    /// solved on a finer tier than was asked.
     fn corrected(&self, row: &Row) -> HingeSample {
+        if !as_asked(row) {
+            return row.sample;
+        }
         let (terms, slopes) = self.terms(row);
         let factor = |c: &Coefficients| 1.0 + dot(c, &terms);
         let slope = |i: usize| dot(&self.energy, &slopes.map(|of| of[i]));
@@ -106,17 +110,17 @@ impl Bridge {
 
     /// The terms at a row, and their gradients in (a, s, theta).
     fn terms(&self, row: &Row) -> (Coefficients, [[f64; 3]; TERMS.len()]) {
-        let scaled = |i: usize, value: f64| {
-            let [middle, half] = self.ranges[i];
-            (value - middle) / half
-        };
         let at = coordinates(row);
-        let mut x = [1.0; 6];
-        (0..5).for_each(|i| x[i] = scaled(i, at[i]));
-        let mut by = [[0.0; 3]; 6];
-        by[2][0] = 1.0 / (self.ranges[2][1] * row.design.w_lig);
-        by[3][1] = 1.0 / (self.ranges[3][1] * row.design.w_lig);
-        by[4][2] = 1.0 / self.ranges[4][1];
+        let units = [1.0, 1.0, row.design.w_lig, row.design.w_lig, 1.0];
+        let (mut x, mut by) = ([1.0; 6], [[0.0; 3]; 6]);
+        for (i, [middle, half]) in self.ranges.into_iter().enumerate() {
+            let scaled = (at[i] - middle) / half;
+            x[i] = scaled.clamp(-1.0, 1.0);
+            // The first two are the geometry, which no force moves.
+            if i >= 2 && x[i] == scaled {
+                by[i][i - 2] = 1.0 / (half * units[i]);
+            }
+        }
         (
             TERMS.map(|[i, j]| x[i] * x[j]),
             TERMS.map(|[i, j]| std::array::from_fn(|d| by[i][d] * x[j] + x[i] * by[j][d])),
@@ -128,10 +132,16 @@ impl Database {
     /// Every row as the mesh of `reference` would have it, by the rays that stand in both. These have cost
     /// the time of both.
     pub fn corrected(&self, reference: &Self) -> Result<Self, DatasetError> {
+        let [ours, theirs] = [self, reference].map(Self::manifest);
+        if ours.material_hashes != theirs.material_hashes {
+            return Err(DatasetError::OtherMaterial {
+                expected: ours.material.clone(),
+                found: theirs.material.clone(),
+            });
+        }
         let rays = compare(self, reference);
-        let bridge = Bridge::fit(&rays)?;
-        let tiers = [self, reference].map(|database| database.manifest().tier.as_str());
-        let tier = format!("{} corrected to {}", tiers[0], tiers[1]);
+        let bridge = Bridge::fit(enough(&rays)?);
+        let tier = format!("{} corrected to {}", ours.tier, theirs.tier);
         let cpu_s = rays.iter().map(|ray| (&ray.end().job, ray.cpu_s[1]));
         let cpu_s: BTreeMap<_, _> = cpu_s.collect();
         let rows = self.rows().iter().map(|row| Row {
@@ -147,16 +157,29 @@ impl Database {
 /// Each ray corrected by a bridge that was fitted to the others alone: what a correction is worth where
 /// nothing was solved twice.
 pub fn left_out(rays: &[ComparedRay]) -> Result<Vec<Vec<ComparedState>>, DatasetError> {
-    (0..rays.len())
-        .map(|i| {
-            let others = [&rays[..i], &rays[i + 1..]].concat();
-            let bridge = Bridge::fit(&others)?;
-            let states = rays[i]
-                .pairs()
-                .map(|(row, reference)| ComparedState::new(&bridge.corrected(row), reference));
-            Ok(states.collect())
-        })
-        .collect()
+    enough(rays)?;
+    let judged = (0..rays.len()).map(|i| {
+        let bridge = Bridge::fit(&[&rays[..i], &rays[i + 1..]].concat());
+        let states = rays[i].pairs();
+        states
+            .map(|(row, reference)| ComparedState::new(&bridge.corrected(row), reference))
+            .collect()
+    });
+    Ok(judged.collect())
+}
+
+/// The rays, if each may be left out and the others still tell every term.
+fn enough<'a, 'b>(rays: &'b [ComparedRay<'a>]) -> Result<&'b [ComparedRay<'a>], DatasetError> {
+    let (found, needed) = (rays.len(), TERMS.len() + 1);
+    match found < needed {
+        true => Err(DatasetError::TooFewRays { found, needed }),
+        false => Ok(rays),
+    }
+}
+
+/// Whether a row was solved on the tier of its campaign, not on a finer one after that had failed.
+fn as_asked(row: &Row) -> bool {
+    row.solved_tier == row.tier
 }
 
 /// w_lig (mm), alpha - pi/2 (rad), eta_a, eta_s, theta (rad).
@@ -201,11 +224,14 @@ fn least_squares(states: &[(Coefficients, f64, f64)]) -> Coefficients {
         .iter()
         .map(|(.., reference)| reference * reference)
         .sum();
+    if squares == 0.0 {
+        return [0.0; TERMS.len()];
+    }
     let least = LEAST_SCALE * (squares / states.len() as f64).sqrt();
     let mut normal = RIDGE * Mat::<f64>::identity(TERMS.len(), TERMS.len());
     let mut right = Mat::<f64>::zeros(TERMS.len(), 1);
     for (terms, value, reference) in states {
-        let scale = reference.hypot(least).max(f64::MIN_POSITIVE);
+        let scale = reference.hypot(least);
         let row = terms.map(|term| term * value / scale);
         for i in 0..TERMS.len() {
             right[(i, 0)] += row[i] * (reference - value) / scale;
@@ -251,6 +277,7 @@ mod tests {
                 f_s: x.f_s * (1.0 + q) + x.w * slopes[1],
                 m_theta: x.m_theta * (1.0 + q) + x.w * slopes[2],
                 d: 1.1 * x.d,
+                d_peak: 1.3 * x.d_peak,
                 ..x
             };
             Row { sample, ..row }
@@ -274,8 +301,8 @@ mod tests {
         };
         let (before, after) = (errors(&coarse), errors(&corrected));
         // 1/(1 + q) is not of second degree; in forces that are small beside W dq/da it shows most.
-        for (before, after) in std::iter::zip(&before[..5], &after[..5]) {
-            assert!(*after < before / 3.0, "{before} {after}");
+        for (before, after) in std::iter::zip(before, after) {
+            assert!(after < before / 3.0, "{before} {after}");
         }
         assert!(after[0] < 1e-3 && after[3] < 3e-3, "{after:?}");
     }
@@ -283,7 +310,7 @@ mod tests {
     #[test]
     fn corrected_forces_are_the_gradient_of_the_corrected_energy() {
         let (coarse, fine) = (coarse(), database(rows(RAYS)));
-        let bridge = Bridge::fit(&compare(&coarse, &fine)).unwrap();
+        let bridge = Bridge::fit(&compare(&coarse, &fine));
         let row = coarse.rows()[7].clone();
         let moved = |[a, s, theta]: [f64; 3]| {
             let x = row.sample;
@@ -320,7 +347,7 @@ mod tests {
     #[test]
     fn mirror_images_are_corrected_alike() {
         let (coarse, fine) = (coarse(), database(rows(RAYS)));
-        let bridge = Bridge::fit(&compare(&coarse, &fine)).unwrap();
+        let bridge = Bridge::fit(&compare(&coarse, &fine));
         let row = &coarse.rows()[13];
         let image = &crate::mirror::with_mirrored(std::slice::from_ref(row))[1];
         let (there, here) = (bridge.corrected(image).mirrored(), bridge.corrected(row));
@@ -330,15 +357,78 @@ mod tests {
     }
 
     #[test]
-    fn fewer_rays_than_terms_are_an_error() {
-        let (coarse, fine) = (coarse(), database(rows(TERMS.len() - 1)));
-        let error = Bridge::fit(&compare(&coarse, &fine)).unwrap_err();
-        assert!(error.to_string().contains("at least 13"), "{error}");
-        assert_eq!(
-            left_out(&compare(&coarse, &database(rows(RAYS))))
-                .unwrap()
-                .len(),
-            RAYS
+    fn a_ray_does_not_judge_itself() {
+        let (coarse, mut spoilt) = (coarse(), rows(RAYS));
+        for row in spoilt.iter_mut().filter(|row| row.job == "job-003") {
+            row.sample.w *= 10.0;
+        }
+        let spoilt = database(spoilt);
+        let rays = compare(&coarse, &spoilt);
+        let judged = left_out(&rays).unwrap();
+        let i = rays
+            .iter()
+            .position(|ray| ray.end().job == "job-003")
+            .unwrap();
+        let [told, solved] = [&judged[i], &rays[i].states()].map(|states| states[9].value[0]);
+        assert!((told / solved - 1.0).abs() < 0.1, "{told} {solved}");
+    }
+
+    #[test]
+    fn what_was_solved_on_a_finer_tier_stays_as_it_is() {
+        let (coarse, fine) = (coarse(), database(rows(RAYS)));
+        let mut rows: Vec<Row> = coarse.rows().to_vec();
+        rows[0].solved_tier = "fine".into();
+        let corrected = database(rows).corrected(&fine).unwrap();
+        let same = |i: usize| corrected.rows()[i].sample == coarse.rows()[i].sample;
+        assert!(same(0) && !same(1));
+    }
+
+    #[test]
+    fn beyond_the_rays_that_were_solved_twice_the_correction_ends() {
+        let (coarse, fine) = (coarse(), database(rows(RAYS)));
+        let bridge = Bridge::fit(&compare(&coarse, &fine));
+        let at = |theta: f64| {
+            let mut row = coarse.rows()[9].clone();
+            row.sample.theta = theta;
+            let corrected = bridge.corrected(&row);
+            [
+                corrected.w / row.sample.w,
+                corrected.m_theta / row.sample.m_theta,
+            ]
+        };
+        let [energy, moment] = at(3.0);
+        assert_eq!(energy, at(2.0)[0]);
+        assert!((energy - moment).abs() < 1e-12, "{energy} {moment}");
+    }
+
+    #[test]
+    fn what_cannot_be_bridged_is_an_error() {
+        let coarse = coarse();
+        let message = |reference: Vec<Row>| {
+            let error = coarse.corrected(&database(reference)).unwrap_err();
+            error.to_string()
+        };
+        let few = message(rows(TERMS.len()));
+        assert!(
+            few.contains("13 rays") && few.contains("at least 14"),
+            "{few}"
         );
+        let steel = rows(RAYS).into_iter().map(|row| Row {
+            material: "steel".into(),
+            material_hash: "57ee1".into(),
+            ..row
+        });
+        let other = message(steel.collect());
+        assert!(other.contains("film and steel"), "{other}");
+    }
+
+    #[test]
+    fn no_damage_needs_no_correction() {
+        let gentle = rows(RAYS).into_iter().map(|mut row| {
+            row.sample.d = 0.0;
+            row
+        });
+        let corrected = coarse().corrected(&database(gentle.collect())).unwrap();
+        assert_eq!(corrected.rows()[3].sample.d, coarse().rows()[3].sample.d);
     }
 }

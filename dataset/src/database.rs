@@ -31,6 +31,8 @@ pub enum DatasetError {
          at least 3 are needed"
     )]
     TooFewGeometries { found: usize },
+    #[error("the databases are of different materials, {expected} and {found}")]
+    OtherMaterial { expected: String, found: String },
     #[error(
         "{found} rays stand in both databases, the correction needs at least {needed}: solve more \
          rays of the one on the mesh of the other"
@@ -186,13 +188,15 @@ impl Database {
         Ok(within)
     }
 
-    /// Other rows of the same jobs.
+    /// Other rows of the same jobs, through the same gates and split by the same plan.
     pub(crate) fn with_rows(&self, rows: Vec<Row>) -> Result<Self, DatasetError> {
         let Manifest {
             gates, split_plan, ..
         } = &self.manifest;
         let mut other = Self::assemble(rows, gates, split_plan, Mixing::Allowed)?;
-        other.manifest.rejected = self.manifest.rejected.clone();
+        for (reason, count) in &self.manifest.rejected {
+            *other.manifest.rejected.entry(*reason).or_default() += count;
+        }
         Ok(other)
     }
 

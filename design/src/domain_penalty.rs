@@ -5,16 +5,17 @@
 //! sum over the sides of (10 e / l)^2,     l: length of a side,   e: how far the state is beyond it
 //! ```
 //!
-//! so that 1 is a tenth of a side. A side begins 2 % of its length inside the box, or a minimum would
-//! lie just beyond it.
+//! so that a tenth of a side costs 1. It begins 2 % of a side inside the box, but at the flat state, or a
+//! minimum would lie just outside.
 
 use crate::equilibrium::LoadStep;
+use crate::hinge_law::NARROWEST_INTERVAL;
 use crate::sheet::Sheet;
 use hinge::{HingeDeformation, TrainingDomain};
 
 /// Share of a side at either end that already counts as outside.
 const MARGIN: f64 = 0.02;
-/// Sides in one unit of the penalty.
+/// Units of e in the length of a side.
 const PER_SIDE: f64 = 10.0;
 
 /// The box, and what it costs to leave it.
@@ -69,9 +70,11 @@ impl DomainPenalty {
 
 /// (10 e / l)^2 of one side, and its slope.
 fn excess([least, greatest]: [f64; 2], at: f64) -> (f64, f64) {
-    let length = greatest - least;
-    let margin = MARGIN * length;
-    let beyond = (at - greatest + margin).max(0.0) - (least + margin - at).max(0.0);
+    let length = (greatest - least).max(NARROWEST_INTERVAL);
+    // Every path begins at 0, and a law may be learned on one side of it alone.
+    let margin = |end: f64| if end == 0.0 { 0.0 } else { MARGIN * length };
+    let beyond =
+        (at - greatest + margin(greatest)).max(0.0) - (least + margin(least) - at).max(0.0);
     let scaled = PER_SIDE * beyond / length;
     (scaled * scaled, 2.0 * PER_SIDE * scaled / length)
 }
@@ -102,6 +105,13 @@ mod tests {
         assert_eq!(value(&[0.5, 1.0, 0.4, 15.0, 1.5]), 0.0);
         assert!((value(&[0.0, 0.0, 0.5, 15.0, 0.8 + (0.02 - 0.1) * 1.5]) - 1.0).abs() < 1e-12);
         assert!((value(&[0.28 * 15.0, 0.0, 0.5, 15.0, 1.5]) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_law_of_one_width_may_be_used_at_that_width_only() {
+        assert_eq!(excess([0.0, 1.0], 0.0).0, 0.0);
+        assert!(excess([18.0; 2], 19.0).0.is_finite());
+        assert!(excess([18.0; 2], 19.0).0 > excess([18.0; 2], 18.0).0);
     }
 
     #[test]

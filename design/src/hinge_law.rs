@@ -17,6 +17,7 @@ pub use ::surrogate::{HingeDamage, HingeEnergy, Order};
 pub use condensed::{CondensedLaw, Constant};
 pub use contact::{Contact, InvalidContact};
 pub use linear::{InvalidStiffness, LinearLaw};
+pub(crate) use surrogate::NARROWEST_INTERVAL;
 pub use surrogate::SurrogateLaw;
 
 use hinge::{HingeDeformation, HingeDesign, TrainingDomain};

@@ -100,12 +100,12 @@ pub struct ObjectiveConfig {
     #[serde(default)]
     pub shear: f64,
     /// Of panels stretched more than eight to one or sharper than 14 degrees, which the outline alone
-    /// does not mind, and of edges too short for the windows of learned hinges at both ends; never
+    /// does not mind, and of learned hinges of one panel closer than three radii of their windows; never
     /// relative to a gradient.
     #[serde(default)]
     pub panel_shape: f64,
-    /// Of states outside the box that the hinge law was learned in, 1 for each that is a tenth of a
-    /// side off; needs `hinge = "surrogate"`; never relative to a gradient.
+    /// Of states outside the box that the hinge law was learned in, in squared tenths of its sides, as a
+    /// mean over hinges and load steps; needs `hinge = "surrogate"`; never relative to a gradient.
     #[serde(default)]
     pub domain: f64,
     /// Whether the weights of (17)-(19) are relative to the gradient of the Chamfer distance at the

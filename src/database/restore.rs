@@ -2,7 +2,7 @@
 
 use super::CampaignArgs;
 use super::rows::jobs_of;
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::Args;
 use dataset::Database;
 use std::path::PathBuf;
@@ -22,9 +22,19 @@ pub struct RestoreCommand {
 
 impl RestoreCommand {
     pub fn run(&self) -> Result<()> {
-        let jobs = jobs_of(Database::read(&self.from)?.rows())?;
+        let database = Database::read(&self.from)?;
+        let campaign = self.campaign.load()?;
+        // The jobs of a corrected database are the campaign's, but its rows are not what they solved.
+        ensure!(
+            database.manifest().tier == campaign.tier.to_string(),
+            "{} holds rows of the tier `{}`, the campaign solves `{}`",
+            self.from.display(),
+            database.manifest().tier,
+            campaign.tier
+        );
+        let jobs = jobs_of(database.rows())?;
         let folder = self.campaign.folder();
-        let restored = fe_driver::restore(&self.campaign.load()?, &folder, &jobs)?;
+        let restored = fe_driver::restore(&campaign, &folder, &jobs)?;
         println!(
             "{restored} rays restored to {}; {} were there",
             folder.display(),

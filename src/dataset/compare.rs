@@ -47,7 +47,8 @@ impl CompareCommand {
         let mut summary = summary(&rays, &states, &tiers)?;
         match correction(&rays) {
             Ok(text) => summary += &text,
-            Err(reason) => eprintln!("not corrected: {reason}"),
+            // The comparison stands without it.
+            Err(reason) => eprintln!("what `dataset correct` would leave cannot be told: {reason}"),
         }
         run_folder::write(&self.out, "compare.csv", &csv(&rays, &states)?)?;
         run_folder::write(
@@ -87,8 +88,9 @@ fn summary(
 pub fn correction(rays: &[ComparedRay]) -> Result<String> {
     let table = spread_table(&groups(&left_out(rays)?), "ray")?;
     Ok(format!(
-        "\nThe same, each ray corrected by what the others tell of the two tiers. `kirigami dataset \
-         correct`.\n\n{table}"
+        "\nWhat is left of the differences where each of the {} rays is corrected by the others. `kirigami \
+         dataset correct`.\n\n{table}",
+        rays.len()
     ))
 }
 

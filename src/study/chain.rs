@@ -178,7 +178,7 @@ impl ChainStudy {
     fn choices(&self, base: &SceneConfig) -> Result<Vec<(&'static str, String, SceneConfig)>> {
         let mut choices: Vec<(&'static str, String, SceneConfig)> = Vec::new();
         let tier = |weights| Ok::<_, WeightsError>(Surrogate::load(weights)?.card().tier.clone());
-        let finest = tier(&self.reference)?;
+        let judging = tier(&self.reference)?;
         for path in &self.networks {
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
             let known = choices.iter().any(|(_, choice, _)| *choice == name);
@@ -186,7 +186,7 @@ impl ChainStudy {
                 !known,
                 "two networks are called {name}: rename one of the files"
             );
-            let kind = match tier(path)? == finest {
+            let kind = match tier(path)? == judging {
                 true => NETWORK,
                 false => WINDOW_TIER,
             };

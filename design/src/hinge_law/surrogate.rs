@@ -15,7 +15,7 @@ use surrogate::{Prepared, Surrogate};
 const BARRIER_STIFFNESS: f64 = 100.0;
 
 /// Intervals narrower than this (of one training row, say) count as this wide.
-const NARROWEST_INTERVAL: f64 = 0.01;
+pub(crate) const NARROWEST_INTERVAL: f64 = 0.01;
 
 /// The standardised features (13) are of order one, and so are the units of the layers behind them: a
 /// deformation is lost in a few of their last digits.
