@@ -7,6 +7,7 @@ use clap::Args;
 use design::inverse_design::{Ended, StepRecord, forget, inverse_design};
 use design::results::write_results;
 use design::scene::{Scene, SceneConfig};
+use design::scores::shown;
 use std::path::{Path, PathBuf};
 
 /// Design a sheet: where to cut, and how wide to leave every ligament
@@ -99,23 +100,17 @@ impl DesignCommand {
 
 /// A step in one line: the loss and its terms where they are not zero, boundary error, domain.
 fn told(step: &StepRecord) -> String {
-    let terms = [
-        ("Chamfer", step.chamfer),
-        ("damage", step.damage),
-        ("compression", step.compression),
-        ("shear", step.shear),
-        ("panel shape", step.panel_shape),
-        ("outside", step.domain),
-    ];
-    let terms: Vec<String> = (terms.iter().filter(|(_, value)| *value != 0.0))
-        .map(|(name, value)| format!("{name} {value:.4}"))
+    let scores = &step.scores;
+    let terms: Vec<String> = (scores.terms().iter())
+        .filter(|(_, value)| *value != 0.0)
+        .map(|(name, value)| format!("{name} {}", shown(*value)))
         .collect();
     format!(
         "loss {:.4} ({}), outline {:.2} mm, {:.0} % inside the domain",
-        step.loss,
+        scores.loss,
         terms.join(", "),
-        step.outline_error,
-        100.0 * step.share_inside
+        scores.outline_error,
+        100.0 * scores.share_inside
     )
 }
 

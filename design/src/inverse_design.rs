@@ -8,8 +8,8 @@
 use crate::backing_off::{MAX_HALVINGS, Setback, evaluate_or_back_off};
 use crate::design_vector::DesignVector;
 use crate::gradient::{DesignError, DesignProblem, Evaluation};
-use crate::outline_error::outline_error;
 use crate::scene::{Scene, SceneConfig, SceneError};
+use crate::scores::Scores;
 use crate::search::Search;
 use hinge::files;
 use serde::{Deserialize, Serialize};
@@ -22,27 +22,11 @@ const STATE_FILE: &str = "state.json";
 
 /// What one step found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct StepRecord {
     /// 0 is the start.
     pub step: usize,
-    /// L of (16) (mm^2).
-    pub loss: f64,
-    /// Root mean square distance of the deployed outline to the target (mm).
-    pub outline_error: f64,
-    /// The Chamfer distance, coverage included (mm^2).
-    pub chamfer: f64,
-    /// (17)-(19), unweighted.
-    pub damage: f64,
-    pub compression: f64,
-    pub shear: f64,
-    /// Of the panels, unweighted; 0 if the scene does not weigh it.
-    pub panel_shape: f64,
-    /// Of the states outside the training domain, unweighted; 0 if the scene does not weigh it.
-    #[serde(default)]
-    pub domain: f64,
-    /// Share of the hinge states of the path that the hinge law was made for.
-    pub share_inside: f64,
+    #[serde(flatten)]
+    pub scores: Scores,
     /// How often the step was halved, one that was given up included, and what had no value.
     pub halvings: u32,
     pub setback: Option<String>,
@@ -276,7 +260,7 @@ impl State {
         let least = self
             .history
             .iter()
-            .map(|record| record.loss)
+            .map(|record| record.scores.loss)
             .fold(f64::INFINITY, f64::min);
         if evaluation.loss < least {
             self.best = design.clone();
@@ -286,18 +270,9 @@ impl State {
         let increment = self.search.increment(&x, evaluation.loss, &gradient);
         self.design = design;
         self.propose(&increment);
-        let path = &evaluation.terms.path;
         self.history.push(StepRecord {
             step: self.history.len(),
-            loss: evaluation.loss,
-            outline_error: outline_error(scene, &evaluation.deployment),
-            chamfer: evaluation.terms.chamfer,
-            damage: path.damage,
-            compression: path.compression,
-            shear: path.shear,
-            panel_shape: evaluation.terms.panel_shape,
-            domain: evaluation.terms.domain,
-            share_inside: evaluation.deployment.share_inside(),
+            scores: Scores::of(scene, evaluation),
             halvings: setback.halvings,
             setback: setback.reason,
         });
@@ -342,10 +317,10 @@ impl State {
         let path = path.to_owned();
         match state.history.first() {
             Some(first) if same_size && state.search.fits(n) => {
-                if first.loss != start.loss {
+                if first.scores.loss != start.loss {
                     return Err(InverseDesignError::OtherModel {
                         path,
-                        found: first.loss,
+                        found: first.scores.loss,
                         expected: start.loss,
                     });
                 }

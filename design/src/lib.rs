@@ -46,6 +46,7 @@ mod refined_solve;
 pub mod report;
 pub mod results;
 pub mod scene;
+pub mod scores;
 pub mod search;
 pub mod sheet;
 pub mod smooth_extrema;

@@ -5,12 +5,12 @@ mod warning;
 pub use warning::{Concern, Warning};
 
 use crate::fabrication::{CutLines, FabricationError};
-use crate::gradient::{Deployment, Evaluation};
+use crate::gradient::Deployment;
 use crate::inverse_design::{Designed, Ended};
 use crate::localisation::gamma;
-use crate::outline_error::outline_error;
 use crate::polygon::edges;
 use crate::scene::Scene;
+use crate::scores::{Scores, shown};
 use crate::sheet::{Hinge, Sheet};
 use serde::Serialize;
 use std::fmt;
@@ -29,27 +29,6 @@ pub struct Report {
     pub after: Scores,
     pub hinges: Vec<HingeRow>,
     pub warnings: Vec<Warning>,
-}
-
-/// The objective of one design.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Scores {
-    /// L of (16) (mm^2).
-    pub loss: f64,
-    /// Root mean square distance of the deployed outline to the target (mm).
-    pub outline_error: f64,
-    /// The Chamfer distance, coverage included (mm^2).
-    pub chamfer: f64,
-    /// (17)-(19), unweighted.
-    pub damage: f64,
-    pub compression: f64,
-    pub shear: f64,
-    /// Of the panels, unweighted; 0 if the scene does not weigh it.
-    pub panel_shape: f64,
-    /// Of the states outside the training domain, unweighted; 0 if the scene does not weigh it.
-    pub domain: f64,
-    /// Share of the hinge states of the path that the hinge law was made for.
-    pub share_inside: f64,
 }
 
 /// One hinge of the best design, deployed.
@@ -101,23 +80,6 @@ impl Report {
     }
 }
 
-impl Scores {
-    fn of(scene: &Scene, evaluation: &Evaluation) -> Self {
-        let terms = &evaluation.terms;
-        Self {
-            loss: evaluation.loss,
-            outline_error: outline_error(scene, &evaluation.deployment),
-            chamfer: terms.chamfer,
-            damage: terms.path.damage,
-            compression: terms.path.compression,
-            shear: terms.path.shear,
-            panel_shape: terms.panel_shape,
-            domain: terms.domain,
-            share_inside: evaluation.deployment.share_inside(),
-        }
-    }
-}
-
 impl HingeRow {
     fn new(scene: &Scene, deployment: &Deployment, h: usize, damage: Option<f64>) -> Self {
         let sheet = &deployment.sheet;
@@ -165,26 +127,15 @@ impl fmt::Display for Report {
             Ended::Stuck { reason } => writeln!(f, "stuck after {} steps: {reason}", self.steps)?,
         }
         writeln!(f, "\n{:<24}{:>12}{:>12}", "", "start", "best")?;
-        for (name, before, after) in [
-            (
-                "outline error (mm)",
-                before.outline_error,
-                after.outline_error,
-            ),
-            ("Chamfer (mm^2)", before.chamfer, after.chamfer),
-            ("compression", before.compression, after.compression),
-            ("shear", before.shear, after.shear),
-            ("damage", before.damage, after.damage),
-            ("panel shape", before.panel_shape, after.panel_shape),
-            ("outside domain", before.domain, after.domain),
-            ("loss (mm^2)", before.loss, after.loss),
-            (
-                "inside domain (%)",
-                100.0 * before.share_inside,
-                100.0 * after.share_inside,
-            ),
-        ] {
-            writeln!(f, "{name:<24}{before:>12.4}{after:>12.4}")?;
+        let rows = |of: &Scores| {
+            let mut rows = vec![("outline error (mm)", of.outline_error)];
+            rows.extend(of.terms());
+            rows.push(("loss (mm^2)", of.loss));
+            rows.push(("inside domain (%)", 100.0 * of.share_inside));
+            rows
+        };
+        for ((name, before), (_, after)) in std::iter::zip(rows(before), rows(after)) {
+            writeln!(f, "{name:<24}{:>12}{:>12}", shown(before), shown(after))?;
         }
         writeln!(
             f,

@@ -145,7 +145,7 @@ impl Search {
             self.done += 1;
             let message = format!(
                 "case {label}, load x {factor:.3}: outline {:.1} mm",
-                step.outline_error
+                step.scores.outline_error
             );
             self.bar.show(self.done, None, &message);
         })?;

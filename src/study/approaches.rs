@@ -155,7 +155,7 @@ impl ApproachStudy {
         let tessellation = Tessellation::of(&scene, &designed.best.deployment);
         let pattern = &designed.design.pattern;
         let opening = designed.design.opening.unwrap_or_default();
-        let best = (designed.history.iter()).min_by(|x, y| x.loss.total_cmp(&y.loss));
+        let best = (designed.history.iter()).min_by(|x, y| x.scores.loss.total_cmp(&y.scores.loss));
         Ok(Outcome {
             name: name.to_owned(),
             paper,
@@ -163,7 +163,7 @@ impl ApproachStudy {
             rate,
             steps: designed.history.len() - 1,
             loss: designed.best.loss,
-            outline_error: best.map_or(f64::NAN, |step| step.outline_error),
+            outline_error: best.map_or(f64::NAN, |step| step.scores.outline_error),
             defects: tessellation.defects(),
             opening_deg: opening.to_degrees(),
             tessellation,

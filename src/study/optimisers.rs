@@ -82,9 +82,9 @@ impl OptimiserStudy {
         let within = |budget| afforded(&designed.history, budget);
         let best = |budget: usize| {
             let steps = within(budget).iter();
-            steps.min_by(|x, y| x.loss.total_cmp(&y.loss))
+            steps.min_by(|x, y| x.scores.loss.total_cmp(&y.scores.loss))
         };
-        let loss = |budget| best(budget).map_or(f64::NAN, |step| step.loss);
+        let loss = |budget| best(budget).map_or(f64::NAN, |step| step.scores.loss);
         let affordable = within(budget);
         Ok(Searched {
             scene: name,
@@ -92,7 +92,7 @@ impl OptimiserStudy {
             method,
             evaluations: cost(affordable),
             losses: [budget / 4, budget / 2, budget].map(loss),
-            outline_error: best(budget).map_or(f64::NAN, |step| step.outline_error),
+            outline_error: best(budget).map_or(f64::NAN, |step| step.scores.outline_error),
             settled: designed.ended == Ended::Settled && affordable.len() == designed.history.len(),
         })
     }
@@ -163,20 +163,13 @@ fn csv(searched: &[Searched]) -> Result<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use design::scores::Scores;
 
     #[test]
     fn halvings_are_paid_for() {
         let step = |halvings| StepRecord {
             step: 0,
-            loss: 0.0,
-            outline_error: 0.0,
-            chamfer: 0.0,
-            damage: 0.0,
-            compression: 0.0,
-            shear: 0.0,
-            panel_shape: 0.0,
-            domain: 0.0,
-            share_inside: 1.0,
+            scores: Scores::default(),
             halvings,
             setback: None,
         };

@@ -104,7 +104,7 @@ impl SilhouetteStudy {
         let designed = designed(&scene, &mut |step| {
             show(
                 step.step,
-                &format!("{name}, outline {:.1} mm", step.outline_error),
+                &format!("{name}, outline {:.1} mm", step.scores.outline_error),
             );
         })?;
         let seconds = began.elapsed().as_secs_f64();

@@ -99,7 +99,7 @@ impl SolutionStudy {
                 let history = &solutions[family[family.len() / 2]].designed.history;
                 history
                     .iter()
-                    .map(|step| 100.0 * step.outline_error / side)
+                    .map(|step| 100.0 * step.scores.outline_error / side)
                     .collect()
             })
             .collect();
@@ -194,8 +194,8 @@ fn error(designed: &Designed) -> f64 {
     let best = designed
         .history
         .iter()
-        .min_by(|x, y| x.loss.total_cmp(&y.loss));
-    best.map_or(f64::NAN, |step| step.outline_error)
+        .min_by(|x, y| x.scores.loss.total_cmp(&y.scores.loss));
+    best.map_or(f64::NAN, |step| step.scores.outline_error)
 }
 
 /// Converged runs by opening, each family in order of its outline error, the largest family first.

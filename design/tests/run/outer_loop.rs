@@ -12,17 +12,17 @@ fn the_loss_falls_and_the_best_design_is_returned() {
     assert_eq!(designed.ended, Ended::Completed);
     assert_eq!(designed.history.len(), 26);
     let first = &designed.history[0];
-    assert_eq!(first.loss, designed.start.loss);
+    assert_eq!(first.scores.loss, designed.start.loss);
     assert!(
-        designed.best.loss < 0.8 * first.loss,
+        designed.best.loss < 0.8 * first.scores.loss,
         "{} {}",
         designed.best.loss,
-        first.loss
+        first.scores.loss
     );
     let least = designed
         .history
         .iter()
-        .map(|record| record.loss)
+        .map(|record| record.scores.loss)
         .fold(f64::MAX, f64::min);
     assert_eq!(least, designed.best.loss);
 }
@@ -34,7 +34,7 @@ fn every_step_of_lbfgs_lowers_the_loss() {
     let folder = tempfile::tempdir().unwrap();
     let curve = ("coverage = 0.5", "coverage = 0.5\nprecision = \"curve\"");
     let designed = run(&read(folder.path(), &with(&[LBFGS, curve])), None).unwrap();
-    let falls = |pair: &[StepRecord]| pair[1].loss < pair[0].loss;
+    let falls = |pair: &[StepRecord]| pair[1].scores.loss < pair[0].scores.loss;
     assert!(designed.history.windows(2).all(falls));
     assert!(designed.best.loss < 0.8 * designed.start.loss);
 }
@@ -118,6 +118,6 @@ fn a_step_into_designs_without_value_is_halved_and_says_so() {
         designed
             .history
             .iter()
-            .all(|record| record.loss.is_finite())
+            .all(|record| record.scores.loss.is_finite())
     );
 }

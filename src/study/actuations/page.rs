@@ -75,7 +75,7 @@ impl Numbers {
             .designed
             .history
             .first()
-            .map_or(f64::NAN, |step| step.outline_error);
+            .map_or(f64::NAN, |step| step.scores.outline_error);
         Self {
             drive: if axial > 0.0 { axial } else { all.sum() },
             rotation: 100.0 * shares.rotation,
