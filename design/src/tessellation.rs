@@ -32,6 +32,8 @@ pub struct Defects {
     pub overlap: [f64; 2],
     /// Area of the flat sheet that no panel covers, over the sheet's.
     pub void: f64,
+    /// Area beside the flat sheet that panels cover, over the sheet's.
+    pub outside: f64,
 }
 
 /// How badly the worst panels of a flat sheet are shaped.
@@ -60,12 +62,13 @@ impl Tessellation {
 
     pub fn defects(&self) -> Defects {
         let sheet = self.outline.area();
-        let (flat_overlap, void) = self.overlap_and_void(&self.flat);
-        let (deployed_overlap, _) = self.overlap_and_void(&self.deployed);
+        let [flat_overlap, void, outside] = self.areas(&self.flat);
+        let [deployed_overlap, ..] = self.areas(&self.deployed);
         Defects {
             gap: [&self.flat, &self.deployed].map(|panels| self.gap(panels) / sheet.sqrt()),
             overlap: [flat_overlap / sheet, deployed_overlap / sheet],
             void: void / sheet,
+            outside: outside / sheet,
         }
     }
 
@@ -97,24 +100,28 @@ impl Tessellation {
         gaps.fold(0.0, f64::max)
     }
 
-    /// Area covered twice or more, and area of the sheet that is not covered (mm^2).
-    fn overlap_and_void(&self, panels: &[[[f64; 2]; 4]]) -> (f64, f64) {
+    /// Area covered twice or more, area of the sheet that is not covered, and area beside it that is (mm^2).
+    fn areas(&self, panels: &[[[f64; 2]; 4]]) -> [f64; 3] {
         let corners = || panels.iter().flatten().chain(&self.outline.corners);
         let low = corners().map(|p| p[1]).fold(f64::INFINITY, f64::min);
         let high = corners().map(|p| p[1]).fold(f64::NEG_INFINITY, f64::max);
         let spacing = (high - low) / LINES as f64;
-        let (mut overlap, mut void) = (0.0, 0.0);
+        let mut areas = [0.0; 3];
         for i in 0..LINES {
             let y = low + spacing * (i as f64 + 0.5);
             let mut covered: Vec<[f64; 2]> = (panels.iter())
                 .flat_map(|panel| crossings(panel, y))
                 .collect();
             covered.sort_by(|a, b| a[0].total_cmp(&b[0]));
-            overlap += spacing * twice(&covered);
             let sheet = crossings(&self.outline.corners, y);
-            void += spacing * (length(&sheet) - once(&covered, &sheet));
+            let inside = once(&covered, &sheet);
+            let all = once(&covered, &[[f64::NEG_INFINITY, f64::INFINITY]]);
+            let lengths = [twice(&covered), length(&sheet) - inside, all - inside];
+            for (area, length) in std::iter::zip(&mut areas, lengths) {
+                *area += spacing * length;
+            }
         }
-        (overlap, void)
+        areas
     }
 }
 
@@ -175,13 +182,16 @@ mod tests {
         };
         assert_eq!(tessellation.worst_panels(), squares);
         assert_eq!(
-            (whole.gap, whole.overlap, whole.void),
-            ([0.0; 2], [0.0; 2], 0.0)
+            (whole.gap, whole.overlap, whole.void, whole.outside),
+            ([0.0; 2], [0.0; 2], 0.0, 0.0)
         );
         tessellation.flat = moved;
         let defects = tessellation.defects();
         assert!((defects.gap[0] - 0.1).abs() < 1e-12 && defects.gap[1] == 0.0);
         assert!((defects.overlap[0] - 0.05).abs() < 1e-12 && defects.overlap[1] == 0.0);
-        assert!((defects.void - 0.05).abs() < 1e-12);
+        assert!((defects.void - 0.05).abs() < 1e-12 && defects.outside == 0.0);
+        tessellation.flat[3] = square(1.0, 1.2);
+        let defects = tessellation.defects();
+        assert!((defects.outside - 0.05).abs() < 1e-3, "{defects:?}");
     }
 }

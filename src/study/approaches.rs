@@ -175,7 +175,9 @@ impl ApproachStudy {
 
 impl Outcome {
     fn column(&self, radius: f64) -> Column<'_> {
-        let Defects { gap, overlap, void } = self.defects;
+        let Defects {
+            gap, overlap, void, ..
+        } = self.defects;
         let percents = [gap[0], gap[1], overlap[0], overlap[1], void].map(percent);
         let [gap_flat, gap_open, overlap_flat, overlap_open, void] = percents;
         let lines = vec![
@@ -212,26 +214,27 @@ fn page(outcomes: &[Outcome], drawn: &[usize], steps: usize, radius: f64) -> Res
          bold and in the picture; below them the charts until L-BFGS settles, with the distance measured to the \
          target's curve. Boundary: root mean square \
          distance of the free outline corners to the circle, in % of its radius. Gaps in % of the sheet's side, flat and \
-         deployed; overlaps (flat and deployed) and voids in % of its area. `kirigami study approaches`.\n\n\
-         | approach | coordinates | rate | steps | boundary | gap | deployed | overlap | deployed | void | opening, deg | s | the paper |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
+         deployed; overlaps (flat and deployed), voids and what lies beside it in % of its area. `kirigami study approaches`.\n\n\
+         | approach | coordinates | rate | steps | boundary | gap | deployed | overlap | deployed | void | beside | opening, deg | s | the paper |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
     );
     for (k, it) in outcomes.iter().enumerate() {
-        let Defects { gap, overlap, void } = it.defects;
+        let defects = it.defects;
         let mark = if drawn.contains(&k) { "**" } else { "" };
         writeln!(
             text,
-            "| {mark}{}{mark} | {} | {} | {} | {:.3} | {} | {} | {} | {} | {} | {:.1} | {:.1} | {} |",
+            "| {mark}{}{mark} | {} | {} | {} | {:.3} | {} | {} | {} | {} | {} | {} | {:.1} | {:.1} | {} |",
             it.name,
             it.coordinates,
             it.rate,
             it.steps,
             100.0 * it.outline_error / radius,
-            percent(gap[0]),
-            percent(gap[1]),
-            percent(overlap[0]),
-            percent(overlap[1]),
-            percent(void),
+            percent(defects.gap[0]),
+            percent(defects.gap[1]),
+            percent(defects.overlap[0]),
+            percent(defects.overlap[1]),
+            percent(defects.void),
+            percent(defects.outside),
             it.opening_deg,
             it.seconds,
             it.paper,
@@ -243,22 +246,24 @@ fn page(outcomes: &[Outcome], drawn: &[usize], steps: usize, radius: f64) -> Res
 fn csv(outcomes: &[Outcome], radius: f64) -> Result<String> {
     let mut text =
         "approach,coordinates,rate,steps,boundary_over_radius,gap_flat,gap_deployed,overlap_flat,\
-                    overlap_deployed,void,opening_deg,seconds\n"
+                    overlap_deployed,void,outside,opening_deg,seconds\n"
             .to_owned();
     for it in outcomes {
-        let Defects { gap, overlap, void } = it.defects;
+        let defects = it.defects;
         writeln!(
             text,
-            "\"{}\",{},{},{},{:.6},{:.3e},{:.3e},{:.3e},{:.3e},{void:.3e},{:.3},{:.2}",
+            "\"{}\",{},{},{},{:.6},{:.3e},{:.3e},{:.3e},{:.3e},{:.3e},{:.3e},{:.3},{:.2}",
             it.name,
             it.coordinates,
             it.rate,
             it.steps,
             it.outline_error / radius,
-            gap[0],
-            gap[1],
-            overlap[0],
-            overlap[1],
+            defects.gap[0],
+            defects.gap[1],
+            defects.overlap[0],
+            defects.overlap[1],
+            defects.void,
+            defects.outside,
             it.opening_deg,
             it.seconds,
         )?;
