@@ -1,12 +1,14 @@
 //! `kirigami surrogate`: ask exported weights, and read their card.
 
-use crate::train::{bin_table, error_table};
+use crate::train::{UNSEEN, bin_table, error_table};
 use anyhow::{Context, Result, bail, ensure};
 use clap::{Args, Subcommand};
+use dataset::{Database, Row};
 use hinge::{HingeDeformation, HingeDesign};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use surrogate::{Order, Surrogate};
+use train::Parity;
 
 /// Ask exported weights, and read their card
 #[derive(Args)]
@@ -19,6 +21,7 @@ pub struct SurrogateCommand {
 enum Action {
     Eval(EvalCommand),
     Card(CardCommand),
+    Test(TestCommand),
 }
 
 /// Evaluate energy, forces, tangent and damage at the hinge states of a CSV file
@@ -43,6 +46,20 @@ struct CardCommand {
     /// Weights (safetensors with their card)
     #[arg(value_name = "WEIGHTS")]
     weights: PathBuf,
+}
+
+/// Judge weights by every state of a database, such as rays of a finer mesh
+///
+/// Rays that the weights were trained on are judged too. Example: kirigami surrogate test
+/// data/pet-0.5mm/medium.safetensors data/pet-0.5mm/reference.parquet
+#[derive(Args)]
+struct TestCommand {
+    /// Weights (safetensors with their card)
+    #[arg(value_name = "WEIGHTS")]
+    weights: PathBuf,
+    /// Database (Parquet with its manifest)
+    #[arg(value_name = "DATABASE")]
+    database: PathBuf,
 }
 
 /// One state to be evaluated.
@@ -75,6 +92,7 @@ impl SurrogateCommand {
         match &self.action {
             Action::Eval(command) => command.run(),
             Action::Card(command) => command.run(),
+            Action::Test(command) => command.run(),
         }
     }
 }
@@ -95,6 +113,42 @@ impl EvalCommand {
                 it.inside, it.w, it.f_a, it.f_s, it.m_theta, it.d
             );
         }
+        Ok(())
+    }
+}
+
+impl TestCommand {
+    fn run(&self) -> Result<()> {
+        let surrogate = Surrogate::load(&self.weights)?;
+        let database = Database::read(&self.database)?;
+        let (card, manifest) = (surrogate.card(), database.manifest());
+        if let Some(material) = &card.material_hash {
+            ensure!(
+                manifest
+                    .material_hashes
+                    .iter()
+                    .all(|other| other == material),
+                "{} were trained on {}, {} is of {}",
+                self.weights.display(),
+                card.material,
+                self.database.display(),
+                manifest.material
+            );
+        }
+        let rows = database.rows();
+        let inside = |row: &&Row| card.domain.contains(&row.design, &row.sample.deformation());
+        println!(
+            "tier {}, judged by tier {}: {} states of {} rays, {:.1} % of them in the box of the training",
+            card.tier,
+            manifest.tier,
+            rows.len(),
+            manifest.rays,
+            100.0 * rows.iter().filter(inside).count() as f64 / rows.len() as f64
+        );
+        println!(
+            "{}",
+            error_table(&Parity::of(&surrogate, rows).errors(), "states")
+        );
         Ok(())
     }
 }
@@ -131,7 +185,7 @@ impl CardCommand {
                 scale * greatest
             );
         }
-        println!("\n{}", error_table(&card.test_errors));
+        println!("\n{}", error_table(&card.test_errors, UNSEEN));
         if !card.error_bins.is_empty() {
             println!("\n{}", bin_table(&card.error_bins));
         }

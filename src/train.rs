@@ -61,6 +61,8 @@ pub struct TrainCommand {
     replace: bool,
 }
 
+/// What errors are measured on.
+pub const UNSEEN: &str = "samples of unseen geometries";
 /// Longest time that a kill of the training can cost.
 const SAVE_EVERY: Duration = Duration::from_secs(30);
 
@@ -154,7 +156,7 @@ impl TrainCommand {
         if !slices.is_empty() {
             picture::save(&charts::slices(&slices)?, &self.beside("slices"), 1200)?;
         }
-        println!("{}\n", error_table(&trained.test_errors));
+        println!("{}\n", error_table(&trained.test_errors, UNSEEN));
         println!("{}\n", bin_table(&trained.surrogate.card().error_bins));
         print_stiffness(&trained.stiffness);
         if let Some(last) = trained.history.last() {
@@ -313,9 +315,9 @@ fn least_error(trained: &Trained) -> f64 {
     least(0) * least(1)
 }
 
-/// The errors of each quantity.
-pub fn error_table(errors: &TestErrors) -> Table {
-    let header = format!("on {} samples of unseen geometries", errors.rows);
+/// The errors of each quantity on `what`.
+pub fn error_table(errors: &TestErrors, what: &str) -> Table {
+    let header = format!("on {} {what}", errors.rows);
     let mut table = table([header.as_str(), "relative RMSE", "median"]);
     for (name, error) in quantities(errors) {
         table.add_row([

@@ -96,6 +96,20 @@ fn a_table_becomes_weights_that_answer() {
     let csv = work.output(&format!("surrogate eval {WEIGHTS} states.csv"));
     assert_eq!(csv.lines().count(), 4);
 
+    let judged = work.output(&format!("surrogate test {WEIGHTS} {DATABASE}"));
+    let energy = judged
+        .lines()
+        .find(|line| line.contains("energy W"))
+        .unwrap();
+    let percent: f64 = energy
+        .split_whitespace()
+        .find_map(|word| word.parse().ok())
+        .unwrap();
+    assert!(
+        judged.contains("300 states of 30 rays") && percent < 20.0,
+        "{judged}"
+    );
+
     let card = work.output(&format!("surrogate card {WEIGHTS}"));
     assert!(
         card.contains("PET film 0.5 mm") && card.contains("edge"),
