@@ -102,7 +102,7 @@ fn problem(
             outline: OutlinePoints::Free,
             centred: true,
             panel_shape: 0.0,
-            hinge_spacing: 0.0,
+            least_distance: 0.0,
             domain: None,
             weights: PerFunctional {
                 damage: 1.0,

@@ -88,7 +88,7 @@ fn problem(grid: Grid, stiffness: f64, settings: SolverSettings) -> DesignProble
             outline: OutlinePoints::Free,
             centred: true,
             panel_shape: 0.0,
-            hinge_spacing: 0.0,
+            least_distance: 0.0,
             domain: None,
             weights: per(0.1, 0.1),
             temperatures: per(0.02, 0.02),

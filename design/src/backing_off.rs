@@ -94,7 +94,7 @@ mod tests {
                 outline: OutlinePoints::Free,
                 centred: false,
                 panel_shape: 0.0,
-                hinge_spacing: 0.0,
+                least_distance: 0.0,
                 domain: None,
                 weights: PerFunctional::default(),
                 temperatures: PerFunctional::default(),

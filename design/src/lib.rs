@@ -19,7 +19,6 @@ pub mod free_panels;
 pub mod gradient;
 pub mod grid;
 pub mod hinge_law;
-mod hinge_spacing;
 pub mod ideal_deployment;
 pub mod intersection_over_union;
 pub mod inverse_design;

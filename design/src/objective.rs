@@ -1,11 +1,10 @@
 //! The design objective (16): the Chamfer distance of the deployed outline to the target, and
 //! functionals of the deformation path of the hinges; and what the outline does not mind: how well-shaped
-//! the panels are, whether their hinges have room, and whether these stay where their law was learned.
+//! the panels are, and whether their hinges stay where their law was learned.
 
 use crate::chamfer::Chamfer;
 use crate::domain_penalty::DomainPenalty;
 use crate::equilibrium::LoadStep;
-use crate::hinge_spacing::crowding;
 use crate::panel_shape::panel_shape;
 use crate::path_functionals::{HingePath, PathFunctionals, PerFunctional};
 use crate::sheet::Sheet;
@@ -45,10 +44,10 @@ pub struct Objective {
     pub weights: PerFunctional,
     /// Temperatures of the path extrema.
     pub temperatures: PerFunctional,
-    /// Weight of the panels' shape and of crowded hinges (mm^2).
+    /// Weight of the panels' shape (mm^2).
     pub panel_shape: f64,
-    /// Hinges of one panel that are closer are crowded (mm).
-    pub hinge_spacing: f64,
+    /// Corners of a panel that are closer count as badly shaped (mm).
+    pub least_distance: f64,
     /// `None` where the hinge law was not learned, or may be used anywhere.
     pub domain: Option<DomainPenalty>,
 }
@@ -101,25 +100,21 @@ impl Objective {
         // Panels that are not weighed may have any shape.
         let (shape, mut by_corners) = match self.panel_shape {
             0.0 => (0.0, vec![[[0.0; 2]; 4]; sheet.panels.len()]),
-            _ => panel_shape(&sheet.panels),
+            _ => panel_shape(&sheet.panels, self.least_distance),
         };
         let entries = by_corners.as_flattened_mut().as_flattened_mut();
         entries
             .iter_mut()
             .for_each(|entry| *entry *= self.panel_shape);
-        let crowding = match self.panel_shape {
-            0.0 => 0.0,
-            weight => crowding(sheet, self.hinge_spacing, weight, &mut by_corners),
-        };
         Judgement {
             loss: chamfer
                 + functionals.weighted(&values)
-                + self.panel_shape * (shape + crowding)
+                + self.panel_shape * shape
                 + weight * outside,
             terms: Terms {
                 chamfer,
                 path: values,
-                panel_shape: shape + crowding,
+                panel_shape: shape,
                 domain: outside,
             },
             by_outline,

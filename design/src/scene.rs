@@ -100,8 +100,8 @@ pub struct ObjectiveConfig {
     #[serde(default)]
     pub shear: f64,
     /// Of panels stretched more than eight to one or sharper than 14 degrees, which the outline alone
-    /// does not mind, and of learned hinges of one panel closer than three radii of their windows; never
-    /// relative to a gradient.
+    /// does not mind, and, with learned hinges, of corners of a panel closer than three radii of their
+    /// windows; never relative to a gradient.
     #[serde(default)]
     pub panel_shape: f64,
     /// Of states outside the box that the hinge law was learned in, in squared tenths of its sides, as a

@@ -18,7 +18,7 @@ pub struct Scores {
     pub damage: f64,
     pub compression: f64,
     pub shear: f64,
-    /// Of the panels and their hinges' room, unweighted; 0 if the scene does not weigh it.
+    /// Of the panels, unweighted; 0 if the scene does not weigh it.
     pub panel_shape: f64,
     /// Of the states outside the training domain, unweighted; 0 if the scene does not weigh it.
     #[serde(default)]

@@ -2,7 +2,6 @@
 //! sides, room for the windows, cut angles.
 
 use crate::grid::Grid;
-use crate::hinge_spacing::hinge_spacings;
 use crate::kinematics::deployed_corners;
 use crate::pattern::CutPattern;
 use crate::polygon::{area, common};
@@ -105,4 +104,25 @@ fn shared_areas(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<f64> {
         area(&common(one, other))
     });
     shared.collect()
+}
+
+/// The distance of each hinge to the nearest other one of its two panels (mm).
+fn hinge_spacings(sheet: &Sheet) -> Vec<f64> {
+    let mut of_panel = vec![Vec::new(); sheet.panels.len()];
+    for (h, hinge) in sheet.hinges.iter().enumerate() {
+        of_panel[hinge.panel_a()].push(h);
+        of_panel[hinge.panel_b()].push(h);
+    }
+    let mut least = vec![f64::INFINITY; sheet.hinges.len()];
+    for hinges in of_panel {
+        for (i, &one) in hinges.iter().enumerate() {
+            for &other in &hinges[..i] {
+                let [p, q] = [one, other].map(|h| sheet.hinges[h].corner);
+                let apart = f64::hypot(q[0] - p[0], q[1] - p[1]);
+                least[one] = least[one].min(apart);
+                least[other] = least[other].min(apart);
+            }
+        }
+    }
+    least
 }

@@ -115,7 +115,7 @@ impl Scene {
             temperatures: TEMPERATURES,
             panel_shape: config.panel_shape * self.mean_panel_area(),
             // Only a learned hinge is a window. Two windows and a gap: they do not lie in line.
-            hinge_spacing: domain.map_or(0.0, |_| 3.0 * self.config.process.r_win),
+            least_distance: domain.map_or(0.0, |_| 3.0 * self.config.process.r_win),
             domain: (domain.filter(|_| config.domain > 0.0)).map(|domain| DomainPenalty {
                 domain: *domain,
                 weight: config.domain * self.mean_panel_area(),

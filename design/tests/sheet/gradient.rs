@@ -57,7 +57,7 @@ fn a_pulled_sheet_with_path_functionals() {
             outline: OutlinePoints::All,
             centred: false,
             panel_shape: 0.0,
-            hinge_spacing: 0.0,
+            least_distance: 0.0,
             domain: None,
             weights: per_functional(&case["weights"]),
             temperatures: per_functional(&case["softmax_temperature"]),

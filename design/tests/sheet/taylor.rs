@@ -105,7 +105,7 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
             outline: OutlinePoints::Free,
             centred: true,
             panel_shape: 200.0,
-            hinge_spacing: 200.0,
+            least_distance: 200.0,
             domain,
             weights: PerFunctional {
                 damage: 300.0,
