@@ -11,7 +11,9 @@ use dataset::{COMPARED, ComparedState};
 use fe_driver::KeptSolve;
 use hinge::{HingeDeformation, HingeSample};
 use mesher::Tier;
+use std::collections::BTreeSet;
 use std::fmt::Write;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use surrogate::{Order, Surrogate};
 
@@ -27,6 +29,9 @@ pub struct ReplayCommand {
     /// Further networks of the same training (train --seeds), whose spread estimates the error
     #[arg(long, value_name = "FILE", num_args = 1..)]
     ensemble: Vec<PathBuf>,
+    /// Replay as many hinges, spread evenly over the sheet; by default all
+    #[arg(long, value_name = "N")]
+    sample: Option<NonZeroUsize>,
     /// Mesh tier of the windows
     #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
     tier: Tier,
@@ -54,7 +59,12 @@ impl ReplayCommand {
             .surrogate()
             .context("the scene has no surrogate to compare with (hinge = \"surrogate\")")?;
         let networks = ensemble(surrogate, &self.ensemble)?;
-        let routes = hinge_routes(&scene, &design)?;
+        let mut routes = hinge_routes(&scene, &design)?;
+        if let Some(sample) = self.sample {
+            let (all, sample) = (routes.len(), sample.get());
+            let chosen: BTreeSet<usize> = (0..sample).map(|i| i * all / sample).collect();
+            routes.retain(|route| chosen.contains(&route.hinge));
+        }
         let solves: Vec<KeptSolve> = routes
             .iter()
             .map(|route| route.recorded(&scene.material, self.tier))
