@@ -131,12 +131,18 @@ impl EquilibriumSolver {
                 reached.at + increment
             };
             let potential = self.potential(sheet, at, reached.force);
-            let (start, forces) = self.predicted(reached, at);
-            let minimum = match self.settings.method {
+            let seek = |(start, forces)| match self.settings.method {
                 Method::Newton => potential.minimise(start, forces, &self.settings),
                 Method::Lbfgs { max_iterations } => {
                     potential.minimise_lbfgs(start, &self.settings, max_iterations)
                 }
+            };
+            let minimum = match seek(self.predicted(reached, at, 1.0)) {
+                // Where the rates lead panels through each other, the search starts where it is.
+                Err(failure) if failure.residual.is_infinite() && self.drive.is_none() => {
+                    seek(self.predicted(reached, at, 0.0))
+                }
+                minimum => minimum,
             };
             let minimum = match minimum {
                 Ok(minimum) => minimum,
@@ -227,12 +233,12 @@ impl EquilibriumSolver {
     }
 
     /// Where the rates at `reached` lead, configuration and hinge forces, the supports and the stroke as
-    /// they are at `at`.
-    fn predicted(&self, reached: &Reached, at: f64) -> (Configuration, Vec<[f64; 3]>) {
+    /// they are at `at`; under load control no further than the part `reach` of the way.
+    fn predicted(&self, reached: &Reached, at: f64, reach: f64) -> (Configuration, Vec<[f64; 3]>) {
         let ahead = at - reached.at;
         // A stroke is kept whatever the rotation.
         let cut = match self.drive {
-            None => (LONGEST_INCREMENT / (ahead * reached.speed)).min(1.0),
+            None => (LONGEST_INCREMENT / (ahead * reached.speed)).min(reach),
             Some(_) => 1.0,
         };
         let mut configuration = moved(&reached.configuration, &reached.rate, cut * ahead);

@@ -1,6 +1,7 @@
 //! The sheet of section 3.2 under its first actuation: what passes through it, and when it gives way.
 
 use design::degeneration::{Degeneration, last_jump};
+use design::equilibrium::Status;
 use design::force_transmission::ForceTransmission;
 use design::gradient::{Deployment, DesignProblem};
 use design::scene::{Scene, SceneConfig};
@@ -10,12 +11,16 @@ use std::path::Path;
 
 /// The uniform sheet under the scene's loads times `factor`.
 fn uniform(factor: f64) -> (DesignProblem, Deployment) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes/actuation-1.toml");
+    changed("actuation-1.toml", |config| config.scale_loads(factor))
+}
+
+/// The uniform sheet of a shipped scene that was changed.
+fn changed(name: &str, change: impl Fn(&mut SceneConfig)) -> (DesignProblem, Deployment) {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
+    let path = scenes.join(name);
     let mut config: SceneConfig = hinge::config::read(&path).unwrap();
     config.objective.balance = false;
-    for load in &mut config.loads {
-        load.force = load.force.map(|force| factor * force);
-    }
+    change(&mut config);
     let scene = Scene::new(config, &path).unwrap();
     let problem = scene.problem().unwrap();
     let deployment = problem.deploy(&scene.start()).unwrap();
@@ -61,4 +66,21 @@ fn a_sheet_that_is_pushed_shut_is_no_longer_deployed() {
     let pressed = total_overlap(&deployment.sheet, &deployment.final_step().configuration);
     assert!(pressed > 0.0 && pressed < 0.05, "{pressed}");
     assert!(last_jump(&deployment).is_none_or(|jump| (0.0..=1.0).contains(&jump)));
+}
+
+/// Six times the pull at the corner of the sheet presses panels shut before they snap open: the tangent
+/// of the flat sheet leads them through each other.
+#[test]
+fn a_sheet_that_is_pressed_shut_opens_whatever_the_load_steps() {
+    let energy = |load_steps: usize| {
+        let (_, deployment) = changed("capacity.toml", |config| {
+            config.load_steps = load_steps;
+            config.loads[1].force = config.loads[1].force.map(|force| 6.0 * force);
+        });
+        let last = deployment.at_full_load().unwrap();
+        assert_eq!(deployment.path[0].status, Status::LimitPoint);
+        last.energies.iter().sum::<f64>()
+    };
+    let [coarse, fine] = [10, 20].map(energy);
+    assert!((coarse / fine - 1.0).abs() < 1e-9, "{coarse} {fine}");
 }
