@@ -16,6 +16,7 @@ use crate::network::Network;
 use crate::passes::{Passes, chunk_size, packed_index, packed_len};
 use faer::Mat;
 use hinge::{HingeDeformation, HingeDesign};
+use rayon::prelude::*;
 use std::cell::RefCell;
 use std::ops::Range;
 
@@ -123,19 +124,26 @@ pub(crate) fn evaluate(
         deformations.len(),
         "one deformation for each prepared hinge"
     );
-    KERNEL.with_borrow_mut(|kernel| {
-        let mut energies = Vec::with_capacity(deformations.len());
-        let size = chunk_size(deformations.len(), order.tangents());
-        for (chunk, deformations) in deformations.chunks(size).enumerate() {
-            let first = chunk * size;
-            let designs = &prepared.designs[first..first + deformations.len()];
+    let size = chunk_size(deformations.len(), order.tangents());
+    let of_chunk = |(chunk, deformations): (usize, &[HingeDeformation])| -> Vec<HingeEnergy> {
+        let first = chunk * size;
+        let designs = &prepared.designs[first..first + deformations.len()];
+        KERNEL.with_borrow_mut(|kernel| {
             kernel.run(chi, prepared, first, deformations, order);
-            for (hinge, (design, deformation)) in designs.iter().zip(deformations).enumerate() {
-                energies.push(kernel.energy(hinge, design, deformation, energy_scale, order));
-            }
-        }
-        energies
-    })
+            let hinges = std::iter::zip(designs, deformations).enumerate();
+            hinges
+                .map(|(hinge, (design, deformation))| {
+                    kernel.energy(hinge, design, deformation, energy_scale, order)
+                })
+                .collect()
+        })
+    };
+    // A single chunk is done before another thread has woken up.
+    if deformations.len() <= size {
+        return of_chunk((0, deformations));
+    }
+    let chunks = deformations.par_chunks(size).enumerate();
+    chunks.map(of_chunk).collect::<Vec<_>>().concat()
 }
 
 thread_local! {
