@@ -32,7 +32,7 @@ pub struct ReplayCommand {
     /// Replay as many hinges, spread evenly over the sheet; by default all
     #[arg(long, value_name = "N")]
     sample: Option<NonZeroUsize>,
-    /// Mesh tier of the windows
+    /// Mesh tier of the windows; weights that were corrected to a finer tier are to be judged by that
     #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
     tier: Tier,
     /// Folder for the tables, the picture and the solutions

@@ -131,10 +131,11 @@ fn the_chain_is_judged_by_the_weights_it_is_told() {
     }
     set_steps(&work, scene, 2);
     // As if it had been trained on a coarser mesh.
-    work.edit(
-        "data/pet-0.5mm/small.json",
-        &[("\"tier\": \"default\"", "\"tier\": \"tiny\"")],
-    );
+    let card = work.path("data/pet-0.5mm/small.json");
+    let mut told: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(&card).unwrap()).unwrap();
+    told["tier"] = "tiny".into();
+    std::fs::write(&card, told.to_string()).unwrap();
     let weights = |name: &str| format!("data/pet-0.5mm/{name}.safetensors");
     let study = format!(
         "chain {scene} {} {} --reference {}",
