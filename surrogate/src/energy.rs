@@ -139,7 +139,7 @@ pub(crate) fn evaluate(
         })
     };
     // A single chunk is done before another thread has woken up.
-    if deformations.len() <= size {
+    if (1..=size).contains(&deformations.len()) {
         return of_chunk((0, deformations));
     }
     let chunks = deformations.par_chunks(size).enumerate();
