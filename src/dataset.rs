@@ -88,8 +88,8 @@ struct ExportCommand {
 /// The energy is multiplied by what the finer mesh makes of it, a polynomial in geometry and
 /// deformation; the forces stay its gradient, and D and D_peak have factors of their own. The split
 /// stays, and so do the columns that no surrogate is trained on. Prints what is left of the
-/// differences where each ray is corrected by the others. Example: kirigami dataset correct data/pet-0.5mm/hinges.parquet
-/// data/pet-0.5mm/reference.parquet --out runs/corrected.parquet
+/// differences where each ray is corrected by the others. Example: kirigami dataset correct
+/// data/pet-0.5mm/hinges.parquet data/pet-0.5mm/reference.parquet --out runs/corrected.parquet
 #[derive(Args)]
 struct CorrectCommand {
     /// Database to correct (Parquet with its manifest)

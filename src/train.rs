@@ -63,6 +63,7 @@ pub struct TrainCommand {
 
 /// What errors are measured on.
 pub const UNSEEN: &str = "samples of unseen geometries";
+
 /// Longest time that a kill of the training can cost.
 const SAVE_EVERY: Duration = Duration::from_secs(30);
 

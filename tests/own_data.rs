@@ -225,7 +225,7 @@ fn a_measured_curve_is_a_material() {
     assert!(error.contains("`plastic` or `tensile_csv`"), "{error}");
 }
 
-/// The shipped rays of the default mesh are worth half as much again, and more, once corrected by those of the finest.
+/// The shipped rays of the default mesh err less than half as much in W once corrected by those of the finest.
 #[test]
 fn a_database_is_corrected_by_some_rays_of_a_finer_mesh() {
     let work = Workplace::new();

@@ -10,8 +10,8 @@ use std::path::PathBuf;
 
 /// Judge a database by a finer one of the same rays
 ///
-/// Writes compare.md, compare.csv (one line a ray), tradeoff.md and a picture, and tells what `dataset
-/// correct` would make of it. Example: the default tier by the reference tier, `kirigami dataset
+/// Writes compare.md, compare.csv (one line a ray), tradeoff.md and a picture, and tells what
+/// `dataset correct` would make of it. Example: the default tier by the reference tier, `kirigami dataset
 /// compare data/pet-0.5mm/hinges.parquet data/pet-0.5mm/reference.parquet`
 #[derive(Args)]
 pub struct CompareCommand {

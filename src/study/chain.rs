@@ -28,7 +28,8 @@ use surrogate::{Surrogate, WeightsError};
 /// The whole chain on one sheet: what each of its choices costs, and its error in the result
 ///
 /// Every network that is named is put into the scene in turn, one of another window mesh than the
-/// reference's as another window tier; then every other choice is varied with the scene's own network. Writes chain.csv, chain.md, tradeoff.md and a picture. Example:
+/// reference's as another window tier; then every other choice is varied with the scene's own
+/// network. Writes chain.csv, chain.md, tradeoff.md and a picture. Example:
 /// kirigami study chain configs/scenes/pet-3x3.toml --reference paper.safetensors small.safetensors
 #[derive(Args)]
 pub struct ChainStudy {
