@@ -3,7 +3,7 @@
 use crate::comparison::{self, SCALE, spread_table};
 use crate::inspect::Inspected;
 use crate::kept_solves::{Outcome, SolveArgs};
-use crate::routes::{HingeRoute, ensemble, hinge_routes};
+use crate::routes::{HingeRoute, ensemble, hinge_routes, tier_of};
 use crate::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -32,9 +32,10 @@ pub struct ReplayCommand {
     /// Replay as many hinges, spread evenly over the sheet; by default all
     #[arg(long, value_name = "N")]
     sample: Option<NonZeroUsize>,
-    /// Mesh tier of the windows; weights that were corrected to a finer tier are to be judged by that
-    #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
-    tier: Tier,
+    /// Mesh tier of the windows; by default that of the weights' database, or the finer one that it was
+    /// corrected to: a window of the tier reference takes two minutes of a core
+    #[arg(long, value_name = "TIER")]
+    tier: Option<Tier>,
     /// Folder for the tables, the picture and the solutions
     #[arg(long, value_name = "FOLDER", default_value = "runs/replay")]
     out: PathBuf,
@@ -59,6 +60,7 @@ impl ReplayCommand {
             .surrogate()
             .context("the scene has no surrogate to compare with (hinge = \"surrogate\")")?;
         let networks = ensemble(surrogate, &self.ensemble)?;
+        let tier = self.tier.unwrap_or_else(|| tier_of(surrogate));
         let mut routes = hinge_routes(&scene, &design)?;
         if let Some(sample) = self.sample {
             let (all, sample) = (routes.len(), sample.get());
@@ -67,7 +69,7 @@ impl ReplayCommand {
         }
         let solves: Vec<KeptSolve> = routes
             .iter()
-            .map(|route| route.recorded(&scene.material, self.tier))
+            .map(|route| route.recorded(&scene.material, tier))
             .collect::<Result<_>>()?;
         let _held = run_folder::hold(&self.out)?;
         let outcomes = self
@@ -82,7 +84,7 @@ impl ReplayCommand {
             }
         }
         ensure!(!replayed.is_empty(), "no hinge was solved:\n{failures}");
-        let page = page(&replayed, self.tier, &failures)?;
+        let page = page(&replayed, tier, &failures)?;
         run_folder::write(&self.out, "replay.md", &page)?;
         run_folder::write(&self.out, "replay.csv", &csv(&replayed)?)?;
         let groups: Vec<_> = replayed.iter().map(|hinge| &hinge.states[..]).collect();

@@ -54,6 +54,13 @@ pub fn ensemble(surrogate: &Surrogate, files: &[PathBuf]) -> Result<Vec<Surrogat
     files.iter().map(load).collect()
 }
 
+/// The mesh that weights speak for: that of the database they were trained on, or the finer one it was
+/// corrected to; the default one if their card knows none of ours.
+pub fn tier_of(surrogate: &Surrogate) -> Tier {
+    let told = surrogate.card().tier.rsplit(' ').next();
+    told.and_then(|name| name.parse().ok()).unwrap_or_default()
+}
+
 impl HingeRoute {
     /// The last state.
     pub fn end(&self) -> HingeDeformation {

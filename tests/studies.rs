@@ -98,6 +98,27 @@ fn the_five_actuations_and_a_missing_one() {
 }
 
 #[test]
+fn what_a_sheet_carries_once_it_is_open() {
+    let work = Workplace::new();
+    let scene = "configs/scenes/capacity.toml";
+    set_steps(&work, scene, 1);
+    let capacity = page(&work, "capacity --to 1", "capacity.md");
+    // Outwards and inwards, by the tables of both orders: both loads together are carried as far as tried.
+    let after = capacity.split("The pull first").nth(1).unwrap();
+    for pattern in ["uniform sheet", "with compression and shear"] {
+        let carried = numbers(after, pattern);
+        assert!(
+            carried[0] > 5.0 && (0.5..1.0).contains(&carried[1]),
+            "{capacity}"
+        );
+    }
+    let ways = std::fs::read_to_string(work.path("out/ways.csv")).unwrap();
+    assert!(ways.lines().count() > 8 * 100, "{ways}");
+    work.edit(scene, &[("panel = [7, 9] ", "panel = [7, 10] ")]);
+    assert!(work.error("study capacity --out out").contains("[7, 10]"));
+}
+
+#[test]
 fn where_the_panels_stay_flat() {
     let work = Workplace::new();
     let text = page(&work, "localisation", "localisation.md");

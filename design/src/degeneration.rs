@@ -4,7 +4,7 @@
 //! point and a part of the sheet stays shut, or is pressed shut, the edges of its voids touch and the
 //! barrier on the void angles alone keeps the panels apart; the path may also end.
 
-use crate::equilibrium::Status;
+use crate::equilibrium::{LoadStep, Status};
 use crate::gradient::Deployment;
 use std::f64::consts::PI;
 use std::fmt;
@@ -19,9 +19,8 @@ pub enum Degeneration {
 }
 
 impl Degeneration {
-    /// `None` of a sheet with every void open at full load.
-    pub fn of(deployment: &Deployment) -> Option<Self> {
-        let last = deployment.final_step();
+    /// `None` of a sheet with every void open; the last state of a deployment is that at full load.
+    pub fn of(last: &LoadStep) -> Option<Self> {
         if last.status == Status::Diverged {
             let reached = last.load_factor;
             return Some(Self::NoEquilibrium { reached });

@@ -136,6 +136,8 @@ pub struct EquilibriumSolver {
     pub(crate) supports: Box<[Support]>,
     /// (F_x, F_y, M) per panel at full load.
     pub(crate) loads: Box<[[f64; 3]]>,
+    /// Those that act in full from the beginning of the path.
+    pub(crate) held: Box<[[f64; 3]]>,
     /// Of a driven sheet, the direction of the stroke and its full length.
     pub(crate) drive: Option<(Box<Stroke>, f64)>,
     /// Boxed: large beside the rest.
@@ -197,6 +199,7 @@ impl EquilibriumSolver {
             pattern: Box::new(TangentPattern::new(grid, &free)),
             free: free.into(),
             supports: supports.into(),
+            held: vec![[0.0; 3]; total.len()].into(),
             loads: total.into(),
             drive: None,
         })
@@ -212,6 +215,24 @@ impl EquilibriumSolver {
         let direction = direction.ok_or(EquilibriumError::NothingDrives)?;
         self.drive = Some((Box::new(direction), stroke));
         Ok(self)
+    }
+
+    /// What comes after full load: the supports stay where they are, the loads are held, and further
+    /// ones are added in so many steps.
+    pub fn followed_by(&self, loads: &[Load], steps: usize) -> Result<Self, EquilibriumError> {
+        let still = |&support: &Support| Support {
+            value: 0.0,
+            ..support
+        };
+        let supports: Vec<Support> = self.supports.iter().map(still).collect();
+        let next = Self::new(self.grid, &supports, loads, steps, self.settings)?;
+        let held = std::iter::zip(&self.held, &self.loads);
+        Ok(Self {
+            held: held
+                .map(|(held, load)| std::array::from_fn(|d| held[d] + load[d]))
+                .collect(),
+            ..next
+        })
     }
 }
 

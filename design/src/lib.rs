@@ -16,6 +16,7 @@ pub mod equilibrium;
 pub mod fabrication;
 pub mod force_transmission;
 pub mod free_panels;
+pub mod further_load;
 pub mod gradient;
 pub mod grid;
 pub mod hinge_law;

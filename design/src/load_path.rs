@@ -54,18 +54,27 @@ impl EquilibriumSolver {
     /// # Panics
     /// If the sheet has another grid than the solver.
     pub fn path(&self, sheet: HingedSheet) -> Vec<LoadStep> {
+        self.path_from(sheet, vec![[0.0; 3]; self.grid.panel_count()])
+    }
+
+    /// Follows the load path from an equilibrium without its loads: of a solver that follows another,
+    /// from where the other's path ends.
+    ///
+    /// # Panics
+    /// If the sheet or the start has another grid than the solver.
+    pub fn path_from(&self, sheet: HingedSheet, start: Configuration) -> Vec<LoadStep> {
         assert_eq!(
             self.grid, sheet.sheet.grid,
             "the solver's grid is the sheet's"
         );
+        assert_eq!(start.len(), self.grid.panel_count(), "a motion per panel");
         let mut path: Vec<LoadStep> = Vec::with_capacity(self.steps);
-        let Some(mut reached) = self.flat(sheet) else {
-            let flat = vec![[0.0; 3]; self.grid.panel_count()];
+        let Some(mut reached) = self.unloaded(sheet, start.clone()) else {
             return vec![LoadStep {
                 load_factor: 0.0,
                 status: Status::Diverged,
                 residual: f64::INFINITY,
-                ..LoadStep::ideal(sheet.sheet, flat)
+                ..LoadStep::ideal(sheet.sheet, start)
             }];
         };
         for i in 1..=self.steps {
@@ -79,14 +88,14 @@ impl EquilibriumSolver {
         path
     }
 
-    /// The flat sheet, where the path begins; `None` if its energy is not finite.
-    fn flat(&self, sheet: HingedSheet) -> Option<Reached> {
+    /// Where the path begins; `None` if the energy is not finite there.
+    fn unloaded(&self, sheet: HingedSheet, start: Configuration) -> Option<Reached> {
         let potential = self.potential(sheet, 0.0, 0.0);
         let force = match self.drive {
             None => potential.greatest(self.loads.iter().copied()),
             Some(_) => 0.0,
         };
-        let state = potential.state(vec![[0.0; 3]; self.grid.panel_count()])?;
+        let state = potential.state(start)?;
         let factor = potential.factorise(&potential.tangent(&state), Vec::new());
         let reached = self.arrived(&potential, 0.0, &state, factor.as_ref(), f64::INFINITY);
         Some(Reached { force, ..reached })
@@ -168,7 +177,7 @@ impl EquilibriumSolver {
             (*reached, increment, last_leap) = (arrived, 2.0 * increment, 0.0);
             if at == to {
                 let status = self.status(sheet, &minimum, jumped);
-                let work = self.work(&minimum.state.configuration);
+                let works = self.works(&minimum.state.configuration);
                 let tangent = StepTangent {
                     values: minimum.tangent,
                     factor: minimum.factor,
@@ -176,7 +185,7 @@ impl EquilibriumSolver {
                 return LoadStep::new(
                     sheet,
                     minimum.state,
-                    work,
+                    works,
                     Some(tangent),
                     status,
                     iterations,
@@ -196,8 +205,8 @@ impl EquilibriumSolver {
         let potential = self.potential(sheet, reached.at, reached.force);
         let state = potential.state(reached.configuration.clone());
         let state = state.expect("this state has been computed before");
-        let work = self.work(&reached.configuration);
-        let step = LoadStep::new(sheet, state, work, None, Status::Diverged, iterations);
+        let works = self.works(&reached.configuration);
+        let step = LoadStep::new(sheet, state, works, None, Status::Diverged, iterations);
         LoadStep { residual, ..step }
     }
 
@@ -227,6 +236,7 @@ impl EquilibriumSolver {
                 Some((stroke, _)) => Control::Stroke(stroke),
             },
             loads: &self.loads,
+            held: &self.held,
             force,
             panel_size: (area / sheet.sheet.panels.len() as f64).sqrt(),
         }
@@ -244,7 +254,8 @@ impl EquilibriumSolver {
         let mut configuration = moved(&reached.configuration, &reached.rate, cut * ahead);
         let forces = moved(&reached.forces, &reached.force_rates, cut * ahead);
         for support in &self.supports {
-            configuration[support.panel][support.dof.index()] = at * support.value;
+            let (panel, dof) = (support.panel, support.dof.index());
+            configuration[panel][dof] = reached.configuration[panel][dof] + ahead * support.value;
         }
         (configuration, forces)
     }
@@ -310,10 +321,12 @@ impl EquilibriumSolver {
         leaps.then_some(turned)
     }
 
-    /// Work of the full loads (N mm).
-    fn work(&self, configuration: &[[f64; 3]]) -> f64 {
-        std::iter::zip(self.loads.as_flattened(), configuration.as_flattened())
-            .map(|(f, q)| f * q)
-            .sum()
+    /// Work of the full loads and of those that are held (N mm).
+    fn works(&self, configuration: &[[f64; 3]]) -> [f64; 2] {
+        [&self.loads, &self.held].map(|loads| {
+            std::iter::zip(loads.as_flattened(), configuration.as_flattened())
+                .map(|(f, q)| f * q)
+                .sum()
+        })
     }
 }

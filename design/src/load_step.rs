@@ -106,7 +106,7 @@ impl LoadStep {
     pub(crate) fn new(
         sheet: HingedSheet,
         state: State,
-        work: f64,
+        [work, held]: [f64; 2],
         tangent: Option<StepTangent>,
         status: Status,
         iterations: usize,
@@ -120,7 +120,7 @@ impl LoadStep {
             damage: sheet.law.damage(&deformations),
             deformations,
             energies: state.energies.iter().map(|energy| energy.w).collect(),
-            potential: state.stored - state.load_factor * work,
+            potential: state.stored - held - state.load_factor * work,
             status,
             residual: state.residual,
             rounding: state.rounding,

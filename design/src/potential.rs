@@ -28,6 +28,8 @@ pub(crate) struct Potential<'a> {
     pub panel_size: f64,
     /// (F_x, F_y, M) per panel at zeta = 1.
     pub loads: &'a [[f64; 3]],
+    /// Loads that do not depend on zeta.
+    pub held: &'a [[f64; 3]],
     /// What unbalanced forces are measured by, at least (N): on the way through a state without force
     /// that of the states before.
     pub force: f64,
@@ -117,6 +119,9 @@ impl Potential<'_> {
         for ((hinge, motion), energy) in sheet.hinges.iter().zip(&motions).zip(&energies) {
             add_at_hinge(&mut inner, hinge, motion.forces(energy.forces));
         }
+        for (inner, held) in std::iter::zip(inner.as_flattened_mut(), self.held.as_flattened()) {
+            *inner -= held;
+        }
         let (load_factor, worked) = match self.control {
             Control::Load(zeta) => (zeta, zeta),
             Control::Stroke(_) => (self.multiplier(&inner), 0.0),
@@ -124,13 +129,15 @@ impl Potential<'_> {
         let unbalanced: Vec<[f64; 3]> = std::iter::zip(&inner, self.loads)
             .map(|(inner, load)| std::array::from_fn(|d| inner[d] - load_factor * load[d]))
             .collect();
-        let works = std::iter::zip(self.loads, &configuration)
-            .flat_map(|(load, motion)| std::iter::zip(load, motion).map(|(f, u)| f * u));
-        let works = works.map(|work| -worked * work);
+        let works = (self.loads.as_flattened().iter())
+            .zip(self.held.as_flattened())
+            .zip(configuration.as_flattened())
+            .map(|((load, held), u)| -(worked * load + held) * u);
         let terms = energies.iter().map(|energy| energy.w).chain(works);
         let gradient = gather(self.free, &unbalanced);
         let left = self.greatest(spread(self.free, &gradient).into_iter());
-        let loads = load_factor.abs() * self.greatest(self.loads.iter().copied());
+        let held = self.greatest(self.held.iter().copied());
+        let loads = held + load_factor.abs() * self.greatest(self.loads.iter().copied());
         let hinges = self.greatest(energies.iter().map(|energy| energy.forces));
         let force = self.force.max(loads).max(hinges);
         let over_force = |unbalanced: f64| match unbalanced {

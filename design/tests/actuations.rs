@@ -1,9 +1,11 @@
 //! The sheet of section 3.2 under its first actuation: what passes through it, and when it gives way.
 
+use design::actuation::{Dof, Load};
 use design::degeneration::{Degeneration, last_jump};
-use design::equilibrium::Status;
+use design::equilibrium::{HingedSheet, Status};
 use design::force_transmission::ForceTransmission;
-use design::gradient::{Deployment, DesignProblem};
+use design::further_load::GivesWay;
+use design::gradient::{Deployment, DesignProblem, Model};
 use design::scene::{Scene, SceneConfig};
 use design::tension_routes::tension_routes;
 use design::validity::total_overlap;
@@ -30,7 +32,7 @@ fn changed(name: &str, change: impl Fn(&mut SceneConfig)) -> (DesignProblem, Dep
 #[test]
 fn the_energies_of_the_interfaces_are_the_stored_energy_and_tension_reaches_the_load() {
     let (problem, deployment) = uniform(1.0);
-    assert_eq!(Degeneration::of(&deployment), None);
+    assert_eq!(Degeneration::of(deployment.final_step()), None);
     let transmission = ForceTransmission::new(&problem, &deployment).unwrap();
     let interfaces = transmission.interfaces.iter();
     let stored: f64 = interfaces.map(|it| it.translational + it.rotational).sum();
@@ -58,7 +60,7 @@ fn the_energies_of_the_interfaces_are_the_stored_energy_and_tension_reaches_the_
 #[test]
 fn a_sheet_that_is_pushed_shut_is_no_longer_deployed() {
     let (_, deployment) = uniform(-0.1);
-    let hinges = match Degeneration::of(&deployment) {
+    let hinges = match Degeneration::of(deployment.final_step()) {
         Some(Degeneration::Contact { hinges }) => hinges,
         other => panic!("{other:?}"),
     };
@@ -83,4 +85,45 @@ fn a_sheet_that_is_pressed_shut_opens_whatever_the_load_steps() {
     };
     let [coarse, fine] = [10, 20].map(energy);
     assert!((coarse / fine - 1.0).abs() < 1e-9, "{coarse} {fine}");
+}
+
+/// What displacement control calls the greatest load is what dead loads confirm: a little less is carried
+/// on without a jump, a little more is not.
+#[test]
+fn the_greatest_further_load_is_where_dead_loads_throw_the_sheet() {
+    let (problem, deployment) = changed("capacity.toml", |config| {
+        config.load_steps = 20;
+        config.loads.truncate(1);
+    });
+    // Inwards on the mid panel of the top border.
+    let loads = |factor: f64| {
+        [Load {
+            panel: 9 * 15 + 7,
+            dof: Dof::UY,
+            value: -247.7 * factor,
+        }]
+    };
+    let found = problem
+        .further_load(&deployment, &loads(1.0), 1000.0)
+        .unwrap();
+    assert_eq!(found.ended, Some(GivesWay::Falls));
+    let carried = found.carried();
+    assert!((0.1..2.0).contains(&carried), "{carried}");
+    let jumps = |factor: f64| {
+        let Model::Equilibrium(mechanics) = &problem.model else {
+            panic!("a sheet under load");
+        };
+        let law = mechanics.law.prepare(&deployment.sheet.designs());
+        let sheet = HingedSheet {
+            sheet: &deployment.sheet,
+            law: &*law,
+            contact: mechanics.contact.as_ref(),
+        };
+        let solver = mechanics.solver.followed_by(&loads(factor), 20).unwrap();
+        let start = deployment.final_step().configuration.clone();
+        let path = solver.path_from(sheet, start);
+        path.iter().any(|step| step.status == Status::LimitPoint)
+    };
+    assert!(!jumps(0.999 * carried));
+    assert!(jumps(1.001 * carried));
 }

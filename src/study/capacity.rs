@@ -1,26 +1,30 @@
 //! `kirigami study capacity`: what a cut pattern carries before its deployment degenerates; section 3.2.
 
+mod page;
+
 use crate::charts::{self, CapacityCurve};
 use crate::progress::Progress;
 use crate::study::designed;
 use crate::{interrupt, picture, run_folder};
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use clap::Args;
 use design::degeneration::{Degeneration, last_jump};
 use design::design_vector::DesignVector;
 use design::drawing;
+use design::further_load::FurtherLoad;
 use design::gradient::Deployment;
 use design::outline_error::outline_error;
 use design::scene::{HingeModel, ObjectiveConfig, PinConfig, Scene, SceneConfig};
-use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 /// A sheet under a pull and a growing transverse load, designed in four ways
 ///
-/// The first load of the scene is held and the second is rho times as great; every rho is a deployment
-/// of its own from the flat sheet, and the rho from which on the sheet is no longer deployed is found by
-/// bisection. Writes capacity.csv, capacity.md and pictures. Example: kirigami study capacity
+/// The first load of the scene is held and the second is rho times as great. Applied together, every rho
+/// is a deployment of its own from the flat sheet, and the rho from which on the sheet is no longer
+/// deployed is found by bisection. Applied after the first, outwards and inwards, the second is led along
+/// its way, which finds its greatest value. Writes capacity.csv, capacity.md and pictures. Example:
+/// kirigami study capacity
 #[derive(Args)]
 pub struct CapacityStudy {
     /// Scene (TOML) with the two loads, the second as it is at rho = 1
@@ -40,6 +44,8 @@ const SPACING: f64 = 0.25;
 const HALVINGS: usize = 8;
 /// Where the kinematic search starts: the opening of the target (deg).
 const OPENING_DEG: f64 = 70.0;
+/// How far a second load is led at most, over the width of the target.
+const LONGEST_WAY: f64 = 0.2;
 /// The paper's capacities.
 const PAPER: [f64; 4] = [1.66, 1.80, 1.29, 2.95];
 
@@ -67,6 +73,8 @@ struct Capacity {
     points: Vec<Point>,
     /// The greatest rho that is carried and the deployment just above it; none if all are.
     limit: Option<(f64, Point)>,
+    /// The second load after the first, outwards (as the scene gives it) and inwards.
+    after: [FurtherLoad; 2],
 }
 
 impl CapacityStudy {
@@ -132,6 +140,7 @@ impl CapacityStudy {
             capacities.push(Capacity {
                 name: strategy.name,
                 limit,
+                after: self.after(&config, &design)?,
                 points,
             });
         }
@@ -142,8 +151,9 @@ impl CapacityStudy {
             &self.out.join("capacity"),
             2000,
         )?;
-        run_folder::write(&self.out, "capacity.csv", &csv(&capacities)?)?;
-        let page = page(&capacities, &self.scene, self.to)?;
+        run_folder::write(&self.out, "capacity.csv", &page::csv(&capacities)?)?;
+        run_folder::write(&self.out, "ways.csv", &page::ways(&capacities)?)?;
+        let page = page::page(&capacities, &self.scene, self.to)?;
         run_folder::write(&self.out, "capacity.md", &page)?;
         println!("{page}\nwritten to {}", self.out.display());
         Ok(())
@@ -168,6 +178,21 @@ impl CapacityStudy {
         Ok((scene, deployment))
     }
 
+    /// The second load, outwards and inwards, led along its way after the first is applied.
+    fn after(&self, config: &SceneConfig, design: &DesignVector) -> Result<[FurtherLoad; 2]> {
+        let (scene, opened) = self.deploy(config, design, 0.0)?;
+        let problem = scene.problem()?;
+        let way = LONGEST_WAY * scene.target.width();
+        let led = |sign: f64| -> Result<FurtherLoad> {
+            let mut second = config.clone();
+            second.loads.remove(0);
+            second.scale_loads(sign);
+            let loads = self.scene_of(&second)?.loads();
+            Ok(problem.further_load(&opened, &loads, way)?)
+        };
+        Ok([led(1.0)?, led(-1.0)?])
+    }
+
     fn point(&self, config: &SceneConfig, design: &DesignVector, rho: f64) -> Result<Point> {
         let (scene, deployment) = self.deploy(config, design, rho)?;
         let states = &deployment.final_step().deformations;
@@ -179,7 +204,7 @@ impl CapacityStudy {
                 openings().fold(f64::INFINITY, f64::min),
             ],
             boundary: 100.0 * outline_error(&scene, &deployment) / scene.target.width(),
-            degeneration: Degeneration::of(&deployment),
+            degeneration: Degeneration::of(deployment.final_step()),
             last_jump: last_jump(&deployment),
         })
     }
@@ -259,6 +284,7 @@ impl Capacity {
                 .map(|it| (it.rho, it.opening_deg[1]))
                 .collect(),
             errors: self.points.iter().map(|it| (it.rho, it.boundary)).collect(),
+            ways: self.after.each_ref().map(|load| load.curve.clone()),
         }
     }
 
@@ -267,82 +293,4 @@ impl Capacity {
         let point = self.points.iter().find(|point| point.rho == 1.0)?;
         Some(point.boundary)
     }
-}
-
-fn page(capacities: &[Capacity], scene: &Path, to: f64) -> Result<String> {
-    let mut text = format!(
-        "# Load capacity\n\n\
-        The sheet of `{}`: its first load is held, its second is rho times what is given there, every \
-        rho a deployment of its own. A sheet is deployed while every void is \
-        open at full load. `kirigami study capacity`.\n\n\
-        ![opening and boundary error against rho](capacity.png)\n\n\
-        | pattern | carries rho | paper | just above | last jump on the way there, load factor | boundary rms at rho = 1, % |\n\
-        |---|---|---|---|---|---|\n",
-        scene.display()
-    );
-    for (capacity, paper) in capacities.iter().zip(PAPER) {
-        let [carries, above, jump] = match &capacity.limit {
-            None => [format!("over {to}"), "-".into(), "-".into()],
-            Some((carried, above)) => [
-                format!("{carried:.3}"),
-                above.degeneration.map_or("-".into(), |why| why.to_string()),
-                above
-                    .last_jump
-                    .map_or("none".into(), |jump| format!("{jump:.2}")),
-            ],
-        };
-        let boundary = capacity.boundary().context("the sweep has no rho = 1")?;
-        writeln!(
-            text,
-            "| {} | {carries} | {paper:.2} | {above} | {jump} | {boundary:.3} |",
-            capacity.name
-        )?;
-    }
-    if let [_, kinematic, shape, full] = capacities {
-        let gain = |over: &Capacity| -> String {
-            let carried = |it: &Capacity| it.limit.as_ref().map(|(carried, _)| *carried);
-            match (carried(full), carried(over)) {
-                (Some(most), Some(least)) => format!("{:.2} times", most / least),
-                (None, Some(least)) => format!("over {:.2} times", to / least),
-                _ => "unknown".into(),
-            }
-        };
-        let boundary = |it: &Capacity| it.boundary().unwrap_or(f64::NAN);
-        write!(
-            text,
-            "\nCompression and shear in the objective: {} the capacity of the shape term alone (the paper: 2.3), {} that of the \
-             geometric pattern (1.64). Matching the target through equilibrium: {:.2} times the boundary error of the \
-             geometric pattern (0.5).\n",
-            gain(shape),
-            gain(kinematic),
-            boundary(shape) / boundary(kinematic),
-        )?;
-    }
-    Ok(text)
-}
-
-/// One line a deployment of the sweep.
-fn csv(capacities: &[Capacity]) -> Result<String> {
-    let mut text =
-        "pattern,rho,mean_opening_deg,least_opening_deg,boundary_percent,last_jump,degeneration\n"
-            .to_owned();
-    for capacity in capacities {
-        for point in &capacity.points {
-            let [mean, least] = point.opening_deg;
-            writeln!(
-                text,
-                "{},{},{mean:.3},{least:.3},{:.4},{},{}",
-                capacity.name,
-                point.rho,
-                point.boundary,
-                point
-                    .last_jump
-                    .map_or(String::new(), |jump| format!("{jump:.3}")),
-                point
-                    .degeneration
-                    .map_or(String::new(), |why| why.to_string()),
-            )?;
-        }
-    }
-    Ok(text)
 }

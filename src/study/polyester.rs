@@ -4,7 +4,7 @@
 mod page;
 
 use crate::kept_solves::{Outcome, SolveArgs};
-use crate::routes::{HingeRoute, hinge_routes};
+use crate::routes::{HingeRoute, hinge_routes, tier_of};
 use crate::run_folder;
 use crate::study::designed;
 use anyhow::{Context, Result, ensure};
@@ -36,9 +36,9 @@ pub struct PolyesterStudy {
     /// Opening of the worst hinge of the start that sets the load (deg)
     #[arg(long, value_name = "DEG", default_value_t = 35.0)]
     opening_deg: f64,
-    /// Mesh tier of the replays
-    #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
-    tier: Tier,
+    /// Mesh tier of the replays, by default the one that the weights speak for
+    #[arg(long, value_name = "TIER")]
+    tier: Option<Tier>,
     /// Folder for the tables, the pictures and the designs
     #[arg(long, value_name = "FOLDER", default_value = "runs/study-polyester")]
     out: PathBuf,
@@ -99,8 +99,9 @@ impl PolyesterStudy {
             pair.iter_mut().for_each(|row| row.monitored = worst);
         }
         let surrogate = self.surrogate(&base)?;
-        self.replay(&mut rows, &surrogate, &base)?;
-        page::write(&self.out, &rows, &surrogate, self.tier)
+        let tier = self.tier.unwrap_or_else(|| tier_of(&surrogate));
+        self.replay(&mut rows, &surrogate, &base, tier)?;
+        page::write(&self.out, &rows, &surrogate, tier)
     }
 
     fn base(&self) -> Result<SceneConfig> {
@@ -184,11 +185,17 @@ impl PolyesterStudy {
     }
 
     /// The monitored hinge of every design, by the surrogate and by finite elements.
-    fn replay(&self, rows: &mut [Row], surrogate: &Surrogate, base: &SceneConfig) -> Result<()> {
+    fn replay(
+        &self,
+        rows: &mut [Row],
+        surrogate: &Surrogate,
+        base: &SceneConfig,
+        tier: Tier,
+    ) -> Result<()> {
         let material = Scene::new(base.clone(), &self.scene)?.material;
         let solves: Vec<_> = rows
             .iter()
-            .map(|row| row.routes[row.monitored].recorded(&material, self.tier))
+            .map(|row| row.routes[row.monitored].recorded(&material, tier))
             .collect::<Result<_>>()?;
         let outcomes = self
             .solve

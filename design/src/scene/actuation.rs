@@ -136,7 +136,7 @@ impl Scene {
     }
 
     /// The loads of the panels, of the edges and of the hinges together.
-    pub(super) fn loads(&self) -> Vec<Load> {
+    pub fn loads(&self) -> Vec<Load> {
         let mut total = vec![[0.0; 3]; self.grid().panel_count()];
         for load in &self.config.loads {
             let sum = &mut total[self.panel(load.panel)];

@@ -1,0 +1,127 @@
+//! What the study of load capacity writes.
+
+use super::{Capacity, PAPER};
+use anyhow::{Context, Result};
+use std::fmt::Write;
+use std::path::Path;
+
+pub(super) fn page(capacities: &[Capacity], scene: &Path, to: f64) -> Result<String> {
+    let mut text = format!(
+        "# Load capacity\n\n\
+        The sheet of `{}`: its first load is held, its second is rho times what is given there, every \
+        rho a deployment of its own. Loaded with both together, a sheet is deployed while every void is \
+        open at full load. `kirigami study capacity`.\n\n\
+        ![opening and boundary error against rho, and rho along the way of the load](capacity.png)\n\n\
+        | pattern | carries rho | paper | just above | last jump on the way there, load factor | boundary rms at rho = 1, % |\n\
+        |---|---|---|---|---|---|\n",
+        scene.display()
+    );
+    for (capacity, paper) in capacities.iter().zip(PAPER) {
+        let [carries, above, jump] = match &capacity.limit {
+            None => [format!("over {to}"), "-".into(), "-".into()],
+            Some((carried, above)) => [
+                format!("{carried:.3}"),
+                above.degeneration.map_or("-".into(), |why| why.to_string()),
+                above
+                    .last_jump
+                    .map_or("none".into(), |jump| format!("{jump:.2}")),
+            ],
+        };
+        let boundary = capacity.boundary().context("the sweep has no rho = 1")?;
+        writeln!(
+            text,
+            "| {} | {carries} | {paper:.2} | {above} | {jump} | {boundary:.3} |",
+            capacity.name
+        )?;
+    }
+    write!(
+        text,
+        "\nThe pull first and held, then the second load led along its way, so that its greatest value is \
+        found whether the sheet snaps or not:\n\n\
+        | pattern | outwards, carries rho | there | inwards, carries rho | there |\n|---|---|---|---|---|\n"
+    )?;
+    for Capacity { name, after, .. } in capacities {
+        let [outwards, inwards] = after.each_ref().map(|load| match load.ended {
+            Some(ended) => format!("{:.3} | {ended}", load.carried()),
+            None => format!("over {:.3} | it still resists", load.carried()),
+        });
+        writeln!(text, "| {name} | {outwards} | {inwards} |")?;
+    }
+    if let [_, kinematic, shape, full] = capacities {
+        text += &gains(kinematic, shape, full, to)?;
+    }
+    Ok(text)
+}
+
+/// What the terms on the hinges gain over the two patterns that are designed without them.
+fn gains(kinematic: &Capacity, shape: &Capacity, full: &Capacity, to: f64) -> Result<String> {
+    let together = |it: &Capacity| it.limit.as_ref().map_or(to, |(carried, _)| *carried);
+    let outwards = |it: &Capacity| it.after[0].carried();
+    let inwards = |it: &Capacity| it.after[1].carried();
+    let ways: [(_, &dyn Fn(&Capacity) -> f64); 3] = [
+        ("both loads together", &together),
+        ("the pull first, then outwards", &outwards),
+        ("the pull first, then inwards", &inwards),
+    ];
+    let mut text = "\nCapacity with compression and shear in the objective, over that without:\n\n\
+        | | over the shape term alone | over the geometric pattern |\n|---|---|---|\n\
+        | the paper | 2.3 | 1.64 |\n"
+        .to_owned();
+    for (way, carried) in ways {
+        let [alone, geometric] = [shape, kinematic].map(|over| carried(full) / carried(over));
+        writeln!(text, "| {way} | {alone:.2} | {geometric:.2} |")?;
+    }
+    if full.limit.is_none() {
+        writeln!(
+            text,
+            "\nBoth loads together, the last pattern carries more than was tried."
+        )?;
+    }
+    let boundary = |it: &Capacity| it.boundary().unwrap_or(f64::NAN);
+    writeln!(
+        text,
+        "\nMatching the target through equilibrium: {:.2} times the boundary error of the geometric pattern \
+         (0.5).",
+        boundary(shape) / boundary(kinematic)
+    )?;
+    Ok(text)
+}
+
+/// One line a point of the way of a second load.
+pub(super) fn ways(capacities: &[Capacity]) -> Result<String> {
+    let mut text = "pattern,direction,way_mm,rho\n".to_owned();
+    for Capacity { name, after, .. } in capacities {
+        for (direction, load) in ["outwards", "inwards"].iter().zip(after) {
+            for (way, rho) in &load.curve {
+                writeln!(text, "{name},{direction},{way:.3},{rho:.5}")?;
+            }
+        }
+    }
+    Ok(text)
+}
+
+/// One line a deployment of the sweep.
+pub(super) fn csv(capacities: &[Capacity]) -> Result<String> {
+    let mut text =
+        "pattern,rho,mean_opening_deg,least_opening_deg,boundary_percent,last_jump,degeneration\n"
+            .to_owned();
+    for capacity in capacities {
+        for point in &capacity.points {
+            let [mean, least] = point.opening_deg;
+            writeln!(
+                text,
+                "{},{},{mean:.3},{least:.3},{:.4},{},{}",
+                capacity.name,
+                point.rho,
+                point.boundary,
+                point
+                    .last_jump
+                    .map_or(String::new(), |jump| format!("{jump:.3}")),
+                point
+                    .degeneration
+                    .map_or(String::new(), |why| why.to_string()),
+            )?;
+        }
+    }
+    Ok(text)
+}
