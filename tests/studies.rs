@@ -50,6 +50,8 @@ fn silhouettes_and_what_they_keep() {
     let before = std::fs::read(&kept).unwrap();
     page(&work, &study, "silhouettes.md");
     assert!(std::fs::read(&kept).unwrap() == before);
+    let twice = format!("study silhouettes {scene} a/leaf.svg b/leaf.svg --out out");
+    assert!(work.error(&twice).contains("one name"));
 }
 
 #[test]

@@ -87,11 +87,11 @@ fn problem(
                 r_win: 100.0,
             },
         },
-        model: Model::Equilibrium(Mechanics {
+        model: Model::Equilibrium(Box::new(Mechanics {
             law: Box::new(law),
             contact: None,
             solver: EquilibriumSolver::new(grid, &supports, &[load], STEPS, settings).unwrap(),
-        }),
+        })),
         objective: Objective {
             target: target.collect(),
             chamfer: Chamfer {

@@ -77,7 +77,7 @@ fn problem(grid: Grid, stiffness: f64, settings: SolverSettings) -> DesignProble
                 r_win: 100.0,
             },
         },
-        model: Model::Equilibrium(mechanics),
+        model: Model::Equilibrium(Box::new(mechanics)),
         objective: Objective {
             target: target.collect(),
             chamfer: Chamfer {

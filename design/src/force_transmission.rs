@@ -8,7 +8,7 @@
 
 use crate::gradient::{Deployment, DesignError, DesignProblem, Model};
 use crate::hinge_law::Order;
-use crate::kinematics::deployed;
+use crate::kinematics::{HingeMotion, deployed};
 use crate::sheet::Panel;
 
 /// One hinge of the deployed sheet.
@@ -34,6 +34,11 @@ pub struct ForceTransmission {
     pub interfaces: Vec<Interface>,
     /// Deployed centroids (mm).
     pub centroids: Vec<[f64; 2]>,
+    /// The moment that passes through each panel: half of what its interfaces exert about its centroid,
+    /// sizes summed (N mm).
+    pub moments: Vec<f64>,
+    /// Of the panels (mm^2).
+    pub areas: Vec<f64>,
 }
 
 /// Shares of the whole, each in [0, 1].
@@ -51,6 +56,8 @@ pub struct TransmissionShares {
 
 /// Part of interfaces or panels that counts as strongly loaded.
 const STRONG: f64 = 0.25;
+/// Part of the panels that counts as carrying the moment.
+const TWISTED: f64 = 0.1;
 
 impl Interface {
     /// Size of the force (N).
@@ -68,6 +75,13 @@ impl ForceTransmission {
         let (sheet, last) = (&deployment.sheet, deployment.final_step());
         let law = mechanics.law.prepare(&sheet.designs());
         let energies = law.energies(&last.deformations, Order::Forces);
+        let mut moments = vec![0.0; sheet.panels.len()];
+        for (h, (hinge, energy)) in std::iter::zip(&sheet.hinges, &energies).enumerate() {
+            let motion = HingeMotion::new(sheet, h, &last.configuration);
+            let [_, _, on_a, _, _, on_b] = motion.forces(energy.forces);
+            moments[hinge.panel_a()] += 0.5 * on_a.abs();
+            moments[hinge.panel_b()] += 0.5 * on_b.abs();
+        }
         let hinges = std::iter::zip(&sheet.hinges, &last.deformations);
         let interfaces = std::iter::zip(hinges, energies).map(|((hinge, deformation), energy)| {
             let [normal, tangential, moment] = energy.forces;
@@ -88,6 +102,8 @@ impl ForceTransmission {
             centroids: std::iter::zip(&sheet.panels, &last.configuration)
                 .map(centroid)
                 .collect(),
+            moments,
+            areas: sheet.panels.iter().map(Panel::area).collect(),
         })
     }
 
@@ -131,7 +147,7 @@ impl ForceTransmission {
     /// The quarter of interfaces with the most of what `size` measures, if it is positive.
     pub fn strongest(&self, size: impl Fn(&Interface) -> f64) -> Vec<usize> {
         let sizes: Vec<f64> = self.interfaces.iter().map(size).collect();
-        let mut strongest = upper_part(&sizes);
+        let mut strongest = upper_part(&sizes, STRONG);
         strongest.retain(|&h| sizes[h] > 0.0);
         strongest
     }
@@ -156,7 +172,7 @@ impl ForceTransmission {
                 loads[panel] += interface.force();
             }
         }
-        let strong = upper_part(&loads);
+        let strong = upper_part(&loads, STRONG);
         let is_strong = |panel: usize| strong.contains(&panel);
         let (mut beside, mut both) = (0.0, 0.0);
         for Interface { panels: [a, b], .. } in &self.interfaces {
@@ -171,13 +187,23 @@ impl ForceTransmission {
         let ratio = both / beside / chance;
         if ratio.is_finite() { ratio } else { 1.0 }
     }
+
+    /// Mean area of the tenth of panels that most moment passes through, over the median area.
+    pub fn twisted_panels(&self) -> f64 {
+        let twisted = upper_part(&self.moments, TWISTED);
+        let mean = twisted.iter().map(|&k| self.areas[k]).sum::<f64>() / twisted.len() as f64;
+        let mut areas = self.areas.clone();
+        areas.sort_by(f64::total_cmp);
+        let last = areas.len() - 1;
+        mean / (0.5 * (areas[last / 2] + areas[last.div_ceil(2)]))
+    }
 }
 
-/// The indices of the quarter of values that are the greatest, the greatest first.
-fn upper_part(values: &[f64]) -> Vec<usize> {
+/// The indices of the part of values that are the greatest, the greatest first.
+fn upper_part(values: &[f64], part: f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&i, &j| values[j].total_cmp(&values[i]));
-    order.truncate((STRONG * values.len() as f64).ceil() as usize);
+    order.truncate((part * values.len() as f64).ceil() as usize);
     order
 }
 
@@ -239,7 +265,11 @@ mod tests {
                 interface([3, 4], 0.0, 0.0, [0.0, 8.0]),
             ],
             centroids: vec![[0.0; 2]; 5],
+            moments: vec![1.0, 0.0, 7.0, 0.0, 2.0],
+            areas: vec![2.0, 1.0, 6.0, 4.0, 9.0],
         };
+        // A tenth of five is the third alone.
+        assert_eq!(transmission.twisted_panels(), 1.5);
         let shares = transmission.shares();
         assert_eq!(shares.tension, 0.6);
         assert_eq!((shares.compression, shares.shear), (0.2, 0.2));
@@ -274,6 +304,8 @@ mod tests {
                     .map(|h| interface([h, h + 1], force(h), 0.0, [0.0; 2]))
                     .collect(),
                 centroids: vec![[0.0; 2]; 8],
+                moments: vec![0.0; 8],
+                areas: vec![1.0; 8],
             }
         };
         // Panels 3 and 4: one of the three other panels beside them each.

@@ -58,7 +58,7 @@ pub enum Model {
     /// neither equilibrium nor hinge energy.
     Ideal { opening: f64 },
     /// Equilibria under load.
-    Equilibrium(Mechanics),
+    Equilibrium(Box<Mechanics>),
 }
 
 impl Model {

@@ -134,6 +134,8 @@ mod tests {
         ForceTransmission {
             interfaces: interfaces.chain(vec![weak; 3 * links.len()]).collect(),
             centroids: centroids.to_vec(),
+            moments: vec![0.0; centroids.len()],
+            areas: vec![1.0; centroids.len()],
         }
     }
 

@@ -113,7 +113,7 @@ fn page(searched: &[Searched]) -> Result<String> {
     let mut text = "# Adam or L-BFGS\n\n\
         The least loss after a quarter, a half and all of an equal number of evaluations of the loss and its gradient, \
         from the scene's start; halvings of a step count. Losses to samples and to the curve are not the same function: \
-        compare within a pair of lines. Settled: no step lowered the loss any more. `kirigami study optimisers`.\n\n\
+        compare within a pair of lines. Settled: no step lowered the loss any more; the attempts that showed it are not counted. `kirigami study optimisers`.\n\n\
         | scene | distance to | method | evaluations | loss at 1/4, mm^2 | at 1/2 | at the end | outline error, mm | |\n\
         |---|---|---|---|---|---|---|---|---|\n"
         .to_owned();

@@ -3,7 +3,7 @@
 use crate::progress::Progress;
 use crate::study::designed;
 use crate::{picture, run_folder};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use design::drawing::{Column, side_by_side};
 use design::intersection_over_union::intersection_over_union;
@@ -12,6 +12,7 @@ use design::outline_error::deployed_outline;
 use design::scene::{Scene, SceneConfig};
 use design::target::TargetShape;
 use design::tessellation::{Tessellation, WorstPanels};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -57,6 +58,16 @@ impl SilhouetteStudy {
         let _held = run_folder::hold(&self.out)?;
         let steps = config.optimiser.steps;
         let weights = [config.objective.panel_shape, 0.0];
+        // A run is kept by the name of its silhouette.
+        let names: BTreeSet<_> = self
+            .silhouettes
+            .iter()
+            .map(|file| file.file_stem())
+            .collect();
+        ensure!(
+            names.len() == self.silhouettes.len(),
+            "two of the silhouettes have one name: rename one of them"
+        );
         let runs = self
             .silhouettes
             .iter()
@@ -155,7 +166,8 @@ fn page(fitted: &[Fitted]) -> Result<String> {
         One sheet onto drawn targets of one height, with the scene's weight of the panels' shape, as drawn, and without. Distances of the free outline corners to the target, in % of its height; \
         intersection over union of the deployed outline through these corners, as the paper's point set has it, and \
         through all corners, which counts the notches between them as missed. The shortest edge and the least area are over \
-        those of a square panel of the mean area. `kirigami study silhouettes`.\n\n\
+        those of a square panel of the mean area. The seconds are those of this command, not of steps that it \
+        found made. `kirigami study silhouettes`.\n\n\
         | silhouette | panel_shape | mean distance, % | rms, % | intersection over union | with notches | opening, deg | sharpest corner, deg | shortest edge | least area | overlap | s |\n\
         |---|---|---|---|---|---|---|---|---|---|---|---|\n"
         .to_owned();

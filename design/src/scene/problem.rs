@@ -136,11 +136,11 @@ impl Scene {
             path: self.path.clone(),
             reason: error.to_string(),
         })?;
-        Ok(Model::Equilibrium(Mechanics {
+        Ok(Model::Equilibrium(Box::new(Mechanics {
             law,
             contact,
             solver,
-        }))
+        })))
     }
 
     fn solver(&self) -> Result<EquilibriumSolver, EquilibriumError> {

@@ -197,13 +197,13 @@ fn the_gradient_is_exact_where_the_tangent_is_indefinite() {
         let (supports, loads) = (clamp(4), opening_moments(&sheet, 4, 1500.0));
         let settings = SolverSettings::default();
         let solver = EquilibriumSolver::new(GRID, &supports, &loads, steps, settings).unwrap();
-        problem.model = Model::Equilibrium(Mechanics {
+        problem.model = Model::Equilibrium(Box::new(Mechanics {
             law: Box::new(Rotational(|theta| {
                 snapping(theta).map(|part| 1500.0 * part)
             })),
             contact: None,
             solver: solver.driven(stroke).unwrap(),
-        });
+        }));
         problem
     };
     let path = driven(60, 0.15).deploy(&design).unwrap().path;

@@ -35,7 +35,7 @@ fn a_pulled_sheet_with_path_functionals() {
         outline: cases::outline(&case),
         widths: WidthChart { w_minus, w_plus },
         options: AT_CORNER,
-        model: Model::Equilibrium(Mechanics {
+        model: Model::Equilibrium(Box::new(Mechanics {
             law: Box::new(law),
             contact: None,
             solver: EquilibriumSolver::new(
@@ -46,7 +46,7 @@ fn a_pulled_sheet_with_path_functionals() {
                 SolverSettings::default(),
             )
             .unwrap(),
-        }),
+        })),
         objective: Objective {
             target: get(&case, "target"),
             chamfer: Chamfer {

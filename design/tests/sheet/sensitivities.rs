@@ -24,14 +24,14 @@ fn loaded(x: &[f64], stroke: Option<f64>) -> DesignProblem {
     let (supports, settings) = (Dof::ALL.map(support), SolverSettings::default());
     let solver = EquilibriumSolver::new(GRID, &supports, &loads, 3, settings).unwrap();
     let stiffness = x[3..].chunks(3).map(|k| [k[0], k[1], k[2]]).collect();
-    let model = Model::Equilibrium(Mechanics {
+    let model = Model::Equilibrium(Box::new(Mechanics {
         law: Box::new(LinearLaw::new(stiffness).unwrap()),
         contact: None,
         solver: match stroke {
             Some(stroke) => solver.driven(stroke).unwrap(),
             None => solver,
         },
-    });
+    }));
     problem(model, AT_CORNER.hinge_point)
 }
 

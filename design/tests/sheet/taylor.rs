@@ -45,14 +45,14 @@ pub fn mechanics(law: impl HingeLaw + 'static, moment: f64, east: East) -> Model
     }
     let settings = SolverSettings::default();
     let solver = EquilibriumSolver::new(GRID, &supports, &loads, 4, settings).unwrap();
-    Model::Equilibrium(Mechanics {
+    Model::Equilibrium(Box::new(Mechanics {
         law: Box::new(law),
         contact: Some(Contact::new(10.0, -0.2, 0.0).unwrap()),
         solver: match east {
             East::Driven(_, stroke) => solver.driven(stroke).unwrap(),
             _ => solver,
         },
-    })
+    }))
 }
 
 #[derive(Clone, Copy)]

@@ -55,20 +55,25 @@ pub(super) fn page(capacities: &[Capacity], scene: &Path, to: f64) -> Result<Str
 
 /// What the terms on the hinges gain over the two patterns that are designed without them.
 fn gains(kinematic: &Capacity, shape: &Capacity, full: &Capacity, to: f64) -> Result<String> {
-    let together = |it: &Capacity| it.limit.as_ref().map_or(to, |(carried, _)| *carried);
-    let outwards = |it: &Capacity| it.after[0].carried();
-    let inwards = |it: &Capacity| it.after[1].carried();
-    let ways: [(_, &dyn Fn(&Capacity) -> f64); 3] = [
-        ("both loads together", &together),
-        ("the pull first, then outwards", &outwards),
-        ("the pull first, then inwards", &inwards),
+    type Carried = fn(&Capacity, f64) -> f64;
+    let ways: [(_, Carried); 3] = [
+        ("both loads together", |it, to| {
+            it.limit.as_ref().map_or(to, |limit| limit.0)
+        }),
+        ("the pull first, then outwards", |it, _| {
+            it.after[0].carried()
+        }),
+        ("the pull first, then inwards", |it, _| {
+            it.after[1].carried()
+        }),
     ];
     let mut text = "\nCapacity with compression and shear in the objective, over that without:\n\n\
         | | over the shape term alone | over the geometric pattern |\n|---|---|---|\n\
         | the paper | 2.3 | 1.64 |\n"
         .to_owned();
     for (way, carried) in ways {
-        let [alone, geometric] = [shape, kinematic].map(|over| carried(full) / carried(over));
+        let [alone, geometric] =
+            [shape, kinematic].map(|over| carried(full, to) / carried(over, to));
         writeln!(text, "| {way} | {alone:.2} | {geometric:.2} |")?;
     }
     if full.limit.is_none() {
