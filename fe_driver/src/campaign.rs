@@ -66,8 +66,8 @@ pub enum CampaignError {
     #[error("another run is at work, and holds {0}: wait for it or stop it")]
     Locked(PathBuf),
     #[error(
-        "job {0} is none of the campaign's: it was solved with other settings, another version \
-         of gmsh or ccx, or for another campaign"
+        "the jobs are none of the campaign's, {0} to begin with: they were solved with other settings, \
+         another version of gmsh or ccx, or for another campaign"
     )]
     Stranger(String),
     #[error("the run ended at job {job}: {source}")]

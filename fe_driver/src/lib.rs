@@ -44,7 +44,7 @@ pub use ledger::{Status, Tally, Throughput, refuse_changed, status};
 pub use path::{DeformationPath, PathError};
 pub use plan::{Plan, plan};
 pub use ray::Ray;
-pub use restore::restore;
+pub use restore::{Restored, restore};
 pub use retry::retry;
 pub use run::{Progress, RunOptions, run};
 pub use sampling::RayBox;

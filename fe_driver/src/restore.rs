@@ -9,37 +9,51 @@ use crate::shard::Shard;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// Writes the folders of jobs that `campaign` finished elsewhere or before, and returns how many.
+/// What became of the jobs that were to be restored.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Restored {
+    /// Written back.
+    pub written: usize,
+    /// Closed in the folder already, and left as they are.
+    pub there: usize,
+    /// None of the campaign's.
+    pub strangers: usize,
+}
+
+/// Writes the folders of jobs back that `campaign` finished elsewhere or before.
 ///
-/// Every job must be one of the campaign's: its id is a hash of all that decides the result. What
-/// is closed in `folder` already is left as it is.
+/// The id of a job is a hash of all that decides the result: those of another campaign are left out, and
+/// it is an error if all are.
 pub fn restore(
     campaign: &Campaign,
     folder: &Path,
     finished: &[FinishedJob],
-) -> Result<usize, CampaignError> {
+) -> Result<Restored, CampaignError> {
+    let mut restored = Restored::default();
     let Some(first) = finished.first() else {
-        return Ok(0);
+        return Ok(restored);
     };
     let specs = campaign.jobs(&first.tools);
     let index = Index::of(&campaign.name, &specs);
     let specs: HashMap<_, _> = index.jobs.iter().zip(specs).collect();
-    if let Some(stranger) = finished.iter().find(|job| !specs.contains_key(&job.id)) {
-        return Err(CampaignError::Stranger(stranger.id.clone()));
+    let ours = || finished.iter().filter(|job| specs.contains_key(&job.id));
+    restored.strangers = finished.len() - ours().count();
+    if restored.strangers == finished.len() {
+        return Err(CampaignError::Stranger(first.id.clone()));
     }
     let folder = CampaignFolder(folder.to_owned());
     let mut history = folder.enter(Shard::WHOLE, &index)?;
-    let mut restored = 0;
-    for job in finished {
+    for job in ours() {
         let home = folder.job(&job.id);
         if home.record()?.is_some_and(|record| record.is_closed()) {
+            restored.there += 1;
             continue;
         }
         home.write_spec(&specs[&job.id])?;
         let rows_hash = home.write_samples(&job.samples)?;
         home.write_record(&record(job, rows_hash))?;
         history.note(&job.id, Event::Restored)?;
-        restored += 1;
+        restored.written += 1;
     }
     Ok(restored)
 }

@@ -6,8 +6,8 @@ mod common;
 use common::processes::left_running;
 use common::{TWO_WORKERS, campaign, fake_ccx, jobs, run_with};
 use fe_driver::{
-    Campaign, CampaignError, Ccx, FailureKind, FinishedJob, RunOptions, Shard, Tally, ToolVersions,
-    Tools, plan, restore, retry, status,
+    Campaign, CampaignError, Ccx, FailureKind, FinishedJob, Restored, RunOptions, Shard, Tally,
+    ToolVersions, Tools, plan, restore, retry, status,
 };
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -297,12 +297,18 @@ fn what_was_collected_is_not_solved_again() {
     collected[1].failure = Some(FailureKind::Diverged);
     collected[1].solved_tier = collected[1].tier.finer().unwrap();
     collected[1].samples.pop();
-    assert_eq!(
-        restore(&campaign(RAYS), folder, &collected[..2]).unwrap(),
-        2
-    );
+    let restored = |jobs: &[_]| restore(&campaign(RAYS), folder, jobs).unwrap();
+    let expected = |written, there, strangers| Restored {
+        written,
+        there,
+        strangers,
+    };
+    assert_eq!(restored(&collected[..2]), expected(2, 0, 0));
     assert_eq!(jobs(folder), collected[..2]);
-    assert_eq!(restore(&campaign(RAYS), folder, &collected).unwrap(), 1);
+    let mut further = collected.clone();
+    further.push(collected[0].clone());
+    further[RAYS].id = "of another campaign".into();
+    assert_eq!(restored(&further), expected(1, 2, 1));
     assert_eq!(jobs(folder), collected);
 
     let broken = replaying(folder, "exit 1");

@@ -9,8 +9,8 @@ use std::path::PathBuf;
 
 /// Write the folders of jobs back from a database that was collected from them
 ///
-/// A run then solves only what the database does not hold. The jobs must be the campaign's, solved
-/// with the same settings and versions of gmsh and ccx.
+/// A run then solves only what the database does not hold. Jobs that were solved with other settings or
+/// versions of gmsh and ccx are none of the campaign's and are left out.
 #[derive(Args)]
 pub struct RestoreCommand {
     #[command(flatten)]
@@ -36,10 +36,14 @@ impl RestoreCommand {
         let folder = self.campaign.folder();
         let restored = fe_driver::restore(&campaign, &folder, &jobs)?;
         println!(
-            "{restored} rays restored to {}; {} were there",
+            "{} rays restored to {}; {} were there",
+            restored.written,
             folder.display(),
-            jobs.len() - restored
+            restored.there
         );
+        if restored.strangers > 0 {
+            println!("{} are none of this campaign's", restored.strangers);
+        }
         Ok(())
     }
 }
