@@ -57,8 +57,14 @@ pub fn ensemble(surrogate: &Surrogate, files: &[PathBuf]) -> Result<Vec<Surrogat
 /// The mesh that weights speak for: that of the database they were trained on, or the finer one it was
 /// corrected to; the default one if their card knows none of ours.
 pub fn tier_of(surrogate: &Surrogate) -> Tier {
-    let told = surrogate.card().tier.rsplit(' ').next();
-    told.and_then(|name| name.parse().ok()).unwrap_or_default()
+    judging_tier(&surrogate.card().tier)
+}
+
+/// The tier that a database's rows stand for, by what its manifest calls it.
+fn judging_tier(told: &str) -> Tier {
+    let corrected_to = told.rsplit_once(" corrected to ");
+    let name = corrected_to.map_or(told, |(_, finer)| finer);
+    name.parse().unwrap_or_default()
 }
 
 impl HingeRoute {
@@ -136,6 +142,18 @@ mod tests {
                 r_win: 100.0,
             },
             states: states.iter().map(|state| (*state).into()).collect(),
+        }
+    }
+
+    #[test]
+    fn weights_are_judged_by_the_mesh_they_speak_for() {
+        assert_eq!(judging_tier("tiny"), Tier::Tiny);
+        assert_eq!(
+            judging_tier("default corrected to reference"),
+            Tier::Reference
+        );
+        for unclear in ["default + tiny", "another solver", ""] {
+            assert_eq!(judging_tier(unclear), Tier::Default);
         }
     }
 

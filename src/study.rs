@@ -20,7 +20,7 @@ mod window;
 use crate::interrupt;
 use anyhow::{Result, bail};
 use clap::Subcommand;
-use design::inverse_design::{Designed, Ended, StepRecord, inverse_design};
+use design::inverse_design::{Designed, Ended, StepRecord, forget, inverse_design};
 use design::scene::Scene;
 
 /// Measure what the choices of a stage cost and are worth
@@ -69,7 +69,15 @@ impl StudyCommand {
 
 /// The finished search of a scene; one that was stopped or is stuck is no result.
 fn designed(scene: &Scene, progress: &mut dyn FnMut(&StepRecord)) -> Result<Designed> {
-    let designed = inverse_design(scene, interrupt::stop_flag()?, progress)?;
+    let stop = interrupt::stop_flag()?;
+    let designed = match inverse_design(scene, stop, progress) {
+        // What an earlier study left of other weights or of a changed scene is worth nothing here.
+        Err(error) if error.is_of_another_run() => {
+            forget(scene)?;
+            inverse_design(scene, stop, progress)?
+        }
+        designed => designed?,
+    };
     let title = &scene.config.title;
     match &designed.ended {
         Ended::Completed | Ended::Settled => Ok(designed),

@@ -51,7 +51,7 @@ fn silhouettes_and_what_they_keep() {
     page(&work, &study, "silhouettes.md");
     assert!(std::fs::read(&kept).unwrap() == before);
     let twice = format!("study silhouettes {scene} a/leaf.svg b/leaf.svg --out out");
-    assert!(work.error(&twice).contains("one name"));
+    assert!(work.error(&twice).contains("b/leaf.svg: another"));
 }
 
 #[test]

@@ -3,6 +3,8 @@
 //! ```text
 //! min over q of  Pi(q) = sum_h W(eps_h(q); g_h) - zeta sum_k (F_k . u_k + M_k phi_k)
 //! ```
+//!
+//! and, of a path that follows another, less the work of the loads that are held.
 
 use crate::actuation::{Dof, Load, Support};
 use crate::grid::Grid;
@@ -217,9 +219,15 @@ impl EquilibriumSolver {
         Ok(self)
     }
 
-    /// What comes after full load: the supports stay where they are, the loads are held, and further
-    /// ones are added in so many steps.
-    pub fn followed_by(&self, loads: &[Load], steps: usize) -> Result<Self, EquilibriumError> {
+    /// What comes after the state `last` of this solver's path: the supports stay where they are, the
+    /// loads are held, and further ones are added in so many steps. The path begins at the
+    /// configuration of `last`; the adjoint is not made for it.
+    pub fn followed_by(
+        &self,
+        last: &LoadStep,
+        loads: &[Load],
+        steps: usize,
+    ) -> Result<Self, EquilibriumError> {
         let still = |&support: &Support| Support {
             value: 0.0,
             ..support
@@ -229,7 +237,7 @@ impl EquilibriumSolver {
         let held = std::iter::zip(&self.held, &self.loads);
         Ok(Self {
             held: held
-                .map(|(held, load)| std::array::from_fn(|d| held[d] + load[d]))
+                .map(|(held, load)| std::array::from_fn(|d| held[d] + last.load_factor * load[d]))
                 .collect(),
             ..next
         })

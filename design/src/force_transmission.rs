@@ -34,8 +34,9 @@ pub struct ForceTransmission {
     pub interfaces: Vec<Interface>,
     /// Deployed centroids (mm).
     pub centroids: Vec<[f64; 2]>,
-    /// The moment that passes through each panel: half of what its interfaces exert about its centroid,
-    /// sizes summed (N mm).
+    /// The moment that passes through each panel (N mm): half of what its interfaces and the couple on it
+    /// exert about its centroid, sizes summed. In equilibrium that couple is what the interfaces exert
+    /// together.
     pub moments: Vec<f64>,
     /// Of the panels (mm^2).
     pub areas: Vec<f64>,
@@ -57,7 +58,7 @@ pub struct TransmissionShares {
 /// Part of interfaces or panels that counts as strongly loaded.
 const STRONG: f64 = 0.25;
 /// Part of the panels that counts as carrying the moment.
-const TWISTED: f64 = 0.1;
+const MOMENT_PANELS: f64 = 0.1;
 
 impl Interface {
     /// Size of the force (N).
@@ -75,12 +76,14 @@ impl ForceTransmission {
         let (sheet, last) = (&deployment.sheet, deployment.final_step());
         let law = mechanics.law.prepare(&sheet.designs());
         let energies = law.energies(&last.deformations, Order::Forces);
-        let mut moments = vec![0.0; sheet.panels.len()];
+        let mut moments = vec![[0.0; 2]; sheet.panels.len()];
         for (h, (hinge, energy)) in std::iter::zip(&sheet.hinges, &energies).enumerate() {
             let motion = HingeMotion::new(sheet, h, &last.configuration);
             let [_, _, on_a, _, _, on_b] = motion.forces(energy.forces);
-            moments[hinge.panel_a()] += 0.5 * on_a.abs();
-            moments[hinge.panel_b()] += 0.5 * on_b.abs();
+            for (panel, moment) in [(hinge.panel_a(), on_a), (hinge.panel_b(), on_b)] {
+                moments[panel][0] += f64::abs(moment);
+                moments[panel][1] += moment;
+            }
         }
         let hinges = std::iter::zip(&sheet.hinges, &last.deformations);
         let interfaces = std::iter::zip(hinges, energies).map(|((hinge, deformation), energy)| {
@@ -102,7 +105,9 @@ impl ForceTransmission {
             centroids: std::iter::zip(&sheet.panels, &last.configuration)
                 .map(centroid)
                 .collect(),
-            moments,
+            moments: (moments.iter())
+                .map(|[sizes, sum]| 0.5 * (sizes + f64::abs(*sum)))
+                .collect(),
             areas: sheet.panels.iter().map(Panel::area).collect(),
         })
     }
@@ -189,9 +194,9 @@ impl ForceTransmission {
     }
 
     /// Mean area of the tenth of panels that most moment passes through, over the median area.
-    pub fn twisted_panels(&self) -> f64 {
-        let twisted = upper_part(&self.moments, TWISTED);
-        let mean = twisted.iter().map(|&k| self.areas[k]).sum::<f64>() / twisted.len() as f64;
+    pub fn moment_panels(&self) -> f64 {
+        let most = upper_part(&self.moments, MOMENT_PANELS);
+        let mean = most.iter().map(|&k| self.areas[k]).sum::<f64>() / most.len() as f64;
         let mut areas = self.areas.clone();
         areas.sort_by(f64::total_cmp);
         let last = areas.len() - 1;
@@ -269,7 +274,7 @@ mod tests {
             areas: vec![2.0, 1.0, 6.0, 4.0, 9.0],
         };
         // A tenth of five is the third alone.
-        assert_eq!(transmission.twisted_panels(), 1.5);
+        assert_eq!(transmission.moment_panels(), 1.5);
         let shares = transmission.shares();
         assert_eq!(shares.tension, 0.6);
         assert_eq!((shares.compression, shares.shear), (0.2, 0.2));

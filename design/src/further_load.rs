@@ -1,6 +1,6 @@
 //! What a deployed sheet carries beside the loads that deployed it; section 3.2, load capacity.
 //!
-//! Those loads are held and a further one is driven along its way, so that its greatest value is a point
+//! Those loads are held and a further one is driven along its way, so that the first maximum is a point
 //! of the path like any other: dead loads would throw the sheet past it.
 
 use crate::actuation::Load;
@@ -9,19 +9,21 @@ use crate::equilibrium::{LoadStep, Status};
 use crate::gradient::{Deployment, DesignError, DesignProblem, Model};
 use std::fmt;
 
-/// Steps in which the first maximum is looked for, and in which the way to it is gone again.
-const STEPS: [usize; 2] = [100, 400];
+/// Steps in which the sheet is first seen to give way.
+const COARSE: usize = 100;
+/// Steps in which the way there is gone again.
+const FINE: usize = 400;
 
 /// A further load along its way.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FurtherLoad {
-    /// (way of the load in mm, its factor) from the deployed sheet to where it gives way.
+    /// (way of the load in mm, its factor) from the deployed sheet to where it first gives way.
     pub curve: Vec<(f64, f64)>,
-    /// Why the factor at the end of the curve is the greatest; none if the sheet still resists there.
+    /// Why the curve ends; none if the sheet still resists where it was led to.
     pub ended: Option<GivesWay>,
 }
 
-/// How a further load comes to its greatest value.
+/// How a sheet gives way to a further load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GivesWay {
     /// It falls from here on.
@@ -54,6 +56,11 @@ impl FurtherLoad {
     pub fn carried(&self) -> f64 {
         self.curve.last().map_or(0.0, |(_, factor)| *factor)
     }
+
+    /// The factor at which the sheet gives way, if it does.
+    pub fn limit(&self) -> Option<f64> {
+        self.ended.map(|_| self.carried())
+    }
 }
 
 impl GivesWay {
@@ -81,18 +88,20 @@ impl fmt::Display for GivesWay {
 }
 
 impl DesignProblem {
-    /// Holds the loads of a deployment and leads `further` ones along their way, at most as far as
-    /// `stroke` (mm), until the sheet gives way.
+    /// Holds the loads of a deployment and leads `further` forces along their way, at most as far as
+    /// `stroke` (mm), until the sheet first gives way; at once if it was not deployed.
     pub fn further_load(
         &self,
         deployment: &Deployment,
         further: &[Load],
         stroke: f64,
     ) -> Result<FurtherLoad, DesignError> {
-        let [coarse, fine] = STEPS;
-        let found = self.driven_on(deployment, further, stroke, coarse)?;
-        let to_first_failed = found.curve.len() as f64 / coarse as f64;
-        self.driven_on(deployment, further, stroke * to_first_failed.min(1.0), fine)
+        let coarse = self.driven_on(deployment, further, stroke, COARSE)?;
+        let to_first_failed = (coarse.curve.len() as f64 / COARSE as f64).min(1.0);
+        let fine = self.driven_on(deployment, further, stroke * to_first_failed, FINE)?;
+        // Shorter steps may pass where longer ones gave up; how far they would go is not known then.
+        let passed = coarse.ended.is_some() && fine.ended.is_none();
+        Ok(if passed { coarse } else { fine })
     }
 
     fn driven_on(
@@ -105,9 +114,15 @@ impl DesignProblem {
         let Model::Equilibrium(mechanics) = &self.model else {
             return Err(DesignError::NoMechanics);
         };
-        let sheet = &deployment.sheet;
-        let start = deployment.at_full_load()?.configuration.clone();
-        let solver = mechanics.solver.followed_by(further, steps)?;
+        let (sheet, opened) = (&deployment.sheet, deployment.final_step());
+        if opened.status == Status::Diverged {
+            return Ok(FurtherLoad {
+                curve: vec![(0.0, 0.0)],
+                ended: Some(GivesWay::NoEquilibrium),
+            });
+        }
+        let start = opened.configuration.clone();
+        let solver = mechanics.solver.followed_by(opened, further, steps)?;
         let law = mechanics.law.prepare(&sheet.designs());
         let hinged = mechanics.hinged(sheet, &*law);
         let path = solver.driven(stroke)?.path_from(hinged, start);

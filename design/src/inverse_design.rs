@@ -101,6 +101,16 @@ pub enum InverseDesignError {
     },
 }
 
+impl InverseDesignError {
+    /// Whether the run folder holds a run of something else than was asked for.
+    pub fn is_of_another_run(&self) -> bool {
+        matches!(
+            self,
+            Self::OtherSize { .. } | Self::OtherScene { .. } | Self::OtherModel { .. }
+        )
+    }
+}
+
 /// Everything that the next step depends on.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -1,4 +1,4 @@
-//! Following the load path from the flat sheet.
+//! Following the load path, from the flat sheet or from where another path ended.
 //!
 //! An increment starts where the tangent at its beginning leads and ends at a minimum. It is halved
 //! until there is one, and until the rates of the path explain its rotations,

@@ -7,7 +7,8 @@
 //! min |grad U - zeta f|     over zeta, moments compared with forces by the size of a panel
 //! ```
 //!
-//! and what is minimised is U alone, because the loads do the same work in every such configuration.
+//! and what is minimised is U alone, because the loads do the same work in every such configuration. U
+//! counts the work of loads that are held, if there are any, as stored with its sign turned.
 
 use crate::equilibrium::HingedSheet;
 use crate::hinge_law::{HingeEnergy, Order};
@@ -54,9 +55,9 @@ pub(crate) struct State {
     pub energies: Vec<HingeEnergy>,
     /// zeta
     pub load_factor: f64,
-    /// U of (10).
+    /// Energy of the hinges.
     pub stored: f64,
-    /// What is minimised: Pi, or U of a driven sheet.
+    /// What is minimised: Pi, or U of a driven sheet, less the work of loads that are held.
     pub potential: f64,
     /// Sum of the sizes of the terms of `potential`.
     pub magnitude: f64,

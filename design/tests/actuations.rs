@@ -119,11 +119,34 @@ fn the_greatest_further_load_is_where_dead_loads_throw_the_sheet() {
             law: &*law,
             contact: mechanics.contact.as_ref(),
         };
-        let solver = mechanics.solver.followed_by(&loads(factor), 20).unwrap();
-        let start = deployment.final_step().configuration.clone();
-        let path = solver.path_from(sheet, start);
+        let opened = deployment.final_step();
+        let solver = mechanics
+            .solver
+            .followed_by(opened, &loads(factor), 20)
+            .unwrap();
+        let path = solver.path_from(sheet, opened.configuration.clone());
         path.iter().any(|step| step.status == Status::LimitPoint)
     };
     assert!(!jumps(0.999 * carried));
     assert!(jumps(1.001 * carried));
+}
+
+/// The couple of the third actuation goes through the panel it acts on, all of it.
+#[test]
+fn a_couple_passes_through_its_panel() {
+    let (problem, deployment) = changed("actuation-3.toml", |_| ());
+    let transmission = ForceTransmission::new(&problem, &deployment).unwrap();
+    let config: SceneConfig = hinge::config::read(
+        &Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes/actuation-3.toml"),
+    )
+    .unwrap();
+    let load = config.loads.iter().find(|load| load.couple != 0.0).unwrap();
+    let [column, row] = load.panel;
+    let through = transmission.moments[15 * row + column];
+    assert!(through > 0.999 * load.couple.abs(), "{through}");
+    let greatest = transmission.moments.iter().copied().fold(0.0, f64::max);
+    assert!(
+        through == greatest && greatest < 1.5 * load.couple.abs(),
+        "{greatest}"
+    );
 }

@@ -3,10 +3,10 @@
 use crate::campaign::{Campaign, CampaignError};
 use crate::finished::FinishedJob;
 use crate::history::{Event, now};
-use crate::job::JobRecord;
+use crate::job::{JobRecord, ToolVersions};
 use crate::ledger::{CampaignFolder, Index};
 use crate::shard::Shard;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// What became of the jobs that were to be restored.
@@ -33,14 +33,26 @@ pub fn restore(
     let Some(first) = finished.first() else {
         return Ok(restored);
     };
-    let specs = campaign.jobs(&first.tools);
-    let index = Index::of(&campaign.name, &specs);
+    // Strangers may have been solved by other programs than the campaign's jobs.
+    let mut tools: Vec<&ToolVersions> = Vec::new();
+    for job in finished {
+        if !tools.contains(&&job.tools) {
+            tools.push(&job.tools);
+        }
+    }
+    let jobs_with = |tools| {
+        let specs = campaign.jobs(tools);
+        let index = Index::of(&campaign.name, &specs);
+        let ids: HashSet<&String> = index.jobs.iter().collect();
+        let known = finished.iter().any(|job| ids.contains(&job.id));
+        known.then_some((index, specs))
+    };
+    let Some((index, specs)) = tools.into_iter().find_map(jobs_with) else {
+        return Err(CampaignError::Stranger(first.id.clone()));
+    };
     let specs: HashMap<_, _> = index.jobs.iter().zip(specs).collect();
     let ours = || finished.iter().filter(|job| specs.contains_key(&job.id));
     restored.strangers = finished.len() - ours().count();
-    if restored.strangers == finished.len() {
-        return Err(CampaignError::Stranger(first.id.clone()));
-    }
     let folder = CampaignFolder(folder.to_owned());
     let mut history = folder.enter(Shard::WHOLE, &index)?;
     for job in ours() {

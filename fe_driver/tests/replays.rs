@@ -305,9 +305,11 @@ fn what_was_collected_is_not_solved_again() {
     };
     assert_eq!(restored(&collected[..2]), expected(2, 0, 0));
     assert_eq!(jobs(folder), collected[..2]);
+    let mut stranger = collected[0].clone();
+    stranger.id = "of another campaign".into();
+    stranger.tools.ccx += " before";
     let mut further = collected.clone();
-    further.push(collected[0].clone());
-    further[RAYS].id = "of another campaign".into();
+    further.insert(0, stranger);
     assert_eq!(restored(&further), expected(1, 2, 1));
     assert_eq!(jobs(folder), collected);
 

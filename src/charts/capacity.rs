@@ -11,7 +11,7 @@ pub struct CapacityCurve<'a> {
     pub openings: Vec<(f64, f64)>,
     /// (rho, boundary error in % of the target's width)
     pub errors: Vec<(f64, f64)>,
-    /// (way of the load in mm, rho) of the opened sheet, outwards and inwards.
+    /// (way of the load in mm, rho) of the opened sheet, as in the scene and against it.
     pub ways: [Vec<(f64, f64)>; 2],
 }
 
@@ -22,47 +22,60 @@ const RHO: &str = "transverse load over the pull, rho";
 pub fn capacity(curves: &[CapacityCurve]) -> Result<String> {
     drawn((1100, 860), |root| {
         let areas = root.split_evenly((2, 2));
-        let openings = |curve: &CapacityCurve| curve.openings.clone();
-        let errors = |curve: &CapacityCurve| curve.errors.clone();
-        let outwards = |curve: &CapacityCurve| curve.ways[0].clone();
-        let inwards = |curve: &CapacityCurve| curve.ways[1].clone();
+        let swept = |points| Drawn {
+            points,
+            swept: true,
+        };
+        let led = |points| Drawn {
+            points,
+            swept: false,
+        };
+        let openings = swept(|curve| &curve.openings);
         panel(
             &areas[0],
             curves,
-            &openings,
+            openings,
             [RHO, "least opening of a hinge, deg"],
         )?;
+        let errors = swept(|curve| &curve.errors);
         panel(
             &areas[1],
             curves,
-            &errors,
+            errors,
             [RHO, "boundary rms, % of the width"],
         )?;
+        let along = led(|curve| &curve.ways[0]);
         panel(
             &areas[2],
             curves,
-            &outwards,
-            ["way of the load outwards, mm", "rho, pulled first"],
+            along,
+            ["way of the load, mm", "rho, pulled first"],
         )?;
+        let against = led(|curve| &curve.ways[1]);
         panel(
             &areas[3],
             curves,
-            &inwards,
-            ["way of the load inwards, mm", "rho, pulled first"],
+            against,
+            ["way of the load turned round, mm", "rho, pulled first"],
         )
     })
 }
 
-type Points<'a> = &'a dyn Fn(&CapacityCurve) -> Vec<(f64, f64)>;
+/// What a panel shows of each curve.
+#[derive(Clone, Copy)]
+struct Drawn {
+    points: for<'a> fn(&'a CapacityCurve<'_>) -> &'a Vec<(f64, f64)>,
+    /// A deployment a point, and the limit of rho among them; else only the end is marked.
+    swept: bool,
+}
 
 fn panel(
     area: &Area,
     curves: &[CapacityCurve],
-    points: Points,
+    Drawn { points, swept }: Drawn,
     [abscissa, ordinate]: [&str; 2],
 ) -> DrawResult {
-    let against_rho = abscissa == RHO;
-    let all: Vec<_> = curves.iter().flat_map(points).collect();
+    let all: Vec<_> = curves.iter().flat_map(points).copied().collect();
     let up = padded(all.iter().map(|point| point.1));
     let mut chart = ChartBuilder::on(area)
         .margin(12)
@@ -77,16 +90,24 @@ fn panel(
         .y_desc(ordinate)
         .draw()?;
     for (curve, &colour) in curves.iter().zip(SLICES.iter().cycle()) {
-        let mut dots = points(curve);
-        if !against_rho {
-            dots.drain(..dots.len().saturating_sub(1));
-        }
-        chart.draw_series((dots.iter()).map(|&dot| Circle::new(dot, 3, colour.filled())))?;
+        let points = points(curve);
+        let (marked, size) = match swept {
+            true => (&points[..], 2),
+            false => (&points[points.len().saturating_sub(1)..], 3),
+        };
+        chart.draw_series(
+            marked
+                .iter()
+                .map(|&at| Circle::new(at, size, colour.filled())),
+        )?;
         chart
-            .draw_series(LineSeries::new(points(curve), colour.stroke_width(2)))?
+            .draw_series(LineSeries::new(
+                points.iter().copied(),
+                colour.stroke_width(2),
+            ))?
             .label(curve.name)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
-        if let Some(limit) = curve.limit.filter(|_| against_rho) {
+        if let Some(limit) = curve.limit.filter(|_| swept) {
             let upright = [(limit, up.start), (limit, up.end)];
             let style = colour.mix(0.6).stroke_width(1);
             chart.draw_series(DashedLineSeries::new(upright, 4, 4, style))?;

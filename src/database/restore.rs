@@ -42,7 +42,7 @@ impl RestoreCommand {
             restored.there
         );
         if restored.strangers > 0 {
-            println!("{} are none of this campaign's", restored.strangers);
+            println!("{} rays are none of this campaign's", restored.strangers);
         }
         Ok(())
     }

@@ -6,7 +6,7 @@ use crate::charts::{self, CapacityCurve};
 use crate::progress::Progress;
 use crate::study::designed;
 use crate::{interrupt, picture, run_folder};
-use anyhow::{Result, ensure};
+use anyhow::{Result, bail, ensure};
 use clap::Args;
 use design::degeneration::{Degeneration, last_jump};
 use design::design_vector::DesignVector;
@@ -22,15 +22,15 @@ use std::sync::atomic::Ordering;
 ///
 /// The first load of the scene is held and the second is rho times as great. Applied together, every rho
 /// is a deployment of its own from the flat sheet, and the rho from which on the sheet is no longer
-/// deployed is found by bisection. Applied after the first, outwards and inwards, the second is led along
-/// its way, which finds its greatest value. Writes capacity.csv, capacity.md and pictures. Example:
-/// kirigami study capacity
+/// deployed is found by bisection. Applied after the first, as the scene has it and against it, the second
+/// is led along its way until the sheet first gives way. Writes capacity.csv, ways.csv, capacity.md and
+/// pictures. Example: kirigami study capacity
 #[derive(Args)]
 pub struct CapacityStudy {
     /// Scene (TOML) with the two loads, the second as it is at rho = 1
     #[arg(value_name = "SCENE", default_value = "configs/scenes/capacity.toml")]
     scene: PathBuf,
-    /// Greatest rho
+    /// Greatest rho of both loads together
     #[arg(long, value_name = "RHO", default_value_t = 6.0)]
     to: f64,
     /// Folder for the table, the picture and the runs
@@ -73,7 +73,7 @@ struct Capacity {
     points: Vec<Point>,
     /// The greatest rho that is carried and the deployment just above it; none if all are.
     limit: Option<(f64, Point)>,
-    /// The second load after the first, outwards (as the scene gives it) and inwards.
+    /// The second load after the first, as the scene has it and against it.
     after: [FurtherLoad; 2],
 }
 
@@ -85,9 +85,19 @@ impl CapacityStudy {
             "--to must be between 1 and 1000"
         );
         let config: SceneConfig = hinge::config::read(&self.scene)?;
+        let [pull, second] = &config.loads[..] else {
+            bail!("{}: needs two loads", self.scene.display());
+        };
         ensure!(
-            config.loads.len() == 2,
-            "{}: needs two loads",
+            pull.force != [0.0; 2] && second.force != [0.0; 2],
+            "{}: both loads need a force",
+            self.scene.display()
+        );
+        ensure!(
+            config.drive.is_none()
+                && config.edge_loads.is_empty()
+                && config.opening_couples.is_empty(),
+            "{}: the two loads are all that may act (no drive, edge_loads or opening_couples)",
             self.scene.display()
         );
         let _held = run_folder::hold(&self.out)?;
@@ -178,7 +188,7 @@ impl CapacityStudy {
         Ok((scene, deployment))
     }
 
-    /// The second load, outwards and inwards, led along its way after the first is applied.
+    /// The second load, as the scene has it and against it, led along its way after the first is applied.
     fn after(&self, config: &SceneConfig, design: &DesignVector) -> Result<[FurtherLoad; 2]> {
         let (scene, opened) = self.deploy(config, design, 0.0)?;
         let problem = scene.problem()?;

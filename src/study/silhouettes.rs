@@ -55,19 +55,18 @@ struct Fitted {
 impl SilhouetteStudy {
     pub fn run(&self) -> Result<()> {
         let config: SceneConfig = hinge::config::read(&self.scene)?;
+        // A run is kept by the name of its silhouette.
+        let mut names = BTreeSet::new();
+        for file in &self.silhouettes {
+            ensure!(
+                names.insert(file.file_stem()),
+                "{}: another silhouette has this name, rename one of them",
+                file.display()
+            );
+        }
         let _held = run_folder::hold(&self.out)?;
         let steps = config.optimiser.steps;
         let weights = [config.objective.panel_shape, 0.0];
-        // A run is kept by the name of its silhouette.
-        let names: BTreeSet<_> = self
-            .silhouettes
-            .iter()
-            .map(|file| file.file_stem())
-            .collect();
-        ensure!(
-            names.len() == self.silhouettes.len(),
-            "two of the silhouettes have one name: rename one of them"
-        );
         let runs = self
             .silhouettes
             .iter()

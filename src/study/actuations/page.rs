@@ -41,7 +41,7 @@ struct Numbers {
     longest_route: usize,
     arc_over_chord: Option<f64>,
     /// Mean area of the panels that carry the moment, over the median.
-    twisted: f64,
+    moment_panels: f64,
     /// Work of the couples over that of all loads (%).
     couple: f64,
     /// Weights of (18) and (19) (mm^2).
@@ -97,7 +97,7 @@ impl Numbers {
             longest_route: case.routes.first().map_or(0, |route| route.panels.len()),
             arc_over_chord: (!bent.is_empty())
                 .then(|| bent.iter().sum::<f64>() / bent.len() as f64),
-            twisted: case.transmission.twisted_panels(),
+            moment_panels: case.transmission.moment_panels(),
             couple: 100.0 * by_couples / (by_forces + by_couples),
             weights: [
                 case.objective.weights.compression,
@@ -162,7 +162,7 @@ pub fn page(cases: &[Case], families: &VoidFamilies, scenes: &Path) -> Result<St
             (n.arc_over_chord).map_or("-".into(), |ratio| format!("{ratio:.3}")),
             n.rank_correlation,
             n.clustering,
-            n.twisted,
+            n.moment_panels,
             n.couple,
             n.weights[0],
             n.weights[1],
@@ -280,7 +280,7 @@ pub fn csv(cases: &[Case]) -> Result<String> {
             (n.arc_over_chord).map_or(String::new(), |ratio| format!("{ratio:.5}")),
             n.rank_correlation,
             n.clustering,
-            n.twisted,
+            n.moment_panels,
             n.couple,
             n.weights[0],
             n.weights[1],

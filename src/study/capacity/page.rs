@@ -36,51 +36,46 @@ pub(super) fn page(capacities: &[Capacity], scene: &Path, to: f64) -> Result<Str
     }
     write!(
         text,
-        "\nThe pull first and held, then the second load led along its way, so that its greatest value is \
-        found whether the sheet snaps or not:\n\n\
-        | pattern | outwards, carries rho | there | inwards, carries rho | there |\n|---|---|---|---|---|\n"
+        "\nThe pull first and held, then the second load led along its way, as the scene has it and against it, \
+        until the sheet first gives way:\n\n\
+        | pattern | carries rho | there | against it, carries rho | there |\n|---|---|---|---|---|\n"
     )?;
     for Capacity { name, after, .. } in capacities {
-        let [outwards, inwards] = after.each_ref().map(|load| match load.ended {
+        let [along, against] = after.each_ref().map(|load| match load.ended {
             Some(ended) => format!("{:.3} | {ended}", load.carried()),
             None => format!("over {:.3} | it still resists", load.carried()),
         });
-        writeln!(text, "| {name} | {outwards} | {inwards} |")?;
+        writeln!(text, "| {name} | {along} | {against} |")?;
     }
     if let [_, kinematic, shape, full] = capacities {
-        text += &gains(kinematic, shape, full, to)?;
+        text += &gains(kinematic, shape, full)?;
     }
     Ok(text)
 }
 
 /// What the terms on the hinges gain over the two patterns that are designed without them.
-fn gains(kinematic: &Capacity, shape: &Capacity, full: &Capacity, to: f64) -> Result<String> {
-    type Carried = fn(&Capacity, f64) -> f64;
+fn gains(kinematic: &Capacity, shape: &Capacity, full: &Capacity) -> Result<String> {
+    type Carried = fn(&Capacity) -> Option<f64>;
     let ways: [(_, Carried); 3] = [
-        ("both loads together", |it, to| {
-            it.limit.as_ref().map_or(to, |limit| limit.0)
+        ("both loads together", |it| {
+            it.limit.as_ref().map(|limit| limit.0)
         }),
-        ("the pull first, then outwards", |it, _| {
-            it.after[0].carried()
+        ("the pull first, then as in the scene", |it| {
+            it.after[0].limit()
         }),
-        ("the pull first, then inwards", |it, _| {
-            it.after[1].carried()
-        }),
+        ("the pull first, then against it", |it| it.after[1].limit()),
     ];
     let mut text = "\nCapacity with compression and shear in the objective, over that without:\n\n\
         | | over the shape term alone | over the geometric pattern |\n|---|---|---|\n\
         | the paper | 2.3 | 1.64 |\n"
         .to_owned();
     for (way, carried) in ways {
-        let [alone, geometric] =
-            [shape, kinematic].map(|over| carried(full, to) / carried(over, to));
-        writeln!(text, "| {way} | {alone:.2} | {geometric:.2} |")?;
-    }
-    if full.limit.is_none() {
-        writeln!(
-            text,
-            "\nBoth loads together, the last pattern carries more than was tried."
-        )?;
+        // A sheet that carries all that was tried has no capacity to compare.
+        let gain = |over: &Capacity| match (carried(full), carried(over)) {
+            (Some(full), Some(over)) if over > 0.0 => format!("{:.2}", full / over),
+            _ => "unknown".into(),
+        };
+        writeln!(text, "| {way} | {} | {} |", gain(shape), gain(kinematic))?;
     }
     let boundary = |it: &Capacity| it.boundary().unwrap_or(f64::NAN);
     writeln!(
@@ -96,7 +91,7 @@ fn gains(kinematic: &Capacity, shape: &Capacity, full: &Capacity, to: f64) -> Re
 pub(super) fn ways(capacities: &[Capacity]) -> Result<String> {
     let mut text = "pattern,direction,way_mm,rho\n".to_owned();
     for Capacity { name, after, .. } in capacities {
-        for (direction, load) in ["outwards", "inwards"].iter().zip(after) {
+        for (direction, load) in ["as in the scene", "against it"].iter().zip(after) {
             for (way, rho) in &load.curve {
                 writeln!(text, "{name},{direction},{way:.3},{rho:.5}")?;
             }
