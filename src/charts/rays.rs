@@ -51,6 +51,7 @@ fn rays_chart(area: &Area, title: &str, lines: &[(&str, &[(f64, f64)])]) -> Draw
         .configure_mesh()
         .light_line_style(WHITE)
         .label_style((FONT, 12))
+        .x_label_formatter(&|rays| round_number(*rays))
         .x_desc("training rays")
         .y_desc("error on unseen geometries, %")
         .draw()?;
@@ -76,4 +77,13 @@ fn rays_chart(area: &Area, title: &str, lines: &[(&str, &[(f64, f64)])]) -> Draw
         .background_style(WHITE)
         .draw()?;
     Ok(())
+}
+
+/// 1, 2 and 5 times a power of ten; others, which would stand too close, are blank.
+fn round_number(value: f64) -> String {
+    let digits = format!("{value:.0}");
+    match digits.trim_end_matches('0') {
+        "1" | "2" | "5" => digits,
+        _ => String::new(),
+    }
 }
