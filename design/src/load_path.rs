@@ -14,7 +14,7 @@
 use crate::equilibrium::{EquilibriumSolver, HingedSheet, Method};
 use crate::kinematics::Configuration;
 use crate::load_step::{LoadStep, Status, StepTangent};
-use crate::newton::Minimum;
+use crate::newton::{LEVEL, Minimum};
 use crate::panel_vectors::{gather, spread};
 use crate::potential::{Control, Potential, State, moved};
 use crate::sheet::Panel;
@@ -37,6 +37,8 @@ struct Reached {
     configuration: Configuration,
     /// Of the configuration.
     rate: Vec<[f64; 3]>,
+    /// Energy of the hinges (N mm).
+    stored: f64,
     /// Of the hinges, and their rates.
     forces: Vec<[f64; 3]>,
     force_rates: Vec<[f64; 3]>,
@@ -115,6 +117,7 @@ impl EquilibriumSolver {
         Reached {
             at,
             configuration: state.configuration.clone(),
+            stored: state.stored,
             forces: state.forces(),
             force_rates: potential.force_rates(state, &rate),
             rate,
@@ -147,8 +150,13 @@ impl EquilibriumSolver {
                 }
             };
             let minimum = match seek(self.predicted(reached, at, 1.0)) {
-                // Where the rates lead panels through each other, the search starts where it is.
+                // Where the rates lead panels through each other, or over a ridge of the energy, the search
+                // starts where it is.
                 Err(failure) if failure.residual.is_infinite() && self.drive.is_none() => {
+                    seek(self.predicted(reached, at, 0.0))
+                }
+                Ok(minimum) if self.climbed(reached, at, &minimum.state) => {
+                    iterations += minimum.iterations;
                     seek(self.predicted(reached, at, 0.0))
                 }
                 minimum => minimum,
@@ -192,6 +200,17 @@ impl EquilibriumSolver {
                 );
             }
         }
+    }
+
+    /// Whether a state under the loads at `at` lies above the one before, left as it was: no sheet gets there by
+    /// itself. Not known where supports or stroke move it.
+    fn climbed(&self, reached: &Reached, at: f64, state: &State) -> bool {
+        if self.drive.is_some() || self.supports.iter().any(|support| support.value != 0.0) {
+            return false;
+        }
+        let [work, held] = self.works(&reached.configuration);
+        let before = reached.stored - at * work - held;
+        state.potential - before > LEVEL * state.magnitude
     }
 
     /// The last point of a path that could not be followed further.

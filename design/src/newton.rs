@@ -29,7 +29,7 @@ const SHIFTS: [f64; 3] = [1e-8, 8.0, 1e8];
 const NEGATIVE_CURVATURE: f64 = -1e-11;
 /// Change of Pi over the sum of its terms' sizes below which it may be rounding: a learned energy is
 /// a difference of much greater numbers.
-const LEVEL: f64 = 1e-9;
+pub(crate) const LEVEL: f64 = 1e-9;
 
 /// Where a minimisation ended.
 pub(crate) struct Minimum {

@@ -2,6 +2,7 @@
 
 use design::actuation::{Dof, Load};
 use design::degeneration::{Degeneration, last_jump};
+use design::design_vector::DesignVector;
 use design::equilibrium::{HingedSheet, Status};
 use design::force_transmission::ForceTransmission;
 use design::further_load::GivesWay;
@@ -149,4 +150,25 @@ fn a_couple_passes_through_its_panel() {
         through == greatest && greatest < 1.5 * load.couple.abs(),
         "{greatest}"
     );
+}
+
+/// A design of the polyester sheet on whose path an increment of a tenth of the load leads over a ridge of
+/// the learned energy, into a hollow that lies far above and outside the box: no sheet climbs there by itself.
+#[test]
+fn no_load_step_leads_over_a_ridge_of_the_energy() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let scenes = folder.join("../configs/scenes");
+    let design = std::fs::read_to_string(folder.join("tests/cases/ridge_3x3_design.json"));
+    let design: DesignVector = serde_json::from_str(&design.unwrap()).unwrap();
+    let potential = |load_steps: usize| {
+        let path = scenes.join("pet-3x3.toml");
+        let mut config: SceneConfig = hinge::config::read(&path).unwrap();
+        config.load_steps = load_steps;
+        let problem = Scene::new(config, &path).unwrap().problem().unwrap();
+        let deployment = problem.deploy(&design).unwrap();
+        deployment.at_full_load().unwrap().potential
+    };
+    let [coarse, middle, fine] = [5, 10, 40].map(potential);
+    assert!((coarse / fine - 1.0).abs() < 1e-9, "{coarse} {fine}");
+    assert!((middle / fine - 1.0).abs() < 1e-9, "{middle} {fine}");
 }
