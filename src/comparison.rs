@@ -33,19 +33,27 @@ pub fn spread_table(groups: &[&[ComparedState]], group: &str) -> Result<String> 
     let all = relative_rms(&groups.concat(), [0.0; 6]);
     let each = each_relative(groups);
     for (i, name) in COMPARED.iter().enumerate() {
-        let mut sorted: Vec<_> = each.iter().map(|rms| 100.0 * rms[i]).collect();
+        let mut sorted: Vec<_> = each.iter().map(|rms| rms[i]).collect();
         sorted.sort_by(f64::total_cmp);
         let quantile = |share: f64| sorted[(share * (sorted.len() - 1) as f64).round() as usize];
         writeln!(
             text,
-            "| {name} | {:.2} % | {:.2} % | {:.2} % | {:.2} % |",
-            100.0 * all[i],
-            quantile(0.5),
-            quantile(0.9),
-            quantile(1.0)
+            "| {name} | {} | {} | {} | {} |",
+            percent(all[i]),
+            percent(quantile(0.5)),
+            percent(quantile(0.9)),
+            percent(quantile(1.0))
         )?;
     }
     Ok(text)
+}
+
+/// Of a reference that is next to nothing, a damage of hinges that do not yield, no multiple means anything.
+fn percent(relative: f64) -> String {
+    match relative < 10.0 {
+        true => format!("{:.2} %", 100.0 * relative),
+        false => "over 1000 %".into(),
+    }
 }
 
 /// Draws every state, one chart a quantity; `axes` names what judges and what is judged.
@@ -70,4 +78,16 @@ pub fn draw(groups: &[&[ComparedState]], axes: [&str; 2], stem: &Path) -> Result
         .collect();
     picture::save(&charts::parity(&charts, axes)?, stem, 2000)?;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_no_measure() {
+        assert_eq!(percent(0.01234), "1.23 %");
+        assert_eq!(percent(5e286), "over 1000 %");
+        assert_eq!(percent(f64::NAN), "over 1000 %");
+    }
 }
