@@ -60,11 +60,8 @@ pub fn tier_of(surrogate: &Surrogate) -> Tier {
     judging_tier(&surrogate.card().tier)
 }
 
-/// The tier that a database's rows stand for, by what its manifest calls it.
 fn judging_tier(told: &str) -> Tier {
-    let corrected_to = told.rsplit_once(" corrected to ");
-    let name = corrected_to.map_or(told, |(_, finer)| finer);
-    name.parse().unwrap_or_default()
+    dataset::speaks_for(told).parse().unwrap_or_default()
 }
 
 impl HingeRoute {

@@ -43,6 +43,9 @@ const LEAST_SCALE: f64 = 0.3;
 /// rays leave open.
 const RIDGE: f64 = 1.0;
 
+/// Between a tier and the finer one it was corrected to.
+const CORRECTED_TO: &str = " corrected to ";
+
 /// Coefficients of the [`TERMS`].
 type Coefficients = [f64; TERMS.len()];
 
@@ -141,7 +144,7 @@ impl Database {
         }
         let rays = compare(self, reference);
         let bridge = Bridge::fit(enough(&rays)?);
-        let tier = format!("{} corrected to {}", ours.tier, theirs.tier);
+        let tier = [&ours.tier[..], &theirs.tier].join(CORRECTED_TO);
         let cpu_s = rays.iter().map(|ray| (&ray.end().job, ray.cpu_s[1]));
         let cpu_s: BTreeMap<_, _> = cpu_s.collect();
         let rows = self.rows().iter().map(|row| Row {
@@ -152,6 +155,13 @@ impl Database {
         });
         self.with_rows(rows.collect())
     }
+}
+
+/// The tier whose mesh the rows of a database speak for, by the tier that its manifest tells: the finer one
+/// if they were corrected.
+pub fn speaks_for(tier: &str) -> &str {
+    tier.rsplit_once(CORRECTED_TO)
+        .map_or(tier, |(_, finer)| finer)
 }
 
 /// Each ray corrected by a bridge that was fitted to the others alone: what a correction is worth where

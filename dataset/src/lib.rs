@@ -33,7 +33,7 @@ mod schema;
 mod split;
 mod summary;
 
-pub use bridge::left_out;
+pub use bridge::{left_out, speaks_for};
 pub use compare::{COMPARED, ComparedRay, ComparedState, compare, reference_rms, relative_rms};
 pub use csv::{ColumnMap, Constant, rows_from_csv};
 pub use database::{Database, DatasetError, Mixing};

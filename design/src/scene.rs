@@ -205,10 +205,7 @@ impl SceneConfig {
 
     /// Grows or shrinks the loads on panels, forces and couples alike.
     pub fn scale_loads(&mut self, factor: f64) {
-        for load in &mut self.loads {
-            load.force = load.force.map(|force| factor * force);
-            load.couple *= factor;
-        }
+        (self.loads.iter_mut()).for_each(|load| load.scale(factor));
     }
 }
 

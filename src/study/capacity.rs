@@ -181,8 +181,7 @@ impl CapacityStudy {
         rho: f64,
     ) -> Result<(Scene, Deployment)> {
         let mut config = shape_alone(config);
-        config.loads[1].force = config.loads[1].force.map(|force| rho * force);
-        config.loads[1].couple *= rho;
+        config.loads[1].scale(rho);
         let scene = self.scene_of(&config)?;
         let deployment = scene.problem()?.deploy(design)?;
         Ok((scene, deployment))

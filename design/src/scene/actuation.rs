@@ -106,6 +106,14 @@ impl SupportConfig {
     }
 }
 
+impl LoadConfig {
+    /// Multiplies force and couple.
+    pub fn scale(&mut self, factor: f64) {
+        self.force = self.force.map(|force| factor * force);
+        self.couple *= factor;
+    }
+}
+
 impl SheetEdge {
     fn panels(self, grid: Grid) -> Vec<usize> {
         let row = |q| (0..grid.m).map(|p| grid.panel(p, q)).collect();
