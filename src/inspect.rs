@@ -31,6 +31,10 @@ pub struct Listed {
 }
 
 impl Inspected {
+    pub fn new(scene: PathBuf, design: Option<PathBuf>) -> Self {
+        Self { scene, design }
+    }
+
     pub fn read(&self) -> Result<(Scene, DesignVector)> {
         let scene = Scene::read(&self.scene)?;
         let design = match &self.design {

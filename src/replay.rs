@@ -15,7 +15,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use surrogate::{Order, Surrogate};
+use surrogate::Surrogate;
 
 /// Solve the hinges of a design by finite elements, along the routes they take in the sheet
 ///
@@ -136,22 +136,7 @@ impl Replayed {
 /// What a surrogate says of every state of a route.
 fn predicted(surrogate: &Surrogate, route: &HingeRoute) -> Vec<HingeSample> {
     let designs = vec![route.design; route.states.len()];
-    let prepared = surrogate.prepare(&designs);
-    let energies = surrogate.evaluate(&prepared, &route.states, Order::Forces);
-    let damages = surrogate.damage(&designs, &route.states);
-    energies
-        .iter()
-        .zip(damages)
-        .map(|(energy, damage)| HingeSample {
-            w: energy.w,
-            f_a: energy.forces[0],
-            f_s: energy.forces[1],
-            m_theta: energy.forces[2],
-            d: damage.d,
-            d_peak: damage.d_peak.unwrap_or(f64::NAN),
-            ..HingeSample::default()
-        })
-        .collect()
+    crate::surrogate::predicted(surrogate, &designs, &route.states)
 }
 
 /// Standard deviation of all networks in the state `k`.

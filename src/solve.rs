@@ -182,7 +182,7 @@ fn ray_table(samples: &[HingeSample]) -> Table {
                 format!("{:.3}", x.f_s),
                 format!("{:.3}", x.m_theta),
                 format!("{:.5}", x.d),
-                format!("{:.3}", x.d_peak),
+                x.d_peak.map_or("-".into(), |peak| format!("{peak:.3}")),
                 format!("{:.2}", x.uz_max),
                 format!("{:.1e}", x.energy_residual),
             ]);

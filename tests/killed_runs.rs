@@ -26,7 +26,8 @@ impl Replay {
             CAMPAIGN,
             &[
                 ("count = 40", "count = 6"),
-                ("theta_deg = [10.0, 40.0]", "theta_deg = [4.0, 8.0]"),
+                ("theta_deg = [-5.0, 40.0]", "theta_deg = [4.0, 8.0]"),
+                ("median_deg = 20.0", "median_deg = 6.0"),
             ],
         );
         let replay = Self { work };

@@ -15,7 +15,8 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
         CAMPAIGN,
         &[
             ("count = 40", "count = 6"),
-            ("theta_deg = [10.0, 40.0]", "theta_deg = [10.0, 20.0]"),
+            ("theta_deg = [-5.0, 40.0]", "theta_deg = [-5.0, 20.0]"),
+            ("median_deg = 20.0", "median_deg = 15.0"),
         ],
     );
     work.edit(
@@ -84,6 +85,26 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
     let again = Instant::now();
     assert_eq!(work.output(&replay), page, "solved once");
     assert!(again.elapsed() < Duration::from_secs(5), "solved once");
+
+    let check = "surrogate spot-check runs/demo/surrogate.safetensors --count 6 --states-per-ray 2 --tier tiny \
+                 --out spot";
+    let judged = work.output(check);
+    assert!(
+        judged.contains("6 states of 3 rays") && judged.contains("W within 5 %"),
+        "{judged}"
+    );
+    let test = "surrogate test runs/demo/surrogate.safetensors spot/spot-check.parquet";
+    assert!(
+        work.output(test)
+            .contains("6 of 6 states inside the training domain")
+    );
+    let on_paths = format!("{check} --scene {design}")
+        .replace("--out spot", "--out spot-paths")
+        .replace("--count 6", "--count 30");
+    assert!(
+        work.output(&on_paths)
+            .contains("states inside the training domain")
+    );
 
     let study = "study path configs/scenes/demo.toml --routes 2 --tier tiny --out path";
     assert!(work.output(study).contains("2 of 12 routes"));

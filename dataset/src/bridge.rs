@@ -83,7 +83,7 @@ impl Bridge {
         Self {
             energy: fit(|sample| sample.w),
             damage: fit(|sample| sample.d),
-            damage_peak: fit(|sample| sample.d_peak),
+            damage_peak: fit(|sample| sample.d_peak.unwrap_or(0.0)),
             ..unfitted
         }
     }
@@ -106,7 +106,9 @@ impl Bridge {
             f_s: energy * x.f_s + x.w * slope(1),
             m_theta: energy * x.m_theta + x.w * slope(2),
             d: factor(&self.damage).max(0.0) * x.d,
-            d_peak: factor(&self.damage_peak).max(0.0) * x.d_peak,
+            d_peak: x
+                .d_peak
+                .map(|peak| factor(&self.damage_peak).max(0.0) * peak),
             ..*x
         }
     }
@@ -287,7 +289,7 @@ mod tests {
                 f_s: x.f_s * (1.0 + q) + x.w * slopes[1],
                 m_theta: x.m_theta * (1.0 + q) + x.w * slopes[2],
                 d: 1.1 * x.d,
-                d_peak: 1.3 * x.d_peak,
+                d_peak: x.d_peak.map(|peak| 1.3 * peak),
                 ..x
             };
             Row { sample, ..row }

@@ -42,7 +42,7 @@ impl<'a> ComparedRay<'a> {
     }
 }
 
-/// A state in both databases.
+/// A state in both databases. What one of them does not know is not a number, and is not counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComparedState {
     /// In the database that is judged, in the order of [`COMPARED`].
@@ -53,11 +53,19 @@ pub struct ComparedState {
 
 impl ComparedState {
     pub fn new(value: &HingeSample, reference: &HingeSample) -> Self {
-        let compared = |x: &HingeSample| [x.w, x.f_a, x.f_s, x.m_theta, x.d, x.d_peak];
+        let compared = |x: &HingeSample| {
+            let peak = x.d_peak.unwrap_or(f64::NAN);
+            [x.w, x.f_a, x.f_s, x.m_theta, x.d, peak]
+        };
         Self {
             value: compared(value),
             reference: compared(reference),
         }
+    }
+
+    /// Whether both databases know the quantity `i` of [`COMPARED`].
+    pub fn is_known(&self, i: usize) -> bool {
+        !(self.value[i] - self.reference[i]).is_nan()
     }
 }
 
@@ -101,14 +109,16 @@ fn rms<'a>(
     states: impl IntoIterator<Item = &'a ComparedState>,
     part: impl Fn(&ComparedState, usize) -> f64,
 ) -> [f64; 6] {
-    let (mut squares, mut count) = ([0.0; 6], 0.0);
+    let (mut squares, mut counts) = ([0.0; 6], [0.0; 6]);
     for state in states {
-        count += 1.0;
-        for (i, square) in squares.iter_mut().enumerate() {
-            *square += part(state, i).powi(2);
+        for i in 0..6 {
+            if state.is_known(i) {
+                squares[i] += part(state, i).powi(2);
+                counts[i] += 1.0;
+            }
         }
     }
-    squares.map(|square| (square / f64::max(count, 1.0)).sqrt())
+    std::array::from_fn(|i| (squares[i] / f64::max(counts[i], 1.0)).sqrt())
 }
 
 /// Design and end, in millionths of their units.
@@ -156,7 +166,7 @@ mod tests {
             let x = row.sample;
             let (w, w_work) = (1.03 * x.w, 1.03 * x.w_work);
             let (f_a, f_s, m_theta) = (1.03 * x.f_a, 1.03 * x.f_s, 1.03 * x.m_theta);
-            let (d, d_peak) = (1.03 * x.d, 1.03 * x.d_peak);
+            let (d, d_peak) = (1.03 * x.d, x.d_peak.map(|peak| 1.03 * peak));
             let sample = HingeSample {
                 w,
                 w_work,

@@ -2,7 +2,7 @@
 
 use crate::database::{Database, DatasetError};
 use crate::rows::Row;
-use crate::schema::{self, NUMBERS, TEXTS};
+use crate::schema::{self, KNOWN, NUMBERS, TEXTS};
 use polars::prelude::{CsvReadOptions, CsvWriter, SerReader, SerWriter};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -116,6 +116,14 @@ fn rows_of(bytes: &[u8], map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
         };
         schema::fill(&mut rows, text.name, values, text.set)?;
     }
+    for known in &KNOWN {
+        let factor = map.factors.get(known.name).copied().unwrap_or(1.0);
+        if let Some(cells) = column(known.name)? {
+            for (row, cell) in rows.iter_mut().zip(parsed(known.name, &cells)?) {
+                (known.set)(row, Some(factor * cell).filter(|value| !value.is_nan()));
+            }
+        }
+    }
     for number in &NUMBERS {
         let values = match (column(number.name)?, map.constants.get(number.name)) {
             (Some(cells), _) => parsed(number.name, &cells)?,
@@ -151,7 +159,10 @@ fn parsed(column: &'static str, cells: &[Option<String>]) -> Result<Vec<f64>, Da
 impl ColumnMap {
     /// Refuses columns that are none of ours, and constants of the wrong kind.
     fn check(&self) -> Result<(), DatasetError> {
-        let number = |name: &str| NUMBERS.iter().any(|column| column.name == name);
+        let number = |name: &str| {
+            let known = KNOWN.iter().any(|column| column.name == name);
+            known || NUMBERS.iter().any(|column| column.name == name)
+        };
         let text = |name: &str| TEXTS.iter().any(|column| column.name == name);
         let named = self
             .columns

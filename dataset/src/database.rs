@@ -100,6 +100,8 @@ pub enum DatasetError {
         path: PathBuf,
         source: Box<DatasetError>,
     },
+    #[error("the column `strain_volumes`: {0}")]
+    StrainVolumes(#[from] hinge::NoHistogram),
     #[error("the table is not that of a database: {0}")]
     Table(#[from] polars::error::PolarsError),
 }
@@ -169,7 +171,7 @@ impl Database {
         thinned
     }
 
-    /// The same split, but for training and validation no state outside the box.
+    /// The same split, but for training and validation no state outside the domain.
     pub fn within(&self, domain: &TrainingDomain) -> Result<Self, DatasetError> {
         let split = &self.manifest.split;
         let test = split.jobs(Part::Test);

@@ -11,8 +11,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Version of the database that this crate writes; it reads the one before too.
 ///
-/// 3: rows and manifest tell the hashes of the material law and of the campaign's settings.
-pub const FORMAT_VERSION: u32 = 3;
+/// 3: rows and manifest name the hashes of the material law and of the campaign's settings. 4: D_peak is the
+/// mean over the most strained 1 % of the ligament, and may be unknown; the domain is what the rows fill.
+pub const FORMAT_VERSION: u32 = 4;
 
 /// Everything about a database but its rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,7 +50,7 @@ pub struct Manifest {
     /// Versions of the tools that made the rows.
     pub gmsh: BTreeSet<String>,
     pub ccx: BTreeSet<String>,
-    /// The box of states in the rows.
+    /// The states of the rows.
     pub domain: TrainingDomain,
     pub split_plan: SplitPlan,
     /// BLAKE3 of the split.

@@ -10,35 +10,46 @@
 //! one mesh gives all increments of a ray is not seen.
 
 use crate::rows::Row;
-use crate::schema::NUMBERS;
+use crate::schema::{KNOWN, NUMBERS};
 
 /// Quantities that a surrogate is trained on, by the names of their columns.
 const QUANTITIES: [&str; 6] = ["W", "F_a", "F_s", "M_theta", "D", "D_peak"];
 
 /// Scatter of each quantity over its root mean square: over all increments, and the median.
 pub fn noise(rows: &[Row]) -> Vec<(&'static str, [f64; 2])> {
-    let columns = NUMBERS
-        .iter()
-        .filter(|column| QUANTITIES.contains(&column.name));
+    let numbers = NUMBERS.iter().map(|column| {
+        let value = column.get;
+        (column.name, rows.iter().map(value).collect::<Vec<f64>>())
+    });
+    let known = KNOWN.iter().map(|column| {
+        let value = |row: &Row| (column.get)(row).unwrap_or(f64::NAN);
+        (column.name, rows.iter().map(value).collect::<Vec<f64>>())
+    });
+    let columns = numbers.chain(known);
     columns
-        .map(|column| {
-            let rays = rows.chunk_by(|left, right| left.job == right.job);
-            let mut scatter: Vec<f64> = rays
-                .flat_map(|ray| ray.windows(5))
-                .map(|window| scatter(window, column.get).abs())
-                .collect();
+        .filter(|(name, _)| QUANTITIES.contains(name))
+        .map(|(name, values)| {
+            let mut first = 0;
+            let mut scatter: Vec<f64> = Vec::new();
+            for ray in rows.chunk_by(|left, right| left.job == right.job) {
+                let own = &values[first..first + ray.len()];
+                let windows = std::iter::zip(ray.windows(5), own.windows(5));
+                scatter.extend(windows.map(|(rows, values)| self::scatter(rows, values).abs()));
+                first += ray.len();
+            }
+            scatter.retain(|value| !value.is_nan());
             scatter.sort_by(f64::total_cmp);
-            let scale = root_mean_square(rows.iter().map(column.get));
+            let scale = root_mean_square(values.into_iter().filter(|value| !value.is_nan()));
             let median = scatter.get(scatter.len() / 2).copied().unwrap_or(0.0);
             let all = root_mean_square(scatter.into_iter());
             let relative = |value: f64| if scale > 0.0 { value / scale } else { 0.0 };
-            (column.name, [relative(all), relative(median)])
+            (name, [relative(all), relative(median)])
         })
         .collect()
 }
 
 /// e_i / sqrt(1 + sum of c_j^2) in the middle of five rows.
-fn scatter(window: &[Row], value: fn(&Row) -> f64) -> f64 {
+fn scatter(window: &[Row], values: &[f64]) -> f64 {
     let lambda = |i: usize| window[i].sample.lambda;
     let neighbours = [0, 1, 3, 4];
     let coefficients = neighbours.map(|j| {
@@ -48,9 +59,9 @@ fn scatter(window: &[Row], value: fn(&Row) -> f64) -> f64 {
             .product::<f64>()
     });
     let terms = neighbours.into_iter().zip(coefficients);
-    let smooth: f64 = terms.map(|(j, c)| c * value(&window[j])).sum();
+    let smooth: f64 = terms.map(|(j, c)| c * values[j]).sum();
     let squares: f64 = coefficients.iter().map(|c| c * c).sum();
-    (value(&window[2]) - smooth) / (1.0 + squares).sqrt()
+    (values[2] - smooth) / (1.0 + squares).sqrt()
 }
 
 fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {

@@ -34,7 +34,7 @@ pub(crate) fn read(path: &Path) -> Result<Database, DatasetError> {
     let rows = ParquetReader::new(Cursor::new(&parquet))
         .finish()
         .map_err(DatasetError::from)
-        .and_then(|frame| schema::from_frame(&frame))
+        .and_then(|frame| schema::from_frame(&frame, manifest.format_version))
         .map_err(|source| DatasetError::In {
             path: path.to_owned(),
             source: Box::new(source),

@@ -1,5 +1,6 @@
 //! One row of the database: one converged increment and where it came from.
 
+use crate::schema::{KNOWN, NUMBERS};
 use hinge::{HingeDesign, HingeSample};
 
 /// A sample of (eps, g) -> (W, grad W, D) with its provenance; section 2.4.
@@ -42,9 +43,9 @@ impl Row {
 
     /// Whether every number of the row is finite.
     pub(crate) fn is_finite(&self) -> bool {
-        crate::schema::NUMBERS
-            .iter()
-            .all(|column| (column.get)(self).is_finite())
+        let mut numbers = NUMBERS.iter().map(|column| (column.get)(self));
+        let mut known = KNOWN.iter().filter_map(|column| (column.get)(self));
+        numbers.all(f64::is_finite) && known.all(f64::is_finite)
     }
 }
 
@@ -79,7 +80,9 @@ pub(crate) mod tests {
                 plastic_integral: lambda,
                 d: 0.01 * lambda,
                 d_window: 1e-4 * lambda,
-                d_peak: 0.1 * lambda,
+                d_peak: Some(0.1 * lambda),
+                strain_max: Some(0.2 * lambda),
+                strain_volumes: Some(hinge::StrainVolumes::of([(0.2 * lambda, 1.0)])),
                 uz_max: 20.0 * lambda.sqrt(),
                 energy_residual: 1e-3,
             },

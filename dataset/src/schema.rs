@@ -13,6 +13,32 @@ pub(crate) struct Number {
     pub set: fn(&mut Row, f64),
 }
 
+/// A column of numbers that some rows lack.
+pub(crate) struct Known {
+    pub name: &'static str,
+    pub unit: &'static str,
+    pub get: fn(&Row) -> Option<f64>,
+    pub set: fn(&mut Row, Option<f64>),
+}
+
+pub(crate) const KNOWN: [Known; 2] = [
+    Known {
+        name: "D_peak",
+        unit: "",
+        get: |row| row.sample.d_peak,
+        set: |row, value| row.sample.d_peak = value,
+    },
+    Known {
+        name: "strain_max",
+        unit: "",
+        get: |row| row.sample.strain_max,
+        set: |row, value| row.sample.strain_max = value,
+    },
+];
+
+/// The column of [`hinge::StrainVolumes`], as text; some rows lack it.
+const STRAIN_VOLUMES: &str = "strain_volumes";
+
 /// A column of text that a row holds.
 pub(crate) struct Text {
     pub name: &'static str,
@@ -41,7 +67,7 @@ macro_rules! texts {
     };
 }
 
-pub(crate) const NUMBERS: [Number; 22] = numbers! {
+pub(crate) const NUMBERS: [Number; 21] = numbers! {
     "w_lig" ["mm"] = design.w_lig;
     "alpha" ["rad"] = design.alpha;
     "fillet_ratio" [""] = design.fillet_ratio;
@@ -60,7 +86,6 @@ pub(crate) const NUMBERS: [Number; 22] = numbers! {
     "plastic_integral" ["mm^3"] = sample.plastic_integral;
     "D" [""] = sample.d;
     "D_window" [""] = sample.d_window;
-    "D_peak" [""] = sample.d_peak;
     "uz_max" ["mm"] = sample.uz_max;
     "energy_residual" [""] = sample.energy_residual;
     "cpu_s" ["s"] = cpu_s;
@@ -78,7 +103,9 @@ const RATIOS: [&str; 2] = ["eta_a", "eta_s"];
 
 /// The unit of every column that has one.
 pub(crate) fn units() -> impl Iterator<Item = (&'static str, &'static str)> {
-    let columns = NUMBERS.iter().map(|column| (column.name, column.unit));
+    let numbers = NUMBERS.iter().map(|column| (column.name, column.unit));
+    let known = KNOWN.iter().map(|column| (column.name, column.unit));
+    let columns = numbers.chain(known).chain([(STRAIN_VOLUMES, "mm^3")]);
     columns.filter(|(_, unit)| !unit.is_empty())
 }
 
@@ -93,6 +120,13 @@ pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {
         let values: Vec<f64> = rows.iter().map(column.get).collect();
         columns.push(Series::new(column.name.into(), values).into_column());
     }
+    for column in &KNOWN {
+        let values: Vec<Option<f64>> = rows.iter().map(column.get).collect();
+        columns.push(Series::new(column.name.into(), values).into_column());
+    }
+    let volumes = rows.iter().map(|row| row.sample.strain_volumes);
+    let volumes: Vec<Option<String>> = volumes.map(|it| it.map(Into::into)).collect();
+    columns.push(Series::new(STRAIN_VOLUMES.into(), volumes).into_column());
     for (index, name) in RATIOS.into_iter().enumerate() {
         let values: Vec<f64> = rows.iter().map(|row| row.eta()[index]).collect();
         columns.push(Series::new(name.into(), values).into_column());
@@ -100,9 +134,9 @@ pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {
     Ok(DataFrame::new(rows.len(), columns)?)
 }
 
-/// The rows of a table; every column of its version must be there, of its type, without gaps,
-/// and every number finite.
-pub(crate) fn from_frame(frame: &DataFrame) -> Result<Vec<Row>, DatasetError> {
+/// The rows of a table of the given format version; every column of it must be there, of its type, without
+/// gaps but where a value may be unknown, and every number finite.
+pub(crate) fn from_frame(frame: &DataFrame, version: u32) -> Result<Vec<Row>, DatasetError> {
     let mut rows = vec![blank(); frame.height()];
     for column in &TEXTS {
         let series = match frame.column(column.name) {
@@ -121,6 +155,19 @@ pub(crate) fn from_frame(frame: &DataFrame) -> Result<Vec<Row>, DatasetError> {
     for column in &NUMBERS {
         let series = frame.column(column.name)?;
         fill(&mut rows, column.name, series.f64()?.iter(), column.set)?;
+    }
+    // Before, D_peak was another measure.
+    if version >= 4 {
+        for column in &KNOWN {
+            let values = frame.column(column.name)?.f64()?.iter();
+            rows.iter_mut()
+                .zip(values)
+                .for_each(|(row, value)| (column.set)(row, value));
+        }
+        let volumes = frame.column(STRAIN_VOLUMES)?.str()?.iter();
+        for (row, text) in rows.iter_mut().zip(volumes) {
+            row.sample.strain_volumes = text.map(str::parse).transpose()?;
+        }
     }
     match rows.iter().find(|row| !row.is_finite()) {
         Some(row) => Err(DatasetError::NotFinite {

@@ -4,7 +4,6 @@ mod common;
 
 use common::{collect, row, rows};
 use dataset::{Database, DatasetError, Part, Rejection, Row};
-use hinge::TrainingDomain;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
@@ -164,7 +163,7 @@ fn a_missing_malformed_or_later_manifest_is_refused() {
     let (_folder, path, _) = written();
     let manifest = path.with_extension("json");
     let text = std::fs::read_to_string(&manifest).unwrap();
-    let later = text.replace("\"format_version\": 3", "\"format_version\": 9");
+    let later = text.replace("\"format_version\": 4", "\"format_version\": 9");
     std::fs::write(&manifest, later).unwrap();
     let error = Database::read(&path).unwrap_err();
     assert!(
@@ -196,23 +195,21 @@ fn a_thinned_database_keeps_what_it_is_tested_on() {
 }
 
 #[test]
-fn a_database_within_a_box_is_tested_outside_it_too() {
+fn a_database_within_a_domain_is_tested_outside_it_too() {
     let whole = collect(rows()).unwrap();
-    let domain = whole.manifest().domain;
-    let half = TrainingDomain {
-        theta: [0.0, 0.5 * domain.theta[1]],
-        ..domain
-    };
+    let domain = &whole.manifest().domain;
+    let half = domain.scaled_by(0.5);
     let within = whole.within(&half).unwrap();
     assert_eq!(within.part(Part::Test), whole.part(Part::Test));
     assert_ne!(within.manifest().hash, whole.manifest().hash);
     for part in [Part::Training, Part::Validation] {
         let (rows, all) = (within.part(part), whole.part(part));
-        let inside = |row: &&Row| row.sample.theta <= half.theta[1];
+        let inside = |row: &&Row| half.contains(&row.design, &row.sample.deformation());
         assert_eq!(rows, all.iter().filter(inside).cloned().collect::<Vec<_>>());
         assert!(!rows.is_empty() && rows.len() < all.len());
     }
-    assert_eq!(whole.within(&domain).unwrap().manifest(), whole.manifest());
+    let wide = domain.scaled_by(2.0);
+    assert_eq!(whole.within(&wide).unwrap().manifest(), whole.manifest());
 }
 
 #[test]

@@ -10,7 +10,7 @@ use design::design_vector::{DesignVector, WidthChart};
 use design::equilibrium::{EquilibriumSolver, SolverSettings, Status};
 use design::gradient::{DesignProblem, Mechanics, Model};
 use design::grid::Grid;
-use design::hinge_law::{HingeLaw, LinearLaw, SurrogateLaw};
+use design::hinge_law::{DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
 use design::objective::{Objective, OutlinePoints};
 use design::path_functionals::PerFunctional;
 use design::pattern::Outline;
@@ -109,6 +109,7 @@ fn problem(
                 compression: 0.1,
                 shear: 0.1,
             },
+            damage_measure: DamageMeasure::Mean,
             temperatures: PerFunctional {
                 damage: 0.1,
                 compression: 0.02,
@@ -162,13 +163,11 @@ fn network() -> SurrogateLaw {
         damage_scale: 0.01,
         peak_scale: None,
         damage_sharpness: 8.0,
-        domain: TrainingDomain {
-            eta_a: [-0.5, 0.5],
-            eta_s: [-0.5, 0.5],
-            theta: [-0.2, 1.4],
-            w_lig: [5.0, 25.0],
-            alpha: [0.5, 2.6],
-        },
+        domain: TrainingDomain::of_box(
+            [[-0.5, 0.5], [-0.5, 0.5], [-0.2, 1.4]],
+            [5.0, 25.0],
+            [0.5, 2.6],
+        ),
         hinge: HingeConstants {
             fillet_ratio: 0.16,
             kerf: 0.2,

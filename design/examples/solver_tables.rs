@@ -12,7 +12,7 @@ use design::design_vector::{DesignVector, WidthChart};
 use design::equilibrium::{EquilibriumSolver, Method, SolverSettings};
 use design::gradient::{DesignProblem, Mechanics, Model};
 use design::grid::Grid;
-use design::hinge_law::LinearLaw;
+use design::hinge_law::{DamageMeasure, LinearLaw};
 use design::objective::{Objective, OutlinePoints};
 use design::path_functionals::PerFunctional;
 use design::pattern::Outline;
@@ -91,6 +91,7 @@ fn problem(grid: Grid, stiffness: f64, settings: SolverSettings) -> DesignProble
             least_distance: 0.0,
             domain: None,
             weights: per(0.1, 0.1),
+            damage_measure: DamageMeasure::Mean,
             temperatures: per(0.02, 0.02),
         },
     }

@@ -60,6 +60,7 @@ mod tests {
     use crate::design_vector::WidthChart;
     use crate::gradient::Model;
     use crate::grid::Grid;
+    use crate::hinge_law::DamageMeasure;
     use crate::objective::{Objective, OutlinePoints};
     use crate::path_functionals::PerFunctional;
     use crate::pattern::Outline;
@@ -97,6 +98,7 @@ mod tests {
                 least_distance: 0.0,
                 domain: None,
                 weights: PerFunctional::default(),
+                damage_measure: DamageMeasure::Mean,
                 temperatures: PerFunctional::default(),
             },
         }

@@ -1,24 +1,29 @@
-//! How far the hinges leave the box that their law was learned in: the mean over hinges and load steps
+//! How far the hinges leave the domain that their law was learned in: the mean over hinges and load steps
 //! of
 //!
 //! ```text
-//! sum over the sides of (10 e / l)^2,     l: length of a side,   e: how far the state is beyond it
+//! (5 max(0, gamma - 0.98))^2 + sum over the intervals of w_lig and alpha of (10 e / l)^2,
 //! ```
 //!
-//! so that a tenth of a side costs 1. It begins 2 % of a side inside the box, but at the flat state, or a
-//! minimum would lie just outside.
+//! gamma being the gauge of the domain, l the length of an interval and e how far the hinge is beyond it, so
+//! that a tenth of the range outside costs 1. It begins 2 % inside, or a minimum would lie just outside.
 
 use crate::equilibrium::LoadStep;
-use crate::hinge_law::NARROWEST_INTERVAL;
 use crate::sheet::Sheet;
 use hinge::{HingeDeformation, TrainingDomain};
 
-/// Share of a side at either end that already counts as outside.
+/// Gauge at which a state begins to count as outside.
+const EDGE: f64 = 0.98;
+/// Units of a gauge of one, half the range.
+const PER_HALF_RANGE: f64 = 5.0;
+/// Fraction of an interval at either end that already counts as outside.
 const MARGIN: f64 = 0.02;
-/// Units of e in the length of a side.
-const PER_SIDE: f64 = 10.0;
+/// Units of e in the length of an interval.
+const PER_INTERVAL: f64 = 10.0;
+/// Intervals narrower than this (of one training row, say) count as this wide.
+const NARROWEST_INTERVAL: f64 = 0.01;
 
-/// The box, and what it costs to leave it.
+/// The domain, and what it costs to leave it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DomainPenalty {
     pub domain: TrainingDomain,
@@ -46,37 +51,29 @@ impl DomainPenalty {
 
     /// The summand of one state, and its gradient in (a, s, theta, w_lig, alpha).
     fn of_state(&self, w_lig: f64, alpha: f64, state: &HingeDeformation) -> (f64, [f64; 5]) {
-        let [eta_a, eta_s] = state.eta(w_lig);
-        let domain = &self.domain;
-        let [by_eta_a, by_eta_s, theta, width, angle] = [
-            excess(domain.eta_a, eta_a),
-            excess(domain.eta_s, eta_s),
-            excess(domain.theta, state.theta),
-            excess(domain.w_lig, w_lig),
-            excess(domain.alpha, alpha),
-        ];
-        let value = by_eta_a.0 + by_eta_s.0 + theta.0 + width.0 + angle.0;
-        let by_width = width.1 - (by_eta_a.1 * eta_a + by_eta_s.1 * eta_s) / w_lig;
-        let gradient = [
-            by_eta_a.1 / w_lig,
-            by_eta_s.1 / w_lig,
-            theta.1,
-            by_width,
-            angle.1,
-        ];
+        let width = excess(self.domain.w_lig, w_lig);
+        let angle = excess(self.domain.alpha, alpha);
+        let mut value = width.0 + angle.0;
+        let mut gradient = [0.0, 0.0, 0.0, width.1, angle.1];
+        if self.domain.gauge(w_lig, state) > EDGE {
+            let gauge = self.domain.gauge_jet(w_lig, state);
+            let scaled = PER_HALF_RANGE * (gauge.value - EDGE);
+            value += scaled * scaled;
+            for (by, slope) in std::iter::zip(&mut gradient, gauge.gradient) {
+                *by += 2.0 * PER_HALF_RANGE * scaled * slope;
+            }
+        }
         (value, gradient)
     }
 }
 
-/// (10 e / l)^2 of one side, and its slope.
-fn excess([least, greatest]: [f64; 2], at: f64) -> (f64, f64) {
-    let length = (greatest - least).max(NARROWEST_INTERVAL);
-    // Every path begins at 0, and a law may be learned on one side of it alone.
-    let margin = |end: f64| if end == 0.0 { 0.0 } else { MARGIN * length };
-    let beyond =
-        (at - greatest + margin(greatest)).max(0.0) - (least + margin(least) - at).max(0.0);
-    let scaled = PER_SIDE * beyond / length;
-    (scaled * scaled, 2.0 * PER_SIDE * scaled / length)
+/// (10 e / l)^2 of one interval, and its slope.
+fn excess([minimum, maximum]: [f64; 2], at: f64) -> (f64, f64) {
+    let length = (maximum - minimum).max(NARROWEST_INTERVAL);
+    let margin = MARGIN * length;
+    let beyond = (at - maximum + margin).max(0.0) - (minimum + margin - at).max(0.0);
+    let scaled = PER_INTERVAL * beyond / length;
+    (scaled * scaled, 2.0 * PER_INTERVAL * scaled / length)
 }
 
 #[cfg(test)]
@@ -84,32 +81,30 @@ mod tests {
     use super::*;
     use crate::check::central_slope;
 
-    const PENALTY: DomainPenalty = DomainPenalty {
-        domain: TrainingDomain {
-            eta_a: [-0.8, 0.2],
-            eta_s: [-0.4, 0.4],
-            theta: [0.0, 1.3],
-            w_lig: [5.0, 25.0],
-            alpha: [0.8, 2.3],
-        },
-        weight: 1.0,
-    };
+    fn penalty() -> DomainPenalty {
+        let state = [[-0.8, 0.2], [-0.4, 0.4], [-0.1, 1.3]];
+        DomainPenalty {
+            domain: TrainingDomain::of_box(state, [5.0, 25.0], [0.8, 2.3]),
+            weight: 1.0,
+        }
+    }
 
     fn value(x: &[f64]) -> f64 {
         let state = [x[0], x[1], x[2]].into();
-        PENALTY.of_state(x[3], x[4], &state).0
+        penalty().of_state(x[3], x[4], &state).0
     }
 
     #[test]
-    fn a_tenth_of_a_side_beyond_its_margin_costs_one() {
-        assert_eq!(value(&[0.5, 1.0, 0.4, 15.0, 1.5]), 0.0);
+    fn a_tenth_of_the_range_beyond_its_margin_costs_one() {
+        assert_eq!(value(&[-3.0, 1.0, 0.4, 15.0, 1.5]), 0.0);
         assert!((value(&[0.0, 0.0, 0.5, 15.0, 0.8 + (0.02 - 0.1) * 1.5]) - 1.0).abs() < 1e-12);
-        assert!((value(&[0.28 * 15.0, 0.0, 0.5, 15.0, 1.5]) - 1.0).abs() < 1e-12);
+        // In the middle of a face no other plane counts.
+        let beyond = value(&[(-0.3 + 0.5 * 1.18) * 15.0, 0.0, 0.6, 15.0, 1.5]);
+        assert!((beyond - 1.0).abs() < 1e-3, "{beyond}");
     }
 
     #[test]
     fn a_law_of_one_width_may_be_used_at_that_width_only() {
-        assert_eq!(excess([0.0, 1.0], 0.0).0, 0.0);
         assert!(excess([18.0; 2], 19.0).0.is_finite());
         assert!(excess([18.0; 2], 19.0).0 > excess([18.0; 2], 18.0).0);
     }
@@ -118,11 +113,11 @@ mod tests {
     fn gradients_agree_with_differences() {
         let outside = [
             [5.0, -9.0, 1.4, 15.0, 2.4],
-            [-30.0, 12.0, -0.1, 26.0, 0.7],
+            [-30.0, 12.0, -0.2, 26.0, 0.7],
             [1.0, 0.5, 0.3, 4.0, 1.5],
         ];
         for x in outside {
-            let (_, gradient) = PENALTY.of_state(x[3], x[4], &[x[0], x[1], x[2]].into());
+            let (_, gradient) = penalty().of_state(x[3], x[4], &[x[0], x[1], x[2]].into());
             for (i, found) in gradient.into_iter().enumerate() {
                 let unit: Vec<f64> = (0..5).map(|j| f64::from(i == j)).collect();
                 let slope = central_slope(value, &x, &unit, 1e-6);

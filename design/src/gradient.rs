@@ -5,7 +5,7 @@ use crate::adjoint::adjoint;
 use crate::design_vector::{DesignVector, WidthChart};
 use crate::equilibrium::{EquilibriumError, EquilibriumSolver, HingedSheet, LoadStep, Status};
 use crate::grid::Grid;
-use crate::hinge_law::{Contact, HingeLaw, PreparedLaw};
+use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, PreparedLaw};
 use crate::ideal_deployment::{ideal_deployment, ideal_deployment_pullback};
 use crate::kinematics::{deployed, deployed_pullback};
 use crate::objective::{Judgement, Objective, Terms};
@@ -132,16 +132,13 @@ impl Deployment {
         }
     }
 
-    /// Greatest D of each hinge along the path; empty where the hinge law predicts none.
-    pub fn greatest_damage(&self) -> Vec<f64> {
-        let mut greatest: Vec<f64> = Vec::new();
-        for step in &self.path {
-            greatest.resize(step.damage.len(), 0.0);
-            for (greatest, damage) in greatest.iter_mut().zip(&step.damage) {
-                *greatest = greatest.max(damage.d);
-            }
-        }
-        greatest
+    /// Maximum damage of a hinge along the path; none where the hinge law predicts none, or was not made for
+    /// a state of the path.
+    pub fn damage_max(&self, measure: DamageMeasure, hinge: usize) -> Option<f64> {
+        self.path.iter().try_fold(0.0, |maximum: f64, step| {
+            let known = measure.known(step.damage.get(hinge)?);
+            Some(maximum.max(known.filter(|_| step.inside[hinge])?))
+        })
     }
 
     /// Share of the hinge states of the path that the hinge law was made for.
@@ -327,7 +324,9 @@ impl DesignProblem {
             .collect();
         let damage_scale = match &self.model {
             Model::Ideal { .. } => None,
-            Model::Equilibrium(mechanics) => mechanics.law.damage_scale(),
+            Model::Equilibrium(mechanics) => {
+                mechanics.law.damage_scale(self.objective.damage_measure)
+            }
         };
         // Without a damage there is nothing to scale.
         let scale = damage_scale.unwrap_or(1.0);

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | [`LinearLaw`] | (11), three springs | constants |
 //! | [`CondensedLaw`] | (11) with the constants of a learned energy | weights |
-//! | [`SurrogateLaw`] | (14), with a barrier around the training domain | weights |
+//! | [`SurrogateLaw`] | (14), continued beyond the training domain | weights |
 //!
 //! A law is first prepared for the hinges of one sheet and then evaluated for all of them at once.
 
@@ -17,18 +17,48 @@ pub use ::surrogate::{HingeDamage, HingeEnergy, Order};
 pub use condensed::{CondensedLaw, Constant};
 pub use contact::{Contact, InvalidContact};
 pub use linear::{InvalidStiffness, LinearLaw};
-pub(crate) use surrogate::NARROWEST_INTERVAL;
 pub use surrogate::SurrogateLaw;
 
 use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
+use serde::{Deserialize, Serialize};
+
+/// Which damage an objective weighs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DamageMeasure {
+    /// D, the mean over the ligament, as the paper.
+    #[default]
+    Mean,
+    /// D_peak, the mean over the most strained 1 % of the ligament: at 1 it tears.
+    Peak,
+}
+
+impl DamageMeasure {
+    /// The damage of a hinge by this measure and its gradient in (a, s, theta, w_lig, alpha); zero where the
+    /// law does not predict it.
+    pub fn of(self, damage: &HingeDamage) -> (f64, [f64; 5]) {
+        match self {
+            Self::Mean => (damage.d, damage.gradient),
+            Self::Peak => (damage.d_peak.unwrap_or(0.0), damage.peak_gradient),
+        }
+    }
+
+    /// The damage of a hinge by this measure, if the law predicts it.
+    pub fn known(self, damage: &HingeDamage) -> Option<f64> {
+        match self {
+            Self::Mean => Some(damage.d),
+            Self::Peak => damage.d_peak,
+        }
+    }
+}
 
 /// A stored-energy function of the hinge deformation, for any hinge design.
 pub trait HingeLaw: Send + Sync {
     /// Does once what depends on the designs alone.
     fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a>;
 
-    /// D_s of (17), for a law that predicts damage.
-    fn damage_scale(&self) -> Option<f64> {
+    /// D_s of (17) for a measure, if the law predicts it.
+    fn damage_scale(&self, _measure: DamageMeasure) -> Option<f64> {
         None
     }
 

@@ -5,6 +5,7 @@
 use crate::chamfer::Chamfer;
 use crate::domain_penalty::DomainPenalty;
 use crate::equilibrium::LoadStep;
+use crate::hinge_law::DamageMeasure;
 use crate::panel_shape::panel_shape;
 use crate::path_functionals::{HingePath, PathFunctionals, PerFunctional};
 use crate::sheet::Sheet;
@@ -42,6 +43,8 @@ pub struct Objective {
     pub centred: bool,
     /// w_j of the functionals of the path.
     pub weights: PerFunctional,
+    /// Which damage the functional of damage is of.
+    pub damage_measure: DamageMeasure,
     /// Temperatures of the path extrema.
     pub temperatures: PerFunctional,
     /// Weight of the panels' shape (mm^2).
@@ -90,6 +93,7 @@ impl Objective {
         let functionals = PathFunctionals {
             weights: self.weights,
             temperatures: self.temperatures,
+            measure: self.damage_measure,
             damage_scale,
         };
         let (values, mut by_path) = functionals.evaluate(&hinge_paths(sheet, path));

@@ -6,9 +6,9 @@
 //! shear        1/|H| sum_h max_i^tau |eta_s,ih|
 //! ```
 //!
-//! i runs over the load steps; the flat state is not one of them.
+//! i runs over the load steps; the flat state is not one of them. D is the mean or the peak damage.
 
-use crate::hinge_law::HingeDamage;
+use crate::hinge_law::{DamageMeasure, HingeDamage};
 use crate::smooth_extrema::{smooth_max, smooth_min};
 use hinge::HingeDeformation;
 use serde::Serialize;
@@ -37,6 +37,8 @@ pub struct PathFunctionals {
     pub weights: PerFunctional,
     /// In the units of what the extrema are taken of; all dimensionless.
     pub temperatures: PerFunctional,
+    pub measure: DamageMeasure,
+    /// D_s of that measure.
     pub damage_scale: f64,
 }
 
@@ -80,7 +82,8 @@ impl PathFunctionals {
         let (least, by_least) = smooth_min(&eta_a, self.temperatures.compression);
         let shears: Vec<f64> = eta_s.iter().map(|eta| eta.abs()).collect();
         let (shear, by_shear) = smooth_max(&shears, self.temperatures.shear);
-        let scaled = path.damage.iter().map(|state| state.d / self.damage_scale);
+        let measured: Vec<_> = (path.damage.iter()).map(|x| self.measure.of(x)).collect();
+        let scaled = measured.iter().map(|(d, _)| d / self.damage_scale);
         let (damage, by_damage) =
             smooth_max(&scaled.collect::<Vec<f64>>(), self.temperatures.damage);
         let summands = PerFunctional {
@@ -99,8 +102,8 @@ impl PathFunctionals {
             let by_eta_s = self.weights.shear * by_shear[i] * eta_s[i].signum();
             let by_width = -(by_eta_a * eta_a[i] + by_eta_s * eta_s[i]) / w_lig;
             let mut slopes = [by_eta_a / w_lig, by_eta_s / w_lig, 0.0, by_width, 0.0];
-            if let Some(state) = path.damage.get(i) {
-                for (slope, by_state) in std::iter::zip(&mut slopes, state.gradient) {
+            if let Some((_, gradient)) = measured.get(i) {
+                for (slope, by_state) in std::iter::zip(&mut slopes, gradient) {
                     *slope += damaged * by_damage[i] * by_state;
                 }
             }
@@ -126,6 +129,7 @@ mod tests {
             compression: 0.01,
             shear: 0.02,
         },
+        measure: DamageMeasure::Mean,
         damage_scale: 0.5,
     };
     /// Two hinges: w_lig, then (a, s, theta) per load step.
@@ -138,20 +142,26 @@ mod tests {
     fn damage(w_lig: f64, deformation: &HingeDeformation) -> HingeDamage {
         let HingeDeformation { a, theta, .. } = *deformation;
         let per_width = theta * theta * (1.0 + a);
+        let gradient = [
+            w_lig * theta * theta,
+            0.0,
+            2.0 * w_lig * theta * (1.0 + a),
+            per_width,
+            0.0,
+        ];
         HingeDamage {
             d: w_lig * per_width,
-            gradient: [
-                w_lig * theta * theta,
-                0.0,
-                2.0 * w_lig * theta * (1.0 + a),
-                per_width,
-                0.0,
-            ],
-            ..HingeDamage::default()
+            gradient,
+            d_peak: Some(3.0 * w_lig * per_width),
+            peak_gradient: gradient.map(|slope| 3.0 * slope),
         }
     }
 
     fn evaluate(paths: &[f64]) -> (PerFunctional, Vec<PathGradient>) {
+        measured(DamageMeasure::Mean, paths)
+    }
+
+    fn measured(measure: DamageMeasure, paths: &[f64]) -> (PerFunctional, Vec<PathGradient>) {
         let hinges: Vec<HingePath> = paths
             .chunks(10)
             .map(|numbers| {
@@ -168,12 +178,25 @@ mod tests {
                 }
             })
             .collect();
-        FUNCTIONALS.evaluate(&hinges)
+        PathFunctionals {
+            measure,
+            ..FUNCTIONALS
+        }
+        .evaluate(&hinges)
     }
 
     #[test]
     fn the_gradient_agrees_with_differences() {
-        let (_, gradient) = evaluate(&PATHS);
+        for measure in [DamageMeasure::Mean, DamageMeasure::Peak] {
+            check_gradient(measure);
+        }
+        let [mean, peak] = [DamageMeasure::Mean, DamageMeasure::Peak]
+            .map(|measure| measured(measure, &PATHS).0.damage);
+        assert!(peak > 2.0 * mean, "{mean} {peak}");
+    }
+
+    fn check_gradient(measure: DamageMeasure) {
+        let (_, gradient) = measured(measure, &PATHS);
         for i in 0..PATHS.len() {
             let (hinge, entry) = (&gradient[i / 10], i % 10);
             let found = match entry {
@@ -181,7 +204,7 @@ mod tests {
                 _ => hinge[(entry - 1) / 3][(entry - 1) % 3],
             };
             let unit: Vec<f64> = (0..PATHS.len()).map(|j| f64::from(i == j)).collect();
-            let value = |x: &[f64]| FUNCTIONALS.weighted(&evaluate(x).0);
+            let value = |x: &[f64]| FUNCTIONALS.weighted(&measured(measure, x).0);
             let slope = central_slope(value, &PATHS, &unit, 1e-6);
             assert!((found - slope).abs() < 1e-7, "{i}: {found} {slope}");
         }

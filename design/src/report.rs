@@ -6,6 +6,7 @@ pub use warning::{Concern, Warning};
 
 use crate::fabrication::{CutLines, FabricationError};
 use crate::gradient::Deployment;
+use crate::hinge_law::DamageMeasure;
 use crate::inverse_design::{Designed, Ended};
 use crate::localisation::gamma;
 use crate::polygon::edges;
@@ -43,8 +44,11 @@ pub struct HingeRow {
     pub theta_deg: f64,
     pub eta_a: f64,
     pub eta_s: f64,
-    /// Greatest predicted damage (12) along the path; none where the hinge law predicts none.
+    /// Maximum D along the path, the mean damage of the ligament; none where it is not known: the hinge law
+    /// predicts none, or was not made for a state of the path.
     pub damage: Option<f64>,
+    /// The same of D_peak: at 1 the ligament tears.
+    pub damage_peak: Option<f64>,
     /// Whether the hinge law was made for every state of the path.
     pub inside: bool,
     /// (21), with the shortest edge of the two panels.
@@ -59,9 +63,8 @@ impl Report {
         cuts: &Result<CutLines, FabricationError>,
     ) -> Self {
         let deployment = &designed.best.deployment;
-        let damage = deployment.greatest_damage();
         let hinges: Vec<HingeRow> = (0..deployment.sheet.hinges.len())
-            .map(|h| HingeRow::new(scene, deployment, h, damage.get(h).copied()))
+            .map(|h| HingeRow::new(scene, deployment, h))
             .collect();
         Self {
             title: scene.config.title.clone(),
@@ -81,7 +84,7 @@ impl Report {
 }
 
 impl HingeRow {
-    fn new(scene: &Scene, deployment: &Deployment, h: usize, damage: Option<f64>) -> Self {
+    fn new(scene: &Scene, deployment: &Deployment, h: usize) -> Self {
         let sheet = &deployment.sheet;
         let hinge = &sheet.hinges[h];
         let last = deployment.final_step().deformations[h];
@@ -94,7 +97,8 @@ impl HingeRow {
             theta_deg: last.theta.to_degrees(),
             eta_a,
             eta_s,
-            damage,
+            damage: deployment.damage_max(DamageMeasure::Mean, h),
+            damage_peak: deployment.damage_max(DamageMeasure::Peak, h),
             inside: deployment.path.iter().all(|step| step.inside[h]),
             gamma: gamma(&scene.material, hinge.w_lig, shortest_edge(sheet, hinge)),
         }
@@ -139,18 +143,18 @@ impl fmt::Display for Report {
         }
         writeln!(
             f,
-            "\nhinge  panels    w_lig  alpha  theta   eta_a   eta_s       D  domain    Gamma\n\
+            "\nhinge  panels    w_lig  alpha  theta   eta_a   eta_s       D  D_peak  domain    Gamma\n\
              {:>20} {:>6} {:>6}",
             "mm", "deg", "deg"
         )?;
         for row in &self.hinges {
             let panels = format!("{}-{}", row.panels[0], row.panels[1]);
-            let damage = row
-                .damage
-                .map_or("-".into(), |damage| format!("{damage:.4}"));
+            let unknown = if row.inside { "-" } else { "?" };
+            let [damage, peak] = [row.damage, row.damage_peak]
+                .map(|damage| damage.map_or(unknown.into(), |damage| format!("{damage:.4}")));
             writeln!(
                 f,
-                "{:>5}  {panels:>6} {:>8.2} {:>6.1} {:>6.1} {:>7.3} {:>7.3} {damage:>7}  {:<6} {:>8.3e}",
+                "{:>5}  {panels:>6} {:>8.2} {:>6.1} {:>6.1} {:>7.3} {:>7.3} {damage:>7} {peak:>7}  {:<6} {:>8.3e}",
                 row.hinge,
                 row.w_lig,
                 row.alpha_deg,
@@ -161,6 +165,11 @@ impl fmt::Display for Report {
                 row.gamma,
             )?;
         }
+        writeln!(
+            f,
+            "D and D_peak: maxima along the path of the mean damage of the ligament and of its most strained\n\
+             1 %, which tears at 1; ? not known, as the hinge left the states its law was trained on"
+        )?;
         if self.warnings.is_empty() {
             return writeln!(f, "\nno warnings");
         }

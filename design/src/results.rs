@@ -33,6 +33,14 @@ pub fn write_results(scene: &Scene, designed: &Designed) -> Result<Report, Resul
     };
     let best = &designed.best.deployment;
     let cuts = CutLines::new(&best.pattern, &best.sheet, &scene.material);
+    // First of all, so that whoever finds a cut file finds what to mind about it.
+    let report = Report::new(scene, designed, &cuts);
+    let json = serde_json::to_vec_pretty(&report).map_err(|error| ResultsError::Write {
+        path: folder.join("report.json"),
+        source: error.into(),
+    })?;
+    write("report.json", &json)?;
+    write("report.txt", report.to_string().as_bytes())?;
     match &cuts {
         Ok(cuts) => {
             write_dxf(&folder.join("cut.dxf"), cuts)?;
@@ -51,13 +59,6 @@ pub fn write_results(scene: &Scene, designed: &Designed) -> Result<Report, Resul
         picture(scene, &designed.start.deployment).as_bytes(),
     )?;
     write("deployed.svg", picture(scene, best).as_bytes())?;
-    let report = Report::new(scene, designed, &cuts);
-    let json = serde_json::to_vec_pretty(&report).map_err(|error| ResultsError::Write {
-        path: folder.join("report.json"),
-        source: error.into(),
-    })?;
-    write("report.json", &json)?;
-    write("report.txt", report.to_string().as_bytes())?;
     Ok(report)
 }
 

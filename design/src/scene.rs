@@ -21,6 +21,7 @@ pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 use crate::chamfer::Precision;
 use crate::equilibrium::{Method, SolverSettings};
 use crate::gradient::DesignError;
+use crate::hinge_law::DamageMeasure;
 use crate::objective::OutlinePoints;
 use crate::search::SearchMethod;
 use crate::sheet::{Centroid, HingePoint, SheetOptions};
@@ -93,6 +94,9 @@ pub struct ObjectiveConfig {
     /// Of (17); needs `hinge = "surrogate"`.
     #[serde(default)]
     pub damage: f64,
+    /// Which damage (17) is of: `mean`, D as the paper, or `peak`, D_peak that tears at 1.
+    #[serde(default)]
+    pub damage_measure: DamageMeasure,
     /// Of (18).
     #[serde(default)]
     pub compression: f64,
@@ -104,7 +108,7 @@ pub struct ObjectiveConfig {
     /// windows; never relative to a gradient.
     #[serde(default)]
     pub panel_shape: f64,
-    /// Of states outside the box that the hinge law was learned in, in squared tenths of its sides, as a
+    /// Of states outside the domain that the hinge law was learned in, in squared tenths of its range, as a
     /// mean over hinges and load steps; needs `hinge = "surrogate"`; never relative to a gradient.
     #[serde(default)]
     pub domain: f64,

@@ -44,7 +44,7 @@ impl Validity {
         let spacings = hinge_spacings(sheet);
         let r_win = sheet.options.process.r_win;
         let untrained = |domain: &TrainingDomain| {
-            let trained = |design: &&HingeDesign| domain.contains(design, &Default::default());
+            let trained = |design: &&HingeDesign| domain.has_ligament(design);
             sheet
                 .designs()
                 .iter()

@@ -31,6 +31,9 @@ pub enum FailureKind {
 /// What a program's log says of a full disk.
 const DISK_FULL: &str = "No space left on device";
 
+/// A ray that came this far (lambda) is not worth a finer mesh.
+const LONG: f64 = 0.5;
+
 impl FailureKind {
     /// Every kind.
     pub const ALL: [Self; 8] = [
@@ -80,9 +83,9 @@ impl FailureKind {
         }
     }
 
-    /// What is tried after a failure of this kind at `rung` of a job asked on `tier`; `None` closes
-    /// the job.
-    pub fn next(self, rung: Rung, tier: Tier) -> Option<Rung> {
+    /// What is tried after a failure of this kind at `rung` of a job asked on `tier`, which has samples up
+    /// to `lambda`; `None` closes the job.
+    pub fn next(self, rung: Rung, tier: Tier, lambda: f64) -> Option<Rung> {
         let next = match (self, rung) {
             (Self::InvalidInput, _) | (_, Rung::FinerTier) => None,
             (Self::MeshFailed, _) => Some(Rung::FinerTier),
@@ -91,6 +94,8 @@ impl FailureKind {
             }
             (Self::NotStarted, _) => None,
             (_, Rung::AsAsked | Rung::Again) => Some(Rung::ShorterIncrements),
+            // Mostly a snap of the ligament, which a finer mesh has too.
+            (Self::Diverged, Rung::ShorterIncrements) if lambda > LONG => None,
             // A finer mesh would take longer still.
             (Self::TimedOut, Rung::ShorterIncrements) => None,
             (_, Rung::ShorterIncrements) => Some(Rung::FinerTier),
@@ -178,14 +183,17 @@ mod tests {
     #[test]
     fn every_ladder_ends() {
         assert_eq!(
-            FailureKind::Diverged.next(Rung::ShorterIncrements, Tier::Reference),
+            FailureKind::Diverged.next(Rung::ShorterIncrements, Tier::Reference, 0.0),
             None
         );
+        let short =
+            |lambda| FailureKind::Diverged.next(Rung::ShorterIncrements, Tier::Default, lambda);
+        assert_eq!((short(0.4), short(0.6)), (Some(Rung::FinerTier), None));
         for kind in FailureKind::ALL {
             assert_eq!(kind.name().parse(), Ok(kind));
             let mut rung = Rung::AsAsked;
             let mut attempts = 1;
-            while let Some(next) = kind.next(rung, Tier::Default) {
+            while let Some(next) = kind.next(rung, Tier::Default, 0.0) {
                 assert_ne!(next, rung);
                 rung = next;
                 attempts += 1;

@@ -67,7 +67,7 @@ pub struct Added {
     pub added: usize,
     /// In the file before.
     pub known: usize,
-    /// Rays that a window cannot follow: closings, or beyond what a campaign accepts.
+    /// Rays beyond what a campaign accepts.
     pub refused: usize,
 }
 
@@ -173,8 +173,8 @@ impl Row {
         if !(-1.0 < self.eta_a && self.eta_a < 1.0 && self.eta_s.abs() < 1.0) {
             return Some("violates |eta_a| < 1, |eta_s| < 1 (over w_lig, not mm)".to_owned());
         }
-        if !(0.0..=120.0).contains(&self.theta_deg) {
-            return Some("violates 0 <= theta_deg <= 120: the window knows no contact".to_owned());
+        if !(-30.0..=120.0).contains(&self.theta_deg) {
+            return Some("violates -30 <= theta_deg <= 120".to_owned());
         }
         ray.design.validate().err().map(|error| error.to_string())
     }
@@ -209,7 +209,7 @@ mod tests {
         );
         std::fs::write(&path, text).unwrap();
         let mut closing = ray(60.0);
-        closing.end.theta = -0.1;
+        closing.end.theta = -0.6;
         let added = add_further_rays(&path, &[ray(80.0), ray(70.0), closing]).unwrap();
         assert_eq!((added.added, added.known, added.refused), (1, 1, 1));
         let text = std::fs::read_to_string(&path).unwrap();
@@ -245,7 +245,7 @@ mod tests {
         for (text, expected) in [
             ("w_lig,alpha\n1,2\n".to_owned(), "unknown field"),
             (format!("{header}\n18,90,-5.4,0,20\n"), "|eta_a| < 1"),
-            (format!("{header}\n18,90,0,0,-20\n"), "no contact"),
+            (format!("{header}\n18,90,0,0,-40\n"), "-30 <= theta_deg"),
             (format!("{header}\n18,90,0,0,2000\n"), "theta_deg <= 120"),
             (
                 format!("{header}\n18,90,0,0,20\n18,90,0,0,0\n"),

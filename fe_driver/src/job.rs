@@ -15,7 +15,9 @@ use std::path::{Path, PathBuf};
 
 /// Version of the geometry, the deck and the evaluation: raised when a change of the code changes
 /// results, so that jobs solved before are stale.
-const RECIPE_VERSION: u32 = 1;
+///
+/// 2: D_peak is the mean over the most strained 1 % of the ligament.
+const RECIPE_VERSION: u32 = 2;
 
 /// Versions of the programs that decide a result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

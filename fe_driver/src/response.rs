@@ -3,12 +3,12 @@
 use crate::dat::Frame;
 use crate::ray::{PanelMotion, rotated};
 use crate::window_solve::WindowModel;
-use hinge::{HingeDeformation, HingeForces, HingeSample, SheetMaterial};
+use hinge::{HingeDeformation, HingeForces, HingeSample, SheetMaterial, StrainVolumes};
 use mesher::WindowMesh;
 use std::f64::consts::PI;
 
-/// Share of the window's volume that strains less than the peak reported by D_peak.
-const PEAK_SHARE: f64 = 0.999;
+/// Fraction of the ligament's half-disc volume, the most strained, whose mean strain is the peak.
+const PEAK_FRACTION: f64 = 0.01;
 
 /// One sample a frame, in the order of the frames.
 pub(crate) fn samples(model: &WindowModel, frames: &[Frame]) -> Vec<HingeSample> {
@@ -39,7 +39,9 @@ pub(crate) fn samples(model: &WindowModel, frames: &[Frame]) -> Vec<HingeSample>
                 plastic_integral: damage.plastic_integral,
                 d: damage.d,
                 d_window: damage.d_window,
-                d_peak: damage.d_peak,
+                d_peak: Some(damage.d_peak),
+                strain_max: Some(damage.strain_max),
+                strain_volumes: Some(damage.strain_volumes),
                 uz_max: frame.uz.iter().fold(0.0, |most, uz| uz.abs().max(most)),
                 energy_residual: (frame.energy - w_work).abs() / largest_w,
             }
@@ -97,37 +99,40 @@ struct Damage {
     d: f64,
     d_window: f64,
     d_peak: f64,
+    strain_max: f64,
+    strain_volumes: StrainVolumes,
 }
 
 impl Damage {
     fn of(mesh: &WindowMesh, material: &SheetMaterial, peeq: &[f64]) -> Self {
-        let mut points: Vec<_> = peeq
-            .iter()
-            .copied()
-            .zip(mesh.gauss_volumes.iter().flatten().copied())
-            .collect();
-        points.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        let volume = mesh.volume();
+        let volumes = mesh.gauss_volumes.iter().flatten().copied();
+        let mut points: Vec<_> = peeq.iter().copied().zip(volumes).collect();
+        points.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
         let plastic_integral = points.iter().map(|(strain, volume)| strain * volume).sum();
         let ligament = 0.5 * PI * mesh.design.w_lig.powi(2) * mesh.thickness;
         let fracture = material.fracture_strain;
         Self {
             plastic_integral,
             d: plastic_integral / (fracture * ligament),
-            d_window: plastic_integral / (fracture * volume),
-            d_peak: percentile(&points, PEAK_SHARE * volume) / fracture,
+            d_window: plastic_integral / (fracture * mesh.volume()),
+            d_peak: mean_of_first(&points, PEAK_FRACTION * ligament) / fracture,
+            strain_max: points.first().map_or(0.0, |(strain, _)| *strain),
+            strain_volumes: StrainVolumes::of(points),
         }
     }
 }
 
-/// The least value such that the points up to it weigh `weight`; points are sorted.
-fn percentile(points: &[(f64, f64)], weight: f64) -> f64 {
+/// The mean strain of the first `volume` of `points`, each (strain, volume); the last point counts with the
+/// part of its volume that is needed.
+fn mean_of_first(points: &[(f64, f64)], volume: f64) -> f64 {
+    let mut left = volume;
     let mut sum = 0.0;
-    let reached = points.iter().find(|(_, own)| {
-        sum += own;
-        sum >= weight
-    });
-    reached.or(points.last()).map_or(0.0, |(value, _)| *value)
+    for (strain, own) in points {
+        let part = own.min(left);
+        sum += strain * part;
+        left -= part;
+    }
+    sum / volume
 }
 
 #[cfg(test)]
@@ -135,12 +140,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_percentile_counts_weights() {
-        let points = [(0.0, 98.0), (0.1, 1.5), (0.4, 0.5)];
-        assert_eq!(percentile(&points, 99.0), 0.1);
-        assert_eq!(percentile(&points, 99.9), 0.4);
-        assert_eq!(percentile(&points, 101.0), 0.4);
-        assert_eq!(percentile(&[], 1.0), 0.0);
+    fn the_peak_is_the_mean_over_a_fixed_volume() {
+        let points = [(0.4, 0.5), (0.1, 1.5), (0.0, 98.0)];
+        assert_eq!(mean_of_first(&points, 0.25), 0.4);
+        assert!((mean_of_first(&points, 1.0) - 0.25).abs() < 1e-15);
+        assert!((mean_of_first(&points, 4.0) - 0.0875).abs() < 1e-15);
+        // Splitting a point changes nothing.
+        let split = [(0.4, 0.2), (0.4, 0.3), (0.1, 1.5)];
+        assert!((mean_of_first(&split, 1.0) - 0.25).abs() < 1e-15);
+        // Unstrained material beyond the window counts as such.
+        assert_eq!(mean_of_first(&points[..1], 1.0), 0.2);
     }
 
     #[test]

@@ -245,7 +245,7 @@ impl Worker<'_> {
         }
         record.next = failure
             .as_ref()
-            .and_then(|(kind, _)| kind.next(rung, job.spec.problem.tier));
+            .and_then(|(kind, _)| kind.next(rung, job.spec.problem.tier, record.lambda));
         (record.failure, record.message) = failure.unzip();
         record.attempts += 1;
         record.cpu_seconds += cpu_seconds.unwrap_or(0.0);

@@ -4,14 +4,19 @@
 //! end of the ray), 5 of them pure rotations. So any prefix is a usable database, and a larger
 //! campaign of the same seed begins with the smaller one.
 //!
-//! A hinge that is pulled or sheared before it turns is stretched in its plane: it stores up to ten
-//! times the energy of any deployed one, and is where solvers stop early. Hinges of a deployed sheet
-//! turn as they translate, or are compressed. So tension and shear reach their full range only from
-//! `full_range_deg` of rotation on, less in proportion below, and together stay inside an ellipse.
-//! Compression, which buckles, always has its full range; and a compressed ligament may be sheared
-//! as long as it stays slack, its ends no further apart than they were:
+//! The ends of the rays fill one convex region of (eta_a, eta_s, theta) at every ligament width. Compression
+//! and rotation always have their full range, as the ligament buckles out of them. Tension and shear
+//! stretch a ligament in its plane, which stores energy in proportion to w_lig^2 where a rotation stores it in
+//! proportion to w_lig; they keep inside a half-ellipse that grows with the rotation,
 //!
-//! (1 + eta_a)^2 + eta_s^2 <= 1.
+//! ```text
+//! (eta_a / (A rho))^2 + (eta_s / S)^2 / rho <= 1      for eta_a >= 0,
+//! rho = rho_0 + (1 - rho_0) min(1, theta / theta_full),   rho_0 = min(1, w_full / w_lig),
+//! ```
+//!
+//! with A and S the greatest tension and shear. A compressed ligament may besides be sheared as long as it
+//! stays slack, its ends no further apart than they were: (1 + eta_a)^2 + eta_s^2 <= 1. For the paper's film
+//! and w_full = 8 mm no ray end stores more than about 500 N mm, five times a deployed hinge.
 
 use crate::ray::Ray;
 use hinge::{HingeConstants, HingeDeformation};
@@ -24,6 +29,9 @@ use serde::{Deserialize, Serialize};
 const BLOCK: usize = 40;
 /// One ray in this many is a pure rotation.
 const ROTATION_EVERY: usize = 8;
+/// Share of the other rays that end in tension, whose range is the narrower and whose forces are the
+/// greater.
+const TENSION_SHARE: f64 = 0.4;
 /// Coordinates of the hypercube: log w_lig, alpha, theta, eta_a, eta_s.
 const DIMENSIONS: usize = 5;
 
@@ -39,10 +47,15 @@ pub struct RayBox {
     pub eta_a: [f64; 2],
     /// Greatest shear at the end of a ray, over w_lig, of either sign.
     pub eta_s: f64,
-    /// Least and greatest rotation at the end of a ray; pure rotations go to the greatest.
+    /// Minimum and maximum rotation at the end of a ray; negative closes the cut. Pure rotations go to the
+    /// maximum.
     pub theta_deg: [f64; 2],
-    /// Rotation from which on tension and shear have their full range.
+    /// Half of the rays end below this rotation.
+    pub median_deg: f64,
+    /// Rotation from which on tension and shear have their full range at any width.
     pub full_range_deg: f64,
+    /// Ligament width (mm) up to which tension and shear have their full range at any rotation.
+    pub full_range_w_lig: f64,
 }
 
 impl RayBox {
@@ -68,12 +81,15 @@ impl RayBox {
         let end = if pure_rotation {
             HingeDeformation::from_eta(0.0, 0.0, self.theta_deg[1].to_radians(), w_lig)
         } else {
-            let theta = between(self.theta_deg, theta);
-            let range = (theta / self.full_range_deg).min(1.0);
-            let [compression, tension] = [self.eta_a[0], self.eta_a[1] * range];
-            let eta_a = between([compression, tension], eta_a);
+            let theta = self.theta_at(theta);
+            let range = self.range(w_lig, theta);
+            let tension = self.eta_a[1] * range;
+            let eta_a = match eta_a / TENSION_SHARE {
+                share @ ..1.0 => tension * (1.0 - share),
+                _ => self.eta_a[0] * (eta_a - TENSION_SHARE) / (1.0 - TENSION_SHARE),
+            };
             let pull = if eta_a > 0.0 { eta_a / tension } else { 0.0 };
-            let stretched = self.eta_s * range * (1.0 - pull * pull).sqrt();
+            let stretched = self.eta_s * (range * (1.0 - pull * pull)).sqrt();
             let slack = (1.0 - (1.0 + eta_a).powi(2)).max(0.0).sqrt();
             let shear = stretched.max(slack).min(self.eta_s);
             let eta_s = between([-shear, shear], eta_s);
@@ -83,6 +99,22 @@ impl RayBox {
             design: common.hinge(w_lig, between(self.alpha_deg, alpha).to_radians()),
             end,
         }
+    }
+
+    /// The rotation (degrees) below which the fraction `share` of the rays ends.
+    fn theta_at(&self, share: f64) -> f64 {
+        let [least, greatest] = self.theta_deg;
+        let median = self.median_deg;
+        match 2.0 * share {
+            lower @ ..1.0 => least + (median - least) * lower,
+            upper => median + (greatest - median) * (upper - 1.0),
+        }
+    }
+
+    /// rho: the fraction of the range of tension and shear at a width (mm) and a rotation (degrees).
+    fn range(&self, w_lig: f64, theta: f64) -> f64 {
+        let flat = (self.full_range_w_lig / w_lig).min(1.0);
+        (flat + (1.0 - flat) * theta / self.full_range_deg).clamp(0.0, 1.0)
     }
 
     /// The inequality that the box violates, if any.
@@ -105,11 +137,16 @@ impl RayBox {
             (self.eta_a[1] < 1.0, "eta_a[1] < 1"),
             ((0.0..1.0).contains(&self.eta_s), "0 <= eta_s < 1"),
             (
-                0.0 <= self.theta_deg[0]
-                    && self.theta_deg[0] <= self.theta_deg[1]
+                -30.0 <= self.theta_deg[0]
+                    && self.theta_deg[0] <= self.median_deg
+                    && self.median_deg <= self.theta_deg[1]
                     && self.theta_deg[1] > 0.0
                     && self.theta_deg[1] <= 120.0,
-                "0 <= theta_deg[0] <= theta_deg[1] <= 120, theta_deg[1] > 0",
+                "-30 <= theta_deg[0] <= median_deg <= theta_deg[1] <= 120, theta_deg[1] > 0",
+            ),
+            (
+                0.0 <= self.full_range_w_lig && self.full_range_w_lig.is_finite(),
+                "0 <= full_range_w_lig < infinity (mm)",
             ),
             (
                 (1.0..=180.0).contains(&self.full_range_deg),
@@ -145,8 +182,10 @@ mod tests {
         alpha_deg: [45.0, 90.0],
         eta_a: [-0.8, 0.25],
         eta_s: 0.4,
-        theta_deg: [5.0, 75.0],
-        full_range_deg: 30.0,
+        theta_deg: [-5.0, 75.0],
+        median_deg: 25.0,
+        full_range_deg: 50.0,
+        full_range_w_lig: 8.0,
     };
     const COMMON: HingeConstants = HingeConstants {
         fillet_ratio: 0.16,
@@ -176,18 +215,31 @@ mod tests {
     }
 
     #[test]
-    fn rays_stay_in_the_box_and_stretch_little_before_they_turn() {
-        for (i, ray) in BOX.rays(&COMMON, 400, 1).iter().enumerate() {
+    fn rays_stay_in_their_region_and_stretch_wide_ligaments_little_before_they_turn() {
+        let rays = BOX.rays(&COMMON, 400, 1);
+        for (i, ray) in rays.iter().enumerate() {
             ray.design.validate().unwrap();
-            let [eta_a, eta_s] = ray.end.eta(ray.design.w_lig);
+            let w_lig = ray.design.w_lig;
+            let [eta_a, eta_s] = ray.end.eta(w_lig);
             let theta = ray.end.theta.to_degrees();
-            let range = (theta / 30.0).min(1.0);
-            let [pull, shear] = [eta_a.max(0.0) / (0.25 * range), eta_s / (0.4 * range)];
+            let flat = (8.0 / w_lig).min(1.0);
+            let range = flat + (1.0 - flat) * (theta / 50.0).min(1.0);
+            let [pull, shear] = [eta_a.max(0.0) / (0.25 * range), eta_s / 0.4];
             let slack = (1.0 + eta_a).hypot(eta_s) <= 1.0 + 1e-12;
-            assert!(slack || pull.hypot(shear) <= 1.0 + 1e-12);
-            assert!(eta_a >= -0.8 && eta_s.abs() <= 0.4);
+            assert!(slack || pull * pull + shear * shear / range <= 1.0 + 1e-12);
+            assert!(eta_a >= -0.8 && eta_s.abs() <= 0.4 && theta > -5.0);
             assert_eq!(i % 8 == 0, eta_a == 0.0 && eta_s == 0.0 && theta > 74.9);
         }
+        let share = |is: &dyn Fn([f64; 2], f64) -> bool| {
+            let met = rays
+                .iter()
+                .filter(|ray| is(ray.end.eta(ray.design.w_lig), ray.end.theta));
+            met.count() as f64 / rays.len() as f64
+        };
+        // Seven in eight of a half and of four tenths; one in twelve of the rays below 25 deg closes the cut.
+        assert!((share(&|_, theta| theta < 25f64.to_radians()) - 0.44).abs() < 0.03);
+        assert!((share(&|[eta_a, _], _| eta_a > 0.0) - 0.35).abs() < 0.03);
+        assert!((share(&|_, theta| theta < 0.0) - 0.07).abs() < 0.03);
     }
 
     /// Where hinges of deployed sheets live, every octant of states has its rays: small rotations
@@ -211,7 +263,7 @@ mod tests {
                 }
             }
         }
-        let early = |([_, eta_s], theta): &&([f64; 2], f64)| *theta < 30.0 && eta_s.abs() > 0.25;
+        let early = |([_, eta_s], theta): &&([f64; 2], f64)| *theta < 20.0 && eta_s.abs() > 0.2;
         assert!(ends.iter().filter(early).count() >= 4);
     }
 

@@ -1,126 +1,613 @@
-//! The box of hinge states that the database covers.
+//! The training domain: the hinge states that a database fills, not their bounding box.
+//!
+//! In the scaled coordinates y = ((eta_a, eta_s, theta) - centre) / half-range, the states of about one
+//! ligament width lie between parallel planes m . y <= s(m; w_lig), one for each of the 26 directions m with
+//! components -1, 0 and 1: s is the support function of the states. The domain is where its gauge
+//!
+//! ```text
+//! gamma = (sum over m of max(0, m . y / s(m; w_lig))^p)^(1/p) <= 1,      p = 24
+//! ```
+//!
+//! and w_lig and alpha lie in their intervals. gamma is smooth but at the centre, where it vanishes; it
+//! rounds the corners of the polytope inwards and grows in proportion to the distance from the centre.
+//! s is known at widths in geometric progression and is blended between them, with slopes of zero at either
+//! end, so that gamma is twice differentiable in w_lig.
+//! (Klosowski et al., "Efficient collision detection using bounding volume hierarchies of k-DOPs", 1998.)
 
-use crate::{HingeDeformation, HingeDesign};
+use crate::{HingeDeformation, HingeDesign, Jet};
 use serde::{Deserialize, Serialize};
+use std::array::from_fn;
 
-/// Closed intervals [least, greatest] of the states a surrogate was trained on; section 2.4.
-///
-/// It comes from the data and travels with the weights.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// Number of directions m.
+const DIRECTIONS: usize = 26;
+/// p of the gauge: corners where three planes meet are rounded by 5 % of their distance from the centre.
+const EXPONENT: f64 = 24.0;
+/// Most widths at which the supports are known.
+const MOST_WIDTHS: usize = 5;
+/// States for which the supports are told apart by one more width: a hundred rays, about.
+const STATES_A_WIDTH: usize = 4000;
+/// States count for a width from which their own is no further than this part of the step between widths.
+const REACH: f64 = 0.75;
+/// Least support, and least half-range: a domain of one state still has a size.
+const LEAST_SIZE: f64 = 0.01;
+/// gamma of the flat state at most, where W and its gradient vanish for any weights.
+const FLAT: f64 = 0.98;
+
+/// The states that a surrogate was trained on; section 2.4. It comes from the data and travels with the
+/// weights.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Stored", into = "Fitted")]
 pub struct TrainingDomain {
-    pub eta_a: [f64; 2],
-    pub eta_s: [f64; 2],
-    /// rad
-    pub theta: [f64; 2],
     /// mm
     pub w_lig: [f64; 2],
     /// rad
     pub alpha: [f64; 2],
+    /// Of (eta_a, eta_s, theta).
+    centre: [f64; 3],
+    half_range: [f64; 3],
+    /// s(m), one row for each width, from the narrowest to the widest.
+    supports: Vec<[f64; DIRECTIONS]>,
 }
 
+/// A domain of states that are none.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("the training domain violates {0}")]
+pub struct InvalidDomain(&'static str);
+
 impl TrainingDomain {
-    /// Whether the state of one hinge lies in the box.
+    /// Whether the state of one hinge lies in the domain.
     pub fn contains(&self, design: &HingeDesign, deformation: &HingeDeformation) -> bool {
-        self.sides(design, deformation)
-            .iter()
-            .all(|([least, greatest], value)| (least..=greatest).contains(&value))
+        self.has_ligament(design) && self.depth(design, deformation) >= 0.0
     }
 
-    /// How far the state lies from the nearest side, over the length of that side: 1/2 in the
-    /// middle of the box, 0 at its edge, and less than 0 outside, where the side that is farthest
-    /// off counts.
+    /// Whether the width and the angle of a ligament are within their intervals.
+    pub fn has_ligament(&self, design: &HingeDesign) -> bool {
+        let within = |[least, greatest]: [f64; 2], value: f64| least <= value && value <= greatest;
+        within(self.w_lig, design.w_lig) && within(self.alpha, design.alpha)
+    }
+
+    /// 1 - gamma of the state: 1 at the centre of the domain, 0 at its edge, negative outside.
     pub fn depth(&self, design: &HingeDesign, deformation: &HingeDeformation) -> f64 {
-        let sides = self.sides(design, deformation).into_iter();
-        sides
-            .map(|([least, greatest], value)| {
-                (value - least).min(greatest - value) / (greatest - least)
+        1.0 - self.gauge(design.w_lig, deformation)
+    }
+
+    /// gamma.
+    pub fn gauge(&self, w_lig: f64, deformation: &HingeDeformation) -> f64 {
+        let [eta_a, eta_s] = deformation.eta(w_lig);
+        let y = self.scaled([eta_a, eta_s, deformation.theta]);
+        let (row, [blend, ..]) = self.place(w_lig);
+        norm(from_fn(|m| {
+            let support = self.supports[row][m] + blend * self.rise(row, m);
+            dot(DIRECTION[m], y) / support
+        }))
+    }
+
+    /// gamma with its derivatives in (a, s, theta, w_lig). Not at the centre, where it has none.
+    pub fn gauge_jet(&self, w_lig: f64, deformation: &HingeDeformation) -> Jet {
+        let y = self.scaled_jet(w_lig, deformation);
+        let (row, blend) = self.place(w_lig);
+        let blend = Jet::variable(3, w_lig).map(blend);
+        let ratios: [Jet; DIRECTIONS] = from_fn(|m| {
+            let support = Jet::constant(self.supports[row][m]) + blend * self.rise(row, m);
+            let components = std::iter::zip(DIRECTION[m], y);
+            let along = components.fold(Jet::constant(0.0), |sum, (m, y)| sum + y * m);
+            along * support.recip()
+        });
+        // Scaled by the largest, so that no power over- or underflows.
+        let largest = ratios.iter().map(|ratio| ratio.value).fold(0.0, f64::max);
+        let sum = ratios.iter().filter(|ratio| ratio.value > 0.0);
+        let sum = sum.fold(Jet::constant(0.0), |sum, ratio| {
+            sum + (*ratio * (1.0 / largest)).powf(EXPONENT)
+        });
+        sum.powf(1.0 / EXPONENT) * largest
+    }
+
+    /// (eta_a, eta_s, theta) at the centre of the gauge.
+    pub fn centre(&self) -> [f64; 3] {
+        self.centre
+    }
+
+    /// Intervals of (eta_a, eta_s, theta) that the domain spans over all widths, rad.
+    pub fn bounds(&self) -> [[f64; 2]; 3] {
+        from_fn(|i| {
+            let side = |sign: f64| {
+                let axis = DIRECTION
+                    .iter()
+                    .position(|m| m[i] == sign && dot(*m, *m) == 1.0);
+                let axis = axis.expect("the axes are among the directions");
+                self.supports
+                    .iter()
+                    .map(|row| row[axis])
+                    .fold(0.0, f64::max)
+            };
+            let (centre, half) = (self.centre[i], self.half_range[i]);
+            [centre - half * side(-1.0), centre + half * side(1.0)]
+        })
+    }
+
+    /// The edge of the domain in the plane of (eta_a, eta_s) at a width (mm) and a rotation (rad): a closed
+    /// line, empty where the plane misses the domain's middle.
+    pub fn slice(&self, w_lig: f64, theta: f64) -> Vec<[f64; 2]> {
+        const POINTS: u32 = 72;
+        let [centre_a, centre_s, _] = self.centre;
+        let at = |radius: f64, angle: f64| {
+            let (sin, cos) = angle.sin_cos();
+            [
+                centre_a + radius * self.half_range[0] * cos,
+                centre_s + radius * self.half_range[1] * sin,
+            ]
+        };
+        let inside = |[eta_a, eta_s]: [f64; 2]| {
+            let state = HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig);
+            self.gauge(w_lig, &state) <= 1.0
+        };
+        if !inside(at(0.0, 0.0)) {
+            return Vec::new();
+        }
+        (0..=POINTS)
+            .map(|i| {
+                let angle = f64::from(i % POINTS) * std::f64::consts::TAU / f64::from(POINTS);
+                let [mut inner, mut outer] = [0.0, 8.0];
+                for _ in 0..30 {
+                    let middle = 0.5 * (inner + outer);
+                    *(if inside(at(middle, angle)) {
+                        &mut inner
+                    } else {
+                        &mut outer
+                    }) = middle;
+                }
+                at(inner, angle)
             })
-            .fold(0.5, f64::min)
+            .collect()
     }
 
-    /// Each side of the box with the coordinate along it.
-    fn sides(&self, design: &HingeDesign, deformation: &HingeDeformation) -> [([f64; 2], f64); 5] {
-        let [eta_a, eta_s] = deformation.eta(design.w_lig);
-        [
-            (self.eta_a, eta_a),
-            (self.eta_s, eta_s),
-            (self.theta, deformation.theta),
-            (self.w_lig, design.w_lig),
-            (self.alpha, design.alpha),
-        ]
+    /// The domain of the states of this one times `factor`.
+    pub fn scaled_by(&self, factor: f64) -> Self {
+        Self {
+            centre: self.centre.map(|x| factor * x),
+            half_range: self.half_range.map(|x| factor * x),
+            ..self.clone()
+        }
     }
 
-    /// The smallest box that holds every state and the undeformed one, where W and its gradient
-    /// vanish for any weights; `None` if there is no state.
+    /// The domain of given states and the flat one; `None` if there is no state.
     pub fn covering<'a>(
         states: impl IntoIterator<Item = (&'a HingeDesign, &'a HingeDeformation)>,
     ) -> Option<Self> {
-        let mut domain: Option<Self> = None;
-        for (design, deformation) in states {
-            let [eta_a, eta_s] = deformation.eta(design.w_lig);
-            let from_zero = |x: f64| [x.min(0.0), x.max(0.0)];
-            let ray = Self {
-                eta_a: from_zero(eta_a),
-                eta_s: from_zero(eta_s),
-                theta: from_zero(deformation.theta),
-                w_lig: [design.w_lig; 2],
-                alpha: [design.alpha; 2],
-            };
-            domain = Some(domain.map_or(ray, |domain| domain.joined(&ray)));
+        let states: Vec<([f64; 3], &HingeDesign)> = states
+            .into_iter()
+            .map(|(design, deformation)| {
+                let [eta_a, eta_s] = deformation.eta(design.w_lig);
+                ([eta_a, eta_s, deformation.theta], design)
+            })
+            .collect();
+        if states.is_empty() {
+            return None;
         }
+        let range = |value: &dyn Fn(&([f64; 3], &HingeDesign)) -> f64| {
+            let values = states.iter().map(value);
+            values.fold(
+                [f64::INFINITY, f64::NEG_INFINITY],
+                |[least, greatest], x| [x.min(least), x.max(greatest)],
+            )
+        };
+        let count = states.len() as f64;
+        let mut domain = Self {
+            w_lig: range(&|(_, design)| design.w_lig),
+            alpha: range(&|(_, design)| design.alpha),
+            centre: from_fn(|i| states.iter().map(|(x, _)| x[i]).sum::<f64>() / count),
+            half_range: from_fn(|i| {
+                let [least, greatest] = range(&|(x, _)| x[i]);
+                (0.5 * (greatest.max(0.0) - least.min(0.0))).max(LEAST_SIZE)
+            }),
+            supports: Vec::new(),
+        };
+        let widths = (states.len() / STATES_A_WIDTH).clamp(1, MOST_WIDTHS);
+        let places: Vec<f64> = states
+            .iter()
+            .map(|(_, g)| domain.along(g.w_lig, widths))
+            .collect();
+        domain.supports = (0..widths)
+            .map(|width| {
+                let near = std::iter::zip(&states, &places)
+                    .filter(|(_, place)| (*place - width as f64).abs() <= REACH)
+                    .map(|((x, _), _)| domain.scaled(*x));
+                domain.support(near)
+            })
+            .collect();
+        Some(domain)
+    }
+
+    /// The box of states; each interval may be empty but for its ends.
+    pub fn of_box(state: [[f64; 2]; 3], w_lig: [f64; 2], alpha: [f64; 2]) -> Self {
+        let mut domain = Self {
+            w_lig,
+            alpha,
+            centre: state.map(|[least, greatest]| 0.5 * (least + greatest)),
+            half_range: state.map(|[least, greatest]| (0.5 * (greatest - least)).max(LEAST_SIZE)),
+            supports: Vec::new(),
+        };
+        let corners = (0..8).map(|k| from_fn(|i| state[i][(k >> i) & 1]));
+        let corners: Vec<[f64; 3]> = corners.map(|corner| domain.scaled(corner)).collect();
+        domain.supports = vec![domain.support(corners)];
         domain
     }
 
-    /// The smallest box that holds both.
-    fn joined(&self, other: &Self) -> Self {
-        let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-        Self {
-            eta_a: join(self.eta_a, other.eta_a),
-            eta_s: join(self.eta_s, other.eta_s),
-            theta: join(self.theta, other.theta),
-            w_lig: join(self.w_lig, other.w_lig),
-            alpha: join(self.alpha, other.alpha),
+    /// s(m) of scaled states and the flat one, which is inside.
+    fn support(&self, states: impl IntoIterator<Item = [f64; 3]>) -> [f64; DIRECTIONS] {
+        let flat = self.scaled([0.0; 3]);
+        let along = |y: [f64; 3]| -> [f64; DIRECTIONS] { from_fn(|m| dot(DIRECTION[m], y)) };
+        let least = along(flat).map(|s| s.max(LEAST_SIZE));
+        let support = states.into_iter().fold(least, |support, y| {
+            let along = along(y);
+            from_fn(|m| along[m].max(support[m]))
+        });
+        let grown = norm(from_fn(|m| dot(DIRECTION[m], flat) / support[m])) / FLAT;
+        support.map(|s| grown.max(1.0) * s)
+    }
+
+    fn scaled(&self, x: [f64; 3]) -> [f64; 3] {
+        from_fn(|i| (x[i] - self.centre[i]) / self.half_range[i])
+    }
+
+    fn scaled_jet(&self, w_lig: f64, deformation: &HingeDeformation) -> [Jet; 3] {
+        let state = deformation.to_array();
+        let per_width = Jet::variable(3, w_lig).recip();
+        from_fn(|i| {
+            let x = Jet::variable(i, state[i]);
+            let x = if i < 2 { x * per_width } else { x };
+            (x - Jet::constant(self.centre[i])) * (1.0 / self.half_range[i])
+        })
+    }
+
+    /// Where a width lies among `widths` of the domain's, counted from 0.
+    fn along(&self, w_lig: f64, widths: usize) -> f64 {
+        let [least, greatest] = self.w_lig;
+        let steps = (widths - 1) as f64;
+        let share = (w_lig / least).ln() / (greatest / least).ln();
+        if share.is_finite() {
+            (share * steps).clamp(0.0, steps)
+        } else {
+            0.0
         }
+    }
+
+    /// The row of supports at or below a width, and how far it is blended into the next, with derivatives in
+    /// w_lig: 6 x^5 - 15 x^4 + 10 x^3.
+    fn place(&self, w_lig: f64) -> (usize, [f64; 3]) {
+        let widths = self.supports.len();
+        let along = self.along(w_lig, widths);
+        let row = (along as usize).min(widths.saturating_sub(2));
+        let x = along - row as f64;
+        let [least, greatest] = self.w_lig;
+        let slope = (widths - 1) as f64 / (greatest / least).ln() / w_lig;
+        if widths == 1 || !slope.is_finite() {
+            return (row, [0.0; 3]);
+        }
+        let first = 30.0 * (x * (1.0 - x)).powi(2);
+        let second = 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x);
+        let blend = x * x * x * (x * (6.0 * x - 15.0) + 10.0);
+        (
+            row,
+            [
+                blend,
+                first * slope,
+                second * slope * slope - first * slope / w_lig,
+            ],
+        )
+    }
+
+    /// What the support of the next width has more.
+    fn rise(&self, row: usize, m: usize) -> f64 {
+        let next = self.supports.get(row + 1).unwrap_or(&self.supports[row]);
+        next[m] - self.supports[row][m]
+    }
+}
+
+/// (sum of max(0, t)^p)^(1/p).
+fn norm(ratios: [f64; DIRECTIONS]) -> f64 {
+    let largest = ratios.into_iter().fold(0.0, f64::max);
+    if largest == 0.0 || !largest.is_finite() {
+        return largest;
+    }
+    let powers = ratios.map(|t| (t.max(0.0) / largest).powi(EXPONENT as i32));
+    largest * powers.into_iter().sum::<f64>().powf(1.0 / EXPONENT)
+}
+
+fn dot(x: [f64; 3], y: [f64; 3]) -> f64 {
+    x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
+}
+
+/// The directions m.
+const DIRECTION: [[f64; 3]; DIRECTIONS] = {
+    let mut directions = [[0.0; 3]; DIRECTIONS];
+    let mut m = 0;
+    while m < DIRECTIONS {
+        // The zero vector, number 13 of 27, is none.
+        let k = if m < 13 { m } else { m + 1 };
+        directions[m] = [
+            (k % 3) as f64 - 1.0,
+            (k / 3 % 3) as f64 - 1.0,
+            (k / 9) as f64 - 1.0,
+        ];
+        m += 1;
+    }
+    directions
+};
+
+/// How a domain is written.
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Fitted {
+    w_lig: [f64; 2],
+    alpha: [f64; 2],
+    centre: [f64; 3],
+    half_range: [f64; 3],
+    supports: Vec<Vec<f64>>,
+}
+
+/// How a domain may have been written: as a box, before there were supports.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Stored {
+    Fitted(Fitted),
+    Box(Intervals),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Intervals {
+    eta_a: [f64; 2],
+    eta_s: [f64; 2],
+    theta: [f64; 2],
+    w_lig: [f64; 2],
+    alpha: [f64; 2],
+}
+
+impl From<TrainingDomain> for Fitted {
+    fn from(domain: TrainingDomain) -> Self {
+        Self {
+            w_lig: domain.w_lig,
+            alpha: domain.alpha,
+            centre: domain.centre,
+            half_range: domain.half_range,
+            supports: domain.supports.iter().map(|row| row.to_vec()).collect(),
+        }
+    }
+}
+
+impl TryFrom<Stored> for TrainingDomain {
+    type Error = InvalidDomain;
+
+    fn try_from(stored: Stored) -> Result<Self, InvalidDomain> {
+        let check = |holds: bool, rule| {
+            if holds {
+                Ok(())
+            } else {
+                Err(InvalidDomain(rule))
+            }
+        };
+        let interval =
+            |[least, greatest]: [f64; 2]| least <= greatest && (greatest - least).is_finite();
+        let domain = match stored {
+            Stored::Box(Intervals {
+                eta_a,
+                eta_s,
+                theta,
+                w_lig,
+                alpha,
+            }) => {
+                let state = [eta_a, eta_s, theta];
+                check(
+                    state.into_iter().all(interval),
+                    "least <= greatest for eta_a, eta_s, theta",
+                )?;
+                Self::of_box(state, w_lig, alpha)
+            }
+            Stored::Fitted(fitted) => {
+                let positive = |x: &f64| *x > 0.0 && x.is_finite();
+                check(
+                    fitted.centre.iter().all(|x| x.is_finite()),
+                    "a finite centre",
+                )?;
+                check(fitted.half_range.iter().all(positive), "half_range > 0")?;
+                check(!fitted.supports.is_empty(), "at least one row of supports")?;
+                check(
+                    fitted.supports.iter().flatten().all(positive),
+                    "supports > 0",
+                )?;
+                let rows = fitted
+                    .supports
+                    .into_iter()
+                    .map(<[f64; DIRECTIONS]>::try_from);
+                Self {
+                    w_lig: fitted.w_lig,
+                    alpha: fitted.alpha,
+                    centre: fitted.centre,
+                    half_range: fitted.half_range,
+                    supports: rows
+                        .collect::<Result<_, _>>()
+                        .map_err(|_| InvalidDomain("26 supports in a row"))?,
+                }
+            }
+        };
+        check(
+            interval(domain.w_lig) && domain.w_lig[0] > 0.0,
+            "0 < least <= greatest w_lig",
+        )?;
+        check(interval(domain.alpha), "least <= greatest alpha")?;
+        Ok(domain)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::HingeConstants;
+
+    fn design(w_lig: f64) -> HingeDesign {
+        HingeConstants::PAPER.hinge(w_lig, 1.3)
+    }
+
+    /// Ends of rays in a cone: tension and shear grow with the rotation, and shrink with the width; and
+    /// their mirror images.
+    fn cone() -> Vec<(HingeDesign, HingeDeformation)> {
+        let part = |i: usize, prime: f64| (i as f64 * prime).fract() * 2.0 - 1.0;
+        let state = |i: usize| {
+            let w_lig = 10.0 * 2f64.powf(part(i, 0.618_033_988_7));
+            let theta = 0.5 + 0.5 * part(i, 0.414_213_562_4);
+            let size = 0.3 * theta * 5.0 / w_lig;
+            let [x, y] = [part(i, 0.732_050_807_6), part(i, 0.236_067_977_5)];
+            let state = HingeDeformation::from_eta(size * x, size * y, theta, w_lig);
+            (HingeConstants::PAPER.hinge(w_lig, 1.3), state)
+        };
+        let states = (0..20_000).map(state);
+        states
+            .flat_map(|(g, x)| [(g, x), (g.mirrored(), x.mirrored())])
+            .collect()
+    }
+
+    fn domain(states: &[(HingeDesign, HingeDeformation)]) -> TrainingDomain {
+        TrainingDomain::covering(states.iter().map(|(g, x)| (g, x))).unwrap()
+    }
 
     #[test]
-    fn the_covering_box_is_tight_and_holds_its_states() {
-        let narrow = HingeDesign {
-            w_lig: 5.0,
-            alpha: 1.0,
-            fillet_ratio: 0.16,
-            kerf: 0.2,
-            r_win: 100.0,
+    fn it_holds_what_the_states_fill_and_not_the_corners_of_their_box() {
+        let states = cone();
+        let domain = domain(&states);
+        let share = |domain: &TrainingDomain| {
+            let inside = states.iter().filter(|(g, x)| domain.contains(g, x));
+            inside.count() as f64 / states.len() as f64
         };
-        let wide = HingeDesign {
-            w_lig: 25.0,
-            alpha: 2.0,
-            ..narrow
+        assert!(share(&domain) > 0.75, "{}", share(&domain));
+        let at = |eta_a: f64, theta: f64, w_lig: f64| {
+            let state = HingeDeformation::from_eta(eta_a, 0.0, theta, w_lig);
+            domain.contains(&design(w_lig), &state)
         };
-        let states = [
-            (narrow, HingeDeformation::from_eta(-0.5, 0.1, 0.2, 5.0)),
-            (wide, HingeDeformation::from_eta(0.25, -0.3, 1.2, 25.0)),
-        ];
-        let domain = TrainingDomain::covering(states.iter().map(|(g, e)| (g, e))).unwrap();
-        assert_eq!(domain.eta_a, [-0.5, 0.25]);
-        assert_eq!(domain.theta, [0.0, 1.2]);
-        assert!(states.iter().all(|(g, e)| domain.contains(g, e)));
-        let beyond = HingeDeformation::from_eta(0.0, 0.0, 1.26, 25.0);
-        assert!(!domain.contains(&wide, &beyond));
-        assert!((domain.depth(&wide, &beyond) + 0.05).abs() < 1e-12);
-        let middle = HingeDesign {
-            w_lig: 15.0,
-            alpha: 1.5,
-            ..narrow
+        // The corner of the box that no ray visits, and the width that has none of the range of others.
+        assert!(at(0.2, 0.9, 5.5) && !at(0.2, 0.2, 5.5));
+        assert!(at(0.06, 0.9, 18.0) && !at(0.2, 0.9, 18.0));
+        assert!(at(0.0, 0.0, 10.0), "the flat state");
+        let [eta_a, ..] = domain.bounds();
+        assert!(
+            (eta_a[1] - 0.3).abs() < 0.03 && (eta_a[0] + 0.3).abs() < 0.03,
+            "{eta_a:?}"
+        );
+    }
+
+    #[test]
+    fn mirror_images_are_exactly_as_deep() {
+        let domain = domain(&cone());
+        for (a, s, theta) in [(0.1, 0.2, 0.5), (-0.3, 0.05, 0.1), (0.02, -0.07, 1.4)] {
+            let state = HingeDeformation::from_eta(a, s, theta, 9.0);
+            let depth = domain.depth(&design(9.0), &state);
+            let image = domain.depth(&design(9.0).mirrored(), &state.mirrored());
+            assert!((depth - image).abs() < 1e-13, "{depth} {image}");
+        }
+    }
+
+    #[test]
+    fn the_gauge_and_its_derivatives_agree_with_differences() {
+        let domain = domain(&cone());
+        for x in [
+            [0.9, -0.4, 0.5, 8.0],
+            [-2.0, 3.0, 1.5, 14.0],
+            [0.1, 0.2, -0.1, 5.2],
+        ] {
+            let jet = |x: [f64; 4]| domain.gauge_jet(x[3], &[x[0], x[1], x[2]].into());
+            let found = jet(x);
+            let value = domain.gauge(x[3], &[x[0], x[1], x[2]].into());
+            assert!((found.value - value).abs() < 1e-13 * value);
+            for i in 0..4 {
+                let h = 1e-5;
+                let at = |step: f64| jet(from_fn(|j| if i == j { x[j] + step } else { x[j] }));
+                let (plus, minus) = (at(h), at(-h));
+                let slope = (plus.value - minus.value) / (2.0 * h);
+                assert!(
+                    (found.gradient[i] - slope).abs() < 1e-7 * slope.abs().max(1.0),
+                    "{i}"
+                );
+                for j in 0..4 {
+                    let slope = (plus.gradient[j] - minus.gradient[j]) / (2.0 * h);
+                    let error = (found.hessian[i][j] - slope).abs();
+                    assert!(error < 1e-5 * slope.abs().max(1.0), "{i} {j}: {slope}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_supports_are_twice_differentiable_across_the_widths_they_are_known_at() {
+        let domain = domain(&cone());
+        assert_eq!(domain.supports.len(), MOST_WIDTHS);
+        let state = HingeDeformation {
+            a: 1.0,
+            s: 0.3,
+            theta: 0.7,
         };
-        let state = HingeDeformation::from_eta(-0.125, -0.1, 0.48, 15.0);
-        assert!((domain.depth(&middle, &state) - 0.4).abs() < 1e-12);
+        for width in [10.0 / 2f64.sqrt(), 10.0, 20.0] {
+            let at = |step: f64| domain.gauge_jet(width + step, &state);
+            let (plus, minus) = (at(1e-6), at(-1e-6));
+            assert!((plus.gradient[3] - minus.gradient[3]).abs() < 1e-6);
+            assert!((plus.hessian[3][3] - minus.hessian[3][3]).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn a_slice_is_where_the_depth_is_zero_and_half_the_states_fill_half_the_domain() {
+        let domain = domain(&cone());
+        let slice = domain.slice(7.0, 0.6);
+        assert!(slice.len() > 20 && slice[0] == slice[slice.len() - 1]);
+        for [eta_a, eta_s] in slice {
+            let state = HingeDeformation::from_eta(eta_a, eta_s, 0.6, 7.0);
+            assert!(domain.depth(&design(7.0), &state).abs() < 1e-6);
+            let half = domain.scaled_by(0.5).depth(&design(7.0), &state.at(0.5));
+            assert!(half.abs() < 1e-6);
+        }
+        assert!(domain.slice(7.0, 2.0).is_empty());
+    }
+
+    #[test]
+    fn a_box_a_state_and_no_state() {
+        let state = [[-0.5, 0.2], [-0.4, 0.4], [0.0, 1.2]];
+        let boxed = TrainingDomain::of_box(state, [5.0, 25.0], [0.8, 2.3]);
+        let deep = |eta_a, eta_s, theta| {
+            boxed.depth(
+                &design(9.0),
+                &HingeDeformation::from_eta(eta_a, eta_s, theta, 9.0),
+            )
+        };
+        assert!(deep(-0.15, 0.38, 0.6) > 0.0 && deep(-0.15, 0.42, 0.6) < 0.0);
+        assert!(deep(0.0, 0.0, 0.0) > 0.0 && deep(-0.15, 0.0, 0.6) == 1.0);
+        assert!(!boxed.contains(&design(4.0), &HingeDeformation::default()));
+        let one = domain(&[(
+            design(9.0),
+            HingeDeformation {
+                a: 1.0,
+                s: 0.0,
+                theta: 0.5,
+            },
+        )]);
+        assert!(one.contains(&design(9.0), &HingeDeformation::default()));
         assert!(TrainingDomain::covering([]).is_none());
+    }
+
+    #[test]
+    fn it_is_read_back_exactly_and_boxes_of_before_are_read() {
+        let domain = domain(&cone());
+        let text = serde_json::to_string(&domain).unwrap();
+        assert_eq!(
+            serde_json::from_str::<TrainingDomain>(&text).unwrap(),
+            domain
+        );
+        let before = r#"{"eta_a": [-0.5, 0.2], "eta_s": [-0.4, 0.4], "theta": [0.0, 1.2],
+            "w_lig": [5.0, 25.0], "alpha": [0.8, 2.3]}"#;
+        let boxed: TrainingDomain = serde_json::from_str(before).unwrap();
+        assert!((boxed.bounds()[0][0] + 0.5).abs() < 0.05);
+        let spoilt = text.replacen("\"supports\":[[", "\"supports\":[[-", 1);
+        let message = serde_json::from_str::<TrainingDomain>(&spoilt)
+            .unwrap_err()
+            .to_string();
+        assert!(message.contains("supports > 0"), "{message}");
     }
 }

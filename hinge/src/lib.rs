@@ -25,13 +25,17 @@ mod deformation;
 mod design;
 mod domain;
 pub mod files;
+mod jet;
 mod material;
 mod sample;
+mod strain_volumes;
 mod tensile;
 
 pub use deformation::{HingeDeformation, HingeForces};
 pub use design::{HingeConstants, HingeDesign, InvalidDesign};
-pub use domain::TrainingDomain;
+pub use domain::{InvalidDomain, TrainingDomain};
+pub use jet::Jet;
 pub use material::{InvalidMaterial, MaterialError, SheetMaterial};
 pub use sample::HingeSample;
+pub use strain_volumes::{NoHistogram, StrainVolumes};
 pub use tensile::TensileError;

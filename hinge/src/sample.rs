@@ -1,6 +1,6 @@
 //! One converged increment of a window solve.
 
-use crate::{HingeDeformation, HingeForces};
+use crate::{HingeDeformation, HingeForces, StrainVolumes};
 use serde::{Deserialize, Serialize};
 
 /// What one converged increment says: (eps, g) -> (W, grad W, D); section 2.4.
@@ -32,8 +32,13 @@ pub struct HingeSample {
     pub d: f64,
     /// (12) as printed: `plastic_integral` over eps_f and the window's volume.
     pub d_window: f64,
-    /// Volume-weighted 99.9th percentile of the plastic strain over eps_f: where it tears.
-    pub d_peak: f64,
+    /// Mean plastic strain of the most strained 1 % of the ligament's half-disc volume, over eps_f: at
+    /// one the ligament tears. `None` in samples that were not evaluated for it.
+    pub d_peak: Option<f64>,
+    /// Maximum plastic strain over the integration points.
+    pub strain_max: Option<f64>,
+    /// Volume of the window by plastic strain.
+    pub strain_volumes: Option<StrainVolumes>,
     /// Largest out-of-plane displacement (mm).
     pub uz_max: f64,
     /// |w - w_work| over the largest w of the ray.
@@ -45,13 +50,18 @@ pub struct HingeSample {
 
 impl HingeSample {
     /// The state of a ray at `lambda`: linear between its samples, which are in order of lambda,
-    /// and from the undeformed state to the first; none past the last.
+    /// and from the undeformed state to the first; none past the last. The histogram is left out.
     pub fn at(ray: &[Self], lambda: f64) -> Option<Self> {
         let after = ray.partition_point(|x| x.lambda < lambda);
         let next = ray.get(after)?;
         let before = after.checked_sub(1).map_or(Self::default(), |i| ray[i]);
         let share = (lambda - before.lambda) / (next.lambda - before.lambda);
         let mix = |of: fn(&Self) -> f64| of(&before) + share * (of(next) - of(&before));
+        // The undeformed state has no plastic strain.
+        let mix_known = |of: fn(&Self) -> Option<f64>| {
+            let from = if after == 0 { Some(0.0) } else { of(&before) };
+            Some(from? + share * (of(next)? - from?))
+        };
         Some(Self {
             lambda,
             a: mix(|x| x.a),
@@ -66,7 +76,9 @@ impl HingeSample {
             plastic_integral: mix(|x| x.plastic_integral),
             d: mix(|x| x.d),
             d_window: mix(|x| x.d_window),
-            d_peak: mix(|x| x.d_peak),
+            d_peak: mix_known(|x| x.d_peak),
+            strain_max: mix_known(|x| x.strain_max),
+            strain_volumes: None,
             uz_max: mix(|x| x.uz_max),
             energy_residual: mix(|x| x.energy_residual),
         })

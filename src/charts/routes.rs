@@ -1,7 +1,6 @@
 //! The paths of a sheet's hinges in the plane of (eta_a, eta_s).
 
 use super::*;
-use hinge::TrainingDomain;
 
 /// The hinges of one design.
 pub struct RoutePanel<'a> {
@@ -10,7 +9,8 @@ pub struct RoutePanel<'a> {
     pub routes: Vec<Vec<[f64; 2]>>,
     /// The one that is drawn thick.
     pub monitored: usize,
-    pub domain: TrainingDomain,
+    /// The edge of the training domain at the monitored hinge's width and final rotation.
+    pub domain: Vec<[f64; 2]>,
     /// The damage behind the paths, in any unit.
     pub damage: Box<dyn Fn([f64; 2]) -> f64 + 'a>,
 }
@@ -76,10 +76,9 @@ fn route_chart(
         .y_desc("eta_s = s / w_lig")
         .draw()?;
     let inside = |value: f64, range: &Range<f64>| value.clamp(range.start, range.end);
-    let [x0, x1] = panel.domain.eta_a.map(|x| inside(x, &across));
-    let [y0, y1] = panel.domain.eta_s.map(|y| inside(y, &up));
-    let frame = [(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)];
-    chart.draw_series(LineSeries::new(frame, GUIDE))?;
+    let edge = panel.domain.iter();
+    let edge = edge.map(|[x, y]| (inside(*x, &across), inside(*y, &up)));
+    chart.draw_series(LineSeries::new(edge, GUIDE))?;
     for (hinge, route) in panel.routes.iter().enumerate() {
         let width = if hinge == panel.monitored { 3 } else { 1 };
         let points = std::iter::once((0.0, 0.0)).chain(route.iter().map(|[x, y]| (*x, *y)));
@@ -109,13 +108,7 @@ mod tests {
             title: "shape alone".into(),
             routes: vec![vec![[-0.1, 0.1], [-0.2, 0.1]], vec![[0.05, -0.1]]],
             monitored: 0,
-            domain: TrainingDomain {
-                eta_a: [-0.8, 0.25],
-                eta_s: [-0.4, 0.4],
-                theta: [0.0, 1.3],
-                w_lig: [5.0, 25.0],
-                alpha: [0.8, 2.3],
-            },
+            domain: vec![[-0.8, -0.4], [0.25, 0.4], [-0.8, 0.4], [-0.8, -0.4]],
             damage: Box::new(|[x, y]| x * x + y * y),
         };
         let svg = routes(&[panel]).unwrap();

@@ -71,7 +71,7 @@ impl ExtendCommand {
         } = add_further_rays(&self.rays, &rays)?;
         println!(
             "of {} hinges {outside} leave the training domain and {doubted} are in doubt; {added} rays added to {}, \
-             {known} stood there, {refused} no window can follow (they close, or are beyond |eta| = 1)\n\
+             {known} stood there, {refused} no campaign accepts (beyond |eta| = 1 or -30 to 120 deg)\n\
              A campaign solves them that says further_rays = \"FILE\", relative to its own file.",
             routes.len(),
             self.rays.display()

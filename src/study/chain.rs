@@ -14,7 +14,8 @@ use clap::Args;
 use dataset::Database;
 use design::design_vector::DesignVector;
 use design::force_transmission::ForceTransmission;
-use design::gradient::DesignProblem;
+use design::gradient::{Deployment, DesignProblem};
+use design::hinge_law::DamageMeasure;
 use design::kinematics::deployed_corners;
 use design::outline_error::outline_error;
 use design::scene::{CondensedConfig, HingeModel, Scene, SceneConfig};
@@ -264,7 +265,7 @@ impl Deployed {
             forces: (transmission.interfaces.iter())
                 .flat_map(|it| [it.normal, it.tangential])
                 .collect(),
-            damage: deployment.greatest_damage(),
+            damage: known_damage(&deployment).unwrap_or_default(),
             outline: outline_error(scene, &deployment),
         })
     }
@@ -278,9 +279,18 @@ impl Deployed {
             shape: [shape, shape / sheet],
             rotation_deg: rms_difference(&self.rotations, &truth.rotations).to_degrees(),
             force: relative(&self.forces, &truth.forces),
-            damage: (!self.damage.is_empty()).then(|| relative(&self.damage, &truth.damage)),
+            damage: (!self.damage.is_empty() && !truth.damage.is_empty())
+                .then(|| relative(&self.damage, &truth.damage)),
         }
     }
+}
+
+/// Maximum D of every hinge; none unless that of all is known.
+fn known_damage(deployment: &Deployment) -> Option<Vec<f64>> {
+    let hinges = 0..deployment.sheet.hinges.len();
+    hinges
+        .map(|h| deployment.damage_max(DamageMeasure::Mean, h))
+        .collect()
 }
 
 fn rms(values: &[f64]) -> f64 {

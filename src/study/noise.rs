@@ -154,7 +154,16 @@ fn solved(outcomes: &[Outcome]) -> Result<Vec<Vec<[f64; 6]>>> {
         let shares = (1..=SHARES).map(|k| k as f64 / SHARES as f64);
         let states: Vec<_> = shares
             .filter_map(|share| HingeSample::at(&solution.samples, share - 1e-9))
-            .map(|x| [x.w, x.f_a, x.f_s, x.m_theta, x.d, x.d_peak])
+            .map(|x| {
+                [
+                    x.w,
+                    x.f_a,
+                    x.f_s,
+                    x.m_theta,
+                    x.d,
+                    x.d_peak.unwrap_or(f64::NAN),
+                ]
+            })
             .collect();
         ensure!(
             states.len() == SHARES,

@@ -11,11 +11,13 @@ use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::force_transmission::{ForceTransmission, TransmissionShares};
 use design::gradient::Deployment;
+use design::hinge_law::DamageMeasure;
 use design::outline_error::outline_error;
 use design::scene::{HingeModel, Scene, SceneConfig};
 use design::sheet::{HingePoint, Panel};
 use design::threshold::least_passing;
 use mesher::Tier;
+use std::cmp::Ordering;
 use std::path::PathBuf;
 use surrogate::{Order, Surrogate};
 
@@ -67,8 +69,8 @@ struct Row {
     /// f_n and the size of the force at each interface (N).
     forces: Vec<[f64; 2]>,
     share_inside: f64,
-    /// Greatest damage of each hinge along its path, over D_s.
-    damage: Vec<f64>,
+    /// Maximum D of each hinge along its path, over D_s; none where the path leaves the domain.
+    damage: Vec<Option<f64>>,
     /// The monitored hinge at full load by the surrogate: W, M_theta, D, D_peak; and by finite elements.
     monitored: usize,
     learned: [f64; 4],
@@ -177,7 +179,9 @@ impl PolyesterStudy {
             shares: transmission.shares(),
             forces: interfaces.map(|it| [it.normal, it.force()]).collect(),
             share_inside: best.share_inside(),
-            damage: best.greatest_damage().iter().map(|d| d / scale).collect(),
+            damage: (0..best.sheet.hinges.len())
+                .map(|h| Some(best.damage_max(DamageMeasure::Mean, h)? / scale))
+                .collect(),
             monitored: 0,
             learned: [0.0; 4],
             replayed: None,
@@ -213,10 +217,10 @@ fn areas(deployment: &Deployment) -> Vec<f64> {
     panels.map(Panel::area).collect()
 }
 
-fn worst(damage: &[f64]) -> usize {
+fn worst(damage: &[Option<f64>]) -> usize {
     let indices = 0..damage.len();
     indices
-        .max_by(|&i, &j| damage[i].total_cmp(&damage[j]))
+        .max_by(|&i, &j| damage[i].partial_cmp(&damage[j]).unwrap_or(Ordering::Equal))
         .unwrap_or(0)
 }
 
@@ -232,5 +236,5 @@ fn learned(surrogate: &Surrogate, route: &HingeRoute) -> [f64; 4] {
 
 fn replayed(outcome: &Outcome) -> Option<[f64; 4]> {
     let end = outcome.as_ref().ok()?.samples.last()?;
-    Some([end.w, end.m_theta, end.d, end.d_peak])
+    Some([end.w, end.m_theta, end.d, end.d_peak.unwrap_or(f64::NAN)])
 }

@@ -127,20 +127,16 @@ impl TrustStudy {
     }
 }
 
-/// The box with [`KEPT`] of each side. Solved cut angles end at the right angle, beyond which
+/// The domain with [`KEPT`] of each state and interval. Solved cut angles end at the right angle, beyond which
 /// everything is a mirror image, so that end stays.
 fn smaller(domain: &TrainingDomain) -> TrainingDomain {
-    let towards_zero = |side: [f64; 2]| side.map(|end| KEPT * end);
     let [narrow, wide] = domain.w_lig;
     let [acute, right] = domain.alpha;
     let margin = 0.5 * (1.0 - KEPT) * (wide - narrow);
-    TrainingDomain {
-        eta_a: towards_zero(domain.eta_a),
-        eta_s: towards_zero(domain.eta_s),
-        theta: towards_zero(domain.theta),
-        w_lig: [narrow + margin, wide - margin],
-        alpha: [right - KEPT * (right - acute), right],
-    }
+    let mut smaller = domain.scaled_by(KEPT);
+    smaller.w_lig = [narrow + margin, wide - margin];
+    smaller.alpha = [right - KEPT * (right - acute), right];
+    smaller
 }
 
 impl Answers {

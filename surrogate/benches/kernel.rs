@@ -100,13 +100,11 @@ fn card() -> Card {
         damage_scale: 0.012,
         peak_scale: Some(0.3),
         damage_sharpness: 8.0,
-        domain: TrainingDomain {
-            eta_a: [-0.5, 0.25],
-            eta_s: [-0.35, 0.35],
-            theta: [0.0, 1.25],
-            w_lig: [5.0, 25.0],
-            alpha: [0.8, 2.3],
-        },
+        domain: TrainingDomain::of_box(
+            [[-0.5, 0.25], [-0.35, 0.35], [0.0, 1.25]],
+            [5.0, 25.0],
+            [0.8, 2.3],
+        ),
         hinge: HingeConstants {
             fillet_ratio: 0.16,
             kerf: 0.2,

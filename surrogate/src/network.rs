@@ -42,12 +42,6 @@ pub enum InvalidWeights {
         expected: String,
         found: String,
     },
-    #[error("the domain of `{name}` is [{least}, {greatest}], which holds no state")]
-    EmptyDomain {
-        name: &'static str,
-        least: f64,
-        greatest: f64,
-    },
 }
 
 /// y = W_L tanh(... tanh(W_0 x + b_0) ...) + b_L, taking the features (13) as they are.

@@ -9,7 +9,8 @@
 //! | `w_scale` | (1), N mm |
 //! | `d_scale` | (1) or (2), dimensionless: of D, and of D_peak if there is a head for it |
 //!
-//! Before version 4, D_peak was a second output of `chi_d`.
+//! Before version 4, D_peak was a second output of `chi_d`; before version 5 it was another measure, and is
+//! left out.
 //!
 //! Tensors are float64 when written; float32 is read too. The scaling stands in both files, so
 //! that a card beside the wrong weights is noticed.
@@ -85,11 +86,12 @@ pub(crate) fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
     let mut chi_d = take_layers(&mut tensors, "chi_d").map_err(invalid)?;
     let chi_p = match (card.peak_scale, card.format_version) {
         (None, _) => None,
-        (Some(_), ..4) => Some(second_output(&mut chi_d).map_err(invalid)?),
+        (Some(_), ..4) => {
+            keep_first_output(&mut chi_d).map_err(invalid)?;
+            None
+        }
         (Some(_), 4..) => Some(take_layers(&mut tensors, "chi_p").map_err(invalid)?),
     };
-    // In memory there is one version.
-    card.format_version = FORMAT_VERSION;
     for (tensor, expected) in scaling(&card) {
         let found = take(&mut tensors, tensor).map_err(invalid)?;
         if found.shape != expected.shape {
@@ -106,36 +108,36 @@ pub(crate) fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
             });
         }
     }
-    match tensors.pop_first() {
-        Some((tensor, _)) => Err(WeightsError::Extra {
+    if let Some((tensor, _)) = tensors.pop_first() {
+        return Err(WeightsError::Extra {
             path: weights.to_owned(),
             tensor,
-        }),
-        None => Surrogate::from_parts(Layers { chi, chi_d, chi_p }, card).map_err(invalid),
+        });
     }
+    // Before, it predicted a percentile over the window, which says nothing of a narrow ligament.
+    let chi_p = chi_p.filter(|_| card.format_version >= 5);
+    card.peak_scale = card.peak_scale.filter(|_| card.format_version >= 5);
+    // In memory there is one version.
+    card.format_version = FORMAT_VERSION;
+    Surrogate::from_parts(Layers { chi, chi_d, chi_p }, card).map_err(invalid)
 }
 
-/// Leaves the first of two outputs in a network, and returns a network of the second.
-fn second_output(network: &mut [Layer]) -> Result<Vec<Layer>, InvalidWeights> {
-    let mut second = network.to_vec();
+/// Leaves the first of two outputs in a network.
+fn keep_first_output(network: &mut [Layer]) -> Result<(), InvalidWeights> {
     let index = network.len() - 1;
-    for (layer, output) in [(&mut network[index], 0), (&mut second[index], 1)] {
-        for (name, Tensor { shape, values }) in
-            [("weight", &mut layer.weight), ("bias", &mut layer.bias)]
-        {
-            let row = values.len() / 2;
-            if shape.first() != Some(&2) || values.len() != 2 * row {
-                return Err(InvalidWeights::Shape {
-                    tensor: format!("chi_d.{index}.{name}"),
-                    expected: "two outputs, of D and of D_peak".into(),
-                    found: shape.clone(),
-                });
-            }
-            *values = values[output * row..][..row].to_vec();
-            shape[0] = 1;
+    let Layer { weight, bias } = &mut network[index];
+    for (name, Tensor { shape, values }) in [("weight", weight), ("bias", bias)] {
+        if shape.first() != Some(&2) || values.len() % 2 != 0 {
+            return Err(InvalidWeights::Shape {
+                tensor: format!("chi_d.{index}.{name}"),
+                expected: "two outputs, of D and of D_peak".into(),
+                found: shape.clone(),
+            });
         }
+        values.truncate(values.len() / 2);
+        shape[0] = 1;
     }
-    Ok(second)
+    Ok(())
 }
 
 /// See [`Surrogate::save`].

@@ -158,14 +158,18 @@ fn weights_of_format_version_3_tell_what_they_were_trained_on() {
 }
 
 #[test]
-fn a_second_output_of_before_version_4_becomes_a_head_of_its_own() {
-    let before = Surrogate::load(&cases().join("chi_hashed.safetensors")).unwrap();
-    let layers = before.layers();
-    let (d, peak) = (&layers.chi_d[2], &layers.chi_p.as_ref().unwrap()[2]);
-    assert_eq!((&d.weight.shape, &peak.bias.shape), (&vec![1, 6], &vec![1]));
-    assert_ne!(d.weight.values, peak.weight.values);
-    assert_eq!(layers.chi_d[..2], layers.chi_p.unwrap()[..2]);
-    assert_eq!(before.card().damage_sharpness, 1.0);
+fn a_peak_of_before_version_5_is_left_out() {
+    for case in ["chi_hashed", "chi_heads"] {
+        let before = Surrogate::load(&cases().join(case).with_extension("safetensors")).unwrap();
+        assert_eq!(
+            (before.layers().chi_p, before.card().peak_scale),
+            (None, None),
+            "{case}"
+        );
+        assert_eq!(before.layers().chi_d[2].weight.shape, [1, 6], "{case}");
+    }
+    let hashed = Surrogate::load(&cases().join("chi_hashed.safetensors")).unwrap();
+    assert_eq!(hashed.card().damage_sharpness, 1.0);
     let mut file = File::of("chi_hashed");
     file.set("chi_d.2.bias", &[3], &[0.0; 3]);
     let error = file.invalid();
@@ -173,12 +177,23 @@ fn a_second_output_of_before_version_4_becomes_a_head_of_its_own() {
 }
 
 #[test]
+fn the_domain_of_before_version_5_is_a_box_and_then_what_the_rows_fill() {
+    let [boxed, filled] = [tiny(), with_peak()];
+    let state = |eta_a, theta| HingeDeformation::from_eta(eta_a, 0.0, theta, 18.0);
+    let inside =
+        |surrogate: &Surrogate, state| surrogate.domain().contains(&design(18.0, 1.2), &state);
+    let corner = state(0.2, 0.02);
+    assert!(inside(&boxed, state(-0.3, 0.6)) && inside(&filled, state(-0.3, 0.6)));
+    assert!(inside(&boxed, corner) && !inside(&filled, corner));
+}
+
+#[test]
 fn a_head_without_a_scale_and_a_scale_without_a_head_are_refused() {
-    let mut file = File::of("chi_heads");
+    let mut file = File::of("chi_domain");
     file.tensors.retain(|name, _| !name.starts_with("chi_p."));
     let tensor = "chi_p.0.weight".into();
     assert_eq!(file.invalid(), InvalidWeights::Missing { tensor });
-    let mut file = File::of("chi_heads");
+    let mut file = File::of("chi_domain");
     file.card = file.card.replace("\"peak_scale\": 0.31,", "");
     let scale = file.values("d_scale")[0];
     file.set("d_scale", &[1], &[scale]);
@@ -200,7 +215,7 @@ fn cards_of_other_versions_shapes_and_trainings_are_refused() {
         file.card = file.card.replace(from, to);
         file.load().unwrap_err()
     };
-    for found in [0, 5] {
+    for found in [0, 6] {
         let error = with_card(
             "\"format_version\": 1",
             &format!("\"format_version\": {found}"),
@@ -358,7 +373,7 @@ fn zero_and_huge_weights_stay_finite() {
 #[test]
 fn the_head_of_d_peak_is_checked_like_that_of_d() {
     let with = |factor: f64| {
-        let mut file = File::of("chi_heads");
+        let mut file = File::of("chi_domain");
         let bias = file.values("chi_p.2.bias")[0];
         file.set("chi_p.2.bias", &[1], &[factor * bias]);
         file

@@ -21,17 +21,18 @@ pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain)
             .depth(&row.design, &row.sample.deformation())
             .max(0.0)
     };
+    let [eta_a, eta_s, theta] = domain.bounds();
     let quantities: [(&str, [f64; 2], Quantity); 6] = [
-        ("eta_a", domain.eta_a, &|row| row.eta()[0]),
-        ("eta_s", domain.eta_s, &|row| row.eta()[1]),
-        ("theta_deg", degrees(domain.theta), &|row| {
+        ("eta_a", eta_a, &|row| row.eta()[0]),
+        ("eta_s", eta_s, &|row| row.eta()[1]),
+        ("theta_deg", degrees(theta), &|row| {
             row.sample.theta.to_degrees()
         }),
         ("w_lig", domain.w_lig, &|row| row.design.w_lig),
         ("alpha_deg", degrees(domain.alpha), &|row| {
             row.design.alpha.to_degrees()
         }),
-        ("edge", [0.0, 0.5], &edge),
+        ("edge", [0.0, 1.0], &edge),
     ];
     let mut bins = Vec::new();
     for (quantity, [least, greatest], value) in quantities {
@@ -88,14 +89,6 @@ mod tests {
         }
     }
 
-    const DOMAIN: TrainingDomain = TrainingDomain {
-        eta_a: [-1.0, 1.0],
-        eta_s: [-1.0, 1.0],
-        theta: [0.0, 1.0],
-        w_lig: [5.0, 25.0],
-        alpha: [1.0, 2.0],
-    };
-
     #[test]
     fn every_row_falls_into_one_bin_of_each_quantity() {
         let rows = [row(5.0, 0.1), row(12.0, 0.5), row(25.0, 1.0)];
@@ -107,7 +100,9 @@ mod tests {
             energy: vec![point(0.1), point(0.2), point(0.4)],
             ..Parity::default()
         };
-        let bins = error_bins(&parity, &rows, &DOMAIN);
+        let state = [[-1.0, 1.0], [-1.0, 1.0], [0.0, 1.0]];
+        let domain = TrainingDomain::of_box(state, [5.0, 25.0], [1.0, 2.0]);
+        let bins = error_bins(&parity, &rows, &domain);
         for quantity in ["eta_a", "eta_s", "theta_deg", "w_lig", "alpha_deg", "edge"] {
             let of = bins.iter().filter(|bin| bin.quantity == quantity);
             assert_eq!(

@@ -63,7 +63,7 @@ mod tests {
                 f_s: 5.0,
                 m_theta: 80.0,
                 d: 0.01,
-                d_peak: 0.2,
+                d_peak: Some(0.2),
                 ..HingeSample::default()
             },
             failure: String::new(),
@@ -89,13 +89,7 @@ mod tests {
             peak_scale: scales.peak,
             damage_sharpness: SHARPNESS,
             fine_tuned_from: None,
-            domain: TrainingDomain {
-                eta_a: [0.0; 2],
-                eta_s: [0.0; 2],
-                theta: [0.0; 2],
-                w_lig: [1.0; 2],
-                alpha: [1.0; 2],
-            },
+            domain: TrainingDomain::of_box([[0.0; 2]; 3], [1.0; 2], [1.0; 2]),
             hinge: HingeConstants {
                 fillet_ratio: 0.16,
                 kerf: 0.2,

@@ -5,7 +5,7 @@
 //!     + w_D |D - D*|^2 / D_s^2                                                     (15)
 //! ```
 //!
-//! Where D_peak is predicted too, the last term is the mean of both. The damages are
+//! Where D_peak is predicted too, the last term is the mean of both; rows without a D_peak do not count in its. The damages are
 //! softplus(beta y) / beta of what their heads give: a sharp beta lets a ligament be exactly as
 //! undamaged as it is before it yields, without ado in the network.
 
@@ -49,10 +49,13 @@ pub(crate) fn loss(networks: &Networks, batch: &Batch, config: &TrainingConfig) 
     let mean_square =
         |found: Tensor<2>, target: &Tensor<2>| (found - target.clone()).square().mean();
     let outputs = predicted.damage.dims()[1];
-    let damage = batch.damage.clone().narrow(1, 0, outputs);
+    let heads = |of: &Tensor<2>| of.clone().narrow(1, 0, outputs);
+    let damage_error = (predicted.damage - heads(&batch.damage)).square();
     mean_square(predicted.energy, &batch.energy).mul_scalar(config.energy_weight)
         + mean_square(predicted.forces, &batch.forces).mul_scalar(1.0 - config.energy_weight)
-        + mean_square(predicted.damage, &damage).mul_scalar(config.damage_weight)
+        + (damage_error * heads(&batch.damage_weights))
+            .mean()
+            .mul_scalar(config.damage_weight)
 }
 
 #[cfg(test)]

@@ -17,8 +17,10 @@ pub(crate) struct Scales {
     pub forces: [f64; 3],
     /// D_s: root mean square of D.
     pub damage: f64,
-    /// The same of D_peak; `None` if no row has one.
+    /// The same of D_peak over the rows that have one; `None` if none has.
     pub peak: Option<f64>,
+    /// Number of rows over that of the rows with a D_peak: what makes up for those without in a mean.
+    pub peak_weight: f64,
 }
 
 /// One row: inputs of the network and targets of (15), both of order one.
@@ -36,6 +38,8 @@ pub(crate) struct Sample {
     pub forces: [f64; 3],
     /// D / D_s, and D_peak over its scale if it has one.
     pub damage: [f64; 2],
+    /// Weights of their errors: that of a D_peak that is not known is zero.
+    pub damage_weights: [f64; 2],
 }
 
 /// Samples as tensors, one row each.
@@ -48,6 +52,8 @@ pub(crate) struct Batch {
     pub forces: Tensor<2>,
     /// (n, 2)
     pub damage: Tensor<2>,
+    /// (n, 2)
+    pub damage_weights: Tensor<2>,
 }
 
 impl Scales {
@@ -82,6 +88,11 @@ impl Scales {
                 });
             }
         }
+        let with_peak = rows
+            .iter()
+            .filter(|row| row.sample.d_peak.is_some())
+            .count();
+        let peak_weight = count / (with_peak as f64).max(1.0);
         let mut standardisation = Standardisation { mean, std };
         if symmetric {
             mirror::centre(&mut standardisation);
@@ -95,10 +106,12 @@ impl Scales {
                 root_mean_square("M_theta", |row| row.sample.m_theta)?,
             ],
             damage: root_mean_square("D", |row| row.sample.d)?,
-            peak: match rows.iter().any(|row| row.sample.d_peak != 0.0) {
-                true => Some(root_mean_square("D_peak", |row| row.sample.d_peak)?),
+            // The mean over all rows counts those without a D_peak as zero.
+            peak: match rows.iter().any(|row| d_peak(row) != 0.0) {
+                true => Some(root_mean_square("D_peak", d_peak)? * peak_weight.sqrt()),
                 false => None,
             },
+            peak_weight,
         })
     }
 
@@ -133,8 +146,9 @@ impl Scales {
             forces: std::array::from_fn(|k| forces[k] / self.forces[k]),
             damage: [
                 sample.d / self.damage,
-                self.peak.map_or(0.0, |scale| sample.d_peak / scale),
+                self.peak.map_or(0.0, |scale| d_peak(row) / scale),
             ],
+            damage_weights: [1.0, sample.d_peak.map_or(0.0, |_| self.peak_weight)],
         }
     }
 }
@@ -164,6 +178,11 @@ fn refuse_outlier(
     }
 }
 
+/// Zero where it is not known.
+fn d_peak(row: &Row) -> f64 {
+    row.sample.d_peak.unwrap_or(0.0)
+}
+
 fn row_features(row: &Row) -> [f64; 5] {
     features(&row.design, &row.sample.deformation())
 }
@@ -178,6 +197,7 @@ impl Batch {
             energy: columns(samples, options, |sample| [sample.energy]),
             forces: columns(samples, options, |sample| sample.forces),
             damage: columns(samples, options, |sample| sample.damage),
+            damage_weights: columns(samples, options, |sample| sample.damage_weights),
         }
     }
 
@@ -210,6 +230,7 @@ pub(crate) mod tests {
             energy: value(row, 8).powi(2),
             forces: std::array::from_fn(|k| value(row, 9 + k)),
             damage: [12, 13].map(|column| value(row, column).abs()),
+            damage_weights: [1.0, f64::from(u8::from(row % 3 > 0)) * 1.5],
         };
         (0..count).map(sample).collect()
     }

@@ -5,9 +5,10 @@ use crate::samples::Scales;
 use dataset::Row;
 use surrogate::{FitError, Order, Surrogate, TestErrors};
 
-/// One number as the finite elements give it and as the surrogate does.
+/// One number as the finite elements give it, if they do, and as the surrogate does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParityPoint {
+    /// Not a number where it is not known.
     pub target: f64,
     pub predicted: f64,
 }
@@ -47,7 +48,11 @@ impl Parity {
                 (&mut parity.f_s, target.f_s, Some(energy.forces[1])),
                 (&mut parity.m_theta, target.m_theta, Some(energy.forces[2])),
                 (&mut parity.damage, target.d, Some(damage.d)),
-                (&mut parity.damage_peak, target.d_peak, damage.d_peak),
+                (
+                    &mut parity.damage_peak,
+                    target.d_peak.unwrap_or(f64::NAN),
+                    damage.d_peak,
+                ),
             ];
             for (points, target, predicted) in pairs {
                 points.extend(predicted.map(|predicted| ParityPoint { target, predicted }));
@@ -135,11 +140,12 @@ impl Parity {
         .sum()
     }
 
-    /// The relative root mean square errors of each network: the geometric mean of those of W and
-    /// the forces, so that a few states of large force, which rule the loss, count no more than
-    /// they should; that of D; and that of D_peak, zero if it is not predicted.
+    /// The relative root mean square errors of each network, which choose its epoch: the geometric mean of
+    /// those of W and the forces, so that a few states of large force, which rule the loss, count no more
+    /// than they should; that of D; and that of D_peak, zero if it is not predicted. No state counts for more
+    /// than an error of the size of its quantity, or one ray that no training ray is near would choose.
     pub(crate) fn network_errors(&self) -> [f64; 3] {
-        let error = |points: &[ParityPoint]| fit_error(points).relative_rmse;
+        let error = |points: &[ParityPoint]| limited_error(points);
         let potential = [&self.energy, &self.f_a, &self.f_s, &self.m_theta];
         let product: f64 = potential.iter().map(|points| error(points)).product();
         [
@@ -150,6 +156,19 @@ impl Parity {
     }
 }
 
+/// The root mean square error over that of the targets, no error counting for more than the latter.
+fn limited_error(points: &[ParityPoint]) -> f64 {
+    let targets: Vec<f64> = known(points).map(|point| point.target).collect();
+    let target = root_mean_square(targets.into_iter());
+    let errors = known(points).map(|point| (point.predicted - point.target).abs().min(target));
+    let errors: Vec<f64> = errors.collect();
+    if target > 0.0 {
+        root_mean_square(errors.into_iter()) / target
+    } else {
+        0.0
+    }
+}
+
 /// Zero if there are no values.
 pub(crate) fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     let count = values.len().max(1) as f64;
@@ -157,13 +176,22 @@ pub(crate) fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> f6
 }
 
 fn rms_error(points: &[ParityPoint]) -> f64 {
-    root_mean_square(points.iter().map(|point| point.predicted - point.target))
+    let known: Vec<f64> = known(points)
+        .map(|point| point.predicted - point.target)
+        .collect();
+    root_mean_square(known.into_iter())
+}
+
+/// The points whose target is known.
+fn known(points: &[ParityPoint]) -> impl Iterator<Item = &ParityPoint> {
+    points.iter().filter(|point| !point.target.is_nan())
 }
 
 /// Relative to the targets; an error of zero where every target is zero and so predicted.
 pub(crate) fn fit_error(points: &[ParityPoint]) -> FitError {
-    let target = root_mean_square(points.iter().map(|point| point.target));
-    let nonzero = points.iter().filter(|point| point.target != 0.0);
+    let targets: Vec<f64> = known(points).map(|point| point.target).collect();
+    let target = root_mean_square(targets.into_iter());
+    let nonzero = known(points).filter(|point| point.target != 0.0);
     let mut relative: Vec<f64> = nonzero
         .map(|point| ((point.predicted - point.target) / point.target).abs())
         .collect();
@@ -190,5 +218,27 @@ mod tests {
         let expected = ((0.09 + 0.09 + 1.0) / 50.0_f64).sqrt();
         assert!((error.relative_rmse - expected).abs() < 1e-12);
         assert!((error.median - 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn one_state_out_of_reach_does_not_choose_the_epoch() {
+        let point = |predicted| ParityPoint {
+            target: 2.0,
+            predicted,
+        };
+        let errors = [point(2.1), point(1.9), point(f64::INFINITY)];
+        assert!((limited_error(&errors[..2]) - 0.05).abs() < 1e-12);
+        assert!(
+            (limited_error(&errors) - (0.0025 * 2.0 / 3.0 + 1.0 / 3.0_f64).sqrt()).abs() < 1e-12
+        );
+        let unknown = ParityPoint {
+            target: f64::NAN,
+            predicted: 1.0,
+        };
+        assert_eq!(limited_error(&[unknown]), 0.0);
+        assert_eq!(
+            fit_error(&[point(2.1), unknown]).relative_rmse,
+            fit_error(&[point(2.1)]).relative_rmse
+        );
     }
 }

@@ -1,21 +1,26 @@
-//! The condensed hinge energy (14) inside its training domain, and a barrier around it.
+//! The condensed hinge energy (14) inside its training domain, and its continuation beyond.
 //!
 //! ```text
-//! B = k W_s sum_c e_c^3,   e_c = excess of eta_a, eta_s, theta over the domain's interval / its width
+//! W_law(x; g) = W(y(x); g) + k W_s e^3 / (e + delta),        e = max(0, gamma(x) - 1)
+//! y(x) = c + (x - c) psi(gamma) / gamma,                     psi = 1 + delta z / (1 + z^3)^(1/3),  z = e / delta
 //! ```
 //!
-//! B is C^2, vanishes inside and grows without bound, so W + B is coercive for any weights.
+//! gamma is the gauge of the domain and c its centre. Inside, y = x. Beyond, y stays within delta of the
+//! domain, so that the network is never asked far from its data, and the second term, a cubic at first and
+//! then a parabola, brings the state back: W_law is twice differentiable and coercive for any weights. The
+//! cut angle is drawn into its interval by the same psi.
 
-use super::{HingeDamage, HingeEnergy, HingeLaw, Order, PreparedLaw};
-use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
+use super::{DamageMeasure, HingeDamage, HingeEnergy, HingeLaw, Order, PreparedLaw};
+use hinge::{HingeDeformation, HingeDesign, Jet, TrainingDomain};
+use std::array::from_fn;
 use surrogate::{Prepared, Surrogate};
 
-/// k: at an excess of a tenth of the interval the barrier stores W_s / 10 and pushes back about as
-/// hard as a typical hinge resists.
-const BARRIER_STIFFNESS: f64 = 100.0;
-
-/// Intervals narrower than this (of one training row, say) count as this wide.
-pub(crate) const NARROWEST_INTERVAL: f64 = 0.01;
+/// delta: how far beyond the domain, in parts of its half-range, the network is asked.
+const BEYOND: f64 = 0.1;
+/// k: a third of a half-range outside, the state is pushed back as hard as a wide ligament pulls at the edge.
+const RETURN_STIFFNESS: f64 = 20.0;
+/// Half-range of the cut angle (rad) of weights that were trained on one.
+const NARROWEST_ANGLE: f64 = 0.01;
 
 /// The standardised features (13) are of order one, and so are the units of the layers behind them: a
 /// deformation is lost in a few of their last digits.
@@ -39,14 +44,26 @@ impl SurrogateLaw {
 
 impl HingeLaw for SurrogateLaw {
     fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a> {
+        let (asked, angle_slopes): (Vec<HingeDesign>, Vec<f64>) = designs
+            .iter()
+            .map(|design| {
+                let [alpha, slope] = drawn_in(self.surrogate.domain().alpha, design.alpha);
+                (HingeDesign { alpha, ..*design }, slope)
+            })
+            .unzip();
         Box::new(PreparedSurrogate {
             surrogate: &self.surrogate,
-            prepared: self.surrogate.prepare(designs),
+            designs: designs.to_vec(),
+            angle_slopes,
+            prepared: self.surrogate.prepare(&asked),
         })
     }
 
-    fn damage_scale(&self) -> Option<f64> {
-        Some(self.surrogate.damage_scale())
+    fn damage_scale(&self, measure: DamageMeasure) -> Option<f64> {
+        match measure {
+            DamageMeasure::Mean => Some(self.surrogate.damage_scale()),
+            DamageMeasure::Peak => self.surrogate.card().peak_scale,
+        }
     }
 
     fn domain(&self) -> Option<&TrainingDomain> {
@@ -56,26 +73,62 @@ impl HingeLaw for SurrogateLaw {
 
 struct PreparedSurrogate<'a> {
     surrogate: &'a Surrogate,
+    designs: Vec<HingeDesign>,
+    /// d(the cut angle that is asked) / d(the hinge's own), per hinge.
+    angle_slopes: Vec<f64>,
+    /// With the angles that are asked.
     prepared: Prepared,
+}
+
+impl PreparedSurrogate<'_> {
+    /// The states to ask the network, and for the hinges outside the domain how they follow from theirs.
+    fn asked(
+        &self,
+        deformations: &[HingeDeformation],
+    ) -> (Vec<HingeDeformation>, Vec<Option<Continuation>>) {
+        let domain = self.surrogate.domain();
+        let hinges = std::iter::zip(&self.designs, deformations);
+        hinges
+            .map(|(design, deformation)| {
+                let beyond = domain.gauge(design.w_lig, deformation) > 1.0;
+                let beyond = beyond.then(|| Continuation::new(domain, design.w_lig, deformation));
+                let asked = beyond.as_ref().map_or(*deformation, Continuation::asked);
+                (asked, beyond)
+            })
+            .unzip()
+    }
 }
 
 impl PreparedLaw for PreparedSurrogate<'_> {
     fn energies(&self, deformations: &[HingeDeformation], order: Order) -> Vec<HingeEnergy> {
-        let mut energies = self.surrogate.evaluate(&self.prepared, deformations, order);
-        let scale = BARRIER_STIFFNESS * self.surrogate.energy_scale();
-        let domain = self.surrogate.domain();
-        for ((energy, design), deformation) in energies
-            .iter_mut()
-            .zip(self.prepared.designs())
-            .zip(deformations)
-        {
-            add_barrier(energy, domain, scale, design.w_lig, deformation);
+        let (asked, continuations) = self.asked(deformations);
+        let mut energies = self.surrogate.evaluate(&self.prepared, &asked, order);
+        let scale = RETURN_STIFFNESS * self.surrogate.energy_scale();
+        for (h, energy) in energies.iter_mut().enumerate() {
+            energy.design[1] *= self.angle_slopes[h];
+            energy
+                .mixed
+                .iter_mut()
+                .for_each(|m| m[1] *= self.angle_slopes[h]);
+            if let Some(continuation) = &continuations[h] {
+                *energy = continuation.energy(energy, scale, order);
+            }
         }
         energies
     }
 
     fn damage(&self, deformations: &[HingeDeformation]) -> Vec<HingeDamage> {
-        self.surrogate.damage(self.prepared.designs(), deformations)
+        let (asked, continuations) = self.asked(deformations);
+        let mut damages = self.surrogate.damage(self.prepared.designs(), &asked);
+        for (h, damage) in damages.iter_mut().enumerate() {
+            for gradient in [&mut damage.gradient, &mut damage.peak_gradient] {
+                gradient[4] *= self.angle_slopes[h];
+                if let Some(continuation) = &continuations[h] {
+                    *gradient = continuation.gradient(gradient);
+                }
+            }
+        }
+        damages
     }
 
     fn resolution(&self) -> f64 {
@@ -83,48 +136,112 @@ impl PreparedLaw for PreparedSurrogate<'_> {
     }
 
     fn inside(&self, deformations: &[HingeDeformation]) -> Vec<bool> {
-        std::iter::zip(self.prepared.designs(), deformations)
+        std::iter::zip(&self.designs, deformations)
             .map(|(design, deformation)| self.surrogate.domain().contains(design, deformation))
             .collect()
     }
 }
 
-/// Adds B and its derivatives; eta = (a, s) / w_lig makes them depend on w_lig too.
-fn add_barrier(
-    energy: &mut HingeEnergy,
-    domain: &TrainingDomain,
-    scale: f64,
-    w_lig: f64,
-    deformation: &HingeDeformation,
-) {
-    let [eta_a, eta_s] = deformation.eta(w_lig);
-    let directions = [
-        (domain.eta_a, eta_a, w_lig),
-        (domain.eta_s, eta_s, w_lig),
-        (domain.theta, deformation.theta, 1.0),
-    ];
-    for (c, (interval, value, unit)) in directions.into_iter().enumerate() {
-        let [b, first, second] = cubic_excess(interval, value);
-        energy.w += scale * b;
-        energy.forces[c] += scale * first / unit;
-        energy.tangent[c][c] += scale * second / (unit * unit);
-        if c < 2 {
-            energy.design[0] -= scale * first * value / w_lig;
-            energy.mixed[c][0] -= scale * (first + second * value) / (w_lig * w_lig);
+/// One state outside the domain.
+struct Continuation {
+    /// gamma
+    gauge: Jet,
+    /// (a, s, theta) of y.
+    asked: [Jet; 3],
+}
+
+impl Continuation {
+    fn new(domain: &TrainingDomain, w_lig: f64, deformation: &HingeDeformation) -> Self {
+        let gauge = domain.gauge_jet(w_lig, deformation);
+        let drawn = gauge.map(saturated(gauge.value)) * gauge.recip();
+        let state = deformation.to_array();
+        let centre = domain.centre();
+        let asked = from_fn(|i| {
+            let centre = match i {
+                2 => Jet::constant(centre[2]),
+                _ => Jet::variable(3, w_lig) * centre[i],
+            };
+            centre + (Jet::variable(i, state[i]) - centre) * drawn
+        });
+        Self { gauge, asked }
+    }
+
+    fn asked(&self) -> HingeDeformation {
+        self.asked.map(|y| y.value).into()
+    }
+
+    /// W_law from the energy at y; `scale` is k W_s.
+    fn energy(&self, at: &HingeEnergy, scale: f64, order: Order) -> HingeEnergy {
+        let y = &self.asked;
+        let back = self.gauge.map(returning(self.gauge.value)) * scale;
+        let slope = |j: usize| back.gradient[j] + sum(|i| at.forces[i] * y[i].gradient[j]);
+        // d2W/dy_i d(variable j), the variable moving y alone.
+        let stiffness = |i: usize, j: usize| sum(|l| at.tangent[i][l] * y[l].gradient[j]);
+        let curvature = |j: usize, k: usize| {
+            back.hessian[j][k]
+                + sum(|i| y[i].gradient[j] * stiffness(i, k) + at.forces[i] * y[i].hessian[j][k])
+        };
+        let mut energy = HingeEnergy {
+            w: at.w + back.value,
+            ..HingeEnergy::default()
+        };
+        if order >= Order::Forces {
+            energy.forces = from_fn(slope);
         }
+        if order >= Order::Tangent {
+            energy.tangent = from_fn(|j| from_fn(|k| curvature(j, k)));
+        }
+        if order >= Order::Design {
+            let mixed = |j: usize, g: usize| sum(|i| y[i].gradient[j] * at.mixed[i][g]);
+            energy.design = [at.design[0] + slope(3), at.design[1]];
+            energy.mixed = from_fn(|j| [mixed(j, 0) + curvature(j, 3), mixed(j, 1)]);
+        }
+        energy
+    }
+
+    /// A gradient in (a, s, theta, w_lig, alpha) at y, taken back to x.
+    fn gradient(&self, at: &[f64; 5]) -> [f64; 5] {
+        let along = |j: usize| sum(|i| at[i] * self.asked[i].gradient[j]);
+        [along(0), along(1), along(2), at[3] + along(3), at[4]]
     }
 }
 
-/// e^3 and its first two derivatives in the value.
-fn cubic_excess([least, greatest]: [f64; 2], value: f64) -> [f64; 3] {
-    let width = (greatest - least).max(NARROWEST_INTERVAL);
-    let signed = (value - greatest).max(0.0) - (least - value).max(0.0);
-    let excess = signed.abs() / width;
+fn sum(of: impl Fn(usize) -> f64) -> f64 {
+    (0..3).map(of).sum()
+}
+
+/// psi and its first two derivatives at `gauge` > 1.
+fn saturated(gauge: f64) -> [f64; 3] {
+    let z = (gauge - 1.0) / BEYOND;
+    let root = (1.0 + z * z * z).cbrt();
     [
-        excess.powi(3),
-        3.0 * excess * excess * signed.signum() / width,
-        6.0 * excess / (width * width),
+        1.0 + BEYOND * z / root,
+        root.powi(-4),
+        -4.0 * z * z * root.powi(-7) / BEYOND,
     ]
+}
+
+/// e^3 / (e + delta) and its first two derivatives at `gauge` > 1.
+fn returning(gauge: f64) -> [f64; 3] {
+    let e = gauge - 1.0;
+    let sum = e + BEYOND;
+    [
+        e.powi(3) / sum,
+        e * e * (2.0 * e + 3.0 * BEYOND) / (sum * sum),
+        2.0 * e * (e * e + 3.0 * e * BEYOND + 3.0 * BEYOND * BEYOND) / sum.powi(3),
+    ]
+}
+
+/// The cut angle that the network is asked for one of a hinge, and its derivative.
+fn drawn_in([minimum, maximum]: [f64; 2], alpha: f64) -> [f64; 2] {
+    let middle = 0.5 * (minimum + maximum);
+    let half = (0.5 * (maximum - minimum)).max(NARROWEST_ANGLE);
+    let distance = (alpha - middle) / half;
+    if distance.abs() <= 1.0 {
+        return [alpha, 1.0];
+    }
+    let [drawn, slope, _] = saturated(distance.abs());
+    [middle + half * drawn * distance.signum(), slope]
 }
 
 #[cfg(test)]
@@ -193,15 +310,15 @@ mod tests {
     #[test]
     fn the_energy_grows_without_bound_and_the_inside_is_untouched() {
         let law = tiny();
-        // Cubic far out, in each direction and sense.
+        // Quadratic far out, in each direction and sense.
         for c in 0..3 {
             let far = |t: f64| {
                 let mut x = [0.0, 0.0, 0.0, 18.0, 1.5];
                 x[c] = t;
                 energy(&law, &x).w
             };
-            for t in [1e4, -1e4] {
-                assert!((far(2.0 * t) / far(t) - 8.0).abs() < 0.1, "{c} {t}");
+            for t in [1e5, -1e5] {
+                assert!((far(2.0 * t) / far(t) - 4.0).abs() < 0.01, "{c} {t}");
             }
         }
         let state = HingeDeformation::from([1.0, 1.0, 0.5]);
@@ -218,10 +335,53 @@ mod tests {
         assert_eq!(law.prepare(&[design]).inside(&[state]), [true]);
     }
 
+    /// Along lines from the centre out, at most one minimum beyond the edge and no maximum above what a
+    /// hinge stores inside: nothing to get stuck in or to climb.
     #[test]
-    fn an_interval_of_no_width_still_gives_a_finite_barrier() {
-        let [value, first, second] = cubic_excess([0.3, 0.3], 0.31);
-        assert!(value.is_finite() && first > 0.0 && second.is_finite());
-        assert_eq!(cubic_excess([0.3, 0.3], 0.3), [0.0; 3]);
+    fn beyond_the_edge_there_is_no_ridge() {
+        let law = tiny();
+        let centre = law.surrogate().domain().centre();
+        for direction in [
+            [1.0, 0.0, 0.0],
+            [-1.0, 0.3, 0.0],
+            [0.2, 1.0, 0.1],
+            [0.5, 0.1, -1.0],
+        ] {
+            let w = |t: f64| {
+                let x: [f64; 3] = from_fn(|i| centre[i] + t * direction[i]);
+                energy(&law, &[18.0 * x[0], 18.0 * x[1], x[2], 18.0, 1.5]).w
+            };
+            let values: Vec<f64> = (0..400).map(|i| w(0.02 * f64::from(i))).collect();
+            let state = |t: f64| {
+                let x: [f64; 3] = from_fn(|i| centre[i] + t * direction[i]);
+                HingeDeformation::from_eta(x[0], x[1], x[2], 18.0)
+            };
+            let edge = (0..400)
+                .position(|i| {
+                    law.surrogate()
+                        .domain()
+                        .gauge(18.0, &state(0.02 * i as f64))
+                        > 1.2
+                })
+                .unwrap();
+            let falls = values[edge..]
+                .windows(2)
+                .filter(|pair| pair[1] < pair[0])
+                .count();
+            assert_eq!(falls, 0, "{direction:?}");
+        }
+    }
+
+    #[test]
+    fn a_cut_angle_beyond_the_training_is_drawn_to_it_smoothly() {
+        let interval = [0.8, 2.4];
+        assert_eq!(drawn_in(interval, 1.0), [1.0, 1.0]);
+        for alpha in [0.75, 0.3, 2.41, 3.0] {
+            let [drawn, slope] = drawn_in(interval, alpha);
+            assert!((0.8 - 0.081..=2.4 + 0.081).contains(&drawn), "{drawn}");
+            let difference = (drawn_in(interval, alpha + 1e-6)[0] - drawn) / 1e-6;
+            assert!((slope - difference).abs() < 1e-4);
+        }
+        assert!(drawn_in([1.0; 2], 1.5)[0].is_finite());
     }
 }

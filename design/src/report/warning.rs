@@ -33,7 +33,7 @@ pub enum Concern {
     LigamentsOutsideDomain,
     /// The path left the states that the hinge law was made for.
     StatesOutsideDomain,
-    /// D > 1: ligaments tear.
+    /// D_peak of 1 or more: ligaments tear.
     Tearing,
     /// Another cut comes closer to a hinge's tip than its secondary cut.
     CutsTooClose,
@@ -181,7 +181,9 @@ fn domain(scene: &Scene, hinges: &[HingeRow]) -> Vec<Warning> {
          {:.0} to {:.0} deg",
         domain.w_lig[0], domain.w_lig[1], alpha_deg[0], alpha_deg[1]
     );
-    let left = "deformations outside the hinge law's training domain on the way".into();
+    let left = "deformations outside the hinge law's training domain on the way: energy and forces of these \
+                hinges are extrapolated and their damage is not known"
+        .into();
     [
         about(Concern::LigamentsOutsideDomain, ligaments, trained),
         about(Concern::StatesOutsideDomain, states, left),
@@ -192,8 +194,13 @@ fn domain(scene: &Scene, hinges: &[HingeRow]) -> Vec<Warning> {
 }
 
 fn tearing(hinges: &[HingeRow]) -> Option<Warning> {
-    let torn = those(hinges, |row| row.damage.is_some_and(|damage| damage > 1.0));
-    let message = "predicted damage over 1: the ligament tears".into();
+    // The mean tears later than the peak; it is all that weights without D_peak know.
+    let torn = those(hinges, |row| {
+        row.damage_peak
+            .or(row.damage)
+            .is_some_and(|damage| damage >= 1.0)
+    });
+    let message = "predicted peak damage of 1 or more: the ligament tears".into();
     about(Concern::Tearing, torn, message)
 }
 

@@ -2,18 +2,20 @@
 
 use super::checks::within;
 use super::{SceneConfig, SceneError};
-use crate::hinge_law::{CondensedLaw, Contact, LinearLaw};
-use hinge::{HingeDesign, SheetMaterial};
+use crate::hinge_law::{CondensedLaw, Contact, DamageMeasure, LinearLaw};
+use hinge::SheetMaterial;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 use surrogate::Surrogate;
 
 /// Stiffness of the contact of panel edges over k_theta, and the void angle (rad) beyond which they
-/// cannot be pressed; the text of (11) leaves both open. The learned law needs no contact: its domain
-/// ends near the closed sheet.
+/// cannot be pressed; the text of (11) leaves both open. The window of a learned law knows no contact of
+/// its flanks: where its domain reaches below the closed sheet, the wall stands at the domain's end.
 const CONTACT_STIFFNESS: f64 = 10.0;
 const CONTACT_WALL: f64 = -0.1;
+/// Angle (rad) whose secant is the stiffness of a learned hinge: 20 deg, as the linear law's of section 3.
+const TYPICAL_SECANT: f64 = 0.35;
 
 /// The hinge law of a scene; each reads the section of its own name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -97,7 +99,7 @@ pub(super) enum LoadedHinge {
     },
     Surrogate {
         surrogate: Box<Surrogate>,
-        contact: Option<Contact>,
+        contact: Contact,
     },
 }
 
@@ -146,11 +148,8 @@ impl LoadedHinge {
                 let file = config.surrogate.as_ref();
                 let weights = &file.ok_or_else(|| missing("surrogate"))?.weights;
                 let surrogate = learned(config, material, path, "surrogate", weights)?;
-                let contact = config.contact.map(ContactConfig::contact).transpose();
-                Ok(Self::Surrogate {
-                    surrogate: Box::new(surrogate),
-                    contact: contact.map_err(refuse)?,
-                })
+                peak_known(config, &surrogate).map_err(refuse)?;
+                learned_with_contact(config, surrogate).map_err(refuse)
             }
         }
     }
@@ -193,36 +192,62 @@ fn condensed(
     surrogate: Surrogate,
     secant_deg: f64,
 ) -> Result<LoadedHinge, String> {
-    let process = config.process;
-    let typical = HingeDesign {
-        w_lig: config.ligament.start,
-        alpha: FRAC_PI_2,
-        fillet_ratio: process.fillet_ratio,
-        kerf: process.kerf,
-        r_win: process.r_win,
-    };
     let law = CondensedLaw::new(surrogate, secant_deg.to_radians());
-    let [k_a, k_s, k_theta] = law.constants(&[typical])[0].map(|constant| constant.value);
+    let [k_a, k_s, k_theta] = constants_at_start(config, &law);
     if !(k_a > 0.0 && k_s > 0.0 && k_theta > 0.0) {
         return Err(format!(
             "condensed: at w_lig = {} mm the weights have k_a = {k_a} N/mm, k_s = {k_s} N/mm, \
              k_theta = {k_theta} N mm, which are not all positive",
-            typical.w_lig
+            config.ligament.start
         ));
     }
     Ok(LoadedHinge::Condensed {
         law: Box::new(law),
-        contact: contact(config, k_theta)?,
+        contact: contact(config, k_theta, CONTACT_WALL)?,
     })
 }
 
-/// The contact that a scene asks for, or one for hinges as stiff as `k_theta`.
-fn contact(config: &SceneConfig, k_theta: f64) -> Result<Contact, String> {
+/// The learned law; a closed sheet presses as hard on its edges as a folded one on its ligaments.
+fn learned_with_contact(config: &SceneConfig, surrogate: Surrogate) -> Result<LoadedHinge, String> {
+    let [_, _, [closed, _]] = surrogate.domain().bounds();
+    let wall = if closed < 0.0 { closed } else { CONTACT_WALL };
+    let secant = CondensedLaw::new(surrogate.clone(), TYPICAL_SECANT);
+    let [.., k_theta] = constants_at_start(config, &secant);
+    Ok(LoadedHinge::Surrogate {
+        surrogate: Box::new(surrogate),
+        contact: contact(config, k_theta.abs().max(f64::MIN_POSITIVE), wall)?,
+    })
+}
+
+/// (k_a, k_s, k_theta) of a hinge of the start's width with cuts at a right angle.
+fn constants_at_start(config: &SceneConfig, law: &CondensedLaw) -> [f64; 3] {
+    let typical = config.process.hinge(config.ligament.start, FRAC_PI_2);
+    law.constants(&[typical])[0].map(|constant| constant.value)
+}
+
+/// The contact that a scene asks for, or one for hinges as stiff as `k_theta` with its wall at the void
+/// angle `wall` (rad).
+fn contact(config: &SceneConfig, k_theta: f64, wall: f64) -> Result<Contact, String> {
     match config.contact {
         Some(contact) => contact.contact(),
-        None => Contact::new(CONTACT_STIFFNESS * k_theta, CONTACT_WALL, 0.0)
-            .map_err(|error| error.to_string()),
+        None => {
+            Contact::new(CONTACT_STIFFNESS * k_theta, wall, 0.0).map_err(|error| error.to_string())
+        }
     }
+}
+
+/// An objective of D_peak needs weights that predict it.
+fn peak_known(config: &SceneConfig, surrogate: &Surrogate) -> Result<(), String> {
+    let objective = &config.objective;
+    let asked = objective.damage > 0.0 && objective.damage_measure == DamageMeasure::Peak;
+    if asked && surrogate.card().peak_scale.is_none() {
+        return Err(
+            "objective.damage_measure = \"peak\": the weights predict no D_peak; use \"mean\", or train \
+             on a database that has it"
+                .into(),
+        );
+    }
+    Ok(())
 }
 
 /// Only the learned law predicts damage.
@@ -263,7 +288,7 @@ fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHing
     within("linear.k_theta", k_theta, [1e-3, 1e9], "N mm/rad")?;
     let law = LinearLaw::uniform([k_a, k_s, k_theta], config.sheet.grid().hinge_count())
         .map_err(|error| error.to_string())?;
-    let contact = contact(config, k_theta)?;
+    let contact = contact(config, k_theta, CONTACT_WALL)?;
     Ok(LoadedHinge::Linear { law, contact })
 }
 

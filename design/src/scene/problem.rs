@@ -112,12 +112,13 @@ impl Scene {
                 compression: config.compression * unit,
                 shear: config.shear * unit,
             },
+            damage_measure: config.damage_measure,
             temperatures: TEMPERATURES,
             panel_shape: config.panel_shape * self.mean_panel_area(),
             // Only a learned hinge is a window. Two windows and a gap: they do not lie in line.
             least_distance: domain.map_or(0.0, |_| 3.0 * self.config.process.r_win),
             domain: (domain.filter(|_| config.domain > 0.0)).map(|domain| DomainPenalty {
-                domain: *domain,
+                domain: domain.clone(),
                 weight: config.domain * self.mean_panel_area(),
             }),
         }
@@ -128,9 +129,10 @@ impl Scene {
             LoadedHinge::Pin { opening } => return Ok(Model::Ideal { opening: *opening }),
             LoadedHinge::Linear { law, contact } => (Box::new(law.clone()), Some(*contact)),
             LoadedHinge::Condensed { law, contact } => (law.clone(), Some(*contact)),
-            LoadedHinge::Surrogate { surrogate, contact } => {
-                (Box::new(SurrogateLaw::new((**surrogate).clone())), *contact)
-            }
+            LoadedHinge::Surrogate { surrogate, contact } => (
+                Box::new(SurrogateLaw::new((**surrogate).clone())),
+                Some(*contact),
+            ),
         };
         let solver = self.solver().map_err(|error| SceneError::Value {
             path: self.path.clone(),

@@ -5,7 +5,7 @@ use design::chamfer::{Chamfer, Precision};
 use design::design_vector::{DesignVector, WidthChart};
 use design::equilibrium::{EquilibriumSolver, SolverSettings};
 use design::gradient::{DesignProblem, Mechanics, Model};
-use design::hinge_law::LinearLaw;
+use design::hinge_law::{DamageMeasure, LinearLaw};
 use design::objective::{Objective, OutlinePoints};
 use design::path_functionals::PerFunctional;
 use serde_json::Value;
@@ -60,6 +60,7 @@ fn a_pulled_sheet_with_path_functionals() {
             least_distance: 0.0,
             domain: None,
             weights: per_functional(&case["weights"]),
+            damage_measure: DamageMeasure::Mean,
             temperatures: per_functional(&case["softmax_temperature"]),
         },
     };

@@ -77,13 +77,8 @@ fn the_greatest_stretch_is_that_of_six_and_no_opening_exceeds_it() {
 #[test]
 fn windows_and_cut_angles_are_held_against_the_hinges() {
     let pattern = cases::pattern(&case("p0_3x3_uniform"));
-    let domain = |alpha, w_lig| TrainingDomain {
-        eta_a: [-0.1, 0.1],
-        eta_s: [-0.1, 0.1],
-        theta: [0.0, 1.0],
-        w_lig,
-        alpha,
-    };
+    let state = [[-0.1, 0.1], [-0.1, 0.1], [0.0, 1.0]];
+    let domain = |alpha, w_lig| TrainingDomain::of_box(state, w_lig, alpha);
     let measured = |r_win: f64, domain: &TrainingDomain| {
         let mut options = AT_CORNER;
         options.process.r_win = r_win;

@@ -11,7 +11,7 @@ use design::domain_penalty::DomainPenalty;
 use design::equilibrium::{EquilibriumSolver, SolverSettings, Status};
 use design::gradient::{DesignProblem, Mechanics, Model};
 use design::grid::Grid;
-use design::hinge_law::{CondensedLaw, Contact, HingeLaw, LinearLaw, SurrogateLaw};
+use design::hinge_law::{CondensedLaw, Contact, DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
 use design::objective::{Objective, OutlinePoints};
 use design::path_functionals::PerFunctional;
 use design::pattern::Outline;
@@ -72,13 +72,11 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
     });
     // A box that most states are outside of; pins are anywhere.
     let domain = DomainPenalty {
-        domain: TrainingDomain {
-            eta_a: [-0.02, 0.0],
-            eta_s: [-0.01, 0.01],
-            theta: [0.0, 0.02],
-            w_lig: [15.0, 17.0],
-            alpha: [1.5, 1.6],
-        },
+        domain: TrainingDomain::of_box(
+            [[-0.02, 0.0], [-0.01, 0.01], [0.0, 0.02]],
+            [15.0, 17.0],
+            [1.5, 1.6],
+        ),
         weight: 1.0,
     };
     let domain = matches!(model, Model::Equilibrium(_)).then_some(domain);
@@ -112,6 +110,7 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
                 compression: 1e4,
                 shear: 1e4,
             },
+            damage_measure: DamageMeasure::Mean,
             temperatures: PerFunctional {
                 damage: 0.1,
                 compression: 0.02,

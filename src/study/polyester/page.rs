@@ -35,7 +35,7 @@ pub(super) fn write(out: &Path, rows: &[Row], surrogate: &Surrogate, tier: Tier)
             title: format!("{}, {}", name(row.point), row.objective),
             routes: row.routes.iter().map(eta).collect(),
             monitored: row.monitored,
-            domain: *surrogate.domain(),
+            domain: domain_slice(surrogate, row),
             damage: damage_plane(surrogate, row),
         })
         .collect();
@@ -69,6 +69,14 @@ fn damage_plane(surrogate: &Surrogate, row: &Row) -> Box<dyn Fn([f64; 2]) -> f64
         let state = hinge::HingeDeformation::from_eta(eta_a, eta_s, theta, design.w_lig);
         surrogate.damage(&[design], &[state])[0].d / surrogate.damage_scale()
     })
+}
+
+/// The edge of the training domain at the design and the final opening of the monitored hinge.
+fn domain_slice(surrogate: &Surrogate, row: &Row) -> Vec<[f64; 2]> {
+    let route = &row.routes[row.monitored];
+    surrogate
+        .domain()
+        .slice(route.design.w_lig, route.end().theta)
 }
 
 /// The quantities of the table, in the order of [`PAPER`].
@@ -105,8 +113,19 @@ fn quantities(row: &Row) -> [String; 11] {
         ),
         percent(row.share_inside),
         format!("{:.3}", least(&mut etas.collect::<Vec<_>>().into_iter())),
-        format!("{:.3}", row.damage.iter().sum::<f64>() / count),
+        mean_damage(&row.damage),
     ]
+}
+
+/// The mean over the hinges whose damage is known, and how many these are.
+fn mean_damage(damage: &[Option<f64>]) -> String {
+    let known: Vec<f64> = damage.iter().copied().flatten().collect();
+    let mean = known.iter().sum::<f64>() / known.len() as f64;
+    match known.len() {
+        0 => "not known".into(),
+        all if all == damage.len() => format!("{mean:.3}"),
+        some => format!("{mean:.3} ({some} of {})", damage.len()),
+    }
 }
 
 fn markdown(rows: &[Row], tier: Tier) -> Result<String> {
@@ -194,12 +213,12 @@ fn csv(rows: &[Row]) -> Result<String> {
             let [normal, force] = row.forces[hinge];
             writeln!(
                 text,
-                "{},{},{hinge},{:.4},{:.4},{eta_a:.5},{eta_s:.5},{normal:.4},{force:.4},{:.6}",
+                "{},{},{hinge},{:.4},{:.4},{eta_a:.5},{eta_s:.5},{normal:.4},{force:.4},{}",
                 name(row.point),
                 row.objective,
                 row.w_lig[hinge],
                 end.theta.to_degrees(),
-                row.damage[hinge]
+                row.damage[hinge].map_or(String::new(), |d| format!("{d:.6}"))
             )?;
         }
     }

@@ -13,9 +13,9 @@ pub fn tiny() -> Surrogate {
     Surrogate::load(&cases().join("chi_tiny.safetensors")).unwrap()
 }
 
-/// [`tiny`] with D_peak: of format version 4, with a sharpness of 8.
+/// [`tiny`] with D_peak: of format version 5, with a sharpness of 8.
 pub fn with_peak() -> Surrogate {
-    Surrogate::load(&cases().join("chi_heads.safetensors")).unwrap()
+    Surrogate::load(&cases().join("chi_domain.safetensors")).unwrap()
 }
 
 pub fn design(w_lig: f64, alpha: f64) -> HingeDesign {

@@ -1,0 +1,128 @@
+//! The distribution of accumulated plastic strain over a window, as a histogram of volumes.
+//!
+//! Bin 0 holds strains above zero and below 0.001; the edges above grow by sqrt(2) a bin, and the last
+//! bin is open. Any measure of damage that depends on the strain alone can be computed from it again,
+//! to the width of a bin, without another solve.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+/// Number of bins.
+const BINS: usize = 24;
+/// Upper edge of bin 0.
+const FIRST_EDGE: f64 = 1e-3;
+
+/// Volume (mm^3) in each bin of plastic strain.
+///
+/// Single precision: a volume is known to the size of an integration point's own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct StrainVolumes([f32; BINS]);
+
+/// A text that is no histogram.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("`{0}` is not {BINS} volumes separated by blanks")]
+pub struct NoHistogram(String);
+
+impl StrainVolumes {
+    /// The histogram of integration points (plastic strain, volume in mm^3); unstrained ones are in no bin.
+    pub fn of(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let mut volumes = [0.0_f64; BINS];
+        for (strain, volume) in points {
+            if strain > 0.0 {
+                volumes[bin_of(strain)] += volume;
+            }
+        }
+        Self(volumes.map(|volume| volume as f32))
+    }
+
+    /// The bins as (lower edge, upper edge, volume in mm^3); the last upper edge is infinite.
+    pub fn bins(&self) -> impl Iterator<Item = (f64, f64, f64)> {
+        let bins = self.0.into_iter().enumerate();
+        bins.map(|(bin, volume)| (edge(bin), edge(bin + 1), f64::from(volume)))
+    }
+
+    /// Total strained volume (mm^3).
+    pub fn total(&self) -> f64 {
+        self.0.iter().copied().map(f64::from).sum()
+    }
+}
+
+/// Lower edge of a bin.
+fn edge(bin: usize) -> f64 {
+    match bin {
+        0 => 0.0,
+        BINS => f64::INFINITY,
+        _ => FIRST_EDGE * 2f64.powf(0.5 * (bin - 1) as f64),
+    }
+}
+
+fn bin_of(strain: f64) -> usize {
+    (1..BINS).rfind(|bin| strain >= edge(*bin)).unwrap_or(0)
+}
+
+impl fmt::Display for StrainVolumes {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let texts: Vec<String> = self.0.iter().map(f32::to_string).collect();
+        f.write_str(&texts.join(" "))
+    }
+}
+
+impl FromStr for StrainVolumes {
+    type Err = NoHistogram;
+
+    fn from_str(text: &str) -> Result<Self, NoHistogram> {
+        let refuse = || NoHistogram(text.to_owned());
+        let volumes: Result<Vec<f32>, _> = text.split_whitespace().map(str::parse).collect();
+        let volumes = volumes.map_err(|_| refuse())?;
+        let valid = volumes.iter().all(|v| v.is_finite() && *v >= 0.0);
+        let volumes = volumes.try_into().map_err(|_| refuse())?;
+        if valid {
+            Ok(Self(volumes))
+        } else {
+            Err(refuse())
+        }
+    }
+}
+
+impl From<StrainVolumes> for String {
+    fn from(volumes: StrainVolumes) -> Self {
+        volumes.to_string()
+    }
+}
+
+impl TryFrom<String> for StrainVolumes {
+    type Error = NoHistogram;
+
+    fn try_from(text: String) -> Result<Self, NoHistogram> {
+        text.parse()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_strained_point_is_in_one_bin_and_within_its_edges() {
+        let points: Vec<(f64, f64)> = (0..200).map(|i| (1e-4 * 1.06_f64.powi(i), 0.5)).collect();
+        let histogram = StrainVolumes::of(points.iter().copied().chain([(0.0, 7.0)]));
+        assert_eq!(histogram.total(), 100.0);
+        for (lower, upper, volume) in histogram.bins() {
+            let within = points
+                .iter()
+                .filter(|(strain, _)| (lower..upper).contains(strain));
+            assert_eq!(volume, 0.5 * within.count() as f64, "{lower} {upper}");
+        }
+    }
+
+    #[test]
+    fn it_is_written_as_text_and_read_back_exactly() {
+        let histogram = StrainVolumes::of([(0.01, 1.0 / 3.0), (0.5, 1e-7), (9.0, 12.5)]);
+        assert_eq!(histogram.to_string().parse(), Ok(histogram));
+        assert!("1 2 3".parse::<StrainVolumes>().is_err());
+        let negative = StrainVolumes::default().to_string().replacen('0', "-1", 1);
+        assert!(negative.parse::<StrainVolumes>().is_err());
+    }
+}
