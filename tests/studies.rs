@@ -143,14 +143,12 @@ fn the_chain_is_judged_by_the_weights_it_is_told() {
     let scene = "configs/scenes/pet-3x3.toml";
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm");
     std::fs::create_dir_all(work.path("data/pet-0.5mm")).unwrap();
-    for file in [
-        "small.safetensors",
-        "small.json",
-        "medium.safetensors",
-        "medium.json",
-    ] {
-        let there = work.path("data/pet-0.5mm").join(file);
-        std::fs::copy(data.join(file), there).unwrap();
+    // The scene's ensemble among them.
+    for name in ["small", "medium", "medium-1", "medium-2", "medium-3"] {
+        for file in ["safetensors", "json"].map(|kind| format!("{name}.{kind}")) {
+            let there = work.path("data/pet-0.5mm").join(&file);
+            std::fs::copy(data.join(&file), there).unwrap();
+        }
     }
     set_steps(&work, scene, 2);
     // As if it had been trained on a coarser mesh.

@@ -1,7 +1,9 @@
 //! What a design run says at its end: the objective before and after, every hinge, what to mind.
 
+mod estimate;
 mod warning;
 
+pub use estimate::Estimate;
 pub use warning::{Concern, Warning};
 
 use crate::fabrication::{CutLines, FabricationError};
@@ -28,6 +30,8 @@ pub struct Report {
     pub before: Scores,
     /// Of the best design.
     pub after: Scores,
+    /// How far the networks of the scene's ensemble disagree on the best design's path, if there are several.
+    pub estimate: Option<Estimate>,
     pub hinges: Vec<HingeRow>,
     pub warnings: Vec<Warning>,
 }
@@ -77,6 +81,7 @@ impl Report {
                 .count(),
             before: Scores::of(scene, &designed.start),
             after: Scores::of(scene, &designed.best),
+            estimate: Estimate::of(&scene.networks(), deployment),
             warnings: warning::all(scene, deployment, cuts, &hinges),
             hinges,
         }
@@ -140,6 +145,17 @@ impl fmt::Display for Report {
         };
         for ((name, before), (_, after)) in std::iter::zip(rows(before), rows(after)) {
             writeln!(f, "{name:<24}{:>12}{:>12}", shown(before), shown(after))?;
+        }
+        if let Some(estimate) = &self.estimate {
+            let percent = |x: f64| format!("{:.1} %", 100.0 * x);
+            writeln!(
+                f,
+                "\nstandard deviation of {} networks on the path inside: energy {}, forces {}, D_peak {}",
+                estimate.networks,
+                percent(estimate.energy),
+                percent(estimate.forces),
+                estimate.damage_peak.map_or("-".into(), percent)
+            )?;
         }
         writeln!(
             f,

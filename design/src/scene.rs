@@ -203,7 +203,10 @@ impl SceneConfig {
     /// Names other weights, relative to the working folder.
     pub fn name_weights(&mut self, weights: &Path) -> std::io::Result<()> {
         let weights = std::path::absolute(weights)?;
-        self.surrogate = Some(SurrogateFile { weights });
+        self.surrogate = Some(SurrogateFile {
+            weights,
+            ensemble: Vec::new(),
+        });
         Ok(())
     }
 
@@ -252,6 +255,18 @@ impl Scene {
         match &self.hinge {
             LoadedHinge::Surrogate { surrogate, .. } => Some(surrogate),
             _ => None,
+        }
+    }
+
+    /// The learned hinge law and the further networks of its training; none if the scene names none.
+    pub fn networks(&self) -> Vec<&Surrogate> {
+        match &self.hinge {
+            LoadedHinge::Surrogate {
+                surrogate,
+                ensemble,
+                ..
+            } => std::iter::once(&**surrogate).chain(ensemble).collect(),
+            _ => Vec::new(),
         }
     }
 

@@ -35,7 +35,7 @@ const TENSION_SHARE: f64 = 0.4;
 /// Coordinates of the hypercube: log w_lig, alpha, theta, eta_a, eta_s.
 const DIMENSIONS: usize = 5;
 
-/// The box of designs and ray ends.
+/// The region of designs and ray ends.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RayBox {

@@ -184,21 +184,14 @@ impl TrainingDomain {
         if states.is_empty() {
             return None;
         }
-        let range = |value: &dyn Fn(&([f64; 3], &HingeDesign)) -> f64| {
-            let values = states.iter().map(value);
-            values.fold(
-                [f64::INFINITY, f64::NEG_INFINITY],
-                |[least, greatest], x| [x.min(least), x.max(greatest)],
-            )
-        };
         let count = states.len() as f64;
         let mut domain = Self {
-            w_lig: range(&|(_, design)| design.w_lig),
-            alpha: range(&|(_, design)| design.alpha),
+            w_lig: interval(states.iter().map(|(_, design)| design.w_lig)),
+            alpha: interval(states.iter().map(|(_, design)| design.alpha)),
             centre: from_fn(|i| states.iter().map(|(x, _)| x[i]).sum::<f64>() / count),
             half_range: from_fn(|i| {
-                let [least, greatest] = range(&|(x, _)| x[i]);
-                (0.5 * (greatest.max(0.0) - least.min(0.0))).max(LEAST_SIZE)
+                let [minimum, maximum] = interval(states.iter().map(|(x, _)| x[i]));
+                (0.5 * (maximum.max(0.0) - minimum.min(0.0))).max(LEAST_SIZE)
             }),
             supports: Vec::new(),
         };
@@ -304,6 +297,14 @@ impl TrainingDomain {
     }
 }
 
+/// The smallest interval that holds every value.
+fn interval(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold(
+        [f64::INFINITY, f64::NEG_INFINITY],
+        |[minimum, maximum], x| [x.min(minimum), x.max(maximum)],
+    )
+}
+
 /// (sum of max(0, t)^p)^(1/p).
 fn norm(ratios: [f64; DIRECTIONS]) -> f64 {
     let largest = ratios.into_iter().fold(0.0, f64::max);
@@ -387,7 +388,7 @@ impl TryFrom<Stored> for TrainingDomain {
                 Err(InvalidDomain(rule))
             }
         };
-        let interval =
+        let is_interval =
             |[least, greatest]: [f64; 2]| least <= greatest && (greatest - least).is_finite();
         let domain = match stored {
             Stored::Box(Intervals {
@@ -399,7 +400,7 @@ impl TryFrom<Stored> for TrainingDomain {
             }) => {
                 let state = [eta_a, eta_s, theta];
                 check(
-                    state.into_iter().all(interval),
+                    state.into_iter().all(is_interval),
                     "least <= greatest for eta_a, eta_s, theta",
                 )?;
                 Self::of_box(state, w_lig, alpha)
@@ -432,10 +433,10 @@ impl TryFrom<Stored> for TrainingDomain {
             }
         };
         check(
-            interval(domain.w_lig) && domain.w_lig[0] > 0.0,
+            is_interval(domain.w_lig) && domain.w_lig[0] > 0.0,
             "0 < least <= greatest w_lig",
         )?;
-        check(interval(domain.alpha), "least <= greatest alpha")?;
+        check(is_interval(domain.alpha), "least <= greatest alpha")?;
         Ok(domain)
     }
 }

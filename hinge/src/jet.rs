@@ -85,6 +85,10 @@ impl Mul<f64> for Jet {
 impl Mul for Jet {
     type Output = Self;
 
+    #[expect(
+        clippy::suspicious_arithmetic_impl,
+        reason = "the product rule has sums"
+    )]
     fn mul(self, other: Self) -> Self {
         let (x, y) = (self.value, other.value);
         let (dx, dy) = (self.gradient, other.gradient);

@@ -73,7 +73,7 @@ fn summary(
     let count = rays.iter().map(|ray| ray.rows.len()).sum::<usize>();
     let cpu = [0, 1].map(|i| rays.iter().map(|ray| ray.cpu_s[i]).sum::<f64>() / rays.len() as f64);
     let heading = format!(
-        "## Tier {judged} by tier {reference}, over the whole box\n\n\
+        "## Tier {judged} by tier {reference}, over all states of both\n\n\
          {count} states of {} rays, {:.1} and {:.1} CPU s a ray. Differences are root mean squares relative \
          to that of the tier {reference}: {SCALE}. `kirigami dataset compare`.\n\n\
          ",

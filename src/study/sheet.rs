@@ -106,8 +106,10 @@ fn base(path: &Path, weights: &Path) -> Result<SceneConfig> {
     config.optimiser.start_noise = NOISE;
     config.objective.damage = 0.0;
     if config.surrogate.is_some() {
-        let weights = weights.to_owned();
-        config.surrogate = Some(SurrogateFile { weights });
+        config.surrogate = Some(SurrogateFile {
+            weights: weights.to_owned(),
+            ensemble: Vec::new(),
+        });
     }
     Ok(config)
 }

@@ -12,10 +12,10 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use surrogate::{Surrogate, TestErrors};
 
-/// Seed spread, the ensemble's deviation as an estimate of error, and what happens outside the box
+/// Seed spread, the ensemble's deviation as an estimate of error, and what happens outside the domain
 ///
 /// Trains networks of several seeds on the database, and as many on the states within a smaller
-/// box, which are then asked about what lies outside it. Writes trust.csv, trust.md, tradeoff.md
+/// domain, which are then asked about what lies outside it. Writes trust.csv, trust.md, tradeoff.md
 /// and a picture. Example: kirigami study trust data/hinges.parquet --seeds 2
 #[derive(Args)]
 pub struct TrustStudy {
@@ -37,11 +37,11 @@ pub struct TrustStudy {
     out: PathBuf,
 }
 
-/// Share of each of the box's sides that the smaller one keeps, about the undeformed state or from
+/// Fraction of the domain that the smaller one keeps, about the undeformed state or from
 /// the middle of the designs on.
 const KEPT: f64 = 0.75;
 
-/// Bins of the distance outside, as a share of the box's side; the first is inside.
+/// Bins of the distance outside, over that from its centre to its edge; the first is inside.
 const OUTSIDE: [f64; 4] = [0.0, 0.05, 0.15, f64::INFINITY];
 
 /// An ensemble, and what it says of some rows.
@@ -76,7 +76,7 @@ impl TrustStudy {
         rows: Vec<Row>,
     ) -> Result<Answers> {
         let member = |seed: u64| {
-            eprintln!("{name} box, network {} of {}", seed + 1, self.seeds);
+            eprintln!("{name} domain, network {} of {}", seed + 1, self.seeds);
             let config = TrainingConfig {
                 seed,
                 ..config.clone()
@@ -102,7 +102,7 @@ impl TrustStudy {
         page += &whole.spread()?;
         page += "\n## The ensemble's deviation as an estimate of its error\n\n";
         page += &whole.calibration(&tenths)?;
-        page += "\n## Outside the box\n\n";
+        page += "\n## Outside the domain\n\n";
         page += &inner.outside()?;
         let write = |name: &str, text: &str| run_folder::write(&self.out, name, text);
         write("trust.md", &page)?;
@@ -111,11 +111,11 @@ impl TrustStudy {
         let outside = inner.by_distance();
         let chart = charts::calibration(&[
             Calibration {
-                title: "inside the box, tenths by deviation",
+                title: "inside the domain, tenths by deviation",
                 points: &tenths,
             },
             Calibration {
-                title: "ever farther outside the box",
+                title: "ever farther outside the domain",
                 points: &outside
                     .iter()
                     .map(|(.., of)| [of.deviation, of.error])
@@ -205,7 +205,7 @@ impl Answers {
         Ok(text)
     }
 
-    /// The rows by their distance outside the box of these networks: name of the bin, rows, check.
+    /// The rows by their distance outside the domain of these networks: name of the bin, rows, check.
     fn by_distance(&self) -> Vec<(String, Vec<usize>, EnsembleCheck)> {
         let distance = |row: &Row| {
             let domain = self.members[0].domain();
@@ -232,11 +232,11 @@ impl Answers {
 
     fn outside(&self) -> Result<String> {
         let mut text = format!(
-            "Networks trained within {:.0} % of each side of the box, asked about the test \
-             geometries whole. Distances outside are those of the coordinate that is farthest off, \
-             over the side of the smaller box; errors are those of the networks' mean, root mean \
+            "Networks trained within {:.0} % of the domain, asked about the test \
+             geometries whole. Distances outside are those from the edge of the smaller domain, over that from \
+             its centre to the edge; errors are those of the networks' mean, root mean \
              squares relative to the states of the bin (W) and to all (forces): a few states of \
-             great force, near the edge of the smaller box, can rule them, so that the median state \
+             great force, near the edge of the smaller domain, can rule them, so that the median state \
              stands beside them.\n\n\
              | outside | states | W | forces, error | median state | forces, deviation |\n\
              |---|---|---|---|---|---|\n",
@@ -266,10 +266,10 @@ impl Answers {
         Ok(text)
     }
 
-    /// Every state of the test: distance outside the smaller box, deviation and error of the
-    /// forces for the networks of that box and of the whole one.
+    /// Every state of the test: distance outside the smaller domain, deviation and error of the
+    /// forces for the networks of that domain and of the whole one.
     fn csv(&self, whole: &Answers) -> Result<String> {
-        let mut text = "w_lig_mm,alpha_deg,eta_a,eta_s,theta_deg,depth_in_smaller_box,\
+        let mut text = "w_lig_mm,alpha_deg,eta_a,eta_s,theta_deg,depth_in_smaller_domain,\
             deviation_smaller,error_smaller,deviation_whole,error_whole\n"
             .to_owned();
         let domain = self.members[0].domain();

@@ -20,6 +20,9 @@ use rand_chacha::ChaCha8Rng;
 use std::path::PathBuf;
 use surrogate::Surrogate;
 
+/// Rays that make a database, which is split in three.
+const LEAST_RAYS: usize = 3;
+
 /// Judge weights by finite elements at states drawn uniformly inside their training domain
 ///
 /// The states are not those of any training ray. Writes them as a database that no training should see, so that
@@ -99,7 +102,7 @@ impl SpotCheckCommand {
             None => self.drawn(&surrogate),
         };
         ensure!(
-            probes.len() >= 3,
+            probes.len() >= LEAST_RAYS,
             "{} rays make no database: ask for more states (--count) or fewer on a ray (--states-per-ray)",
             probes.len()
         );
@@ -157,7 +160,11 @@ impl SpotCheckCommand {
         let (scene, design) = Inspected::new(scene, design.clone()).read()?;
         let routes = hinge_routes(&scene, &design)?;
         let states = routes.first().map_or(1, |route| route.states.len());
-        let wanted = self.count.div_ceil(states).min(routes.len());
+        let wanted = self
+            .count
+            .div_ceil(states)
+            .max(LEAST_RAYS)
+            .min(routes.len());
         (0..wanted)
             .map(|i| {
                 let route = &routes[i * routes.len() / wanted];

@@ -125,7 +125,7 @@ impl Surrogate {
         }
     }
 
-    /// The box of hinge states in the training data.
+    /// The hinge states that the training data fill.
     pub fn domain(&self) -> &TrainingDomain {
         &self.card.domain
     }

@@ -70,6 +70,9 @@ impl ContactConfig {
 #[serde(deny_unknown_fields)]
 pub struct SurrogateFile {
     pub weights: PathBuf,
+    /// Further networks trained on the same data (`train --seeds`), whose spread the report states.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ensemble: Vec<PathBuf>,
 }
 
 /// The constants of (11) from a learned energy, hinge by hinge.
@@ -99,6 +102,7 @@ pub(super) enum LoadedHinge {
     },
     Surrogate {
         surrogate: Box<Surrogate>,
+        ensemble: Vec<Surrogate>,
         contact: Contact,
     },
 }
@@ -146,10 +150,16 @@ impl LoadedHinge {
             },
             HingeModel::Surrogate => {
                 let file = config.surrogate.as_ref();
-                let weights = &file.ok_or_else(|| missing("surrogate"))?.weights;
-                let surrogate = learned(config, material, path, "surrogate", weights)?;
+                let SurrogateFile { weights, ensemble } =
+                    file.ok_or_else(|| missing("surrogate"))?;
+                let load = |file| learned(config, material, path, "surrogate", file);
+                let surrogate = load(weights)?;
+                let ensemble: Vec<Surrogate> = (ensemble.iter())
+                    .map(|file| load(file))
+                    .collect::<Result<_, _>>()?;
+                same_training(&surrogate, &ensemble).map_err(refuse)?;
                 peak_known(config, &surrogate).map_err(refuse)?;
-                learned_with_contact(config, surrogate).map_err(refuse)
+                learned_with_contact(config, surrogate, ensemble).map_err(refuse)
             }
         }
     }
@@ -208,13 +218,18 @@ fn condensed(
 }
 
 /// The learned law; a closed sheet presses as hard on its edges as a folded one on its ligaments.
-fn learned_with_contact(config: &SceneConfig, surrogate: Surrogate) -> Result<LoadedHinge, String> {
+fn learned_with_contact(
+    config: &SceneConfig,
+    surrogate: Surrogate,
+    ensemble: Vec<Surrogate>,
+) -> Result<LoadedHinge, String> {
     let [_, _, [closed, _]] = surrogate.domain().bounds();
     let wall = if closed < 0.0 { closed } else { CONTACT_WALL };
     let secant = CondensedLaw::new(surrogate.clone(), TYPICAL_SECANT);
     let [.., k_theta] = constants_at_start(config, &secant);
     Ok(LoadedHinge::Surrogate {
         surrogate: Box::new(surrogate),
+        ensemble,
         contact: contact(config, k_theta.abs().max(f64::MIN_POSITIVE), wall)?,
     })
 }
@@ -233,6 +248,18 @@ fn contact(config: &SceneConfig, k_theta: f64, wall: f64) -> Result<Contact, Str
         None => {
             Contact::new(CONTACT_STIFFNESS * k_theta, wall, 0.0).map_err(|error| error.to_string())
         }
+    }
+}
+
+/// The spread of networks of different data is no measure of either's error.
+fn same_training(surrogate: &Surrogate, ensemble: &[Surrogate]) -> Result<(), String> {
+    let data = |it: &Surrogate| (it.card().dataset_hash.clone(), it.card().split_hash.clone());
+    match ensemble.iter().all(|other| data(other) == data(surrogate)) {
+        true => Ok(()),
+        false => Err(
+            "surrogate.ensemble: the networks were not all trained on the data of surrogate.weights"
+                .into(),
+        ),
     }
 }
 

@@ -129,7 +129,9 @@ impl Scene {
             LoadedHinge::Pin { opening } => return Ok(Model::Ideal { opening: *opening }),
             LoadedHinge::Linear { law, contact } => (Box::new(law.clone()), Some(*contact)),
             LoadedHinge::Condensed { law, contact } => (law.clone(), Some(*contact)),
-            LoadedHinge::Surrogate { surrogate, contact } => (
+            LoadedHinge::Surrogate {
+                surrogate, contact, ..
+            } => (
                 Box::new(SurrogateLaw::new((**surrogate).clone())),
                 Some(*contact),
             ),

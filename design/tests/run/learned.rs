@@ -154,6 +154,61 @@ fn a_ligament_that_tears_is_reported_before_the_cut_file_is_written() {
     assert!(warned(&whole, Concern::Tearing).is_empty() && !text.contains("tears (hinge"));
 }
 
+#[test]
+fn the_report_states_how_far_the_networks_of_an_ensemble_disagree() {
+    let folder = tempfile::tempdir().unwrap();
+    weights(folder.path(), &[]);
+    let first = Surrogate::load(&folder.path().join("tiny.safetensors")).unwrap();
+    let save = |scale: f64, dataset_hash: &str| {
+        // The energy of a scaled embedding goes with its square.
+        let mut layers = first.layers();
+        let last = layers.chi.last_mut().unwrap();
+        last.weight
+            .values
+            .iter_mut()
+            .for_each(|weight| *weight *= scale);
+        let mut card = first.card().clone();
+        card.dataset_hash = dataset_hash.into();
+        let other = Surrogate::from_parts(layers, card).unwrap();
+        other
+            .save(&folder.path().join("other.safetensors"))
+            .unwrap();
+    };
+    let ensemble = "weights = \"tiny.safetensors\"\nensemble = [\"other.safetensors\"]";
+    let scene = learned(&[("weights = \"tiny.safetensors\"", ensemble)]);
+    save(1.1, &first.card().dataset_hash);
+    let scene_of_two = read(folder.path(), &scene);
+    let designed = run(&scene_of_two, None).unwrap();
+    let report = write_results(&scene_of_two, &designed).unwrap();
+    let estimate = report.estimate.unwrap();
+    // Energies and forces of 1 and 1.21: a deviation of 0.21 / sqrt(2) about a mean of 1.105.
+    let expected = 0.21 / 2f64.sqrt() / 1.105;
+    assert_eq!((estimate.networks, estimate.damage_peak), (2, None));
+    assert!(
+        (estimate.energy - expected).abs() < 1e-9,
+        "{}",
+        estimate.energy
+    );
+    assert!(
+        (estimate.forces - expected).abs() < 1e-9,
+        "{}",
+        estimate.forces
+    );
+    assert!(
+        report
+            .to_string()
+            .contains("standard deviation of 2 networks")
+    );
+
+    save(1.1, "other data");
+    std::fs::write(folder.path().join("scene.toml"), &scene).unwrap();
+    let refused = Scene::read(&folder.path().join("scene.toml")).unwrap_err();
+    assert!(
+        refused.to_string().contains("surrogate.ensemble"),
+        "{refused}"
+    );
+}
+
 fn warned(report: &Report, concern: Concern) -> Vec<usize> {
     let of_concern = report
         .warnings
