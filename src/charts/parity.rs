@@ -26,7 +26,9 @@ fn parity_chart(
     ParityChart { title, points }: &ParityChart,
     [computed, judged]: [&str; 2],
 ) -> DrawResult {
-    let range = padded(points.iter().flat_map(|p| [p.target, p.predicted]));
+    // What the finite elements did not evaluate has no mark.
+    let known = || points.iter().filter(|p| !p.target.is_nan());
+    let range = padded(known().flat_map(|p| [p.target, p.predicted]));
     let mut chart = ChartBuilder::on(area)
         .caption(title, (FONT, 15))
         .margin(10)
@@ -45,7 +47,7 @@ fn parity_chart(
     let diagonal = [range.start, range.end].map(|v| (v, v));
     chart.draw_series(LineSeries::new(diagonal, GUIDE))?;
     let mark = |p: &ParityPoint| Circle::new((p.target, p.predicted), 2, POINT.mix(0.5).filled());
-    chart.draw_series(points.iter().map(mark))?;
+    chart.draw_series(known().map(mark))?;
     Ok(())
 }
 
@@ -55,7 +57,7 @@ mod tests {
 
     #[test]
     fn a_parity_chart_holds_a_mark_for_every_row() {
-        let points = [1.0, 2.0, 3.5].map(|target| ParityPoint {
+        let points = [1.0, 2.0, 3.5, f64::NAN].map(|target| ParityPoint {
             target,
             predicted: 1.1 * target,
         });
