@@ -64,6 +64,22 @@ fn judging_tier(told: &str) -> Tier {
     dataset::speaks_for(told).parse().unwrap_or_default()
 }
 
+/// The window of a hinge that follows a path, with the step control of a campaign.
+pub fn window(
+    design: HingeDesign,
+    path: DeformationPath,
+    material: &SheetMaterial,
+    tier: Tier,
+) -> KeptSolve {
+    KeptSolve {
+        design,
+        path,
+        material: material.clone(),
+        recipe: tier.recipe(),
+        step: StepControl::default(),
+    }
+}
+
 impl HingeRoute {
     /// The last state.
     pub fn end(&self) -> HingeDeformation {
@@ -74,22 +90,17 @@ impl HingeRoute {
     pub fn recorded(&self, material: &SheetMaterial, tier: Tier) -> Result<KeptSolve> {
         let path = DeformationPath::through(&self.states)
             .with_context(|| format!("hinge {} has no states", self.hinge))?;
-        Ok(self.window(path, material, tier))
+        Ok(window(self.design, path, material, tier))
     }
 
     /// The window that goes straight to the same end.
     pub fn straight(&self, material: &SheetMaterial, tier: Tier) -> KeptSolve {
-        self.window(DeformationPath::straight(self.end()), material, tier)
-    }
-
-    fn window(&self, path: DeformationPath, material: &SheetMaterial, tier: Tier) -> KeptSolve {
-        KeptSolve {
-            design: self.design,
-            path,
-            material: material.clone(),
-            recipe: tier.recipe(),
-            step: StepControl::default(),
-        }
+        window(
+            self.design,
+            DeformationPath::straight(self.end()),
+            material,
+            tier,
+        )
     }
 
     /// Greatest distance between the route and the straight ray to its end, at equal fractions of

@@ -73,17 +73,18 @@ impl Bridge {
             damage: blank,
             damage_peak: blank,
         };
-        let fit = |value: fn(&HingeSample) -> f64| {
-            let values = pairs().map(|(row, reference)| {
+        // A pair of which either is not known says nothing.
+        let fit = |value: fn(&HingeSample) -> Option<f64>| {
+            let values = pairs().filter_map(|(row, reference)| {
                 let terms = unfitted.terms(row).0;
-                (terms, value(&row.sample), value(reference))
+                Some((terms, value(&row.sample)?, value(reference)?))
             });
             least_squares(&values.collect::<Vec<_>>())
         };
         Self {
-            energy: fit(|sample| sample.w),
-            damage: fit(|sample| sample.d),
-            damage_peak: fit(|sample| sample.d_peak.unwrap_or(0.0)),
+            energy: fit(|sample| Some(sample.w)),
+            damage: fit(|sample| Some(sample.d)),
+            damage_peak: fit(|sample| sample.d_peak),
             ..unfitted
         }
     }

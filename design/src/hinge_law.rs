@@ -37,10 +37,11 @@ impl DamageMeasure {
     /// The damage of a hinge by this measure and its gradient in (a, s, theta, w_lig, alpha); zero where the
     /// law does not predict it.
     pub fn of(self, damage: &HingeDamage) -> (f64, [f64; 5]) {
-        match self {
-            Self::Mean => (damage.d, damage.gradient),
-            Self::Peak => (damage.d_peak.unwrap_or(0.0), damage.peak_gradient),
-        }
+        let gradient = match self {
+            Self::Mean => damage.gradient,
+            Self::Peak => damage.peak_gradient,
+        };
+        (self.known(damage).unwrap_or(0.0), gradient)
     }
 
     /// The damage of a hinge by this measure, if the law predicts it.

@@ -14,7 +14,7 @@
 //! rho = rho_0 + (1 - rho_0) min(1, theta / theta_full),   rho_0 = min(1, w_full / w_lig),
 //! ```
 //!
-//! with A and S the greatest tension and shear. A compressed ligament may besides be sheared as long as it
+//! with A and S the maximum tension and shear. A compressed ligament may besides be sheared as long as it
 //! stays slack, its ends no further apart than they were: (1 + eta_a)^2 + eta_s^2 <= 1. For the paper's film
 //! and w_full = 8 mm no ray end stores more than about 500 N mm, five times a deployed hinge.
 

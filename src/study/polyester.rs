@@ -7,6 +7,7 @@ use crate::kept_solves::{Outcome, SolveArgs};
 use crate::routes::{HingeRoute, hinge_routes, tier_of};
 use crate::run_folder;
 use crate::study::designed;
+use crate::surrogate::predicted;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::force_transmission::{ForceTransmission, TransmissionShares};
@@ -16,10 +17,11 @@ use design::outline_error::outline_error;
 use design::scene::{HingeModel, Scene, SceneConfig};
 use design::sheet::{HingePoint, Panel};
 use design::threshold::least_passing;
+use hinge::HingeSample;
 use mesher::Tier;
 use std::cmp::Ordering;
 use std::path::PathBuf;
-use surrogate::{Order, Surrogate};
+use surrogate::Surrogate;
 
 /// One sheet designed for its shape alone, and with the damage and compression of its hinges
 ///
@@ -224,17 +226,16 @@ fn worst(damage: &[Option<f64>]) -> usize {
         .unwrap_or(0)
 }
 
-/// W, M_theta, D and D_peak at the end of the route.
+/// By the surrogate at the end of the route.
 fn learned(surrogate: &Surrogate, route: &HingeRoute) -> [f64; 4] {
-    let (designs, end) = ([route.design], [route.end()]);
-    let prepared = surrogate.prepare(&designs);
-    let energy = surrogate.evaluate(&prepared, &end, Order::Forces)[0];
-    let damage = surrogate.damage(&designs, &end)[0];
-    let peak = damage.d_peak.unwrap_or(f64::NAN);
-    [energy.w, energy.forces[2], damage.d, peak]
+    figures(&predicted(surrogate, &[route.design], &[route.end()])[0])
 }
 
 fn replayed(outcome: &Outcome) -> Option<[f64; 4]> {
-    let end = outcome.as_ref().ok()?.samples.last()?;
-    Some([end.w, end.m_theta, end.d, end.d_peak.unwrap_or(f64::NAN)])
+    outcome.as_ref().ok()?.samples.last().map(figures)
+}
+
+/// W, M_theta, D and D_peak.
+fn figures(end: &HingeSample) -> [f64; 4] {
+    [end.w, end.m_theta, end.d, end.d_peak.unwrap_or(f64::NAN)]
 }

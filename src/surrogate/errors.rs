@@ -49,6 +49,11 @@ impl<'a> StateErrors<'a> {
         errors
     }
 
+    /// |error| of each energy over its own value, in rising order.
+    fn of_own_energy(&self) -> Vec<f64> {
+        self.sorted(0, |state| state.reference[0].max(f64::MIN_POSITIVE))
+    }
+
     /// Root mean square, median, 90th and 99th percentile and maximum of each quantity's error.
     fn distribution(&self) -> Table {
         let mut table = table(["error (%)", "rms", "median", "90 %", "99 %", "worst"]);
@@ -63,8 +68,7 @@ impl<'a> StateErrors<'a> {
             let cells = values.map(|value| format!("{:.2}", 100.0 * value));
             table.add_row(std::iter::once(name).chain(cells));
         };
-        let own = self.sorted(0, |state| state.reference[0].max(f64::MIN_POSITIVE));
-        add("W, of its own value".into(), own);
+        add("W, of its own value".into(), self.of_own_energy());
         for (i, name) in COMPARED.iter().enumerate() {
             let errors = self.sorted(i, |_| rms[i].max(f64::MIN_POSITIVE));
             if !errors.is_empty() {
@@ -123,7 +127,7 @@ impl fmt::Display for StateErrors<'_> {
             return Ok(());
         }
         writeln!(f, "{}", self.distribution())?;
-        let own = self.sorted(0, |state| state.reference[0].max(f64::MIN_POSITIVE));
+        let own = self.of_own_energy();
         let share = |limit: f64| {
             let met = own.iter().filter(|error| **error <= limit).count();
             100.0 * met as f64 / inside as f64

@@ -7,12 +7,12 @@
 use super::errors::StateErrors;
 use crate::inspect::Inspected;
 use crate::kept_solves::{Outcome, SolveArgs};
-use crate::routes::{hinge_routes, tier_of};
+use crate::routes::{hinge_routes, tier_of, window};
 use crate::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use dataset::{Database, Gates, Row, SplitPlan};
-use fe_driver::{DeformationPath, KeptSolve, StepControl, ToolVersions, Tools};
+use fe_driver::{DeformationPath, KeptSolve, ToolVersions, Tools};
 use hinge::{HingeDeformation, HingeDesign, HingeSample, SheetMaterial, TrainingDomain};
 use mesher::Tier;
 use rand::{RngExt, SeedableRng};
@@ -109,7 +109,7 @@ impl SpotCheckCommand {
         let _held = run_folder::hold(&self.out)?;
         let solves: Vec<KeptSolve> = probes
             .iter()
-            .map(|probe| probe.solve(&material, tier))
+            .map(|probe| window(probe.design, probe.path.clone(), &material, tier))
             .collect();
         let outcomes = self
             .solve
@@ -232,16 +232,6 @@ fn edge(domain: &TrainingDomain, design: &HingeDesign, state: &HingeDeformation)
 }
 
 impl Probe {
-    fn solve(&self, material: &SheetMaterial, tier: Tier) -> KeptSolve {
-        KeptSolve {
-            design: self.design,
-            path: self.path.clone(),
-            material: material.clone(),
-            recipe: tier.recipe(),
-            step: StepControl::default(),
-        }
-    }
-
     /// The states that the solver reached.
     fn rows(
         &self,
