@@ -1,14 +1,17 @@
-//! Bad input of any kind: a message that names the file, the key or the program, and exit code 1.
+//! Invalid input: the message names the file, the key or the program, and the exit code is 1.
 
 mod common;
+#[path = "common/failing_ccx.rs"]
+mod failing_ccx;
 
 use common::{Workplace, failure};
-use std::path::{Path, PathBuf};
+use failing_ccx::failing_ccx;
+use std::path::Path;
 
 const DEMO: &str = "configs/campaigns/demo.toml";
 const SCENE: &str = "configs/scenes/linear-7x7.toml";
 
-/// The message of `command` after one edit of a fresh copy of the configurations.
+/// The message of `command` after one edit of a new copy of the configurations.
 fn after(edited: &str, old: &str, new: &str, command: &str) -> String {
     let work = Workplace::new();
     work.edit(edited, &[(old, new)]);
@@ -17,7 +20,7 @@ fn after(edited: &str, old: &str, new: &str, command: &str) -> String {
 
 #[test]
 fn a_wrong_key_names_line_and_nearest_key() {
-    let message = after(DEMO, "kerf =", "kurf =", &format!("database plan {DEMO}"));
+    let message = after(DEMO, "kerf =", "kurf =", &format!("campaign plan {DEMO}"));
     assert!(
         message.contains("demo.toml:") && message.contains("did you mean `kerf`"),
         "{message}"
@@ -32,7 +35,7 @@ fn a_wrong_type_and_a_wrong_sign_name_the_value() {
         DEMO,
         "seed = 1",
         "seed = \"one\"",
-        &format!("database plan {DEMO}"),
+        &format!("campaign plan {DEMO}"),
     );
     assert!(message.contains("demo.toml:"), "{message}");
     let material = "configs/materials/pet-0.5mm.toml";
@@ -46,7 +49,7 @@ fn a_wrong_type_and_a_wrong_sign_name_the_value() {
 }
 
 #[test]
-fn unit_slips_are_suspected() {
+fn wrong_units_are_suspected() {
     let work = Workplace::new();
     assert!(
         work.error("solve --w-lig 0.018")
@@ -66,7 +69,7 @@ fn unit_slips_are_suspected() {
 fn missing_files_are_named() {
     let work = Workplace::new();
     for command in [
-        "database plan nowhere.toml",
+        "campaign plan nowhere.toml",
         "train nowhere.parquet",
         "design nowhere.toml",
     ] {
@@ -75,10 +78,10 @@ fn missing_files_are_named() {
 }
 
 #[test]
-fn missing_programs_tell_how_to_get_them() {
+fn the_message_about_a_missing_program_states_how_to_install_it() {
     let work = Workplace::new();
     for (variable, package) in [("KIRIGAMI_GMSH", "gmsh"), ("KIRIGAMI_CCX", "calculix-ccx")] {
-        let mut command = work.kirigami("solve --tier tiny");
+        let mut command = work.program("solve --tier tiny");
         let message = failure(command.env(variable, "/no/such/program"));
         assert!(message.contains(variable), "{message}");
         assert!(
@@ -87,28 +90,16 @@ fn missing_programs_tell_how_to_get_them() {
         );
     }
     failure(
-        work.kirigami("doctor")
+        work.program("doctor")
             .env("KIRIGAMI_CCX", "/no/such/program"),
     );
 }
 
-/// A ccx that answers with its version, and else does `body` and fails.
-fn failing_ccx(work: &Workplace, body: &str) -> PathBuf {
-    use std::os::unix::fs::PermissionsExt;
-    let path = work.path("ccx");
-    let script = format!(
-        "#!/bin/sh\n[ \"$1\" = -v ] && echo 'This is Version 2.20' && exit 0\n{body}; exit 201\n"
-    );
-    std::fs::write(&path, script).unwrap();
-    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
-    path
-}
-
 #[test]
-fn a_solver_that_fails_is_quoted_and_what_is_finished_is_kept() {
+fn the_output_of_a_failing_solver_is_quoted_and_the_deck_kept() {
     let work = Workplace::new();
-    let ccx = failing_ccx(&work, "echo ' *ERROR reading *SOLID SECTION'");
-    let message = failure(work.kirigami("solve --tier tiny").env("KIRIGAMI_CCX", &ccx));
+    let ccx = failing_ccx(&work.path(""), "echo ' *ERROR reading *SOLID SECTION'");
+    let message = failure(work.program("solve --tier tiny").env("KIRIGAMI_CCX", &ccx));
     assert!(
         message.contains("*ERROR reading *SOLID SECTION"),
         "{message}"
@@ -120,29 +111,7 @@ fn a_solver_that_fails_is_quoted_and_what_is_finished_is_kept() {
 }
 
 #[test]
-fn a_study_of_which_nothing_was_solved_is_an_error() {
-    let work = Workplace::new();
-    let study = |ccx: PathBuf| {
-        let mut study = work.kirigami("study window --quick --out study");
-        failure(study.env("KIRIGAMI_CCX", ccx))
-    };
-    // A broken solver is no result to keep, and a full disk ends the study.
-    let kept = || {
-        std::fs::read_dir(work.path("study/solutions"))
-            .unwrap()
-            .count()
-    };
-    let message = study(failing_ccx(&work, "echo ' *ERROR reading *SOLID SECTION'"));
-    assert!(message.contains("before its first increment"), "{message}");
-    assert_eq!(kept(), 0);
-    let full = "echo '1 1 1U 4 0. 0. 0.005' > window.sta; echo 'No space left on device'";
-    let message = study(failing_ccx(&work, full));
-    assert!(message.contains("No space left"), "{message}");
-    assert_eq!(kept(), 0);
-}
-
-#[test]
-fn weights_that_are_none_are_refused() {
+fn files_that_are_not_weights_are_refused() {
     let work = Workplace::new();
     let scene = "configs/scenes/demo.toml";
     let message = work.error(&format!("design {scene}"));
@@ -153,11 +122,11 @@ fn weights_that_are_none_are_refused() {
     std::fs::write(&weights, b"not weights").unwrap();
     let message = work.error(&format!("design {scene}"));
     assert!(
-        message.contains("surrogate.safetensors is no safetensors file"),
+        message.contains("surrogate.safetensors is not a safetensors file"),
         "{message}"
     );
 
-    // A real file whose last number, the energy scale, is not one.
+    // A valid file whose last number, the energy scale, is NaN.
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("surrogate/tests/cases");
     let mut bytes = std::fs::read(cases.join("chi_tiny.safetensors")).unwrap();
     let last = bytes.len() - 8;
@@ -166,7 +135,7 @@ fn weights_that_are_none_are_refused() {
     let message = work.error(&format!("design {scene}"));
     assert!(
         message.contains("surrogate.json"),
-        "a card is asked for: {message}"
+        "the message names the card: {message}"
     );
     std::fs::copy(cases.join("chi_tiny.json"), weights.with_extension("json")).unwrap();
     let message = work.error(&format!("design {scene}"));
@@ -174,7 +143,7 @@ fn weights_that_are_none_are_refused() {
 }
 
 #[test]
-fn help_is_there_for_every_command() {
+fn every_command_has_a_help_text() {
     let work = Workplace::new();
     for command in [
         "",
@@ -182,14 +151,15 @@ fn help_is_there_for_every_command() {
         "doctor",
         "mesh",
         "solve",
-        "database",
-        "database run",
+        "campaign",
+        "campaign run",
         "train",
         "design",
-        "pattern",
-        "deploy",
-        "equilibrium",
-        "gradient",
+        "inspect pattern",
+        "inspect deploy",
+        "inspect equilibrium",
+        "inspect gradient",
+        "verify",
     ] {
         assert!(
             work.output(&format!("{command} --help"))

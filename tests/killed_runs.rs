@@ -1,4 +1,4 @@
-//! A campaign that is killed again and again, or whose folder is lost: the database is the same.
+//! A campaign that is killed repeatedly, or whose folder is lost, gives the same database.
 
 mod common;
 #[path = "../fe_driver/tests/common/processes.rs"]
@@ -14,7 +14,7 @@ use std::time::Duration;
 
 const CAMPAIGN: &str = "configs/campaigns/demo.toml";
 
-/// Solves a small campaign once, and replays gmsh's and ccx's output from then on.
+/// Solves a small campaign once and replays the output of gmsh and ccx afterwards.
 struct Replay {
     work: Workplace,
 }
@@ -32,7 +32,7 @@ impl Replay {
         );
         let replay = Self { work };
         std::fs::create_dir(replay.work.path("recorded")).unwrap();
-        // Programs run in jobs/<id>/work.
+        // The programs run in jobs/<id>/work.
         let id = "id=${PWD%/work}; id=${id##*/}";
         let recorded = replay.work.path("recorded").display().to_string();
         let script = |program: &str, body: &str| {
@@ -70,12 +70,12 @@ impl Replay {
         replay
     }
 
-    /// A run in a folder, by the replaying programs.
+    /// A run in a folder with the replaying programs.
     fn run(&self, folder: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_kirigami"));
         command
             .args([
-                "database", "run", CAMPAIGN, "--jobs", "2", "--folder", folder,
+                "campaign", "run", CAMPAIGN, "--jobs", "2", "--folder", folder,
             ])
             .current_dir(self.work.path(""))
             .env("KIRIGAMI_GMSH", self.work.path("replaying-gmsh"))
@@ -84,7 +84,7 @@ impl Replay {
         command
     }
 
-    /// Lines of a campaign's history so far.
+    /// Number of lines of a campaign's event log.
     fn events(&self, folder: &str) -> usize {
         let history = self.work.path(folder).join("events-1-of-1.jsonl");
         std::fs::read_to_string(history).map_or(0, |text| text.lines().count())
@@ -92,13 +92,13 @@ impl Replay {
 
     fn collected(&self, folder: &str) -> Database {
         self.work.output(&format!(
-            "database collect {CAMPAIGN} --folder {folder} --out {folder}.parquet"
+            "campaign collect {CAMPAIGN} --folder {folder} --out {folder}.parquet"
         ));
         Database::read(&self.work.path(&format!("{folder}.parquet"))).unwrap()
     }
 }
 
-/// What a program answers when asked for its version, the number at its end.
+/// The version that a program prints, which is the number at the end.
 fn version(program: &str, flag: &str) -> String {
     let output = Command::new(program).arg(flag).output().unwrap();
     let text = [output.stdout, output.stderr].concat();
@@ -107,7 +107,7 @@ fn version(program: &str, flag: &str) -> String {
     text.split_whitespace().find(number).unwrap().to_owned()
 }
 
-/// Everything but what the solves cost.
+/// The rows without the costs of their solves.
 fn timeless(database: &Database) -> Vec<Row> {
     let rows = database.rows().iter().cloned();
     rows.map(|row| Row { cpu_s: 0.0, ..row }).collect()
@@ -130,9 +130,9 @@ fn a_campaign_killed_twenty_times_gives_the_same_database() {
             while replay.events(&folder) == before && run.try_wait().unwrap().is_none() {
                 std::thread::sleep(Duration::from_millis(1));
             }
-            // Within the time of a solve; multiples of the golden ratio never fall on one place.
-            let share = (0.618 * f64::from(4 * campaign + kill)).fract();
-            std::thread::sleep(Duration::from_millis(60).mul_f64(share));
+            // Within the duration of a solve; multiples of the golden ratio are spread evenly.
+            let fraction = (0.618 * f64::from(4 * campaign + kill)).fract();
+            std::thread::sleep(Duration::from_millis(60).mul_f64(fraction));
             interrupted += u32::from(run.try_wait().unwrap().is_none());
             run.kill().unwrap();
             run.wait().unwrap();
@@ -146,7 +146,7 @@ fn a_campaign_killed_twenty_times_gives_the_same_database() {
     }
     assert!(
         interrupted >= 10,
-        "only {interrupted} runs were really killed"
+        "only {interrupted} runs were killed before their end"
     );
 }
 
@@ -154,10 +154,16 @@ fn a_campaign_killed_twenty_times_gives_the_same_database() {
 fn a_lost_folder_is_restored_from_the_database() {
     let replay = Replay::new();
     let before = replay.collected("recorded-campaign");
-    let restore = format!("database restore {CAMPAIGN} --from recorded-campaign.parquet");
+    let restore = format!("campaign restore {CAMPAIGN} --from recorded-campaign.parquet");
     let restored = replay.work.output(&format!("{restore} --folder restored"));
     assert!(restored.contains("6 rays restored"), "{restored}");
-    // Nothing is left to solve, so no solver is missed.
+    // A database has no wall times, so the restored folder has no throughput.
+    let status = (replay.work).output(&format!(
+        "campaign status {CAMPAIGN} --folder restored --json"
+    ));
+    let status: serde_json::Value = serde_json::from_str(&status).unwrap();
+    assert!(status["throughput"].is_null(), "{status}");
+    // Nothing is left to solve, so a missing solver causes no error.
     let mut run = replay.run("restored");
     let outcome = run.env("KIRIGAMI_CCX", replay.work.path("replaying-ccx"));
     std::fs::remove_dir_all(replay.work.path("recorded")).unwrap();
@@ -168,20 +174,26 @@ fn a_lost_folder_is_restored_from_the_database() {
 
     replay.work.edit(CAMPAIGN, &[("kerf = 0.2", "kerf = 0.3")]);
     let message = replay.work.error(&format!("{restore} --folder other"));
-    assert!(message.contains("none of the campaign's"), "{message}");
+    assert!(
+        message.contains("none of the jobs belongs to the campaign"),
+        "{message}"
+    );
 }
 
 #[test]
-fn a_run_that_ends_early_says_so_by_its_exit_code() {
+fn a_run_that_ends_early_has_its_own_exit_code() {
     let replay = Replay::new();
     let mut run = replay.run("short");
     let output = run.args(["--time-limit", "0"]).output().unwrap();
     assert_eq!(output.status.code(), Some(75));
     let message = String::from_utf8(output.stderr).unwrap();
-    assert!(message.contains("6 rays left; run again"), "{message}");
+    assert!(
+        message.contains("6 rays left; run the same command again"),
+        "{message}"
+    );
 
     let arguments = format!("{CAMPAIGN} --folder short");
-    let refused = replay.work.error(&format!("database collect {arguments}"));
+    let refused = replay.work.error(&format!("campaign collect {arguments}"));
     assert!(
         refused.contains("missing: 6 rays not solved yet"),
         "{refused}"
@@ -192,13 +204,13 @@ fn a_run_that_ends_early_says_so_by_its_exit_code() {
     }
     let status = replay
         .work
-        .output(&format!("database status {arguments} --json"));
+        .output(&format!("campaign status {arguments} --json"));
     let status: serde_json::Value = serde_json::from_str(&status).unwrap();
     assert_eq!(status["tally"]["complete"], 6);
     assert!(status["throughput"]["rays_per_hour"].as_f64().unwrap() > 0.0);
     let plan = replay
         .work
-        .output(&format!("database plan {arguments} --json"));
+        .output(&format!("campaign plan {arguments} --json"));
     let plan: serde_json::Value = serde_json::from_str(&plan).unwrap();
     assert_eq!(plan["reasons"], serde_json::json!({}));
 }

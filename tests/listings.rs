@@ -1,6 +1,6 @@
-//! What `pattern`, `deploy`, `equilibrium` and `gradient` print with `--json`, against the reference
-//! cases. The cases have panels of 1 x 1; here they are 100 mm wide, with the constants of (11) that
-//! make the same shape of them.
+//! The output of `inspect` `pattern`, `deploy`, `equilibrium` and `gradient` with `--json`, against the reference
+//! cases. The panels of the cases are 1 x 1; here they are 100 mm wide, with the constants of (11) that
+//! give the same shape.
 
 mod common;
 
@@ -17,7 +17,7 @@ fn case(name: &str) -> Value {
     serde_json::from_str(&text).unwrap()
 }
 
-/// What a command prints of a scene with the given sections.
+/// The output of a command for a scene with the given sections.
 fn printed(work: &Workplace, command: &str, sections: &str, options: &str) -> Value {
     let scene = format!(
         "title = \"Case\"\nmaterial = \"configs/materials/pet-0.5mm.toml\"\noutput = \"run\"\n{sections}\n\
@@ -26,11 +26,11 @@ fn printed(work: &Workplace, command: &str, sections: &str, options: &str) -> Va
          [optimiser]\nsteps = 1\nlearning_rate = 0.1\n"
     );
     std::fs::write(work.path("case.toml"), scene).unwrap();
-    let text = work.output(&format!("{command} case.toml --json {options}"));
+    let text = work.output(&format!("inspect {command} case.toml --json {options}"));
     serde_json::from_str(&text).unwrap()
 }
 
-/// Every number of `found` is `scale` times that of `expected`, to `error` of `scale`.
+/// Asserts that every number of `found` is `scale` times that of `expected`, to `error` of `scale`.
 fn assert_close(found: &Value, expected: &Value, scale: f64, error: f64, place: &str) {
     match (found, expected) {
         (Value::Array(found), Value::Array(expected)) => {
@@ -83,7 +83,7 @@ fn patterns_and_deployments() {
         );
         let pattern = printed(&work, "pattern", &sections, "");
         assert!(
-            work.error("equilibrium case.toml")
+            work.error("inspect equilibrium case.toml")
                 .contains("hinge = \"pin\"")
         );
         let (length, area) = (SIZE, SIZE * SIZE);
@@ -141,7 +141,7 @@ fn equilibria_objective_and_gradient() {
     let theta = &case["theta"];
     let widths = case["w_lig"].as_array().unwrap().iter();
     let widths: Vec<f64> = widths.map(|w| SIZE * w.as_f64().unwrap()).collect();
-    // W of a panel of 100 mm is 100 times that of one of 1 mm: forces stay.
+    // W of a panel of 100 mm is 100 times that of one of 1 mm; forces are equal.
     let sections = format!(
         "hinge = \"linear\"\nload_steps = 5\n{}\nw_lig = {widths:?}\n\
          [linear]\nk_a = 1.0\nk_s = 0.6\nk_theta = 100.0\n\
@@ -162,10 +162,16 @@ fn equilibria_objective_and_gradient() {
         assert_eq!(step["status"], "converged");
         assert_motions(&step["q"], expected, 1e-8);
     }
-    assert!(work.error("deploy case.toml").contains("--opening-deg"));
+    assert!(
+        work.error("inspect deploy case.toml")
+            .contains("--opening-deg")
+    );
     let gradient = printed(&work, "gradient", &sections, "");
     work.edit("case.toml", &[("force = [1.2, 0.0]", "force = [1.2, nan]")]);
-    assert!(work.error("gradient case.toml").contains("loads[0].force"));
+    assert!(
+        work.error("inspect gradient case.toml")
+            .contains("loads[0].force")
+    );
     let area = SIZE * SIZE;
     let (terms, expected) = (&gradient["terms"], &case["terms"]);
     assert_close(&gradient["loss"], &case["loss"], area, 1e-8, "loss");

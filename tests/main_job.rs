@@ -1,4 +1,4 @@
-//! The main job, end to end, with the real gmsh and CalculiX: campaign, database, weights, design.
+//! The main job from end to end with the real gmsh and CalculiX: campaign, database, weights, design.
 
 mod common;
 
@@ -10,7 +10,7 @@ const CAMPAIGN: &str = "configs/campaigns/demo.toml";
 #[test]
 fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
     let work = Workplace::new();
-    // Short rays of few geometries: seconds, and the same road as the real campaign.
+    // Short rays of few geometries take seconds; the steps are those of a real campaign.
     work.edit(
         CAMPAIGN,
         &[
@@ -25,22 +25,22 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
     );
     work.edit("configs/scenes/demo.toml", &[("steps = 150", "steps = 3")]);
 
-    let run = format!("database run {CAMPAIGN} --folder runs/demo/campaign");
+    let run = format!("campaign run {CAMPAIGN} --folder runs/demo/campaign");
     assert!(work.output(&run).contains("6 rays complete"));
     let events = || std::fs::read(work.path("runs/demo/campaign/events-1-of-1.jsonl")).unwrap();
     let first = events();
     work.output(&run);
-    assert_eq!(events(), first, "nothing finished is run again");
+    assert_eq!(events(), first, "finished jobs are not run again");
 
     let collect = format!(
-        "database collect {CAMPAIGN} --folder runs/demo/campaign --out runs/demo/hinges.parquet"
+        "campaign collect {CAMPAIGN} --folder runs/demo/campaign --out runs/demo/hinges.parquet"
     );
-    let status = format!("database status {CAMPAIGN} --folder runs/demo/campaign");
+    let status = format!("campaign status {CAMPAIGN} --folder runs/demo/campaign");
     assert!(work.output(&status).contains("6 rays complete"));
     work.output(&collect);
     assert!(work.error(&collect).contains("exists"));
 
-    // What was run is what is collected.
+    // Only the campaign that was run can be collected.
     work.edit(CAMPAIGN, &[("count = 6", "count = 7")]);
     for command in [format!("{collect} --replace"), status] {
         let message = work.error(&command);
@@ -74,7 +74,7 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
 
     let design = "configs/scenes/demo.toml --design runs/demo/design/state.json";
     let replay = format!(
-        "replay {design} --ensemble runs/demo/surrogate-last.safetensors --tier tiny --out replay"
+        "verify {design} --ensemble runs/demo/surrogate-last.safetensors --tier tiny --out replay"
     );
     let page = work.output(&replay);
     for expected in ["states of 12 hinges", "| M_theta |", "standard deviations"] {
@@ -106,12 +106,8 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
             .contains("states inside the training domain")
     );
 
-    let study = "study path configs/scenes/demo.toml --routes 2 --tier tiny --out path";
-    assert!(work.output(study).contains("2 of 12 routes"));
-    assert!(work.path("path/path.png").exists());
-
-    // Six rays of little rotation do not cover what a design does.
-    let extend = format!("database extend {design} --rays configs/campaigns/further.csv");
+    // Six rays with small rotations do not cover the hinge states of a design.
+    let extend = format!("campaign extend {design} --rays configs/campaigns/further.csv");
     assert!(work.output(&extend).contains("rays added"));
     let further = std::fs::read_to_string(work.path("configs/campaigns/further.csv")).unwrap();
     let rays = further.lines().count() - 1;
@@ -121,7 +117,7 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
         &[("seed = 1", "seed = 1\nfurther_rays = \"further.csv\"")],
     );
     let plan = work.output(&format!(
-        "database plan {CAMPAIGN} --folder runs/demo/campaign --json"
+        "campaign plan {CAMPAIGN} --folder runs/demo/campaign --json"
     ));
     let plan: serde_json::Value = serde_json::from_str(&plan).unwrap();
     assert_eq!(
@@ -131,11 +127,11 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
     );
     work.edit(CAMPAIGN, &[("\nfurther_rays = \"further.csv\"", "")]);
 
-    // The folders belong to what was run in them.
+    // A folder belongs to the campaign or scene that was run in it.
     work.edit(CAMPAIGN, &[("name = \"demo\"", "name = \"other\"")]);
     assert!(
         work.error(&run)
-            .contains("holds the campaign `demo`, not `other`")
+            .contains("contains the campaign `demo`, not `other`")
     );
     work.edit(
         "configs/scenes/demo.toml",

@@ -1,8 +1,8 @@
-//! The same rays solved twice: what a database is worth, beside one of a finer mesh.
+//! Comparison of the rays that two databases contain: the error of a database relative to one of a finer mesh.
 //!
-//! Two jobs are the same ray if their designs and the directions of their ends are the same. They
-//! are compared at the states of the first, between which the second is read linearly, as far as
-//! both go.
+//! Two jobs are the same ray if their designs and their ends are the same. They
+//! are compared at the states of the first job, up to the smaller lambda of the two; the second job is interpolated
+//! linearly in lambda.
 
 use crate::database::Database;
 use crate::rows::Row;
@@ -12,19 +12,19 @@ use std::collections::BTreeMap;
 /// The quantities that are compared.
 pub const COMPARED: [&str; 6] = ["W", "F_a", "F_s", "M_theta", "D", "D_peak"];
 
-/// One ray solved twice.
+/// One ray that both databases contain.
 #[derive(Clone, Debug)]
 pub struct ComparedRay<'a> {
-    /// The rows of the database that is judged, in order of lambda, as far as both go; not empty.
+    /// The rows of the compared database, in order of lambda, up to the last lambda of the reference; not empty.
     pub rows: Vec<&'a Row>,
-    /// What the one it is judged by says at each of them.
+    /// The sample of the reference database at each of these rows.
     pub references: Vec<HingeSample>,
-    /// CPU time of the ray (s) in the database that is judged, and in the one it is judged by.
+    /// CPU time of the ray (s) in the compared database and in the reference database.
     pub cpu_s: [f64; 2],
 }
 
 impl<'a> ComparedRay<'a> {
-    /// Each row with its reference.
+    /// Each row with its reference sample.
     pub fn pairs(&self) -> impl Iterator<Item = (&'a Row, &HingeSample)> {
         std::iter::zip(self.rows.iter().copied(), &self.references)
     }
@@ -36,18 +36,18 @@ impl<'a> ComparedRay<'a> {
             .collect()
     }
 
-    /// The furthest row that is compared.
+    /// The compared row with the largest lambda.
     pub fn end(&self) -> &'a Row {
         self.rows[self.rows.len() - 1]
     }
 }
 
-/// A state in both databases. What one of them does not know is not a number, and is not counted.
+/// A state in both databases. Quantities unknown in one of them are NaN and are not counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComparedState {
-    /// In the database that is judged, in the order of [`COMPARED`].
+    /// Values in the compared database, in the order of [`COMPARED`].
     pub value: [f64; 6],
-    /// In the one it is judged by.
+    /// Values in the reference database.
     pub reference: [f64; 6],
 }
 
@@ -63,13 +63,13 @@ impl ComparedState {
         }
     }
 
-    /// Whether both databases know the quantity `i` of [`COMPARED`].
+    /// Whether the quantity `i` of [`COMPARED`] is known in both databases.
     pub fn is_known(&self, i: usize) -> bool {
         !(self.value[i] - self.reference[i]).is_nan()
     }
 }
 
-/// The rays that stand in both databases, in the order of their designs.
+/// The rays that both databases contain, in the order of their designs.
 pub fn compare<'a>(judged: &'a Database, reference: &'a Database) -> Vec<ComparedRay<'a>> {
     let references = rays(reference.rows());
     let pairs = rays(judged.rows()).into_iter().filter_map(|(ray, rows)| {
@@ -92,17 +92,17 @@ pub fn compare<'a>(judged: &'a Database, reference: &'a Database) -> Vec<Compare
         .collect()
 }
 
-/// Root mean square of the references, quantity by quantity.
+/// Root mean square of the reference values of each quantity.
 pub fn reference_rms<'a>(states: impl IntoIterator<Item = &'a ComparedState>) -> [f64; 6] {
     rms(states, |state, i| state.reference[i])
 }
 
-/// Root mean square of the differences over that of the references, quantity by quantity, or over
-/// `least` where that is greater: a damage of next to nothing is not judged by its own size.
-pub fn relative_rms(states: &[ComparedState], least: [f64; 6]) -> [f64; 6] {
+/// Root mean square of the differences of each quantity, divided by that of the references or by
+/// `minimum`, whichever is larger. The minimum keeps the relative error of a nearly zero damage finite.
+pub fn relative_rms(states: &[ComparedState], minimum: [f64; 6]) -> [f64; 6] {
     let off = rms(states, |state, i| state.value[i] - state.reference[i]);
     let scale = reference_rms(states);
-    std::array::from_fn(|i| off[i] / scale[i].max(least[i]).max(f64::MIN_POSITIVE))
+    std::array::from_fn(|i| off[i] / scale[i].max(minimum[i]).max(f64::MIN_POSITIVE))
 }
 
 fn rms<'a>(
@@ -121,7 +121,7 @@ fn rms<'a>(
     std::array::from_fn(|i| (squares[i] / f64::max(counts[i], 1.0)).sqrt())
 }
 
-/// Design and end, in millionths of their units.
+/// Design and end of a ray, in millionths of their units.
 type Ray = [i64; 8];
 
 /// Rows by ray, in order of lambda.
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn rays_three_percent_apart_differ_by_three_percent() {
+    fn rays_scaled_by_three_percent_differ_by_three_percent() {
         let stiff = rows(6).into_iter().map(|row| {
             let x = row.sample;
             let (w, w_work) = (1.03 * x.w, 1.03 * x.w_work);
@@ -195,7 +195,7 @@ mod tests {
         for difference in relative_rms(&states, twice) {
             assert!((difference - 0.015).abs() < 1e-12, "{difference}");
         }
-        // Only what both hold is compared.
+        // Only rays that both databases contain are compared.
         let fewer = database(rows(4));
         assert_eq!(compare(&judged, &fewer).len(), 4);
     }

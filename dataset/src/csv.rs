@@ -1,6 +1,7 @@
-//! CSV: the table of a database for other programs, and rows that other solvers computed.
+//! CSV export of a database, and import of rows computed by other solvers.
 
-use crate::database::{Database, DatasetError};
+use crate::database::Database;
+use crate::error::DatasetError;
 use crate::rows::Row;
 use crate::schema::{self, KNOWN, NUMBERS, TEXTS};
 use polars::prelude::{CsvReadOptions, CsvWriter, SerReader, SerWriter};
@@ -9,19 +10,19 @@ use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::Path;
 
-/// How a foreign table speaks of our columns, as a TOML file holds it.
+/// The mapping from the columns of a foreign table to those of a database, read from a TOML file.
 ///
-/// A column of ours is looked for under its own name unless `columns` gives another; what the
-/// table lacks is taken from `constants`. `job` (the ray) may be missing if every row is a ray of
-/// its own, `lambda` too; of the results only W, F_a, F_s and M_theta must be there.
+/// Each column of the database has the same name in the table unless `columns` gives another name. A column that is
+/// missing in the table is taken from `constants`. `job` (the ray) and `lambda` may be missing if every row is a
+/// separate ray. Of the results, only W, F_a, F_s and M_theta are required.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ColumnMap {
-    /// The table's name of a column of ours.
+    /// Name in the table of each column of the database.
     pub columns: BTreeMap<String, String>,
-    /// What to multiply a column of numbers by: 0.017453292519943295 for angles in degrees.
+    /// Factor by which a column of numbers is multiplied: 0.017453292519943295 for angles in degrees.
     pub factors: BTreeMap<String, f64>,
-    /// The value of a column that the table lacks.
+    /// Value of each column that is missing in the table.
     pub constants: BTreeMap<String, Constant>,
 }
 
@@ -33,7 +34,7 @@ pub enum Constant {
     Text(String),
 }
 
-/// Columns of numbers that a foreign table must have: what a surrogate learns from.
+/// Columns of numbers that a foreign table must have, because a surrogate is trained on them.
 const REQUIRED: [&str; 12] = [
     "w_lig",
     "alpha",
@@ -50,7 +51,7 @@ const REQUIRED: [&str; 12] = [
 ];
 
 impl Database {
-    /// The table as CSV, with every digit.
+    /// The table as CSV, in full precision.
     pub fn to_csv(&self) -> Result<Vec<u8>, DatasetError> {
         let mut bytes = Vec::new();
         CsvWriter::new(&mut bytes).finish(&mut schema::to_frame(&self.rows)?)?;
@@ -58,7 +59,7 @@ impl Database {
     }
 }
 
-/// The rows of a CSV file, to be collected into a database; `path` is what errors name.
+/// Reads the rows of a CSV file, to be collected into a database.
 pub fn rows_from_csv(path: &Path, map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
     map.check()?;
     let bytes = std::fs::read(path).map_err(|source| DatasetError::Read {
@@ -72,7 +73,7 @@ pub fn rows_from_csv(path: &Path, map: &ColumnMap) -> Result<Vec<Row>, DatasetEr
 }
 
 fn rows_of(bytes: &[u8], map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
-    // Every column as text: numbers are parsed here, where errors can name the row.
+    // Every column is read as text: numbers are parsed below, where errors can name the row.
     let frame = CsvReadOptions::default()
         .with_infer_schema_length(Some(0))
         .into_reader_with_file_handle(Cursor::new(bytes))
@@ -101,7 +102,7 @@ fn rows_of(bytes: &[u8], map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
     };
     for text in &TEXTS {
         let values = match (column(text.name)?, map.constants.get(text.name)) {
-            // An empty cell is an empty text: most rows have no failure.
+            // An empty cell is an empty text; for example, most rows have no failure.
             (Some(cells), _) => cells
                 .into_iter()
                 .map(|c| Some(c.unwrap_or_default()))
@@ -143,7 +144,7 @@ fn rows_of(bytes: &[u8], map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
     Ok(rows)
 }
 
-/// An empty cell is not a number, which the gates reject.
+/// The numbers of a column. An empty cell becomes NaN, which the gates reject.
 fn parsed(column: &'static str, cells: &[Option<String>]) -> Result<Vec<f64>, DatasetError> {
     let parse = |(index, cell): (usize, &Option<String>)| match cell.as_deref() {
         None => Ok(f64::NAN),
@@ -157,7 +158,7 @@ fn parsed(column: &'static str, cells: &[Option<String>]) -> Result<Vec<f64>, Da
 }
 
 impl ColumnMap {
-    /// Refuses columns that are none of ours, and constants of the wrong kind.
+    /// Rejects columns that a database does not have, and constants of the wrong type.
     fn check(&self) -> Result<(), DatasetError> {
         let number = |name: &str| {
             let known = KNOWN.iter().any(|column| column.name == name);

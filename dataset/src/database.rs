@@ -1,112 +1,15 @@
-//! A database: rows that belong together, their Parquet file and its manifest.
+//! A database: consistent rows, their Parquet file and its manifest.
 
+use crate::error::DatasetError;
 use crate::gates::{Gates, Rejection};
-use crate::manifest::{FORMAT_VERSION, Manifest};
+use crate::manifest::Manifest;
+use crate::parquet;
 use crate::rows::Row;
 use crate::split::{Part, SplitPlan};
-use crate::{parquet, schema};
 use hinge::TrainingDomain;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
 
-/// Why rows do not make a database, or a database could not be read or written.
-#[derive(Debug, thiserror::Error)]
-pub enum DatasetError {
-    #[error("no rows ({rejected} were rejected); run the campaign before collecting it")]
-    NoRows { rejected: usize },
-    #[error(
-        "job {job}: {column} = {found}, but other rows have {expected}; \
-         keep each in a database of its own, or say that materials and tiers may be mixed"
-    )]
-    Mixed {
-        job: String,
-        column: &'static str,
-        expected: String,
-        found: String,
-    },
-    #[error("job {job}: lambda = {lambda} occurs twice; was the job collected twice?")]
-    Duplicate { job: String, lambda: f64 },
-    #[error(
-        "{found} geometries cannot be split into training, validation and test: \
-         at least 3 are needed"
-    )]
-    TooFewGeometries { found: usize },
-    #[error("the databases are of different materials, {expected} and {found}")]
-    OtherMaterial { expected: String, found: String },
-    #[error(
-        "{found} rays stand in both databases, the correction needs at least {needed}: solve more \
-         rays of the one on the mesh of the other"
-    )]
-    TooFewRays { found: usize, needed: usize },
-    #[error(
-        "the shares validation = {validation} and test = {test} must each be above 0 and below 0.5"
-    )]
-    Shares { validation: f64, test: f64 },
-    #[error("column `{column}` has no value in row {index}")]
-    Gap { column: &'static str, index: usize },
-    #[error(
-        "there is no column `{column}`: name the one that holds it under [columns], or its value \
-         under [constants]"
-    )]
-    NoColumn { column: String },
-    #[error("column `{column}`, row {index}: `{text}` is not a number")]
-    NotANumber {
-        column: &'static str,
-        index: usize,
-        text: String,
-    },
-    #[error("the column map names `{key}`, which is no column of a database, or of another kind")]
-    ColumnMap { key: String },
-    #[error("job {job}, lambda = {lambda}: a number of the row is not finite")]
-    NotFinite { job: String, lambda: f64 },
-    #[error("cannot read {path}: {source}", path = .path.display())]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
-    #[error("cannot write {path}: {source}", path = .path.display())]
-    Write {
-        path: PathBuf,
-        source: std::io::Error,
-    },
-    #[error(
-        "{path} exists; choose another name, or say that it shall be replaced",
-        path = .path.display()
-    )]
-    Exists { path: PathBuf },
-    #[error("{path} is no manifest of a database: {source}", path = .path.display())]
-    Manifest {
-        path: PathBuf,
-        source: serde_json::Error,
-    },
-    #[error(
-        "{path} has the format version {found}, this program reads 2 to {FORMAT_VERSION}; \
-         collect the campaign again",
-        path = .path.display()
-    )]
-    UnknownVersion { path: PathBuf, found: u64 },
-    #[error(
-        "{path} is not the file its manifest describes (BLAKE3 {found}, not {expected}); \
-         copy the two files together, or collect the campaign again",
-        path = .path.display()
-    )]
-    Hash {
-        path: PathBuf,
-        expected: String,
-        found: String,
-    },
-    #[error("{path}: {source}", path = .path.display())]
-    In {
-        path: PathBuf,
-        source: Box<DatasetError>,
-    },
-    #[error("the column `strain_volumes`: {0}")]
-    StrainVolumes(#[from] hinge::NoHistogram),
-    #[error("the table is not that of a database: {0}")]
-    Table(#[from] polars::error::PolarsError),
-}
-
-/// Rows in the order of job and lambda, with the Parquet file that holds them and its manifest.
+/// Rows in the order of job and lambda, with the bytes of their Parquet file and its manifest.
 #[derive(Clone, Debug)]
 pub struct Database {
     pub(crate) rows: Vec<Row>,
@@ -115,17 +18,17 @@ pub struct Database {
 }
 
 impl Database {
-    /// Drops what the gates reject, counting it, and splits the rest by geometry.
+    /// Drops and counts the rows that the gates reject, and splits the others by geometry.
     ///
-    /// Refuses rows of different materials, tiers or hinge constants.
+    /// Rows of different materials, tiers or hinge constants are an error.
     pub fn collect(rows: Vec<Row>, gates: &Gates, plan: &SplitPlan) -> Result<Self, DatasetError> {
         Self::assemble(rows, gates, plan, Mixing::Refused)
     }
 
-    /// Several databases as one, split anew.
+    /// Merges several databases into one and splits it again.
     ///
-    /// A job that stands in more than one is taken once. Materials and tiers may be mixed if told
-    /// so, hinge constants never: no feature of the surrogate tells them apart.
+    /// A job that several databases contain is taken once. Materials and tiers may be mixed if `mixing` allows it.
+    /// Hinge constants may not be mixed, because the surrogate has no feature for them.
     pub fn merge(
         databases: &[Self],
         plan: &SplitPlan,
@@ -156,13 +59,13 @@ impl Database {
         Ok(merged)
     }
 
-    /// The same rows split by another plan.
+    /// The same rows, split according to another plan.
     pub fn split(&self, plan: &SplitPlan) -> Result<Self, DatasetError> {
         Self::merge(std::slice::from_ref(self), plan, Mixing::Allowed)
     }
 
-    /// The same parts for validation and test, and no more than the first `training` of the
-    /// training rays. Ids are hashes, so that their order means nothing.
+    /// The same database with at most the first `training` rays of the training part. The validation and test parts
+    /// are unchanged. Ids are hashes, so that the first rays are a random selection.
     pub fn thinned(&self, training: usize) -> Self {
         let mut thinned = self.clone();
         let split = &mut thinned.manifest.split;
@@ -171,7 +74,7 @@ impl Database {
         thinned
     }
 
-    /// The same split, but for training and validation no state outside the domain.
+    /// The same split, with only states inside the domain in the training and validation parts.
     pub fn within(&self, domain: &TrainingDomain) -> Result<Self, DatasetError> {
         let split = &self.manifest.split;
         let test = split.jobs(Part::Test);
@@ -190,7 +93,7 @@ impl Database {
         Ok(within)
     }
 
-    /// Other rows of the same jobs, through the same gates and split by the same plan.
+    /// A database of other rows of the same jobs, with the same gates and split plan.
     pub(crate) fn with_rows(&self, rows: Vec<Row>) -> Result<Self, DatasetError> {
         let Manifest {
             gates, split_plan, ..
@@ -225,7 +128,7 @@ impl Database {
         });
         refuse_mixed(&rows, mixing)?;
         refuse_duplicates(&rows)?;
-        let parquet = parquet::encode(schema::to_frame(&rows)?)?;
+        let parquet = parquet::encode(&rows)?;
         let hash = parquet::hash(&parquet);
         let manifest = Manifest::new(&rows, hash, gates, rejected, plan)?;
         Ok(Self {
@@ -235,24 +138,12 @@ impl Database {
         })
     }
 
-    /// Reads `X.parquet` and the manifest `X.json` beside it, which must describe it.
-    pub fn read(path: &Path) -> Result<Self, DatasetError> {
-        parquet::read(path)
-    }
-
-    /// Writes `X.parquet` and the manifest `X.json` beside it, each beside its place and renamed.
-    ///
-    /// An existing file is an error unless it is to be replaced.
-    pub fn write(&self, path: &Path, replace: bool) -> Result<(), DatasetError> {
-        parquet::write(self, path, replace)
-    }
-
     /// All accepted rows.
     pub fn rows(&self) -> &[Row] {
         &self.rows
     }
 
-    /// What the database says about itself.
+    /// The metadata of the database.
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }
@@ -272,7 +163,7 @@ pub enum Mixing {
     Allowed,
 }
 
-/// What all rows must share: a surrogate knows none of it.
+/// Rejects rows that differ in a quantity that is not a feature of the surrogate.
 fn refuse_mixed(rows: &[Row], mixing: Mixing) -> Result<(), DatasetError> {
     let shared = |row: &Row| {
         let constants = [
@@ -307,7 +198,7 @@ fn refuse_mixed(rows: &[Row], mixing: Mixing) -> Result<(), DatasetError> {
     Ok(())
 }
 
-/// `rows` are in the order of job and lambda.
+/// Rejects rows with the same job and lambda; `rows` must be in the order of job and lambda.
 fn refuse_duplicates(rows: &[Row]) -> Result<(), DatasetError> {
     let key = |row: &Row| (row.job.clone(), row.sample.lambda);
     match rows.windows(2).find(|pair| key(&pair[0]) == key(&pair[1])) {

@@ -1,19 +1,20 @@
-//! Which rows are too bad to learn from; nothing is repaired.
+//! Criteria by which rows are rejected from the database. Rows are never repaired.
 
 use crate::rows::Row;
+use crate::schema::is_finite;
 use serde::{Deserialize, Serialize};
 
-/// Limits that a row must keep.
+/// Limits that an accepted row satisfies.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Gates {
-    /// Greatest accepted [`hinge::HingeSample::energy_residual`]: the solver's energy against
-    /// the work of its reactions.
+    /// Maximum accepted [`hinge::HingeSample::energy_residual`]: relative difference of the solver's energy and
+    /// the work of its reaction forces.
     pub energy_residual_max: f64,
 }
 
 impl Default for Gates {
-    /// Converged rays stay under 1e-3; ten times that is another disease than the quadrature's.
+    /// Converged rays stay below 1e-3; ten times this value is not explained by the error of the quadrature.
     fn default() -> Self {
         Self {
             energy_residual_max: 0.01,
@@ -21,7 +22,7 @@ impl Default for Gates {
     }
 }
 
-/// Why a row was rejected; the first reason that applies.
+/// Why a row was rejected: the first reason that applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rejection {
@@ -31,15 +32,15 @@ pub enum Rejection {
     InvalidDesign,
     /// W < 0 or D < 0.
     Negative,
-    /// The energy and the work of the reactions disagree.
+    /// The energy and the work of the reaction forces differ by more than the limit.
     EnergyResidual,
 }
 
 impl Gates {
-    /// Why `row` is rejected, if it is.
+    /// Why `row` is rejected; `None` if it is accepted.
     pub fn rejection(&self, row: &Row) -> Option<Rejection> {
         let sample = &row.sample;
-        if !row.is_finite() {
+        if !is_finite(row) {
             Some(Rejection::NotFinite)
         } else if row.design.validate().is_err() {
             Some(Rejection::InvalidDesign)
@@ -59,7 +60,7 @@ mod tests {
     use crate::rows::tests::row;
 
     #[test]
-    fn each_gate_closes_on_its_own_row() {
+    fn each_gate_rejects_its_own_defect() {
         let gates = Gates::default();
         assert_eq!(gates.rejection(&row(0, 0.5)), None);
         type Change = fn(&mut Row);

@@ -1,28 +1,49 @@
 //! The hinge database: every converged increment of every window solve, as one table.
 //!
 //! A database is `X.parquet` with its manifest `X.json`: hash, counts, units, training domain,
-//! rejected rows and the split. It is collected once ([`Database::collect`]), never repaired, and
-//! refuses rows that do not belong together.
+//! rejected rows and the split. It is collected once with [`Database::collect`], which rejects invalid rows instead
+//! of repairing them. Rows of different materials, tiers or hinge constants are an error.
 //!
-//! | file | idea |
+//! | file | contents |
 //! |---|---|
 //! | `rows` | one row: design, sample, provenance |
 //! | `schema` | the columns |
 //! | `gates` | which rows are rejected, and why |
-//! | `split` | training, validation and test by geometry |
+//! | `split` | training, validation and test parts, split by geometry |
 //! | `mirror` | the mirror image of a row |
-//! | `manifest` | what stands beside the Parquet file |
+//! | `manifest` | the manifest of a Parquet file |
 //! | `noise` | scatter of the increments of a ray |
-//! | `parquet` | reading and writing |
-//! | `compare` | the same rays solved twice |
-//! | `bridge` | rows of a coarse mesh corrected to a finer one |
-//! | `csv` | CSV, also of other solvers |
-//! | `summary` | counts, ranges, histograms and coverage, to print |
+//! | `database` | consistent rows with their manifest: [`Database`] |
+//! | `database_files` | reading and writing a database |
+//! | `parquet` | rows as the bytes of a Parquet file |
+//! | `compare` | comparison of rays that two databases contain |
+//! | `fidelity` | the mesh fidelity of the rows |
+//! | `fidelity_correction` | correction of the rows of a coarse mesh to a finer one |
+//! | `csv` | CSV export, and import of tables of other solvers |
+//! | `summary` | counts, ranges, histograms and coverage as text |
+//!
+//! Reading a database:
+//!
+//! ```
+//! use dataset::{Database, Part};
+//! use std::path::Path;
+//!
+//! # let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/pet-0.5mm/reference.parquet");
+//! let database = Database::read(&path)?;
+//! println!("{}", database.manifest().tier);
+//! for row in database.part(Part::Test) {
+//!     assert!(row.sample.w.is_finite() && row.design.w_lig > 0.0);
+//! }
+//! # Ok::<_, dataset::DatasetError>(())
+//! ```
 
-mod bridge;
 mod compare;
 mod csv;
 mod database;
+mod database_files;
+mod error;
+mod fidelity;
+mod fidelity_correction;
 mod gates;
 mod manifest;
 mod mirror;
@@ -33,10 +54,12 @@ mod schema;
 mod split;
 mod summary;
 
-pub use bridge::{left_out, speaks_for};
 pub use compare::{COMPARED, ComparedRay, ComparedState, compare, reference_rms, relative_rms};
 pub use csv::{ColumnMap, Constant, rows_from_csv};
-pub use database::{Database, DatasetError, Mixing};
+pub use database::{Database, Mixing};
+pub use error::DatasetError;
+pub use fidelity::Fidelity;
+pub use fidelity_correction::left_out;
 pub use gates::{Gates, Rejection};
 pub use manifest::{FORMAT_VERSION, Manifest};
 pub use mirror::with_mirrored;

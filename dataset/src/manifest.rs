@@ -1,6 +1,6 @@
-//! What stands in `X.json` beside `X.parquet`.
+//! The manifest `X.json` of a database `X.parquet`.
 
-use crate::database::DatasetError;
+use crate::error::DatasetError;
 use crate::gates::{Gates, Rejection};
 use crate::rows::Row;
 use crate::schema;
@@ -9,48 +9,50 @@ use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Version of the database that this crate writes; it reads the one before too.
+/// Format version that this crate writes; it also reads versions 2 and 3.
 ///
-/// 3: rows and manifest name the hashes of the material law and of the campaign's settings. 4: D_peak is the
-/// mean over the most strained 1 % of the ligament, and may be unknown; the domain is what the rows fill.
+/// 3: rows and manifest contain the hashes of the material law and of the campaign's settings. 4: D_peak is the
+/// mean over the most strained 1 % of the ligament, and may be unknown; the domain is the set of states that the rows
+/// cover.
 pub const FORMAT_VERSION: u32 = 4;
 
-/// Everything about a database but its rows.
+/// The metadata of a database.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
     pub format_version: u32,
     /// BLAKE3 of the Parquet file.
     pub hash: String,
-    /// Unit of each column that has one.
+    /// Unit of each column that has a unit.
     pub units: BTreeMap<String, String>,
     pub rows: usize,
     /// Jobs with at least one row.
     pub rays: usize,
     /// Rays that stopped before their end.
     pub partial_rays: usize,
-    /// Different (w_lig, alpha) up to mirroring.
+    /// Number of distinct (w_lig, alpha), up to mirroring.
     pub geometries: usize,
     /// CPU time of all rays (s).
     pub cpu_s: f64,
     pub gates: Gates,
     /// Number of rejected rows by reason.
     pub rejected: BTreeMap<Rejection, usize>,
-    /// All of them, where they were mixed: "a + b".
+    /// Name of the material; mixed materials are written "a + b".
     pub material: String,
-    /// Hashes of the material laws; none, or an empty one, where they are not known.
+    /// Hashes of the material laws; the set is empty, or contains an empty hash, if they are unknown.
     #[serde(default)]
     pub material_hashes: BTreeSet<String>,
-    /// The same of the campaigns' settings.
+    /// Hashes of the campaigns' settings; the set is empty, or contains an empty hash, if they are unknown.
     #[serde(default)]
     pub settings_hashes: BTreeSet<String>,
     pub tier: String,
-    /// What all hinges share.
+    /// The constants of all hinges.
     pub hinge: HingeConstants,
-    /// Versions of the tools that made the rows.
+    /// Versions of gmsh that meshed the rows.
     pub gmsh: BTreeSet<String>,
+    /// Versions of ccx that solved the rows.
     pub ccx: BTreeSet<String>,
-    /// The states of the rows.
+    /// The set of states that the rows cover.
     pub domain: TrainingDomain,
     pub split_plan: SplitPlan,
     /// BLAKE3 of the split.
@@ -59,7 +61,7 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// Describes accepted rows, whose Parquet file has the given hash.
+    /// The manifest of accepted rows, whose Parquet file has the given hash.
     pub(crate) fn new(
         rows: &[Row],
         hash: String,
@@ -108,7 +110,7 @@ impl Manifest {
     }
 }
 
-/// The different texts of the rows.
+/// The distinct texts of the rows, joined by " + ".
 fn every(rows: &[Row], text: fn(&Row) -> &String) -> String {
     let different: BTreeSet<&str> = rows.iter().map(|row| text(row).as_str()).collect();
     different.into_iter().collect::<Vec<_>>().join(" + ")

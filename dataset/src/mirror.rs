@@ -1,4 +1,4 @@
-//! The mirror image of a row: half the database for free.
+//! The mirror image of a row; it doubles the database without further solves.
 //!
 //! ```text
 //! W(a, s, theta; alpha) = W(a, -s, theta; pi - alpha),   and the same for D
@@ -8,7 +8,7 @@ use crate::rows::Row;
 
 /// The rows followed by their mirror images.
 ///
-/// Split first: an image says nothing that its original does not.
+/// Mirror only after the split: an image contains no information beyond that of its original.
 pub fn with_mirrored(rows: &[Row]) -> Vec<Row> {
     let images = rows.iter().map(|row| Row {
         design: row.design.mirrored(),
@@ -25,7 +25,7 @@ mod tests {
     use std::f64::consts::PI;
 
     #[test]
-    fn an_image_has_the_same_energy_and_the_opposite_shear() {
+    fn an_image_has_the_same_energy_and_the_opposite_shear_force() {
         let rows = rows(3);
         let both = with_mirrored(&rows);
         assert_eq!(both.len(), 2 * rows.len());

@@ -1,21 +1,21 @@
-//! What no surrogate can learn: how far the increments of a ray scatter about a smooth curve.
+//! Scatter of the increments of a ray about a smooth curve; a surrogate cannot learn it.
 //!
 //! ```text
 //! e_i = y_i - sum over j in {i-2, i-1, i+1, i+2} of c_j y_j      (cubic through the neighbours)
 //! noise^2 = mean of e_i^2 / (1 + sum of c_j^2)
 //! ```
 //!
-//! which is the variance of y where the curve is a cubic and the errors are independent. Where the
-//! curve bends more sharply, as where the ligament buckles, the estimate is too large. Noise that
-//! one mesh gives all increments of a ray is not seen.
+//! noise^2 is the variance of y if the curve is locally cubic and the errors are independent. Where the
+//! curvature changes more rapidly, for example where the ligament buckles, the estimate is too large. An error that
+//! is common to all increments of a ray, such as that of its mesh, is not detected.
 
 use crate::rows::Row;
 use crate::schema::{KNOWN, NUMBERS};
 
-/// Quantities that a surrogate is trained on, by the names of their columns.
+/// Column names of the quantities that a surrogate is trained on.
 const QUANTITIES: [&str; 6] = ["W", "F_a", "F_s", "M_theta", "D", "D_peak"];
 
-/// Scatter of each quantity over its root mean square: over all increments, and the median.
+/// Scatter of each quantity, divided by its root mean square: [root mean square over all increments, median].
 pub fn noise(rows: &[Row]) -> Vec<(&'static str, [f64; 2])> {
     let numbers = NUMBERS.iter().map(|column| {
         let value = column.get;
@@ -48,7 +48,7 @@ pub fn noise(rows: &[Row]) -> Vec<(&'static str, [f64; 2])> {
         .collect()
 }
 
-/// e_i / sqrt(1 + sum of c_j^2) in the middle of five rows.
+/// e_i / sqrt(1 + sum of c_j^2) at the middle one of five rows.
 fn scatter(window: &[Row], values: &[f64]) -> f64 {
     let lambda = |i: usize| window[i].sample.lambda;
     let neighbours = [0, 1, 3, 4];
@@ -79,7 +79,7 @@ mod tests {
     use crate::rows::tests::rows;
 
     #[test]
-    fn a_cubic_has_no_noise_and_noise_is_found_at_its_size() {
+    fn a_cubic_has_no_noise_and_added_noise_is_measured() {
         let mut rows = rows(200);
         for row in &mut rows {
             row.sample.w = 1.0 + row.sample.lambda.powi(3);
@@ -90,7 +90,7 @@ mod tests {
         assert!(all < 1e-12 && median < 1e-12);
         let scale = root_mean_square(rows.iter().map(|row| row.sample.w));
         for (k, row) in rows.iter_mut().enumerate() {
-            // Independent enough: the signs of the digits of an irrational number.
+            // Nearly independent signs, from multiples of an irrational number.
             let sign = if (0.618_033_988_7 * (k * k) as f64).fract() < 0.5 {
                 1.0
             } else {
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn short_rays_and_zeros_have_none() {
+    fn short_rays_and_zeros_have_no_noise() {
         let mut short: Vec<Row> = rows(2).into_iter().step_by(4).collect();
         assert!(noise(&short).iter().all(|(_, values)| *values == [0.0; 2]));
         short.iter_mut().for_each(|row| row.sample.d = 0.0);

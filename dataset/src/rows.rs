@@ -1,26 +1,25 @@
-//! One row of the database: one converged increment and where it came from.
+//! One row of the database: one converged increment with its provenance.
 
-use crate::schema::{KNOWN, NUMBERS};
 use hinge::{HingeDesign, HingeSample};
 
 /// A sample of (eps, g) -> (W, grad W, D) with its provenance; section 2.4.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Id of the job (one geometry, one ray) that solved it.
+    /// Id of the job (one geometry, one ray) of this row.
     pub job: String,
     pub design: HingeDesign,
     pub sample: HingeSample,
-    /// Why the ray stopped before its end; empty for a whole ray.
+    /// Why the ray stopped before its end; empty for a complete ray.
     pub failure: String,
     /// Name of the sheet material.
     pub material: String,
-    /// [`hinge::SheetMaterial::law_hash`] of it; empty if not known.
+    /// [`hinge::SheetMaterial::law_hash`] of the material; empty if unknown.
     pub material_hash: String,
-    /// Hash of what the jobs of a campaign share but the material; empty if not known.
+    /// Hash of the settings that all jobs of a campaign share, except the material; empty if unknown.
     pub settings_hash: String,
-    /// Tier of the window mesh that was asked.
+    /// Requested tier of the window mesh.
     pub tier: String,
-    /// Tier that solved the row: a finer one if the asked one failed.
+    /// Tier on which the row was solved: a finer one if the requested tier failed.
     pub solved_tier: String,
     /// Version of gmsh.
     pub gmsh: String,
@@ -39,13 +38,6 @@ impl Row {
     /// Whether the ray stopped before its end.
     pub fn is_partial(&self) -> bool {
         !self.failure.is_empty()
-    }
-
-    /// Whether every number of the row is finite.
-    pub(crate) fn is_finite(&self) -> bool {
-        let mut numbers = NUMBERS.iter().map(|column| (column.get)(self));
-        let mut known = KNOWN.iter().filter_map(|column| (column.get)(self));
-        numbers.all(f64::is_finite) && known.all(f64::is_finite)
     }
 }
 

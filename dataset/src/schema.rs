@@ -1,11 +1,11 @@
 //! The columns of the database and their units.
 
-use crate::database::DatasetError;
+use crate::error::DatasetError;
 use crate::rows::Row;
 use hinge::{HingeDesign, HingeSample};
 use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
 
-/// A column of numbers that a row holds.
+/// A column of numbers, with a value in every row.
 pub(crate) struct Number {
     pub name: &'static str,
     pub unit: &'static str,
@@ -13,7 +13,7 @@ pub(crate) struct Number {
     pub set: fn(&mut Row, f64),
 }
 
-/// A column of numbers that some rows lack.
+/// A column of numbers that may have gaps.
 pub(crate) struct Known {
     pub name: &'static str,
     pub unit: &'static str,
@@ -36,10 +36,10 @@ pub(crate) const KNOWN: [Known; 2] = [
     },
 ];
 
-/// The column of [`hinge::StrainVolumes`], as text; some rows lack it.
+/// The column of [`hinge::StrainVolumes`] as text; it may have gaps.
 const STRAIN_VOLUMES: &str = "strain_volumes";
 
-/// A column of text that a row holds.
+/// A column of text.
 pub(crate) struct Text {
     pub name: &'static str,
     get: fn(&Row) -> &str,
@@ -95,13 +95,13 @@ pub(crate) const TEXTS: [Text; 9] = texts! {
     job failure material material_hash settings_hash tier solved_tier gmsh ccx
 };
 
-/// Columns that tables of format version 2 lack.
+/// Columns that are missing in tables of format version 2.
 const SINCE_VERSION_3: [&str; 2] = ["material_hash", "settings_hash"];
 
-/// The ratios of (13), written for whoever reads the table and computed again when it is read.
+/// The ratios of (13). They are written for readers of the table and recomputed when it is read.
 const RATIOS: [&str; 2] = ["eta_a", "eta_s"];
 
-/// The unit of every column that has one.
+/// The unit of every column that has a unit.
 pub(crate) fn units() -> impl Iterator<Item = (&'static str, &'static str)> {
     let numbers = NUMBERS.iter().map(|column| (column.name, column.unit));
     let known = KNOWN.iter().map(|column| (column.name, column.unit));
@@ -134,8 +134,8 @@ pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {
     Ok(DataFrame::new(rows.len(), columns)?)
 }
 
-/// The rows of a table of the given format version; every column of it must be there, of its type, without
-/// gaps but where a value may be unknown, and every number finite.
+/// The rows of a table with the given format version. Every column of this version must exist with its type, without
+/// gaps except where a value may be unknown, and every number must be finite.
 pub(crate) fn from_frame(frame: &DataFrame, version: u32) -> Result<Vec<Row>, DatasetError> {
     let mut rows = vec![blank(); frame.height()];
     for column in &TEXTS {
@@ -156,7 +156,7 @@ pub(crate) fn from_frame(frame: &DataFrame, version: u32) -> Result<Vec<Row>, Da
         let series = frame.column(column.name)?;
         fill(&mut rows, column.name, series.f64()?.iter(), column.set)?;
     }
-    // Before, D_peak was another measure.
+    // In earlier versions, D_peak was another measure.
     if version >= 4 {
         for column in &KNOWN {
             let values = frame.column(column.name)?.f64()?.iter();
@@ -169,13 +169,20 @@ pub(crate) fn from_frame(frame: &DataFrame, version: u32) -> Result<Vec<Row>, Da
             row.sample.strain_volumes = text.map(str::parse).transpose()?;
         }
     }
-    match rows.iter().find(|row| !row.is_finite()) {
+    match rows.iter().find(|row| !is_finite(row)) {
         Some(row) => Err(DatasetError::NotFinite {
             job: row.job.clone(),
             lambda: row.sample.lambda,
         }),
         None => Ok(rows),
     }
+}
+
+/// Whether every number of the row is finite.
+pub(crate) fn is_finite(row: &Row) -> bool {
+    let mut numbers = NUMBERS.iter().map(|column| (column.get)(row));
+    let mut known = KNOWN.iter().filter_map(|column| (column.get)(row));
+    numbers.all(f64::is_finite) && known.all(f64::is_finite)
 }
 
 pub(crate) fn fill<T>(
@@ -190,7 +197,7 @@ pub(crate) fn fill<T>(
     Ok(())
 }
 
-/// A row to fill.
+/// An empty row, to be filled.
 pub(crate) fn blank() -> Row {
     Row {
         job: String::new(),

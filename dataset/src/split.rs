@@ -1,9 +1,9 @@
-//! Training, validation and test, split by hinge geometry.
+//! Split into training, validation and test, by hinge geometry.
 //!
-//! All rays of one (w_lig, alpha) and of its mirror image fall into the same part, so that the
-//! test asks about geometries that training never saw.
+//! All rays of one (w_lig, alpha) and of its mirror image belong to the same part. The test part therefore contains
+//! only geometries that are not in the training part.
 
-use crate::database::DatasetError;
+use crate::error::DatasetError;
 use crate::rows::Row;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -12,14 +12,14 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
-/// How geometries are dealt out.
+/// How geometries are assigned to the parts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SplitPlan {
     pub seed: u64,
-    /// Share of the geometries that chooses the checkpoint, in (0, 1/2).
+    /// Fraction of the geometries used to choose the checkpoint, in (0, 1/2).
     pub validation: f64,
-    /// Share of the geometries that published errors are measured on, in (0, 1/2).
+    /// Fraction of the geometries used to measure the published errors, in (0, 1/2).
     pub test: f64,
 }
 
@@ -41,7 +41,7 @@ pub enum Part {
     Test,
 }
 
-/// The jobs of each part, in the order of their ids.
+/// The ids of the jobs of each part, sorted.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Split {
@@ -51,7 +51,7 @@ pub struct Split {
 }
 
 impl Split {
-    /// Deals the geometries of `rows`; every part gets at least one.
+    /// Assigns the geometries of `rows` at random; every part has at least one geometry.
     pub(crate) fn deal(rows: &[Row], plan: &SplitPlan) -> Result<Self, DatasetError> {
         let SplitPlan {
             validation, test, ..
@@ -109,7 +109,7 @@ impl Split {
     }
 }
 
-/// (w_lig, alpha) up to mirroring, in units of 1e-9 that hide the rounding of pi - alpha.
+/// (w_lig, alpha) up to mirroring, in units of 1e-9, so that the rounding error of pi - alpha has no effect.
 pub(crate) fn geometry(row: &Row) -> [i64; 2] {
     let alpha = row.design.alpha.min(PI - row.design.alpha);
     [row.design.w_lig, alpha].map(|value| (1e9 * value).round() as i64)
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_are_disjoint_complete_and_of_the_shares_asked_for() {
+    fn parts_are_disjoint_and_complete_and_have_the_requested_fractions() {
         let split = deal(&rows(20), 7);
         let counts =
             [Part::Training, Part::Validation, Part::Test].map(|part| split.jobs(part).len());
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn the_seed_decides() {
+    fn the_split_depends_on_the_seed() {
         let rows = rows(20);
         assert_eq!(deal(&rows, 7), deal(&rows, 7));
         assert_ne!(deal(&rows, 7), deal(&rows, 8));
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn too_few_geometries_and_impossible_shares_are_refused() {
+    fn too_few_geometries_and_impossible_fractions_are_rejected() {
         let plan = SplitPlan::default();
         let error = Split::deal(&rows(2), &plan).unwrap_err();
         assert!(matches!(error, DatasetError::TooFewGeometries { found: 2 }));

@@ -1,4 +1,4 @@
-//! What a database holds, as text to print.
+//! The summary of a database as text.
 
 use crate::database::Database;
 use crate::noise::noise;
@@ -8,7 +8,7 @@ use crate::split::{Part, geometry};
 use std::collections::BTreeSet;
 use std::fmt;
 
-/// Counts, rejected rows, split, and the range of every column of numbers.
+/// Prints counts, rejected rows, the split, and the range of every column of numbers.
 impl fmt::Display for Database {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let manifest = self.manifest();
@@ -43,7 +43,7 @@ impl fmt::Display for Database {
         writeln!(
             f,
             "{:18} {:>14} {:>14}  unit",
-            "column", "least", "greatest"
+            "column", "minimum", "maximum"
         )?;
         for column in &schema::NUMBERS {
             let values = || self.rows().iter().map(column.get);
@@ -60,7 +60,7 @@ impl fmt::Display for Database {
     }
 }
 
-/// Hashes for people.
+/// Hashes as readable text.
 fn known(hashes: &BTreeSet<String>) -> String {
     let known: Vec<&str> = hashes
         .iter()
@@ -73,11 +73,11 @@ fn known(hashes: &BTreeSet<String>) -> String {
     }
 }
 
-/// What training wants to know before it believes a database: histograms, residuals, coverage of
-/// the box, and states solved twice.
+/// Prints information for judging a database before training: histograms, residuals, coverage of
+/// the box, noise, and states solved more than once.
 pub struct Details<'a>(pub &'a Database);
 
-/// Bins of a histogram, and cells of each side of the coverage.
+/// Number of bins of a histogram, and of cells along each side of the coverage.
 const BINS: usize = 8;
 
 impl fmt::Display for Details<'_> {
@@ -85,7 +85,7 @@ impl fmt::Display for Details<'_> {
         let rows = self.0.rows();
         writeln!(
             f,
-            "{:18} rows in {BINS} bins from least to greatest",
+            "{:18} rows in {BINS} bins from minimum to maximum",
             "column"
         )?;
         for name in ["w_lig", "alpha", "a", "s", "theta", "W", "D", "D_peak"] {
@@ -100,7 +100,7 @@ impl fmt::Display for Details<'_> {
         let quantile = |share: f64| residuals[(share * (residuals.len() - 1) as f64) as usize];
         writeln!(
             f,
-            "energy residual    median {:.1e}, 90 % {:.1e}, 99 % {:.1e}, greatest {:.1e}",
+            "energy residual    median {:.1e}, 90 % {:.1e}, 99 % {:.1e}, maximum {:.1e}",
             quantile(0.5),
             quantile(0.9),
             quantile(0.99),
@@ -130,12 +130,12 @@ impl fmt::Display for Details<'_> {
     }
 }
 
-/// The bin of each value between the least and the greatest.
+/// The bin of each value, between the minimum and the maximum of all values.
 fn bins(values: &[f64]) -> impl Iterator<Item = usize> {
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let width = (greatest - least).max(f64::MIN_POSITIVE) / BINS as f64;
-    let bin = move |value: &f64| (((value - least) / width) as usize).min(BINS - 1);
+    let minimum = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let maximum = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let width = (maximum - minimum).max(f64::MIN_POSITIVE) / BINS as f64;
+    let bin = move |value: &f64| (((value - minimum) / width) as usize).min(BINS - 1);
     values.iter().map(bin)
 }
 
@@ -145,13 +145,13 @@ fn histogram(values: &[f64]) -> [usize; BINS] {
     counts
 }
 
-/// Cells of the plane of two quantities that hold a row.
+/// Number of cells in the plane of two quantities that contain a row.
 fn covered(rows: &[Row], point: fn(&Row) -> [f64; 2]) -> usize {
     let [x, y] = [0, 1].map(|k| rows.iter().map(|row| point(row)[k]).collect::<Vec<f64>>());
     bins(&x).zip(bins(&y)).collect::<BTreeSet<_>>().len()
 }
 
-/// Rows whose state, up to mirroring, another row has too.
+/// Number of rows whose state, up to mirroring, is the same as that of an earlier row.
 fn repeated(rows: &[Row]) -> usize {
     let state = |row: &Row| {
         let mirrored = row.design.alpha > std::f64::consts::FRAC_PI_2;
@@ -175,7 +175,7 @@ mod tests {
     use crate::rows::tests::rows;
 
     #[test]
-    fn histograms_hold_every_value_and_constants_fall_into_one_bin() {
+    fn histograms_count_every_value_and_constants_are_in_one_bin() {
         assert_eq!(histogram(&[0.0, 1.0, 7.9, 8.0]), [1, 1, 0, 0, 0, 0, 0, 2]);
         assert_eq!(histogram(&[3.0; 5]), [5, 0, 0, 0, 0, 0, 0, 0]);
         assert_eq!(histogram(&[]).iter().sum::<usize>(), 0);

@@ -1,4 +1,4 @@
-//! From rows to files and back, and everything that is refused on the way.
+//! Collecting, writing and reading a database, and the errors on the way.
 
 mod common;
 
@@ -27,7 +27,7 @@ fn files(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn what_is_written_is_read_back_bit_by_bit() {
+fn a_written_database_is_read_back_bit_exactly() {
     let (folder, path, database) = written();
     let read = Database::read(&path).unwrap();
     assert_eq!(read.rows(), database.rows());
@@ -45,7 +45,7 @@ fn what_is_written_is_read_back_bit_by_bit() {
 }
 
 #[test]
-fn rows_come_in_the_order_of_job_and_lambda_and_give_the_same_file() {
+fn rows_are_sorted_by_job_and_lambda_so_that_the_file_is_the_same() {
     let database = collect(rows()).unwrap();
     let mut shuffled = rows();
     shuffled.reverse();
@@ -59,7 +59,7 @@ fn rows_come_in_the_order_of_job_and_lambda_and_give_the_same_file() {
 }
 
 #[test]
-fn the_parts_hold_every_row_once() {
+fn the_parts_contain_every_row_exactly_once() {
     let database = collect(rows()).unwrap();
     let parts = [Part::Training, Part::Validation, Part::Test].map(|part| database.part(part));
     assert_eq!(parts.each_ref().map(Vec::len), [40, 5, 5]);
@@ -98,7 +98,7 @@ fn rejected_rows_are_counted_and_printed() {
 }
 
 #[test]
-fn an_empty_database_is_refused() {
+fn an_empty_database_is_an_error() {
     assert!(matches!(
         collect(vec![]),
         Err(DatasetError::NoRows { rejected: 0 })
@@ -114,7 +114,7 @@ fn an_empty_database_is_refused() {
 }
 
 #[test]
-fn rows_that_do_not_belong_together_are_refused() {
+fn inconsistent_rows_are_an_error() {
     let changes: [(Change, &str); 5] = [
         (|row| row.material = "steel".into(), "material"),
         (|row| row.tier = "tiny".into(), "tier"),
@@ -141,7 +141,7 @@ fn rows_that_do_not_belong_together_are_refused() {
 }
 
 #[test]
-fn an_existing_database_is_replaced_only_when_told() {
+fn an_existing_database_is_replaced_only_on_request() {
     let (_folder, path, database) = written();
     let error = database.write(&path, false).unwrap_err();
     assert!(matches!(error, DatasetError::Exists { .. }), "{error}");
@@ -149,7 +149,7 @@ fn an_existing_database_is_replaced_only_when_told() {
 }
 
 #[test]
-fn a_file_that_is_not_its_manifests_is_refused() {
+fn a_file_that_does_not_match_its_manifest_is_an_error() {
     let (_folder, path, _) = written();
     let mut bytes = std::fs::read(&path).unwrap();
     bytes[100] ^= 1;
@@ -159,7 +159,7 @@ fn a_file_that_is_not_its_manifests_is_refused() {
 }
 
 #[test]
-fn a_missing_malformed_or_later_manifest_is_refused() {
+fn a_missing_malformed_or_newer_manifest_is_an_error() {
     let (_folder, path, _) = written();
     let manifest = path.with_extension("json");
     let text = std::fs::read_to_string(&manifest).unwrap();
@@ -183,7 +183,7 @@ fn a_missing_malformed_or_later_manifest_is_refused() {
 }
 
 #[test]
-fn a_thinned_database_keeps_what_it_is_tested_on() {
+fn a_thinned_database_keeps_its_validation_and_test_parts() {
     let whole = collect(rows()).unwrap();
     let thinned = whole.thinned(3);
     assert_eq!(thinned.manifest().split.jobs(Part::Training).len(), 3);
@@ -195,7 +195,7 @@ fn a_thinned_database_keeps_what_it_is_tested_on() {
 }
 
 #[test]
-fn a_database_within_a_domain_is_tested_outside_it_too() {
+fn restriction_to_a_domain_does_not_change_the_test_part() {
     let whole = collect(rows()).unwrap();
     let domain = &whole.manifest().domain;
     let half = domain.scaled_by(0.5);
@@ -213,7 +213,7 @@ fn a_database_within_a_domain_is_tested_outside_it_too() {
 }
 
 #[test]
-fn a_database_of_the_version_before_is_read_and_its_hashes_are_not_known() {
+fn a_database_of_version_2_is_read_with_unknown_hashes() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/version_2.parquet");
     let database = Database::read(&path).unwrap();
     assert_eq!(database.rows().len(), 8);
@@ -232,7 +232,7 @@ fn a_database_of_the_version_before_is_read_and_its_hashes_are_not_known() {
     );
 }
 
-/// What reading says to these bytes with a manifest that vouches for them.
+/// The error of reading these bytes with a manifest that contains their hash.
 fn vouched(path: &Path, bytes: &[u8]) -> DatasetError {
     std::fs::write(path, bytes).unwrap();
     let Err(DatasetError::Hash {
@@ -248,7 +248,7 @@ fn vouched(path: &Path, bytes: &[u8]) -> DatasetError {
 }
 
 #[test]
-fn a_file_that_is_no_table_is_an_error_even_if_its_hash_is_right() {
+fn a_malformed_file_is_an_error_even_if_its_hash_is_correct() {
     let (_folder, path, _) = written();
     let bytes = std::fs::read(&path).unwrap();
     let length = bytes.len();
@@ -265,7 +265,7 @@ fn a_file_that_is_no_table_is_an_error_even_if_its_hash_is_right() {
 }
 
 #[test]
-fn one_geometry_or_one_row_is_refused() {
+fn a_single_geometry_is_an_error() {
     let mut one = rows();
     one.iter_mut().for_each(|row| row.design = rows()[0].design);
     for rows in [one, vec![row(0, 1.0)]] {

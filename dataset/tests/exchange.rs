@@ -1,4 +1,4 @@
-//! Databases joined, split anew, and exchanged as CSV.
+//! Databases merged, split again, and exchanged as CSV.
 
 mod common;
 
@@ -16,7 +16,7 @@ fn plan(seed: u64) -> SplitPlan {
     }
 }
 
-/// The rows of one job only, under another name.
+/// The rows of all jobs, with a prefix to their names.
 fn renamed(prefix: &str) -> Vec<Row> {
     let rename = |row: Row| Row {
         job: format!("{prefix}-{}", row.job),
@@ -32,7 +32,7 @@ fn file(text: &str) -> (TempDir, PathBuf) {
     (folder, path)
 }
 
-/// Three hinges as another solver tells them.
+/// A table of three hinges as another solver writes it.
 const FOREIGN: &str = "ray,width,angle,u,v,turn,energy,Fu,Fv,M\n\
     A,8,60,0.1,0.2,10,1.5,1,2,3\n\
     A,8,60,0.2,0.4,20,6.0,2,4,6\n\
@@ -69,7 +69,7 @@ fn foreign_map() -> ColumnMap {
 }
 
 #[test]
-fn a_merge_holds_every_job_once_and_keeps_the_count_of_the_rejected() {
+fn a_merge_contains_every_job_once_and_the_counts_of_rejected_rows() {
     let mut bad = renamed("other");
     bad[0].sample.w = -1.0;
     let databases = [collect(rows()).unwrap(), collect(bad).unwrap()];
@@ -83,7 +83,7 @@ fn a_merge_holds_every_job_once_and_keeps_the_count_of_the_rejected() {
 }
 
 #[test]
-fn tiers_are_mixed_only_if_told_and_hinge_constants_never() {
+fn tiers_are_mixed_only_on_request_and_hinge_constants_never() {
     let mut coarse = renamed("coarse");
     coarse.iter_mut().for_each(|row| row.tier = "tiny".into());
     let mut narrow = renamed("narrow");
@@ -107,7 +107,7 @@ fn tiers_are_mixed_only_if_told_and_hinge_constants_never() {
 }
 
 #[test]
-fn another_seed_deals_the_same_rows_otherwise() {
+fn another_seed_splits_the_same_rows_differently() {
     let database = collect(rows()).unwrap();
     let again = database.split(&plan(0)).unwrap();
     assert_eq!(again.manifest(), database.manifest());
@@ -118,7 +118,7 @@ fn another_seed_deals_the_same_rows_otherwise() {
 }
 
 #[test]
-fn csv_brings_every_digit_back() {
+fn rows_round_trip_through_csv_exactly() {
     let database = collect(rows()).unwrap();
     let (_folder, path) = file(&String::from_utf8(database.to_csv().unwrap()).unwrap());
     let again = collect(rows_from_csv(&path, &ColumnMap::default()).unwrap()).unwrap();
@@ -127,7 +127,7 @@ fn csv_brings_every_digit_back() {
 }
 
 #[test]
-fn a_foreign_table_becomes_a_database() {
+fn a_foreign_table_is_imported() {
     let (_folder, path) = file(FOREIGN);
     let rows = rows_from_csv(&path, &foreign_map()).unwrap();
     let database = Database::collect(rows, &Gates::default(), &plan(0)).unwrap();
@@ -143,7 +143,7 @@ fn a_foreign_table_becomes_a_database() {
 }
 
 #[test]
-fn tables_and_maps_that_cannot_be_understood_say_where() {
+fn errors_in_tables_and_column_maps_name_the_place() {
     let error = |text: &str, map: &ColumnMap| {
         let (_folder, path) = file(text);
         let all = |error: &dyn std::error::Error| {
@@ -172,7 +172,7 @@ fn tables_and_maps_that_cannot_be_understood_say_where() {
 }
 
 #[test]
-fn gaps_and_numbers_that_are_none_are_rejected_rows() {
+fn rows_with_gaps_or_non_finite_numbers_are_rejected() {
     for cell in ["", "NaN", "inf"] {
         let (_folder, path) = file(&FOREIGN.replacen("20,6.0", &format!("20,{cell}"), 1));
         let rows = rows_from_csv(&path, &foreign_map()).unwrap();
@@ -183,7 +183,7 @@ fn gaps_and_numbers_that_are_none_are_rejected_rows() {
 }
 
 #[test]
-fn the_summary_tells_coverage_residuals_and_repeated_states() {
+fn the_summary_contains_coverage_residuals_and_repeated_states() {
     let database = collect(rows()).unwrap();
     let text = dataset::Details(&database).to_string();
     for expected in [

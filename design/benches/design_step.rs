@@ -1,22 +1,25 @@
-//! One design step: equilibria at ten load factors, and with them the gradient, by size of the sheet;
-//! with the linear law, k_a / k_theta = 1e4, and with a learned hinge of the paper's network size. One
-//! thread, residual 1e-9 of the greatest force.
+//! Time of one design step: equilibria at ten load factors, and equilibria with the gradient, for several sheet
+//! sizes; with the linear law, k_a / k_theta = 1e4, and with a learned hinge law of the paper's network size. One
+//! thread, residual 1e-9 of the maximum force.
 //!
-//! The panel in the middle of the west edge is clamped, that in the middle of the east edge is pulled.
+//! The panel in the middle of the west edge is clamped, the panel in the middle of the east edge is pulled.
 
-use design::actuation::{Dof, Load, Support};
-use design::chamfer::{Chamfer, Precision};
-use design::design_vector::{DesignVector, WidthChart};
-use design::equilibrium::{EquilibriumSolver, SolverSettings, Status};
-use design::gradient::{DesignProblem, Mechanics, Model};
-use design::grid::Grid;
+use design::equilibrium::load_step::Status;
+use design::equilibrium::settings::SolverSettings;
+use design::equilibrium::solver::EquilibriumSolver;
+use design::equilibrium::supports::{Dof, Load, Support};
+use design::geometry::chamfer::{Chamfer, Precision};
 use design::hinge_law::{DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
-use design::objective::{Objective, OutlinePoints};
-use design::path_functionals::PerFunctional;
-use design::pattern::Outline;
-use design::sheet::{Centroid, HingePoint, SheetOptions};
+use design::objective::design_problem::{DesignProblem, Mechanics, Model};
+use design::objective::loss::{Objective, OutlinePoints};
+use design::objective::path_functionals::PerFunctional;
+use design::pattern::cut_pattern::Outline;
+use design::pattern::design_vector::{DesignVector, WidthChart};
+use design::pattern::grid::Grid;
+use design::sheet::cut_sheet::{Centroid, HingePoint, SheetOptions};
 use divan::{Bencher, black_box};
 use hinge::{HingeConstants, TrainingDomain};
+use std::sync::Arc;
 use surrogate::{Card, FEATURE_NAMES, Layer, Layers, Surrogate, Tensor, TestErrors};
 
 fn main() {
@@ -33,7 +36,7 @@ fn linear((m, n): (usize, usize)) -> (DesignProblem, DesignVector) {
     problem(Grid { m, n }, 1.0, law, HingePoint::Corner, 3.0 * n as f64)
 }
 
-/// A sheet with panels of 100 mm and hinges of the learned law.
+/// A sheet with panels of 100 mm and the learned hinge law.
 fn learned((m, n): (usize, usize)) -> (DesignProblem, DesignVector) {
     problem(
         Grid { m, n },
@@ -88,7 +91,7 @@ fn problem(
             },
         },
         model: Model::Equilibrium(Box::new(Mechanics {
-            law: Box::new(law),
+            law: Arc::new(law),
             contact: None,
             solver: EquilibriumSolver::new(grid, &supports, &[load], STEPS, settings).unwrap(),
         })),
@@ -117,7 +120,7 @@ fn problem(
             },
         },
     };
-    // Off the symmetric pattern, whose hinges are all alike.
+    // Perturbs the symmetric pattern, whose hinges are all equal.
     let mut design = DesignVector::uniform(grid);
     let wave = (0..).map(|i: i32| 0.5 * f64::from(i * i).sin());
     design
@@ -129,7 +132,7 @@ fn problem(
     (problem, design)
 }
 
-/// The paper's network with weights of the size that training starts from.
+/// The paper's network with weights of the magnitude that training starts from.
 fn network() -> SurrogateLaw {
     let layers = |widths: &[usize]| -> Vec<Layer> {
         let pairs = widths.windows(2);

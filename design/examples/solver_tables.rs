@@ -1,23 +1,25 @@
-//! Prints how exact the design gradient is, against the conditioning of the tangent and against the
-//! solver tolerance, and how Newton's method compares with L-BFGS.
+//! Prints the error of the design gradient as a function of the conditioning of the tangent and of the
+//! solver tolerance, and a comparison of Newton's method with L-BFGS.
 //!
-//! A random 5 x 4 sheet of panels of 1 x 1 with the linear law, clamped in the west and pulled in the
-//! east in five load steps. The error is that of the slope along a random direction over central
-//! differences of fourth order, of losses at the tightest tolerance.
+//! The sheet is a random one of 5 x 4 panels of 1 x 1 with the linear law, clamped in the west and pulled in the
+//! east in five load steps. The error is the difference of the slope along a random direction from central
+//! differences of fourth order of the loss, computed at the tightest tolerance.
 
-use design::actuation::{Dof, Load, Support};
-use design::chamfer::{Chamfer, Precision};
-use design::charts::PatternCoordinates;
-use design::design_vector::{DesignVector, WidthChart};
-use design::equilibrium::{EquilibriumSolver, Method, SolverSettings};
-use design::gradient::{DesignProblem, Mechanics, Model};
-use design::grid::Grid;
+use design::equilibrium::settings::{Method, SolverSettings};
+use design::equilibrium::solver::EquilibriumSolver;
+use design::equilibrium::supports::{Dof, Load, Support};
+use design::geometry::chamfer::{Chamfer, Precision};
 use design::hinge_law::{DamageMeasure, LinearLaw};
-use design::objective::{Objective, OutlinePoints};
-use design::path_functionals::PerFunctional;
-use design::pattern::Outline;
-use design::sheet::{Centroid, HingePoint, SheetOptions};
+use design::objective::design_problem::{DesignProblem, Mechanics, Model};
+use design::objective::loss::{Objective, OutlinePoints};
+use design::objective::path_functionals::PerFunctional;
+use design::pattern::coordinates::PatternCoordinates;
+use design::pattern::cut_pattern::Outline;
+use design::pattern::design_vector::{DesignVector, WidthChart};
+use design::pattern::grid::Grid;
+use design::sheet::cut_sheet::{Centroid, HingePoint, SheetOptions};
 use hinge::HingeConstants;
+use std::sync::Arc;
 use std::time::Instant;
 
 const TIGHT: f64 = 1e-13;
@@ -51,7 +53,7 @@ fn problem(grid: Grid, stiffness: f64, settings: SolverSettings) -> DesignProble
     let supports = Dof::ALL.map(support);
     let law = LinearLaw::uniform([stiffness, stiffness, 1.0], grid.hinge_count());
     let mechanics = Mechanics {
-        law: Box::new(law.expect("the constants are positive")),
+        law: Arc::new(law.expect("the constants are positive")),
         contact: None,
         solver: EquilibriumSolver::new(grid, &supports, &[pull], 5, settings)
             .expect("the sheet is clamped"),
@@ -124,7 +126,7 @@ fn slope(problem: &DesignProblem, design: &DesignVector, direction: &[f64]) -> f
     (8.0 * (loss(h) - loss(-h)) - (loss(2.0 * h) - loss(-2.0 * h))) / (12.0 * h)
 }
 
-/// Condition estimate, worst adjoint residual, and error of the slope.
+/// Condition estimate, maximum adjoint residual, and error of the slope.
 fn gradient_error(stiffness: f64, tolerance: f64) -> [f64; 3] {
     let grid = Grid { m: 5, n: 4 };
     let design = start(grid);

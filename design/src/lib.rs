@@ -1,64 +1,105 @@
-//! The sheet: cut pattern, equilibrium, adjoint gradient, objective, optimiser, fabrication.
+//! Sheets of rigid panels joined by hinges: from a cut pattern to its deployment, and back to the pattern that
+//! deploys onto a target.
+//!
+//! With theta = (z, ell, omega) the coordinates of cut pattern and ligament widths, (1), the crate solves
+//!
+//! ```text
+//! min over theta of  L(theta) = chamfer(outline(q_N), target) + sum_j w_j J_j(q_1 ... q_N)        (16)-(19)
+//! subject to         grad_q Pi(q_i; theta, zeta_i) = 0,   zeta_i = i / N,                          (10)
+//!                    Pi = sum_h W(eps_h(q); g_h) - zeta f . q
+//! ```
+//!
+//! by gradient descent through the equilibria: Newton's method follows the equilibrium path, the adjoint (20) gives
+//! dL/dtheta, and Adam or L-BFGS proposes the next design (Algorithm 1).
+//!
+//! | room | contents |
+//! |---|---|
+//! | [`geometry`] | points, polygons, distances of outlines, SVG paths |
+//! | [`pattern`] | the cut pattern (2)-(5) and its coordinates |
+//! | [`sheet`] | panels and hinges of a pattern, their kinematics (6)-(8) |
+//! | [`hinge_law`] | the energy of a hinge: linear (11), condensed, learned (14), contact |
+//! | [`equilibrium`] | equilibrium paths (10) and their adjoint (20) |
+//! | [`objective`] | objective and gradient (16)-(20) |
+//! | [`optimise`] | the outer loop, Algorithm 1 |
+//! | [`scene`] | a design problem read from TOML, and its run folder |
+//! | [`analysis`] | forces, capacity, void families, localisation of a deployed sheet |
+//! | [`output`] | reports, listings, drawings, cut files |
+//!
+//! A room uses itself and the rooms above it. Lengths are in mm, forces in N, angles in rad.
+//!
+//! The types to know are [`DesignProblem`], [`DesignVector`], [`Deployment`], [`Evaluation`] and [`Scene`]. A scene file
+//! poses a problem by [`Scene::read`] and [`Scene::problem`]; without one:
+//!
+//! ```
+//! use design::equilibrium::settings::SolverSettings;
+//! use design::equilibrium::supports::{Dof, Load, Support};
+//! use design::sheet::cut_sheet::{Centroid, HingePoint, SheetOptions};
+//! use design::*;
+//! use hinge::HingeConstants;
+//! use std::sync::Arc;
+//! use std::sync::atomic::AtomicBool;
+//!
+//! // A square sheet of 3 x 3 panels: one held at the left, one pulled to the right by 2 N.
+//! let grid = Grid { m: 3, n: 3 };
+//! let clamp = Dof::ALL.map(|dof| Support { panel: grid.panel(0, 1), dof, value: 0.0 });
+//! let pull = Load { panel: grid.panel(2, 1), dof: Dof::UX, value: 2.0 };
+//! let solver = EquilibriumSolver::new(grid, &clamp, &[pull], 4, SolverSettings::default())?;
+//! let circle = (0..100).map(|i| 0.0628 * f64::from(i)).map(|t| [700.0 + 750.0 * t.cos(), 550.0 + 750.0 * t.sin()]);
+//! let problem = DesignProblem {
+//!     grid,
+//!     outline: Outline::rectangle(1200.0, 1200.0),
+//!     widths: WidthChart { w_minus: 10.0, w_plus: 26.0 },
+//!     options: SheetOptions {
+//!         hinge_point: HingePoint::Corner,
+//!         centroid: Centroid::Area,
+//!         process: HingeConstants::PAPER,
+//!     },
+//!     model: Model::Equilibrium(Box::new(Mechanics {
+//!         law: Arc::new(LinearLaw::uniform([400.0, 250.0, 300.0], grid.hinge_count())?),
+//!         contact: None,
+//!         solver,
+//!     })),
+//!     objective: Objective::of_shape(circle.collect()),
+//! };
+//!
+//! // Deploy the uniform sheet; its loss and the gradient.
+//! let start = DesignVector::uniform(grid);
+//! let deployment = problem.deploy(&start)?;
+//! assert_eq!(deployment.path.len(), 4);
+//! let evaluation = problem.evaluate(&start)?;
+//! assert_eq!(evaluation.gradient.omega.len(), grid.hinge_count());
+//!
+//! // Ten steps of Adam; the callback sees every one and may end the search by an error.
+//! let mut search = SearchState::new(&problem, start, &evaluation, SearchMethod::Adam, 0.03);
+//! optimise(&problem, &mut search, 10, &AtomicBool::new(false), &mut |search| {
+//!     println!("{} {}", search.last().step, search.last().scores.loss);
+//!     Ok::<_, std::convert::Infallible>(())
+//! })?;
+//! assert!(problem.loss(&search.best)? < evaluation.loss);
+//! # Ok::<_, Box<dyn std::error::Error>>(())
+//! ```
 
-pub mod actuation;
-mod adam;
-mod adjoint;
-mod backing_off;
-mod canvas;
-pub mod chamfer;
-pub mod charts;
-pub mod check;
-pub mod degeneration;
-pub mod design_vector;
-pub mod domain_penalty;
-pub mod drawing;
+pub mod analysis;
 pub mod equilibrium;
-pub mod fabrication;
-pub mod force_transmission;
-pub mod free_panels;
-pub mod further_load;
-pub mod gradient;
-pub mod grid;
+pub mod geometry;
 pub mod hinge_law;
-pub mod ideal_deployment;
-pub mod intersection_over_union;
-pub mod inverse_design;
-pub mod kinematics;
-mod lbfgs;
-mod lbfgs_memory;
-pub mod listing;
-mod load_path;
-mod load_step;
-pub mod localisation;
-mod newton;
 pub mod objective;
-pub mod opening_limits;
-pub mod outline_error;
-mod panel_penalties;
-mod panel_shape;
-mod panel_vectors;
-pub mod path_functionals;
+pub mod optimise;
+pub mod output;
 pub mod pattern;
-mod plane;
-mod polygon;
-mod potential;
-mod refined_solve;
-pub mod report;
-pub mod results;
 pub mod scene;
-pub mod scores;
-pub mod search;
 pub mod sheet;
-pub mod smooth_extrema;
-pub mod solution_set;
-mod stroke;
-mod svg_path;
-mod tangent;
-pub mod target;
-pub mod tension_routes;
-pub mod tessellation;
-pub mod threshold;
-pub mod topology;
-pub mod validity;
-pub mod void_families;
-pub mod window;
+
+pub use equilibrium::solver::EquilibriumSolver;
+pub use hinge_law::{HingeLaw, LinearLaw, SurrogateLaw};
+pub use objective::design_problem::{
+    Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Model,
+};
+pub use objective::loss::Objective;
+pub use optimise::outer_loop::{Ended, SearchState, optimise};
+pub use optimise::search::SearchMethod;
+pub use pattern::cut_pattern::Outline;
+pub use pattern::design_vector::{DesignVector, WidthChart};
+pub use pattern::grid::Grid;
+pub use scene::Scene;
+pub use sheet::cut_sheet::Sheet;

@@ -1,15 +1,16 @@
-//! The sheet of section 3.2 under its first actuation: what passes through it, and when it gives way.
+//! The sheet of section 3.2 under its first actuation: force transmission and load capacity.
 
-use design::actuation::{Dof, Load};
-use design::degeneration::{Degeneration, last_jump};
-use design::design_vector::DesignVector;
-use design::equilibrium::{HingedSheet, Status};
-use design::force_transmission::ForceTransmission;
-use design::further_load::GivesWay;
-use design::gradient::{Deployment, DesignProblem, Model};
+use design::analysis::degeneration::{Degeneration, last_jump};
+use design::analysis::force_transmission::ForceTransmission;
+use design::analysis::further_load::GivesWay;
+use design::analysis::tension_routes::tension_routes;
+use design::equilibrium::hinged_sheet::HingedSheet;
+use design::equilibrium::load_step::Status;
+use design::equilibrium::supports::{Dof, Load};
+use design::objective::design_problem::{Deployment, DesignProblem, Model};
+use design::pattern::design_vector::DesignVector;
 use design::scene::{Scene, SceneConfig};
-use design::tension_routes::tension_routes;
-use design::validity::total_overlap;
+use design::sheet::validity::total_overlap;
 use std::path::Path;
 
 /// The uniform sheet under the scene's loads times `factor`.
@@ -17,11 +18,11 @@ fn uniform(factor: f64) -> (DesignProblem, Deployment) {
     changed("actuation-1.toml", |config| config.scale_loads(factor))
 }
 
-/// The uniform sheet of a shipped scene that was changed.
+/// The uniform sheet of a shipped scene after a change.
 fn changed(name: &str, change: impl Fn(&mut SceneConfig)) -> (DesignProblem, Deployment) {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
     let path = scenes.join(name);
-    let mut config: SceneConfig = hinge::config::read(&path).unwrap();
+    let mut config: SceneConfig = support::toml_file::read(&path).unwrap();
     config.objective.balance = false;
     change(&mut config);
     let scene = Scene::new(config, &path).unwrap();
@@ -31,7 +32,7 @@ fn changed(name: &str, change: impl Fn(&mut SceneConfig)) -> (DesignProblem, Dep
 }
 
 #[test]
-fn the_energies_of_the_interfaces_are_the_stored_energy_and_tension_reaches_the_load() {
+fn the_interface_energies_sum_to_the_stored_energy_and_tension_reaches_the_load() {
     let (problem, deployment) = uniform(1.0);
     assert_eq!(Degeneration::of(deployment.final_step()), None);
     let transmission = ForceTransmission::new(&problem, &deployment).unwrap();
@@ -47,19 +48,19 @@ fn the_energies_of_the_interfaces_are_the_stored_energy_and_tension_reaches_the_
     let whole = shares.tension + shares.compression + shares.shear;
     assert!((whole - 1.0).abs() < 1e-12);
     assert!(shares.rotation > 0.95 && shares.non_rotational > 1.0 - shares.rotation);
-    // The loaded panel is [7, 5]: every pull on it comes along a route.
+    // The loaded panel is [7, 5]: a tension path reaches it.
     let routes = tension_routes(&transmission);
     assert!(
         routes
             .iter()
             .any(|route| route.panels.contains(&(5 * 15 + 7)))
     );
-    // Where a hinge is compressed two corners overlap a little; the paper stays below this too.
+    // At a compressed hinge two corners overlap slightly; the paper's overlap is below this limit too.
     assert!(total_overlap(&deployment.sheet, &last.configuration) < 3e-6);
 }
 
 #[test]
-fn a_sheet_that_is_pushed_shut_is_no_longer_deployed() {
+fn a_sheet_that_is_pushed_closed_is_not_deployed() {
     let (_, deployment) = uniform(-0.1);
     let hinges = match Degeneration::of(deployment.final_step()) {
         Some(Degeneration::Contact { hinges }) => hinges,
@@ -71,10 +72,10 @@ fn a_sheet_that_is_pushed_shut_is_no_longer_deployed() {
     assert!(last_jump(&deployment).is_none_or(|jump| (0.0..=1.0).contains(&jump)));
 }
 
-/// Six times the pull at the corner of the sheet presses panels shut before they snap open: the tangent
-/// of the flat sheet leads them through each other.
+/// A pull of six times the load at the corner of the sheet presses panels together before they snap open: the
+/// tangent of the flat sheet predicts panels that pass through each other.
 #[test]
-fn a_sheet_that_is_pressed_shut_opens_whatever_the_load_steps() {
+fn a_sheet_that_is_pressed_closed_opens_with_any_number_of_load_steps() {
     let energy = |load_steps: usize| {
         let (_, deployment) = changed("capacity.toml", |config| {
             config.load_steps = load_steps;
@@ -88,15 +89,15 @@ fn a_sheet_that_is_pressed_shut_opens_whatever_the_load_steps() {
     assert!((coarse / fine - 1.0).abs() < 1e-9, "{coarse} {fine}");
 }
 
-/// What displacement control calls the greatest load is what dead loads confirm: a little less is carried
-/// on without a jump, a little more is not.
+/// Dead loads confirm the maximum load found under displacement control: a slightly smaller load is carried
+/// without a jump, a slightly larger one is not.
 #[test]
-fn the_greatest_further_load_is_where_dead_loads_throw_the_sheet() {
+fn dead_loads_cause_a_jump_at_the_maximum_further_load() {
     let (problem, deployment) = changed("capacity.toml", |config| {
         config.load_steps = 20;
         config.loads.truncate(1);
     });
-    // Inwards on the mid panel of the top border.
+    // Inwards on the middle panel of the top edge.
     let loads = |factor: f64| {
         [Load {
             panel: 9 * 15 + 7,
@@ -119,6 +120,7 @@ fn the_greatest_further_load_is_where_dead_loads_throw_the_sheet() {
             sheet: &deployment.sheet,
             law: &*law,
             contact: mechanics.contact.as_ref(),
+            damage_gradient: true,
         };
         let opened = deployment.final_step();
         let solver = mechanics
@@ -132,12 +134,12 @@ fn the_greatest_further_load_is_where_dead_loads_throw_the_sheet() {
     assert!(jumps(1.001 * carried));
 }
 
-/// The couple of the third actuation goes through the panel it acts on, all of it.
+/// The whole couple of the third actuation passes through the panel that it acts on.
 #[test]
 fn a_couple_passes_through_its_panel() {
     let (problem, deployment) = changed("actuation-3.toml", |_| ());
     let transmission = ForceTransmission::new(&problem, &deployment).unwrap();
-    let config: SceneConfig = hinge::config::read(
+    let config: SceneConfig = support::toml_file::read(
         &Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes/actuation-3.toml"),
     )
     .unwrap();
@@ -145,24 +147,21 @@ fn a_couple_passes_through_its_panel() {
     let [column, row] = load.panel;
     let through = transmission.moments[15 * row + column];
     assert!(through > 0.999 * load.couple.abs(), "{through}");
-    let greatest = transmission.moments.iter().copied().fold(0.0, f64::max);
-    assert!(
-        through == greatest && greatest < 1.5 * load.couple.abs(),
-        "{greatest}"
-    );
+    let max = transmission.moments.iter().copied().fold(0.0, f64::max);
+    assert!(through == max && max < 1.5 * load.couple.abs(), "{max}");
 }
 
-/// A design of the polyester sheet on whose path an increment of a tenth of the load leads over a ridge of
-/// the learned energy, into a hollow that lies far above and outside the box: no sheet climbs there by itself.
+/// A design of the polyester sheet for which an increment of a tenth of the load crosses a ridge of the learned
+/// energy into a minimum of much higher energy outside the training domain, which no sheet can reach by itself.
 #[test]
-fn no_load_step_leads_over_a_ridge_of_the_energy() {
+fn no_load_step_crosses_a_ridge_of_the_energy() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let scenes = folder.join("../configs/scenes");
     let design = std::fs::read_to_string(folder.join("tests/cases/ridge_3x3_design.json"));
     let design: DesignVector = serde_json::from_str(&design.unwrap()).unwrap();
     let potential = |load_steps: usize| {
         let path = scenes.join("pet-3x3.toml");
-        let mut config: SceneConfig = hinge::config::read(&path).unwrap();
+        let mut config: SceneConfig = support::toml_file::read(&path).unwrap();
         config.load_steps = load_steps;
         let problem = Scene::new(config, &path).unwrap().problem().unwrap();
         let deployment = problem.deploy(&design).unwrap();

@@ -1,4 +1,4 @@
-//! Scenes that are shipped are read; scenes that cannot be say which key is wrong and why.
+//! Shipped scenes are read; invalid scenes give a message with the key and the reason.
 
 use design::scene::Scene;
 use std::path::{Path, PathBuf};
@@ -35,7 +35,7 @@ fn the_linear_scene_is_read_and_needs_no_weights() {
 }
 
 #[test]
-fn an_unknown_key_names_its_line_and_the_key_that_was_meant() {
+fn an_unknown_key_names_its_line_and_the_nearest_key() {
     let message = refusal("linear-7x7.toml", "fillet_ratio", "filet_ratio");
     assert!(message.contains("linear-7x7.toml:"), "{message}");
     assert!(
@@ -89,7 +89,7 @@ fn slips_of_units_and_signs_are_named() {
 }
 
 #[test]
-fn panels_and_supports_that_cannot_be_are_named() {
+fn invalid_panels_and_supports_are_named() {
     let cases = [
         (
             "panel = [6, 3]",

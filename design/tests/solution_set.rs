@@ -1,10 +1,10 @@
-//! The curvature of the shape term about a shipped scene's start.
+//! The curvature of the shape term at the start of a shipped scene.
 
+use design::analysis::solution_set::curvatures;
 use design::scene::Scene;
-use design::solution_set::curvatures;
 use std::path::Path;
 
-/// Adding a number to all logits of an edge changes nothing: one flat direction an edge, and at a
+/// A constant added to all logits of an edge changes nothing: there is one flat direction per edge, and at a
 /// random pattern no other.
 #[test]
 fn only_the_shifts_of_the_logits_are_exactly_flat() {

@@ -1,19 +1,19 @@
-//! Whether the programs a campaign needs are there, and how to get them.
+//! Checks whether the programs that a campaign needs are installed.
 
-use crate::ccx::CCX;
+use crate::window::ccx::CCX;
 use mesher::GMSH;
-use mesher::tool::{Tool, ToolError};
+use support::program::{Tool, ToolError};
 
-/// One program: where it is and its version, or how to get it.
+/// The result of the check for one program.
 #[derive(Debug)]
 pub struct Diagnosis {
     /// The program's usual name.
     pub name: &'static str,
-    /// The program, or why there is none; the message says how to get it.
+    /// Path and version of the program, or an error whose message says how to install it.
     pub tool: Result<Tool, ToolError>,
 }
 
-/// Looks for gmsh and ccx.
+/// Searches for gmsh and ccx.
 pub fn doctor() -> [Diagnosis; 2] {
     [&GMSH, &CCX].map(|kind| Diagnosis {
         name: kind.name,

@@ -1,4 +1,4 @@
-//! Campaigns that are really run: interrupted, resumed, refused, gone stale.
+//! Campaigns run with the real solver: interrupted, resumed, rejected, stale.
 
 mod common;
 
@@ -58,7 +58,7 @@ fn an_interrupted_campaign_is_resumed_to_the_same_rows() {
         status.tally.rows,
         resumed.iter().map(|job| job.samples.len()).sum::<usize>()
     );
-    // A success keeps its deck and log, and nothing bulky.
+    // A successful job keeps its input deck and log, but no bulky output.
     let folder = parts.path().join("jobs").join(&resumed[0].id);
     let mut names: Vec<_> = folder
         .read_dir()
@@ -77,24 +77,24 @@ fn an_interrupted_campaign_is_resumed_to_the_same_rows() {
         ]
     );
 
-    // A changed setting makes jobs stale, and says which.
+    // A changed setting makes jobs stale; the plan names the setting.
     let mut changed = campaign.clone();
     changed.material.young += 1.0;
     let after = plan(&changed, parts.path(), &versions).unwrap();
     assert_eq!((after.tally.open, after.stale), (3, 3));
     assert_eq!(after.reasons["stale: material changed"], 3);
 
-    // Another campaign does not touch the folder.
+    // A campaign with another name is rejected.
     changed.name = "other".into();
     let refused = plan(&changed, parts.path(), &versions).unwrap_err();
     assert!(matches!(&refused, CampaignError::OtherCampaign { found, .. } if found == "demo"));
 }
 
-/// One increment that diverges, in the solver's account, and its last words.
+/// Writes a .sta file with one diverged increment, and prints an error.
 const GIVES_UP: &str = "echo '1 1 1U 4 0. 0. 0.005' > window.sta; echo '*ERROR: too small'";
 
 #[test]
-fn a_failing_solver_climbs_the_ladder_and_is_counted() {
+fn a_failing_solver_is_retried_and_counted() {
     let folder = tempfile::tempdir().unwrap();
     let program = fake_ccx(folder.path(), &format!("{GIVES_UP}; exit 201"));
     let tools = Tools {
@@ -106,14 +106,14 @@ fn a_failing_solver_climbs_the_ladder_and_is_counted() {
     assert_eq!(status.tally.failed, 1);
     assert_eq!(status.tally.failures[&FailureKind::Diverged], 1);
     assert!(jobs(folder.path()).is_empty());
-    // As asked, with shorter increments, on a finer mesh; each with a start and an end.
+    // Three attempts: as asked, with shorter increments, on a finer mesh; each has a start and an end event.
     let events = std::fs::read_to_string(folder.path().join("events-1-of-1.jsonl")).unwrap();
     assert_eq!(events.lines().count(), 6);
     assert!(events.lines().next_back().unwrap().contains("finer-tier"));
 }
 
 #[test]
-fn a_solver_that_vanishes_ends_the_run_at_once() {
+fn a_missing_solver_stops_the_run_immediately() {
     let folder = tempfile::tempdir().unwrap();
     let program = fake_ccx(folder.path(), "");
     let tools = Tools {
@@ -127,7 +127,7 @@ fn a_solver_that_vanishes_ends_the_run_at_once() {
 }
 
 #[test]
-fn rows_that_were_edited_are_refused_and_solved_again() {
+fn edited_rows_are_rejected_and_solved_again() {
     let folder = tempfile::tempdir().unwrap();
     let (campaign, tools) = (campaign(1), Tools::find().unwrap());
     run_to_end(&campaign, folder.path(), &tools);

@@ -1,14 +1,15 @@
-//! Solvers that die, hang, lie or write half of it: typed errors, and nothing left running.
+//! Solvers that crash, hang, report false success or truncate their output: the errors are typed, and no process
+//! remains.
 
 mod common;
 
 use common::{fake_ccx, problem};
 use fe_driver::{Ccx, FailureKind, SolveError, Tools, WindowSolution, solve_window};
 use mesher::Gmsh;
-use mesher::tool::ToolError;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
+use support::program::ToolError;
 
 fn solve(body: &str, folder: &Path, limit: Duration) -> Result<WindowSolution, SolveError> {
     let tools = Tools {
@@ -29,7 +30,7 @@ fn failure(body: &str) -> (SolveError, FailureKind) {
 }
 
 #[test]
-fn a_solver_that_fails_tells_the_end_of_its_log() {
+fn the_error_of_a_failed_solver_quotes_the_end_of_its_log() {
     let words = "echo '*ERROR: increment size smaller than minimum'; exit 201";
     let attempted = format!("echo '1 1 1U 4 0. 0. 0.005' > window.sta; {words}");
     for (body, expected) in [
@@ -46,26 +47,26 @@ fn a_solver_that_fails_tells_the_end_of_its_log() {
 }
 
 #[test]
-fn a_solver_that_claims_success_without_output_is_not_believed() {
+fn success_without_output_is_an_error() {
     let (_, kind) = failure("echo 'Job finished'");
     assert_eq!(kind, FailureKind::OutputTruncated);
 }
 
 #[test]
-fn a_solver_that_writes_rubbish_is_not_believed() {
+fn success_with_invalid_output_is_an_error() {
     let (error, kind) = failure("echo 'rubbish' > window.dat; echo 'Job finished'");
     assert_eq!(kind, FailureKind::OutputTruncated);
     assert!(error.to_string().contains("line 1"), "{error}");
 }
 
 #[test]
-fn a_killed_solver_is_told_apart() {
+fn a_killed_solver_has_its_own_failure_kind() {
     let (_, kind) = failure("kill -9 $$");
     assert_eq!(kind, FailureKind::Killed);
 }
 
 #[test]
-fn a_hanging_solver_is_ended_with_its_children() {
+fn a_hanging_solver_is_terminated_with_its_children() {
     let folder = tempfile::tempdir().unwrap();
     let body = "sleep 1000 & echo $! > child; trap '' TERM; while true; do sleep 1; done";
     let limit = Duration::from_millis(300);
@@ -85,7 +86,7 @@ fn a_hanging_solver_is_ended_with_its_children() {
 }
 
 #[test]
-fn what_an_earlier_solve_left_is_not_taken_for_a_result() {
+fn output_of_an_earlier_solve_is_not_taken_for_a_result() {
     let folder = tempfile::tempdir().unwrap();
     let limit = Duration::from_secs(120);
     let real = Ccx::find().unwrap().0.program;
@@ -100,7 +101,7 @@ fn what_an_earlier_solve_left_is_not_taken_for_a_result() {
     assert!(matches!(again.stopped, Some(SolveError::Truncated { .. })));
 }
 
-/// A real solve whose output is cut: the complete increments before the cut are kept.
+/// A real solve whose output is truncated: the complete increments are kept.
 #[test]
 fn a_truncated_output_keeps_its_complete_increments() {
     let folder = tempfile::tempdir().unwrap();

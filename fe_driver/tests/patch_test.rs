@@ -1,5 +1,5 @@
-//! The patch test, through our own node order and extrusion: a linear displacement on the boundary
-//! of a real window mesh must be linear inside, with the exact uniform stress everywhere.
+//! The patch test of the node order and the extrusion: for a linear displacement prescribed on the boundary
+//! of a real window mesh, the displacement must be linear inside, with the exact uniform stress everywhere.
 
 mod common;
 
@@ -10,7 +10,7 @@ use mesher::{ElementKind, Gmsh, Tier, WindowMesh, mesh_window};
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 
-/// A general displacement gradient, small.
+/// A small general displacement gradient.
 const G: [[f64; 3]; 3] = [
     [1e-3, 4e-4, 2e-4],
     [-2e-4, -5e-4, 3e-4],
@@ -32,7 +32,7 @@ fn stress(young: f64, poisson: f64) -> [f64; 6] {
     })
 }
 
-/// Places in an element of the nodes of its faces: lower, upper, sides.
+/// Local node numbers of the faces of an element: lower, upper, sides.
 fn faces_of(kind: ElementKind) -> Vec<Vec<usize>> {
     let n = kind.corners();
     let lower = [0..n, 2 * n..3 * n].into_iter().flatten().collect();
@@ -53,7 +53,7 @@ fn faces_of(kind: ElementKind) -> Vec<Vec<usize>> {
     [lower, upper].into_iter().chain((0..n).map(side)).collect()
 }
 
-/// Nodes on the surface of the mesh: of a face that only one element has.
+/// Nodes on the surface of the mesh, that is, of faces that belong to only one element.
 fn surface(mesh: &WindowMesh) -> HashSet<usize> {
     let mut faces: HashMap<_, Vec<_>> = HashMap::new();
     for element in &mesh.elements {
@@ -84,7 +84,7 @@ fn patch_test(tier: Tier) {
     let gmsh = Gmsh::find().unwrap();
     let mesh = mesh_window(&design(60.0), 0.5, &tier.recipe(), folder.path(), &gmsh).unwrap();
 
-    // Nodes and elements as every deck has them; the load is this test's own.
+    // Nodes and elements are those of the usual deck; the material and the load are specific to this test.
     let text = deck(&WindowModel {
         mesh: &mesh,
         path: &DeformationPath::straight(HingeDeformation::default()),
@@ -120,7 +120,7 @@ fn patch_test(tier: Tier) {
         }
         inside += usize::from(!surface.contains(&node));
     }
-    assert!(inside > 100, "only {inside} nodes were free");
+    assert!(inside > 100, "only {inside} nodes are free");
     let exact = stress(young, poisson);
     let found = rows(stresses, 8);
     let points = tier.recipe().element().gauss_points();

@@ -1,5 +1,5 @@
-//! Campaigns whose solver replays recorded output in no time: every way to run them, and every
-//! way in which a solver fails, for once and for good.
+//! Campaigns whose solver replays recorded output, which takes almost no time: all ways to run them, and all
+//! kinds of solver failure, transient and persistent.
 
 mod common;
 
@@ -15,7 +15,7 @@ use std::time::Duration;
 
 const RAYS: usize = 3;
 
-/// Real solves, and the output that they came from.
+/// Real solves with their recorded output.
 struct Recording {
     outputs: PathBuf,
     jobs: Vec<FinishedJob>,
@@ -47,10 +47,10 @@ static RECORDING: LazyLock<Recording> = LazyLock::new(|| {
     }
 });
 
-/// Sets $id to the job's id, as ccx runs in jobs/<id>/work.
+/// Sets $id to the job's id; ccx runs in jobs/<id>/work.
 const JOB_ID: &str = "id=${PWD%/work}; id=${id##*/}";
 
-/// gmsh, and a ccx that does `fault` before it replays.
+/// gmsh, and a fake ccx that runs `fault` before it replays the recorded output.
 fn replaying(folder: &Path, fault: &str) -> Tools {
     let outputs = RECORDING.outputs.display();
     let body = format!(
@@ -67,7 +67,7 @@ fn run_whole(campaign: &Campaign, folder: &Path, tools: &Tools) -> Tally {
     run_with(&TWO_WORKERS, campaign, folder, tools).unwrap()
 }
 
-/// Everything but what the solves cost.
+/// The jobs without their CPU times.
 fn timeless(jobs: &[FinishedJob]) -> Vec<FinishedJob> {
     let timeless = |job: &FinishedJob| FinishedJob {
         cpu_seconds: 0.0,
@@ -76,11 +76,11 @@ fn timeless(jobs: &[FinishedJob]) -> Vec<FinishedJob> {
     jobs.iter().map(timeless).collect()
 }
 
-/// A way to fail, as a script; what a persistent one leaves.
+/// A kind of failure, as a script, and the result if it is persistent.
 struct Fault {
     script: &'static str,
     kind: FailureKind,
-    /// Whether complete increments are left.
+    /// Whether complete increments remain.
     rows: bool,
 }
 
@@ -90,7 +90,7 @@ const FAULTS: [Fault; 7] = [
         kind: FailureKind::NotStarted,
         rows: false,
     },
-    // An increment in the middle is missing, from its first heading to that of the next.
+    // An increment in the middle is missing, from its first heading to the first heading of the next increment.
     Fault {
         script: "awk '/forces .fx/ { n++ } n != 3' $output > window.dat; \
                  echo 'Job finished'; exit 0",
@@ -102,7 +102,7 @@ const FAULTS: [Fault; 7] = [
         kind: FailureKind::Killed,
         rows: false,
     },
-    // Not on the last rung: what is replayed does not fit its finer mesh.
+    // Not in the last attempt: the recorded output does not fit its finer mesh.
     Fault {
         script: "echo >> ../attempts; [ $(wc -l < ../attempts) -gt 3 ] || \
                  head -c 150000 $output > window.dat; kill -9 $$",
@@ -114,7 +114,7 @@ const FAULTS: [Fault; 7] = [
         kind: FailureKind::TimedOut,
         rows: false,
     },
-    // The last increment is missing, from its first heading on.
+    // The last increment is missing, starting with its first heading.
     Fault {
         script: "last=$(grep -n 'forces (fx' $output | tail -n 1 | cut -d: -f1); \
                  head -n $((last - 1)) $output > window.dat; echo 'Job finished'; exit 0",
@@ -128,13 +128,13 @@ const FAULTS: [Fault; 7] = [
     },
 ];
 
-/// The fault, only in the first attempt of each job.
+/// The script, run only in the first attempt of each job.
 fn once(script: &str) -> String {
     format!("if [ ! -e ../failed ]; then : > ../failed; {script}; fi")
 }
 
 #[test]
-fn a_fault_that_passes_leaves_no_trace() {
+fn a_transient_fault_does_not_change_the_results() {
     for Fault { script, .. } in FAULTS {
         let folder = tempfile::tempdir().unwrap();
         let mut campaign = campaign(RAYS);
@@ -156,7 +156,7 @@ fn a_fault_that_passes_leaves_no_trace() {
 }
 
 #[test]
-fn a_fault_that_stays_is_named_and_keeps_what_converged() {
+fn a_persistent_fault_is_recorded_and_converged_increments_are_kept() {
     for Fault { script, kind, rows } in FAULTS {
         let folder = tempfile::tempdir().unwrap();
         let mut campaign = campaign(RAYS);
@@ -185,7 +185,7 @@ fn a_fault_that_stays_is_named_and_keeps_what_converged() {
             "{script}"
         );
 
-        // What failed for good is left alone, until it is reopened under better conditions.
+        // Jobs that failed permanently are not run again until they are reopened.
         let mended = replaying(folder.path(), "");
         assert_eq!(run_whole(&campaign, folder.path(), &mended).complete, 0);
         assert_eq!(
@@ -203,9 +203,9 @@ fn a_fault_that_stays_is_named_and_keeps_what_converged() {
     }
 }
 
-/// A full disk is no fault of the job: the run ends, and nothing is counted as failed.
+/// A full disk is not a failure of the job: the run stops, and no job is counted as failed.
 #[test]
-fn a_full_disk_ends_the_run_and_loses_nothing() {
+fn a_full_disk_stops_the_run_without_losing_jobs() {
     let folder = tempfile::tempdir().unwrap();
     let full = "head -c 150000 $output > window.dat; \
                 echo 'Fortran runtime error: No space left on device'; exit 2";
@@ -225,7 +225,7 @@ fn a_full_disk_ends_the_run_and_loses_nothing() {
 }
 
 #[test]
-fn time_that_a_solver_spent_in_vain_is_counted() {
+fn cpu_time_of_a_timed_out_solve_is_counted() {
     let folder = tempfile::tempdir().unwrap();
     let mut campaign = campaign(1);
     campaign.time_limit = Duration::from_millis(600);
@@ -239,7 +239,7 @@ fn time_that_a_solver_spent_in_vain_is_counted() {
 }
 
 #[test]
-fn shards_run_at_once_and_add_up() {
+fn shards_run_in_parallel_and_complete_the_campaign() {
     let folder = tempfile::tempdir().unwrap();
     let (folder, tools) = (folder.path(), replaying(folder.path(), "sleep 0.2"));
     let shard = |text: &str| RunOptions {
@@ -250,7 +250,7 @@ fn shards_run_at_once_and_add_up() {
         let run = |text| run_with(&shard(text), &campaign(RAYS), folder, &tools);
         let first = scope.spawn(move || run("1/2"));
         let second = scope.spawn(move || run("2/2"));
-        // Once both are at work, no division that overlaps is let in.
+        // While both are running, every overlapping shard is rejected.
         let history = |name: &str| folder.join(name).exists();
         while !history("events-1-of-2.jsonl") || !history("events-2-of-2.jsonl") {
             std::thread::sleep(Duration::from_millis(1));
@@ -264,7 +264,7 @@ fn shards_run_at_once_and_add_up() {
         assert_eq!(second.join().unwrap().unwrap().complete, 1);
     });
     assert_eq!(timeless(&jobs(folder)), timeless(&RECORDING.jobs));
-    // Whoever comes later finds everything done.
+    // A later run finds all jobs done.
     assert_eq!(run_whole(&campaign(RAYS), folder, &tools).complete, RAYS);
     assert_eq!(
         std::fs::read(folder.join("events-1-of-1.jsonl")).unwrap(),
@@ -273,7 +273,7 @@ fn shards_run_at_once_and_add_up() {
 }
 
 #[test]
-fn after_the_time_limit_nothing_starts_and_nothing_is_lost() {
+fn after_the_time_limit_no_attempt_starts_and_no_result_is_lost() {
     let folder = tempfile::tempdir().unwrap();
     let (folder, tools) = (folder.path(), replaying(folder.path(), "sleep 0.5"));
     let short = RunOptions {
@@ -288,7 +288,7 @@ fn after_the_time_limit_nothing_starts_and_nothing_is_lost() {
 }
 
 #[test]
-fn what_was_collected_is_not_solved_again() {
+fn collected_jobs_are_not_solved_again() {
     let solved = &RECORDING.jobs;
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

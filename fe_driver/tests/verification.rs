@@ -1,5 +1,5 @@
-//! CalculiX and our decks against closed forms: the bar, the cantilever, the plate strip, and the
-//! rigid motions of a whole window.
+//! CalculiX with the generated decks, compared with closed-form solutions: the bar, the cantilever, the plate strip,
+//! and rigid motions of a whole window.
 
 mod common;
 
@@ -9,16 +9,16 @@ use hinge::{HingeDeformation, SheetMaterial};
 use mesher::{Gmsh, Tier, WindowMesh, mesh_window};
 use std::fmt::Write;
 
-/// A box of 20-node bricks, in our node order: what is counted from 1 in a deck is counted from 0.
+/// A box of 20-node bricks, in the node order of this crate; nodes count from 0, in decks from 1.
 struct Bricks {
     nodes: Vec<[f64; 3]>,
     elements: Vec<Vec<usize>>,
 }
 
 impl Bricks {
-    /// `n` bricks along each edge of a box with a corner at the origin.
+    /// A box with a corner at the origin, with `n` bricks along each edge.
     fn new(n: [usize; 3], size: [f64; 3]) -> Self {
-        // Points at half the bricks' spacing; corners have no odd coordinate, mid-sides one.
+        // Points at half of the bricks' spacing: corners have no odd index, mid-sides have one.
         let mut ids = std::collections::HashMap::new();
         let mut nodes = Vec::new();
         for k in 0..=2 * n[2] {
@@ -77,7 +77,7 @@ impl Bricks {
     }
 }
 
-/// The material as our decks write it.
+/// The material block of the generated decks.
 fn material_block(material: &SheetMaterial) -> String {
     let rest = HingeDeformation::default();
     let text = window_deck(&window(), &DeformationPath::straight(rest), material);
@@ -101,8 +101,8 @@ fn window_deck(mesh: &WindowMesh, path: &DeformationPath, material: &SheetMateri
     })
 }
 
-/// Reference: the table itself. A bar pulled to a true strain of 0.5 has the tabulated true stress
-/// at its plastic strain, through the drop after the yield peak and up the hardening.
+/// Reference: the hardening table. A bar stretched to a true strain of 0.5 has the tabulated true stress
+/// at its plastic strain, both in the drop after the yield peak and during hardening.
 #[test]
 fn a_bar_in_tension_follows_the_tabulated_curve() {
     let film = film();
@@ -134,15 +134,15 @@ fn a_bar_in_tension_follows_the_tabulated_curve() {
         assert!(stress[3..].iter().all(|s| s.abs() < 0.1), "{stress:?}");
     }
     assert!(plastic > 100, "{plastic}");
-    // Elastic and plastic strain add up; CalculiX counts 1.5 to 2 % more of the latter.
+    // The sum of elastic and plastic strain is the total strain; CalculiX gives 1.5 to 2 % more plastic strain.
     let last = strains.last().unwrap()[2];
     let expected = 0.5 - tabulated(last) / film.young;
     assert!((last / expected - 1.0).abs() < 0.025, "{last} {expected}");
 }
 
-/// Reference: beam theory, P = 3 E I delta / L^3, and thin-plate theory for the strip that may not
-/// contract across, in which E is E / (1 - nu^2): two layers of our bricks, 40 times as long as
-/// thick.
+/// Reference: beam theory, P = 3 E I delta / L^3, and thin-plate theory for a strip without lateral
+/// contraction, where E is replaced by E / (1 - nu^2). The strip has two layers of bricks and is 40 times as long
+/// as thick.
 #[test]
 fn a_cantilever_and_a_plate_strip_bend_as_theory_says() {
     let film = film();
@@ -150,7 +150,7 @@ fn a_cantilever_and_a_plate_strip_bend_as_theory_says() {
     let strip = Bricks::new([10, 1, 2], [length, breadth, thickness]);
     let stiffness = |young: f64| 3.0 * young * breadth * thickness.powi(3) / 12.0;
     let plate = film.young / (1.0 - film.poisson.powi(2));
-    // The clamp holds the slope and the middle plane, and lets the thickness be.
+    // The clamp fixes the slope and the middle plane; the thickness may change.
     let is_held = |p: &[f64; 3]| p[0] == 0.0 && (p[2] - 0.5 * thickness).abs() < 1e-9;
     let mut clamp = "FACE0,1,1,0.\n".to_owned();
     for (i, _) in strip.nodes.iter().enumerate().filter(|(_, p)| is_held(p)) {
@@ -172,8 +172,8 @@ fn a_cantilever_and_a_plate_strip_bend_as_theory_says() {
     }
 }
 
-/// The deck of a window in which panel A turns about O too, by `beta` (rad) at the end: a rotation
-/// that is superposed on both panels if panel B's path includes it.
+/// The deck of a window in which panel A also rotates about O, by `beta` (rad) at the end. If the path of panel B
+/// includes the same rotation, it is superposed on both panels.
 fn with_panel_a_turned(mesh: &WindowMesh, path: &DeformationPath, beta: f64) -> String {
     let text = window_deck(mesh, path, &film());
     let turner = mesh.nodes.len() + 3;
@@ -200,7 +200,7 @@ fn with_panel_a_turned(mesh: &WindowMesh, path: &DeformationPath, beta: f64) -> 
         .replacen("*BOUNDARY\nARCA,1,3,0.\n", driven, 1)
 }
 
-/// The energy and the resultant on panel B of each increment that a window's deck prints.
+/// The energy and the resultant force on panel B of each printed increment.
 fn energies_and_forces(dat: &str, mesh: &WindowMesh) -> Vec<(f64, [f64; 2])> {
     let nodes = mesh.arc_b.len();
     dat.split("forces (fx,fy,fz)")
@@ -214,10 +214,10 @@ fn energies_and_forces(dat: &str, mesh: &WindowMesh) -> Vec<(f64, [f64; 2])> {
         .collect()
 }
 
-/// Reference: a rigid motion strains nothing. The stated bound is that of the chords of the
-/// drive's tables, some 1e-6 N mm, against the 90 N mm of a hinge folded to 45 deg.
+/// Reference: a rigid motion causes no strain. The energy that remains, some 1e-6 N mm, is due to the chords of the
+/// amplitude tables; a hinge rotated to 45 deg stores 90 N mm.
 #[test]
-fn a_window_that_is_turned_as_a_whole_stores_nothing() {
+fn a_window_that_is_rotated_as_a_whole_stores_no_energy() {
     let mesh = window();
     let beta = 60.0_f64.to_radians();
     let end = HingeDeformation {
@@ -237,16 +237,16 @@ fn a_window_that_is_turned_as_a_whole_stores_nothing() {
     }
 }
 
-/// Reference: material frame indifference. The same (a, s, theta) while the whole hinge turns by
-/// beta gives the same energy, and forces turned by beta.
+/// Reference: material frame indifference. The same (a, s, theta) with a superposed rotation of the whole hinge by
+/// beta gives the same energy, and forces rotated by beta.
 #[test]
-fn a_superposed_rotation_changes_no_measure_of_the_hinge() {
+fn a_superposed_rotation_changes_neither_energy_nor_corotated_forces() {
     let mesh = window();
     let beta = 40.0_f64.to_radians();
     let end = problem(60.0, [-0.1, 0.1], 30.0).ray.end;
     let still = DeformationPath::straight(end);
-    // B's motion in the fixed frame: theta + beta, and du turned by beta, which is R(beta / 2)
-    // (a, s) in the mean frame of a panel A at rest.
+    // The motion of B in the fixed frame: the rotation is theta + beta, and du is rotated by beta, which is
+    // R(beta / 2) (a, s) in the mean frame of a fixed panel A.
     let file = tempfile::NamedTempFile::new().unwrap();
     let mut text = "eta_a,eta_s,theta_deg\n".to_owned();
     for k in 1..=720 {

@@ -1,4 +1,4 @@
-//! Solves that gmsh and CalculiX really make, against the energy balance, the mirror symmetry and a
+//! Solves with gmsh and CalculiX, compared with the energy balance, the mirror symmetry and a
 //! converged mesh.
 
 mod common;
@@ -25,8 +25,8 @@ fn solve(problem: &WindowProblem) -> WindowSolution {
     solution
 }
 
-/// A pure rotation of the paper's hinge by 45 deg stores 90.6 N mm on the finest mesh; the coarsest
-/// is known to be 15 % stiff.
+/// A pure rotation of the paper's hinge by 45 deg stores 90.6 N mm on the finest mesh; the coarsest mesh
+/// is known to be 15 % too stiff.
 #[test]
 fn a_pure_rotation_stores_the_work_done_on_it() {
     let solution = solve(&problem(90.0, [0.0, 0.0], 45.0));
@@ -35,7 +35,7 @@ fn a_pure_rotation_stores_the_work_done_on_it() {
     assert!((end.w - 90.6).abs() < 0.2 * 90.6, "{}", end.w);
     assert!(end.energy_residual < 1e-3, "{}", end.energy_residual);
     assert!(0.0 < end.w_elastic && end.w_elastic < end.w);
-    // Until it yields, all of its energy is elastic: two measurements of the same number.
+    // Before yield, all energy is elastic: the two energies are independent measurements of the same quantity.
     let elastic = solution
         .samples
         .iter()
@@ -63,7 +63,7 @@ fn a_pure_rotation_stores_the_work_done_on_it() {
 
 /// W(a, s, theta; alpha) = W(a, -s, theta; pi - alpha), in the mean frame of the two panels.
 #[test]
-fn a_mirrored_window_answers_in_the_mirror() {
+fn a_mirrored_window_gives_the_mirrored_sample() {
     let asked = problem(65.0, [-0.1, 0.12], 30.0);
     let mirrored = WindowProblem {
         ray: asked.ray.mirrored(),
@@ -81,11 +81,11 @@ fn a_mirrored_window_answers_in_the_mirror() {
     close(here.d, there.d, here.d);
     assert!(
         here.f_s.abs() > 0.05 * force,
-        "the pair must really shear: {here:?}"
+        "the shear force is too small for this test: {here:?}"
     );
 }
 
-/// The cut is closed, not opened, and the sheet is pressed: the drive and the frame know no sign.
+/// A closing rotation, and an axial compression: the prescribed motion and the mean frame hold for either sign.
 #[test]
 fn closing_and_compression_do_work_too() {
     for (eta_a, theta_deg) in [(0.0, -20.0), (-0.3, 10.0)] {
@@ -97,17 +97,17 @@ fn closing_and_compression_do_work_too() {
         );
         assert!(end.w > 1.0, "{end:?}");
         assert!(end.energy_residual < 2e-3, "{end:?}");
-        // The forces resist: they do work on the way the hinge is driven.
+        // The forces resist the motion: the work of the drive is positive.
         let power = end.f_a * end.a + end.f_s * end.s + end.m_theta * end.theta;
         assert!(power > 0.0, "{end:?}");
     }
 }
 
-/// A recorded route and the straight ray to the same end (section 5.2): a plastic hinge that folds
-/// first and translates late stores more, but less than 7 % more, as the paper found.
+/// A recorded path and the straight ray to the same end (section 5.2): a plastic hinge that rotates
+/// first and translates later stores more energy, but less than 7 % more, as the paper found.
 #[test]
-fn a_route_that_folds_first_ends_like_its_ray_with_more_energy() {
-    // One layer of bricks snaps, and stops, where two go on.
+fn a_path_that_rotates_first_stores_more_energy_than_its_ray() {
+    // With one layer of bricks the ligament snaps and the solve stops; with two layers it continues.
     let asked = WindowProblem {
         tier: Tier::Small,
         ..problem(90.0, [-0.1, 0.1], 60.0)
@@ -139,7 +139,7 @@ fn a_route_that_folds_first_ends_like_its_ray_with_more_energy() {
     assert!(0.002 < excess && excess < 0.07, "{excess}");
 }
 
-/// Foil and plate: the window buckles from a tenth of a millimetre to three.
+/// The window buckles at sheet thicknesses from 0.1 mm to 3 mm.
 #[test]
 fn the_thinnest_and_the_thickest_sheet_are_solved() {
     for thickness in [0.1, 3.0] {

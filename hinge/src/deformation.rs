@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Relative motion of the two panels of a hinge, measured at O in their mean frame; (8).
 ///
-/// With panel A held, panel B turns by `theta` about O and O on B moves by R(theta/2) (a, s).
+/// With panel A fixed, panel B rotates by `theta` about O, and O on B moves by R(theta/2) (a, s).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HingeDeformation {
@@ -12,12 +12,12 @@ pub struct HingeDeformation {
     pub a: f64,
     /// Shear across the secondary cut (mm).
     pub s: f64,
-    /// Relative rotation of B against A (rad); positive opens the main cut.
+    /// Rotation of panel B relative to panel A (rad); positive opens the main cut.
     pub theta: f64,
 }
 
 impl HingeDeformation {
-    /// From the dimensionless measures of (13) and the ligament width (mm).
+    /// The deformation from the dimensionless measures of (13) and the ligament width (mm).
     pub fn from_eta(eta_a: f64, eta_s: f64, theta: f64, w_lig: f64) -> Self {
         Self {
             a: eta_a * w_lig,
@@ -40,7 +40,7 @@ impl HingeDeformation {
         }
     }
 
-    /// The same deformation seen after reflecting x:
+    /// The same deformation after reflection of x:
     /// W(a, s, theta; alpha) = W(a, -s, theta; pi - alpha).
     pub fn mirrored(&self) -> Self {
         Self {
@@ -61,7 +61,7 @@ impl From<[f64; 3]> for HingeDeformation {
     }
 }
 
-/// The gradient of the stored energy in (a, s, theta): (F_a, F_s, M_theta) in (N, N, N mm).
+/// Gradient of the stored energy with respect to (a, s, theta): (F_a, F_s, M_theta) in (N, N, N mm).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HingeForces {
     pub f_a: f64,

@@ -20,7 +20,7 @@ pub struct HingeDesign {
     pub r_win: f64,
 }
 
-/// The parts of (7) that all hinges of a sheet share, being the cutting tool's and the window's.
+/// The components of (7) that are the same for all hinges of a sheet: they describe the cutting tool and the window.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HingeConstants {
@@ -33,7 +33,7 @@ pub struct HingeConstants {
 }
 
 impl HingeConstants {
-    /// Of the paper's hinge specimens; section 4.1.
+    /// The constants of the paper's hinge specimens; section 4.1.
     pub const PAPER: Self = Self {
         fillet_ratio: 0.16,
         kerf: 0.2,
@@ -75,11 +75,12 @@ pub enum InvalidDesign {
     Window { r_win: f64, limit: f64 },
 }
 
-/// Narrowest and widest ligament accepted (mm): far outside any sheet that is cut by hand or
-/// machine, so that a value in metres or in micrometres is caught.
+/// Minimum and maximum ligament width accepted (mm). The limits are far outside the range that is cut by hand
+/// or machine; they detect values in metres or in micrometres.
 const MIN_W_LIG: f64 = 0.5;
 const MAX_W_LIG: f64 = 500.0;
-/// The window must contain the tip region that is meshed around O, and some panel around it.
+/// Minimum window radius over w_lig: the window must contain the tip region that is meshed around O, and part of
+/// the panels around it.
 const MIN_WINDOW: f64 = 2.5;
 
 fn unit_slip(w_lig: f64) -> String {
@@ -101,11 +102,11 @@ impl HingeDesign {
         [self.alpha.cos(), -self.alpha.sin()]
     }
 
-    /// Gap (mm) between the flanks of the main cut at the window's rim, in the plane of the sheet;
-    /// negative where they pass through each other, as they may: the window knows no contact.
+    /// Gap (mm) between the flanks of the main cut at the window's rim, in the plane of the sheet. It is negative
+    /// where the flanks overlap; this is possible because the window is solved without contact.
     pub fn flank_gap(&self, deformation: &HingeDeformation) -> f64 {
         let [sin, cos] = [self.alpha.sin(), self.alpha.cos()];
-        // From O to the rim, whose centre is w_lig from O.
+        // Length of the flank from O to the rim, whose centre is at the distance w_lig from O.
         let flank = (self.r_win.powi(2) - (self.w_lig * cos).powi(2)).sqrt() - self.w_lig * sin;
         let HingeDeformation { a, s, theta } = deformation;
         self.kerf + sin * a + cos * s + 2.0 * flank * (0.5 * theta).sin()
@@ -116,7 +117,7 @@ impl HingeDesign {
         self.fillet_ratio * self.w_lig
     }
 
-    /// What it shares with the other hinges of its sheet.
+    /// The components that are the same for all hinges of the sheet.
     pub fn constants(&self) -> HingeConstants {
         HingeConstants {
             fillet_ratio: self.fillet_ratio,
@@ -125,7 +126,7 @@ impl HingeDesign {
         }
     }
 
-    /// The design seen after reflecting x.
+    /// The design after reflection of x.
     pub fn mirrored(&self) -> Self {
         Self {
             alpha: PI - self.alpha,
@@ -133,7 +134,7 @@ impl HingeDesign {
         }
     }
 
-    /// Refuses what cannot be cut, naming the violated inequality.
+    /// Rejects a design that cannot be cut; the error names the violated inequality.
     pub fn validate(&self) -> Result<(), InvalidDesign> {
         for (name, value) in [
             ("w_lig", self.w_lig),
@@ -182,7 +183,7 @@ mod tests {
     };
 
     #[test]
-    fn the_flanks_meet_when_the_hinge_closes_by_the_kerf_at_the_rim() {
+    fn the_flanks_touch_when_the_hinge_closes_by_the_kerf_at_the_rim() {
         let gap = |a, theta| PAPER.flank_gap(&HingeDeformation { a, s: 0.0, theta });
         assert_eq!(gap(0.0, 0.0), 0.2);
         assert!((gap(-0.2, 0.0)).abs() < 1e-15);
@@ -206,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn the_papers_hinge_is_accepted_and_mirrors_onto_itself_twice() {
+    fn the_papers_hinge_is_accepted_and_mirroring_twice_is_the_identity() {
         PAPER.validate().unwrap();
         let oblique = HingeDesign {
             alpha: 1.0,
@@ -218,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn metres_for_millimetres_are_named() {
+    fn the_error_for_metres_suggests_millimetres() {
         let message = HingeDesign {
             w_lig: 0.018,
             ..PAPER
@@ -230,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn every_violated_inequality_is_named() {
+    fn errors_name_the_violated_inequality() {
         let cases = [
             (
                 HingeDesign {

@@ -1,17 +1,17 @@
-//! The training domain: the hinge states that a database fills, not their bounding box.
+//! The training domain: the set of hinge states that a database covers, which is smaller than their bounding box.
 //!
-//! In the scaled coordinates y = ((eta_a, eta_s, theta) - centre) / half-range, the states of about one
-//! ligament width lie between parallel planes m . y <= s(m; w_lig), one for each of the 26 directions m with
-//! components -1, 0 and 1: s is the support function of the states. The domain is where its gauge
+//! In the scaled coordinates y = ((eta_a, eta_s, theta) - centre) / half-range, the states at ligament widths near
+//! w_lig satisfy m . y <= s(m; w_lig) for each of the 26 directions m with components -1, 0 and 1; s is the support
+//! function of these states. The domain is the set where the gauge satisfies
 //!
 //! ```text
 //! gamma = (sum over m of max(0, m . y / s(m; w_lig))^p)^(1/p) <= 1,      p = 24
 //! ```
 //!
-//! and w_lig and alpha lie in their intervals. gamma is smooth but at the centre, where it vanishes; it
+//! and w_lig and alpha lie in their intervals. gamma is smooth except at the centre, where it vanishes. It
 //! rounds the corners of the polytope inwards and grows in proportion to the distance from the centre.
-//! s is known at widths in geometric progression and is blended between them, with slopes of zero at either
-//! end, so that gamma is twice differentiable in w_lig.
+//! s is stored at widths in geometric progression and is blended between them with zero slope at both
+//! ends, so that gamma is twice differentiable in w_lig.
 //! (Klosowski et al., "Efficient collision detection using bounding volume hierarchies of k-DOPs", 1998.)
 
 use crate::{HingeDeformation, HingeDesign, Jet};
@@ -22,34 +22,34 @@ use std::array::from_fn;
 const DIRECTIONS: usize = 26;
 /// p of the gauge: corners where three planes meet are rounded by 5 % of their distance from the centre.
 const EXPONENT: f64 = 24.0;
-/// Most widths at which the supports are known.
+/// Maximum number of widths at which the supports are stored.
 const MOST_WIDTHS: usize = 5;
-/// States for which the supports are told apart by one more width: a hundred rays, about.
+/// Number of states per stored width: about a hundred rays.
 const STATES_A_WIDTH: usize = 4000;
-/// States count for a width from which their own is no further than this part of the step between widths.
+/// A state contributes to a stored width if their distance is at most this fraction of the step between widths.
 const REACH: f64 = 0.75;
-/// Least support, and least half-range: a domain of one state still has a size.
+/// Minimum support and minimum half-range, so that a domain of one state has a non-zero size.
 const LEAST_SIZE: f64 = 0.01;
-/// gamma of the flat state at most, where W and its gradient vanish for any weights.
+/// Maximum gamma of the flat state, where W and its gradient vanish for any weights.
 const FLAT: f64 = 0.98;
 
-/// The states that a surrogate was trained on; section 2.4. It comes from the data and travels with the
-/// weights.
+/// The states that a surrogate was trained on; section 2.4. The domain is computed from the data and stored with
+/// the weights.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Stored", into = "Fitted")]
 pub struct TrainingDomain {
-    /// mm
+    /// Interval of the ligament width (mm).
     pub w_lig: [f64; 2],
-    /// rad
+    /// Interval of the cut angle (rad).
     pub alpha: [f64; 2],
-    /// Of (eta_a, eta_s, theta).
+    /// Centre of (eta_a, eta_s, theta).
     centre: [f64; 3],
     half_range: [f64; 3],
-    /// s(m), one row for each width, from the narrowest to the widest.
+    /// s(m), one row for each stored width, from the narrowest to the widest.
     supports: Vec<[f64; DIRECTIONS]>,
 }
 
-/// A domain of states that are none.
+/// A stored domain that violates a rule.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("the training domain violates {0}")]
 pub struct InvalidDomain(&'static str);
@@ -62,7 +62,8 @@ impl TrainingDomain {
 
     /// Whether the width and the angle of a ligament are within their intervals.
     pub fn has_ligament(&self, design: &HingeDesign) -> bool {
-        let within = |[least, greatest]: [f64; 2], value: f64| least <= value && value <= greatest;
+        let within =
+            |[minimum, maximum]: [f64; 2], value: f64| minimum <= value && value <= maximum;
         within(self.w_lig, design.w_lig) && within(self.alpha, design.alpha)
     }
 
@@ -71,7 +72,7 @@ impl TrainingDomain {
         1.0 - self.gauge(design.w_lig, deformation)
     }
 
-    /// gamma.
+    /// The gauge gamma.
     pub fn gauge(&self, w_lig: f64, deformation: &HingeDeformation) -> f64 {
         let [eta_a, eta_s] = deformation.eta(w_lig);
         let y = self.scaled([eta_a, eta_s, deformation.theta]);
@@ -82,7 +83,7 @@ impl TrainingDomain {
         }))
     }
 
-    /// gamma with its derivatives in (a, s, theta, w_lig). Not at the centre, where it has none.
+    /// The gauge gamma with its derivatives in (a, s, theta, w_lig). At the centre they do not exist.
     pub fn gauge_jet(&self, w_lig: f64, deformation: &HingeDeformation) -> Jet {
         let y = self.scaled_jet(w_lig, deformation);
         let (row, blend) = self.place(w_lig);
@@ -93,7 +94,7 @@ impl TrainingDomain {
             let along = components.fold(Jet::constant(0.0), |sum, (m, y)| sum + y * m);
             along * support.recip()
         });
-        // Scaled by the largest, so that no power over- or underflows.
+        // Ratios are divided by the largest, so that the powers neither overflow nor underflow.
         let largest = ratios.iter().map(|ratio| ratio.value).fold(0.0, f64::max);
         let sum = ratios.iter().filter(|ratio| ratio.value > 0.0);
         let sum = sum.fold(Jet::constant(0.0), |sum, ratio| {
@@ -107,7 +108,7 @@ impl TrainingDomain {
         self.centre
     }
 
-    /// Intervals of (eta_a, eta_s, theta) that the domain spans over all widths, rad.
+    /// Intervals of (eta_a, eta_s, theta) that the domain spans over all widths; theta in rad.
     pub fn bounds(&self) -> [[f64; 2]; 3] {
         from_fn(|i| {
             let side = |sign: f64| {
@@ -125,8 +126,8 @@ impl TrainingDomain {
         })
     }
 
-    /// The edge of the domain in the plane of (eta_a, eta_s) at a width (mm) and a rotation (rad): a closed
-    /// line, empty where the plane misses the domain's middle.
+    /// The boundary of the domain in the plane of (eta_a, eta_s) at a width (mm) and a rotation (rad): a closed
+    /// polyline, empty if the point (eta_a, eta_s) of the centre is outside the domain.
     pub fn slice(&self, w_lig: f64, theta: f64) -> Vec<[f64; 2]> {
         const POINTS: u32 = 72;
         let [centre_a, centre_s, _] = self.centre;
@@ -161,7 +162,7 @@ impl TrainingDomain {
             .collect()
     }
 
-    /// The domain of the states of this one times `factor`.
+    /// The domain whose states are the states of this one multiplied by `factor`.
     pub fn scaled_by(&self, factor: f64) -> Self {
         Self {
             centre: self.centre.map(|x| factor * x),
@@ -170,7 +171,7 @@ impl TrainingDomain {
         }
     }
 
-    /// The domain of given states and the flat one; `None` if there is no state.
+    /// The domain of the given states and the flat state; `None` if no state is given.
     pub fn covering<'a>(
         states: impl IntoIterator<Item = (&'a HingeDesign, &'a HingeDeformation)>,
     ) -> Option<Self> {
@@ -211,13 +212,13 @@ impl TrainingDomain {
         Some(domain)
     }
 
-    /// The box of states; each interval may be empty but for its ends.
+    /// The domain of a box of states; an interval may have zero length.
     pub fn of_box(state: [[f64; 2]; 3], w_lig: [f64; 2], alpha: [f64; 2]) -> Self {
         let mut domain = Self {
             w_lig,
             alpha,
-            centre: state.map(|[least, greatest]| 0.5 * (least + greatest)),
-            half_range: state.map(|[least, greatest]| (0.5 * (greatest - least)).max(LEAST_SIZE)),
+            centre: state.map(|[minimum, maximum]| 0.5 * (minimum + maximum)),
+            half_range: state.map(|[minimum, maximum]| (0.5 * (maximum - minimum)).max(LEAST_SIZE)),
             supports: Vec::new(),
         };
         let corners = (0..8).map(|k| from_fn(|i| state[i][(k >> i) & 1]));
@@ -226,12 +227,12 @@ impl TrainingDomain {
         domain
     }
 
-    /// s(m) of scaled states and the flat one, which is inside.
+    /// s(m) of scaled states and of the flat state, which must be inside the domain.
     fn support(&self, states: impl IntoIterator<Item = [f64; 3]>) -> [f64; DIRECTIONS] {
         let flat = self.scaled([0.0; 3]);
         let along = |y: [f64; 3]| -> [f64; DIRECTIONS] { from_fn(|m| dot(DIRECTION[m], y)) };
-        let least = along(flat).map(|s| s.max(LEAST_SIZE));
-        let support = states.into_iter().fold(least, |support, y| {
+        let minimum = along(flat).map(|s| s.max(LEAST_SIZE));
+        let support = states.into_iter().fold(minimum, |support, y| {
             let along = along(y);
             from_fn(|m| along[m].max(support[m]))
         });
@@ -253,11 +254,11 @@ impl TrainingDomain {
         })
     }
 
-    /// Where a width lies among `widths` of the domain's, counted from 0.
+    /// Fractional index of a width among the `widths` stored widths, counted from 0.
     fn along(&self, w_lig: f64, widths: usize) -> f64 {
-        let [least, greatest] = self.w_lig;
+        let [minimum, maximum] = self.w_lig;
         let steps = (widths - 1) as f64;
-        let share = (w_lig / least).ln() / (greatest / least).ln();
+        let share = (w_lig / minimum).ln() / (maximum / minimum).ln();
         if share.is_finite() {
             (share * steps).clamp(0.0, steps)
         } else {
@@ -265,15 +266,15 @@ impl TrainingDomain {
         }
     }
 
-    /// The row of supports at or below a width, and how far it is blended into the next, with derivatives in
-    /// w_lig: 6 x^5 - 15 x^4 + 10 x^3.
+    /// The row of supports at or below a width, and the blending weight 6 x^5 - 15 x^4 + 10 x^3 of the next row,
+    /// with its derivatives in w_lig.
     fn place(&self, w_lig: f64) -> (usize, [f64; 3]) {
         let widths = self.supports.len();
         let along = self.along(w_lig, widths);
         let row = (along as usize).min(widths.saturating_sub(2));
         let x = along - row as f64;
-        let [least, greatest] = self.w_lig;
-        let slope = (widths - 1) as f64 / (greatest / least).ln() / w_lig;
+        let [minimum, maximum] = self.w_lig;
+        let slope = (widths - 1) as f64 / (maximum / minimum).ln() / w_lig;
         if widths == 1 || !slope.is_finite() {
             return (row, [0.0; 3]);
         }
@@ -290,7 +291,7 @@ impl TrainingDomain {
         )
     }
 
-    /// What the support of the next width has more.
+    /// Difference of the support at the next stored width and at this one.
     fn rise(&self, row: usize, m: usize) -> f64 {
         let next = self.supports.get(row + 1).unwrap_or(&self.supports[row]);
         next[m] - self.supports[row][m]
@@ -324,7 +325,7 @@ const DIRECTION: [[f64; 3]; DIRECTIONS] = {
     let mut directions = [[0.0; 3]; DIRECTIONS];
     let mut m = 0;
     while m < DIRECTIONS {
-        // The zero vector, number 13 of 27, is none.
+        // The zero vector, number 13 of 27, is not a direction.
         let k = if m < 13 { m } else { m + 1 };
         directions[m] = [
             (k % 3) as f64 - 1.0,
@@ -336,7 +337,7 @@ const DIRECTION: [[f64; 3]; DIRECTIONS] = {
     directions
 };
 
-/// How a domain is written.
+/// The serialised form of a domain.
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Fitted {
@@ -347,7 +348,7 @@ struct Fitted {
     supports: Vec<Vec<f64>>,
 }
 
-/// How a domain may have been written: as a box, before there were supports.
+/// The forms in which a domain may be stored: older files contain a box instead of supports.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Stored {
@@ -389,7 +390,7 @@ impl TryFrom<Stored> for TrainingDomain {
             }
         };
         let is_interval =
-            |[least, greatest]: [f64; 2]| least <= greatest && (greatest - least).is_finite();
+            |[minimum, maximum]: [f64; 2]| minimum <= maximum && (maximum - minimum).is_finite();
         let domain = match stored {
             Stored::Box(Intervals {
                 eta_a,
@@ -401,7 +402,7 @@ impl TryFrom<Stored> for TrainingDomain {
                 let state = [eta_a, eta_s, theta];
                 check(
                     state.into_iter().all(is_interval),
-                    "least <= greatest for eta_a, eta_s, theta",
+                    "minimum <= maximum for eta_a, eta_s, theta",
                 )?;
                 Self::of_box(state, w_lig, alpha)
             }
@@ -409,10 +410,10 @@ impl TryFrom<Stored> for TrainingDomain {
                 let positive = |x: &f64| *x > 0.0 && x.is_finite();
                 check(
                     fitted.centre.iter().all(|x| x.is_finite()),
-                    "a finite centre",
+                    "centre is finite",
                 )?;
                 check(fitted.half_range.iter().all(positive), "half_range > 0")?;
-                check(!fitted.supports.is_empty(), "at least one row of supports")?;
+                check(!fitted.supports.is_empty(), "supports has at least one row")?;
                 check(
                     fitted.supports.iter().flatten().all(positive),
                     "supports > 0",
@@ -428,15 +429,15 @@ impl TryFrom<Stored> for TrainingDomain {
                     half_range: fitted.half_range,
                     supports: rows
                         .collect::<Result<_, _>>()
-                        .map_err(|_| InvalidDomain("26 supports in a row"))?,
+                        .map_err(|_| InvalidDomain("every row of supports has 26 values"))?,
                 }
             }
         };
         check(
             is_interval(domain.w_lig) && domain.w_lig[0] > 0.0,
-            "0 < least <= greatest w_lig",
+            "0 < minimum <= maximum for w_lig",
         )?;
-        check(is_interval(domain.alpha), "least <= greatest alpha")?;
+        check(is_interval(domain.alpha), "minimum <= maximum for alpha")?;
         Ok(domain)
     }
 }
@@ -450,8 +451,8 @@ mod tests {
         HingeConstants::PAPER.hinge(w_lig, 1.3)
     }
 
-    /// Ends of rays in a cone: tension and shear grow with the rotation, and shrink with the width; and
-    /// their mirror images.
+    /// Ends of rays in a cone, and their mirror images: tension and shear increase with the rotation and decrease
+    /// with the width.
     fn cone() -> Vec<(HingeDesign, HingeDeformation)> {
         let part = |i: usize, prime: f64| (i as f64 * prime).fract() * 2.0 - 1.0;
         let state = |i: usize| {
@@ -473,7 +474,7 @@ mod tests {
     }
 
     #[test]
-    fn it_holds_what_the_states_fill_and_not_the_corners_of_their_box() {
+    fn the_domain_contains_the_states_but_not_the_corners_of_their_bounding_box() {
         let states = cone();
         let domain = domain(&states);
         let share = |domain: &TrainingDomain| {
@@ -485,7 +486,7 @@ mod tests {
             let state = HingeDeformation::from_eta(eta_a, 0.0, theta, w_lig);
             domain.contains(&design(w_lig), &state)
         };
-        // The corner of the box that no ray visits, and the width that has none of the range of others.
+        // A corner of the box that no ray reaches, and a width at which the range is smaller than at others.
         assert!(at(0.2, 0.9, 5.5) && !at(0.2, 0.2, 5.5));
         assert!(at(0.06, 0.9, 18.0) && !at(0.2, 0.9, 18.0));
         assert!(at(0.0, 0.0, 10.0), "the flat state");
@@ -497,7 +498,7 @@ mod tests {
     }
 
     #[test]
-    fn mirror_images_are_exactly_as_deep() {
+    fn mirror_images_have_the_same_depth() {
         let domain = domain(&cone());
         for (a, s, theta) in [(0.1, 0.2, 0.5), (-0.3, 0.05, 0.1), (0.02, -0.07, 1.4)] {
             let state = HingeDeformation::from_eta(a, s, theta, 9.0);
@@ -508,7 +509,7 @@ mod tests {
     }
 
     #[test]
-    fn the_gauge_and_its_derivatives_agree_with_differences() {
+    fn the_derivatives_of_the_gauge_agree_with_finite_differences() {
         let domain = domain(&cone());
         for x in [
             [0.9, -0.4, 0.5, 8.0],
@@ -538,7 +539,7 @@ mod tests {
     }
 
     #[test]
-    fn the_supports_are_twice_differentiable_across_the_widths_they_are_known_at() {
+    fn the_gauge_is_twice_differentiable_across_the_stored_widths() {
         let domain = domain(&cone());
         assert_eq!(domain.supports.len(), MOST_WIDTHS);
         let state = HingeDeformation {
@@ -555,7 +556,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slice_is_where_the_depth_is_zero_and_half_the_states_fill_half_the_domain() {
+    fn the_depth_is_zero_on_a_slice_and_halved_states_give_a_halved_domain() {
         let domain = domain(&cone());
         let slice = domain.slice(7.0, 0.6);
         assert!(slice.len() > 20 && slice[0] == slice[slice.len() - 1]);
@@ -569,7 +570,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_a_state_and_no_state() {
+    fn a_box_a_single_state_and_no_state_are_handled() {
         let state = [[-0.5, 0.2], [-0.4, 0.4], [0.0, 1.2]];
         let boxed = TrainingDomain::of_box(state, [5.0, 25.0], [0.8, 2.3]);
         let deep = |eta_a, eta_s, theta| {
@@ -594,7 +595,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_read_back_exactly_and_boxes_of_before_are_read() {
+    fn a_domain_round_trips_exactly_and_old_boxes_are_read() {
         let domain = domain(&cone());
         let text = serde_json::to_string(&domain).unwrap();
         assert_eq!(

@@ -1,4 +1,4 @@
-//! Numbers with their derivatives to second order in (a, s, theta, w_lig): forward mode, for what is cheap.
+//! Forward-mode automatic differentiation to second order in (a, s, theta, w_lig), for inexpensive functions.
 
 use std::array::from_fn;
 use std::ops::{Add, Mul, Sub};
@@ -20,7 +20,7 @@ impl Jet {
         }
     }
 
-    /// One of the four variables: 0 is a, 3 is w_lig.
+    /// One of the four variables: index 0 is a, 1 is s, 2 is theta, 3 is w_lig.
     pub fn variable(index: usize, value: f64) -> Self {
         Self {
             gradient: from_fn(|i| f64::from(u8::from(i == index))),
@@ -28,7 +28,7 @@ impl Jet {
         }
     }
 
-    /// f of this number, with f, f' and f'' at its value.
+    /// Applies a function f, given f, f' and f'' at this value.
     pub fn map(self, [value, first, second]: [f64; 3]) -> Self {
         let g = self.gradient;
         Self {
@@ -87,7 +87,7 @@ impl Mul for Jet {
 
     #[expect(
         clippy::suspicious_arithmetic_impl,
-        reason = "the product rule has sums"
+        reason = "the product rule adds terms"
     )]
     fn mul(self, other: Self) -> Self {
         let (x, y) = (self.value, other.value);
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn derivatives_agree_with_differences() {
+    fn derivatives_agree_with_finite_differences() {
         let x = [2.0, 1.5, 0.4, 3.0];
         let found = number(x);
         for i in 0..4 {

@@ -1,6 +1,6 @@
-//! The words every crate of the workspace shares.
+//! The vocabulary shared by all crates of the workspace.
 //!
-//! | word | type | paper |
+//! | term | type | paper |
 //! |---|---|---|
 //! | hinge design g | [`HingeDesign`] | (7) |
 //! | hinge deformation (a, s, theta) | [`HingeDeformation`] | (8) |
@@ -9,22 +9,20 @@
 //! | training domain | [`TrainingDomain`] | section 2.4 |
 //! | one converged increment of a window solve | [`HingeSample`] | section 2.4 |
 //!
-//! Units everywhere: mm, N, MPa, N mm, rad. Degrees appear only in names that end in `_deg`.
+//! Units: mm, N, MPa, N mm, rad. Angles in degrees have names that end in `_deg`.
 //!
-//! **Hinge frame.** x runs along the secondary cut, y is its counter-clockwise normal and points
-//! away from the material (material at y <= 0). The main cut leaves its tip O at the angle alpha,
-//! measured into the material from +x. Panel A lies on the -x side of the main cut, panel B on the
+//! **Hinge frame.** x runs along the secondary cut. y is its counter-clockwise normal and points
+//! away from the material, which lies at y <= 0. The main cut runs from its tip O at the angle alpha,
+//! measured from +x into the material. Panel A lies on the -x side of the main cut, panel B on the
 //! +x side. theta > 0 opens the main cut.
 //!
-//! **One reference point.** O is the tip of the main cut, at the perpendicular distance w_lig from
-//! the secondary cut; the frame's origin is the foot of that perpendicular. Both the window and
+//! **Reference point.** O is the tip of the main cut, at the perpendicular distance w_lig from
+//! the secondary cut. The origin of the frame is the foot of that perpendicular. Both the window and
 //! the sheet measure (a, s, theta) at O, in the mean frame of the two panels.
 
-pub mod config;
 mod deformation;
 mod design;
 mod domain;
-pub mod files;
 mod jet;
 mod material;
 mod sample;

@@ -1,9 +1,9 @@
-//! The sheet material as measured on tensile specimens; section 4.1.
+//! The sheet material, as measured on tensile specimens; section 4.1.
 
-use crate::config::{self, ConfigError};
 use crate::tensile::{TensileError, read_tensile};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
+use support::toml_file::{self, ConfigError};
 
 /// A uniform sheet: thickness, isotropic elasticity, tabulated J2 hardening, fracture strain.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -16,15 +16,15 @@ pub struct SheetMaterial {
     pub young: f64,
     /// Poisson's ratio, in [0, 0.5).
     pub poisson: f64,
-    /// kg/m^3, the unit of data sheets; only (21)-(22) read it.
+    /// Density (kg/m^3, the unit of data sheets); used only in (21)-(22).
     pub density_kg_m3: f64,
     /// Equivalent plastic strain at fracture, eps_f of (12).
     pub fracture_strain: f64,
-    /// Rows [true stress (MPa), true plastic strain], the first at zero plastic strain.
+    /// Rows [true stress (MPa), true plastic strain]; the first row is at zero plastic strain.
     pub plastic: Vec<[f64; 2]>,
 }
 
-/// The file; see `configs/materials/`.
+/// The TOML file; see `configs/materials/`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct MaterialFile {
@@ -35,7 +35,7 @@ struct MaterialFile {
     density_kg_m3: f64,
     fracture_strain: f64,
     plastic: Option<Vec<[f64; 2]>>,
-    /// A measured curve in place of `plastic`; relative to the material's file.
+    /// Path of a measured curve instead of `plastic`, relative to the material's file.
     tensile_csv: Option<PathBuf>,
 }
 
@@ -46,7 +46,7 @@ pub enum MaterialError {
     Config(#[from] ConfigError),
     #[error(transparent)]
     Tensile(#[from] TensileError),
-    #[error("{path}: give either `plastic` or `tensile_csv`", path = .0.display())]
+    #[error("{path}: give exactly one of `plastic` and `tensile_csv`", path = .0.display())]
     Hardening(PathBuf),
     #[error("{path}: {source}", path = .path.display())]
     Invalid {
@@ -55,7 +55,7 @@ pub enum MaterialError {
     },
 }
 
-/// A material that cannot be, or that was written in other units.
+/// A material with impossible values, or with values in other units.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("material `{material}`: {reason}")]
 pub struct InvalidMaterial {
@@ -64,9 +64,9 @@ pub struct InvalidMaterial {
 }
 
 impl SheetMaterial {
-    /// Reads a material and its tensile curve, and refuses what cannot be.
+    /// Reads a material and its tensile curve, and rejects impossible values.
     pub fn load(path: &Path) -> Result<Self, MaterialError> {
-        let file: MaterialFile = config::read(path)?;
+        let file: MaterialFile = toml_file::read(path)?;
         let plastic = match (file.plastic, file.tensile_csv) {
             (Some(rows), None) => rows,
             (None, Some(curve)) => {
@@ -93,8 +93,8 @@ impl SheetMaterial {
         }
     }
 
-    /// What tells two laws of one name apart: BLAKE3 of all that a window solve knows of the
-    /// material, 16 hexadecimal digits. Name and density do not count.
+    /// Identifies the material law independently of its name: BLAKE3 hash of all material parameters that a window
+    /// solve uses, 16 hexadecimal digits. Name and density are not included.
     pub fn law_hash(&self) -> String {
         let mut hasher = blake3::Hasher::new();
         let numbers = [
@@ -109,7 +109,7 @@ impl SheetMaterial {
         hasher.finalize().to_hex()[..16].to_owned()
     }
 
-    /// Refuses impossible values and the usual unit slips (GPa for MPa, m for mm, g/cm^3 for kg/m^3).
+    /// Rejects impossible values and the usual unit errors (GPa for MPa, m for mm, g/cm^3 for kg/m^3).
     pub fn validate(&self) -> Result<(), InvalidMaterial> {
         let refuse = |reason: String| {
             Err(InvalidMaterial {
@@ -138,15 +138,15 @@ impl SheetMaterial {
                 f64::NAN,
             ),
         ];
-        for (name, value, least, greatest, unit, slip) in limits {
-            if !(least..=greatest).contains(&value) {
-                let hint = if (least..=greatest).contains(&(slip * value)) {
+        for (name, value, minimum, maximum, unit, slip) in limits {
+            if !(minimum..=maximum).contains(&value) {
+                let hint = if (minimum..=maximum).contains(&(slip * value)) {
                     format!("; did you mean {} {unit}?", slip * value)
                 } else {
                     String::new()
                 };
                 return refuse(format!(
-                    "{name} = {value} violates {least} <= {name} <= {greatest} {unit}{hint}"
+                    "{name} = {value} violates {minimum} <= {name} <= {maximum} {unit}{hint}"
                 ));
             }
         }
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn the_law_is_told_apart_by_its_numbers_alone() {
+    fn the_law_hash_depends_on_the_parameters_alone() {
         let renamed = SheetMaterial {
             name: "other".into(),
             density_kg_m3: 1000.0,
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn unit_slips_and_impossible_tables_are_refused() {
+    fn unit_errors_and_impossible_tables_are_rejected() {
         let cases = [
             (
                 SheetMaterial {

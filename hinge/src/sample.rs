@@ -3,7 +3,7 @@
 use crate::{HingeDeformation, HingeForces, StrainVolumes};
 use serde::{Deserialize, Serialize};
 
-/// What one converged increment says: (eps, g) -> (W, grad W, D); section 2.4.
+/// The state at one converged increment: (eps, g) -> (W, grad W, D); section 2.4.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HingeSample {
     /// Fraction of the ray, in (0, 1].
@@ -16,7 +16,7 @@ pub struct HingeSample {
     pub theta: f64,
     /// Internal work, stored plus dissipated: the potential of the measured forces (N mm).
     pub w: f64,
-    /// Work of the reactions along the ray by the trapezoidal rule (N mm).
+    /// Work of the reaction forces along the ray, by the trapezoidal rule (N mm).
     pub w_work: f64,
     /// Elastic part of `w` (N mm).
     pub w_elastic: f64,
@@ -28,29 +28,30 @@ pub struct HingeSample {
     pub m_theta: f64,
     /// Equivalent plastic strain integrated over the window (mm^3).
     pub plastic_integral: f64,
-    /// `plastic_integral` over eps_f and the ligament's half-disc volume (pi/2) w_lig^2 t.
+    /// `plastic_integral` divided by eps_f and by the ligament's half-disc volume (pi/2) w_lig^2 t.
     pub d: f64,
-    /// (12) as printed: `plastic_integral` over eps_f and the window's volume.
+    /// (12) as printed in the paper: `plastic_integral` divided by eps_f and by the window's volume.
     pub d_window: f64,
-    /// Mean plastic strain of the most strained 1 % of the ligament's half-disc volume, over eps_f: at
-    /// one the ligament tears. `None` in samples that were not evaluated for it.
+    /// Mean plastic strain of the most strained 1 % of the ligament's half-disc volume, divided by eps_f.
+    /// The ligament tears at 1. `None` in samples for which it was not evaluated.
     pub d_peak: Option<f64>,
     /// Maximum plastic strain over the integration points.
     pub strain_max: Option<f64>,
-    /// Volume of the window by plastic strain.
+    /// Histogram of the window's volume by plastic strain.
     pub strain_volumes: Option<StrainVolumes>,
-    /// Largest out-of-plane displacement (mm).
+    /// Maximum out-of-plane displacement (mm).
     pub uz_max: f64,
-    /// |w - w_work| over the largest w of the ray.
+    /// |w - w_work| divided by the maximum w of the ray.
     ///
-    /// Not over the row's own w: the trapezoidal work of the first increment, in which the
-    /// ligament buckles, is off by a quarter of an energy that hardly counts.
+    /// It is not divided by the w of the row: in the first increment, in which the ligament buckles, the
+    /// trapezoidal work has an error of a quarter of w, but this energy is negligible.
     pub energy_residual: f64,
 }
 
 impl HingeSample {
-    /// The state of a ray at `lambda`: linear between its samples, which are in order of lambda,
-    /// and from the undeformed state to the first; none past the last. The histogram is left out.
+    /// The state of a ray at `lambda`, interpolated linearly between its samples, which must be in order of
+    /// lambda, and between the undeformed state and the first sample. `None` beyond the last sample. The
+    /// histogram is not interpolated.
     pub fn at(ray: &[Self], lambda: f64) -> Option<Self> {
         let after = ray.partition_point(|x| x.lambda < lambda);
         let next = ray.get(after)?;
@@ -115,7 +116,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_state_is_linear_between_samples_and_rests_at_the_start() {
+    fn a_state_is_interpolated_linearly_from_the_undeformed_state() {
         let sample = |lambda: f64| HingeSample {
             lambda,
             theta: lambda,

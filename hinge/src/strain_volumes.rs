@@ -1,8 +1,8 @@
 //! The distribution of accumulated plastic strain over a window, as a histogram of volumes.
 //!
-//! Bin 0 holds strains above zero and below 0.001; the edges above grow by sqrt(2) a bin, and the last
-//! bin is open. Any measure of damage that depends on the strain alone can be computed from it again,
-//! to the width of a bin, without another solve.
+//! Bin 0 holds strains above zero and below 0.001. The edges above grow by a factor of sqrt(2) per bin, and
+//! the last bin has no upper limit. Any damage measure that depends on the strain alone can be recomputed
+//! from the histogram, to within the width of a bin, without another solve.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -15,18 +15,19 @@ const FIRST_EDGE: f64 = 1e-3;
 
 /// Volume (mm^3) in each bin of plastic strain.
 ///
-/// Single precision: a volume is known to the size of an integration point's own.
+/// Single precision: a volume is resolved only to the volume of one integration point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct StrainVolumes([f32; BINS]);
 
-/// A text that is no histogram.
+/// A text that is not a histogram.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("`{0}` is not {BINS} volumes separated by blanks")]
+#[error("expected {BINS} non-negative volumes separated by blanks, found `{0}`")]
 pub struct NoHistogram(String);
 
 impl StrainVolumes {
-    /// The histogram of integration points (plastic strain, volume in mm^3); unstrained ones are in no bin.
+    /// The histogram of integration points (plastic strain, volume in mm^3). Points without plastic strain are
+    /// not counted.
     pub fn of(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let mut volumes = [0.0_f64; BINS];
         for (strain, volume) in points {
@@ -100,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_strained_point_is_in_one_bin_and_within_its_edges() {
+    fn every_strained_point_is_in_the_bin_that_contains_it() {
         let points: Vec<(f64, f64)> = (0..200).map(|i| (1e-4 * 1.06_f64.powi(i), 0.5)).collect();
         let histogram = StrainVolumes::of(points.iter().copied().chain([(0.0, 7.0)]));
         let total: f64 = histogram.bins().map(|(.., volume)| volume).sum();
@@ -114,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_written_as_text_and_read_back_exactly() {
+    fn a_histogram_round_trips_through_text_exactly() {
         let histogram = StrainVolumes::of([(0.01, 1.0 / 3.0), (0.5, 1e-7), (9.0, 12.5)]);
         assert_eq!(histogram.to_string().parse(), Ok(histogram));
         assert!("1 2 3".parse::<StrainVolumes>().is_err());

@@ -1,36 +1,35 @@
 //! A measured tensile curve (CSV) as the hardening table of a material.
 //!
-//! Two pairs of columns are understood, others are passed over; lines that start with `#` are
-//! comments:
+//! One of two pairs of columns is read; other columns are ignored. Lines that start with `#` are
+//! comments.
 //!
 //! | columns | meaning |
 //! |---|---|
-//! | `true_stress_mpa`, `plastic_strain` | the table itself |
-//! | `engineering_stress_mpa`, `engineering_strain` | force over first section, elongation over first length |
+//! | `true_stress_mpa`, `plastic_strain` | the hardening table itself |
+//! | `engineering_stress_mpa`, `engineering_strain` | force over initial section, elongation over initial length |
 //!
-//! Engineering values are converted while the specimen is uniform, that is up to the greatest
-//! stress (Considere): sigma = s (1 + e), eps_p = ln(1 + e) - sigma / E. The yield stress is that
-//! at a plastic strain of 0.2 % (Rp0.2, ISO 6892-1), from where plastic strain is counted. What
-//! follows the neck must be measured on it, and given as true stress. A curve that does not begin
-//! with the slope of Young's modulus is refused: it is in other units, or has a toe or the
-//! compliance of the machine in it.
+//! Engineering values are converted up to the maximum stress, where necking begins (Considere):
+//! sigma = s (1 + e), eps_p = ln(1 + e) - sigma / E. The yield stress is the stress at a plastic strain of 0.2 %
+//! (Rp0.2, ISO 6892-1); plastic strain is counted from there. Data beyond necking must be measured on the neck
+//! and given as true stress. A curve whose initial slope is not Young's modulus is rejected: it is in other
+//! units, or it contains a toe region or the compliance of the testing machine.
 
 use std::path::{Path, PathBuf};
 
 /// Plastic strain at the yield stress Rp0.2.
 const OFFSET: f64 = 0.002;
-/// Most rows of a converted table; a testing machine records thousands.
+/// Maximum number of rows of a converted table; a testing machine records thousands.
 const MOST_ROWS: usize = 40;
-/// Share of the greatest stress at which the first slope is read.
+/// Fraction of the maximum stress up to which the initial slope is measured.
 const FIRST_SHARE: f64 = 0.2;
-/// How far the first slope may be from Young's modulus, as a factor: units are off by hundreds.
+/// Maximum factor between the initial slope and Young's modulus; wrong units give factors of 100 and more.
 const SLOPE_FACTOR: f64 = 2.0;
-/// How far a strain may fall back from one row to the next: the noise of an extensometer.
+/// Maximum decrease of the strain from one row to the next: the noise of an extensometer.
 const NOISE: f64 = 1e-3;
-/// No sheet strains further, as a share.
+/// Maximum strain accepted (dimensionless, not per cent).
 const GREATEST_STRAIN: f64 = 10.0;
 
-/// A file that is no tensile curve.
+/// A file that is not a valid tensile curve.
 #[derive(Debug, thiserror::Error)]
 pub enum TensileError {
     #[error("{path}: {source}", path = .path.display())]
@@ -50,8 +49,8 @@ pub enum TensileError {
     #[error("{path} has no rows", path = .path.display())]
     Empty { path: PathBuf },
     #[error(
-        "{path} begins with a slope of {slope:.3e} MPa, but young = {young:.3e} MPa: is the strain in \
-         per cent, the stress not in MPa, or is there a toe or the machine's compliance in it?",
+        "{path}: the initial slope is {slope:.3e} MPa, but young = {young:.3e} MPa: is the strain in \
+         per cent, is the stress not in MPa, or does the curve contain a toe region or the machine's compliance?",
         path = .path.display()
     )]
     Slope {
@@ -60,7 +59,7 @@ pub enum TensileError {
         young: f64,
     },
     #[error(
-        "{path} ends before a plastic strain of 0.2 %: there is no hardening in it to read",
+        "{path} ends before a plastic strain of 0.2 %: it contains no hardening data",
         path = .path.display()
     )]
     NoYield { path: PathBuf },
@@ -136,28 +135,30 @@ fn read_rows(path: &Path) -> Result<(Vec<[f64; 2]>, bool), TensileError> {
             )));
         }
         if rows.last().is_some_and(|before| row[1] < before[1] - NOISE) {
-            return Err(refuse("the strain falls from row to row: sort them".into()));
+            return Err(refuse(
+                "the strain decreases from the row before: sort the rows by strain".into(),
+            ));
         }
         rows.push(row);
     }
     Ok((rows, is_engineering))
 }
 
-/// Slope (MPa) from the first row to the first of a fifth of the greatest stress; not a number for
+/// Slope (MPa) from the first row to the first row whose stress is higher by a fifth of the maximum stress; NaN for
 /// a curve without slope.
 fn first_slope(curve: &[[f64; 2]]) -> f64 {
-    let greatest = curve.iter().map(|row| row[0]).fold(0.0, f64::max);
+    let maximum = curve.iter().map(|row| row[0]).fold(0.0, f64::max);
     let start = curve[0];
     let risen = curve
         .iter()
-        .find(|row| row[0] >= start[0] + FIRST_SHARE * greatest);
+        .find(|row| row[0] >= start[0] + FIRST_SHARE * maximum);
     risen.map_or(f64::NAN, |row| (row[0] - start[0]) / (row[1] - start[1]))
 }
 
-/// The hardening table of an engineering curve; `None` if it never yields.
+/// The hardening table of an engineering curve; `None` if the curve does not reach the yield stress.
 fn converted(curve: &[[f64; 2]], young: f64) -> Option<Vec<[f64; 2]>> {
-    let greatest = curve.iter().map(|row| row[0]).fold(0.0, f64::max);
-    let uniform = curve.iter().position(|row| row[0] >= greatest)?;
+    let maximum = curve.iter().map(|row| row[0]).fold(0.0, f64::max);
+    let uniform = curve.iter().position(|row| row[0] >= maximum)?;
     let true_curve: Vec<_> = curve[..=uniform]
         .iter()
         .map(|[stress, strain]| {
@@ -189,7 +190,7 @@ fn converted(curve: &[[f64; 2]], young: f64) -> Option<Vec<[f64; 2]>> {
 mod tests {
     use super::*;
 
-    /// Reads a table of its own file.
+    /// Writes `text` to a temporary file and reads it as a tensile curve.
     fn read(text: &str, young: f64) -> Result<Vec<[f64; 2]>, TensileError> {
         let digest: u64 = text
             .bytes()
@@ -203,8 +204,8 @@ mod tests {
 
     const YOUNG: f64 = 70e3;
 
-    /// sigma = 200 + 1000 eps_p on a modulus of 70 GPa, recorded as a machine would, in units of
-    /// `stress` MPa and `strain`.
+    /// The law sigma = 200 + 1000 eps_p with a modulus of 70 GPa as a testing machine records it, in units of
+    /// `stress_unit` MPa and `strain_unit`.
     fn recorded(stress_unit: f64, strain_unit: f64) -> Vec<String> {
         let mut rows = vec![
             "0,0".to_owned(),
@@ -231,13 +232,13 @@ mod tests {
     }
 
     #[test]
-    fn a_true_curve_is_the_table_whatever_stands_beside_it() {
+    fn a_true_curve_is_read_unchanged_and_other_columns_are_ignored() {
         let text = "# comment\ntime_s, true_stress_mpa, plastic_strain\n0,44.0, 0\n1,33.6, 0.05\n";
         assert_eq!(read(text, 3000.0).unwrap(), [[44.0, 0.0], [33.6, 0.05]]);
     }
 
     #[test]
-    fn an_engineering_curve_gives_back_the_law_it_was_made_of() {
+    fn an_engineering_curve_is_converted_to_the_law_that_generated_it() {
         let table = read(&with_header(&recorded(1.0, 1.0)), YOUNG).unwrap();
         assert!(
             (10..=MOST_ROWS + 1).contains(&table.len()),
@@ -253,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn other_units_and_disordered_rows_are_refused() {
+    fn other_units_and_unsorted_rows_are_rejected() {
         for (stress, strain, expected) in [
             (1.0, 0.01, "per cent"),
             (1.0, 0.001, "per cent"),
@@ -267,15 +268,15 @@ mod tests {
         let mut rows = recorded(1.0, 1.0);
         rows.reverse();
         let message = read(&with_header(&rows), YOUNG).unwrap_err().to_string();
-        assert!(message.contains(":3: the strain falls"), "{message}");
-        // The machine's compliance: half a per cent on the way to yield.
+        assert!(message.contains(":3: the strain decreases"), "{message}");
+        // The machine's compliance adds half a per cent of strain before yield.
         let soft = ["0,0", "0.004,100", "0.008,200", "0.1,250", "0.2,260"].map(str::to_owned);
         let message = read(&with_header(&soft), YOUNG).unwrap_err().to_string();
         assert!(message.contains("compliance"), "{message}");
     }
 
     #[test]
-    fn what_is_no_curve_is_refused_with_the_reason() {
+    fn an_invalid_curve_is_rejected_with_the_reason() {
         let engineering = "engineering_stress_mpa,engineering_strain";
         for (text, expected) in [
             (

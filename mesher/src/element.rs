@@ -1,26 +1,26 @@
-//! The two elements of a window, and the volumes at their Gauss points.
+//! The two element types of a window, and the volumes of their Gauss points.
 //!
 //! * C3D20R, the 20-node brick with 2x2x2 Gauss points: x fastest, z slowest.
-//! * C3D15, the 15-node wedge with 3x3: three in the triangle, at its mid-lines, on each of three
+//! * C3D15, the 15-node wedge with 3x3 Gauss points: three in the triangle, at its mid-lines, on each of three
 //!   levels.
 //!
-//! Node order of both: bottom corners counter-clockwise seen from +z, top corners, mid-sides of the
+//! Node order of both: bottom corners counter-clockwise as seen from +z, top corners, mid-sides of the
 //! bottom, of the top, and of the verticals.
 
 use serde::{Deserialize, Serialize};
 
-/// An element of the window, extruded from a face of the plane mesh.
+/// An element type of the window, extruded from a face of the plane mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ElementKind {
-    /// C3D20R, over an 8-node quadrilateral.
+    /// C3D20R, extruded from an 8-node quadrilateral.
     Brick,
-    /// C3D15, over a 6-node triangle: the paper's.
+    /// C3D15, extruded from a 6-node triangle; the element of the paper.
     Wedge,
 }
 
 impl ElementKind {
-    /// CalculiX's name.
+    /// The name in CalculiX.
     pub fn name(self) -> &'static str {
         match self {
             Self::Brick => "C3D20R",
@@ -28,7 +28,7 @@ impl ElementKind {
         }
     }
 
-    /// Corners of the face that it is extruded from.
+    /// Number of corners of the face from which the element is extruded.
     pub fn corners(self) -> usize {
         match self {
             Self::Brick => 4,
@@ -36,7 +36,7 @@ impl ElementKind {
         }
     }
 
-    /// Gauss points of an element.
+    /// Number of Gauss points of an element.
     pub fn gauss_points(self) -> usize {
         match self {
             Self::Brick => 8,
@@ -44,7 +44,7 @@ impl ElementKind {
         }
     }
 
-    /// Natural coordinates and weight of a Gauss point, in the order of CalculiX.
+    /// Natural coordinates and weight of a Gauss point, in CalculiX's order.
     fn gauss_point(self, point: usize) -> ([f64; 3], f64) {
         match self {
             Self::Brick => {
@@ -75,7 +75,7 @@ impl ElementKind {
         }
     }
 
-    /// Volume (mm^3) that each Gauss point of the element with these nodes stands for.
+    /// Volume (mm^3) of each Gauss point of the element with these nodes.
     pub(crate) fn gauss_volumes(self, nodes: &[[f64; 3]]) -> Vec<f64> {
         (0..self.gauss_points())
             .map(|point| {
@@ -202,7 +202,7 @@ mod tests {
         [0., 1., 0.],
     ];
 
-    /// The element, its nodes in natural coordinates, and its volume there.
+    /// The element type, its nodes in natural coordinates, and its volume in natural coordinates.
     fn natural() -> [(ElementKind, Vec<[f64; 3]>, f64); 2] {
         [
             (ElementKind::Brick, BRICK_NODES.to_vec(), 8.0),
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sheared_element_has_its_volume_in_the_shares_of_its_gauss_points() {
+    fn the_volume_of_a_sheared_element_is_split_by_the_gauss_weights() {
         for (kind, nodes, volume) in natural() {
             let sheared: Vec<_> = nodes
                 .iter()
@@ -226,7 +226,7 @@ mod tests {
         }
     }
 
-    /// The shape functions hold a quadratic map exactly; this one keeps every volume.
+    /// The shape functions represent a quadratic map exactly; this map preserves volumes.
     #[test]
     fn a_bulged_element_has_its_exact_volume() {
         for (kind, nodes, volume) in natural() {
@@ -239,7 +239,7 @@ mod tests {
         }
     }
 
-    /// The gradient of sum N_i f(x_i) is that of f, for every f that the element represents.
+    /// The gradient of sum N_i f(x_i) equals that of f, for every f that the element represents exactly.
     #[test]
     fn gradients_are_exact_for_quadratic_functions() {
         let at = [0.3, 0.2, -0.4];

@@ -1,4 +1,4 @@
-//! The gmsh script of the window.
+//! Generates the gmsh script of the window.
 
 mod structured;
 mod unstructured;
@@ -8,7 +8,7 @@ use crate::tier::PlaneRecipe;
 use crate::window::Window;
 use std::fmt::Write;
 
-/// The script that meshes `window` by `recipe`.
+/// The script that meshes `window` according to `recipe`.
 pub(crate) fn script(window: &Window, recipe: &PlaneRecipe) -> String {
     let mut geo = Script::default();
     match recipe {
@@ -18,7 +18,7 @@ pub(crate) fn script(window: &Window, recipe: &PlaneRecipe) -> String {
     geo.finish()
 }
 
-/// A .geo script under construction; curves are referred to with the sign of their direction.
+/// A .geo script under construction. The sign of a curve's number gives its direction.
 #[derive(Default)]
 struct Script {
     text: String,
@@ -51,7 +51,7 @@ impl Script {
         id
     }
 
-    /// Divides a curve into `elements`, each `growth` times as long as the one before.
+    /// Divides a curve into `elements` segments, each `growth` times as long as the one before.
     fn divide(&mut self, curve: i32, elements: usize, growth: f64) -> i32 {
         let points = elements + 1;
         self.add(format_args!(
@@ -70,7 +70,7 @@ impl Script {
         id
     }
 
-    /// The same inside four divided curves, meshed with quadrilaterals in rows and columns.
+    /// The plane surface inside four divided curves, meshed with quadrilaterals in rows and columns.
     fn patch(&mut self, curves: [i32; 4]) {
         let id = self.surface(&curves);
         self.add(format_args!("Transfinite Surface {{{id}}};"));
@@ -82,7 +82,7 @@ impl Script {
         self.add(format_args!("Physical Curve({tag}) = {{{list}}};"));
     }
 
-    /// gmsh loses a last statement that does not end in a newline; every one here does.
+    /// The finished script. gmsh ignores a last statement without a newline, so every statement ends with one.
     fn finish(mut self) -> String {
         let patches = self.patches;
         self.add(format_args!("Physical Surface(100) = {{1:{patches}}};"));
@@ -94,7 +94,7 @@ impl Script {
     }
 }
 
-/// The numbers of curves as a list in a script.
+/// Curve numbers as a comma-separated list.
 fn joined(curves: &[i32]) -> String {
     curves
         .iter()

@@ -1,11 +1,11 @@
-//! gmsh: from a script to a second-order plane mesh.
+//! The gmsh process: generates a second-order plane mesh from a script.
 
-use crate::tool::{Tool, ToolError, ToolKind};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
+use support::program::{Tool, ToolError, ToolKind};
 
-/// How gmsh is found.
+/// How to find gmsh.
 pub static GMSH: ToolKind = ToolKind {
     name: "gmsh",
     variable: "KIRIGAMI_GMSH",
@@ -13,7 +13,7 @@ pub static GMSH: ToolKind = ToolKind {
     install: "apt-get install gmsh",
 };
 
-/// A window takes gmsh milliseconds: longer than this is a hang.
+/// Time limit: gmsh meshes a window in milliseconds, so a longer run hangs.
 const LIMIT: Duration = Duration::from_secs(60);
 
 /// The gmsh program.
@@ -21,7 +21,7 @@ const LIMIT: Duration = Duration::from_secs(60);
 pub struct Gmsh(pub Tool);
 
 impl Gmsh {
-    /// Found by `KIRIGAMI_GMSH` or on PATH.
+    /// Finds gmsh by `KIRIGAMI_GMSH` or on PATH.
     pub fn find() -> Result<Self, ToolError> {
         Tool::find(&GMSH).map(Self)
     }
@@ -49,7 +49,7 @@ impl Gmsh {
             "window.msh",
             "window.geo",
         ];
-        // Not worth interrupting: it ends before anybody could ask.
+        // No stop flag: the run is too short to be interrupted.
         let run = self
             .0
             .run(&arguments, folder, &log, LIMIT, &AtomicBool::new(false))?;

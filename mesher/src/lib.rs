@@ -1,24 +1,25 @@
-//! The hinge window: geometry, mesh tiers, the gmsh process and the checks a mesh must pass.
+//! The hinge window: geometry, mesh tiers, the gmsh process and the checks that a mesh must pass.
 //!
-//! The window is the half-disc of sheet assigned to one hinge (section 2.4). gmsh makes its plane
-//! mesh from a script: of transfinite patches that move smoothly with (w_lig, alpha), or of free
-//! triangles as in the paper. This crate extrudes it to layers of solid elements, bakes in the
-//! imperfection that starts the buckle, and refuses a mesh that a solver should not see.
+//! The window is the half-disc of sheet assigned to one hinge (section 2.4). gmsh generates its plane
+//! mesh from a script, either from transfinite patches that move smoothly with (w_lig, alpha), or from free
+//! triangles as in the paper. This crate extrudes the plane mesh to layers of solid elements, adds the
+//! imperfection that initiates buckling, and rejects a mesh that is unsuitable for the solver.
 
 mod element;
 mod geo;
 mod gmsh;
 mod mesh;
+mod meshing;
 mod msh;
 mod quality;
 mod svg;
 mod tier;
-pub mod tool;
 mod window;
 
 pub use element::ElementKind;
 pub use gmsh::{GMSH, Gmsh};
-pub use mesh::{MeshError, WindowMesh, mesh_window};
+pub use mesh::WindowMesh;
+pub use meshing::{MeshError, mesh_window};
 pub use msh::{Boundary, MshError, PlaneMesh, read_msh};
 pub use quality::{MeshDefect, MeshQuality};
 pub use svg::plane_mesh_svg;

@@ -1,26 +1,19 @@
-//! The window as solid elements: the plane mesh extruded to layers, with the imperfection in z.
+//! The window as solid elements: the plane mesh extruded to layers, with an imperfection in z.
 //!
-//! The sheet's midplane is not quite flat, or it would never buckle: z is lifted by
-//! t exp(-(x/w)^2 - (y/w)^2) (1 - (r/r_win)^4), stress-free and zero on the arcs. One thickness
-//! is what the paper measured on a cut hinge (section 4.1). Amplitude and widths of the bump are
-//! the recipe's.
+//! A perfectly flat midplane would not buckle. Therefore z is offset by
+//! t exp(-(x/w)^2 - (y/w)^2) (1 - (r/r_win)^4); the offset is stress-free and zero on the arcs. The amplitude of one
+//! thickness is the value that the paper measured on a cut hinge (section 4.1). The recipe sets the amplitude and the
+//! widths of the bump.
 
-use crate::geo;
-use crate::gmsh::Gmsh;
-use crate::msh::{Boundary, MshError, PlaneMesh, read_msh};
-use crate::quality::MeshDefect;
+use crate::msh::{Boundary, PlaneMesh};
 use crate::tier::MeshRecipe;
-use crate::tool::{self, ToolError};
-use crate::window::Window;
-use hinge::{HingeDesign, InvalidDesign};
-use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use hinge::HingeDesign;
 
 /// A window of solid elements of one kind; indices count from 0.
 #[derive(Clone, Debug)]
 pub struct WindowMesh {
     pub design: HingeDesign,
-    /// mm
+    /// Sheet thickness (mm).
     pub thickness: f64,
     pub recipe: MeshRecipe,
     /// The plane mesh that was extruded.
@@ -29,89 +22,24 @@ pub struct WindowMesh {
     pub nodes: Vec<[f64; 3]>,
     /// Elements in the node order of their [`ElementKind`](crate::ElementKind), layer by layer.
     pub elements: Vec<Vec<usize>>,
-    /// Nodes of the held arc, through the thickness.
+    /// Nodes of the fixed arc, through the thickness.
     pub arc_a: Vec<usize>,
     /// Nodes of the driven arc, through the thickness.
     pub arc_b: Vec<usize>,
     /// Nodes of the sheet's lower face.
     pub bottom: Vec<usize>,
-    /// Undeformed volume that each Gauss point of each element stands for (mm^3).
+    /// Undeformed volume of each Gauss point of each element (mm^3).
     pub gauss_volumes: Vec<Vec<f64>>,
-}
-
-/// Why there is no mesh.
-#[derive(Debug, thiserror::Error)]
-pub enum MeshError {
-    #[error(transparent)]
-    Design(#[from] InvalidDesign),
-    #[error("thickness = {0} mm violates thickness > 0")]
-    Thickness(f64),
-    #[error(transparent)]
-    Gmsh(#[from] ToolError),
-    #[error("gmsh wrote no usable mesh: {0}")]
-    Read(#[from] MshError),
-    #[error(
-        "the mesh of w_lig = {w_lig} mm, alpha = {alpha_deg} deg is refused: {defect}; \
-         try a finer tier"
-    )]
-    Defect {
-        w_lig: f64,
-        alpha_deg: f64,
-        defect: MeshDefect,
-    },
-    #[error("{path}: {source}", path = .path.display())]
-    File {
-        path: PathBuf,
-        source: std::io::Error,
-    },
-}
-
-/// Meshes the window of `design`; `scratch` keeps gmsh's script, log and mesh.
-pub fn mesh_window(
-    design: &HingeDesign,
-    thickness: f64,
-    recipe: &MeshRecipe,
-    scratch: &Path,
-    gmsh: &Gmsh,
-) -> Result<WindowMesh, MeshError> {
-    design.validate()?;
-    if !(thickness.is_finite() && thickness > 0.0) {
-        return Err(MeshError::Thickness(thickness));
-    }
-    let script = geo::script(&Window(design), &recipe.plane);
-    let at = |path: &Path| {
-        let path = path.to_owned();
-        move |source| MeshError::File { path, source }
-    };
-    let geo = scratch.join("window.geo");
-    std::fs::write(&geo, script).map_err(at(&geo))?;
-    let msh = scratch.join("window.msh");
-    tool::remove_stale(&msh).map_err(at(&msh))?;
-    gmsh.mesh(scratch)?;
-    let bytes = match std::fs::read(&msh) {
-        // gmsh has failed without saying so: the reader tells what is missing.
-        Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
-        read => read.map_err(at(&msh))?,
-    };
-    let mesh = WindowMesh::extrude(
-        *design,
-        thickness,
-        *recipe,
-        read_msh(&bytes, recipe.element())?,
-    );
-    match mesh.quality() {
-        Ok(_) => Ok(mesh),
-        Err(defect) => Err(MeshError::Defect {
-            w_lig: design.w_lig,
-            alpha_deg: design.alpha.to_degrees(),
-            defect,
-        }),
-    }
 }
 
 impl WindowMesh {
     /// Extrudes a plane mesh to the layers of `recipe` through z in [-t/2, t/2].
-    fn extrude(design: HingeDesign, thickness: f64, recipe: MeshRecipe, plane: PlaneMesh) -> Self {
+    pub(crate) fn extrude(
+        design: HingeDesign,
+        thickness: f64,
+        recipe: MeshRecipe,
+        plane: PlaneMesh,
+    ) -> Self {
         let layers = recipe.layers;
         let levels = Levels::of(&plane, layers);
         let nodes: Vec<_> = levels
@@ -158,12 +86,12 @@ impl WindowMesh {
     }
 }
 
-/// Numbering of the extruded nodes, level by level from the bottom. Even levels carry every plane
-/// node, the odd ones between (the middle of the layers) only the corners.
+/// Numbering of the extruded nodes, level by level from the bottom. Even levels contain every plane
+/// node; odd levels, in the middle of the layers, contain only the corner nodes.
 struct Levels {
     /// Level and plane node of each extruded node.
     nodes: Vec<(usize, usize)>,
-    /// The extruded node on each level over each plane node.
+    /// The extruded node on each level above each plane node.
     ids: Vec<Vec<Option<usize>>>,
 }
 
@@ -192,7 +120,7 @@ impl Levels {
         Self { nodes, ids }
     }
 
-    /// The element over a face: bottom and top corners, bottom and top mid-sides, verticals.
+    /// The element above a face: bottom and top corners, bottom and top mid-sides, verticals.
     fn element(&self, layer: usize, face: &[usize]) -> Vec<usize> {
         let (bottom, middle, top) = (2 * layer, 2 * layer + 1, 2 * layer + 2);
         let (corners, mid_sides) = face.split_at(face.len() / 2);
@@ -206,12 +134,12 @@ impl Levels {
         .into_iter()
         .flat_map(|(level, nodes)| nodes.iter().map(move |node| (level, *node)))
         .map(|(level, node)| {
-            self.ids[level][node].expect("corners are on every level, mid-sides on the even ones")
+            self.ids[level][node].expect("corners are on all levels, mid-sides on even levels")
         })
         .collect()
     }
 
-    /// The extruded nodes over plane nodes, on all levels.
+    /// The extruded nodes above plane nodes, on all levels.
     fn through(&self, plane: &[usize]) -> Vec<usize> {
         let on_level = |ids: &Vec<Option<usize>>| plane.iter().filter_map(|n| ids[*n]).collect();
         self.ids.iter().flat_map::<Vec<_>, _>(on_level).collect()

@@ -1,15 +1,15 @@
 //! Reader of gmsh's .msh files (version 2.2, text): second-order faces of one kind and named
-//! boundary curves. Any bytes give a mesh or an error that names the line.
+//! boundary curves. Any input gives either a mesh or an error that names the line.
 
 use crate::element::ElementKind;
 use std::collections::HashMap;
 
-/// Curves of the window that something is done to.
+/// The named boundary curves of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Boundary {
-    /// The window's edge on panel A, which is held.
+    /// The window's arc on panel A, which is fixed.
     ArcA,
-    /// The window's edge on panel B, which is driven.
+    /// The window's arc on panel B, which is driven.
     ArcB,
     /// The hole about the tip O.
     Hole,
@@ -33,14 +33,14 @@ impl Boundary {
 pub struct PlaneMesh {
     /// Node positions in the hinge frame (mm).
     pub nodes: Vec<[f64; 2]>,
-    /// Corners counter-clockwise, then as many mid-sides: of edge 01, 12, and so on.
+    /// Corner nodes counter-clockwise, then the same number of mid-side nodes: of edge 01, 12, and so on.
     pub faces: Vec<Vec<usize>>,
-    /// Edges of the named boundaries: two ends, then the mid-side.
+    /// Edges of the named boundaries: two end nodes, then the mid-side node.
     pub edges: Vec<(Boundary, [usize; 3])>,
 }
 
 impl PlaneMesh {
-    /// The nodes of one boundary, sorted, each once.
+    /// The nodes of one boundary, sorted and without duplicates.
     pub fn nodes_on(&self, boundary: Boundary) -> Vec<usize> {
         let mut nodes: Vec<_> = self
             .edges
@@ -54,29 +54,29 @@ impl PlaneMesh {
     }
 }
 
-/// The sides of a face: two ends, then the mid-side.
+/// The sides of a face: two end nodes, then the mid-side node.
 pub(crate) fn sides(face: &[usize]) -> impl Iterator<Item = [usize; 3]> + Clone {
     let corners = face.len() / 2;
     (0..corners).map(move |i| [face[i], face[(i + 1) % corners], face[corners + i]])
 }
 
-/// Why bytes are not a mesh of the expected kind.
+/// Why a mesh file is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MshError {
-    #[error("the mesh file is not text: byte {0} is not UTF-8")]
+    #[error("the mesh file is not a text file: byte {0} is not UTF-8")]
     NotText(usize),
     #[error("the mesh file has no section ${0}: gmsh did not finish writing it")]
     NoSection(&'static str),
-    #[error("the mesh file's line {line}: {what}")]
+    #[error("line {line} of the mesh file: {what}")]
     Line { line: usize, what: &'static str },
-    #[error("the mesh file holds no faces")]
+    #[error("the mesh file contains no faces")]
     Empty,
 }
 
-/// gmsh's number of the line of three nodes.
+/// gmsh's element number of the 3-node line.
 const LINE_3: u32 = 8;
 
-/// gmsh's number of the face that elements of this kind are extruded from.
+/// gmsh's element number of the face from which elements of this kind are extruded.
 fn face_number(element: ElementKind) -> u32 {
     match element {
         ElementKind::Brick => 16,
@@ -84,7 +84,7 @@ fn face_number(element: ElementKind) -> u32 {
     }
 }
 
-/// Reads the bytes of a .msh file of faces for `element`; nodes that no face uses are dropped.
+/// Reads the bytes of a .msh file with faces for `element`; nodes that belong to no face are dropped.
 pub fn read_msh(bytes: &[u8], element: ElementKind) -> Result<PlaneMesh, MshError> {
     let text = std::str::from_utf8(bytes).map_err(|e| MshError::NotText(e.valid_up_to()))?;
     let lines: Vec<_> = text.lines().enumerate().collect();
@@ -94,10 +94,10 @@ pub fn read_msh(bytes: &[u8], element: ElementKind) -> Result<PlaneMesh, MshErro
         let id: u64 = fields.next()?;
         let position: [f64; 2] = [fields.next()?, fields.next()?];
         if !position.iter().all(|x| x.is_finite()) {
-            return Err(fields.error("a coordinate is not finite"));
+            return Err(fields.error("a coordinate is not a finite number"));
         }
         if positions.insert(id, position).is_some() {
-            return Err(fields.error("a node is given twice"));
+            return Err(fields.error("the node number occurs twice"));
         }
     }
     let mut mesh = PlaneMesh::default();
@@ -109,7 +109,7 @@ pub fn read_msh(bytes: &[u8], element: ElementKind) -> Result<PlaneMesh, MshErro
         let kind: u32 = fields.next()?;
         let tags: u32 = fields.next()?;
         if tags < 1 {
-            return Err(fields.error("an element has no physical tag"));
+            return Err(fields.error("the element has no physical tag"));
         }
         let physical: u32 = fields.next()?;
         for _ in 1..tags {
@@ -120,7 +120,7 @@ pub fn read_msh(bytes: &[u8], element: ElementKind) -> Result<PlaneMesh, MshErro
             for node in &mut face {
                 let id: u64 = fields.next()?;
                 let Some(position) = positions.get(&id) else {
-                    return Err(fields.error("an element names a node that is not given"));
+                    return Err(fields.error("the element refers to an undefined node"));
                 };
                 *node = *indices.entry(id).or_insert_with(|| {
                     mesh.nodes.push(*position);
@@ -130,12 +130,12 @@ pub fn read_msh(bytes: &[u8], element: ElementKind) -> Result<PlaneMesh, MshErro
             mesh.faces.push(face);
         } else if kind == LINE_3 {
             let Some(boundary) = Boundary::ALL.into_iter().find(|b| b.tag() == physical) else {
-                return Err(fields.error("a boundary curve has an unknown tag"));
+                return Err(fields.error("the boundary curve has an unknown physical tag"));
             };
             let ids: [u64; 3] = [fields.next()?, fields.next()?, fields.next()?];
             edges.push((boundary, ids, fields.line));
         } else {
-            return Err(fields.error("neither a face of the expected kind nor a 3-node line"));
+            return Err(fields.error("the element is neither the expected face nor a 3-node line"));
         }
     }
     if mesh.faces.is_empty() {
@@ -143,7 +143,7 @@ pub fn read_msh(bytes: &[u8], element: ElementKind) -> Result<PlaneMesh, MshErro
     }
     for (boundary, ids, line) in edges {
         let [Some(a), Some(b), Some(c)] = ids.map(|id| indices.get(&id).copied()) else {
-            let what = "a boundary edge belongs to no face";
+            let what = "the boundary edge belongs to no face";
             return Err(MshError::Line { line, what });
         };
         mesh.edges.push((boundary, [a, b, c]));
@@ -151,7 +151,7 @@ pub fn read_msh(bytes: &[u8], element: ElementKind) -> Result<PlaneMesh, MshErro
     Ok(mesh)
 }
 
-/// The numbered lines of $NAME ... $EndNAME, which must be as many as its first line says.
+/// The numbered lines of $NAME ... $EndNAME, whose count must equal the number in the first line.
 fn section<'a, 't>(
     lines: &'a [(usize, &'t str)],
     name: &'static str,
@@ -166,7 +166,7 @@ fn section<'a, 't>(
     if count.trim().parse() != Ok(rows.len()) {
         return Err(MshError::Line {
             line: number + 1,
-            what: "the section's length is not the announced one",
+            what: "the section does not have the announced number of lines",
         });
     }
     Ok(rows)
@@ -247,7 +247,7 @@ mod tests {
     }
 
     proptest! {
-        /// Lines that may stand in a mesh file, in any order and number.
+        /// Lines that may occur in a mesh file, in any order and number.
         #[test]
         fn shuffled_lines_give_a_consistent_mesh_or_an_error(
             order in proptest::collection::vec(any::<prop::sample::Index>(), 0..40)
@@ -261,7 +261,7 @@ mod tests {
 
         #[test]
         fn any_bytes_give_a_mesh_or_an_error(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
-            // A mesh needs markers that random bytes do not spell.
+            // A mesh needs section markers, which random bytes do not contain.
             prop_assert!(read_msh(&bytes, ElementKind::Brick).is_err());
         }
 
@@ -269,7 +269,7 @@ mod tests {
         fn truncated_and_corrupted_bytes_never_panic(
             cut in 0..SQUARE.len(), at in 0..SQUARE.len(), byte in any::<u8>()
         ) {
-            // Without its last newline the file is still whole.
+            // The file is still complete without its last newline.
             let whole = cut == SQUARE.len() - 1;
             prop_assert_eq!(read(&SQUARE.as_bytes()[..cut]).is_ok(), whole);
             let mut bytes = SQUARE.as_bytes().to_vec();

@@ -1,43 +1,47 @@
-//! What a mesh must satisfy before a solver is started on it.
+//! The checks that a mesh must pass before it is solved.
 
 use crate::mesh::WindowMesh;
 use crate::msh::{Boundary, sides};
 use crate::window::Window;
 
-/// Largest accepted ratio of an element's in-plane edges.
+/// Maximum accepted ratio of the longest to the shortest in-plane edge of an element.
 const MAX_ASPECT: f64 = 40.0;
-/// Largest accepted relative error of the meshed area. A quadratic edge that turns by 80 deg, the
-/// coarsest there is, loses 0.3 % of the window.
+/// Maximum accepted relative error of the meshed area. A quadratic edge over an arc of 80 deg, the
+/// coarsest in use, has an error of 0.3 % of the window.
 const MAX_AREA_ERROR: f64 = 0.01;
 
-/// Measures of a mesh that passed.
+/// Quality measures of a mesh that passed the checks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshQuality {
-    /// Smallest over largest Jacobian determinant within an element, at the Gauss points; in (0, 1].
+    /// Minimum over all elements of the ratio of the smallest to the largest Jacobian determinant at the Gauss points
+    /// of an element; in (0, 1].
     pub jacobian_ratio: f64,
-    /// Largest ratio of the in-plane edges of an element.
+    /// Maximum ratio of the longest to the shortest in-plane edge of an element.
     pub aspect: f64,
-    /// Meshed volume over thickness (mm^2).
+    /// Meshed volume divided by the thickness (mm^2).
     pub area: f64,
     /// |area - exact| / exact.
     pub area_error: f64,
 }
 
-/// Why a mesh is refused.
+/// Why a mesh is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeshDefect {
     #[error("element {element} is folded: its Jacobian is {jacobian} mm^3 at a Gauss point")]
     Folded { element: usize, jacobian: f64 },
-    #[error("element {element} is a sliver: its edges differ by a factor {aspect} > {MAX_ASPECT}")]
+    #[error(
+        "element {element} is a sliver: the ratio of its longest to its shortest edge is \
+         {aspect} > {MAX_ASPECT}"
+    )]
     Sliver { element: usize, aspect: f64 },
-    #[error("the mesh covers {area} mm^2, the window {exact} mm^2")]
+    #[error("the area of the mesh is {area} mm^2, but that of the window is {exact} mm^2")]
     Area { area: f64, exact: f64 },
-    #[error("no edge lies on {0:?}")]
+    #[error("the mesh has no edge on {0:?}")]
     NoBoundary(Boundary),
 }
 
 impl WindowMesh {
-    /// Measures the mesh, or says what is wrong with it.
+    /// Returns the quality measures of the mesh, or its first defect.
     pub fn quality(&self) -> Result<MeshQuality, MeshDefect> {
         for boundary in [Boundary::ArcA, Boundary::ArcB] {
             if self.plane.edges.iter().all(|(of, _)| *of != boundary) {
@@ -50,13 +54,13 @@ impl WindowMesh {
             let jacobians = (0..)
                 .zip(volumes)
                 .map(|(point, v)| v / kind.gauss_weight(point));
-            let least = jacobians.clone().fold(f64::INFINITY, f64::min);
-            let greatest = jacobians.fold(0.0, f64::max);
-            if least <= 0.0 || least.is_nan() {
-                let jacobian = least;
+            let minimum = jacobians.clone().fold(f64::INFINITY, f64::min);
+            let maximum = jacobians.fold(0.0, f64::max);
+            if minimum <= 0.0 || minimum.is_nan() {
+                let jacobian = minimum;
                 return Err(MeshDefect::Folded { element, jacobian });
             }
-            jacobian_ratio = jacobian_ratio.min(least / greatest);
+            jacobian_ratio = jacobian_ratio.min(minimum / maximum);
         }
         let mut largest_aspect = 1.0_f64;
         for (element, face) in self.plane.faces.iter().enumerate() {

@@ -1,10 +1,10 @@
-//! Named mesh tiers: how fine the window is meshed, and what that costs.
+//! Named mesh tiers: mesh fineness of the window, with CPU time and errors.
 
 use crate::element::ElementKind;
 use hinge::HingeDesign;
 use serde::{Deserialize, Serialize};
 
-/// A named compromise between speed and accuracy, cheapest first.
+/// A named mesh fineness, in order of increasing CPU time.
 ///
 /// | tier | bricks | CPU seconds | W | F_a | M_theta | D |
 /// |---|---|---|---|---|---|---|
@@ -15,16 +15,16 @@ use serde::{Deserialize, Serialize};
 /// | `reference` | 912 | 126 | - | - | - | - |
 /// | `paper` | 1777 wedges | 171 | 2.4 % | 4.0 % | 3.9 % | 10.2 % |
 ///
-/// The paper's film, hinges of 5, 18 and 25 mm and of 60 and 90 degrees rotated to 60 degrees, one
-/// thread of a busy machine; the greatest root mean square error over the ray, against `reference`
-/// (`kirigami study window`, docs/results/window). Over the whole box of the default campaign the
-/// tier `default` is judged in docs/results/tiers. `small`, `fine` and `reference` are `default`
-/// with elements of 3/2, 3/4 and 1/2 of its size.
+/// CPU seconds are of one thread of a busy machine. The errors are the maximum, over hinges of 5, 18 and 25 mm width
+/// with cut angles of 60 and 90 degrees in the paper's film, rotated to 60 degrees, of the root mean square error over
+/// the ray, relative to `reference` (`kirigami-studies window`, docs/results/window). The error of the tier `default`
+/// over the whole box of the default campaign is in docs/results/tiers. `small`, `fine` and `reference` are `default`
+/// with elements of 3/2, 3/4 and 1/2 of its element size.
 ///
-/// All but `paper` are layers of bricks on one structured topology. A hinge in tension and shear
-/// folds along two lines through O, one of them at 40 deg to the other: columns are fine out to
-/// 0.8 w_lig on the free edge. A hinge in compression bends its panels: rings are as fine around O
-/// as the columns, and their number decides the energy before it yields.
+/// All tiers but `paper` are layers of bricks on one structured topology. A hinge in tension and shear
+/// folds along two lines through O, one of them at 40 deg to the other; therefore the columns are fine out to
+/// 0.8 w_lig on the free edge. A hinge in compression bends its panels; therefore the rings around O are as fine
+/// as the columns. The number of rings determines the error of the energy before yield.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Tier {
@@ -37,7 +37,7 @@ pub enum Tier {
     Paper,
 }
 
-/// All that decides the mesh of a design, but its thickness.
+/// All parameters of the mesh of a design, except the sheet thickness.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MeshRecipe {
     pub plane: PlaneRecipe,
@@ -46,7 +46,7 @@ pub struct MeshRecipe {
     pub imperfection: Imperfection,
 }
 
-/// How the plane mesh is made.
+/// How the plane mesh is generated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PlaneRecipe {
@@ -65,16 +65,16 @@ pub struct Structured {
     pub arc_columns: usize,
     /// Rings between the inner half-disc and the window's arcs.
     pub outer_rings: usize,
-    /// Width of the elements at the fold line, over w_lig: what the accuracy hangs on.
+    /// Width of the elements at the fold line, over w_lig. It determines the accuracy.
     pub fold_size: f64,
 }
 
-/// Sizes of free triangles, in proportion to their distance from O between two limits.
+/// Sizes of free triangles, which grow with the distance from O between two limits.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Unstructured {
-    /// At the hole, over w_lig.
+    /// Size at the hole, over w_lig.
     pub tip_size: f64,
-    /// At the window's arcs, over r_win.
+    /// Size at the window's arcs, over r_win.
     pub rim_size: f64,
 }
 
@@ -89,7 +89,7 @@ pub struct Imperfection {
 }
 
 impl Tier {
-    /// Every tier, cheapest first.
+    /// All tiers, in order of increasing CPU time.
     pub const ALL: [Tier; 6] = [
         Tier::Tiny,
         Tier::Small,
@@ -131,21 +131,21 @@ impl Tier {
         }
     }
 
-    /// The next finer tier of the same element, if there is one.
+    /// The next finer tier with the same element, if there is one.
     pub fn finer(self) -> Option<Tier> {
         let same = |tier: &Tier| tier.recipe().element() == self.recipe().element();
         Self::ALL.into_iter().filter(same).find(|tier| *tier > self)
     }
 
-    /// CPU seconds to expect of one ray.
+    /// CPU seconds of one ray, as in the table of [`Tier`].
     pub fn usual_cpu_seconds(self) -> f64 {
         match self {
             Tier::Tiny => 2.5,
-            Tier::Small => 6.0,
-            Tier::Default => 15.0,
-            Tier::Fine => 35.0,
-            Tier::Reference => 105.0,
-            Tier::Paper => 170.0,
+            Tier::Small => 6.3,
+            Tier::Default => 17.0,
+            Tier::Fine => 39.0,
+            Tier::Reference => 126.0,
+            Tier::Paper => 171.0,
         }
     }
 
@@ -168,9 +168,9 @@ impl std::fmt::Display for Tier {
     }
 }
 
-/// A tier's name that is none; the message lists those there are.
+/// An unknown tier name; the message lists the known ones.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("no mesh tier is called `{0}`; there are tiny, small, default, fine, reference and paper")]
+#[error("unknown mesh tier `{0}`; choose tiny, small, default, fine, reference or paper")]
 pub struct UnknownTier(String);
 
 impl std::str::FromStr for Tier {
@@ -203,7 +203,7 @@ impl Structured {
 }
 
 impl Default for Imperfection {
-    /// As the paper measured it, and as wide as the ligament.
+    /// The amplitude that the paper measured; half-widths equal to the ligament width.
     fn default() -> Self {
         Self {
             amplitude: 1.0,
@@ -226,7 +226,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn structured_tiers_have_the_numbers_of_bricks_that_are_told() {
+    fn structured_tiers_have_the_documented_numbers_of_bricks() {
         let bricks = Tier::ALL.map(|tier| match tier.recipe().plane {
             PlaneRecipe::Structured(plane) => plane.quads() * tier.recipe().layers,
             PlaneRecipe::Unstructured(_) => 0,
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_read_back_and_the_ladder_ends() {
+    fn names_round_trip_and_the_finest_tiers_have_no_finer_one() {
         for tier in Tier::ALL {
             assert_eq!(tier.name().parse(), Ok(tier));
             assert!(tier.finer().is_none_or(|finer| finer > tier));

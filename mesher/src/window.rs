@@ -1,8 +1,8 @@
 //! Geometry of the hinge window (section 2.4): a half-disc of radius r_win below the secondary
-//! cut, less the main cut (a slot of the kerf's width) and the hole drilled about its tip O.
+//! cut, without the main cut (a slot of the kerf's width) and the hole drilled about its tip O.
 //!
 //! Arc A runs from (-r_win, 0) to the kerf face on panel A, arc B from the kerf face on panel B
-//! to (r_win, 0). Everything is in the hinge frame, in mm.
+//! to (r_win, 0). All coordinates are in the hinge frame, in mm.
 
 use hinge::HingeDesign;
 use std::f64::consts::PI;
@@ -24,7 +24,7 @@ impl Side {
     }
 }
 
-/// The window of one hinge design, which must have been validated.
+/// The window of one hinge design. The design must be valid.
 #[derive(Clone, Copy, Debug)]
 pub struct Window<'a>(pub &'a HingeDesign);
 
@@ -57,12 +57,12 @@ impl Window<'_> {
         [0, 1].map(|i| o[i] + along * u[i] + across * n[i])
     }
 
-    /// Half the angle at O that the mouth of the main cut takes from the hole (rad).
+    /// Half of the angle at O that the mouth of the main cut subtends on the hole (rad).
     pub fn mouth_half_angle(&self) -> f64 {
         (0.5 * self.0.kerf / self.0.fillet_radius()).asin()
     }
 
-    /// Area of the window (mm^2), exactly: Green's theorem over its arcs and segments.
+    /// Exact area of the window (mm^2), by Green's theorem over its arcs and segments.
     pub fn area(&self) -> f64 {
         let (rho, r) = (self.0.fillet_radius(), self.0.r_win);
         let (hole_a, hole_b) = (self.kerf_at_hole(Side::A), self.kerf_at_hole(Side::B));
@@ -92,17 +92,17 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// (1/2) of the contour integral of x dy - y dx along a straight segment.
+/// Half of the contour integral of x dy - y dx along a straight segment.
 fn segment(from: [f64; 2], to: [f64; 2]) -> f64 {
     0.5 * cross(from, to)
 }
 
-/// The same along an arc about the origin that turns by `angle`.
+/// The same integral along an arc about the origin with the signed opening angle `angle`.
 fn sector(radius: f64, angle: f64) -> f64 {
     0.5 * radius * radius * angle
 }
 
-/// The same along an arc about `centre`.
+/// The same integral along an arc about `centre`.
 fn arc(centre: [f64; 2], radius: f64, from: [f64; 2], to: [f64; 2], angle: f64) -> f64 {
     let chord = [to[0] - from[0], to[1] - from[1]];
     sector(radius, angle) + 0.5 * cross(centre, chord)
@@ -126,7 +126,7 @@ pub(crate) mod tests {
     proptest! {
         /// A thin kerf removes its width times its length; the hole removes its disc.
         #[test]
-        fn area_is_the_half_disc_less_the_hole_and_the_kerf(
+        fn area_is_that_of_the_half_disc_without_the_hole_and_the_kerf(
             w in 5.0..25.0f64, alpha in 25.0..150.0f64
         ) {
             let design = HingeDesign { kerf: 1e-4, ..design(w, alpha) };

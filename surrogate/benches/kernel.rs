@@ -1,7 +1,7 @@
-//! Time to evaluate 275 hinges (a 15 x 10 sheet) at the paper's size 5-256-256-256-128.
+//! Time to evaluate 275 hinges (a 15 x 10 sheet) with the paper's network 5-256-256-256-128.
 //!
-//! Divide by 275 for the time of one hinge. The floor of each order is its matrix products alone:
-//! 1 (W), 2 (forces), 5 (tangent) and 7 (design) passes of 0.33 Mflop a hinge.
+//! Divide by 275 for the time per hinge. The lower bound of each order is the time of its matrix products:
+//! 1 (W), 2 (forces), 5 (tangent) and 7 (design) passes of 0.33 Mflop per hinge.
 
 use hinge::{HingeConstants, HingeDeformation, HingeDesign, TrainingDomain};
 use surrogate::{
@@ -62,7 +62,7 @@ fn case() -> (Surrogate, Vec<HingeDesign>, Vec<HingeDeformation>) {
     (surrogate, designs, deformations)
 }
 
-/// Deterministic weights of Xavier's size.
+/// Deterministic weights within the bounds of Xavier's initialisation.
 fn layers(widths: &[usize]) -> Vec<Layer> {
     let mut state = 0.37_f64;
     let mut uniform = || {

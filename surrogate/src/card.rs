@@ -1,22 +1,22 @@
-//! The card beside the weights: units, scaling, training domain, provenance, test errors.
+//! The card of a weight file: units, scaling, training domain, provenance, test errors.
 
 use crate::features::{FEATURE_NAMES, Standardisation};
 use crate::network::InvalidWeights;
 use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Serialize};
 
-/// Version of the weight file and its card that this crate writes; it reads those before too.
+/// Format version of the weight file and its card that this crate writes; it also reads all earlier versions.
 ///
-/// 1: the damage head predicts D. 2: it may predict D_peak too; errors by bins. 3: the hashes of
-/// the material law and of the campaign's settings. 4: D_peak has a head of its own; beta;
-/// what the training took. 5: the domain is what the rows fill, not their box; D_peak is the mean over the
-/// most strained 1 % of the ligament, and that of older weights, of another measure, is left out.
+/// 1: the damage head predicts D. 2: it may also predict D_peak; errors by bins. 3: the hashes of
+/// the material law and of the campaign's settings. 4: D_peak has a separate head; beta;
+/// the training time. 5: the domain is the set of states that the rows cover, not their box; D_peak is the mean over
+/// the most strained 1 % of the ligament. D_peak of older weights is another measure and is ignored.
 pub const FORMAT_VERSION: u32 = 5;
 
-/// The units of everything a surrogate takes and returns.
+/// The units of all inputs and outputs of a surrogate.
 pub const UNITS: &str = "mm, N, MPa, N mm, rad";
 
-/// What stands in `X.json` beside `X.safetensors`.
+/// The contents of the card `X.json` of a weight file `X.safetensors`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Card {
@@ -32,50 +32,49 @@ pub struct Card {
     pub energy_scale: f64,
     /// D_s of (14).
     pub damage_scale: f64,
-    /// The same of D_peak, if there is a head for it.
+    /// The scale of D_peak, if there is a head for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peak_scale: Option<f64>,
-    /// beta of the damage heads: how sharply they tell a ligament that yields from one that does
-    /// not.
+    /// beta of the damage heads. A larger value gives a sharper transition from no damage to damage at yield.
     #[serde(default = "one")]
     pub damage_sharpness: f64,
-    /// The states of the training rows.
+    /// The states that the training rows cover.
     pub domain: TrainingDomain,
-    /// The parts of the hinge design that are no feature of (13); the weights hold for these alone.
+    /// The components of the hinge design that are not features of (13); the weights are valid only for these values.
     pub hinge: HingeConstants,
     /// Name of the sheet material.
     pub material: String,
-    /// [`hinge::SheetMaterial::law_hash`] of it, if known: a material may change and keep its name.
+    /// [`hinge::SheetMaterial::law_hash`] of the material, if known; a material may change without a change of name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub material_hash: Option<String>,
-    /// Hash of the settings of the campaign that the rows were solved in, if known.
+    /// Hash of the settings of the campaign in which the rows were solved, if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub settings_hash: Option<String>,
-    /// Tier of the window mesh that the rows were solved with.
+    /// Tier of the window mesh on which the rows were solved.
     pub tier: String,
     /// Hash of the database file.
     pub dataset_hash: String,
-    /// Hash of the database of the weights that the training began from, if any.
+    /// For fine-tuned weights: hash of the database of the initial weights.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fine_tuned_from: Option<String>,
     /// Hash of the split into training, validation and test.
     pub split_hash: String,
-    /// The training configuration, as it was read.
+    /// The training configuration.
     pub training: serde_json::Value,
-    /// Rays that it was trained on, if known.
+    /// Number of training rays, if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub training_rays: Option<usize>,
-    /// Time that the training took (s), if known.
+    /// Training time (s), if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub training_s: Option<f64>,
     /// Errors on the test split.
     pub test_errors: TestErrors,
-    /// The same by bins of single quantities.
+    /// Errors on the test split by bins of single quantities.
     #[serde(default)]
     pub error_bins: Vec<ErrorBin>,
 }
 
-/// Errors of a surrogate on rows that training never saw.
+/// Errors of a surrogate on rows that were not used in training.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TestErrors {
@@ -86,7 +85,7 @@ pub struct TestErrors {
     pub f_s: FitError,
     pub m_theta: FitError,
     pub damage: FitError,
-    /// Zero where no head predicts it.
+    /// Error of D_peak; zero if no head predicts it.
     #[serde(default)]
     pub damage_peak: FitError,
 }
@@ -95,21 +94,21 @@ pub struct TestErrors {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ErrorBin {
-    /// `eta_a`, `eta_s`, `theta_deg`, `w_lig`, `alpha_deg`, or `edge`: [`TrainingDomain::depth`], 0 at the edge of
-    /// the training domain and 1 at its centre.
+    /// `eta_a`, `eta_s`, `theta_deg`, `w_lig`, `alpha_deg`, or `edge`, which is [`TrainingDomain::depth`]: 0 at the
+    /// edge of the training domain and 1 at its centre.
     pub quantity: String,
-    /// Lower and upper end; the upper belongs to the next bin.
+    /// Lower and upper limit; the upper limit belongs to the next bin.
     pub range: [f64; 2],
     pub errors: TestErrors,
 }
 
-/// How far predictions lie from their targets.
+/// Deviation of predictions from their targets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FitError {
-    /// Root mean square of the error over the root mean square of the target.
+    /// Root mean square of the error, divided by the root mean square of the target.
     pub relative_rmse: f64,
-    /// Median over the rows with a target other than zero of |error| / |target|.
+    /// Median of |error| / |target| over the rows with a non-zero target.
     pub median: f64,
 }
 
@@ -130,14 +129,14 @@ impl TestErrors {
 }
 
 impl Card {
-    /// Of D, and of D_peak if there is a head for it.
+    /// The scale of D, followed by that of D_peak if there is a head for it.
     pub(crate) fn damage_scales(&self) -> Vec<f64> {
         std::iter::once(self.damage_scale)
             .chain(self.peak_scale)
             .collect()
     }
 
-    /// Refuses other units or features, scales that are not positive, domains without a state.
+    /// Rejects other units or features, scales that are not positive, and means that are not finite.
     pub(crate) fn validate(&self) -> Result<(), InvalidWeights> {
         for (key, found, expected) in [
             ("units", self.units.clone(), UNITS.into()),
@@ -181,7 +180,7 @@ impl Card {
     }
 }
 
-/// The sharpness of the weights of before version 4.
+/// The damage sharpness of weights before version 4.
 fn one() -> f64 {
     1.0
 }

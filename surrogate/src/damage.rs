@@ -1,39 +1,40 @@
-//! D of (14), its peak, and their gradients in the hinge deformation and in (w_lig, alpha).
+//! D and D_peak of (14), and their gradients in the hinge deformation and in (w_lig, alpha).
 //!
 //! ```text
 //! D = D_s softplus(beta chi_D(xi)) / beta,   softplus(y) = log(1 + e^y)
 //! ```
 //!
-//! and D_peak likewise, with a network and a scale of its own.
+//! D_peak has the same form, with its own network and scale.
 
 use crate::features::{FEATURES, features, pull_back};
 use crate::network::Network;
 use crate::passes::{Passes, chunk_size};
 use hinge::{HingeDeformation, HingeDesign};
 
-/// Damage of one hinge and its gradient.
+/// Damage measures of one hinge and their gradients.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HingeDamage {
-    /// D, the share of the ligament's ductility that is used up: zero in a pristine hinge.
+    /// D, the consumed fraction of the ligament's ductility: zero in an undamaged hinge.
     pub d: f64,
     /// dD/d(a, s, theta, w_lig, alpha).
     pub gradient: [f64; FEATURES],
-    /// D_peak, the plastic strain where it is greatest over that at fracture: at one it tears.
-    /// `None` from weights that do not predict it.
+    /// D_peak, the plastic strain of the most strained part of the ligament, divided by the fracture strain. The
+    /// ligament tears at 1. `None` if the weights do not predict it.
     pub d_peak: Option<f64>,
-    /// dD_peak/d(a, s, theta, w_lig, alpha); zero where there is no D_peak.
+    /// dD_peak/d(a, s, theta, w_lig, alpha); zero without D_peak.
     pub peak_gradient: [f64; FEATURES],
 }
 
-/// One damage and its gradient in (a, s, theta, w_lig, alpha), of each hinge.
+/// One damage measure of each hinge, and its gradient in (a, s, theta, w_lig, alpha).
 ///
-/// `head` has one output; `sharpness` is beta.
+/// `head` has one output; `sharpness` is beta. Without `with_gradient` the gradients are zero.
 pub(crate) fn evaluate(
     head: &Network,
     scale: f64,
     sharpness: f64,
     designs: &[HingeDesign],
     deformations: &[HingeDeformation],
+    with_gradient: bool,
 ) -> Vec<(f64, [f64; FEATURES])> {
     let size = chunk_size(designs.len(), 0);
     let mut damages = Vec::with_capacity(designs.len());
@@ -44,6 +45,11 @@ pub(crate) fn evaluate(
             passes.forward(head, &xi, 0..0);
             let outputs = passes.outputs().flatten();
             let outputs: Vec<f64> = outputs.map(|&y| sharpness * y).collect();
+            let value = |y: f64| scale / sharpness * softplus(y);
+            if !with_gradient {
+                damages.extend(outputs.iter().map(|&y| (value(y), [0.0; FEATURES])));
+                continue;
+            }
             let slopes: Vec<f64> = outputs.iter().map(|&y| logistic(y)).collect();
             passes.reverse(head, &slopes, &mut []);
             damages.extend(
@@ -52,7 +58,7 @@ pub(crate) fn evaluate(
                     .enumerate()
                     .map(|(hinge, ((g, eps), y))| {
                         let gradient = passes.gradient(hinge).map(|slope| scale * slope);
-                        (scale / sharpness * softplus(y), pull_back(gradient, g, eps))
+                        (value(y), pull_back(gradient, g, eps))
                     }),
             );
         }

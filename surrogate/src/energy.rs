@@ -8,8 +8,8 @@
 //! d2W/dxi2              = 2 W_s (J'J + sum over layers and units of lambda sigma'' grad(a) grad(a)')
 //! ```
 //!
-//! where lambda is the adjoint of a unit seeded by r. In the two features of the design,
-//! chi(xi(0, g)) moves too: dW/dg = 2 W_s (J - J0)' r and d2W/dxi dg loses 2 W_s J' J0.
+//! where lambda is the adjoint of a unit, seeded by r. chi(xi(0, g)) depends on the two features of the design, so
+//! that dW/dg = 2 W_s (J - J0)' r, and d2W/dxi dg is reduced by 2 W_s J' J0.
 
 use crate::features::{FEATURES, features, pull_back};
 use crate::network::Network;
@@ -20,16 +20,16 @@ use rayon::prelude::*;
 use std::cell::RefCell;
 use std::ops::Range;
 
-/// How many derivatives to compute; each order includes the ones before.
+/// The derivatives to compute; each order includes all earlier ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Order {
     /// W
     Value,
-    /// and its gradient in (a, s, theta)
+    /// additionally the gradient in (a, s, theta)
     Forces,
-    /// and its Hessian in (a, s, theta)
+    /// additionally the Hessian in (a, s, theta)
     Tangent,
-    /// and its gradient in (w_lig, alpha) with the mixed second derivatives
+    /// additionally the gradient in (w_lig, alpha) and the mixed second derivatives
     Design,
 }
 
@@ -44,7 +44,7 @@ impl Order {
     }
 }
 
-/// Energy of one hinge and its derivatives; parts beyond the order asked for are zero.
+/// Energy of one hinge and its derivatives; derivatives beyond the requested order are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HingeEnergy {
     /// W (N mm).
@@ -59,17 +59,17 @@ pub struct HingeEnergy {
     pub mixed: [[f64; 2]; 3],
 }
 
-/// Hinge designs with chi(xi(0, g)) and its derivatives, which deformations do not change.
+/// Hinge designs with chi(xi(0, g)) and its derivatives, which do not depend on the deformation.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     designs: Vec<HingeDesign>,
-    /// chi(xi(0, g)), one row a hinge.
+    /// chi(xi(0, g)), one row per hinge.
     origin: Mat<f64>,
-    /// Its derivatives in log w_lig and in alpha.
+    /// The derivatives of `origin` in log w_lig and in alpha.
     origin_tangents: [Mat<f64>; 2],
 }
 
-/// The features that are the design's: log w_lig and alpha.
+/// The features that depend on the design only: log w_lig and alpha.
 const DESIGN_FEATURES: Range<usize> = 3..FEATURES;
 
 impl Prepared {
@@ -138,7 +138,7 @@ pub(crate) fn evaluate(
                 .collect()
         })
     };
-    // A single chunk is done before another thread has woken up.
+    // A single chunk takes less time than waking another thread.
     if (1..=size).contains(&deformations.len()) {
         return of_chunk((0, deformations));
     }
@@ -147,7 +147,7 @@ pub(crate) fn evaluate(
 }
 
 thread_local! {
-    /// Kept like the buffers of [`Passes::lent`].
+    /// Reused like the buffers of [`Passes::lent`].
     static KERNEL: RefCell<Kernel> = RefCell::default();
 }
 
@@ -158,13 +158,13 @@ struct Kernel {
     n: usize,
     /// Number of features with second derivatives.
     tangents: usize,
-    /// chi(xi) - chi(xi(0, g)), one column an output.
+    /// chi(xi) - chi(xi(0, g)), one column per output.
     r: Vec<f64>,
     /// |r|^2
     square: Vec<f64>,
-    /// Half the Hessian of |r|^2 at fixed chi(xi(0, g)), packed.
+    /// Half of the Hessian of |r|^2 at fixed chi(xi(0, g)), packed.
     half_hessian: Vec<f64>,
-    /// J0' r, one run a design feature.
+    /// J0' r, one run per design feature.
     origin_gradient: Vec<f64>,
     /// J_i' J0_p, one run for each deformation feature i and design feature p.
     origin_mixed: Vec<f64>,
@@ -214,7 +214,7 @@ impl Kernel {
         }
     }
 
-    /// The sums with J0, the motion of chi(xi(0, g)) with the design.
+    /// Computes the sums with J0, the derivative of chi(xi(0, g)) with respect to the design.
     fn move_origin(&mut self, prepared: &Prepared, rows: Range<usize>) {
         let n = self.n;
         reset(&mut self.origin_gradient, 2 * n);
@@ -280,7 +280,7 @@ impl Kernel {
         energy
     }
 
-    /// Half the second derivative of |r|^2 in the features i (of the deformation) and j.
+    /// Half of the second derivative of |r|^2 in the features i (of the deformation) and j.
     fn second(&self, hinge: usize, i: usize, j: usize, order: Order) -> f64 {
         if j >= self.tangents {
             return 0.0;

@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 /// Number of features of (13).
 pub(crate) const FEATURES: usize = 5;
 
-/// The features of (13) in their order; the card of a surrogate repeats them.
+/// The features of (13) in their order; the card of a surrogate contains them too.
 pub const FEATURE_NAMES: [&str; FEATURES] =
     ["a / w_lig", "s / w_lig", "theta", "log w_lig", "alpha"];
 
-/// xi of (13), with w_lig in mm and angles in rad.
+/// The features xi of (13), with w_lig in mm and angles in rad.
 pub fn features(design: &HingeDesign, deformation: &HingeDeformation) -> [f64; FEATURES] {
     let [eta_a, eta_s] = deformation.eta(design.w_lig);
     [
@@ -26,7 +26,8 @@ pub fn features(design: &HingeDesign, deformation: &HingeDeformation) -> [f64; F
     ]
 }
 
-/// Training-set mean and standard deviation of each feature; the networks take (xi - mean) / std.
+/// Mean and standard deviation of each feature over the training set; the input of the networks is
+/// (xi - mean) / std.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Standardisation {
@@ -34,7 +35,7 @@ pub struct Standardisation {
     pub std: [f64; FEATURES],
 }
 
-/// Turns a gradient in the features (13) into one in (a, s, theta, w_lig, alpha).
+/// Transforms a gradient in the features (13) to a gradient in (a, s, theta, w_lig, alpha).
 pub(crate) fn pull_back(
     gradient: [f64; FEATURES],
     design: &HingeDesign,

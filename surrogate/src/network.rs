@@ -1,9 +1,9 @@
-//! A tanh network with a linear last layer, checked where it is made.
+//! A tanh network with a linear last layer, validated on construction.
 
 use crate::features::{FEATURES, Standardisation};
 use faer::Mat;
 
-/// A named array as weight files hold it, in row-major order.
+/// An array of a weight file, in row-major order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tensor {
     pub shape: Vec<usize>,
@@ -17,7 +17,7 @@ pub struct Layer {
     pub bias: Tensor,
 }
 
-/// Weights or a card that cannot be evaluated.
+/// Why weights or a card are not valid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum InvalidWeights {
     #[error("tensor `{tensor}` is missing; train or export the weights again")]
@@ -28,7 +28,7 @@ pub enum InvalidWeights {
         expected: String,
         found: Vec<usize>,
     },
-    #[error("tensor `{tensor}` holds {value} at index {index}; every weight must be finite")]
+    #[error("tensor `{tensor}` contains {value} at index {index}; every weight must be finite")]
     NotFinite {
         tensor: String,
         index: usize,
@@ -36,7 +36,7 @@ pub enum InvalidWeights {
     },
     #[error("`{name}` = {value} violates 0 < {name} < infinity")]
     NotPositive { name: String, value: f64 },
-    #[error("the card's {key} are {found}, expected {expected}")]
+    #[error("the {key} of the card are {found}, expected {expected}")]
     OtherConvention {
         key: &'static str,
         expected: String,
@@ -44,16 +44,16 @@ pub enum InvalidWeights {
     },
 }
 
-/// y = W_L tanh(... tanh(W_0 x + b_0) ...) + b_L, taking the features (13) as they are.
+/// y = W_L tanh(... tanh(W_0 x + b_0) ...) + b_L, whose input x is the features (13), not standardised.
 #[derive(Clone, Debug)]
 pub struct Network {
-    /// As in the file: the first layer takes standardised features.
+    /// Layers as in the weight file: the input of the first layer is standardised.
     layers: Vec<Layer>,
-    /// As evaluated: the standardisation is folded into the first layer.
+    /// Layers as evaluated: the standardisation is folded into the first layer.
     pub(crate) affine: Vec<Affine>,
 }
 
-/// An affine map ready for matrix products.
+/// An affine map in a form for matrix products.
 #[derive(Clone, Debug)]
 pub(crate) struct Affine {
     /// (outputs, inputs)
@@ -62,8 +62,7 @@ pub(crate) struct Affine {
 }
 
 impl Network {
-    /// Checks every tensor; `name` is what errors call the network, `outputs` what is required of
-    /// its last layer.
+    /// Validates every tensor. `name` is the name of the network in errors, `outputs` the required number of outputs.
     pub(crate) fn new(
         name: &str,
         layers: Vec<Layer>,
@@ -89,7 +88,7 @@ impl Network {
         Ok(Self { layers, affine })
     }
 
-    /// The layers as they were given and are written.
+    /// The layers as in the weight file.
     pub fn layers(&self) -> &[Layer] {
         &self.layers
     }
@@ -120,7 +119,7 @@ impl Affine {
 }
 
 impl Tensor {
-    /// Whether the shape is `expected` (`None`: any positive length) and every value finite.
+    /// Checks that the shape is `expected` (`None`: any positive length) and that every value is finite.
     fn check(&self, name: &str, expected: &[Option<usize>]) -> Result<(), InvalidWeights> {
         let matches = self.shape.len() == expected.len()
             && self

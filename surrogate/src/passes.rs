@@ -1,16 +1,16 @@
-//! Batched passes through a network by matrix products: value, tangents, reverse.
+//! Batched passes through a network by matrix products: values, tangents, reverse pass.
 //!
-//! A *block* holds, column by column (one column a unit), the values of a chunk of hinges and
-//! below them their derivatives in some of the features (13):
+//! A *block* has one column per unit of a layer. It contains the values for a chunk of hinges and,
+//! below them, their derivatives in some of the features (13):
 //!
 //! ```text
 //! rows 0..n          a          pre-activation of each hinge        a_l = h_{l-1} W_l' + b_l
 //! rows n..2n, ...    da/dxi_k   one row block for each tangent k    T_l = (sigma'(a_{l-1}) T_{l-1}) W_l'
 //! ```
 //!
-//! so one product a layer carries the values and all tangents. For a function f of the outputs
+//! One matrix product per layer computes the values and all tangents. For a function f of the outputs
 //! with gradient `seed`, the reverse pass gives lambda = df/dh of every hidden unit, the gradient
-//! of f in all features, and the curvature that the network adds to its Hessian,
+//! of f in all features, and the contribution of the network's curvature to the Hessian of f,
 //!
 //! ```text
 //! sum over layers and units of  lambda sigma''(a) (da/dxi_i) (da/dxi_j)
@@ -25,55 +25,55 @@ use pulp::{Simd, WithSimd};
 use std::cell::RefCell;
 use std::ops::Range;
 
-/// Rows of a block at most, about: enough to pay for laying out the weights of each product, few
-/// enough to stay in cache.
+/// Approximate maximum number of rows of a block. It is large enough that the packing of the weights for each
+/// product costs little, and small enough that the block stays in cache.
 const ROWS: usize = 320;
 
-/// How many of `hinges` to evaluate together with so many tangents: chunks of one size, a whole
-/// number of vector registers.
+/// Number of hinges per chunk, for `hinges` hinges with `tangents` tangents. All chunks have the same size, which is
+/// a multiple of the vector length.
 pub(crate) fn chunk_size(hinges: usize, tangents: usize) -> usize {
     let chunks = hinges.div_ceil(ROWS / (1 + tangents)).max(1);
     hinges.div_ceil(chunks).next_multiple_of(8).max(8)
 }
 
-/// The buffers of the passes, kept from chunk to chunk.
+/// The buffers of the passes, reused from chunk to chunk.
 #[derive(Default)]
 pub(crate) struct Passes {
-    /// Hinges in the chunk.
+    /// Number of hinges in the chunk.
     n: usize,
-    /// The features in whose direction tangents are pushed forward.
+    /// The features for which tangents are propagated forwards.
     tangents: Range<usize>,
-    /// The features (13), one column a feature.
+    /// The features (13), one column per feature.
     inputs: Vec<f64>,
-    /// A block for each hidden layer, with tanh(a) in place of a.
+    /// A block for each hidden layer, with tanh(a) instead of a.
     hidden: Vec<Vec<f64>>,
-    /// The block [tanh(a), sigma'(a) T] of the layer last passed.
+    /// The block [tanh(a), sigma'(a) T] of the layer evaluated last.
     activation: Vec<f64>,
     /// The block of the outputs.
     output: Vec<f64>,
-    /// df/da of the layer last passed backwards, one column a unit.
+    /// df/da of the layer evaluated last in the reverse pass, one column per unit.
     adjoint: Vec<f64>,
-    /// df/dh of the layer before it.
+    /// df/dh of the preceding layer.
     lambda: Vec<f64>,
     /// The weight of each hinge in [`accumulate_products`].
     weight: Vec<f64>,
-    /// df/dxi, one column a feature.
+    /// df/dxi, one column per feature.
     gradient: Vec<f64>,
 }
 
 thread_local! {
-    /// Megabytes of buffers: fresh ones would cost a solver that asks again and again a large part
-    /// of its time in page faults.
+    /// Several megabytes of buffers. They are reused, because a solver with repeated evaluations would otherwise spend
+    /// a large part of its time in page faults.
     static PASSES: RefCell<Passes> = RefCell::default();
 }
 
 impl Passes {
-    /// Lends the buffers of this thread; `work` must not ask for them again.
+    /// Lends the buffers of this thread to `work`, which must not call this function again.
     pub fn lent<T>(work: impl FnOnce(&mut Self) -> T) -> T {
         PASSES.with_borrow_mut(work)
     }
 
-    /// Values and the derivatives in the features `tangents`, for a chunk of hinges.
+    /// Computes the outputs and their derivatives in the features `tangents`, for a chunk of hinges.
     pub fn forward(
         &mut self,
         network: &Network,
@@ -123,7 +123,7 @@ impl Passes {
         }
     }
 
-    /// The first layer but for its bias; its tangents are the columns of its weight.
+    /// Evaluates the first layer without its bias; its tangents are the columns of its weight.
     fn enter(&mut self, first: &Affine) {
         let (n, rows, units) = (self.n, self.rows(), first.bias.len());
         self.output.resize(rows * units, 0.0);
@@ -143,9 +143,9 @@ impl Passes {
         }
     }
 
-    /// The gradient in the features of a function of the outputs, given its gradient `seed` in the
-    /// outputs (one column an output); adds the network's share of its Hessian to `curvature`,
-    /// packed as [`accumulate_products`] says.
+    /// Computes the gradient in the features of a function of the outputs, given its gradient `seed` in the
+    /// outputs (one column per output). Adds the contribution of the network's curvature to its Hessian to
+    /// `curvature`, packed as in [`accumulate_products`].
     pub fn reverse(&mut self, network: &Network, seed: &[f64], curvature: &mut [f64]) {
         let (n, rows) = (self.n, self.rows());
         self.weight.resize(n, 0.0);
@@ -165,7 +165,7 @@ impl Passes {
         multiply(&self.adjoint, &network.affine[0], n, &mut self.gradient);
     }
 
-    /// Adds J'J to `packed`, with J the derivatives of the outputs in the tangents.
+    /// Adds J'J to `packed`, where J is the derivative of the outputs in the features of the tangents.
     pub fn add_gauss_newton(&mut self, packed: &mut [f64]) {
         let rows = self.rows();
         self.weight.clear();
@@ -178,12 +178,12 @@ impl Passes {
         });
     }
 
-    /// Value and tangents of each output: n values, then n derivatives in each tangent.
+    /// Values and tangents of each output: n values, then n derivatives for each tangent.
     pub fn outputs(&self) -> impl Iterator<Item = &[f64]> {
         self.output.chunks_exact(self.rows())
     }
 
-    /// What [`Passes::reverse`] found for one hinge of the chunk.
+    /// The gradient that [`Passes::reverse`] computed for one hinge of the chunk.
     pub fn gradient(&self, hinge: usize) -> [f64; FEATURES] {
         std::array::from_fn(|k| self.gradient[k * self.n + hinge])
     }
@@ -193,7 +193,7 @@ impl Passes {
     }
 }
 
-/// `adjoint` times the weight of a layer: df/dh of the units before it.
+/// Multiplies `adjoint` by the weight of a layer, which gives df/dh of the units of the preceding layer.
 fn multiply(adjoint: &[f64], affine: &Affine, n: usize, product: &mut Vec<f64>) {
     let (outputs, inputs) = affine.weight.shape();
     product.resize(n * inputs, 0.0);
@@ -207,7 +207,8 @@ fn multiply(adjoint: &[f64], affine: &Affine, n: usize, product: &mut Vec<f64>) 
     );
 }
 
-/// Replaces a, which lacks its bias yet, by tanh(a) in `block` and writes [tanh(a), sigma'(a) T].
+/// Adds the bias to the pre-activations in `block`, replaces them by tanh(a), and writes [tanh(a), sigma'(a) T] to
+/// `activation`.
 struct Activate<'a> {
     n: usize,
     rows: usize,
@@ -240,8 +241,8 @@ impl WithSimd for Activate<'_> {
     }
 }
 
-/// Turns df/dh into df/da in place, with sigma' = 1 - h^2 and sigma'' = -2 h sigma', and adds
-/// lambda sigma'' T_i T_j to `curvature`; `weight` is room for one unit's lambda sigma''.
+/// Transforms df/dh to df/da in place, with sigma' = 1 - h^2 and sigma'' = -2 h sigma', and adds
+/// lambda sigma'' T_i T_j to `curvature`; `weight` is a buffer for lambda sigma'' of one unit.
 struct Deactivate<'a> {
     rows: usize,
     block: &'a [f64],
@@ -289,7 +290,7 @@ impl WithSimd for GaussNewton<'_> {
 
 /// Adds weight T_i T_j to `packed` for every pair i <= j of the row blocks of `tangents`.
 ///
-/// `packed` holds one run of n for each pair, in the order (0, 0), (0, 1), ..., (1, 1), ...;
+/// `packed` contains one run of n values for each pair, in the order (0, 0), (0, 1), ..., (1, 1), ...;
 /// see [`packed_index`].
 #[inline(always)]
 fn accumulate_products(weight: &[f64], tangents: &[f64], packed: &mut [f64]) {

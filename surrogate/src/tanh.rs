@@ -4,8 +4,8 @@
 //! tanh x = m / (m + 2),   m = exp(2x) - 1 = 2^n (exp(r) - 1) + (2^n - 1),   2x = n ln 2 + r
 //! ```
 //!
-//! exp(r) - 1 is its Taylor series on |r| <= ln(2) / 2, where the first omitted term is below
-//! 1.3e-17 of the sum. No fused multiply-add is asked for: without hardware support it would be
+//! exp(r) - 1 is computed by its Taylor series on |r| <= ln(2) / 2, where the first omitted term is below
+//! 1.3e-17 of the sum. Fused multiply-add is not used: without hardware support it would be
 //! a library call.
 
 use pulp::{Simd, WithSimd};
@@ -27,13 +27,13 @@ const INVERSE_FACTORIALS: [f64; 12] = {
 const LN_2_HIGH: f64 = f64::from_bits(0x3fe6_2e42_fee0_0000);
 const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
 
-/// Adding it to a number below 2^51 leaves the nearest integer in the low bits of the sum.
+/// Rounding constant: adding it to a number below 2^51 leaves the nearest integer in the low bits of the sum.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// Where tanh is 1 to the last bit; keeps exp(2x) finite.
+/// Beyond this argument tanh is 1 to machine precision; the limit keeps exp(2x) finite.
 const SATURATED: f64 = 20.0;
 
-/// tanh of one number; not a number stays so.
+/// tanh of one number; NaN gives NaN.
 #[inline(always)]
 pub(crate) fn tanh(x: f64) -> f64 {
     let y = 2.0 * x.abs().clamp(0.0, SATURATED);
@@ -50,7 +50,7 @@ pub(crate) fn tanh(x: f64) -> f64 {
     (m / (m + 2.0)).copysign(x)
 }
 
-/// tanh of every number in place, for training; see [`tanh`].
+/// tanh of every number in place, computed in float64, for training; see [`tanh`].
 pub fn tanh_in_place(values: &mut [f32]) {
     struct All<'a>(&'a mut [f32]);
     impl WithSimd for All<'_> {
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn in_place_it_is_rounded_once() {
+    fn in_place_results_are_correctly_rounded_to_float32() {
         let numbers: Vec<f32> = (0..1000).map(|i| 0.01 * i as f32 - 5.0).collect();
         let mut values = numbers.clone();
         tanh_in_place(&mut values);
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn is_odd_and_keeps_the_special_values() {
+    fn is_odd_and_handles_special_values() {
         for x in [1e-300, 0.3, 1.0, 19.9, 25.0, 1e300, f64::INFINITY] {
             assert_eq!(tanh(-x), -tanh(x));
         }

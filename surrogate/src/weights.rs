@@ -3,22 +3,22 @@
 //! | tensor | shape |
 //! |---|---|
 //! | `chi.N.weight`, `chi.N.bias` | (out, in), (out) of layer N of the embedding |
-//! | `chi_d.N.weight`, `chi_d.N.bias` | the same of the damage head |
-//! | `chi_p.N.weight`, `chi_p.N.bias` | the same of the head of D_peak, if there is one |
+//! | `chi_d.N.weight`, `chi_d.N.bias` | the same for the damage head |
+//! | `chi_p.N.weight`, `chi_p.N.bias` | the same for the head of D_peak, if there is one |
 //! | `feat_mean`, `feat_std` | (5), in the order of (13) |
 //! | `w_scale` | (1), N mm |
 //! | `d_scale` | (1) or (2), dimensionless: of D, and of D_peak if there is a head for it |
 //!
-//! Before version 4, D_peak was a second output of `chi_d`; before version 5 it was another measure, and is
-//! left out.
+//! Before version 4, D_peak was a second output of `chi_d`. Before version 5 it was another measure, and it is
+//! ignored.
 //!
-//! Tensors are float64 when written; float32 is read too. The scaling stands in both files, so
-//! that a card beside the wrong weights is noticed.
+//! Tensors are written in float64; float32 is also read. Both files contain the scaling, so
+//! that a card that does not belong to the weights is detected.
 
 use crate::card::{Card, FORMAT_VERSION};
 use crate::features::Standardisation;
+use crate::model::{Layers, Surrogate};
 use crate::network::{InvalidWeights, Layer, Tensor};
-use crate::{Layers, Surrogate};
 use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensorError, SafeTensors};
 use std::collections::BTreeMap;
@@ -33,27 +33,27 @@ pub enum WeightsError {
     #[error("cannot write {path}: {source}", path = .path.display())]
     Write { path: PathBuf, source: io::Error },
     #[error(
-        "{weights} has no card: expected {card} beside it; copy the two files together",
+        "{weights} has no card: {card} is missing; copy both files from the same place",
         weights = .weights.display(), card = .card.display()
     )]
     MissingCard { weights: PathBuf, card: PathBuf },
-    #[error("{path} is no card of a surrogate: {source}", path = .path.display())]
+    #[error("{path} is not a card of a surrogate: {source}", path = .path.display())]
     Card {
         path: PathBuf,
         source: serde_json::Error,
     },
     #[error(
-        "{path} has the format version {found}, this program reads 1 to {FORMAT_VERSION}; \
+        "{path} has the format version {found}, but this program reads versions 1 to {FORMAT_VERSION}; \
          export the weights again, or use a newer program",
         path = .path.display()
     )]
     UnknownVersion { path: PathBuf, found: u64 },
-    #[error("{path} is no safetensors file: {source}", path = .path.display())]
+    #[error("{path} is not a safetensors file: {source}", path = .path.display())]
     Malformed {
         path: PathBuf,
         source: SafeTensorError,
     },
-    #[error("{path}: tensor `{tensor}` belongs to no known layer", path = .path.display())]
+    #[error("{path}: tensor `{tensor}` is not part of a known network", path = .path.display())]
     Extra { path: PathBuf, tensor: String },
     #[error("{path}: tensor `{tensor}` is {found:?}, expected F64 or F32", path = .path.display())]
     Type {
@@ -62,8 +62,8 @@ pub enum WeightsError {
         found: Dtype,
     },
     #[error(
-        "{path}: `{tensor}` differs from the card beside it; the two files are of different \
-         trainings",
+        "{path}: `{tensor}` differs from the value in the card; the two files are from different \
+         trainings, so copy both from the same place",
         path = .path.display()
     )]
     OtherCard { path: PathBuf, tensor: &'static str },
@@ -74,8 +74,19 @@ pub enum WeightsError {
     },
 }
 
-/// See [`Surrogate::load`].
-pub(crate) fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
+impl Surrogate {
+    /// Reads `X.safetensors` and its card `X.json`.
+    pub fn load(weights: &Path) -> Result<Self, WeightsError> {
+        load(weights)
+    }
+
+    /// Writes `X.safetensors` and its card `X.json`, each atomically.
+    pub fn save(&self, weights: &Path) -> Result<(), WeightsError> {
+        save(self, weights)
+    }
+}
+
+fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
     let mut tensors = read_tensors(weights)?;
     let mut card = read_card(weights)?;
     let invalid = |source| WeightsError::Invalid {
@@ -114,15 +125,15 @@ pub(crate) fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
             tensor,
         });
     }
-    // Before, it predicted a percentile over the window, which says nothing of a narrow ligament.
+    // Before version 5, D_peak was a percentile over the window, which is no measure of a narrow ligament.
     let chi_p = chi_p.filter(|_| card.format_version >= 5);
     card.peak_scale = card.peak_scale.filter(|_| card.format_version >= 5);
-    // In memory there is one version.
+    // In memory, every card has the current version.
     card.format_version = FORMAT_VERSION;
     Surrogate::from_parts(Layers { chi, chi_d, chi_p }, card).map_err(invalid)
 }
 
-/// Leaves the first of two outputs in a network.
+/// Removes the second of the two outputs of a network.
 fn keep_first_output(network: &mut [Layer]) -> Result<(), InvalidWeights> {
     let index = network.len() - 1;
     let Layer { weight, bias } = &mut network[index];
@@ -140,8 +151,7 @@ fn keep_first_output(network: &mut [Layer]) -> Result<(), InvalidWeights> {
     Ok(())
 }
 
-/// See [`Surrogate::save`].
-pub(crate) fn save(surrogate: &Surrogate, weights: &Path) -> Result<(), WeightsError> {
+fn save(surrogate: &Surrogate, weights: &Path) -> Result<(), WeightsError> {
     let mut tensors: Vec<(String, Tensor)> = Vec::new();
     let Layers { chi, chi_d, chi_p } = surrogate.layers();
     let networks = [("chi", chi), ("chi_d", chi_d)];
@@ -151,7 +161,7 @@ pub(crate) fn save(surrogate: &Surrogate, weights: &Path) -> Result<(), WeightsE
             tensors.push((format!("{name}.{index}.bias"), bias));
         }
     }
-    for (name, tensor) in scaling(&surrogate.card) {
+    for (name, tensor) in scaling(surrogate.card()) {
         tensors.push((name.into(), tensor));
     }
     let bytes: Vec<Vec<u8>> = tensors.iter().map(|(_, tensor)| to_bytes(tensor)).collect();
@@ -173,7 +183,7 @@ pub(crate) fn save(surrogate: &Surrogate, weights: &Path) -> Result<(), WeightsE
         })?;
     let path = card_path(weights);
     let mut card =
-        serde_json::to_vec_pretty(&surrogate.card).map_err(|source| WeightsError::Card {
+        serde_json::to_vec_pretty(surrogate.card()).map_err(|source| WeightsError::Card {
             path: path.clone(),
             source,
         })?;
@@ -265,7 +275,7 @@ fn to_bytes(tensor: &Tensor) -> Vec<u8> {
     values.flat_map(|value| value.to_le_bytes()).collect()
 }
 
-/// The tensors that the card repeats.
+/// The tensors whose values the card also contains.
 fn scaling(card: &Card) -> [(&'static str, Tensor); 4] {
     let Standardisation { mean, std } = card.standardisation;
     let vector = |values: &[f64]| Tensor {
@@ -280,7 +290,7 @@ fn scaling(card: &Card) -> [(&'static str, Tensor); 4] {
     ]
 }
 
-/// Layers 0, 1, ... of a network, up to the highest that the file names.
+/// Layers 0, 1, ... of a network, up to the highest number in the file.
 fn take_layers(
     tensors: &mut BTreeMap<String, Tensor>,
     network: &str,
@@ -310,7 +320,7 @@ fn take(tensors: &mut BTreeMap<String, Tensor>, name: &str) -> Result<Tensor, In
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), WeightsError> {
-    hinge::files::write(path, bytes).map_err(|source| WeightsError::Write {
+    support::whole_file::write(path, bytes).map_err(|source| WeightsError::Write {
         path: path.to_owned(),
         source,
     })

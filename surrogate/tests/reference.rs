@@ -1,4 +1,4 @@
-//! The kernel against an independent implementation at 50 states, and against finite differences.
+//! The kernel, compared with an independent implementation at 50 states and with finite differences.
 
 mod common;
 
@@ -74,7 +74,7 @@ fn energy_and_damage_agree_with_the_reference() {
 }
 
 #[test]
-fn each_order_repeats_the_ones_before_and_leaves_the_rest_zero() {
+fn each_order_contains_the_lower_ones_and_higher_derivatives_are_zero() {
     let surrogate = tiny();
     let (designs, deformations) = hinges(&states());
     let prepared = surrogate.prepare(&designs);
@@ -114,7 +114,7 @@ fn an_undeformed_hinge_has_no_energy_and_no_forces() {
     }
 }
 
-/// Central differences in each of (a, s, theta, w_lig, alpha) for all hinges at once.
+/// Central differences of all hinges in one of (a, s, theta, w_lig, alpha).
 fn differences(
     evaluate: impl Fn(&[HingeDesign], &[HingeDeformation]) -> Vec<f64>,
     direction: usize,
@@ -142,7 +142,7 @@ fn differences(
         .collect()
 }
 
-/// The part of a HingeEnergy that is its derivative in one of (a, s, theta, w_lig, alpha).
+/// The derivatives of W and of the forces in one of (a, s, theta, w_lig, alpha), from a HingeEnergy.
 fn derivative(energy: &HingeEnergy, direction: usize) -> [f64; 4] {
     let first = match direction {
         0..3 => energy.forces[direction],
@@ -156,7 +156,7 @@ fn derivative(energy: &HingeEnergy, direction: usize) -> [f64; 4] {
 }
 
 #[test]
-fn every_derivative_is_that_of_finite_differences() {
+fn every_derivative_agrees_with_finite_differences() {
     let surrogate = with_peak();
     let (designs, deformations) = hinges(&states());
     let prepared = surrogate.prepare(&designs);
@@ -202,7 +202,7 @@ fn every_derivative_is_that_of_finite_differences() {
 }
 
 #[test]
-fn a_head_for_d_peak_leaves_d_as_it_was() {
+fn a_head_for_d_peak_does_not_change_d() {
     let (designs, deformations) = hinges(&states());
     let one = tiny().damage(&designs, &deformations);
     let with_peak = Surrogate::load(&cases().join("chi_peak.safetensors")).unwrap();
@@ -215,7 +215,7 @@ fn a_head_for_d_peak_leaves_d_as_it_was() {
 }
 
 #[test]
-fn a_sharp_damage_is_that_of_a_scale_and_a_head_scaled() {
+fn sharpness_is_equivalent_to_a_scaled_head_and_damage_scale() {
     let (designs, deformations) = hinges(&states());
     let sharp = with_peak();
     let beta = sharp.card().damage_sharpness;
@@ -241,7 +241,7 @@ fn a_sharp_damage_is_that_of_a_scale_and_a_head_scaled() {
 }
 
 #[test]
-fn many_hinges_give_the_same_as_each_alone() {
+fn a_batch_gives_the_same_results_as_single_hinges() {
     let surrogate = tiny();
     let (designs, deformations) = hinges(&states());
     let repeat = |count: usize| {

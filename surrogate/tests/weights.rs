@@ -1,4 +1,4 @@
-//! The two files of a surrogate: written, read back, and everything that is refused.
+//! Writing and reading the two files of a surrogate, and the errors of invalid files.
 
 mod common;
 
@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use surrogate::{InvalidWeights, Order, Surrogate, WeightsError};
 use tempfile::TempDir;
 
-/// A copy of the tiny surrogate's tensors, to be changed and written.
+/// A copy of the files of a surrogate, to be changed and written.
 struct File {
     folder: TempDir,
     tensors: BTreeMap<String, (Dtype, Vec<usize>, Vec<u8>)>,
@@ -86,7 +86,7 @@ fn energy(surrogate: &Surrogate) -> f64 {
 }
 
 #[test]
-fn what_is_saved_is_loaded_bit_by_bit() {
+fn a_saved_surrogate_is_loaded_bit_exactly() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("copy.safetensors");
     for surrogate in [tiny(), with_peak()] {
@@ -149,7 +149,7 @@ fn missing_files_are_named() {
 }
 
 #[test]
-fn weights_of_format_version_3_tell_what_they_were_trained_on() {
+fn weights_of_format_version_3_have_hashes_of_material_and_settings() {
     let hashed = Surrogate::load(&cases().join("chi_hashed.safetensors")).unwrap();
     let card = hashed.card();
     assert_eq!(card.material_hash.as_deref(), Some("0123456789abcdef"));
@@ -158,7 +158,7 @@ fn weights_of_format_version_3_tell_what_they_were_trained_on() {
 }
 
 #[test]
-fn a_peak_of_before_version_5_is_left_out() {
+fn d_peak_of_weights_before_version_5_is_ignored() {
     for case in ["chi_hashed", "chi_heads"] {
         let before = Surrogate::load(&cases().join(case).with_extension("safetensors")).unwrap();
         assert_eq!(
@@ -177,7 +177,7 @@ fn a_peak_of_before_version_5_is_left_out() {
 }
 
 #[test]
-fn the_domain_of_before_version_5_is_a_box_and_then_what_the_rows_fill() {
+fn the_domain_is_a_box_before_version_5_and_the_covered_states_since() {
     let [boxed, filled] = [tiny(), with_peak()];
     let state = |eta_a, theta| HingeDeformation::from_eta(eta_a, 0.0, theta, 18.0);
     let inside =
@@ -188,7 +188,7 @@ fn the_domain_of_before_version_5_is_a_box_and_then_what_the_rows_fill() {
 }
 
 #[test]
-fn a_head_without_a_scale_and_a_scale_without_a_head_are_refused() {
+fn a_head_without_a_scale_and_a_scale_without_a_head_are_errors() {
     let mut file = File::of("chi_domain");
     file.tensors.retain(|name, _| !name.starts_with("chi_p."));
     let tensor = "chi_p.0.weight".into();
@@ -208,7 +208,7 @@ fn a_head_without_a_scale_and_a_scale_without_a_head_are_refused() {
 }
 
 #[test]
-fn cards_of_other_versions_shapes_and_trainings_are_refused() {
+fn cards_of_other_versions_shapes_and_trainings_are_errors() {
     let with_card = |from: &str, to: &str| {
         let mut file = File::new();
         assert!(file.card.contains(from), "{from}");
@@ -332,7 +332,7 @@ fn weights_that_are_not_finite_name_tensor_and_index() {
 }
 
 #[test]
-fn scales_that_are_not_positive_are_refused_in_both_files() {
+fn scales_that_are_not_positive_are_errors() {
     for (name, key, from, bad) in [
         ("w_scale", "energy_scale", "85.0", 0.0),
         ("d_scale", "damage_scale", "0.012", -0.012),

@@ -1,21 +1,31 @@
-//! A working folder with small configurations, and the program run in it.
+//! A working folder with small configurations, in which the program of the package under test is run.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
+
+const PROGRAM: &str = match option_env!("CARGO_BIN_EXE_kirigami") {
+    Some(program) => program,
+    None => match option_env!("CARGO_BIN_EXE_kirigami-studies") {
+        Some(program) => program,
+        None => panic!("no program to test"),
+    },
+};
 
 pub struct Workplace {
     folder: TempDir,
 }
 
 impl Workplace {
-    /// A folder that holds the shipped configurations.
+    /// A folder with the shipped configurations.
     pub fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
-        copy(
-            &Path::new(env!("CARGO_MANIFEST_DIR")).join("configs"),
-            &folder.path().join("configs"),
-        );
+        let mut folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+        let configs = folders.find_map(|folder| {
+            let configs = folder.join("configs");
+            configs.is_dir().then_some(configs)
+        });
+        copy(&configs.unwrap(), &folder.path().join("configs"));
         Self { folder }
     }
 
@@ -23,7 +33,7 @@ impl Workplace {
         self.folder.path().join(name)
     }
 
-    /// Rewrites a file, each replaced text occurring in it.
+    /// Replaces texts in a file; each of them must occur in it.
     pub fn edit(&self, name: &str, replacements: &[(&str, &str)]) {
         let path = self.path(name);
         let mut text = std::fs::read_to_string(&path).unwrap();
@@ -35,28 +45,28 @@ impl Workplace {
     }
 
     /// The program with arguments, ready to run in the folder.
-    pub fn kirigami(&self, arguments: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_kirigami"));
+    pub fn program(&self, arguments: &str) -> Command {
+        let mut command = Command::new(PROGRAM);
         command
             .current_dir(self.folder.path())
             .args(arguments.split_whitespace());
         command
     }
 
-    /// What a successful run prints.
+    /// The output of a run, which must succeed.
     pub fn output(&self, arguments: &str) -> String {
-        let (output, message) = run(&mut self.kirigami(arguments));
+        let (output, message) = run(&mut self.program(arguments));
         assert!(output.status.success(), "{arguments}: {message}");
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// The message of a run that must fail as an error, not as a panic.
+    /// The error message of a run, which must fail with an error and not a panic.
     pub fn error(&self, arguments: &str) -> String {
-        failure(&mut self.kirigami(arguments))
+        failure(&mut self.program(arguments))
     }
 }
 
-/// The message of a command that must fail as an error, not as a panic.
+/// The error message of a command, which must fail with an error and not a panic.
 pub fn failure(command: &mut Command) -> String {
     let (output, message) = run(command);
     assert_eq!(output.status.code(), Some(1), "{message}");

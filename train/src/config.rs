@@ -158,7 +158,7 @@ mod tests {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/training");
         let mut count = 0;
         for entry in std::fs::read_dir(folder).unwrap() {
-            let config: TrainingConfig = hinge::config::read(&entry.unwrap().path()).unwrap();
+            let config: TrainingConfig = support::toml_file::read(&entry.unwrap().path()).unwrap();
             config.validate().unwrap();
             count += 1;
         }
@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn impossible_values_name_their_key() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/training");
-        let demo: TrainingConfig = hinge::config::read(&folder.join("demo.toml")).unwrap();
+        let demo: TrainingConfig = support::toml_file::read(&folder.join("demo.toml")).unwrap();
         type Change = fn(&mut TrainingConfig);
         let changes: [(Change, &str); 13] = [
             (|c| c.embedding.clear(), "embedding"),

@@ -1,7 +1,8 @@
 //! From Burn's networks to the layers of a weight file.
 
+use crate::affine::Affine;
 use crate::error::TrainError;
-use crate::networks::{Affine, Mlp, Networks};
+use crate::networks::{Mlp, Networks};
 use surrogate::{Layer, Layers, Tensor};
 
 /// In float64, weights as (outputs, inputs).

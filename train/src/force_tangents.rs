@@ -9,7 +9,7 @@
 //! parameter gradient of a loss in the forces. The undeformed states, the deformed ones and the
 //! three tangents pass each layer in one product.
 
-use crate::networks::{Affine, tanh};
+use crate::affine::{Affine, tanh};
 use burn::tensor::Tensor;
 
 /// chi of some hinges.
@@ -54,8 +54,9 @@ pub(crate) fn with_tangents(layers: &[Affine], inputs: Tensor<3>) -> Embedding {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::affine::forward;
     use crate::backend::Backend;
-    use crate::networks::{Networks, forward};
+    use crate::networks::Networks;
     use crate::samples::Batch;
     use crate::samples::tests::samples;
     use burn::tensor::{DType, TensorCreationOptions};

@@ -11,10 +11,12 @@
 //! | `backend` | Burn backends, chosen at run time |
 //! | `samples` | rows as the network sees them: standardised, scaled, batched |
 //! | `mirror` | mirror symmetry by construction |
+//! | `affine` | a layer, and tanh networks of layers |
 //! | `networks` | chi, chi_D and chi_P |
 //! | `force_tangents` | chi and its derivatives in (eta_a, eta_s, theta) |
 //! | `loss` | (15) |
 //! | `optimiser` | Muon and Adam, learning rate |
+//! | `epoch` | the record of one epoch |
 //! | `training` | the loop: steps, best epoch |
 //! | `state` | a training on disk, to go on from |
 //! | `validation` | errors on rows held out |
@@ -23,10 +25,12 @@
 //! | `ensemble` | networks of other seeds as a measure of error |
 //! | `export` | Burn to `surrogate` |
 
+mod affine;
 mod backend;
 mod bins;
 mod config;
 mod ensemble;
+mod epoch;
 mod error;
 mod export;
 mod force_tangents;
@@ -43,8 +47,9 @@ mod validation;
 pub use backend::{Backend, UnknownBackend};
 pub use config::{InvalidConfig, Precision, TrainingConfig};
 pub use ensemble::{Disagreement, EnsembleCheck, disagreements};
+pub use epoch::Epoch;
 pub use error::TrainError;
 pub use state::StateError;
 pub use stiffness::StiffnessCheck;
-pub use training::{Epoch, Start, Trained, Training, train};
+pub use training::{Start, Trained, Training, train};
 pub use validation::{Parity, ParityPoint};

@@ -9,9 +9,10 @@
 //! softplus(beta y) / beta of what their heads give: a sharp beta lets a ligament be exactly as
 //! undamaged as it is before it yields, without ado in the network.
 
+use crate::affine::forward;
 use crate::config::TrainingConfig;
 use crate::force_tangents::{Embedding, with_tangents};
-use crate::networks::{Networks, forward};
+use crate::networks::Networks;
 use crate::samples::Batch;
 use burn::tensor::Tensor;
 use burn::tensor::activation::softplus;

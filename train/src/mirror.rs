@@ -11,7 +11,7 @@
 //! with R the reversal of order, and A and b halves, which are all that is trained. |chi - chi_0|^2
 //! takes both of a pair alike; the output of a damage head does with W_L = [B; R B].
 
-use crate::networks::Affine;
+use crate::affine::Affine;
 use burn::tensor::{Tensor, TensorData};
 use std::f64::consts::FRAC_PI_2;
 use surrogate::Standardisation;

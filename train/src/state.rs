@@ -3,8 +3,8 @@
 //! The file is the BLAKE3 of what follows, then safetensors: the networks, those of the best epoch
 //! and the state of the optimiser as Burn's own records (bytes), and everything else as JSON.
 
+use crate::epoch::Epoch;
 use crate::networks::Networks;
-use crate::training::Epoch;
 use burn::module::Module;
 use burn::optim::ModuleOptimizer;
 use burn::store::{ModuleRecord, RecordError};
@@ -103,7 +103,7 @@ pub(crate) fn write(
         .map_err(|error| malformed(error.to_string()))?;
     let mut bytes = blake3::hash(&body).as_bytes().to_vec();
     bytes.extend(body);
-    hinge::files::write(path, &bytes).map_err(|source| StateError::Write {
+    support::whole_file::write(path, &bytes).map_err(|source| StateError::Write {
         path: path.to_owned(),
         source,
     })

@@ -4,6 +4,7 @@
 use crate::backend::Backend;
 use crate::bins::error_bins;
 use crate::config::{Precision, TrainingConfig};
+use crate::epoch::Epoch;
 use crate::error::TrainError;
 use crate::export::layers;
 use crate::loss::loss;
@@ -21,33 +22,10 @@ use hinge::TrainingDomain;
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::Instant;
 use surrogate::{Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS};
-
-/// What one pass over the training rows did.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Epoch {
-    /// 1, 2, ..., `epochs`
-    pub epoch: usize,
-    /// Of how many.
-    pub epochs: usize,
-    /// (15), mean over the batches as they were met.
-    pub training_loss: f64,
-    /// (15) on the validation part at the end of the epoch.
-    pub validation_loss: f64,
-    /// Relative errors of each network there: of W and the forces (their geometric mean), of D,
-    /// and of D_peak (zero if it is not predicted).
-    pub validation_errors: [f64; 3],
-    /// At the end of the epoch.
-    pub learning_rate: f64,
-    /// Whether one of them was less than in every epoch before.
-    pub best: bool,
-    /// Time that the training took so far (s).
-    pub elapsed_s: f64,
-}
 
 /// A trained surrogate and what is known about it.
 #[derive(Clone, Debug)]

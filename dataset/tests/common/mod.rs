@@ -35,7 +35,7 @@ pub fn row(job: usize, lambda: f64) -> Row {
     }
 }
 
-/// Five increments of each of ten jobs, in no useful order.
+/// Five increments of each of ten jobs, unsorted.
 pub fn rows() -> Vec<Row> {
     let lambdas = [0.6, 0.2, 1.0, 0.4, 0.8];
     let increments = |job| lambdas.map(|lambda| row(job, lambda));

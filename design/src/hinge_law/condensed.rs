@@ -8,8 +8,8 @@
 //!
 //! The constants follow the design, so that the gradient in w_lig and alpha is exact.
 
-use super::linear::spring;
-use super::{HingeEnergy, HingeLaw, Order, PreparedLaw};
+use crate::hinge_law::law::{HingeEnergy, HingeLaw, Order, PreparedLaw};
+use crate::hinge_law::linear::spring;
 use hinge::{HingeDeformation, HingeDesign};
 use surrogate::Surrogate;
 
@@ -27,6 +27,11 @@ impl CondensedLaw {
     /// With the rotational secant at the angle `secant` (rad), or the Hessian at zero if it is 0.
     pub fn new(surrogate: Surrogate, secant: f64) -> Self {
         Self { surrogate, secant }
+    }
+
+    /// The learned energy that the constants are condensed from.
+    pub fn surrogate(&self) -> &Surrogate {
+        &self.surrogate
     }
 
     /// (k_a, k_s, k_theta) of each design (N/mm, N/mm, N mm) with their gradients in (w_lig, alpha).
@@ -93,7 +98,7 @@ impl PreparedLaw for Prepared {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::check::central_slope;
+    use crate::analysis::taylor::central_slope;
     use std::path::Path;
 
     fn design(x: &[f64]) -> HingeDesign {

@@ -7,7 +7,7 @@
 //!
 //! zero above phi_cut, infinite at and beyond phi_min, C^2 in between and at phi_cut.
 
-use super::HingeEnergy;
+use crate::hinge_law::law::HingeEnergy;
 use hinge::HingeDeformation;
 use std::f64::consts::PI;
 
@@ -90,7 +90,7 @@ impl Contact {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::check::central_slope;
+    use crate::analysis::taylor::central_slope;
 
     fn contact() -> Contact {
         Contact::new(2.0, -0.3, -0.05).unwrap()

@@ -1,6 +1,6 @@
 //! The linear hinge law (11): W = (k_a a^2 + k_s s^2 + k_theta theta^2) / 2.
 
-use super::{HingeEnergy, HingeLaw, Order, PreparedLaw};
+use crate::hinge_law::law::{HingeEnergy, HingeLaw, Order, PreparedLaw};
 use hinge::{HingeDeformation, HingeDesign};
 
 /// Three uncoupled springs per hinge.

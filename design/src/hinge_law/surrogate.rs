@@ -10,7 +10,9 @@
 //! then a parabola, brings the state back: W_law is twice differentiable and coercive for any weights. The
 //! cut angle is drawn into its interval by the same psi.
 
-use super::{DamageMeasure, HingeDamage, HingeEnergy, HingeLaw, Order, PreparedLaw};
+use crate::hinge_law::law::{
+    DamageMeasure, HingeDamage, HingeEnergy, HingeLaw, Order, PreparedLaw,
+};
 use hinge::{HingeDeformation, HingeDesign, Jet, TrainingDomain};
 use std::array::from_fn;
 use surrogate::{Prepared, Surrogate};
@@ -117,9 +119,13 @@ impl PreparedLaw for PreparedSurrogate<'_> {
         energies
     }
 
-    fn damage(&self, deformations: &[HingeDeformation]) -> Vec<HingeDamage> {
+    fn damage(&self, deformations: &[HingeDeformation], with_gradient: bool) -> Vec<HingeDamage> {
         let (asked, continuations) = self.asked(deformations);
-        let mut damages = self.surrogate.damage(self.prepared.designs(), &asked);
+        let designs = self.prepared.designs();
+        if !with_gradient {
+            return self.surrogate.damage_values(designs, &asked);
+        }
+        let mut damages = self.surrogate.damage(designs, &asked);
         for (h, damage) in damages.iter_mut().enumerate() {
             for gradient in [&mut damage.gradient, &mut damage.peak_gradient] {
                 gradient[4] *= self.angle_slopes[h];
@@ -247,7 +253,7 @@ fn drawn_in([minimum, maximum]: [f64; 2], alpha: f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::check::central_slope;
+    use crate::analysis::taylor::central_slope;
     use std::path::Path;
 
     fn tiny() -> SurrogateLaw {

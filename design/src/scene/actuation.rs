@@ -1,21 +1,18 @@
-//! Supports and loads as a scene writes them, panels named by [column, row].
+//! Supports and loads as written in a scene, with panels named by [column, row].
 
-use super::Scene;
-use crate::actuation::{Dof, Load, Support};
-use crate::grid::{EDGES, Grid};
-use crate::topology::{HingeSite, hinge_sites};
+use crate::pattern::grid::Grid;
 use serde::{Deserialize, Serialize};
 
-/// A held panel.
+/// A supported panel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SupportConfig {
     pub panel: [usize; 2],
     pub kind: SupportKind,
-    /// Motion of the held translations at full load (mm).
+    /// Displacement of the supported translations at full load (mm).
     #[serde(default)]
     pub displacement: [f64; 2],
-    /// Motion of the held rotation at full load, counter-clockwise (deg).
+    /// Rotation of a supported rotation at full load, counter-clockwise (deg).
     #[serde(default)]
     pub rotation_deg: f64,
 }
@@ -28,9 +25,9 @@ pub enum SupportKind {
     Clamp,
     /// Both translations.
     Pin,
-    /// Rolls along x: the translation along y.
+    /// Rolls along x: the translation along y is prescribed.
     RollerX,
-    /// Rolls along y: the translation along x.
+    /// Rolls along y: the translation along x is prescribed.
     RollerY,
 }
 
@@ -47,8 +44,8 @@ pub struct LoadConfig {
     pub couple: f64,
 }
 
-/// A dead traction along an edge of the flat sheet. Its resultant is shared alike by the panels of
-/// the edge and acts at their centroids: the actuation does not change with the pattern.
+/// A dead traction along an edge of the flat sheet. Its resultant is divided equally among the panels of
+/// the edge and acts at their centroids, so the loads do not change with the pattern.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EdgeLoadConfig {
@@ -67,27 +64,27 @@ pub enum SheetEdge {
     Left,
 }
 
-/// Self-equilibrated couples on the two panels of a hinge, which open it; what a support holds does
-/// no work and is left out.
+/// Self-equilibrated couples on the two panels of a hinge that open it. The couple on a panel whose rotation is
+/// supported would do no work and is left out.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OpeningCoupleConfig {
-    /// Two neighbours; by default every hinge of the sheet.
+    /// Two neighbouring panels; by default every hinge of the sheet.
     pub panels: Option<[[usize; 2]; 2]>,
     /// N mm, positive to open.
     pub couple: f64,
 }
 
-/// Displacement control: the load factor follows from the way of the loads.
+/// Displacement control: the stroke of the loads is prescribed; the load factor is an unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DriveConfig {
-    /// Work of the full loads over the sum of their forces, at the end of the path (mm).
+    /// Stroke at the end of the path: work of the full loads divided by the sum of their magnitudes (mm).
     pub stroke: f64,
 }
 
 impl SupportKind {
-    /// Whether (u_x, u_y, phi) are held.
+    /// Whether (u_x, u_y, phi) are prescribed.
     pub fn holds(self) -> [bool; 3] {
         match self {
             Self::Clamp => [true, true, true],
@@ -115,7 +112,7 @@ impl LoadConfig {
 }
 
 impl SheetEdge {
-    fn panels(self, grid: Grid) -> Vec<usize> {
+    pub(super) fn panels(self, grid: Grid) -> Vec<usize> {
         let row = |q| (0..grid.m).map(|p| grid.panel(p, q)).collect();
         let column = |p| (0..grid.n).map(|q| grid.panel(p, q)).collect();
         match self {
@@ -124,67 +121,5 @@ impl SheetEdge {
             Self::Top => row(grid.n - 1),
             Self::Left => column(0),
         }
-    }
-}
-
-impl Scene {
-    pub(super) fn supports(&self) -> Vec<Support> {
-        let mut supports = Vec::new();
-        for config in &self.config.supports {
-            let panel = self.panel(config.panel);
-            let motion = config.motion();
-            for (dof, held) in Dof::ALL.into_iter().zip(config.kind.holds()) {
-                if held {
-                    let value = motion[dof.index()];
-                    supports.push(Support { panel, dof, value });
-                }
-            }
-        }
-        supports
-    }
-
-    /// The loads of the panels, of the edges and of the hinges together.
-    pub fn loads(&self) -> Vec<Load> {
-        let mut total = vec![[0.0; 3]; self.grid().panel_count()];
-        for load in &self.config.loads {
-            let sum = &mut total[self.panel(load.panel)];
-            sum[0] += load.force[0];
-            sum[1] += load.force[1];
-            sum[2] += load.couple;
-        }
-        for load in &self.config.edge_loads {
-            let [from, to] =
-                EDGES[load.edge as usize].map(|k| self.config.sheet.outline().corners[k]);
-            let length = f64::hypot(to[0] - from[0], to[1] - from[1]);
-            let panels = load.edge.panels(self.grid());
-            let [x, y] = load.traction.map(|t| t * length / panels.len() as f64);
-            for panel in panels {
-                total[panel][0] += x;
-                total[panel][1] += y;
-            }
-        }
-        for load in &self.config.opening_couples {
-            let pair = load
-                .panels
-                .map(|panels| panels.map(|panel| self.panel(panel)));
-            for HingeSite { a, b, .. } in hinge_sites(self.grid()) {
-                if pair.is_none_or(|pair| pair.contains(&a.0) && pair.contains(&b.0)) {
-                    total[a.0][2] -= load.couple;
-                    total[b.0][2] += load.couple;
-                }
-            }
-        }
-        for support in self.supports() {
-            total[support.panel][support.dof.index()] = 0.0;
-        }
-        let loads = total.iter().enumerate().flat_map(|(panel, values)| {
-            let load = move |(dof, &value)| Load { panel, dof, value };
-            Dof::ALL.into_iter().zip(values).map(load)
-        });
-        loads.filter(|load| load.value != 0.0).collect()
-    }
-
-    fn panel(&self, [column, row]: [usize; 2]) -> usize {
-        self.grid().panel(column, row)
     }
 }

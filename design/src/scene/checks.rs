@@ -2,17 +2,21 @@
 //!
 //! The ranges are wider than any sheet that is cut and narrower than a slip of a factor 1000.
 
-use super::{HingeModel, SceneConfig, SheetConfig};
-use crate::equilibrium::Method;
-use crate::pattern::{Outline, PatternError};
-use crate::polygon::edges;
-use crate::target::Target;
+use crate::equilibrium::settings::Method;
+use crate::geometry::polygon::edges;
+use crate::objective::target::Target;
+use crate::pattern::cut_pattern::Outline;
+use crate::pattern::pattern_error::PatternError;
+use crate::scene::hinge_model::HingeModel;
+use crate::scene::keys::SceneConfig;
+use crate::scene::sheet_config::SheetConfig;
 use hinge::HingeDesign;
 use std::f64::consts::FRAC_PI_2;
 
 /// Checks everything that needs no other file; the error says which key, which limit and, where a
 /// factor of 1000 would mend it, which unit was probably meant.
 pub(super) fn config(scene: &SceneConfig) -> Result<(), String> {
+    title(scene)?;
     sheet(scene)?;
     ligament(scene)?;
     start(scene)?;
@@ -20,6 +24,10 @@ pub(super) fn config(scene: &SceneConfig) -> Result<(), String> {
     loads(scene)?;
     search(scene)
 }
+
+/// Perimeter of the largest target over that of the flat sheet. Panels keep their edges: a sheet of squares opens to
+/// twice its width, one of slender panels to more along one axis alone.
+const OPENS_TO: f64 = 3.0;
 
 /// A target of a quite different size than the sheet is a slip of units.
 pub(super) fn target(target: &Target, outline: &Outline) -> Result<(), String> {
@@ -29,9 +37,20 @@ pub(super) fn target(target: &Target, outline: &Outline) -> Result<(), String> {
     within(
         "length of the target outline",
         target.length(),
-        [0.2 * perimeter, 5.0 * perimeter],
+        [0.2 * perimeter, OPENS_TO * perimeter],
         "mm",
     )
+    .map_err(|error| format!("{error} (the sheet's outline is {perimeter:.0} mm long)"))
+}
+
+/// A title goes into pictures, which cannot hold control characters.
+fn title(scene: &SceneConfig) -> Result<(), String> {
+    match scene.title.chars().find(|c| c.is_control()) {
+        Some(c) => Err(format!(
+            "title holds the control character {c:?}: remove it"
+        )),
+        None => Ok(()),
+    }
 }
 
 fn sheet(scene: &SceneConfig) -> Result<(), String> {
@@ -90,6 +109,16 @@ fn ligament(scene: &SceneConfig) -> Result<(), String> {
         return Err(format!(
             "ligament.start = {} mm violates {least} < start < {greatest} mm (ligament.range)",
             ligament.start
+        ));
+    }
+    // A slit is at most as long as two panels, and each of its ends gives way to a ligament and its hole.
+    let outline = scene.sheet.outline();
+    let panel = (outline.area() / scene.sheet.grid().panel_count() as f64).sqrt();
+    let taken = (1.0 + process.fillet_ratio) * least;
+    if taken >= panel {
+        return Err(format!(
+            "ligament.range: ligaments of {least} mm with their holes take {taken:.1} mm, and panels are \
+             {panel:.1} mm wide on average: no slit would be left; narrow the ligaments or use fewer panels"
         ));
     }
     Ok(())

@@ -1,21 +1,25 @@
-//! From a scene to the design problem it poses and the design its search starts from.
+//! From a scene to its design problem and its start design.
 
-use super::hinge_model::LoadedHinge;
-use super::{Scene, SceneError, SolverConfig};
-use crate::chamfer::Chamfer;
-use crate::design_vector::{DesignVector, WidthChart};
-use crate::domain_penalty::DomainPenalty;
-use crate::equilibrium::{EquilibriumError, EquilibriumSolver, SolverSettings};
-use crate::gradient::{DesignProblem, Mechanics, Model};
-use crate::grid::Grid;
-use crate::hinge_law::{HingeLaw, SurrogateLaw};
-use crate::objective::Objective;
-use crate::path_functionals::PerFunctional;
+use crate::equilibrium::settings::SolverSettings;
+use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
+use crate::geometry::chamfer::Chamfer;
+use crate::hinge_law::{Contact, HingeLaw};
+use crate::objective::design_problem::{DesignProblem, Mechanics, Model};
+use crate::objective::domain_penalty::DomainPenalty;
+use crate::objective::loss::Objective;
+use crate::objective::path_functionals::PerFunctional;
+use crate::pattern::design_vector::{DesignVector, WidthChart};
+use crate::pattern::grid::Grid;
+use crate::scene::checked_scene::Scene;
+use crate::scene::keys::SolverConfig;
+use crate::scene::loaded_hinge::LoadedHinge;
+use crate::scene::scene_error::SceneError;
 use hinge::TrainingDomain;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use std::sync::Arc;
 
-/// Temperatures of the path extrema, a tenth of the D / D_s, eta_a and eta_s that matter.
+/// Temperatures of the path extrema: a tenth of typical values of D / D_s, eta_a and eta_s.
 const TEMPERATURES: PerFunctional = PerFunctional {
     damage: 0.1,
     compression: 0.01,
@@ -27,7 +31,7 @@ impl Scene {
         self.config.sheet.grid()
     }
 
-    /// Everything that is fixed before the design begins.
+    /// The design problem: everything that is constant during the design.
     pub fn problem(&self) -> Result<DesignProblem, SceneError> {
         let model = self.model()?;
         let problem = DesignProblem {
@@ -53,7 +57,7 @@ impl Scene {
         WidthChart { w_minus, w_plus }
     }
 
-    /// The design that the search starts from, with the seeded noise that the scene asks for.
+    /// The start design, with the seeded noise of the scene.
     pub fn start(&self) -> DesignVector {
         let (start, grid, widths) = (&self.config.start, self.grid(), self.width_chart());
         let uniform = vec![self.config.ligament.start; grid.hinge_count()];
@@ -71,14 +75,14 @@ impl Scene {
         let pattern = &mut design.pattern;
         let coordinates = pattern.z.iter_mut().chain(pattern.ell.iter_mut().flatten());
         for coordinate in coordinates.chain(&mut design.omega) {
-            // Uniform numbers of the standard deviation asked for.
+            // Uniformly distributed numbers with the required standard deviation.
             let half_width = 3f64.sqrt() * optimiser.start_noise;
             *coordinate += half_width * random.random_range(-1.0..1.0);
         }
         design
     }
 
-    /// Area of the sheet over its panels (mm^2): what the weights of the objective are relative to.
+    /// Area of the sheet divided by the number of panels (mm^2); the weights of the objective are relative to it.
     pub fn mean_panel_area(&self) -> f64 {
         self.config.sheet.outline().area() / self.grid().panel_count() as f64
     }
@@ -105,7 +109,7 @@ impl Scene {
                 precision: config.precision,
             },
             outline: config.outline,
-            // A sheet on pins is held nowhere.
+            // A sheet on pins has no supports.
             centred: ideal,
             weights: PerFunctional {
                 damage: config.damage * unit,
@@ -115,7 +119,7 @@ impl Scene {
             damage_measure: config.damage_measure,
             temperatures: TEMPERATURES,
             panel_shape: config.panel_shape * self.mean_panel_area(),
-            // Only a learned hinge is a window. Two windows and a gap: they do not lie in line.
+            // Only a learned hinge has a window. Two window radii and a gap: the windows do not lie on one line.
             least_distance: domain.map_or(0.0, |_| 3.0 * self.config.process.r_win),
             domain: (domain.filter(|_| config.domain > 0.0)).map(|domain| DomainPenalty {
                 domain: domain.clone(),
@@ -125,16 +129,11 @@ impl Scene {
     }
 
     fn model(&self) -> Result<Model, SceneError> {
-        let (law, contact): (Box<dyn HingeLaw>, _) = match &self.hinge {
+        let (law, contact): (Arc<dyn HingeLaw>, Contact) = match &self.hinge {
             LoadedHinge::Pin { opening } => return Ok(Model::Ideal { opening: *opening }),
-            LoadedHinge::Linear { law, contact } => (Box::new(law.clone()), Some(*contact)),
-            LoadedHinge::Condensed { law, contact } => (law.clone(), Some(*contact)),
-            LoadedHinge::Surrogate {
-                surrogate, contact, ..
-            } => (
-                Box::new(SurrogateLaw::new((**surrogate).clone())),
-                Some(*contact),
-            ),
+            LoadedHinge::Linear { law, contact } => (law.clone(), *contact),
+            LoadedHinge::Condensed { law, contact } => (law.clone(), *contact),
+            LoadedHinge::Surrogate { law, contact, .. } => (law.clone(), *contact),
         };
         let solver = self.solver().map_err(|error| SceneError::Value {
             path: self.path.clone(),
@@ -142,7 +141,7 @@ impl Scene {
         })?;
         Ok(Model::Equilibrium(Box::new(Mechanics {
             law,
-            contact,
+            contact: Some(contact),
             solver,
         })))
     }

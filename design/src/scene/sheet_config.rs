@@ -1,46 +1,47 @@
-//! The flat sheet of a scene: outline, panels, ligaments, and the pattern that the search starts from.
+//! The flat sheet of a scene: outline, panels, ligaments, and the start pattern of the search.
 
-use crate::charts::PatternCoordinates;
-use crate::grid::Grid;
-use crate::pattern::{Outline, PatternError};
+use crate::pattern::coordinates::PatternCoordinates;
+use crate::pattern::cut_pattern::Outline;
+use crate::pattern::grid::Grid;
+use crate::pattern::pattern_error::PatternError;
 use serde::{Deserialize, Serialize};
 
-/// The flat sheet: a rectangle from the origin or any convex quadrilateral, cut into
+/// The flat sheet: a rectangle with a corner at the origin, or any convex quadrilateral, cut into
 /// `panels` = [columns M, rows N].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SheetConfig {
     /// [along x, along y] (mm)
     pub size: Option<[f64; 2]>,
-    /// Corners SW, SE, NE, NW (mm), in place of `size`.
+    /// Corners SW, SE, NE, NW (mm), instead of `size`.
     pub corners: Option<[[f64; 2]; 4]>,
     pub panels: [usize; 2],
 }
 
-/// The ligament widths: where they start, and the chart's interval in which they are chosen.
+/// The ligament widths: their start value, and the interval of their chart.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LigamentConfig {
-    /// Width that every hinge starts at (mm).
+    /// Start width of every hinge (mm).
     pub start: f64,
     /// [w_minus, w_plus] of the chart (mm).
     pub range: [f64; 2],
 }
 
-/// Where the search starts: explicit r and tau or their logits, and widths hinge by hinge. What is
-/// left out is uniform.
+/// The start of the search: r and tau or their logits, and a width per hinge. Omitted values are
+/// uniform.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct StartConfig {
     /// Void aspect ratios of the interior cuts, row by row, each in (0, 1).
     pub r: Option<Vec<f64>>,
-    /// Boundary positions on the edges bottom, right, top, left, growing in (0, 1).
+    /// Boundary positions on the edges bottom, right, top, left, increasing in (0, 1).
     pub tau: Option<[Vec<f64>; 4]>,
-    /// Logits of r, in place of `r`.
+    /// Logits of r, instead of `r`.
     pub z: Option<Vec<f64>>,
-    /// Logits of the intervals of tau, in place of `tau`.
+    /// Logits of the intervals of tau, instead of `tau`.
     pub ell: Option<[Vec<f64>; 4]>,
-    /// mm, one per hinge, in place of `ligament.start`.
+    /// Width of each hinge (mm), instead of `ligament.start`.
     pub w_lig: Option<Vec<f64>>,
 }
 
@@ -50,7 +51,7 @@ impl SheetConfig {
         Grid { m, n }
     }
 
-    /// The outline; a sheet that says nothing about it has none.
+    /// The outline; a rectangle of size zero if the section gives none.
     pub fn outline(&self) -> Outline {
         let [width, height] = self.size.unwrap_or_default();
         self.corners
@@ -61,7 +62,7 @@ impl SheetConfig {
 }
 
 impl StartConfig {
-    /// The pattern that the search starts from.
+    /// The start pattern of the search.
     pub fn pattern(&self, grid: Grid) -> Result<PatternCoordinates, PatternError> {
         let uniform = PatternCoordinates::uniform(grid);
         let start = PatternCoordinates {

@@ -1,15 +1,15 @@
-//! Runs with the learned hinge law, of random weights: they are bound to their hinge, every term of
-//! the objective counts, and the report knows the training domain.
+//! Runs with a learned hinge law of random weights: weights of another hinge are refused, every term of
+//! the objective counts, and the report shows the training domain.
 
 use super::{FILM, read, run, with};
-use design::inverse_design::forget;
-use design::report::{Concern, Report};
-use design::results::write_results;
+use design::output::report::{Concern, Report};
+use design::output::run_results::write_results;
 use design::scene::Scene;
+use design::scene::design_run::forget;
 use std::path::Path;
 use surrogate::Surrogate;
 
-/// Puts the random weights and their card, changed, beside the scene.
+/// Writes the random weights and their card, with changes, next to the scene.
 pub fn weights(folder: &Path, changes: &[(&str, &str)]) {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases");
     std::fs::copy(
@@ -78,7 +78,7 @@ pub fn weights_of_another_hinge_or_material_are_refused() {
 fn every_term_counts_and_the_report_names_hinges_outside_the_domain() {
     let folder = tempfile::tempdir().unwrap();
     weights(folder.path(), &[]);
-    // Ligaments may be wider than the 25 mm that the card was trained to.
+    // Ligaments may be wider than the maximum of 25 mm in the card.
     let scene = read(folder.path(), &learned(&[("start = 18.0", "start = 25.9")]));
     let designed = run(&scene, None).unwrap();
     assert_eq!(designed.history.len(), 7);
@@ -89,8 +89,8 @@ fn every_term_counts_and_the_report_names_hinges_outside_the_domain() {
         + area * (0.2 * path.damage + 0.2 * path.compression + 0.1 * path.shear);
     assert!((start.loss / loss - 1.0).abs() < 1e-12);
 
-    let report = write_results(&scene, &designed).unwrap();
-    // What the law was not made for is not known.
+    let report = write_results(&scene, &designed, false).unwrap();
+    // Damage outside the domain of the law is unknown.
     for row in &report.hinges {
         assert_eq!(row.damage.is_some_and(|damage| damage > 0.0), row.inside);
     }
@@ -130,14 +130,14 @@ fn a_ligament_that_tears_is_reported_before_the_cut_file_is_written() {
         let scene = read(folder.path(), &scene);
         forget(&scene).unwrap();
         let designed = run(&scene, None).unwrap();
-        // Without a place for the cut file the report is still written.
+        // The report is written even if the cut file cannot be.
         std::fs::remove_file(scene.output().join("cut.dxf")).ok();
         std::fs::create_dir(scene.output().join("cut.dxf")).unwrap();
-        let failed = write_results(&scene, &designed).unwrap_err();
+        let failed = write_results(&scene, &designed, false).unwrap_err();
         assert!(failed.to_string().contains("cut.dxf"), "{failed}");
         let text = std::fs::read_to_string(scene.output().join("report.txt")).unwrap();
         std::fs::remove_dir(scene.output().join("cut.dxf")).unwrap();
-        (write_results(&scene, &designed).unwrap(), text)
+        (write_results(&scene, &designed, false).unwrap(), text)
     };
     let (torn, text) = report(1e3);
     let named = warned(&torn, Concern::Tearing);
@@ -150,6 +150,7 @@ fn a_ligament_that_tears_is_reported_before_the_cut_file_is_written() {
         !named.is_empty() && text.contains("the ligament tears"),
         "{text}"
     );
+    assert!(!torn.cut_file && text.contains("NO CUT FILE"), "{text}");
     let (whole, text) = report(1e-3);
     assert!(warned(&whole, Concern::Tearing).is_empty() && !text.contains("tears (hinge"));
 }
@@ -160,7 +161,7 @@ fn the_report_states_how_far_the_networks_of_an_ensemble_disagree() {
     weights(folder.path(), &[]);
     let first = Surrogate::load(&folder.path().join("tiny.safetensors")).unwrap();
     let save = |scale: f64, dataset_hash: &str| {
-        // The energy of a scaled embedding goes with its square.
+        // The energy is proportional to the square of the scale of the embedding.
         let mut layers = first.layers();
         let last = layers.chi.last_mut().unwrap();
         last.weight
@@ -179,9 +180,9 @@ fn the_report_states_how_far_the_networks_of_an_ensemble_disagree() {
     save(1.1, &first.card().dataset_hash);
     let scene_of_two = read(folder.path(), &scene);
     let designed = run(&scene_of_two, None).unwrap();
-    let report = write_results(&scene_of_two, &designed).unwrap();
+    let report = write_results(&scene_of_two, &designed, false).unwrap();
     let estimate = report.estimate.unwrap();
-    // Energies and forces of 1 and 1.21: a deviation of 0.21 / sqrt(2) about a mean of 1.105.
+    // Energies and forces with the factors 1 and 1.21: a deviation of 0.21 / sqrt(2) about a mean of 1.105.
     let expected = 0.21 / 2f64.sqrt() / 1.105;
     assert_eq!((estimate.networks, estimate.damage_peak), (2, None));
     assert!(
@@ -230,7 +231,7 @@ fn a_run_is_not_continued_with_another_model() {
         )
     };
     run_with(&[]).unwrap();
-    // A narrower training domain: its barrier holds the hinges back.
+    // A narrower training domain: its penalty energy keeps the hinges from opening.
     let error = run_with(&[("\"theta\": [0.0, 1.25]", "\"theta\": [0.0, 0.01]")])
         .err()
         .unwrap()

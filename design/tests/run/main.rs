@@ -1,12 +1,13 @@
-//! Whole runs of small scenes: the outer loop, the learned hinge law, what a run leaves behind.
+//! Whole runs of small scenes: the outer loop, the learned hinge law, the files of a run.
 
 mod learned;
 mod outer_loop;
 mod results;
 mod sections;
 
-use design::inverse_design::{Designed, InverseDesignError, StepRecord, inverse_design};
+use design::optimise::outer_loop::StepRecord;
 use design::scene::Scene;
+use design::scene::design_run::{Designed, InverseDesignError, inverse_design};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -63,7 +64,7 @@ seed = 3
 const FILM: &str = "name = \"film\"\nthickness = 0.5\nyoung = 3000.0\npoisson = 0.4\n\
     density_kg_m3 = 1390.0\nfracture_strain = 1.784\nplastic = [[44.0, 0.0]]\n";
 
-/// A scene text with replacements, each of which must apply.
+/// The scene text with replacements, each of which must apply.
 fn with(changes: &[(&str, &str)]) -> String {
     changes.iter().fold(SCENE.to_owned(), |text, (from, to)| {
         assert!(text.contains(from), "{from}");

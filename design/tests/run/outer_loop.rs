@@ -1,8 +1,9 @@
-//! The outer loop on a linear 3 x 3 sheet: it descends, it resumes to the same trajectory, it
-//! survives designs without value.
+//! The outer loop on a linear 3 x 3 sheet: the loss decreases, a resumed run follows the same trajectory, and
+//! designs without objective value do not end the run.
 
 use super::{SCENE, read, run, with};
-use design::inverse_design::{Ended, StepRecord, inverse_design};
+use design::optimise::outer_loop::{Ended, StepRecord};
+use design::scene::design_run::inverse_design;
 use std::sync::atomic::AtomicBool;
 
 #[test]
@@ -19,12 +20,12 @@ fn the_loss_falls_and_the_best_design_is_returned() {
         designed.best.loss,
         first.scores.loss
     );
-    let least = designed
+    let minimum = designed
         .history
         .iter()
         .map(|record| record.scores.loss)
         .fold(f64::MAX, f64::min);
-    assert_eq!(least, designed.best.loss);
+    assert_eq!(minimum, designed.best.loss);
 }
 
 const LBFGS: (&str, &str) = ("steps = 25", "steps = 25\nmethod = \"lbfgs\"");
@@ -40,7 +41,7 @@ fn every_step_of_lbfgs_lowers_the_loss() {
 }
 
 #[test]
-fn lbfgs_settles_where_nothing_is_lower() {
+fn lbfgs_ends_at_a_minimum() {
     let folder = tempfile::tempdir().unwrap();
     let many = ("steps = 25", "steps = 3000\nmethod = \"lbfgs\"");
     let designed = run(&read(folder.path(), &with(&[many])), None).unwrap();
@@ -69,14 +70,14 @@ fn resumes(text: &str) {
     let resumed = run(&scene, None).unwrap();
     assert_eq!(resumed.history, uninterrupted.history);
     assert_eq!(resumed.design, uninterrupted.design);
-    // A finished run is not run again.
+    // A finished run makes no further steps.
     let mut steps = 0;
     inverse_design(&scene, &AtomicBool::new(false), &mut |_| steps += 1).unwrap();
     assert_eq!(steps, 0);
 }
 
 #[test]
-fn more_steps_may_be_asked_for_but_not_another_scene() {
+fn a_run_continues_with_more_steps_but_not_with_another_scene() {
     let folder = tempfile::tempdir().unwrap();
     let run_with = |changes: &[_]| run(&read(folder.path(), &with(changes)), None);
     run_with(&[("steps = 25", "steps = 2")]).unwrap();
@@ -99,9 +100,9 @@ fn more_steps_may_be_asked_for_but_not_another_scene() {
 }
 
 #[test]
-fn a_step_into_designs_without_value_is_halved_and_says_so() {
+fn a_step_to_a_design_without_value_is_halved_and_reported() {
     let folder = tempfile::tempdir().unwrap();
-    // A rate that sends the charts to their ends: cuts collide there.
+    // A learning rate that moves the charts to their bounds, where cuts collide.
     let wild = with(&[("learning_rate = 0.03", "learning_rate = 9.0")]);
     let designed = run(&read(folder.path(), &wild), None).unwrap();
     let set_back = |record: &&StepRecord| record.halvings > 0;

@@ -1,8 +1,8 @@
-//! What a run leaves in its folder, and what its report warns of.
+//! The files of a run, and the warnings of its report.
 
 use super::{SCENE, read, run, with};
-use design::report::{Concern, Report};
-use design::results::write_results;
+use design::output::report::{Concern, Report};
+use design::output::run_results::write_results;
 
 fn report(changes: &[(&str, &str)]) -> (tempfile::TempDir, Report) {
     let folder = tempfile::tempdir().unwrap();
@@ -11,7 +11,7 @@ fn report(changes: &[(&str, &str)]) -> (tempfile::TempDir, Report) {
     std::fs::write(folder.path().join("run/cut.dxf"), "stale").unwrap();
     let scene = read(folder.path(), &with(changes));
     let designed = run(&scene, None).unwrap();
-    let report = write_results(&scene, &designed).unwrap();
+    let report = write_results(&scene, &designed, false).unwrap();
     (folder, report)
 }
 
@@ -24,7 +24,7 @@ fn hinges(report: &Report, concern: Concern) -> Option<usize> {
 }
 
 #[test]
-fn a_sound_design_leaves_everything_and_no_warning() {
+fn a_sound_design_writes_all_files_and_no_warning() {
     let (folder, report) = report(&[]);
     assert_eq!(report.warnings, []);
     assert_eq!((report.steps, report.hinges.len()), (25, 12));
@@ -45,6 +45,7 @@ fn a_sound_design_leaves_everything_and_no_warning() {
     assert_eq!(
         names,
         [
+            "cut-list.csv",
             "cut.dxf",
             "cut.svg",
             "deployed-start.svg",
@@ -91,7 +92,7 @@ fn panels_too_small_for_their_windows_are_named() {
         ("steps = 25", "steps = 1"),
     ];
     let (_, report) = report(&small);
-    // Panels of about 130 mm: windows of 100 mm stay inside but meet those of the next hinge.
+    // Panels of about 130 mm: windows of 100 mm lie inside them but overlap those of the next hinge.
     assert!(
         hinges(&report, Concern::WindowsOverlap).is_some(),
         "{report}"
@@ -117,12 +118,12 @@ fn a_thick_stiff_sheet_whose_panels_tilt_is_named() {
     let designed = run(&scene, None).unwrap();
     assert_eq!(
         hinges(
-            &write_results(&scene, &designed).unwrap(),
+            &write_results(&scene, &designed, false).unwrap(),
             Concern::PanelsTilt
         ),
         None
     );
-    let report = write_results(&steel, &designed).unwrap();
+    let report = write_results(&steel, &designed, false).unwrap();
     assert_eq!(hinges(&report, Concern::PanelsTilt), Some(12));
 }
 
@@ -138,6 +139,32 @@ fn ligaments_wider_than_their_slits_cannot_be_cut_and_the_report_says_so() {
         ("steps = 25", "steps = 1"),
     ]);
     assert_eq!(hinges(&report, Concern::CannotBeCut), Some(0));
-    assert!(!folder.path().join("run/cut.dxf").exists());
+    assert!(!report.cut_file && !folder.path().join("run/cut.dxf").exists());
+    let text = std::fs::read_to_string(folder.path().join("run/report.txt")).unwrap();
+    assert!(
+        text.starts_with("Test sheet\nNO CUT FILE\n- error: "),
+        "{text}"
+    );
     assert!(folder.path().join("run/deployed.svg").exists());
+}
+
+/// Ligaments that translate by more than their width are an error: no cut file is written unless it is forced, and
+/// that of an earlier design is removed.
+#[test]
+fn a_load_far_too_large_leaves_no_cut_file_unless_it_is_forced() {
+    let folder = tempfile::tempdir().unwrap();
+    let overloaded = [
+        ("force = [2.0, 0.0]", "force = [3e4, 0.0]"),
+        ("steps = 25", "steps = 1"),
+    ];
+    let scene = read(folder.path(), &with(&overloaded));
+    let designed = run(&scene, None).unwrap();
+    let report = write_results(&scene, &designed, true).unwrap();
+    assert!(hinges(&report, Concern::Overstrained).is_some(), "{report}");
+    assert!(report.cut_file && folder.path().join("run/cut.dxf").exists());
+    let report = write_results(&scene, &designed, false).unwrap();
+    assert!(!report.cut_file && report.errors().count() > 0);
+    for name in ["cut.dxf", "cut.svg", "cut-list.csv"] {
+        assert!(!folder.path().join("run").join(name).exists(), "{name}");
+    }
 }

@@ -1,9 +1,9 @@
-//! The sections of a scene that the shipped scenes leave out: each does what its plain equivalent does.
+//! Sections of a scene that no shipped scene uses: each is equivalent to simpler input.
 
 use super::{read, with};
-use design::equilibrium::LoadStep;
-use design::gradient::Model;
+use design::equilibrium::load_step::LoadStep;
 use design::hinge_law::{CondensedLaw, HingeLaw, Order};
+use design::objective::design_problem::Model;
 use design::scene::Scene;
 use hinge::HingeDeformation;
 use std::path::Path;
@@ -16,7 +16,7 @@ fn path(scene: &Scene) -> Vec<LoadStep> {
     problem.deploy(&scene.start()).unwrap().path
 }
 
-/// The same equilibria with either text in place of the pull.
+/// Asserts that both texts, inserted instead of the pull, give the same equilibria.
 fn assert_alike(one: &str, other: &str) {
     let folder = tempfile::tempdir().unwrap();
     let [one, other] = [one, other].map(|text| path(&read(folder.path(), &with(&[(PULL, text)]))));
@@ -30,7 +30,7 @@ fn assert_alike(one: &str, other: &str) {
 }
 
 #[test]
-fn edge_loads_are_shared_by_the_panels_of_the_edge() {
+fn edge_loads_are_divided_among_the_panels_of_the_edge() {
     let panels = (0..3).map(|row| format!("[[loads]]\npanel = [2, {row}]\nforce = [1.2, -0.4]\n"));
     assert_alike(
         "[[edge_loads]]\nedge = \"right\"\ntraction = [0.003, -0.001]",
@@ -39,7 +39,7 @@ fn edge_loads_are_shared_by_the_panels_of_the_edge() {
 }
 
 #[test]
-fn opening_couples_turn_the_panels_of_a_hinge_apart() {
+fn opening_couples_open_a_hinge() {
     // [1, 1] is an even panel, A of the hinge; [2, 1] is B.
     assert_alike(
         "[[opening_couples]]\npanels = [[2, 1], [1, 1]]\ncouple = 150.0",
@@ -48,7 +48,7 @@ fn opening_couples_turn_the_panels_of_a_hinge_apart() {
     let folder = tempfile::tempdir().unwrap();
     let everywhere = with(&[(PULL, "[[opening_couples]]\ncouple = 60.0")]);
     let opened = path(&read(folder.path(), &everywhere));
-    // Couples in balance open every hinge by M / k_theta.
+    // Self-equilibrated couples open every hinge by M / k_theta.
     for deformation in &opened[3].deformations {
         assert!(
             (deformation.theta - 60.0 / 300.0).abs() < 1e-8,
@@ -82,14 +82,14 @@ fn a_start_is_given_by_values_or_by_logits() {
         "[start]\nz = [{}]\nell = {ell:?}\n[process]",
         logits.join(", ")
     ));
-    let pattern = |design: &design::design_vector::DesignVector| {
+    let pattern = |design: &design::pattern::design_vector::DesignVector| {
         let pattern = &design.pattern;
         [pattern.z.as_slice(), &pattern.ell.concat()].concat()
     };
     for (one, other) in std::iter::zip(pattern(&values), pattern(&from_logits)) {
         assert!((one - other).abs() < 1e-12);
     }
-    // Widths grow with the hinges' numbers; those left out are alike.
+    // Widths increase with the hinge index; omitted values are uniform.
     assert!(values.omega.windows(2).all(|pair| pair[0] < pair[1]));
     assert!(from_logits.omega.windows(2).all(|pair| pair[0] == pair[1]));
     let refused = with(&[("[process]", "[start]\nr = [0.3, 0.5, 1.6, 0.9]\n[process]")]);
@@ -145,7 +145,7 @@ fn constants_are_condensed_from_weights() {
 }
 
 #[test]
-fn equilibria_are_sought_by_either_method() {
+fn both_methods_find_the_same_equilibria() {
     let folder = tempfile::tempdir().unwrap();
     let by = |solver: &str| {
         let section = format!("[solver]\n{solver}\n[objective]");

@@ -1,15 +1,15 @@
-//! Reading the reference cases, which an independent implementation computed in float64.
+//! Reads the reference cases, which an independent implementation computed in float64.
 
-use design::actuation::{Dof, Load, Support};
-use design::charts::PatternCoordinates;
-use design::grid::Grid;
-use design::pattern::{CutPattern, Outline};
-use design::sheet::{Centroid, HingePoint, Sheet, SheetOptions};
+use design::equilibrium::supports::{Dof, Load, Support};
+use design::pattern::coordinates::PatternCoordinates;
+use design::pattern::cut_pattern::{CutPattern, Outline};
+use design::pattern::grid::Grid;
+use design::sheet::cut_sheet::{Centroid, HingePoint, Sheet, SheetOptions};
 use hinge::HingeConstants;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-/// What a window needs besides w_lig and alpha; no case reads it.
+/// Hinge constants that a sheet needs besides w_lig and alpha; no case depends on them.
 pub const PROCESS: HingeConstants = HingeConstants {
     fillet_ratio: 0.16,
     kerf: 0.2,
@@ -86,7 +86,7 @@ pub fn loads(case: &Value) -> Vec<Load> {
     entries.iter().map(load).collect()
 }
 
-/// Greatest difference between the numbers of two arrays of the same shape.
+/// Maximum difference between the numbers of two arrays of the same shape.
 pub fn difference<const N: usize>(found: &[[f64; N]], expected: &[[f64; N]]) -> f64 {
     assert_eq!(found.len(), expected.len());
     std::iter::zip(found.as_flattened(), expected.as_flattened())

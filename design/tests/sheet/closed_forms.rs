@@ -1,14 +1,17 @@
-//! Equilibria and deployments known in closed form.
+//! Equilibria and deployments with a closed-form solution.
 
 use crate::cases::{self, case};
-use design::actuation::{Dof, Load, Support};
-use design::equilibrium::{EquilibriumSolver, HingedSheet, LoadStep, SolverSettings, Status};
+use design::equilibrium::hinged_sheet::HingedSheet;
+use design::equilibrium::load_step::{LoadStep, Status};
+use design::equilibrium::settings::SolverSettings;
+use design::equilibrium::solver::EquilibriumSolver;
+use design::equilibrium::supports::{Dof, Load, Support};
 use design::hinge_law::{HingeLaw, LinearLaw};
-use design::ideal_deployment::ideal_deployment;
-use design::sheet::Sheet;
+use design::sheet::cut_sheet::Sheet;
+use design::sheet::ideal_deployment::ideal_deployment;
 use std::f64::consts::FRAC_PI_4;
 
-/// Moments that put every hinge of a sheet with the same M_theta in balance: each panel carries one
+/// Moments in equilibrium with the same M_theta at every hinge: the moment on each panel is one
 /// M_theta per hinge, with the sign of its ideal rotation. The clamped panel needs none.
 pub fn opening_moments(sheet: &Sheet, clamped: usize, m_theta: f64) -> Vec<Load> {
     let mut moments = vec![0.0; sheet.panels.len()];
@@ -50,11 +53,12 @@ pub fn path(
         sheet,
         law: &*law,
         contact: None,
+        damage_gradient: true,
     })
 }
 
 /// With M_theta = k_theta theta and a = s = 0 at every hinge the ideal deployment is an equilibrium
-/// of any pattern, whatever k_a and k_s.
+/// of any pattern, for any k_a and k_s.
 #[test]
 fn moments_in_balance_open_any_pattern_ideally() {
     let (k_theta, theta, steps) = (0.8, 1.2, 6);
@@ -70,7 +74,7 @@ fn moments_in_balance_open_any_pattern_ideally() {
                 assert!(deformation.a.abs().max(deformation.s.abs()) < 1e-9);
                 assert!((deformation.theta - step.load_factor * theta).abs() < 1e-9);
             }
-            // An opening off by 1e-9 stores M_theta times that more, at every hinge.
+            // An error of the opening by 1e-9 changes the energy of every hinge by M_theta times that.
             let hinges = sheet.hinges.len() as f64;
             let stored = 0.5 * k_theta * (step.load_factor * theta).powi(2);
             let total: f64 = step.energies.iter().sum();
@@ -95,7 +99,7 @@ fn the_pitch_of_a_uniform_sheet_follows_its_panel_diagonal() {
 }
 
 #[test]
-fn small_loads_act_in_proportion() {
+fn the_response_to_small_loads_is_linear() {
     let sheet = cases::sheet(&case("p1_3x3_random"));
     let law = LinearLaw::uniform([90.0, 40.0, 0.8], sheet.hinges.len()).unwrap();
     let response = |force: f64| {

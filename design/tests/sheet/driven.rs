@@ -1,12 +1,15 @@
-//! Driven sheets: the same equilibria as under the loads, and those that no load holds.
+//! Displacement control: the same equilibria as under load control, and those beyond a limit point.
 
 use crate::cases::{self, case, difference};
 use crate::closed_forms::{clamp, opening_moments, path};
 use crate::extremes::{Rotational, snapping};
-use design::actuation::{Dof, Load, Support};
-use design::equilibrium::{EquilibriumSolver, HingedSheet, LoadStep, SolverSettings, Status};
+use design::equilibrium::hinged_sheet::HingedSheet;
+use design::equilibrium::load_step::{LoadStep, Status};
+use design::equilibrium::settings::SolverSettings;
+use design::equilibrium::solver::EquilibriumSolver;
+use design::equilibrium::supports::{Dof, Load, Support};
 use design::hinge_law::{HingeLaw, LinearLaw};
-use design::sheet::Sheet;
+use design::sheet::cut_sheet::Sheet;
 
 fn driven(
     sheet: &Sheet,
@@ -22,11 +25,12 @@ fn driven(
         sheet,
         law: &*law,
         contact: None,
+        damage_gradient: true,
     })
 }
 
 #[test]
-fn the_stroke_of_a_load_brings_the_load_back() {
+fn the_stroke_of_a_load_reproduces_the_load() {
     let sheet = cases::sheet(&case("p1_3x3_random"));
     let law = LinearLaw::uniform([90.0, 40.0, 0.8], 12).unwrap();
     let load = |panel, dof, value| Load { panel, dof, value };
@@ -70,10 +74,10 @@ fn the_stroke_of_a_load_brings_the_load_back() {
     }
 }
 
-/// Hinges of W = theta^2 (theta - 1)^2 soften beyond 0.21 rad, one after the other. Driven, the sheet is
-/// followed where its load falls and no load would hold it, and stores what the loads do.
+/// Hinges of W = theta^2 (theta - 1)^2 soften beyond 0.21 rad, one after the other. Under displacement control the
+/// path is followed where the load decreases, and the stored energy equals the work of the loads.
 #[test]
-fn a_snapping_sheet_is_followed_through_its_fall() {
+fn a_snapping_sheet_is_followed_beyond_its_maximum_load() {
     let sheet = cases::sheet(&case("p1_3x3_random"));
     let loads = opening_moments(&sheet, 4, 1.0);
     let couples: f64 = loads.iter().map(|load| load.value.abs()).sum();
@@ -135,10 +139,10 @@ fn work(loads: &[Load], configuration: &[[f64; 3]]) -> f64 {
         .sum()
 }
 
-/// Springs end in the same state whatever comes first: a path is followed by another under its loads, from
-/// supports that have moved, and from a driven sheet that has not come to its full loads.
+/// With springs the final state does not depend on the order of loading: a path is continued by another under
+/// additional loads, after supports have moved, and after displacement control short of the full loads.
 #[test]
-fn loads_may_be_held_and_others_follow() {
+fn loads_held_constant_are_followed_by_others() {
     let sheet = cases::sheet(&case("p1_3x3_random"));
     let law = LinearLaw::uniform([90.0, 40.0, 0.8], 12).unwrap();
     let prepared = law.prepare(&sheet.designs());
@@ -146,6 +150,7 @@ fn loads_may_be_held_and_others_follow() {
         sheet: &sheet,
         law: &*prepared,
         contact: None,
+        damage_gradient: true,
     };
     let load = |panel, dof, value| Load { panel, dof, value };
     let first = [load(5, Dof::UX, 0.8), load(7, Dof::Phi, 0.2)];
@@ -165,7 +170,7 @@ fn loads_may_be_held_and_others_follow() {
         }
         let held = &solver.path(hinged)[3];
         assert!(stroke.is_none() || held.load_factor < 0.9);
-        // What is left of the first loads comes with the further ones.
+        // The remainder of the first loads is applied with the further ones.
         let mut rest = further.to_vec();
         rest.extend(first.map(|load| Load {
             value: (1.0 - held.load_factor) * load.value,

@@ -1,9 +1,12 @@
 //! An equilibrium path with its energies against an independent implementation.
 
 use crate::cases::{self, case, difference, get};
-use design::equilibrium::{EquilibriumSolver, HingedSheet, SolverSettings, Status};
+use design::equilibrium::hinged_sheet::HingedSheet;
+use design::equilibrium::load_step::Status;
+use design::equilibrium::settings::SolverSettings;
+use design::equilibrium::solver::EquilibriumSolver;
 use design::hinge_law::{HingeLaw, LinearLaw};
-use design::kinematics::deployed_corners;
+use design::sheet::kinematics::deployed_corners;
 
 #[test]
 fn a_clamped_and_pulled_sheet() {
@@ -27,6 +30,7 @@ fn a_clamped_and_pulled_sheet() {
         sheet: &sheet,
         law: &*law,
         contact: None,
+        damage_gradient: true,
     });
 
     let load_factors: Vec<f64> = get(&case, "load_factors");

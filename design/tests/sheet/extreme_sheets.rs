@@ -5,18 +5,23 @@ use crate::closed_forms::{clamp, opening_moments, path};
 use crate::extremes::{Rotational, assert_finite, snapping};
 use crate::random::Random;
 use crate::taylor::{GRID, SIDE, problem, start, tiny};
-use design::actuation::{Dof, Load};
-use design::charts::PatternCoordinates;
-use design::check::TaylorRemainders;
-use design::equilibrium::{EquilibriumSolver, HingedSheet, LoadStep, SolverSettings, Status};
-use design::gradient::{DesignError, Mechanics, Model};
-use design::grid::Grid;
+use design::analysis::taylor::TaylorRemainders;
+use design::equilibrium::hinged_sheet::HingedSheet;
+use design::equilibrium::load_step::{LoadStep, Status};
+use design::equilibrium::settings::SolverSettings;
+use design::equilibrium::solver::EquilibriumSolver;
+use design::equilibrium::supports::{Dof, Load};
 use design::hinge_law::{HingeLaw, LinearLaw};
-use design::listing::EquilibriumListing;
-use design::opening_limits::Span;
-use design::pattern::{CutPattern, Outline, PatternError};
-use design::sheet::{HingePoint, Sheet, SheetError};
+use design::objective::design_problem::{DesignError, Mechanics, Model};
+use design::output::listing::EquilibriumListing;
+use design::pattern::coordinates::PatternCoordinates;
+use design::pattern::cut_pattern::{CutPattern, Outline};
+use design::pattern::grid::Grid;
+use design::pattern::pattern_error::PatternError;
+use design::sheet::cut_sheet::{HingePoint, Sheet, SheetError};
+use design::sheet::opening_limits::Span;
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
+use std::sync::Arc;
 
 fn pull(panel: usize, value: f64) -> Load {
     Load {
@@ -43,9 +48,9 @@ fn ten_thousand_panels_find_their_equilibrium() {
     assert!(path.iter().all(|step| step.status == Status::Converged));
 }
 
-/// Cuts that all but collide make a sheet or say why not; the sheet finds its equilibria or says so.
+/// Cuts that almost collide define a sheet or give an error; the sheet has equilibria or reports that it has not.
 #[test]
-fn r_and_tau_close_to_their_limits_make_a_sheet_or_are_named() {
+fn r_and_tau_close_to_their_limits_make_a_sheet_or_an_error() {
     let mut random = Random::new(31);
     let (mut cut, mut refused) = (0, 0);
     for size in [6.0, 12.0, 25.0, 45.0] {
@@ -83,10 +88,10 @@ fn r_and_tau_close_to_their_limits_make_a_sheet_or_are_named() {
     assert!(cut > 3 && refused > 3, "{cut} {refused}");
 }
 
-/// The opening moments do work on the mechanism alone, through the dead centre at 90 degrees, where a
-/// uniform sheet is longest, and on to where it is short again; however soft and stiff the hinges are.
+/// The opening moments do work on the mechanism alone: through its dead centre at 90 degrees, where a
+/// uniform sheet is longest, and beyond, where it becomes shorter again; for any ratio of stiffnesses.
 #[test]
-fn loads_along_the_mechanism_lead_through_its_dead_centre() {
+fn loads_along_the_mechanism_pass_its_dead_centre() {
     let sheet = cases::sheet(&case("p0_3x3_uniform"));
     let span = Span::of_sheet(&sheet)[0];
     for constants in [[90.0, 40.0, 0.8], [1e6, 1e6, 1e-3]] {
@@ -106,9 +111,9 @@ fn loads_along_the_mechanism_lead_through_its_dead_centre() {
     }
 }
 
-/// Beyond lambda_max only the springs are left to give: the sheet stiffens and stays whole.
+/// Beyond lambda_max only the springs deform: the sheet stiffens and remains valid.
 #[test]
-fn a_sheet_pulled_past_its_greatest_stretch_stiffens() {
+fn a_sheet_pulled_past_its_maximum_stretch_stiffens() {
     let sheet = cases::sheet(&case("p0_3x3_uniform"));
     let law = LinearLaw::uniform([90.0, 40.0, 0.8], 12).unwrap();
     let settings = SolverSettings::default();
@@ -119,28 +124,29 @@ fn a_sheet_pulled_past_its_greatest_stretch_stiffens() {
         sheet: &sheet,
         law: &*law.prepare(&sheet.designs()),
         contact: None,
+        damage_gradient: true,
     });
     assert_finite(&driven);
     let stiffness = |i: usize| driven[i].load_factor - driven[i - 1].load_factor;
     assert!(driven.iter().all(|step| step.status == Status::Converged));
     assert!(stiffness(11) > 4.0 * stiffness(1));
-    // The same under load.
+    // The same under load control.
     let load = driven[11].load_factor;
     let loaded = path(&sheet, &law, &clamp(3), &[pull(5, load)], 12);
     assert_finite(&loaded);
     assert!((loaded[11].configuration[5][0] / stroke - 1.0).abs() < 1e-7);
 }
 
-/// A learned energy loses its digits at small deformations, and its domain at large ones: neither is
-/// taken for an equilibrium that is not there.
+/// A learned energy loses its digits at small deformations and leaves its domain at large ones: neither
+/// leads to a false equilibrium.
 #[test]
-fn a_learned_sheet_answers_loads_of_any_size() {
+fn a_learned_sheet_has_a_status_under_loads_of_any_size() {
     let pattern = CutPattern::new(
         Grid { m: 3, n: 3 },
         Outline::rectangle(SIDE, SIDE),
         &start().pattern,
     );
-    let options = design::sheet::SheetOptions {
+    let options = design::sheet::cut_sheet::SheetOptions {
         hinge_point: HingePoint::CutTip,
         ..AT_CORNER
     };
@@ -170,7 +176,7 @@ fn a_learned_sheet_answers_loads_of_any_size() {
     }
 }
 
-/// Weights so great that the flat sheet has no energy: the path ends before it begins.
+/// Weights so large that the energy of the flat sheet is not finite: the path has no beginning.
 #[test]
 fn a_sheet_without_a_finite_energy_has_no_path() {
     let law = Rotational(|theta| [f64::INFINITY, theta, 1.0]);
@@ -187,7 +193,7 @@ fn a_sheet_on_pins_has_no_equilibria_to_list() {
     assert!(matches!(error, DesignError::NoMechanics));
 }
 
-/// Past the limit point of its load a driven sheet has an indefinite tangent; its gradient is exact.
+/// Beyond the limit point of the load the tangent under displacement control is indefinite; the gradient is exact.
 #[test]
 fn the_gradient_is_exact_where_the_tangent_is_indefinite() {
     let design = start();
@@ -198,7 +204,7 @@ fn the_gradient_is_exact_where_the_tangent_is_indefinite() {
         let settings = SolverSettings::default();
         let solver = EquilibriumSolver::new(GRID, &supports, &loads, steps, settings).unwrap();
         problem.model = Model::Equilibrium(Box::new(Mechanics {
-            law: Box::new(Rotational(|theta| {
+            law: Arc::new(Rotational(|theta| {
                 snapping(theta).map(|part| 1500.0 * part)
             })),
             contact: None,

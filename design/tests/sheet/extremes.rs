@@ -1,19 +1,21 @@
-//! Where designs, loads and hinge laws go wrong: every answer is an error or a status, never NaN.
+//! Invalid designs, loads and hinge laws: every result is an error or a status, never NaN.
 
 use crate::cases::{self, AT_CORNER, case};
 use crate::closed_forms::{clamp, opening_moments, path};
 use crate::random::Random;
-use design::actuation::{Dof, Load, Support};
-use design::charts::PatternCoordinates;
-use design::equilibrium::{
-    EquilibriumError, EquilibriumSolver, HingedSheet, LoadStep, SolverSettings, Status,
-};
-use design::grid::{Endpoint, Grid};
+use design::equilibrium::hinged_sheet::HingedSheet;
+use design::equilibrium::load_step::{LoadStep, Status};
+use design::equilibrium::settings::SolverSettings;
+use design::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
+use design::equilibrium::supports::{Dof, Load, Support};
 use design::hinge_law::{Contact, HingeEnergy, HingeLaw, LinearLaw, Order, PreparedLaw};
-use design::ideal_deployment::ideal_deployment;
-use design::kinematics::deployed;
-use design::pattern::{CutPattern, Outline, PatternError};
-use design::sheet::Sheet;
+use design::pattern::coordinates::PatternCoordinates;
+use design::pattern::cut_pattern::{CutPattern, Outline};
+use design::pattern::grid::{Endpoint, Grid};
+use design::pattern::pattern_error::PatternError;
+use design::sheet::cut_sheet::Sheet;
+use design::sheet::ideal_deployment::ideal_deployment;
+use design::sheet::kinematics::deployed;
 use hinge::{HingeDeformation, HingeDesign};
 
 /// k_a a^2/2 + k_s s^2/2 + any function of theta with two derivatives.
@@ -83,7 +85,7 @@ fn no_load_leaves_the_sheet_flat() {
 }
 
 #[test]
-fn loads_of_any_size_and_sense_end_in_a_status() {
+fn loads_of_any_size_and_sign_end_in_a_status() {
     let sheet = cases::sheet(&case("p1_3x3_random"));
     for stiffness in [[90.0, 40.0, 0.8], [1e4, 1e4, 1.0], [1.0, 1.0, 1e-6]] {
         let law = LinearLaw::uniform(stiffness, 12).unwrap();
@@ -104,6 +106,7 @@ fn a_load_that_no_wall_can_carry_diverges_and_keeps_the_last_equilibrium() {
         sheet: &sheet,
         law: &*law.prepare(&sheet.designs()),
         contact: Some(&Contact::new(1.0, -0.2, -0.01).unwrap()),
+        damage_gradient: true,
     });
     assert_finite(&path);
     let last = path.last().unwrap();
@@ -128,6 +131,7 @@ fn contact_carries_a_load_that_closes_the_sheet() {
         sheet: &sheet,
         law: &*law.prepare(&sheet.designs()),
         contact: Some(&contact),
+        damage_gradient: true,
     });
     for step in &path {
         assert_eq!(step.status, Status::Converged);
@@ -141,7 +145,7 @@ fn contact_carries_a_load_that_closes_the_sheet() {
     }
 }
 
-/// A learned energy is a small difference of greater numbers: its forces are exact, its value is not.
+/// A learned energy is a small difference of larger numbers: its forces are accurate, its value is not.
 #[test]
 fn an_energy_with_few_digits_converges_by_its_forces() {
     let law = Rotational(|theta| {
@@ -155,7 +159,7 @@ fn an_energy_with_few_digits_converges_by_its_forces() {
     }
 }
 
-/// W = theta^4/4 - theta_0^2 theta^2/2 makes the flat sheet an equilibrium that is no minimum.
+/// With W = theta^4/4 - theta_0^2 theta^2/2 the flat sheet is an equilibrium but not a minimum.
 #[test]
 fn an_unstable_flat_sheet_is_left_for_a_minimum() {
     let law = Rotational(|theta| {
@@ -188,8 +192,8 @@ pub fn snapping(theta: f64) -> [f64; 3] {
 fn a_snapping_sheet_reports_its_limit_point() {
     let law = Rotational(snapping);
     let sheet = cases::sheet(&case("p1_3x3_random"));
-    let greatest = 3.0_f64.sqrt() / 9.0;
-    let loads = opening_moments(&sheet, 4, 1.5 * greatest);
+    let maximum = 3.0_f64.sqrt() / 9.0;
+    let loads = opening_moments(&sheet, 4, 1.5 * maximum);
     let path = path(&sheet, &law, &clamp(4), &loads, 6);
     assert_finite(&path);
     for (i, step) in path.iter().enumerate() {
@@ -208,7 +212,7 @@ fn a_snapping_sheet_reports_its_limit_point() {
 }
 
 #[test]
-fn a_sheet_without_any_stiffness_is_called_singular_or_diverged() {
+fn a_sheet_without_any_stiffness_is_reported_as_singular_or_diverged() {
     let law = Rotational(|_| [0.0; 3]);
     let sheet = cases::sheet(&case("p1_3x3_random"));
     let unloaded = path(&sheet, &law, &clamp(3), &[], 1);
@@ -220,7 +224,7 @@ fn a_sheet_without_any_stiffness_is_called_singular_or_diverged() {
 }
 
 #[test]
-fn a_sheet_held_everywhere_stays_where_it_is_held() {
+fn a_sheet_supported_everywhere_stays_at_its_supports() {
     let sheet = cases::sheet(&case("p1_3x3_random"));
     let law = LinearLaw::uniform([90.0, 40.0, 0.8], 12).unwrap();
     let everywhere: Vec<Support> = (0..9).flat_map(clamp).collect();
@@ -273,7 +277,7 @@ fn impossible_supports_and_loads_are_named() {
         EquilibriumSolver::new(grid, &clamp(3), &[], 1, hasty).unwrap_err(),
         EquilibriumError::Settings(hasty)
     );
-    // A pin and a roller hold the sheet.
+    // A pin and a roller are sufficient supports.
     let statically = [(0, Dof::UX), (0, Dof::UY), (2, Dof::UY)];
     let statically = statically.map(|(panel, dof)| support(panel, dof, 0.0));
     assert!(EquilibriumSolver::new(grid, &statically, &[], 1, settings).is_ok());
@@ -328,7 +332,7 @@ fn impossible_patterns_are_named() {
             &[0.1; 3],
             AT_CORNER
         ),
-        Err(design::sheet::SheetError::WidthCount {
+        Err(design::sheet::cut_sheet::SheetError::WidthCount {
             found: 3,
             expected: 17
         })
@@ -369,9 +373,9 @@ fn random_patterns_of_every_small_size_tile_and_deploy() {
 
 fn assert_voids_open_as_parallelograms(sheet: &Sheet, theta: f64) {
     let q = ideal_deployment(sheet, theta);
-    // The deployed position of a hinge, the same from both of its panels.
+    // The deployed position of a hinge, equal on both of its panels.
     let place = |vertex: [usize; 2], endpoint: Endpoint| {
-        let at = |hinge: &&design::sheet::Hinge| {
+        let at = |hinge: &&design::sheet::cut_sheet::Hinge| {
             hinge.site.vertex == vertex && hinge.site.endpoint == endpoint
         };
         let hinge = sheet.hinges.iter().find(at)?;

@@ -1,14 +1,16 @@
 //! Objective and gradient against an independent implementation.
 
 use crate::cases::{self, AT_CORNER, case, difference, get};
-use design::chamfer::{Chamfer, Precision};
-use design::design_vector::{DesignVector, WidthChart};
-use design::equilibrium::{EquilibriumSolver, SolverSettings};
-use design::gradient::{DesignProblem, Mechanics, Model};
+use design::equilibrium::settings::SolverSettings;
+use design::equilibrium::solver::EquilibriumSolver;
+use design::geometry::chamfer::{Chamfer, Precision};
 use design::hinge_law::{DamageMeasure, LinearLaw};
-use design::objective::{Objective, OutlinePoints};
-use design::path_functionals::PerFunctional;
+use design::objective::design_problem::{DesignProblem, Mechanics, Model};
+use design::objective::loss::{Objective, OutlinePoints};
+use design::objective::path_functionals::PerFunctional;
+use design::pattern::design_vector::{DesignVector, WidthChart};
 use serde_json::Value;
+use std::sync::Arc;
 
 fn per_functional(value: &Value) -> PerFunctional {
     PerFunctional {
@@ -36,7 +38,7 @@ fn a_pulled_sheet_with_path_functionals() {
         widths: WidthChart { w_minus, w_plus },
         options: AT_CORNER,
         model: Model::Equilibrium(Box::new(Mechanics {
-            law: Box::new(law),
+            law: Arc::new(law),
             contact: None,
             solver: EquilibriumSolver::new(
                 grid,

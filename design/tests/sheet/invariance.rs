@@ -1,28 +1,37 @@
-//! What a sheet does not depend on: units, the way the scene is turned, left or right; and energy, which
-//! the loads put in and the hinges keep.
+//! Invariances of a sheet: units, orientation, mirror image; and conservation of energy: the hinges store
+//! the work of the loads.
 
 use crate::cases::{AT_CORNER, case, coordinates, difference, outline, pattern};
 use crate::closed_forms::{clamp, path};
 use crate::random::Random;
 use crate::taylor::tiny;
-use design::actuation::{Dof, Load, Support};
-use design::charts::PatternCoordinates;
-use design::equilibrium::{LoadStep, Status};
-use design::grid::{Endpoint, Grid};
+use design::equilibrium::load_step::{LoadStep, Status};
+use design::equilibrium::supports::{Dof, Load, Support};
 use design::hinge_law::{HingeLaw, LinearLaw};
-use design::pattern::{CutPattern, Outline};
-use design::sheet::{Hinge, HingePoint, Sheet, SheetOptions};
+use design::pattern::coordinates::PatternCoordinates;
+use design::pattern::cut_pattern::{CutPattern, Outline};
+use design::pattern::grid::{Endpoint, Grid};
+use design::sheet::cut_sheet::{Hinge, HingePoint, Sheet, SheetOptions};
+use hinge::HingeConstants;
 use std::f64::consts::PI;
 
 const CONSTANTS: [f64; 3] = [90.0, 40.0, 0.8];
 
 /// The random 3 x 3 sheet with another outline, hinges `w_lig` wide.
 fn on(outline: Outline, w_lig: f64, hinge_point: HingePoint) -> Sheet {
+    cut(outline, w_lig, hinge_point, AT_CORNER.process.kerf)
+}
+
+fn cut(outline: Outline, w_lig: f64, hinge_point: HingePoint, kerf: f64) -> Sheet {
     let case = case("p1_3x3_random");
     let grid = Grid { m: 3, n: 3 };
     let pattern = CutPattern::new(grid, outline, &coordinates(&case)).unwrap();
     let options = SheetOptions {
         hinge_point,
+        process: HingeConstants {
+            kerf,
+            ..AT_CORNER.process
+        },
         ..AT_CORNER
     };
     Sheet::new(&pattern, &[w_lig; 12], options).unwrap()
@@ -58,7 +67,7 @@ fn another_unit_of_length_or_force_gives_the_same_shape() {
         let outline = Outline {
             corners: original.corners.map(|corner| corner.map(|x| length * x)),
         };
-        let sheet = on(outline, 0.1 * length, HingePoint::CutTip);
+        let sheet = cut(outline, 0.1 * length, HingePoint::CutTip, 0.02 * length);
         let constants = [k_a / length, k_s / length, k_theta * length].map(|k| force * k);
         let law = LinearLaw::uniform(constants, 12).unwrap();
         let path = pulled(
@@ -85,7 +94,7 @@ fn another_unit_of_length_or_force_gives_the_same_shape() {
 }
 
 #[test]
-fn a_scene_that_is_turned_as_a_whole_deploys_alike() {
+fn a_scene_rotated_as_a_whole_deploys_alike() {
     let square = Outline::rectangle(300.0, 300.0);
     let laws: [(&dyn HingeLaw, HingePoint, f64); 2] = [
         (
@@ -118,8 +127,8 @@ fn a_scene_that_is_turned_as_a_whole_deploys_alike() {
     }
 }
 
-/// (x, y) -> (-x, y) swaps the sides of every cut: r becomes 1 - r, the edges left and right change
-/// places, a hinge keeps theta and a, turns s round and has alpha from the other side.
+/// (x, y) -> (-x, y) exchanges the sides of every cut: r becomes 1 - r, and the edges left and right are
+/// exchanged. A hinge keeps theta and a, changes the sign of s, and has alpha on the other side.
 #[test]
 fn a_mirrored_sheet_deploys_as_the_mirror_image() {
     let grid = Grid { m: 4, n: 3 };
@@ -144,7 +153,7 @@ fn a_mirrored_sheet_deploys_as_the_mirror_image() {
         Sheet::new(&pattern, &vec![0.1; grid.hinge_count()], AT_CORNER).unwrap()
     };
     let (one, other) = (sheet(&drawn), sheet(&mirrored));
-    // Of the hinges of `other`, those of `one` that they are images of.
+    // For each hinge of `other`, the hinge of `one` that it is the image of.
     let image = |hinge: &Hinge| {
         let [i, j] = hinge.site.vertex;
         let endpoint = match ((i + j) % 2 == 0, hinge.site.endpoint) {
@@ -191,8 +200,8 @@ fn a_mirrored_sheet_deploys_as_the_mirror_image() {
     }
 }
 
-/// By parts, the work of the loads along the path is zeta f . q at its end less the integral of
-/// f . q over zeta, here by Simpson's rule.
+/// Integrated by parts, the work of the loads along the path is zeta f . q at its end minus the integral of
+/// f . q over zeta, computed by Simpson's rule.
 #[test]
 fn hinges_store_the_work_of_the_loads() {
     let sheet = on(Outline::rectangle(300.0, 300.0), 16.0, HingePoint::CutTip);
@@ -223,9 +232,9 @@ fn hinges_store_the_work_of_the_loads() {
     }
 }
 
-/// A moving support that brings the sheet where a load has brought it holds it by that load.
+/// A support moved to the position that a load has reached has that load as its reaction.
 #[test]
-fn a_moved_panel_is_held_by_the_load_that_moved_it() {
+fn a_moved_support_has_the_load_as_its_reaction() {
     let sheet = Sheet::new(&pattern(&case("p1_3x3_random")), &[0.1; 12], AT_CORNER).unwrap();
     let law = LinearLaw::uniform(CONSTANTS, 12).unwrap();
     let loaded = pulled(&sheet, &law, [1.5, 0.0], 0.0, 6);

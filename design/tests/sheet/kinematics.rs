@@ -1,11 +1,13 @@
-//! (8) and its derivatives: differences, objectivity, and the relation between its two reference
+//! (8) and its derivatives: finite differences, objectivity, and the relation between its two reference
 //! points.
 
 use crate::cases::{AT_CORNER, case, pattern};
 use crate::random::Random;
-use design::check::central_slope;
-use design::kinematics::{Configuration, HingeGeometryGradient, HingeMotion, hinge_deformations};
-use design::sheet::{HingePoint, Sheet, SheetOptions};
+use design::analysis::taylor::central_slope;
+use design::sheet::cut_sheet::{HingePoint, Sheet, SheetOptions};
+use design::sheet::kinematics::{
+    Configuration, HingeGeometryGradient, HingeMotion, hinge_deformations,
+};
 
 fn sheet(hinge_point: HingePoint) -> Sheet {
     let pattern = pattern(&case("p1_3x3_random"));
@@ -173,7 +175,7 @@ fn tip_and_corner_measure_the_same_motion() {
         hinge_deformations(&at_tip, &q),
     );
     for (hinge, (corner, tip)) in std::iter::zip(&at_tip.hinges, pairs) {
-        let opening = 2.0 * hinge.w_lig * (0.5 * corner.theta).sin();
+        let opening = 2.0 * hinge.set_back * (0.5 * corner.theta).sin();
         assert!((tip.a - corner.a - opening).abs() < 1e-13);
         assert!((tip.s - corner.s - opening / hinge.alpha.tan()).abs() < 1e-13);
         assert_eq!(tip.theta, corner.theta);

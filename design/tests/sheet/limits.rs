@@ -1,14 +1,14 @@
-//! Limits of the ideal deployment and the validity of patterns, over sizes, outlines, r and tau.
+//! Limits of the ideal deployment and the validity of patterns, for several sizes, outlines, r and tau.
 
 use crate::cases::{self, AT_CORNER, case};
 use crate::random::Random;
-use design::charts::PatternCoordinates;
-use design::grid::Grid;
-use design::ideal_deployment::ideal_deployment;
-use design::opening_limits::{CONTACT, Span};
-use design::pattern::{CutPattern, Outline};
-use design::sheet::Sheet;
-use design::validity::{Validity, overlap};
+use design::pattern::coordinates::PatternCoordinates;
+use design::pattern::cut_pattern::{CutPattern, Outline};
+use design::pattern::grid::Grid;
+use design::sheet::cut_sheet::Sheet;
+use design::sheet::ideal_deployment::ideal_deployment;
+use design::sheet::opening_limits::{CONTACT, Span};
+use design::sheet::validity::{Validity, overlap};
 use hinge::TrainingDomain;
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 
@@ -34,13 +34,13 @@ fn patterns_are_valid_and_open_without_overlap_up_to_the_second_contact() {
             let valid = Validity::new(&pattern, &sheet, None);
             assert!(valid.area_error.abs() < 1e-13 && valid.overlap < 1e-12);
             assert!(valid.least_panel_area > 0.0 && valid.least_void_side > 0.0);
-            let [least, greatest] = valid.alpha_deg;
-            assert!(least > 0.0 && greatest < 180.0);
-            for share in [0.02, 0.3, 0.6, 0.98] {
-                let theta = CONTACT[0] + share * (CONTACT[1] - CONTACT[0]);
+            let [min, max] = valid.alpha_deg;
+            assert!(min > 0.0 && max < 180.0);
+            for fraction in [0.02, 0.3, 0.6, 0.98] {
+                let theta = CONTACT[0] + fraction * (CONTACT[1] - CONTACT[0]);
                 assert!(
                     overlap(&sheet, &ideal_deployment(&sheet, theta)) < 1e-12,
-                    "{m} x {n} {share}"
+                    "{m} x {n} {fraction}"
                 );
             }
             for beyond in [-0.05, PI + 0.05] {
@@ -51,7 +51,7 @@ fn patterns_are_valid_and_open_without_overlap_up_to_the_second_contact() {
 }
 
 #[test]
-fn the_greatest_stretch_is_that_of_six_and_no_opening_exceeds_it() {
+fn the_maximum_stretch_is_that_of_equation_six_and_no_opening_exceeds_it() {
     let square = cases::sheet(&case("p0_3x3_uniform"));
     for span in Span::of_sheet(&square) {
         assert!((span.lambda_max - SQRT_2).abs() < 1e-12);
@@ -73,9 +73,9 @@ fn the_greatest_stretch_is_that_of_six_and_no_opening_exceeds_it() {
     }
 }
 
-/// Hinges of a uniform sheet stand a pitch apart, their cuts at 90 degrees.
+/// Neighbouring hinges of a uniform sheet are one pitch apart, their cuts at 90 degrees.
 #[test]
-fn windows_and_cut_angles_are_held_against_the_hinges() {
+fn windows_and_cut_angles_are_compared_with_the_hinges() {
     let pattern = cases::pattern(&case("p0_3x3_uniform"));
     let state = [[-0.1, 0.1], [-0.1, 0.1], [0.0, 1.0]];
     let domain = |alpha, w_lig| TrainingDomain::of_box(state, w_lig, alpha);

@@ -1,5 +1,5 @@
 //! The chain from cut pattern to design gradient: reference cases, closed forms, Taylor tests,
-//! extremes.
+//! extreme input.
 
 mod cases;
 mod closed_forms;

@@ -1,9 +1,9 @@
 //! Patterns, panels, hinges and ideal deployments against an independent implementation.
 
 use crate::cases::{self, case, difference, get};
-use design::grid::Endpoint;
-use design::ideal_deployment::ideal_deployment;
-use design::kinematics::{deployed, hinge_deformations};
+use design::pattern::grid::Endpoint;
+use design::sheet::ideal_deployment::ideal_deployment;
+use design::sheet::kinematics::{deployed, hinge_deformations};
 use serde_json::Value;
 
 const PATTERNS: [&str; 3] = ["p0_3x3_uniform", "p1_3x3_random", "p2_4x7_random"];

@@ -1,12 +1,12 @@
-//! Vector-Jacobian products of pattern, sheet and ideal deployment against differences.
+//! Vector-Jacobian products of pattern, sheet and ideal deployment against finite differences.
 
 use crate::cases::{AT_CORNER, case, coordinates, grid, outline};
 use crate::random::Random;
-use design::check::central_slope;
-use design::design_vector::{DesignVector, WidthChart};
-use design::ideal_deployment::{ideal_deployment, ideal_deployment_pullback};
-use design::pattern::{CutPattern, Outline};
-use design::sheet::{Centroid, HingePoint, Sheet, SheetGradient, SheetOptions};
+use design::analysis::taylor::central_slope;
+use design::pattern::cut_pattern::{CutPattern, Outline};
+use design::pattern::design_vector::{DesignVector, WidthChart};
+use design::sheet::cut_sheet::{Centroid, HingePoint, Sheet, SheetGradient, SheetOptions};
+use design::sheet::ideal_deployment::{ideal_deployment, ideal_deployment_pullback};
 
 const WIDTHS: WidthChart = WidthChart {
     w_minus: 0.05,
@@ -39,7 +39,7 @@ fn cut(design: &DesignVector, outline: Outline, options: SheetOptions) -> (CutPa
     (pattern, sheet)
 }
 
-/// The gradient in the design from one in the sheet.
+/// The gradient in the design, from a gradient in the sheet.
 fn pulled_back(
     pattern: &CutPattern,
     sheet: &Sheet,
@@ -69,7 +69,7 @@ fn assert_gradient(value: impl Fn(&DesignVector) -> f64, at: &DesignVector, foun
 }
 
 #[test]
-fn everything_the_sheet_offers_is_pulled_back_to_the_design() {
+fn gradients_in_the_sheet_are_pulled_back_to_the_design() {
     let design = start();
     let given = outline(&case("p1_3x3_random"));
     for hinge_point in [HingePoint::Corner, HingePoint::CutTip] {

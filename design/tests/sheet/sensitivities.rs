@@ -1,12 +1,14 @@
-//! The gradient in what no design changes, loads, spring constants and outline, by differences.
+//! The gradient in the constants of the design problem (loads, spring constants, outline) by finite differences.
 
 use crate::cases::AT_CORNER;
 use crate::taylor::{GRID, problem, start};
-use design::actuation::{Dof, Load, Support};
-use design::check::central_slope;
-use design::equilibrium::{EquilibriumSolver, SolverSettings};
-use design::gradient::{DesignProblem, Mechanics, Model};
+use design::analysis::taylor::central_slope;
+use design::equilibrium::settings::SolverSettings;
+use design::equilibrium::solver::EquilibriumSolver;
+use design::equilibrium::supports::{Dof, Load, Support};
 use design::hinge_law::LinearLaw;
+use design::objective::design_problem::{DesignProblem, Mechanics, Model};
+use std::sync::Arc;
 
 /// Forces on panel 5 and a couple on panel 8, then (k_a, k_s, k_theta) of every hinge.
 fn loaded(x: &[f64], stroke: Option<f64>) -> DesignProblem {
@@ -25,7 +27,7 @@ fn loaded(x: &[f64], stroke: Option<f64>) -> DesignProblem {
     let solver = EquilibriumSolver::new(GRID, &supports, &loads, 3, settings).unwrap();
     let stiffness = x[3..].chunks(3).map(|k| [k[0], k[1], k[2]]).collect();
     let model = Model::Equilibrium(Box::new(Mechanics {
-        law: Box::new(LinearLaw::new(stiffness).unwrap()),
+        law: Arc::new(LinearLaw::new(stiffness).unwrap()),
         contact: None,
         solver: match stroke {
             Some(stroke) => solver.driven(stroke).unwrap(),

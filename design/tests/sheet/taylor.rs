@@ -1,23 +1,26 @@
-//! The whole gradient, theta to L, by its Taylor remainders in each block of the design vector.
+//! The whole gradient of L in theta, by its Taylor remainders in each block of the design vector.
 
 use crate::cases::PROCESS;
 use crate::random::Random;
-use design::actuation::{Dof, Load, Support};
-use design::chamfer::{Chamfer, Precision};
-use design::charts::PatternCoordinates;
-use design::check::TaylorRemainders;
-use design::design_vector::{DesignVector, WidthChart};
-use design::domain_penalty::DomainPenalty;
-use design::equilibrium::{EquilibriumSolver, SolverSettings, Status};
-use design::gradient::{DesignProblem, Mechanics, Model};
-use design::grid::Grid;
+use design::analysis::taylor::TaylorRemainders;
+use design::equilibrium::load_step::Status;
+use design::equilibrium::settings::SolverSettings;
+use design::equilibrium::solver::EquilibriumSolver;
+use design::equilibrium::supports::{Dof, Load, Support};
+use design::geometry::chamfer::{Chamfer, Precision};
 use design::hinge_law::{CondensedLaw, Contact, DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
-use design::objective::{Objective, OutlinePoints};
-use design::path_functionals::PerFunctional;
-use design::pattern::Outline;
-use design::sheet::{Centroid, HingePoint, SheetOptions};
+use design::objective::design_problem::{DesignProblem, Mechanics, Model};
+use design::objective::domain_penalty::DomainPenalty;
+use design::objective::loss::{Objective, OutlinePoints};
+use design::objective::path_functionals::PerFunctional;
+use design::pattern::coordinates::PatternCoordinates;
+use design::pattern::cut_pattern::Outline;
+use design::pattern::design_vector::{DesignVector, WidthChart};
+use design::pattern::grid::Grid;
+use design::sheet::cut_sheet::{Centroid, HingePoint, SheetOptions};
 use hinge::TrainingDomain;
 use std::path::Path;
+use std::sync::Arc;
 use surrogate::Surrogate;
 
 pub const GRID: Grid = Grid { m: 3, n: 3 };
@@ -32,8 +35,8 @@ pub fn tiny() -> SurrogateLaw {
     SurrogateLaw::new(Surrogate::load(Path::new(weights)).unwrap())
 }
 
-/// Clamped in the middle of the west edge and turned in a corner; in the middle of the east edge
-/// pulled, moved, or pulled as far as a stroke.
+/// Clamped in the middle of the west edge, with a moment at a corner; in the middle of the east edge
+/// pulled, moved, or pulled up to a stroke.
 pub fn mechanics(law: impl HingeLaw + 'static, moment: f64, east: East) -> Model {
     let support = |panel, dof, value| Support { panel, dof, value };
     let load = |panel, dof, value| Load { panel, dof, value };
@@ -46,7 +49,7 @@ pub fn mechanics(law: impl HingeLaw + 'static, moment: f64, east: East) -> Model
     let settings = SolverSettings::default();
     let solver = EquilibriumSolver::new(GRID, &supports, &loads, 4, settings).unwrap();
     Model::Equilibrium(Box::new(Mechanics {
-        law: Box::new(law),
+        law: Arc::new(law),
         contact: Some(Contact::new(10.0, -0.2, 0.0).unwrap()),
         solver: match east {
             East::Driven(_, stroke) => solver.driven(stroke).unwrap(),
@@ -70,7 +73,7 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
         let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 60.0).sin_cos();
         [0.6 * SIDE * cos, 0.45 * SIDE * sin]
     });
-    // A box that most states are outside of; pins are anywhere.
+    // A domain that most states are outside of; for pins there is none.
     let domain = DomainPenalty {
         domain: TrainingDomain::of_box(
             [[-0.02, 0.0], [-0.01, 0.01], [0.0, 0.02]],

@@ -1,5 +1,5 @@
-//! What the tests share: the shipped film, the paper's hinge, a problem to solve, fake solvers.
-#![allow(dead_code)] // every test program uses a part
+//! Shared by the tests: the shipped film, the paper's hinge, a problem to solve, fake solvers.
+#![allow(dead_code)] // every test program uses only a part
 
 pub mod processes;
 
@@ -24,7 +24,7 @@ pub fn film() -> SheetMaterial {
     SheetMaterial::load(&configs().join("materials/pet-0.5mm.toml")).unwrap()
 }
 
-/// The paper's hinge at the cut angle `alpha_deg`.
+/// The paper's hinge with the cut angle `alpha_deg`.
 pub fn design(alpha_deg: f64) -> HingeDesign {
     HingeDesign {
         w_lig: 18.0,
@@ -48,7 +48,7 @@ pub fn problem(alpha_deg: f64, eta: [f64; 2], theta_deg: f64) -> WindowProblem {
     }
 }
 
-/// The first rays of the demo, and only a little rotation.
+/// The first rays of the demo campaign, with small rotations only.
 pub fn campaign(count: usize) -> Campaign {
     let mut campaign = Campaign::load(&configs().join("campaigns/demo.toml")).unwrap();
     campaign.count = count;
@@ -69,7 +69,7 @@ pub const TWO_WORKERS: RunOptions = RunOptions {
     time_limit: None,
 };
 
-/// A run that nobody stops.
+/// A run without a stop request.
 pub fn run_with(
     options: &RunOptions,
     campaign: &Campaign,
@@ -80,7 +80,7 @@ pub fn run_with(
     Ok(run(campaign, folder, tools, options, &never, &mut |_| {})?.tally)
 }
 
-/// What ccx prints for a deck, which it must finish.
+/// The output of ccx for a deck; panics if ccx does not finish.
 pub fn solved(deck: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("test.inp"), deck).unwrap();
@@ -88,19 +88,19 @@ pub fn solved(deck: &str) -> String {
     let ccx = Ccx::find().unwrap();
     let run = ccx.run(folder.path(), "test", limit, &AtomicBool::new(false));
     let run = run.unwrap();
-    let log = mesher::tool::tail(&folder.path().join("test.log"));
+    let log = support::program::tail(&folder.path().join("test.log"));
     assert!(run.finished, "{run:?} {log}");
     std::fs::read_to_string(folder.path().join("test.dat")).unwrap()
 }
 
-/// The rows of so many numbers in a part of a solver's output.
+/// The rows with exactly `fields` numbers in a part of a solver's output.
 pub fn rows(text: &str, fields: usize) -> Vec<Vec<f64>> {
     let numbers = |line: &str| line.split_whitespace().map(|f| f.parse().ok()).collect();
     let rows = text.lines().filter_map(numbers);
     rows.filter(|row: &Vec<f64>| row.len() == fields).collect()
 }
 
-/// An executable script in `folder` that answers like ccx and then does `body`.
+/// An executable script in `folder` that prints the version of ccx on request and otherwise runs `body`.
 pub fn fake_ccx(folder: &Path, body: &str) -> PathBuf {
     let path = folder.join("fake-ccx");
     let script = format!(
@@ -108,7 +108,7 @@ pub fn fake_ccx(folder: &Path, body: &str) -> PathBuf {
     );
     std::fs::write(&path, script).unwrap();
     std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
-    // A child that another test has just forked may hold the script open for writing.
+    // A child process that another test has just forked may still have the script open for writing.
     while let Err(error) = Command::new(&path).arg("-v").output() {
         assert_eq!(error.kind(), ErrorKind::ExecutableFileBusy, "{error}");
     }

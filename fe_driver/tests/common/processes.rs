@@ -1,9 +1,9 @@
-//! What is left running; the tests of the command line look with the same eyes.
+//! Finds processes that are still running; also used by the tests of the command line.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Working folders under `folder` of processes that still run, given a moment to die of SIGKILL.
+/// Working folders below `folder` of processes that still run; waits up to 5 s for them to exit after SIGKILL.
 pub fn left_running(folder: &Path) -> Vec<PathBuf> {
     let running = || -> Vec<PathBuf> {
         let processes = std::fs::read_dir("/proc").unwrap().flatten();

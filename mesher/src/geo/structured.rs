@@ -1,8 +1,8 @@
-//! The structured mesh: transfinite, recombined patches, one patch a column.
+//! The structured mesh: transfinite, recombined patches, one patch per column.
 //!
-//! Block 1 is an O-grid from the hole to the half-disc of radius 1.5 w_lig; block 2 continues its
-//! arcs to the window's. Columns are numbered counter-clockwise about O, from the kerf face on B
-//! over the free edge to the kerf face on A. One patch a side instead of one a column would fold
+//! Block 1 is an O-grid from the hole to the half-disc of radius 1.5 w_lig. Block 2 continues from the arcs of
+//! block 1 to the window's arcs. Columns are numbered counter-clockwise about O, from the kerf face on B
+//! over the free edge to the kerf face on A. One patch per side instead of one per column would fold
 //! elements at small alpha.
 
 use super::Script;
@@ -11,10 +11,10 @@ use crate::tier::Structured;
 use crate::window::{Side, Window, polar_angle};
 use std::f64::consts::PI;
 
-/// Radius of block 1 over w_lig: just past the hole, so that the rings of block 2 begin where the
-/// panels still bend. At 2.2 the compression of an oblique hinge is 8 % too stiff.
+/// Radius of block 1 over w_lig. It is only slightly larger than the hole, so that the rings of block 2 begin where
+/// the panels still bend. With 2.2, an oblique hinge in compression is 8 % too stiff.
 const INNER_RADIUS: f64 = 1.5;
-/// Share of the true polar angle, against equal angles, in the spacing of columns at the hole.
+/// Weight of the true polar angle, relative to equal angles, in the spacing of columns at the hole.
 const ANGLE_BLEND: f64 = 0.5;
 
 /// Adds the patches of `window`.
@@ -118,7 +118,7 @@ fn panel_arc(window: &Window, side: Side, radius: f64, columns: usize) -> Vec<[f
         [radius * angle.cos(), radius * angle.sin()]
     };
     let mut points: Vec<_> = (0..=columns).map(at).collect();
-    // The ends exactly, so that the free edge is straight and the kerf faces are flat.
+    // The end points are set exactly, so that the free edge is straight and the kerf faces are flat.
     let (free, cut) = match side {
         Side::B => (columns, 0),
         Side::A => (0, columns),
@@ -128,14 +128,14 @@ fn panel_arc(window: &Window, side: Side, radius: f64, columns: usize) -> Vec<[f
     points
 }
 
-/// Corners of the columns on the hole, between the directions of `outer` and equal angles.
+/// Corners of the columns on the hole: a blend of the directions of `outer` and equal angles.
 fn hole_points(window: &Window, outer: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let (tip, rho) = (window.0.tip(), window.0.fillet_radius());
     let from = -window.0.alpha + window.mouth_half_angle();
     let span = 2.0 * (PI - window.mouth_half_angle());
     let directions: Vec<_> = outer
         .iter()
-        // Turned so that the mouth of the cut, where the angle jumps, is at +-pi.
+        // Rotated so that the mouth of the cut, where the angle jumps, is at +-pi.
         .map(|p| turned_angle([p[0] - tip[0], p[1] - tip[1]], PI - window.0.alpha))
         .collect();
     let last = outer.len() - 1;
@@ -151,7 +151,7 @@ fn hole_points(window: &Window, outer: &[[f64; 2]]) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Polar angle (rad) of `p` seen from an axis at the angle `axis`.
+/// Polar angle (rad) of `p` relative to an axis at the angle `axis`.
 fn turned_angle(p: [f64; 2], axis: f64) -> f64 {
     let (sin, cos) = axis.sin_cos();
     polar_angle([p[0] * cos + p[1] * sin, p[1] * cos - p[0] * sin])
@@ -171,7 +171,8 @@ fn growth_ratio(total: f64, n: usize) -> f64 {
     })
 }
 
-/// The root of an increasing function in [low, high], to the last bit; an end if there is none.
+/// The root of an increasing function in [low, high], to machine precision; an end of the interval if there is no
+/// root.
 fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     loop {
         let middle = 0.5 * (low + high);
@@ -193,7 +194,7 @@ mod tests {
     use crate::window::tests::design;
 
     #[test]
-    fn gradings_meet_their_first_element() {
+    fn gradings_give_the_prescribed_first_element() {
         for tier in Tier::ALL {
             let PlaneRecipe::Structured(recipe) = tier.recipe().plane else {
                 continue;
@@ -208,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_go_round_the_hole_without_crossing() {
+    fn columns_around_the_hole_do_not_cross() {
         for alpha in [25.0, 45.0, 90.0, 120.0, 150.0] {
             let design = design(25.0, alpha);
             let window = Window(&design);

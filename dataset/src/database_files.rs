@@ -1,0 +1,96 @@
+//! Reading and writing a database: `X.parquet` and its manifest `X.json`.
+
+use crate::database::Database;
+use crate::error::DatasetError;
+use crate::manifest::{FORMAT_VERSION, Manifest};
+use crate::parquet;
+use std::path::{Path, PathBuf};
+use support::whole_file;
+
+impl Database {
+    /// Reads `X.parquet` and its manifest `X.json`; an error if the hash of the file is not that in the manifest.
+    pub fn read(path: &Path) -> Result<Self, DatasetError> {
+        let manifest = read_manifest(&manifest_path(path))?;
+        let parquet = read_bytes(path)?;
+        let found = parquet::hash(&parquet);
+        if found != manifest.hash {
+            return Err(DatasetError::Hash {
+                path: path.to_owned(),
+                expected: manifest.hash,
+                found,
+            });
+        }
+        let rows = parquet::decode(&parquet, manifest.format_version).map_err(|source| {
+            DatasetError::In {
+                path: path.to_owned(),
+                source: Box::new(source),
+            }
+        })?;
+        Ok(Self {
+            rows,
+            parquet,
+            manifest,
+        })
+    }
+
+    /// Writes `X.parquet` and its manifest `X.json`, each atomically.
+    ///
+    /// An existing file is an error unless `replace` is true.
+    pub fn write(&self, path: &Path, replace: bool) -> Result<(), DatasetError> {
+        let manifest = manifest_path(path);
+        for path in [path, &manifest] {
+            if !replace && path.exists() {
+                return Err(DatasetError::Exists {
+                    path: path.to_owned(),
+                });
+            }
+        }
+        let mut json =
+            serde_json::to_vec_pretty(&self.manifest).map_err(|source| DatasetError::Manifest {
+                path: manifest.clone(),
+                source,
+            })?;
+        json.push(b'\n');
+        write_bytes(path, &self.parquet)?;
+        write_bytes(&manifest, &json)
+    }
+}
+
+fn manifest_path(path: &Path) -> PathBuf {
+    path.with_extension("json")
+}
+
+fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
+    #[derive(serde::Deserialize)]
+    struct Version {
+        format_version: u64,
+    }
+    let malformed = |source| DatasetError::Manifest {
+        path: path.to_owned(),
+        source,
+    };
+    let bytes = read_bytes(path)?;
+    let version: Version = serde_json::from_slice(&bytes).map_err(malformed)?;
+    if !(2..=u64::from(FORMAT_VERSION)).contains(&version.format_version) {
+        return Err(DatasetError::UnknownVersion {
+            path: path.to_owned(),
+            found: version.format_version,
+            newest: FORMAT_VERSION,
+        });
+    }
+    serde_json::from_slice(&bytes).map_err(malformed)
+}
+
+fn read_bytes(path: &Path) -> Result<Vec<u8>, DatasetError> {
+    std::fs::read(path).map_err(|source| DatasetError::Read {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), DatasetError> {
+    whole_file::write(path, bytes).map_err(|source| DatasetError::Write {
+        path: path.to_owned(),
+        source,
+    })
+}

@@ -1,0 +1,109 @@
+//! Errors of collecting, reading, writing and correcting a database.
+
+use std::path::PathBuf;
+
+/// Why a database cannot be collected, read, written or corrected.
+#[derive(Debug, thiserror::Error)]
+pub enum DatasetError {
+    #[error(
+        "the tier `{tier}` is already corrected: use databases of solved, uncorrected rows, both for the rows and \
+         for the reference"
+    )]
+    AlreadyCorrected { tier: String },
+    #[error("no rows ({rejected} were rejected); run the campaign before collecting it")]
+    NoRows { rejected: usize },
+    #[error(
+        "job {job}: {column} = {found}, but other rows have {expected}; \
+         keep them in separate databases, or, if they differ only in material or tier, merge with `--mixed`"
+    )]
+    Mixed {
+        job: String,
+        column: &'static str,
+        expected: String,
+        found: String,
+    },
+    #[error("job {job}: lambda = {lambda} occurs twice; was the job collected twice?")]
+    Duplicate { job: String, lambda: f64 },
+    #[error(
+        "{found} geometries cannot be split into training, validation and test: \
+         at least 3 are needed"
+    )]
+    TooFewGeometries { found: usize },
+    #[error("the databases have different materials, {expected} and {found}")]
+    OtherMaterial { expected: String, found: String },
+    #[error(
+        "{found} rays are in both databases, but the correction needs at least {needed}: solve more \
+         rays of the first database on the mesh of the second"
+    )]
+    TooFewRays { found: usize, needed: usize },
+    #[error("the fractions validation = {validation} and test = {test} violate 0 < fraction < 0.5")]
+    Shares { validation: f64, test: f64 },
+    #[error("column `{column}` has no value in row {index}")]
+    Gap { column: &'static str, index: usize },
+    #[error(
+        "there is no column `{column}`: give its name in the table under [columns], or its value \
+         under [constants]"
+    )]
+    NoColumn { column: String },
+    #[error("column `{column}`, row {index}: `{text}` is not a number")]
+    NotANumber {
+        column: &'static str,
+        index: usize,
+        text: String,
+    },
+    #[error(
+        "the column map contains `{key}`, which is not a column of a database, or a column of another type"
+    )]
+    ColumnMap { key: String },
+    #[error("job {job}, lambda = {lambda}: the row contains a number that is not finite")]
+    NotFinite { job: String, lambda: f64 },
+    #[error("cannot read {path}: {source}", path = .path.display())]
+    Read {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    #[error("cannot write {path}: {source}", path = .path.display())]
+    Write {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    #[error(
+        "{path} already exists; choose another name, or replace it with `--replace`",
+        path = .path.display()
+    )]
+    Exists { path: PathBuf },
+    #[error("{path} is not a manifest of a database: {source}", path = .path.display())]
+    Manifest {
+        path: PathBuf,
+        source: serde_json::Error,
+    },
+    #[error(
+        "{path} has the format version {found}, but this program reads versions 2 to {newest}; \
+         collect the campaign again",
+        path = .path.display()
+    )]
+    UnknownVersion {
+        path: PathBuf,
+        found: u64,
+        newest: u32,
+    },
+    #[error(
+        "{path} does not match its manifest (its BLAKE3 hash is {found}, not {expected}); \
+         copy both files from the same place, or collect the campaign again",
+        path = .path.display()
+    )]
+    Hash {
+        path: PathBuf,
+        expected: String,
+        found: String,
+    },
+    #[error("{path}: {source}", path = .path.display())]
+    In {
+        path: PathBuf,
+        source: Box<DatasetError>,
+    },
+    #[error("the column `strain_volumes`: {0}")]
+    StrainVolumes(#[from] hinge::NoHistogram),
+    #[error("the table is not a valid database: {0}")]
+    Table(#[from] polars::error::PolarsError),
+}

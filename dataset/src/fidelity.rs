@@ -1,0 +1,77 @@
+//! The mesh fidelity of the rows of a database.
+
+use crate::error::DatasetError;
+use std::fmt;
+
+/// The fidelity of a database, as written in its column `tier` and in its manifest.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Fidelity {
+    /// Solved on the mesh with this name.
+    Solved(String),
+    /// Solved on one mesh and corrected to a finer one.
+    Corrected { from: String, to: String },
+}
+
+/// Separator of the two mesh names of a corrected tier.
+const CORRECTED_TO: &str = " corrected to ";
+
+impl Fidelity {
+    /// Parses a tier as written in a database.
+    pub fn of(tier: &str) -> Self {
+        match tier.rsplit_once(CORRECTED_TO) {
+            Some((from, to)) => Self::Corrected {
+                from: from.into(),
+                to: to.into(),
+            },
+            None => Self::Solved(tier.into()),
+        }
+    }
+
+    /// The mesh whose results the rows represent.
+    pub fn mesh(&self) -> &str {
+        match self {
+            Self::Solved(mesh) | Self::Corrected { to: mesh, .. } => mesh,
+        }
+    }
+
+    /// The fidelity of solved rows after their correction to the mesh `reference`. Corrected rows and a corrected
+    /// reference are an error, because the correction is fitted to solved rows.
+    pub(crate) fn corrected_to(self, reference: &str) -> Result<Self, DatasetError> {
+        match (self, Self::of(reference)) {
+            (Self::Solved(from), Self::Solved(to)) => Ok(Self::Corrected { from, to }),
+            (corrected @ Self::Corrected { .. }, _) | (_, corrected) => {
+                let tier = corrected.to_string();
+                Err(DatasetError::AlreadyCorrected { tier })
+            }
+        }
+    }
+}
+
+impl fmt::Display for Fidelity {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Solved(mesh) => f.write_str(mesh),
+            Self::Corrected { from, to } => write!(f, "{from}{CORRECTED_TO}{to}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_corrected_only_once() {
+        let corrected = Fidelity::of("default").corrected_to("reference").unwrap();
+        assert_eq!(corrected.to_string(), "default corrected to reference");
+        assert_eq!(Fidelity::of(&corrected.to_string()), corrected);
+        assert_eq!(corrected.mesh(), "reference");
+        let twice = corrected.clone().corrected_to("paper").unwrap_err();
+        assert!(twice.to_string().contains("default corrected to reference"));
+        assert!(
+            Fidelity::of("fine")
+                .corrected_to(&corrected.to_string())
+                .is_err()
+        );
+    }
+}

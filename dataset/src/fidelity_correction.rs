@@ -1,0 +1,446 @@
+//! Correction of the mesh error of a database: a multiplicative bridge between two fidelities, fitted to the few rays
+//! that were also solved on a finer mesh,
+//!
+//! ```text
+//! W' = (1 + q) W,     F' = dW'/d(a, s, theta) = (1 + q) F + W dq/d(a, s, theta),     q = c . terms
+//! ```
+//!
+//! with a separate q for each damage measure. The terms are the monomials of degree two or less in w_lig,
+//! alpha - pi/2, eta_a, eta_s and theta, each divided by its range, that satisfy the mirror symmetry. Outside
+//! the range of the rays on both meshes, q is constant in that coordinate. c is fitted to the energy
+//! alone, by least squares of the relative error; the corrected forces remain the gradient of the corrected energy.
+//! (Fernandez-Godino et al., "Review of multi-fidelity models", 2016, section 2.)
+
+use crate::compare::{ComparedRay, ComparedState, compare};
+use crate::database::Database;
+use crate::error::DatasetError;
+use crate::fidelity::Fidelity;
+use crate::rows::Row;
+use faer::Side;
+use faer::linalg::solvers::{Llt, Solve};
+use faer::prelude::*;
+use hinge::HingeSample;
+use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_2;
+
+/// The terms, as products of two of (w_lig, alpha, eta_a, eta_s, theta, 1).
+const TERMS: [[usize; 2]; 13] = [
+    [5, 5],
+    [0, 5],
+    [2, 5],
+    [4, 5],
+    [0, 0],
+    [0, 2],
+    [0, 4],
+    [2, 2],
+    [2, 4],
+    [4, 4],
+    [1, 1],
+    [1, 3],
+    [3, 3],
+];
+/// Fraction of the root mean square that limits the scale of the relative error of small values from below.
+const LEAST_SCALE: f64 = 0.3;
+/// Weight of the ridge regularisation, which equals that of one state. It determines only the coefficients that the
+/// rays do not determine.
+const RIDGE: f64 = 1.0;
+
+/// Coefficients of the [`TERMS`].
+type Coefficients = [f64; TERMS.len()];
+
+/// The fitted correction from one mesh to another.
+#[derive(Clone, Debug)]
+struct Bridge {
+    /// Middle and half the range of (w_lig, alpha, eta_a, eta_s, theta).
+    ranges: [[f64; 2]; 5],
+    energy: Coefficients,
+    damage: Coefficients,
+    damage_peak: Coefficients,
+}
+
+impl Bridge {
+    /// Fits the correction from the mesh of the rays to that of their references.
+    fn fit(rays: &[ComparedRay]) -> Self {
+        let pairs = || {
+            let pairs = rays.iter().flat_map(ComparedRay::pairs);
+            pairs.filter(|(row, _)| as_asked(row))
+        };
+        let blank = [0.0; TERMS.len()];
+        let unfitted = Self {
+            ranges: ranges(pairs().map(|(row, _)| row)),
+            energy: blank,
+            damage: blank,
+            damage_peak: blank,
+        };
+        // A pair with an unknown value is omitted.
+        let fit = |value: fn(&HingeSample) -> Option<f64>| {
+            let values = pairs().filter_map(|(row, reference)| {
+                let terms = unfitted.terms(row).0;
+                Some((terms, value(&row.sample)?, value(reference)?))
+            });
+            least_squares(&values.collect::<Vec<_>>())
+        };
+        Self {
+            energy: fit(|sample| Some(sample.w)),
+            damage: fit(|sample| Some(sample.d)),
+            damage_peak: fit(|sample| sample.d_peak),
+            ..unfitted
+        }
+    }
+
+    /// The sample of a row, corrected to the finer mesh. Quantities that no surrogate is trained on are unchanged,
+    /// including the work of the reaction forces and the energy residual. A row that was solved on a finer tier than
+    /// the requested one is also unchanged.
+    fn corrected(&self, row: &Row) -> HingeSample {
+        if !as_asked(row) {
+            return row.sample;
+        }
+        let (terms, slopes) = self.terms(row);
+        let factor = |c: &Coefficients| 1.0 + dot(c, &terms);
+        let slope = |i: usize| dot(&self.energy, &slopes.map(|of| of[i]));
+        let x = &row.sample;
+        let energy = factor(&self.energy);
+        HingeSample {
+            w: energy * x.w,
+            f_a: energy * x.f_a + x.w * slope(0),
+            f_s: energy * x.f_s + x.w * slope(1),
+            m_theta: energy * x.m_theta + x.w * slope(2),
+            d: factor(&self.damage).max(0.0) * x.d,
+            d_peak: x
+                .d_peak
+                .map(|peak| factor(&self.damage_peak).max(0.0) * peak),
+            ..*x
+        }
+    }
+
+    /// The terms at a row, and their gradients with respect to (a, s, theta).
+    fn terms(&self, row: &Row) -> (Coefficients, [[f64; 3]; TERMS.len()]) {
+        let at = coordinates(row);
+        let units = [1.0, 1.0, row.design.w_lig, row.design.w_lig, 1.0];
+        let (mut x, mut by) = ([1.0; 6], [[0.0; 3]; 6]);
+        for (i, [middle, half]) in self.ranges.into_iter().enumerate() {
+            let scaled = (at[i] - middle) / half;
+            x[i] = scaled.clamp(-1.0, 1.0);
+            // The first two coordinates are the geometry, on which the forces do no work.
+            if i >= 2 && x[i] == scaled {
+                by[i][i - 2] = 1.0 / (half * units[i]);
+            }
+        }
+        (
+            TERMS.map(|[i, j]| x[i] * x[j]),
+            TERMS.map(|[i, j]| std::array::from_fn(|d| by[i][d] * x[j] + x[i] * by[j][d])),
+        )
+    }
+}
+
+impl Database {
+    /// Corrects every row to the mesh of `reference`, using the rays that both databases contain. The CPU time of these
+    /// rays is the sum over both meshes.
+    pub fn corrected(&self, reference: &Self) -> Result<Self, DatasetError> {
+        let [ours, theirs] = [self, reference].map(Self::manifest);
+        if ours.material_hashes != theirs.material_hashes {
+            return Err(DatasetError::OtherMaterial {
+                expected: ours.material.clone(),
+                found: theirs.material.clone(),
+            });
+        }
+        let tier = Fidelity::of(&ours.tier)
+            .corrected_to(&theirs.tier)?
+            .to_string();
+        let rays = compare(self, reference);
+        let bridge = Bridge::fit(enough(&rays)?);
+        let cpu_s = rays.iter().map(|ray| (&ray.end().job, ray.cpu_s[1]));
+        let cpu_s: BTreeMap<_, _> = cpu_s.collect();
+        let rows = self.rows().iter().map(|row| Row {
+            sample: bridge.corrected(row),
+            tier: tier.clone(),
+            cpu_s: row.cpu_s + cpu_s.get(&row.job).unwrap_or(&0.0),
+            ..row.clone()
+        });
+        self.with_rows(rows.collect())
+    }
+}
+
+/// Leave-one-out validation: each ray, corrected by a bridge fitted to the other rays only. It measures the error of
+/// the correction for rays that were not solved on both meshes.
+pub fn left_out(rays: &[ComparedRay]) -> Result<Vec<Vec<ComparedState>>, DatasetError> {
+    enough(rays)?;
+    let judged = (0..rays.len()).map(|i| {
+        let bridge = Bridge::fit(&[&rays[..i], &rays[i + 1..]].concat());
+        let states = rays[i].pairs();
+        states
+            .map(|(row, reference)| ComparedState::new(&bridge.corrected(row), reference))
+            .collect()
+    });
+    Ok(judged.collect())
+}
+
+/// The rays, if they remain enough to fit every term when one is left out.
+fn enough<'a, 'b>(rays: &'b [ComparedRay<'a>]) -> Result<&'b [ComparedRay<'a>], DatasetError> {
+    let (found, needed) = (rays.len(), TERMS.len() + 1);
+    match found < needed {
+        true => Err(DatasetError::TooFewRays { found, needed }),
+        false => Ok(rays),
+    }
+}
+
+/// Whether a row was solved on the tier of its campaign, and not on a finer one after a failure.
+fn as_asked(row: &Row) -> bool {
+    row.solved_tier == row.tier
+}
+
+/// w_lig (mm), alpha - pi/2 (rad), eta_a, eta_s, theta (rad).
+fn coordinates(row: &Row) -> [f64; 5] {
+    let [eta_a, eta_s] = row.eta();
+    let design = &row.design;
+    [
+        design.w_lig,
+        design.alpha - FRAC_PI_2,
+        eta_a,
+        eta_s,
+        row.sample.theta,
+    ]
+}
+
+/// Middle and half of the range of each coordinate. The middle is 0 except for the width, so that the mirror
+/// image has the opposite alpha and eta_s. A constant coordinate is not scaled.
+fn ranges<'a>(rows: impl Iterator<Item = &'a Row>) -> [[f64; 2]; 5] {
+    let mut minimum = [f64::INFINITY; 5];
+    let mut maximum = [f64::NEG_INFINITY; 5];
+    for row in rows {
+        for (i, value) in coordinates(row).into_iter().enumerate() {
+            minimum[i] = minimum[i].min(value);
+            maximum[i] = maximum[i].max(value);
+        }
+    }
+    std::array::from_fn(|i| {
+        let [middle, half] = match i {
+            0 => [
+                0.5 * (minimum[i] + maximum[i]),
+                0.5 * (maximum[i] - minimum[i]),
+            ],
+            _ => [0.0, maximum[i].abs().max(minimum[i].abs())],
+        };
+        [middle, if half > 0.0 { half } else { 1.0 }]
+    })
+}
+
+/// Solves (1 + c . terms) value = reference for c by least squares, each equation scaled by its reference.
+fn least_squares(states: &[(Coefficients, f64, f64)]) -> Coefficients {
+    let squares: f64 = states
+        .iter()
+        .map(|(.., reference)| reference * reference)
+        .sum();
+    if squares == 0.0 {
+        return [0.0; TERMS.len()];
+    }
+    let minimum = LEAST_SCALE * (squares / states.len() as f64).sqrt();
+    let mut normal = RIDGE * Mat::<f64>::identity(TERMS.len(), TERMS.len());
+    let mut right = Mat::<f64>::zeros(TERMS.len(), 1);
+    for (terms, value, reference) in states {
+        let scale = reference.hypot(minimum);
+        let row = terms.map(|term| term * value / scale);
+        for i in 0..TERMS.len() {
+            right[(i, 0)] += row[i] * (reference - value) / scale;
+            for j in 0..TERMS.len() {
+                normal[(i, j)] += row[i] * row[j];
+            }
+        }
+    }
+    let factor =
+        Llt::new(normal.as_ref(), Side::Lower).expect("the ridge term makes it positive definite");
+    let solution = factor.solve(&right);
+    std::array::from_fn(|i| solution[(i, 0)])
+}
+
+fn dot(c: &Coefficients, terms: &Coefficients) -> f64 {
+    std::iter::zip(c, terms).map(|(c, term)| c * term).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compare::relative_rms;
+    use crate::gates::Gates;
+    use crate::rows::tests::rows;
+    use crate::split::SplitPlan;
+
+    const RAYS: usize = 40;
+
+    fn database(rows: Vec<Row>) -> Database {
+        Database::collect(rows, &Gates::default(), &SplitPlan::default()).unwrap()
+    }
+
+    /// The database of [`rows`] with the errors of a coarse mesh, by a known q.
+    fn coarse() -> Database {
+        let rows = rows(RAYS).into_iter().map(|row| {
+            let x = row.sample;
+            let [eta_a, _] = row.eta();
+            let q = 0.03 + 0.02 * x.theta * x.theta - 0.5 * eta_a;
+            let slopes = [-0.5 / row.design.w_lig, 0.0, 0.04 * x.theta];
+            let sample = HingeSample {
+                w: x.w * (1.0 + q),
+                w_work: x.w * (1.0 + q),
+                f_a: x.f_a * (1.0 + q) + x.w * slopes[0],
+                f_s: x.f_s * (1.0 + q) + x.w * slopes[1],
+                m_theta: x.m_theta * (1.0 + q) + x.w * slopes[2],
+                d: 1.1 * x.d,
+                d_peak: x.d_peak.map(|peak| 1.3 * peak),
+                ..x
+            };
+            Row { sample, ..row }
+        });
+        database(rows.collect())
+    }
+
+    #[test]
+    fn the_mesh_error_is_corrected_on_rays_that_were_solved_only_once() {
+        let (coarse, fine) = (coarse(), database(rows(RAYS)));
+        let half = database(rows(RAYS / 2));
+        let corrected = coarse.corrected(&half).unwrap();
+        // Ten seconds per ray; half of the rays were solved twice.
+        assert_eq!(corrected.manifest().cpu_s, 15.0 * RAYS as f64);
+        assert_eq!(corrected.manifest().tier, "default corrected to default");
+        assert_eq!(corrected.manifest().split, coarse.manifest().split);
+        let errors = |judged: &Database| {
+            let rays = compare(judged, &fine);
+            let states: Vec<_> = rays.iter().flat_map(ComparedRay::states).collect();
+            relative_rms(&states, [0.0; 6])
+        };
+        let (before, after) = (errors(&coarse), errors(&corrected));
+        // 1/(1 + q) is not a polynomial of degree two. The remaining error is largest in forces that are small
+        // compared with W dq/da.
+        for (before, after) in std::iter::zip(before, after) {
+            assert!(after < before / 3.0, "{before} {after}");
+        }
+        assert!(after[0] < 1e-3 && after[3] < 3e-3, "{after:?}");
+    }
+
+    #[test]
+    fn corrected_forces_are_the_gradient_of_the_corrected_energy() {
+        let (coarse, fine) = (coarse(), database(rows(RAYS)));
+        let bridge = Bridge::fit(&compare(&coarse, &fine));
+        let row = coarse.rows()[7].clone();
+        let moved = |[a, s, theta]: [f64; 3]| {
+            let x = row.sample;
+            // The solved energy, to first order about the row.
+            let w = x.w + x.f_a * a + x.f_s * s + x.m_theta * theta;
+            let sample = HingeSample {
+                a: x.a + a,
+                s: x.s + s,
+                theta: x.theta + theta,
+                w,
+                ..x
+            };
+            bridge
+                .corrected(&Row {
+                    sample,
+                    ..row.clone()
+                })
+                .w
+        };
+        let found = bridge.corrected(&row);
+        for (i, found) in [found.f_a, found.f_s, found.m_theta]
+            .into_iter()
+            .enumerate()
+        {
+            let step: [f64; 3] = std::array::from_fn(|j| if i == j { 1e-6 } else { 0.0 });
+            let slope = (moved(step) - moved(step.map(|x| -x))) / 2e-6;
+            assert!(
+                (found - slope).abs() < 1e-6 * slope.abs().max(1.0),
+                "{found} {slope}"
+            );
+        }
+    }
+
+    #[test]
+    fn mirror_images_have_the_same_correction() {
+        let (coarse, fine) = (coarse(), database(rows(RAYS)));
+        let bridge = Bridge::fit(&compare(&coarse, &fine));
+        let row = &coarse.rows()[13];
+        let image = &crate::mirror::with_mirrored(std::slice::from_ref(row))[1];
+        let (there, here) = (bridge.corrected(image).mirrored(), bridge.corrected(row));
+        for (x, y) in [(there.w, here.w), (there.f_s, here.f_s), (there.d, here.d)] {
+            assert!((x - y).abs() < 1e-12 * y.abs().max(1.0), "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn a_left_out_ray_does_not_affect_its_own_correction() {
+        let (coarse, mut spoilt) = (coarse(), rows(RAYS));
+        for row in spoilt.iter_mut().filter(|row| row.job == "job-003") {
+            row.sample.w *= 10.0;
+        }
+        let spoilt = database(spoilt);
+        let rays = compare(&coarse, &spoilt);
+        let judged = left_out(&rays).unwrap();
+        let i = rays
+            .iter()
+            .position(|ray| ray.end().job == "job-003")
+            .unwrap();
+        let [corrected, solved] = [&judged[i], &rays[i].states()].map(|states| states[9].value[0]);
+        assert!(
+            (corrected / solved - 1.0).abs() < 0.1,
+            "{corrected} {solved}"
+        );
+    }
+
+    #[test]
+    fn rows_solved_on_a_finer_tier_are_unchanged() {
+        let (coarse, fine) = (coarse(), database(rows(RAYS)));
+        let mut rows: Vec<Row> = coarse.rows().to_vec();
+        rows[0].solved_tier = "fine".into();
+        let corrected = database(rows).corrected(&fine).unwrap();
+        let same = |i: usize| corrected.rows()[i].sample == coarse.rows()[i].sample;
+        assert!(same(0) && !same(1));
+    }
+
+    #[test]
+    fn the_correction_is_constant_beyond_the_range_of_the_rays() {
+        let (coarse, fine) = (coarse(), database(rows(RAYS)));
+        let bridge = Bridge::fit(&compare(&coarse, &fine));
+        let at = |theta: f64| {
+            let mut row = coarse.rows()[9].clone();
+            row.sample.theta = theta;
+            let corrected = bridge.corrected(&row);
+            [
+                corrected.w / row.sample.w,
+                corrected.m_theta / row.sample.m_theta,
+            ]
+        };
+        let [energy, moment] = at(3.0);
+        assert_eq!(energy, at(2.0)[0]);
+        assert!((energy - moment).abs() < 1e-12, "{energy} {moment}");
+    }
+
+    #[test]
+    fn too_few_rays_and_different_materials_are_errors() {
+        let coarse = coarse();
+        let message = |reference: Vec<Row>| {
+            let error = coarse.corrected(&database(reference)).unwrap_err();
+            error.to_string()
+        };
+        let few = message(rows(TERMS.len()));
+        assert!(
+            few.contains("13 rays") && few.contains("at least 14"),
+            "{few}"
+        );
+        let steel = rows(RAYS).into_iter().map(|row| Row {
+            material: "steel".into(),
+            material_hash: "57ee1".into(),
+            ..row
+        });
+        let other = message(steel.collect());
+        assert!(other.contains("film and steel"), "{other}");
+    }
+
+    #[test]
+    fn zero_reference_damage_gives_no_correction() {
+        let gentle = rows(RAYS).into_iter().map(|mut row| {
+            row.sample.d = 0.0;
+            row
+        });
+        let corrected = coarse().corrected(&database(gentle.collect())).unwrap();
+        assert_eq!(corrected.rows()[3].sample.d, coarse().rows()[3].sample.d);
+    }
+}

@@ -1,0 +1,79 @@
+//! Whether the panels stay flat while their ligaments buckle: Gamma and L* of (21)-(22).
+//!
+//! The moment of gravity on a panel of edge L, p L^3 / 2 with p = rho g t, keeps the panel flat against the moment
+//! E t^4 / (12 w_lig) of the folded ligament. Their ratio is
+//!
+//!   Gamma = 6 p L^3 w_lig / (E t^4) = (L / L*)^3,   L* = (E t^3 / (6 rho g w_lig))^(1/3).
+//!
+//! For Gamma > 1 buckling localises in the ligaments and the panels stay coplanar. The
+//! prefactor is of order one, so L* is an order of magnitude and not a sharp limit.
+
+use hinge::SheetMaterial;
+
+/// mm/s^2
+const GRAVITY: f64 = 9810.0;
+/// From kg/m^3 to tonne/mm^3, consistent with mm, N and MPa.
+const TONNE_PER_MM3: f64 = 1e-12;
+
+/// The critical panel edge length L* (mm) of (22) for a ligament width `w_lig` (mm).
+pub fn critical_edge(material: &SheetMaterial, w_lig: f64) -> f64 {
+    let weight = material.density_kg_m3 * TONNE_PER_MM3 * GRAVITY;
+    (material.young * material.thickness.powi(3) / (6.0 * weight * w_lig)).cbrt()
+}
+
+/// Gamma of (21) for a panel of edge length `edge` (mm) and ligaments of width `w_lig` (mm).
+pub fn gamma(material: &SheetMaterial, w_lig: f64, edge: f64) -> f64 {
+    (edge / critical_edge(material, w_lig)).powi(3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn material(young: f64, density_kg_m3: f64, thickness: f64) -> SheetMaterial {
+        SheetMaterial {
+            name: "row of Table 2".into(),
+            thickness,
+            young,
+            poisson: 0.3,
+            density_kg_m3,
+            fracture_strain: 1.0,
+            plastic: vec![[1.0, 0.0]],
+        }
+    }
+
+    #[test]
+    fn table_2_is_reproduced() {
+        // E (MPa), rho (kg/m^3), t (mm), L* (cm, as printed to one decimal); w_lig = 18 mm.
+        let table = [
+            (3e3, 800.0, 0.2, 3.0),
+            (3e3, 1390.0, 0.5, 6.3),
+            (1.5e3, 910.0, 0.8, 9.3),
+            (70e3, 2700.0, 1.0, 29.0),
+            (210e3, 7850.0, 1.5, 44.0),
+        ];
+        for (young, density, thickness, printed_cm) in table {
+            let edge_cm = critical_edge(&material(young, density, thickness), 18.0) / 10.0;
+            assert!(
+                (edge_cm - printed_cm).abs() < 0.05,
+                "{edge_cm} {printed_cm}"
+            );
+        }
+    }
+
+    #[test]
+    fn gamma_at_the_panel_pitch_is_that_of_the_paper() {
+        let polyester = gamma(&material(3e3, 1390.0, 0.5), 18.0, 406.4);
+        assert!((250.0..350.0).contains(&polyester), "{polyester}");
+        let steel = gamma(&material(210e3, 7850.0, 1.5), 18.0, 406.4);
+        assert!((steel - 0.79).abs() < 0.005, "{steel}");
+    }
+
+    #[test]
+    fn gamma_equals_its_definition_in_si_units() {
+        let (e, rho, t, w, edge) = (3e9, 1390.0, 0.5e-3, 0.018, 0.4064_f64);
+        let definition = 6.0 * (rho * 9.81 * t) * edge.powi(3) * w / (e * f64::powi(t, 4));
+        let ours = gamma(&material(3e3, 1390.0, 0.5), 18.0, 406.4);
+        assert!((ours / definition - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,133 @@
+//! The adjoint of the equilibria; (20). With g_i the gradient of the objective with respect to q_i,
+//!
+//! ```text
+//! H_i lambda_i = g_i,     dL/dp -= sum_i sum_h d/dp [ grad W(eps_h(q_i, p); p) . D eps_h(q_i, p)[lambda_i] ]
+//! ```
+//!
+//! which is local to each hinge in p = (attachment point, centroids, angle of e_sec, w_lig, alpha). Each load
+//! step reuses the factors of its own tangent, refined against that tangent. For the constants
+//! of (11) the bracket is eps_c e_c . D eps_h[lambda], for the loads it is -zeta lambda. Under displacement
+//! control the system has the border of the stroke, whose condition (f . q)/F = stroke also depends on the loads.
+
+use crate::equilibrium::hinged_sheet::HingedSheet;
+use crate::equilibrium::load_step::LoadStep;
+use crate::equilibrium::refined_solve::refined_solve;
+use crate::equilibrium::solver::EquilibriumSolver;
+use crate::geometry::plane::{add, complex};
+use crate::hinge_law::Order;
+use crate::sheet::cut_sheet::SheetGradient;
+use crate::sheet::kinematics::{HingeGeometryGradient, HingeMotion};
+use crate::sheet::panel_vectors::{add_at_hinge, at_hinge, gather, spread};
+
+/// Backward error of an adjoint solve above which the tangent is considered singular.
+const SINGULAR: f64 = 1e-6;
+
+/// A singular tangent, for which the adjoint does not exist.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("the tangent is singular at load factor {load_factor:.4}: the gradient does not exist")]
+pub struct SingularTangent {
+    pub load_factor: f64,
+}
+
+/// What the adjoint computes besides the gradient with respect to the sheet.
+pub(crate) struct AdjointSums {
+    /// Gradient with respect to (F_x, F_y, M) of every panel at full load.
+    pub loads: Vec<[f64; 3]>,
+    /// Gradient with respect to (k_a, k_s, k_theta) of every hinge; zero for a law without such constants.
+    pub constants: Vec<[f64; 3]>,
+    /// Maximum componentwise backward error of the solves.
+    pub residual: f64,
+}
+
+/// The gradient, with respect to the sheet, of a function of the path: the direct dependence through the hinge
+/// states, and the dependence through the equilibria.
+///
+/// `by_path[h][i]` is the gradient of the function in (a, s, theta, w_lig, alpha) of hinge h at load step i, and
+/// `by_last` that in the last configuration. The result is added to `by_sheet`.
+pub(crate) fn adjoint(
+    solver: &EquilibriumSolver,
+    sheet: HingedSheet,
+    path: &[LoadStep],
+    by_path: &[Vec<[f64; 5]>],
+    by_last: Vec<[f64; 3]>,
+    by_sheet: &mut SheetGradient,
+) -> Result<AdjointSums, SingularTangent> {
+    let mut by_configurations = vec![vec![[0.0; 3]; by_last.len()]; path.len()];
+    by_configurations[path.len() - 1] = by_last;
+    let mut sums = AdjointSums {
+        loads: vec![[0.0; 3]; sheet.sheet.panels.len()],
+        constants: vec![[0.0; 3]; sheet.sheet.hinges.len()],
+        residual: 0.0,
+    };
+    for (i, (step, mut by_q)) in std::iter::zip(path, by_configurations).enumerate() {
+        let is_read = by_path.iter().any(|hinge| hinge[i] != [0.0; 5]);
+        if !is_read && i + 1 < path.len() {
+            continue;
+        }
+        let hinges = || sheet.sheet.hinges.iter().enumerate();
+        let motions: Vec<HingeMotion> = hinges()
+            .map(|(h, _)| HingeMotion::new(sheet.sheet, h, &step.configuration))
+            .collect();
+        for (h, hinge) in hinges() {
+            let [a, s, theta, ..] = by_path[h][i];
+            add_at_hinge(&mut by_q, hinge, motions[h].forces([a, s, theta]));
+        }
+        let rhs = gather(&solver.free, &by_q);
+        let stroke = solver.drive.as_ref().map(|(stroke, _)| &**stroke);
+        let solution = (step.tangent.as_ref())
+            .and_then(|tangent| refined_solve(&solver.pattern, tangent, stroke, &rhs))
+            .filter(|solution| solution.error < SINGULAR)
+            .ok_or(SingularTangent {
+                load_factor: step.load_factor,
+            })?;
+        sums.residual = sums.residual.max(solution.error);
+        let lambda = spread(&solver.free, &solution.x);
+        for (sum, lambda) in std::iter::zip(&mut sums.loads, &lambda) {
+            (0..3).for_each(|d| sum[d] += step.load_factor * lambda[d]);
+        }
+        if let Some(stroke) = stroke {
+            let by_loads = stroke.by_loads(&solver.loads, &step.configuration);
+            for (sum, by_load) in std::iter::zip(&mut sums.loads, by_loads) {
+                (0..3).for_each(|d| sum[d] -= solution.mu * by_load[d]);
+            }
+        }
+        let energies = sheet.energies(&step.deformations, Order::Design);
+        for (h, hinge) in hinges() {
+            let virtual_motion = at_hinge(hinge, &lambda);
+            let (energy, rates) = (&energies[h], motions[h].rates(virtual_motion));
+            let against = |row: [f64; 3]| -> f64 {
+                std::iter::zip(row, rates)
+                    .map(|(entry, rate)| entry * rate)
+                    .sum()
+            };
+            let by_state = by_path[h][i];
+            let weights = std::array::from_fn(|c| by_state[c] - against(energy.tangent[c]));
+            let turning = motions[h].rates_geometry_gradient(energy.forces, virtual_motion);
+            let stretching = motions[h].geometry_gradient(weights);
+            let panels = [hinge.panel_a(), hinge.panel_b()];
+            add_geometry(by_sheet, h, panels, &stretching, 1.0);
+            add_geometry(by_sheet, h, panels, &turning, -1.0);
+            if sheet.law.has_constants() {
+                let eps = step.deformations[h].to_array();
+                (0..3).for_each(|c| sums.constants[h][c] -= eps[c] * rates[c]);
+            }
+            by_sheet.widths[h] += by_state[3] - against(energy.mixed.map(|row| row[0]));
+            by_sheet.alphas[h] += by_state[4] - against(energy.mixed.map(|row| row[1]));
+        }
+    }
+    Ok(sums)
+}
+
+fn add_geometry(
+    by_sheet: &mut SheetGradient,
+    hinge: usize,
+    [a, b]: [usize; 2],
+    gradient: &HingeGeometryGradient,
+    sign: f64,
+) {
+    let add_point = |sum: &mut [f64; 2], point| add(sum, sign * complex(point));
+    add_point(&mut by_sheet.attachments[hinge], gradient.attachment);
+    add_point(&mut by_sheet.centroids[a], gradient.centroid_a);
+    add_point(&mut by_sheet.centroids[b], gradient.centroid_b);
+    by_sheet.frame_angles[hinge] += sign * gradient.frame_angle;
+}

@@ -1,0 +1,138 @@
+//! Displacement control: the stroke of the loads is prescribed; the load factor is an unknown.
+//!
+//! The stroke c . q with c = f / F is the work of the full loads divided by the sum F of their magnitudes: for
+//! one pulled panel, the displacement along the pull. An equilibrium minimises U at given c . q, and zeta is the
+//! multiplier of that constraint, so the path can be followed past limit points of the load. Linear
+//! systems have the border c,
+//!
+//! ```text
+//! [ H   c ] [ x  ]   [ b ]          x = H^-1 b - mu y,   y = H^-1 c,
+//! [ c'  0 ] [ mu ] = [ d ]          mu = (c . H^-1 b - d) / (c . y)
+//! ```
+
+use crate::equilibrium::tangent::{Factor, TangentPattern};
+
+/// The direction c of the loads in the free degrees of freedom.
+#[derive(Clone, Debug)]
+pub(crate) struct Stroke {
+    direction: Vec<f64>,
+    /// F
+    size: f64,
+    /// Whether F is the sum of the forces; otherwise there are only couples, and F is their sum.
+    of_forces: bool,
+}
+
+impl Stroke {
+    /// The stroke of the loads (F_x, F_y, M), given in `loads` with three entries per panel, in the free degrees of
+    /// freedom; `None` without any load. If there are only couples, F is the sum of the couples and the
+    /// stroke is an angle.
+    pub fn new(loads: &[[f64; 3]], gathered: &[f64]) -> Option<Self> {
+        let forces: f64 = loads.iter().map(|[x, y, _]| x.hypot(*y)).sum();
+        let couples: f64 = loads.iter().map(|[_, _, m]| m.abs()).sum();
+        let of_forces = forces > 0.0;
+        let size = if of_forces { forces } else { couples };
+        (size > 0.0).then(|| Self {
+            direction: gathered.iter().map(|f| f / size).collect(),
+            size,
+            of_forces,
+        })
+    }
+
+    pub fn direction(&self) -> &[f64] {
+        &self.direction
+    }
+
+    /// The gradient of the stroke of a configuration with respect to the loads.
+    pub fn by_loads(&self, loads: &[[f64; 3]], configuration: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let work: f64 = std::iter::zip(loads.as_flattened(), configuration.as_flattened())
+            .map(|(f, q)| f * q)
+            .sum();
+        let stroke = work / self.size;
+        let by_load = |([x, y, m], q): (&[f64; 3], &[f64; 3])| {
+            let force = x.hypot(*y);
+            let by_size = match self.of_forces {
+                true if force > 0.0 => [x / force, y / force, 0.0],
+                true => [0.0; 3],
+                false => [0.0, 0.0, m.signum()],
+            };
+            std::array::from_fn(|d| (q[d] - stroke * by_size[d]) / self.size)
+        };
+        std::iter::zip(loads, configuration).map(by_load).collect()
+    }
+
+    /// A motion with the given stroke, used when no better prediction is known.
+    pub fn motion(&self, stroke: f64) -> Vec<f64> {
+        let square = dot(&self.direction, &self.direction);
+        self.direction.iter().map(|c| stroke * c / square).collect()
+    }
+}
+
+/// Factors of the tangent, with the border under displacement control.
+#[derive(Clone, Debug)]
+pub(crate) struct HeldFactor {
+    pub factor: Factor,
+    /// Whether the factors are those of a shifted tangent.
+    pub shifted: bool,
+    border: Option<Border>,
+}
+
+#[derive(Clone, Debug)]
+struct Border {
+    /// c
+    direction: Vec<f64>,
+    /// y
+    response: Vec<f64>,
+    /// c . y
+    compliance: f64,
+}
+
+impl HeldFactor {
+    /// `None` if the stroke cannot be prescribed.
+    pub fn new(pattern: &TangentPattern, factor: Factor, stroke: Option<&Stroke>) -> Option<Self> {
+        let border = stroke.map(|stroke| {
+            let mut response = stroke.direction.clone();
+            pattern.solve(&factor, &mut response);
+            Border {
+                compliance: dot(&stroke.direction, &response),
+                direction: stroke.direction.clone(),
+                response,
+            }
+        });
+        let regular = |border: &Border| border.compliance.is_finite() && border.compliance != 0.0;
+        border.as_ref().is_none_or(regular).then_some(Self {
+            factor,
+            shifted: false,
+            border,
+        })
+    }
+
+    /// Number of directions of negative curvature, at constant stroke if that is prescribed. The border adds one
+    /// negative pivot, or removes one if the force of the sheet decreases with the stroke.
+    pub fn unstable_directions(&self) -> usize {
+        let softening = (self.border.as_ref()).is_some_and(|border| border.compliance < 0.0);
+        (self.factor.negative_pivots).saturating_sub(usize::from(softening))
+    }
+
+    /// The x for the right-hand side `b` and d = 0.
+    pub fn solve(&self, pattern: &TangentPattern, b: &[f64]) -> Vec<f64> {
+        self.solve_bordered(pattern, b, 0.0).0
+    }
+
+    /// x and mu; mu is 0 under load control.
+    pub fn solve_bordered(&self, pattern: &TangentPattern, b: &[f64], d: f64) -> (Vec<f64>, f64) {
+        let mut x = b.to_vec();
+        pattern.solve(&self.factor, &mut x);
+        let Some(border) = &self.border else {
+            return (x, 0.0);
+        };
+        let mu = (dot(&border.direction, &x) - d) / border.compliance;
+        for (x, y) in std::iter::zip(&mut x, &border.response) {
+            *x -= mu * y;
+        }
+        (x, mu)
+    }
+}
+
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    std::iter::zip(a, b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,26 @@
+//! The sheet together with the stored energy of its hinges.
+
+use crate::hinge_law::{Contact, HingeEnergy, Order, PreparedLaw};
+use crate::sheet::cut_sheet::Sheet;
+use hinge::HingeDeformation;
+
+/// The sheet together with the energy of its hinges.
+#[derive(Clone, Copy)]
+pub struct HingedSheet<'a> {
+    pub sheet: &'a Sheet,
+    pub law: &'a dyn PreparedLaw,
+    pub contact: Option<&'a Contact>,
+    /// Whether gradients of the damage along the path are computed.
+    pub damage_gradient: bool,
+}
+
+impl HingedSheet<'_> {
+    /// Sum of the energies of law and contact.
+    pub fn energies(&self, deformations: &[HingeDeformation], order: Order) -> Vec<HingeEnergy> {
+        let mut energies = self.law.energies(deformations, order);
+        if let Some(contact) = self.contact {
+            contact.add(&mut energies, deformations);
+        }
+        energies
+    }
+}

@@ -1,0 +1,78 @@
+//! The memory of the L-BFGS method (Liu and Nocedal 1989): an approximation of the inverse Hessian from the
+//! last steps.
+
+use crate::equilibrium::displacement_control::dot;
+use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
+
+/// Maximum number of stored pairs of step and gradient change.
+const PAIRS: usize = 20;
+
+/// The last steps, newest first.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub(crate) struct Memory {
+    pairs: VecDeque<Pair>,
+}
+
+/// A step and the change of the gradient along it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Pair {
+    step: Vec<f64>,
+    change: Vec<f64>,
+    product: f64,
+}
+
+impl Memory {
+    /// Stores a step, unless its curvature is not positive.
+    pub(crate) fn remember(&mut self, step: Vec<f64>, change: Vec<f64>) {
+        let product = dot(&step, &change);
+        if product > 0.0 {
+            self.pairs.truncate(PAIRS - 1);
+            self.pairs.push_front(Pair {
+                step,
+                change,
+                product,
+            });
+        }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.pairs.is_empty()
+    }
+
+    /// Whether all stored pairs have `n` coordinates.
+    pub(crate) fn fits(&self, n: usize) -> bool {
+        let fits = |pair: &Pair| pair.step.len() == n && pair.change.len() == n;
+        self.pairs.iter().all(fits)
+    }
+
+    /// Minus the approximate inverse Hessian times the gradient (two-loop recursion); a step of
+    /// `first_length` along the negative gradient if the memory is empty.
+    pub(crate) fn direction(&self, gradient: &[f64], first_length: f64) -> Vec<f64> {
+        let mut direction: Vec<f64> = gradient.iter().map(|g| -g).collect();
+        let mut weights = Vec::with_capacity(self.pairs.len());
+        for pair in &self.pairs {
+            let weight = dot(&pair.step, &direction) / pair.product;
+            add(&mut direction, &pair.change, -weight);
+            weights.push(weight);
+        }
+        let size = match self.pairs.front() {
+            Some(last) => last.product / dot(&last.change, &last.change),
+            // A zero gradient has no direction.
+            None => first_length / dot(gradient, gradient).sqrt().max(f64::MIN_POSITIVE),
+        };
+        direction.iter_mut().for_each(|d| *d *= size);
+        for (pair, weight) in std::iter::zip(&self.pairs, weights).rev() {
+            let along = dot(&pair.change, &direction) / pair.product;
+            add(&mut direction, &pair.step, weight - along);
+        }
+        direction
+    }
+}
+
+/// sum += weight * vector
+fn add(sum: &mut [f64], vector: &[f64], weight: f64) {
+    std::iter::zip(sum, vector).for_each(|(sum, v)| *sum += weight * v);
+}

@@ -1,0 +1,135 @@
+//! The state of the sheet at one step of the equilibrium path, and how it was found.
+
+use crate::equilibrium::displacement_control::HeldFactor;
+use crate::equilibrium::hinged_sheet::HingedSheet;
+use crate::equilibrium::potential::State;
+use crate::equilibrium::solver::EquilibriumSolver;
+use crate::hinge_law::HingeDamage;
+use crate::sheet::cut_sheet::Sheet;
+use crate::sheet::kinematics::{Configuration, hinge_deformations};
+use hinge::HingeDeformation;
+use serde::Serialize;
+
+/// How a load step ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Status {
+    /// A stable equilibrium to the tolerance, or to the rounding error of hinges that are stiff relative to the
+    /// load, inside the domain of the hinge law.
+    Converged,
+    /// A stable equilibrium with hinges outside the domain of the hinge law.
+    LeftDomain,
+    /// The residual stagnated between the two tolerances, or the state is stationary but its tangent is
+    /// singular.
+    Almost,
+    /// The path ended before this step and the sheet jumped to this stable equilibrium: at a limit point
+    /// of the load, or of the stroke under displacement control.
+    LimitPoint,
+    /// No equilibrium was found: this is the last one found before, and the path ends.
+    Diverged,
+}
+
+/// The state at one load factor.
+#[derive(Clone, Debug)]
+pub struct LoadStep {
+    /// zeta: i/N, or under displacement control the multiplier of the stroke.
+    pub load_factor: f64,
+    pub configuration: Configuration,
+    /// (8) per hinge.
+    pub deformations: Vec<HingeDeformation>,
+    /// W + contact per hinge (N mm).
+    pub energies: Vec<f64>,
+    /// The predicted damage (12) per hinge; empty if the law predicts none.
+    pub damage: Vec<HingeDamage>,
+    /// Pi of (10) (N mm).
+    pub potential: f64,
+    pub status: Status,
+    /// Maximum unbalanced force, relative to the maximum force.
+    pub residual: f64,
+    /// The part of the residual that rounding can cause: below it no state is closer to equilibrium.
+    pub rounding: f64,
+    /// Newton iterations, summed over all increments.
+    pub iterations: usize,
+    /// Number of pivots of the tangent that are not positive: 0 in a state that is stable under dead loads, and
+    /// where `pivot_ratio` is 0. Under displacement control past a limit point of the load it is 1.
+    pub negative_pivots: usize,
+    /// Minimum ratio of a pivot of the tangent to its diagonal entry: small near a singular tangent, 0 if
+    /// the tangent could not be factorised.
+    pub pivot_ratio: f64,
+    /// Whether each hinge is inside the domain of the hinge law.
+    pub inside: Vec<bool>,
+    /// H at the configuration, with its factors, for the adjoint.
+    pub(crate) tangent: Option<StepTangent>,
+}
+
+/// H at an equilibrium.
+#[derive(Clone, Debug)]
+pub(crate) struct StepTangent {
+    pub values: Vec<f64>,
+    /// `None` if it is singular.
+    pub factor: Option<HeldFactor>,
+}
+
+impl LoadStep {
+    /// Estimate of the condition number of the tangent in the 1-norm, scaled to a unit diagonal so
+    /// that it does not depend on units; infinite if the tangent could not be factorised.
+    pub fn condition(&self, solver: &EquilibriumSolver) -> f64 {
+        match &self.tangent {
+            Some(StepTangent {
+                values,
+                factor: Some(held),
+            }) => solver.pattern.condition(values, &held.factor),
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// The ideal deployment as a path of one step, without energy and without unbalanced forces.
+    pub(crate) fn ideal(sheet: &Sheet, configuration: Configuration) -> Self {
+        let hinges = sheet.hinges.len();
+        Self {
+            load_factor: 1.0,
+            deformations: hinge_deformations(sheet, &configuration),
+            configuration,
+            energies: vec![0.0; hinges],
+            damage: Vec::new(),
+            potential: 0.0,
+            status: Status::Converged,
+            residual: 0.0,
+            rounding: 0.0,
+            iterations: 0,
+            negative_pivots: 0,
+            pivot_ratio: 1.0,
+            inside: vec![true; hinges],
+            tangent: None,
+        }
+    }
+
+    pub(crate) fn new(
+        sheet: HingedSheet,
+        state: State,
+        [work, held]: [f64; 2],
+        tangent: Option<StepTangent>,
+        status: Status,
+        iterations: usize,
+    ) -> Self {
+        let deformations = state.deformations();
+        let factor = tangent.as_ref().and_then(|tangent| tangent.factor.as_ref());
+        let factor = factor.map(|held| &held.factor);
+        Self {
+            load_factor: state.load_factor,
+            inside: sheet.law.inside(&deformations),
+            damage: sheet.law.damage(&deformations, sheet.damage_gradient),
+            deformations,
+            energies: state.energies.iter().map(|energy| energy.w).collect(),
+            potential: state.stored - held - state.load_factor * work,
+            status,
+            residual: state.residual,
+            rounding: state.rounding,
+            iterations,
+            negative_pivots: factor.map_or(0, |factor| factor.negative_pivots),
+            pivot_ratio: factor.map_or(0.0, |factor| factor.pivot_ratio),
+            configuration: state.configuration,
+            tangent,
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! Minimisation of the potential (10) at one load factor by a damped Newton method.
+//!
+//! With S the diagonal of the tangent at the start, a step solves (H + sigma S) d = -grad Pi with the
+//! smallest tested sigma that makes the matrix positive definite. It is shortened until the rotations are
+//! moderate, and accepted if Pi decreases by a fraction of the predicted decrease.
+//!
+//! If hinges are much stiffer in translation than in rotation, a step along the mechanism stretches
+//! them to second order. The forces f of that stretch are large, vanish with the next step, and would
+//! corrupt the geometric part f . d2(eps) of H. That part therefore uses the forces predicted by their rates
+//! (Magisano, Leonetti and Garcea 2017), until the state is stationary or no descent step is found.
+
+use crate::equilibrium::displacement_control::{HeldFactor, dot};
+use crate::equilibrium::potential::{Potential, State, moved};
+use crate::equilibrium::settings::SolverSettings;
+use crate::sheet::kinematics::Configuration;
+use crate::sheet::panel_vectors::spread;
+
+/// Maximum length of a step: rotations in rad, hinge translations in panel sizes.
+const LONGEST_STEP: f64 = 0.5;
+/// Fraction of the predicted decrease of Pi that a step must achieve.
+const SUFFICIENT_FALL: f64 = 1e-4;
+/// Factor by which a rejected step is shortened.
+const STEP_CUT: f64 = 0.25;
+/// Steps shorter than this fraction of the Newton step are abandoned.
+const SHORTEST_FRACTION: f64 = 1e-9;
+/// First sigma, its growth factor, and its maximum.
+const SHIFTS: [f64; 3] = [1e-8, 8.0, 1e8];
+/// Curvature relative to S below which a direction is considered unstable.
+const NEGATIVE_CURVATURE: f64 = -1e-11;
+/// Change of Pi, relative to the sum of the magnitudes of its terms, below which it may be rounding error: a
+/// learned energy is a difference of much larger numbers.
+pub(crate) const LEVEL: f64 = 1e-9;
+
+/// Result of a minimisation.
+pub(crate) struct Minimum {
+    pub state: State,
+    pub tangent: Vec<f64>,
+    /// `None` if the tangent is singular.
+    pub factor: Option<HeldFactor>,
+    pub iterations: usize,
+    /// Whether the tangent was indefinite at any iteration.
+    pub unstable: bool,
+}
+
+/// A minimisation that found no minimum.
+pub(crate) struct Failure {
+    pub residual: f64,
+    pub iterations: usize,
+}
+
+impl Potential<'_> {
+    /// A minimum near `start`; `forces` are the predicted hinge forces there.
+    pub fn minimise(
+        &self,
+        start: Configuration,
+        forces: Vec<[f64; 3]>,
+        settings: &SolverSettings,
+    ) -> Result<Minimum, Failure> {
+        let mut state = self.state(start).ok_or(Failure {
+            residual: f64::INFINITY,
+            iterations: 0,
+        })?;
+        state.expected = Some(forces);
+        let (mut scale, mut memory) = (None, Vec::new());
+        let (mut longest, mut unstable) = (LONGEST_STEP, false);
+        for iterations in 0..settings.max_iterations {
+            let stationary = state.is_balanced(settings.tolerance);
+            if stationary {
+                state.expected = None;
+            }
+            let tangent = self.tangent(&state);
+            let scale = scale.get_or_insert_with(|| self.pattern.shift_scale(&tangent));
+            let factor = self.factorise(&tangent, std::mem::take(&mut memory));
+            let stable = factor
+                .as_ref()
+                .filter(|factor| factor.unstable_directions() == 0);
+            unstable |= stable.is_none();
+            let next = match stable {
+                Some(_) if stationary => None,
+                Some(factor) => self.step(&state, factor, &mut longest, settings),
+                None if stationary => self.escape(&state, &tangent, scale),
+                None => self
+                    .shifted_factor(&tangent, scale)
+                    .and_then(|factor| self.step(&state, &factor, &mut longest, settings)),
+            };
+            let residual = state.residual;
+            match next {
+                Some(next) => state = next,
+                None if state.expected.is_some() => state.expected = None,
+                None if stationary || residual <= settings.loose_tolerance => {
+                    return Ok(Minimum {
+                        state,
+                        tangent,
+                        factor,
+                        iterations,
+                        unstable,
+                    });
+                }
+                None => {
+                    return Err(Failure {
+                        residual,
+                        iterations,
+                    });
+                }
+            }
+            memory = factor.map_or(Vec::new(), |held| held.factor.values);
+        }
+        Err(Failure {
+            residual: state.residual,
+            iterations: settings.max_iterations,
+        })
+    }
+
+    /// The state after a damped Newton step; `None` if no state along it is better, or if the
+    /// residual is small and no longer halves. `longest` is the maximum step length (see
+    /// [`length`](Self::length)), adapted after every step.
+    fn step(
+        &self,
+        state: &State,
+        factor: &HeldFactor,
+        longest: &mut f64,
+        settings: &SolverSettings,
+    ) -> Option<State> {
+        let downhill: Vec<f64> = state.gradient.iter().map(|g| -g).collect();
+        let direction = factor.solve(self.pattern, &downhill);
+        let slope = dot(&state.gradient, &direction);
+        let motion = spread(self.free, &direction);
+        let length = self.length(state, &motion);
+        let mut fraction = (*longest / length).min(1.0);
+        while fraction > SHORTEST_FRACTION {
+            if let Some(mut next) = self.moved(state, &motion, fraction) {
+                let fall = state.potential - next.potential;
+                let predicted = -slope * fraction * (1.0 - 0.5 * fraction);
+                // If the change of Pi is lost in rounding, its slope along the step is still accurate.
+                let level = fall.abs() <= LEVEL * state.magnitude
+                    && dot(&next.gradient, &direction).abs() <= 0.5 * slope.abs();
+                if fall >= SUFFICIENT_FALL * predicted || level {
+                    *longest = LONGEST_STEP.min(2.0 * fraction * length).max(*longest);
+                    // Near a saddle point the residual grows before it decreases.
+                    let progress = factor.shifted
+                        || state.residual > settings.loose_tolerance
+                        || next.residual <= 0.5 * state.residual;
+                    let rates = self.force_rates(state, &motion);
+                    next.expected = Some(moved(&state.forces(), &rates, fraction));
+                    return progress.then_some(next);
+                }
+            }
+            fraction *= STEP_CUT;
+            *longest = fraction * length;
+        }
+        None
+    }
+
+    /// The factors of the tangent, stored in `memory` of earlier factors, with the border under displacement
+    /// control.
+    pub fn factorise(&self, tangent: &[f64], memory: Vec<f64>) -> Option<HeldFactor> {
+        let factor = self.pattern.factorise(tangent, memory)?;
+        HeldFactor::new(self.pattern, factor, self.control.stroke())
+    }
+
+    /// H + sigma S, positive definite; `None` if no sigma up to the maximum makes it so.
+    fn shifted_factor(&self, tangent: &[f64], scale: &[f64]) -> Option<HeldFactor> {
+        let [mut shift, growth, maximum] = SHIFTS;
+        while shift <= maximum {
+            let shifted = self
+                .pattern
+                .shifted(tangent, scale.iter().map(|entry| shift * entry));
+            match self.factorise(&shifted, Vec::new()) {
+                Some(mut factor) if factor.unstable_directions() == 0 => {
+                    factor.shifted = true;
+                    return Some(factor);
+                }
+                _ => shift *= growth,
+            }
+        }
+        None
+    }
+
+    /// A state of lower energy near a stationary point that is no minimum, along the direction of the most
+    /// negative curvature, found by inverse iteration.
+    fn escape(&self, state: &State, tangent: &[f64], scale: &[f64]) -> Option<State> {
+        let factor = self.shifted_factor(tangent, scale)?;
+        // A start vector that no symmetry of the sheet makes orthogonal to the direction.
+        let mut direction: Vec<f64> = (1..=scale.len()).map(|i| (i as f64).sqrt().sin()).collect();
+        for _ in 0..20 {
+            for (component, scale) in std::iter::zip(&mut direction, scale) {
+                *component *= scale;
+            }
+            direction = factor.solve(self.pattern, &direction);
+            let norm = dot(&direction, &direction).sqrt();
+            direction
+                .iter_mut()
+                .for_each(|component| *component /= norm);
+        }
+        let (product, _) = self.pattern.product(tangent, &direction);
+        let size: f64 = std::iter::zip(&direction, scale)
+            .map(|(d, s)| d * d * s)
+            .sum();
+        if dot(&direction, &product) >= NEGATIVE_CURVATURE * size {
+            return None;
+        }
+        let motion = spread(self.free, &direction);
+        let mut fraction = 0.1 / self.length(state, &motion);
+        for _ in 0..20 {
+            let beside = [fraction, -fraction].map(|f| self.moved(state, &motion, f));
+            let lowest = beside
+                .into_iter()
+                .flatten()
+                .min_by(|a, b| a.potential.total_cmp(&b.potential))
+                .filter(|beside| beside.potential < state.potential);
+            if lowest.is_some() {
+                return lowest;
+            }
+            fraction *= STEP_CUT;
+        }
+        None
+    }
+}

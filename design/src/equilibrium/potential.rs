@@ -1,0 +1,259 @@
+//! The potential (10) of a configuration at one point of the path, with its first two derivatives.
+//!
+//! Under load control the load factor zeta is given. Under displacement control the stroke c . q of the loads
+//! is prescribed, c being their direction, and zeta is the multiplier with the smallest residual,
+//!
+//! ```text
+//! min |grad U - zeta f|     over zeta; moments are divided by the size of a panel
+//! ```
+//!
+//! The minimised function is then U alone, because the work of the loads is the same in every configuration with
+//! that stroke. If there are loads held constant, U contains their work with negative sign.
+
+use crate::equilibrium::displacement_control::Stroke;
+use crate::equilibrium::hinged_sheet::HingedSheet;
+use crate::equilibrium::tangent::TangentPattern;
+use crate::hinge_law::{HingeEnergy, Order};
+use crate::sheet::kinematics::{Configuration, HingeMotion};
+use crate::sheet::panel_vectors::{add_at_hinge, at_hinge, gather, spread};
+use hinge::HingeDeformation;
+
+/// The potential (10) at one point of the path.
+pub(crate) struct Potential<'a> {
+    pub sheet: HingedSheet<'a>,
+    pub pattern: &'a TangentPattern,
+    /// Indices of the free degrees of freedom.
+    pub free: &'a [Option<usize>],
+    pub control: Control<'a>,
+    /// Size of a panel, by which moments are divided (mm).
+    pub panel_size: f64,
+    /// (F_x, F_y, M) per panel at zeta = 1.
+    pub loads: &'a [[f64; 3]],
+    /// Loads that do not depend on zeta.
+    pub held: &'a [[f64; 3]],
+    /// Lower bound of the force that residuals are relative to (N): if the path passes a state without forces,
+    /// the force of the states before.
+    pub force: f64,
+}
+
+/// Maximum number of hinges of a panel, whose rounding errors add up.
+const HINGES_OF_A_PANEL: f64 = 4.0;
+
+/// The controlled quantity.
+#[derive(Clone, Copy)]
+pub(crate) enum Control<'a> {
+    /// zeta
+    Load(f64),
+    /// The stroke of the loads.
+    Stroke(&'a Stroke),
+}
+
+/// The potential and its first derivatives at a configuration.
+pub(crate) struct State {
+    pub configuration: Configuration,
+    pub motions: Vec<HingeMotion>,
+    pub energies: Vec<HingeEnergy>,
+    /// zeta
+    pub load_factor: f64,
+    /// Energy of the hinges.
+    pub stored: f64,
+    /// The minimised function: Pi, or U under displacement control, minus the work of the loads held constant.
+    pub potential: f64,
+    /// Sum of the magnitudes of the terms of `potential`.
+    pub magnitude: f64,
+    /// Hinge forces predicted by their rates, if they shall replace the actual ones in the part
+    /// f . d2(eps) of the tangent.
+    pub expected: Option<Vec<[f64; 3]>>,
+    /// d Pi / d q over the free degrees of freedom.
+    pub gradient: Vec<f64>,
+    /// Maximum unbalanced force, relative to `force`.
+    pub residual: f64,
+    /// Maximum unbalanced force caused by the rounding of hinge deformations, relative to `force`.
+    pub rounding: f64,
+    /// The maximum force (N).
+    pub force: f64,
+}
+
+impl State {
+    /// Whether the residual is within the tolerance or the rounding error.
+    pub fn is_balanced(&self, tolerance: f64) -> bool {
+        self.residual <= tolerance.max(self.rounding)
+    }
+
+    /// (F_a, F_s, M_theta) per hinge.
+    pub fn forces(&self) -> Vec<[f64; 3]> {
+        self.energies.iter().map(|energy| energy.forces).collect()
+    }
+
+    pub fn deformations(&self) -> Vec<HingeDeformation> {
+        self.motions.iter().map(HingeMotion::deformation).collect()
+    }
+}
+
+impl Control<'_> {
+    /// The stroke, if it is prescribed.
+    pub fn stroke(&self) -> Option<&Stroke> {
+        match self {
+            Self::Load(_) => None,
+            Self::Stroke(stroke) => Some(stroke),
+        }
+    }
+}
+
+impl Potential<'_> {
+    /// The state with all that the tangent needs; `None` if the potential is not finite.
+    pub fn state(&self, configuration: Configuration) -> Option<State> {
+        self.state_up_to(configuration, Order::Tangent)
+    }
+
+    /// The state with the derivatives of the hinge energies up to `order`, at least the forces.
+    pub fn state_up_to(&self, configuration: Configuration, order: Order) -> Option<State> {
+        let sheet = self.sheet.sheet;
+        let motions: Vec<HingeMotion> = (0..sheet.hinges.len())
+            .map(|hinge| HingeMotion::new(sheet, hinge, &configuration))
+            .collect();
+        let deformations: Vec<HingeDeformation> =
+            motions.iter().map(HingeMotion::deformation).collect();
+        let energies = self.sheet.energies(&deformations, order);
+
+        let mut inner = vec![[0.0; 3]; configuration.len()];
+        for ((hinge, motion), energy) in sheet.hinges.iter().zip(&motions).zip(&energies) {
+            add_at_hinge(&mut inner, hinge, motion.forces(energy.forces));
+        }
+        for (inner, held) in std::iter::zip(inner.as_flattened_mut(), self.held.as_flattened()) {
+            *inner -= held;
+        }
+        let (load_factor, worked) = match self.control {
+            Control::Load(zeta) => (zeta, zeta),
+            Control::Stroke(_) => (self.multiplier(&inner), 0.0),
+        };
+        let unbalanced: Vec<[f64; 3]> = std::iter::zip(&inner, self.loads)
+            .map(|(inner, load)| std::array::from_fn(|d| inner[d] - load_factor * load[d]))
+            .collect();
+        let works = (self.loads.as_flattened().iter())
+            .zip(self.held.as_flattened())
+            .zip(configuration.as_flattened())
+            .map(|((load, held), u)| -(worked * load + held) * u);
+        let terms = energies.iter().map(|energy| energy.w).chain(works);
+        let gradient = gather(self.free, &unbalanced);
+        let left = self.greatest(spread(self.free, &gradient).into_iter());
+        let held = self.greatest(self.held.iter().copied());
+        let loads = held + load_factor.abs() * self.greatest(self.loads.iter().copied());
+        let hinges = self.greatest(energies.iter().map(|energy| energy.forces));
+        let force = self.force.max(loads).max(hinges);
+        let over_force = |unbalanced: f64| match unbalanced {
+            0.0 => 0.0,
+            _ => unbalanced / force,
+        };
+        let state = State {
+            stored: energies.iter().map(|energy| energy.w).sum(),
+            potential: terms.clone().sum(),
+            magnitude: terms.map(f64::abs).sum(),
+            residual: over_force(left),
+            rounding: over_force(self.rounding(&motions, &energies)),
+            force,
+            expected: None,
+            gradient,
+            load_factor,
+            configuration,
+            motions,
+            energies,
+        };
+        let finite = state.potential.is_finite() && state.gradient.iter().all(|g| g.is_finite());
+        finite.then_some(state)
+    }
+
+    /// The maximum force on a panel that the rounding of kinematics and hinge law causes (N).
+    fn rounding(&self, motions: &[HingeMotion], energies: &[HingeEnergy]) -> f64 {
+        let resolution = self.sheet.law.resolution();
+        let hinges = self.sheet.sheet.hinges.iter().zip(motions).zip(energies);
+        HINGES_OF_A_PANEL
+            * self.greatest(hinges.map(|((hinge, motion), energy)| {
+                let [length, angle] = motion.rounding();
+                let length = length + resolution * hinge.w_lig;
+                let deformation = [length, length, angle + resolution];
+                std::array::from_fn(|c| energy.tangent[c][c].abs() * deformation[c])
+            }))
+    }
+
+    /// The zeta with the smallest residual.
+    fn multiplier(&self, inner: &[[f64; 3]]) -> f64 {
+        let arm = 1.0 / (self.panel_size * self.panel_size);
+        let product = |[x, y, m]: [f64; 3], [fx, fy, fm]: [f64; 3]| x * fx + y * fy + arm * m * fm;
+        let (mut along, mut square) = (0.0, 0.0);
+        for (&inner, &load) in std::iter::zip(inner, self.loads) {
+            along += product(inner, load);
+            square += product(load, load);
+        }
+        along / square
+    }
+
+    /// Maximum of forces and moments, as a force (N).
+    pub fn greatest(&self, forces: impl Iterator<Item = [f64; 3]>) -> f64 {
+        forces
+            .map(|[x, y, moment]| (x * x + y * y).sqrt().max(moment.abs() / self.panel_size))
+            .fold(0.0, f64::max)
+    }
+
+    /// H of (20); away from an equilibrium with the predicted hinge forces.
+    pub fn tangent(&self, state: &State) -> Vec<f64> {
+        let hinges = state.motions.iter().zip(&state.energies).enumerate();
+        self.pattern.assemble(hinges.map(|(h, (motion, energy))| {
+            let forces = (state.expected.as_ref()).map_or(energy.forces, |expected| expected[h]);
+            motion.stiffness(&energy.tangent, forces)
+        }))
+    }
+
+    /// The rates of the hinge forces under a motion of all panels.
+    pub fn force_rates(&self, state: &State, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let hinges = state.motions.iter().zip(&state.energies);
+        std::iter::zip(&self.sheet.sheet.hinges, hinges)
+            .map(|(hinge, (hinge_motion, energy))| {
+                let rates = hinge_motion.rates(at_hinge(hinge, motion));
+                let along = |row: [f64; 3]| std::iter::zip(row, rates).map(|(k, e)| k * e).sum();
+                energy.tangent.map(along)
+            })
+            .collect()
+    }
+
+    /// H times a motion of all panels, including the supported ones.
+    pub fn resistance(&self, state: &State, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let mut forces = vec![[0.0; 3]; motion.len()];
+        let hinges = std::iter::zip(&state.motions, &state.energies);
+        for (hinge, (hinge_motion, energy)) in std::iter::zip(&self.sheet.sheet.hinges, hinges) {
+            let motions = at_hinge(hinge, motion);
+            let force = hinge_motion
+                .stiffness(&energy.tangent, energy.forces)
+                .map(|row| std::iter::zip(row, motions).map(|(k, q)| k * q).sum());
+            add_at_hinge(&mut forces, hinge, force);
+        }
+        forces
+    }
+
+    pub fn moved(&self, state: &State, motion: &[[f64; 3]], fraction: f64) -> Option<State> {
+        self.state(moved(&state.configuration, motion, fraction))
+    }
+
+    /// Maximum panel rotation (rad) or hinge translation (panel sizes) of a motion.
+    pub fn length(&self, state: &State, motion: &[[f64; 3]]) -> f64 {
+        std::iter::zip(&self.sheet.sheet.hinges, &state.motions)
+            .map(|(hinge, hinge_motion)| {
+                let motions = at_hinge(hinge, motion);
+                let [along, across, _] = hinge_motion.rates(motions);
+                let translation = (along * along + across * across).sqrt() / self.panel_size;
+                translation.max(motions[2].abs()).max(motions[5].abs())
+            })
+            .fold(0.0, f64::max)
+    }
+}
+
+/// The configuration after a fraction of a motion.
+pub(crate) fn moved(
+    configuration: &[[f64; 3]],
+    motion: &[[f64; 3]],
+    fraction: f64,
+) -> Configuration {
+    std::iter::zip(configuration, motion)
+        .map(|(q, d)| std::array::from_fn(|c| q[c] + fraction * d[c]))
+        .collect()
+}

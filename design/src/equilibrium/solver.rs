@@ -1,0 +1,172 @@
+//! The equilibrium problem of the sheet under dead loads (10), along the load factors zeta_i = i/N:
+//!
+//! ```text
+//! min over q of  Pi(q) = sum_h W(eps_h(q); g_h) - zeta sum_k (F_k . u_k + M_k phi_k)
+//! ```
+//!
+//! If the path follows another, minus the work of the loads held constant.
+
+use crate::equilibrium::displacement_control::Stroke;
+use crate::equilibrium::settings::SolverSettings;
+use crate::equilibrium::supports::{Dof, Load, Support};
+use crate::equilibrium::tangent::{TangentPattern, elimination_order};
+use crate::pattern::grid::Grid;
+use crate::sheet::panel_vectors::gather;
+
+/// Supports, loads or settings that do not define an equilibrium problem.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EquilibriumError {
+    #[error("{what} on panel {panel}: the panels of the sheet are 0..{panels}")]
+    NoSuchPanel {
+        what: &'static str,
+        panel: usize,
+        panels: usize,
+    },
+    #[error("{what} of {value} on panel {panel} is not a finite number")]
+    NotFinite {
+        what: &'static str,
+        panel: usize,
+        value: f64,
+    },
+    #[error("{dof:?} of panel {panel} is supported twice")]
+    SupportedTwice { panel: usize, dof: Dof },
+    #[error(
+        "panel {panel} is loaded in {dof:?}, where it is supported: loads act on free degrees of freedom"
+    )]
+    LoadOnSupport { panel: usize, dof: Dof },
+    #[error(
+        "the supports leave the sheet free to move as a rigid body: support at least three \
+         degrees of freedom, such as one clamp or a pin and a roller"
+    )]
+    Unsupported,
+    #[error("the stroke {0} mm is not a finite number")]
+    Stroke(f64),
+    #[error("displacement control needs a load, whose stroke is prescribed")]
+    NothingDrives,
+    #[error("{0} load steps: use at least 1")]
+    NoSteps(usize),
+    #[error(
+        "solver settings {0:?} violate 0 < tolerance <= loose_tolerance < 1, max_iterations >= 1, \
+         max_halvings <= 30, least_leap > 0"
+    )]
+    Settings(SolverSettings),
+}
+
+/// Supports and loads of a sheet, with everything that depends on its topology alone.
+#[derive(Debug)]
+pub struct EquilibriumSolver {
+    pub(crate) grid: Grid,
+    pub(crate) settings: SolverSettings,
+    pub(crate) steps: usize,
+    /// Indices of the free degrees of freedom, three entries per panel.
+    pub(crate) free: Box<[Option<usize>]>,
+    /// Prescribed motions at full load.
+    pub(crate) supports: Box<[Support]>,
+    /// (F_x, F_y, M) per panel at full load.
+    pub(crate) loads: Box<[[f64; 3]]>,
+    /// Loads held constant from the beginning of the path.
+    pub(crate) held: Box<[[f64; 3]]>,
+    /// Under displacement control, the direction of the stroke and its value at full load.
+    pub(crate) drive: Option<(Box<Stroke>, f64)>,
+    /// Boxed because it is much larger than the other fields.
+    pub(crate) pattern: Box<TangentPattern>,
+}
+
+impl EquilibriumSolver {
+    /// Equilibria at the load factors i/steps, i = 1..=steps.
+    pub fn new(
+        grid: Grid,
+        supports: &[Support],
+        loads: &[Load],
+        steps: usize,
+        settings: SolverSettings,
+    ) -> Result<Self, EquilibriumError> {
+        if steps == 0 {
+            return Err(EquilibriumError::NoSteps(steps));
+        }
+        if !settings.are_valid() {
+            return Err(EquilibriumError::Settings(settings));
+        }
+        let check = |what, panel, value: f64| {
+            let panels = grid.panel_count();
+            if panel >= panels {
+                return Err(EquilibriumError::NoSuchPanel {
+                    what,
+                    panel,
+                    panels,
+                });
+            }
+            if !value.is_finite() {
+                return Err(EquilibriumError::NotFinite { what, panel, value });
+            }
+            Ok(())
+        };
+        let mut supported = vec![[false; 3]; grid.panel_count()];
+        for &Support { panel, dof, value } in supports {
+            check("a support", panel, value)?;
+            if std::mem::replace(&mut supported[panel][dof.index()], true) {
+                return Err(EquilibriumError::SupportedTwice { panel, dof });
+            }
+        }
+        let mut total = vec![[0.0; 3]; grid.panel_count()];
+        for &Load { panel, dof, value } in loads {
+            check("a load", panel, value)?;
+            if supported[panel][dof.index()] {
+                return Err(EquilibriumError::LoadOnSupport { panel, dof });
+            }
+            total[panel][dof.index()] += value;
+        }
+        if !holds_rigid_body(grid, supports) {
+            return Err(EquilibriumError::Unsupported);
+        }
+        let free = elimination_order(grid, supported.as_flattened());
+        Ok(Self {
+            grid,
+            settings,
+            steps,
+            pattern: Box::new(TangentPattern::new(grid, &free)),
+            free: free.into(),
+            supports: supports.into(),
+            held: vec![[0.0; 3]; total.len()].into(),
+            loads: total.into(),
+            drive: None,
+        })
+    }
+
+    /// The same supports and loads under displacement control: the load factors follow from the strokes
+    /// i/steps of `stroke` (mm), the work of the full loads divided by the sum of their magnitudes.
+    pub fn driven(mut self, stroke: f64) -> Result<Self, EquilibriumError> {
+        if !stroke.is_finite() {
+            return Err(EquilibriumError::Stroke(stroke));
+        }
+        let direction = Stroke::new(&self.loads, &gather(&self.free, &self.loads));
+        let direction = direction.ok_or(EquilibriumError::NothingDrives)?;
+        self.drive = Some((Box::new(direction), stroke));
+        Ok(self)
+    }
+}
+
+/// Whether the supports prevent the three rigid motions of the sheet, tested on the panel grid.
+fn holds_rigid_body(grid: Grid, supports: &[Support]) -> bool {
+    let rows = supports.iter().map(|support| {
+        let (x, y) = (support.panel % grid.m, support.panel / grid.m);
+        match support.dof {
+            Dof::UX => [1.0, 0.0, -(y as f64)],
+            Dof::UY => [0.0, 1.0, x as f64],
+            Dof::Phi => [0.0, 0.0, 1.0],
+        }
+    });
+    let mut gram = [[0.0; 3]; 3];
+    for row in rows {
+        for i in 0..3 {
+            for j in 0..3 {
+                gram[i][j] += row[i] * row[j];
+            }
+        }
+    }
+    let minor = |i: usize, j: usize| gram[1][i] * gram[2][j] - gram[1][j] * gram[2][i];
+    let determinant =
+        gram[0][0] * minor(1, 2) - gram[0][1] * minor(0, 2) + gram[0][2] * minor(0, 1);
+    // The entries are integers: a regular matrix has a determinant of magnitude one or more.
+    determinant > 0.5
+}

@@ -1,0 +1,107 @@
+//! Convex polygons, counter-clockwise: clipping, distances, intersections.
+
+/// The intersection of two convex polygons.
+pub fn common(polygon: &[[f64; 2]], other: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    edges(other).fold(polygon.to_vec(), |part, (p, q)| {
+        let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
+        clip(&part, |[x, y]| dy * (x - p[0]) - dx * (y - p[1]))
+    })
+}
+
+/// Area of any simple polygon, negative if it is clockwise (mm^2).
+pub fn area(polygon: &[[f64; 2]]) -> f64 {
+    let twice: f64 = edges(polygon).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum();
+    0.5 * twice
+}
+
+/// The part of a convex polygon in which the linear function `height` is negative.
+pub fn clip(polygon: &[[f64; 2]], height: impl Fn([f64; 2]) -> f64) -> Vec<[f64; 2]> {
+    let mut kept = Vec::new();
+    for (p, q) in edges(polygon) {
+        let (below_p, below_q) = (height(p), height(q));
+        if below_p <= 0.0 {
+            kept.push(p);
+        }
+        if (below_p <= 0.0) != (below_q <= 0.0) {
+            let f = below_p / (below_p - below_q);
+            kept.push([p[0] + f * (q[0] - p[0]), p[1] + f * (q[1] - p[1])]);
+        }
+    }
+    kept
+}
+
+/// Whether a convex counter-clockwise polygon contains a point; its border belongs to it.
+pub fn contains(polygon: &[[f64; 2]], point: [f64; 2]) -> bool {
+    edges(polygon).all(|(p, q)| {
+        let (d, e) = (
+            [q[0] - p[0], q[1] - p[1]],
+            [point[0] - p[0], point[1] - p[1]],
+        );
+        let rounding = 1e-9 * (d[0] * d[0] + d[1] * d[1]);
+        d[0] * e[1] - d[1] * e[0] >= -rounding
+    })
+}
+
+/// Distance from a point to a convex counter-clockwise polygon; infinite if it is empty (mm).
+pub fn distance_to_polygon(point: [f64; 2], polygon: &[[f64; 2]]) -> f64 {
+    if !polygon.is_empty() && contains(polygon, point) {
+        return 0.0;
+    }
+    edges(polygon)
+        .map(|(p, q)| distance_to_segment(point, p, q))
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Distance from a point to the segment from `a` to `b` (mm).
+pub fn distance_to_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+    let [x, y] = nearest_on_segment(point, a, b);
+    f64::hypot(point[0] - x, point[1] - y)
+}
+
+/// The point of the segment from `a` to `b` nearest to `point`.
+pub fn nearest_on_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    let (d, e) = (
+        [b[0] - a[0], b[1] - a[1]],
+        [point[0] - a[0], point[1] - a[1]],
+    );
+    let square = d[0] * d[0] + d[1] * d[1];
+    let along = if square > 0.0 {
+        ((d[0] * e[0] + d[1] * e[1]) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    [a[0] + along * d[0], a[1] + along * d[1]]
+}
+
+/// The point on the border of a closed polygon nearest to `point`.
+pub fn nearest_on_outline(point: [f64; 2], polygon: &[[f64; 2]]) -> [f64; 2] {
+    let squared = |[x, y]: [f64; 2]| (x - point[0]).powi(2) + (y - point[1]).powi(2);
+    let feet = edges(polygon).map(|(a, b)| nearest_on_segment(point, a, b));
+    let nearest = feet.min_by(|p, q| squared(*p).total_cmp(&squared(*q)));
+    nearest.unwrap_or(point)
+}
+
+/// The edges of a closed polygon.
+pub fn edges(polygon: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
+    (0..polygon.len()).map(|i| (polygon[i], polygon[(i + 1) % polygon.len()]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_to_a_segment() {
+        let (a, b) = ([0.0, 0.0], [10.0, 0.0]);
+        assert_eq!(distance_to_segment([5.0, 3.0], a, b), 3.0);
+        assert_eq!(distance_to_segment([13.0, 4.0], a, b), 5.0);
+        assert_eq!(distance_to_segment([3.0, 4.0], a, a), 5.0);
+    }
+
+    #[test]
+    fn two_squares_share_a_quarter() {
+        let square = |x: f64| [[x, x], [x + 2.0, x], [x + 2.0, x + 2.0], [x, x + 2.0]];
+        assert_eq!(area(&common(&square(0.0), &square(1.0))), 1.0);
+        assert_eq!(area(&common(&square(0.0), &square(3.0))), 0.0);
+    }
+}

@@ -1,0 +1,394 @@
+//! The first visible path of an SVG file as a polygon: lines as they are, Bezier curves flattened.
+//!
+//! usvg reads the document: it turns rect, circle, ellipse and polygon into paths and arcs into
+//! cubic curves, and it resolves styles, `<use>` and transforms. The path must be one closed
+//! contour that neither crosses nor touches itself. SVG's y runs downwards and is turned upwards
+//! here; the scene says how large the outline is.
+
+use crate::geometry::polygon;
+use usvg::tiny_skia_path::{PathSegment, Point};
+use usvg::{Group, ImageHrefResolver, Node, Options, Path, Transform, Tree};
+
+/// Segments of a flattened curve.
+const SEGMENTS: usize = 32;
+/// Points nearer than this part of the largest coordinate are one: usvg rounds to f32.
+const WELD: f64 = 1e-6;
+/// usvg draws the background colour of the root element as a path: no outline.
+const NO_BACKGROUND: &str = "svg { background-color: none !important }";
+
+/// Why a file holds no outline; coordinates are those of the path data.
+#[derive(Debug, thiserror::Error)]
+pub enum SvgPathError {
+    #[error("the file is empty; draw one closed outline and save it as SVG")]
+    Empty,
+    #[error("the file is not readable as SVG: {0}; save the drawing as plain SVG")]
+    NotSvg(usvg::Error),
+    #[error(
+        "there is no visible path in the file; draw the outline as a path, polygon, rect, circle \
+         or ellipse with a fill or a stroke, outside of <defs>"
+    )]
+    NoPath,
+    #[error(
+        "the first visible path has a second contour at ({x}, {y}); keep one closed contour and \
+         delete the others"
+    )]
+    SecondContour { x: f32, y: f32 },
+    #[error(
+        "the first visible path ends open at ({x}, {y}); end its data with Z, or correct the \
+         mistake in the data after this point"
+    )]
+    Open { x: f32, y: f32 },
+    #[error(
+        "the first visible path has {found} different points; draw an outline of at least 3 points"
+    )]
+    TooFewPoints { found: usize },
+    #[error(
+        "the first visible path crosses or touches itself near ({x}, {y}); move its points until \
+         the outline is one simple loop"
+    )]
+    SelfCrossing { x: f32, y: f32 },
+}
+
+/// The vertices of the first visible path in an SVG text, y upwards.
+pub(crate) fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
+    if svg.trim().is_empty() {
+        return Err(SvgPathError::Empty);
+    }
+    let options = Options {
+        style_sheet: Some(NO_BACKGROUND.to_owned()),
+        // An image is no outline: its file is not opened.
+        image_href_resolver: ImageHrefResolver {
+            resolve_data: Box::new(|_, _, _| None),
+            resolve_string: Box::new(|_, _| None),
+        },
+        ..Options::default()
+    };
+    let tree = Tree::from_str(svg, &options).map_err(SvgPathError::NotSvg)?;
+    let path = first_visible(tree.root()).ok_or(SvgPathError::NoPath)?;
+    let points = contour(path)?;
+    if points.len() < 3 {
+        let found = points.len();
+        return Err(SvgPathError::TooFewPoints { found });
+    }
+    if let Some([x, y]) = self_crossing(&points).map(single) {
+        return Err(SvgPathError::SelfCrossing { x, y });
+    }
+    let transform = path.abs_transform();
+    let turned = |point: &[f64; 2]| {
+        let [x, y] = transformed(transform, *point);
+        [x, -y]
+    };
+    Ok(points.iter().map(turned).collect())
+}
+
+/// The first path that is seen, depth first in the order of the document.
+fn first_visible(group: &Group) -> Option<&Path> {
+    if group.opacity().get() == 0.0 {
+        return None;
+    }
+    group.children().iter().find_map(|node| match node {
+        Node::Group(group) => first_visible(group),
+        Node::Path(path) => {
+            let filled = path.fill().is_some_and(|fill| fill.opacity().get() > 0.0);
+            let stroked = (path.stroke()).is_some_and(|stroke| stroke.opacity().get() > 0.0);
+            (path.is_visible() && (filled || stroked)).then_some(&**path)
+        }
+        Node::Image(_) | Node::Text(_) => None,
+    })
+}
+
+/// The different points of a path that is one closed contour, before its transform.
+fn contour(path: &Path) -> Result<Vec<[f64; 2]>, SvgPathError> {
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    let mut closed = false;
+    // Where a second contour would begin: a move at the end of the data draws none.
+    let mut second: Option<[f64; 2]> = None;
+    for segment in path.data().segments() {
+        if let Some([x, y]) = second.map(single)
+            && !matches!(segment, PathSegment::MoveTo(_))
+        {
+            return Err(SvgPathError::SecondContour { x, y });
+        }
+        match segment {
+            PathSegment::MoveTo(to) if points.is_empty() => points.push(pair(to)),
+            PathSegment::MoveTo(to) => second = Some(pair(to)),
+            PathSegment::LineTo(to) => points.push(pair(to)),
+            PathSegment::QuadTo(b, to) => flatten(&mut points, &[pair(b), pair(to)]),
+            PathSegment::CubicTo(b, c, to) => flatten(&mut points, &[pair(b), pair(c), pair(to)]),
+            PathSegment::Close => closed = true,
+        }
+    }
+    let largest = points.as_flattened().iter().map(|c| c.abs());
+    let weld = WELD * largest.fold(0.0, f64::max);
+    let near = |p: [f64; 2], q: [f64; 2]| f64::hypot(p[0] - q[0], p[1] - q[1]) <= weld;
+    let mut last = [f64::NAN; 2];
+    points.retain(|point| {
+        let kept = !near(*point, last);
+        if kept {
+            last = *point;
+        }
+        kept
+    });
+    while points.len() > 1 && near(points[0], points[points.len() - 1]) {
+        points.pop();
+        closed = true;
+    }
+    if !closed {
+        let [x, y] = single(last);
+        return Err(SvgPathError::Open { x, y });
+    }
+    Ok(points)
+}
+
+fn pair(point: Point) -> [f64; 2] {
+    [f64::from(point.x), f64::from(point.y)]
+}
+
+/// For messages: as many digits as the file can mean.
+fn single(point: [f64; 2]) -> [f32; 2] {
+    point.map(|c| c as f32)
+}
+
+/// Appends a Bezier curve that starts at the last point, by de Casteljau's algorithm.
+fn flatten(points: &mut Vec<[f64; 2]>, controls: &[[f64; 2]]) {
+    let start = points.last().copied();
+    let controls: Vec<[f64; 2]> = start.iter().chain(controls).copied().collect();
+    for i in 1..=SEGMENTS {
+        let t = i as f64 / SEGMENTS as f64;
+        let mut level = controls.clone();
+        while level.len() > 1 {
+            level = (level.windows(2))
+                .map(|pair| [0, 1].map(|c| (1.0 - t) * pair[0][c] + t * pair[1][c]))
+                .collect();
+        }
+        points.push(level[0]);
+    }
+}
+
+fn transformed(transform: Transform, [x, y]: [f64; 2]) -> [f64; 2] {
+    let t = transform;
+    let [sx, kx, ky, sy, tx, ty] = [t.sx, t.kx, t.ky, t.sy, t.tx, t.ty].map(f64::from);
+    [sx * x + kx * y + tx, ky * x + sy * y + ty]
+}
+
+/// A point that two edges of a closed polygon share, but for the vertices between neighbours.
+///
+/// The edges are compared in order of their left end, with those alone that begin before their
+/// right end.
+fn self_crossing(points: &[[f64; 2]]) -> Option<[f64; 2]> {
+    let edges: Vec<_> = polygon::edges(points).collect();
+    let left = |i: usize| edges[i].0[0].min(edges[i].1[0]);
+    let right = |i: usize| edges[i].0[0].max(edges[i].1[0]);
+    let next = |i: usize| (i + 1) % edges.len();
+    let mut order: Vec<usize> = (0..edges.len()).collect();
+    order.sort_by(|i, j| left(*i).total_cmp(&left(*j)));
+    order.iter().enumerate().find_map(|(k, &i)| {
+        let later = order[k + 1..].iter().copied();
+        later
+            .take_while(|j| left(*j) <= right(i))
+            .filter(|j| next(i) != *j && next(*j) != i)
+            .find_map(|j| shared_point(edges[i], edges[j]))
+    })
+}
+
+type Edge = ([f64; 2], [f64; 2]);
+
+/// A point that two segments share: their boxes overlap, and neither is on one side of the other.
+fn shared_point((p, q): Edge, (r, s): Edge) -> Option<[f64; 2]> {
+    let overlap = |c: usize| p[c].max(q[c]) >= r[c].min(s[c]) && r[c].max(s[c]) >= p[c].min(q[c]);
+    if !(overlap(0) && overlap(1)) {
+        return None;
+    }
+    let side = |(a, b): Edge, point: [f64; 2]| {
+        (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])
+    };
+    let (side_p, side_q) = (side((r, s), p), side((r, s), q));
+    if side_p * side_q > 0.0 || side((p, q), r) * side((p, q), s) > 0.0 {
+        return None;
+    }
+    let along = if side_p == side_q {
+        0.0
+    } else {
+        side_p / (side_p - side_q)
+    };
+    Some([0, 1].map(|c| p[c] + along * (q[c] - p[c])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The outline of a document with this content.
+    fn drawn(content: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
+        vertices(&format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\">{content}</svg>"
+        ))
+    }
+
+    fn of(data: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
+        drawn(&format!("<path id=\"x\" d=\"{data}\" stroke='none'/>"))
+    }
+
+    /// [left, right, low, high] of the outline.
+    fn bounds(outline: Result<Vec<[f64; 2]>, SvgPathError>) -> [f64; 4] {
+        let points = outline.unwrap_or_else(|error| panic!("{error}"));
+        let extent = |axis: usize| {
+            let values = || points.iter().map(|point| point[axis]);
+            let high = values().fold(f64::NEG_INFINITY, f64::max);
+            [values().fold(f64::INFINITY, f64::min), high]
+        };
+        let ([left, right], [low, high]) = (extent(0), extent(1));
+        [left, right, low, high]
+    }
+
+    fn assert_near(found: [f64; 4], expected: [f64; 4]) {
+        let near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-5;
+        assert!(
+            found.iter().zip(&expected).all(near),
+            "{found:?} is not {expected:?}"
+        );
+    }
+
+    fn assert_refused(outline: Result<Vec<[f64; 2]>, SvgPathError>, part: &str) {
+        let error = outline.unwrap_err().to_string();
+        assert!(error.contains(part), "{error}");
+    }
+
+    const SMALL: &str = "<path d=\"M 0 0 H 1 V 1 H 0 Z\"/>";
+    const LARGE: &str = "<path d=\"M 0 0 H 10 V 20 H 0 Z\"/>";
+
+    #[test]
+    fn lines_absolute_relative_and_repeated() {
+        let square = [[0.0, 0.0], [10.0, 0.0], [10.0, -10.0], [0.0, -10.0]];
+        for data in [
+            "M0 0 L10 0 L10 10 L0 10 Z",
+            "m0,0 10,0 0,10 -10,0z",
+            "M0 0H10V10H0Z",
+            "M0 0h1e1v10-0h-10z",
+            "M0 0H10V10H0V0",
+        ] {
+            let found = of(data).unwrap_or_else(|error| panic!("{data}: {error}"));
+            assert_eq!(found.first(), square.first(), "{data}");
+            assert_eq!(found.last(), square.last(), "{data}");
+        }
+    }
+
+    #[test]
+    fn a_circle_of_four_cubics_has_its_area() {
+        let k = 0.552_284_75;
+        let data = format!("M1 0 C1 {k} {k} 1 0 1 S-1 {k} -1 0 S-{k} -1 0 -1 S1 -{k} 1 0Z");
+        let area = polygon::area(&of(&data).unwrap()).abs();
+        assert!((area - std::f64::consts::PI).abs() < 5e-3, "{area}");
+    }
+
+    #[test]
+    fn what_is_not_drawn_is_skipped() {
+        let expected = [0.0, 10.0, -20.0, 0.0];
+        for hidden in [
+            format!("<defs>{SMALL}</defs>"),
+            format!("<!-- {SMALL} -->"),
+            format!("<symbol>{SMALL}</symbol>"),
+            format!("<clipPath id=\"c\">{SMALL}</clipPath>"),
+            format!("<g display=\"none\">{SMALL}</g>"),
+            format!("<g visibility=\"hidden\">{SMALL}</g>"),
+            format!("<g opacity=\"0\">{SMALL}</g>"),
+            format!("<g fill=\"none\">{SMALL}</g>"),
+            format!("<g fill-opacity=\"0\">{SMALL}</g>"),
+            SMALL.replace("<path", "<pathological"),
+            "<image href=\"Cargo.toml\" width=\"1\" height=\"1\"/>".to_owned(),
+        ] {
+            let found = drawn(&(hidden.clone() + LARGE));
+            assert_near(bounds(found), expected);
+        }
+        let background = format!("<svg style=\"background-color: #fff\">{LARGE}</svg>");
+        assert_near(bounds(vertices(&background)), expected);
+    }
+
+    #[test]
+    fn the_first_path_of_the_document_is_taken_depth_first() {
+        let nested = format!("<g><g>{LARGE}</g></g>{SMALL}");
+        assert_near(bounds(drawn(&nested)), [0.0, 10.0, -20.0, 0.0]);
+        let used = format!("<defs><g id=\"a\">{LARGE}</g></defs><use href=\"#a\" x=\"5\"/>{SMALL}");
+        assert_near(bounds(drawn(&used)), [5.0, 15.0, -20.0, 0.0]);
+    }
+
+    #[test]
+    fn transforms_of_the_path_and_of_its_groups_are_applied() {
+        let path = LARGE.replace("/>", " transform=\"rotate(90)\"/>");
+        assert_near(bounds(drawn(&path)), [-20.0, 0.0, -10.0, 0.0]);
+        let grouped = format!("<g transform=\"translate(100 7) scale(2 1)\">{path}</g>");
+        assert_near(bounds(drawn(&grouped)), [60.0, 100.0, -17.0, -7.0]);
+    }
+
+    #[test]
+    fn arcs_are_drawn() {
+        let area = |data: &str| polygon::area(&of(data).unwrap()).abs();
+        let half = area("M -50 0 A 50 50 0 0 1 50 0 Z");
+        assert!((half / 3926.99 - 1.0).abs() < 1e-3, "{half}");
+        let ellipse = area("M 0 -1 a 2 1 0 1 1 0 2 a 2 1 0 1 1 0 -2 z");
+        assert!((ellipse / std::f64::consts::TAU - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn basic_shapes_are_outlines() {
+        for (shape, area) in [
+            ("<circle cx=\"7\" cy=\"5\" r=\"3\"/>", 28.274),
+            ("<ellipse rx=\"3\" ry=\"2\"/>", 18.850),
+            ("<rect width=\"4\" height=\"2\"/>", 8.0),
+            ("<rect width=\"4\" height=\"2\" rx=\"0.5\"/>", 7.785),
+            ("<polygon points=\"0,0 4,0 0,2\"/>", 4.0),
+        ] {
+            let found = drawn(shape).unwrap_or_else(|error| panic!("{shape}: {error}"));
+            let found = polygon::area(&found).abs();
+            assert!((found / area - 1.0).abs() < 2e-3, "{shape}: {found}");
+        }
+    }
+
+    #[test]
+    fn attributes_may_have_spaces_around_the_equals_sign() {
+        let spaced = "<path d = \"M 0 0 H 10 V 20 H 0 Z\" />";
+        assert_near(bounds(drawn(spaced)), [0.0, 10.0, -20.0, 0.0]);
+    }
+
+    #[test]
+    fn what_crosses_or_touches_itself_is_refused() {
+        for data in [
+            "M 0 -80 L 47 65 L -76 -25 L 76 -25 L -47 65 Z", // a star in one stroke
+            "M 0 0 L 10 10 L 10 0 L 0 10 Z",                 // a bow tie
+            "M 0 0 L 5 5 L 10 0 V 10 L 5 5 L 0 10 Z",        // two triangles that meet in a point
+            "M 0 0 C 40 30 -30 30 10 0 V -5 H 0 V 20 Z",     // a line through a curve
+            "M 0 0 H 10 V 5 H 20 V 0 H 5 V -5 H 0 Z",        // a line along a line
+        ] {
+            assert_refused(of(data), "crosses or touches itself near (");
+        }
+        let error = of("M 0 0 L 10 10 L 10 0 L 0 10 Z").unwrap_err();
+        assert!(error.to_string().contains("(5, 5)"), "{error}");
+    }
+
+    #[test]
+    fn straight_curves_and_slits_do_not_cross() {
+        // Every edge of a side lies on one line, at a slope that is not exact in binary.
+        of("M 0 0 C 0.1 0.3 0.2 0.6 0.3 0.9 L 0.7 1.1 C 0.5 0.6 0.6 0.1 0.1 -0.3 Z").unwrap();
+        of("M 0 0 H 10 V 10 H 5.01 V 1 H 5 V 10 H 0 Z").unwrap();
+        of("M 10000 10000 a 1 1 0 0 1 2 0 a 1 1 0 0 1 -2 0 z").unwrap();
+    }
+
+    #[test]
+    fn what_is_no_outline_is_named() {
+        assert_refused(vertices(""), "the file is empty");
+        assert_refused(vertices(" \n"), "the file is empty");
+        assert_refused(vertices("x,y\n0,0\n"), "not readable as SVG");
+        assert_refused(vertices("<svg><g></svg>"), "not readable as SVG");
+        assert_refused(vertices("<svg/>"), "no visible path");
+        assert_refused(drawn(&format!("<defs>{SMALL}</defs>")), "no visible path");
+        assert_refused(of("M0 0 L x"), "no visible path");
+        assert_refused(
+            of("M0 0 L1 0 L1 1 Z M5 5 L6 6 H5Z"),
+            "second contour at (5, 5)",
+        );
+        assert_refused(of("M0 0 L1 0 L1 1 Z L6 6 H5Z"), "second contour at (0, 0)");
+        assert_refused(of("M0 0 H10 V10"), "ends open at (10, 10)");
+        assert_refused(of("M0 0 H10 V10 L x 3 Z"), "ends open at (10, 10)");
+        assert_refused(of("M0 0 H10 Z"), "2 different points");
+    }
+}

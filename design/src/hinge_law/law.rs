@@ -1,0 +1,81 @@
+//! The traits of a hinge law: prepared for the hinges of one sheet, then evaluated for all of them.
+
+pub use ::surrogate::{HingeDamage, HingeEnergy, Order};
+
+use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
+use serde::{Deserialize, Serialize};
+
+/// Which damage an objective weighs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DamageMeasure {
+    /// D, the mean over the ligament, as the paper.
+    #[default]
+    Mean,
+    /// D_peak, the mean over the most strained 1 % of the ligament: at 1 it tears.
+    Peak,
+}
+
+impl DamageMeasure {
+    /// The damage of a hinge by this measure and its gradient in (a, s, theta, w_lig, alpha); zero where the
+    /// law does not predict it.
+    pub fn of(self, damage: &HingeDamage) -> (f64, [f64; 5]) {
+        let gradient = match self {
+            Self::Mean => damage.gradient,
+            Self::Peak => damage.peak_gradient,
+        };
+        (self.known(damage).unwrap_or(0.0), gradient)
+    }
+
+    /// The damage of a hinge by this measure, if the law predicts it.
+    pub fn known(self, damage: &HingeDamage) -> Option<f64> {
+        match self {
+            Self::Mean => Some(damage.d),
+            Self::Peak => damage.d_peak,
+        }
+    }
+}
+
+/// A stored-energy function of the hinge deformation, for any hinge design.
+pub trait HingeLaw: Send + Sync {
+    /// Does once what depends on the designs alone.
+    fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a>;
+
+    /// D_s of (17) for a measure, if the law predicts it.
+    fn damage_scale(&self, _measure: DamageMeasure) -> Option<f64> {
+        None
+    }
+
+    /// What the law was trained on, if it was.
+    fn domain(&self) -> Option<&TrainingDomain> {
+        None
+    }
+}
+
+/// A hinge law for the hinges of one sheet. Each method takes one deformation per hinge.
+pub trait PreparedLaw {
+    /// Energies with their derivatives up to `order`. Beyond a law's reach the energy may be
+    /// infinite; it is never NaN for finite deformations.
+    fn energies(&self, deformations: &[HingeDeformation], order: Order) -> Vec<HingeEnergy>;
+
+    /// The predicted damage (12); empty for a law that predicts none. Its gradients are zero unless they are
+    /// asked for.
+    fn damage(&self, _deformations: &[HingeDeformation], _with_gradient: bool) -> Vec<HingeDamage> {
+        Vec::new()
+    }
+
+    /// Whether the law is (11), with the constants (k_a, k_s, k_theta) at every hinge.
+    fn has_constants(&self) -> bool {
+        false
+    }
+
+    /// Deformation, of translations over w_lig, that is lost in the law's own rounding.
+    fn resolution(&self) -> f64 {
+        0.0
+    }
+
+    /// Which hinges are in a state that the law was made for.
+    fn inside(&self, deformations: &[HingeDeformation]) -> Vec<bool> {
+        vec![true; deformations.len()]
+    }
+}

@@ -1,0 +1,130 @@
+//! Penalty on badly shaped panels: the mean over all panel corners of
+//!
+//! ```text
+//! max(0, rho - 4)^2,      rho = (|e|^2 + |f|^2) / (2 e x f),      e, f: the edges that meet at the corner
+//! ```
+//!
+//! and the mean over all pairs of corners of a panel of
+//!
+//! ```text
+//! max(0, l_min/l - 1)^2,  l: their distance
+//! ```
+//!
+//! rho is 1 at the corner of a square of any size. It is 4 at the corner of a rectangle eight times as long as
+//! wide, or between two equal edges at 14 degrees, and grows without bound as a panel collapses. Sheets that
+//! open far need stretched panels, so shapes that can be cut well cost nothing. Corners closer than l_min
+//! leave no room for the windows of their hinges.
+
+use crate::geometry::plane::{I, add, complex, cross};
+use crate::sheet::cut_sheet::Panel;
+
+/// Largest rho that is not penalised.
+const WELL_SHAPED: f64 = 4.0;
+/// All pairs of corners of a panel.
+const PAIRS: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2], [1, 3]];
+
+/// The penalty with the minimum corner distance `min_distance` (mm), and its gradient in the corners of
+/// every panel (1/mm); infinite if a panel is not convex.
+pub fn panel_shape(panels: &[Panel], min_distance: f64) -> (f64, Vec<[[f64; 2]; 4]>) {
+    let (mut value, mut gradient) = (0.0, vec![[[0.0; 2]; 4]; panels.len()]);
+    for (panel, gradient) in std::iter::zip(panels, &mut gradient) {
+        value += stretched(panel, gradient) + crowded(panel, min_distance, gradient);
+    }
+    let weight = 1.0 / panels.len() as f64;
+    let entries = gradient.as_flattened_mut().as_flattened_mut();
+    entries.iter_mut().for_each(|entry| *entry *= weight);
+    (weight * value, gradient)
+}
+
+/// The mean over the corners of one panel; its gradient is added to `gradient`.
+fn stretched(panel: &Panel, gradient: &mut [[f64; 2]; 4]) -> f64 {
+    let corner = |j: usize| complex(panel.corners[j % 4]);
+    let mut value = 0.0;
+    for j in 0..4 {
+        let (e, f) = (corner(j + 1) - corner(j), corner(j + 2) - corner(j + 1));
+        let sine = cross(e, f);
+        if sine <= 0.0 {
+            return f64::INFINITY;
+        }
+        let ratio = 0.5 * (e.norm_sqr() + f.norm_sqr()) / sine;
+        let excess = f64::max(ratio - WELL_SHAPED, 0.0);
+        value += 0.25 * excess * excess;
+        let weight = 0.5 * excess / sine;
+        let by_e = (e + I * f * ratio) * weight;
+        let by_f = (f - I * e * ratio) * weight;
+        add(&mut gradient[j], -by_e);
+        add(&mut gradient[(j + 1) % 4], by_e - by_f);
+        add(&mut gradient[(j + 2) % 4], by_f);
+    }
+    value
+}
+
+/// The mean over the pairs of corners of one panel; its gradient is added to `gradient`.
+fn crowded(panel: &Panel, min_distance: f64, gradient: &mut [[f64; 2]; 4]) -> f64 {
+    let weight = 1.0 / PAIRS.len() as f64;
+    let mut value = 0.0;
+    for [i, j] in PAIRS {
+        let apart = complex(panel.corners[j]) - complex(panel.corners[i]);
+        let distance = apart.norm();
+        let lacking = f64::max(min_distance / distance - 1.0, 0.0);
+        value += weight * lacking * lacking;
+        let slope = -2.0 * weight * lacking * min_distance / distance.powi(2);
+        let by_corner = apart * (slope / distance);
+        add(&mut gradient[j], by_corner);
+        add(&mut gradient[i], -by_corner);
+    }
+    value
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::taylor::central_slope;
+
+    fn panel(corners: [[f64; 2]; 4]) -> Panel {
+        Panel {
+            corners,
+            centroid: [0.0; 2],
+        }
+    }
+
+    fn rectangle(length: f64, width: f64) -> Panel {
+        panel([[0.0, 0.0], [length, 0.0], [length, width], [0.0, width]])
+    }
+
+    #[test]
+    fn stretched_panels_cost_above_a_ratio_and_concave_ones_are_infinite() {
+        let value = |panels: &[Panel]| panel_shape(panels, 0.0).0;
+        assert_eq!(value(&[rectangle(1.0, 1.0), rectangle(7.0, 1.0)]), 0.0);
+        let rho = 0.5 * (20.0 + 1.0 / 20.0);
+        let stretched = value(&[rectangle(20.0, 1.0)]);
+        assert!(
+            (stretched - (rho - 4.0f64).powi(2)).abs() < 1e-12,
+            "{stretched}"
+        );
+        let dented = panel([[0.0, 0.0], [2.0, 0.0], [0.5, 0.5], [0.0, 2.0]]);
+        assert_eq!(value(&[dented]), f64::INFINITY);
+    }
+
+    #[test]
+    fn corners_at_half_the_minimum_distance_cost_one() {
+        let (value, _) = panel_shape(&[rectangle(200.0, 50.0)], 100.0);
+        assert!((value - 2.0 / 6.0).abs() < 1e-12, "{value}");
+        let (value, _) = panel_shape(&[rectangle(200.0, 100.0)], 100.0);
+        assert_eq!(value, 0.0);
+    }
+
+    #[test]
+    fn gradients_agree_with_differences() {
+        let corners = [0.0, 0.1, 20.0, -0.2, 17.0, 1.1, 0.2, 0.9];
+        let at = |x: &[f64]| panel(std::array::from_fn(|j| [x[2 * j], x[2 * j + 1]]));
+        let all = |x: &[f64]| panel_shape(&[at(x), rectangle(1.0, 1.0)], 30.0);
+        let (value, gradient) = all(&corners);
+        assert!(value > 1.0, "{value}");
+        for (i, found) in gradient[0].as_flattened().iter().enumerate() {
+            let unit: Vec<f64> = (0..8).map(|j| f64::from(i == j)).collect();
+            let slope = central_slope(|x| all(x).0, &corners, &unit, 1e-6);
+            assert!((found - slope).abs() < 1e-6 * value, "{found} {slope}");
+        }
+    }
+}

@@ -1,0 +1,385 @@
+//! The target outline T of (16): a closed curve, sampled densely and evenly by arc length.
+
+use crate::geometry::polygon;
+use crate::geometry::svg_path::{self, SvgPathError};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+use std::path::{Path, PathBuf};
+
+/// A target as a scene writes it; lengths in mm, in the coordinates of the flat sheet.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum TargetShape {
+    Circle {
+        centre: [f64; 2],
+        radius: f64,
+    },
+    /// `size` is [along x, along y] before the counter-clockwise rotation about the centre.
+    Rectangle {
+        centre: [f64; 2],
+        size: [f64; 2],
+        rotation_deg: f64,
+    },
+    /// Vertices in order around the outline; the last is joined to the first.
+    Polygon {
+        vertices: Vec<[f64; 2]>,
+    },
+    /// A file with one `x,y` (mm) a line, in order around the outline; `#` starts a comment.
+    Csv {
+        file: PathBuf,
+    },
+    /// The first visible path of an SVG file, transforms applied, scaled to `height` (mm) about the
+    /// centre of its box.
+    Svg {
+        file: PathBuf,
+        centre: [f64; 2],
+        height: f64,
+    },
+}
+
+/// A target that is not an outline.
+#[derive(Debug, thiserror::Error)]
+pub enum TargetError {
+    #[error("cannot read the target outline {path}: {source}", path = .path.display())]
+    Read {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    #[error("{path}:{line}: `{text}` is not `x,y` in mm", path = .path.display())]
+    Row {
+        path: PathBuf,
+        line: usize,
+        text: String,
+    },
+    #[error("{path}: {source}", path = .path.display())]
+    Svg { path: PathBuf, source: SvgPathError },
+    #[error("target.{key} = {value} violates 0 < {key} (mm)")]
+    Size { key: &'static str, value: f64 },
+    #[error("target.{key} holds a number that is not finite")]
+    NotFinite { key: &'static str },
+    #[error("the target outline encloses no area: it needs three corners or more, in order")]
+    NoArea,
+}
+
+/// The sampled target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Target {
+    points: Vec<[f64; 2]>,
+    length: f64,
+}
+
+impl Target {
+    /// Samples a shape at `count` points; a CSV file is looked for relative to `folder`.
+    pub fn sample(shape: &TargetShape, folder: &Path, count: usize) -> Result<Self, TargetError> {
+        match shape {
+            TargetShape::Circle { centre, radius } => {
+                finite("circle.centre", centre)?;
+                positive("circle.radius", *radius)?;
+                let points = (0..count)
+                    .map(|i| {
+                        let (sin, cos) = (TAU * i as f64 / count as f64).sin_cos();
+                        [centre[0] + radius * cos, centre[1] + radius * sin]
+                    })
+                    .collect();
+                let length = TAU * radius;
+                Ok(Self { points, length })
+            }
+            TargetShape::Rectangle {
+                centre,
+                size,
+                rotation_deg,
+            } => {
+                finite("rectangle.centre", centre)?;
+                finite("rectangle.rotation_deg", &[*rotation_deg])?;
+                positive("rectangle.size", size[0])?;
+                positive("rectangle.size", size[1])?;
+                let (sin, cos) = rotation_deg.to_radians().sin_cos();
+                let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)].map(|(a, b)| {
+                    let [x, y] = [a * size[0], b * size[1]];
+                    [centre[0] + cos * x - sin * y, centre[1] + sin * x + cos * y]
+                });
+                along_polygon(&corners, count)
+            }
+            TargetShape::Polygon { vertices } => {
+                finite("polygon.vertices", vertices.as_flattened())?;
+                along_polygon(vertices, count)
+            }
+            TargetShape::Csv { file } => along_polygon(&read_points(&folder.join(file))?, count),
+            TargetShape::Svg {
+                file,
+                centre,
+                height,
+            } => {
+                finite("svg.centre", centre)?;
+                positive("svg.height", *height)?;
+                let path = folder.join(file);
+                let svg = read(&path)?;
+                let drawn =
+                    svg_path::vertices(&svg).map_err(|source| TargetError::Svg { path, source })?;
+                along_polygon(&placed(&drawn, *centre, *height)?, count)
+            }
+        }
+    }
+
+    /// The samples, evenly spaced along the outline (mm).
+    pub fn points(&self) -> &[[f64; 2]] {
+        &self.points
+    }
+
+    /// Mean of the samples: the centre of the outline (mm).
+    pub fn mean(&self) -> [f64; 2] {
+        let sum = |axis: usize| self.points.iter().map(|point| point[axis]).sum::<f64>();
+        [sum(0), sum(1)].map(|sum| sum / self.points.len() as f64)
+    }
+
+    /// Extent of the samples along x (mm).
+    pub fn width(&self) -> f64 {
+        let across = || self.points.iter().map(|point| point[0]);
+        across().fold(f64::NEG_INFINITY, f64::max) - across().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Distance of a point to the curve through the samples (mm).
+    pub fn distance(&self, point: [f64; 2]) -> f64 {
+        let [x, y] = polygon::nearest_on_outline(point, &self.points);
+        f64::hypot(point[0] - x, point[1] - y)
+    }
+
+    /// Area within the curve through the samples (mm^2).
+    pub fn area(&self) -> f64 {
+        polygon::area(&self.points).abs()
+    }
+
+    /// Length of the outline itself (mm).
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+}
+
+fn finite(key: &'static str, values: &[f64]) -> Result<(), TargetError> {
+    if values.iter().all(|value| value.is_finite()) {
+        Ok(())
+    } else {
+        Err(TargetError::NotFinite { key })
+    }
+}
+
+fn positive(key: &'static str, value: f64) -> Result<(), TargetError> {
+    finite(key, &[value])?;
+    if value > 0.0 {
+        Ok(())
+    } else {
+        Err(TargetError::Size { key, value })
+    }
+}
+
+/// `count` points at equal arc lengths along a closed polygon.
+fn along_polygon(vertices: &[[f64; 2]], count: usize) -> Result<Target, TargetError> {
+    let edges = || (0..vertices.len()).map(|i| (vertices[i], vertices[(i + 1) % vertices.len()]));
+    let lengths: Vec<f64> = edges()
+        .map(|(p, q)| f64::hypot(q[0] - p[0], q[1] - p[1]))
+        .collect();
+    let length: f64 = lengths.iter().sum();
+    let area: f64 = edges().map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum::<f64>() / 2.0;
+    if area.abs() <= 1e-9 * length * length {
+        return Err(TargetError::NoArea);
+    }
+    let mut points = Vec::with_capacity(count);
+    let mut start = 0.0;
+    for ((p, q), edge) in edges().zip(lengths) {
+        while points.len() < count {
+            let along = length * points.len() as f64 / count as f64 - start;
+            if along >= edge {
+                break;
+            }
+            let f = along / edge;
+            points.push([p[0] + f * (q[0] - p[0]), p[1] + f * (q[1] - p[1])]);
+        }
+        start += edge;
+    }
+    Ok(Target { points, length })
+}
+
+/// The vertices scaled to a height and moved to a centre, both of their box (mm).
+fn placed(
+    vertices: &[[f64; 2]],
+    centre: [f64; 2],
+    height: f64,
+) -> Result<Vec<[f64; 2]>, TargetError> {
+    let bounds = |axis: usize| {
+        let values = vertices.iter().map(|vertex| vertex[axis]);
+        let least = values.clone().fold(f64::INFINITY, f64::min);
+        [least, values.fold(f64::NEG_INFINITY, f64::max)]
+    };
+    let [[left, right], [low, high]] = [bounds(0), bounds(1)];
+    if high <= low || vertices.is_empty() {
+        return Err(TargetError::NoArea);
+    }
+    let scale = height / (high - low);
+    let middle = [0.5 * (left + right), 0.5 * (low + high)];
+    let place = |vertex: &[f64; 2]| [0, 1].map(|c| centre[c] + scale * (vertex[c] - middle[c]));
+    Ok(vertices.iter().map(place).collect())
+}
+
+fn read(path: &Path) -> Result<String, TargetError> {
+    std::fs::read_to_string(path).map_err(|source| TargetError::Read {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+fn read_points(path: &Path) -> Result<Vec<[f64; 2]>, TargetError> {
+    read(path)?
+        .lines()
+        .enumerate()
+        .map(|(row, line)| (row + 1, line.split('#').next().unwrap_or_default().trim()))
+        .filter(|(_, line)| !line.is_empty())
+        .map(|(line, text)| {
+            point(text).ok_or_else(|| TargetError::Row {
+                path: path.to_owned(),
+                line,
+                text: text.to_owned(),
+            })
+        })
+        .collect()
+}
+
+fn point(text: &str) -> Option<[f64; 2]> {
+    let (x, y) = text.split_once(',')?;
+    let point = [x.trim().parse().ok()?, y.trim().parse().ok()?];
+    point
+        .iter()
+        .all(|value: &f64| value.is_finite())
+        .then_some(point)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(shape: TargetShape, count: usize) -> Result<Target, TargetError> {
+        Target::sample(&shape, Path::new("."), count)
+    }
+
+    /// Area of the polygon through the samples.
+    fn area(points: &[[f64; 2]]) -> f64 {
+        (0..points.len())
+            .map(|i| (points[i], points[(i + 1) % points.len()]))
+            .map(|(p, q)| (p[0] * q[1] - p[1] * q[0]) / 2.0)
+            .sum()
+    }
+
+    #[test]
+    fn a_circle_has_its_length_and_its_area() {
+        let (radius, n) = (760.0, 500);
+        let centre = [1.0, 2.0];
+        let circle = sample(TargetShape::Circle { centre, radius }, n).unwrap();
+        assert_eq!(circle.points().len(), n);
+        assert!((circle.length() - TAU * radius).abs() < 1e-9);
+        let inscribed = 0.5 * n as f64 * radius * radius * (TAU / n as f64).sin();
+        assert!((area(circle.points()) / inscribed - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_rotated_rectangle_is_sampled_evenly_by_arc_length() {
+        let shape = TargetShape::Rectangle {
+            centre: [100.0, -50.0],
+            size: [300.0, 200.0],
+            rotation_deg: -15.4,
+        };
+        let rectangle = sample(shape, 100).unwrap();
+        assert!((rectangle.length() - 1000.0).abs() < 1e-9);
+        let (sin, cos) = 15.4_f64.to_radians().sin_cos();
+        assert!((rectangle.width() - (300.0 * cos + 200.0 * sin)).abs() < 1e-9);
+        let p = rectangle.points();
+        assert_eq!(p.len(), 100);
+        assert!(
+            (area(p) - 60e3).abs() < 1e-6,
+            "corners are multiples of the spacing"
+        );
+        for i in 0..100 {
+            let (a, b) = (p[i], p[(i + 1) % 100]);
+            assert!((f64::hypot(b[0] - a[0], b[1] - a[1]) - 10.0).abs() < 1e-9);
+        }
+        let slope = (p[1][1] - p[0][1]).atan2(p[1][0] - p[0][0]).to_degrees();
+        assert!((slope + 15.4).abs() < 1e-9, "the long side turns clockwise");
+    }
+
+    #[test]
+    fn a_polygon_and_its_file_are_the_same_target() {
+        let folder = tempfile::tempdir().unwrap();
+        let from_file = |text: &str| {
+            std::fs::write(folder.path().join("triangle.csv"), text).unwrap();
+            let file = "triangle.csv".into();
+            Target::sample(&TargetShape::Csv { file }, folder.path(), 24)
+        };
+        let triangle = from_file("# a 3-4-5 triangle\n0,0\n40, 0 # mm\n\n0,30\n").unwrap();
+        let vertices = vec![[0.0, 0.0], [40.0, 0.0], [0.0, 30.0]];
+        assert_eq!(
+            triangle,
+            sample(TargetShape::Polygon { vertices }, 24).unwrap()
+        );
+        assert!((triangle.length() - 120.0).abs() < 1e-12);
+        assert!((area(triangle.points()) - 600.0).abs() < 1e-9);
+        let error = from_file("0,0\n1;2\n").unwrap_err().to_string();
+        assert!(error.contains("triangle.csv:2: `1;2`"), "{error}");
+    }
+
+    #[test]
+    fn the_supplied_drawings_keep_their_outlines() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/targets");
+        // Length and area for the height 1; usvg rounds coordinates to 24 bits, 6e-8 of their size.
+        for (name, length, area) in [
+            ("bell.svg", 3.206797259038, 0.611059318901),
+            ("leaf.svg", 2.534298840394, 0.471824228324),
+            ("shield.svg", 2.831988536962, 0.537239778161),
+            ("vase.svg", 2.922806221912, 0.525268029739),
+        ] {
+            let shape = TargetShape::Svg {
+                file: name.into(),
+                centre: [0.0, 0.0],
+                height: 1.0,
+            };
+            let target = Target::sample(&shape, &folder, 2000).unwrap();
+            assert!((target.length() - length).abs() < 1e-6, "{name}");
+            assert!((target.area() - area).abs() < 1e-6, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_drawing_that_crosses_itself_is_refused_by_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let star = "<svg><path d='M 0 -80 L 47 65 L -76 -25 L 76 -25 L -47 65 Z'/></svg>";
+        std::fs::write(folder.path().join("star.svg"), star).unwrap();
+        let shape = TargetShape::Svg {
+            file: "star.svg".into(),
+            centre: [0.0, 0.0],
+            height: 100.0,
+        };
+        let error = Target::sample(&shape, folder.path(), 100).unwrap_err();
+        let error = error.to_string();
+        assert!(error.contains("star.svg: "), "{error}");
+        assert!(error.contains("crosses or touches itself"), "{error}");
+    }
+
+    #[test]
+    fn what_is_no_outline_is_refused() {
+        let line = vec![[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]];
+        let error = sample(TargetShape::Polygon { vertices: line }, 10).unwrap_err();
+        assert!(error.to_string().contains("no area"), "{error}");
+        let error = sample(TargetShape::Polygon { vertices: vec![] }, 10).unwrap_err();
+        assert!(error.to_string().contains("no area"), "{error}");
+        let centre = [0.0, 0.0];
+        let error = sample(
+            TargetShape::Circle {
+                centre,
+                radius: -1.0,
+            },
+            10,
+        )
+        .unwrap_err();
+        assert!(error.to_string().contains("circle.radius = -1"), "{error}");
+        let radius = f64::NAN;
+        let error = sample(TargetShape::Circle { centre, radius }, 10).unwrap_err();
+        assert!(error.to_string().contains("circle.radius"), "{error}");
+    }
+}

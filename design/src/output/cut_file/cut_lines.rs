@@ -1,0 +1,223 @@
+//! What the tool follows, from the geometry that was simulated.
+//!
+//! A slit runs between the tips O of the hinges at its ends, so that each keeps its ligament w_lig;
+//! a slit that is open on the outline starts there. About every O a hole of radius rho_f w_lig is
+//! drilled, which the slit ends in.
+//!
+//! **Ligament.** w_lig is the material between O and the finished edge of the secondary cut, as in the window:
+//! O stands half a kerf further from the line of that cut. The hole takes its radius of it, so that a caliper
+//! reads (1 - rho_f) w_lig beside the hole, [`CutLines::caliper`].
+//!
+//! **Kerf.** A slit is one pass of the tool along its line and removes the kerf, half on each flank:
+//! the tool's kerf is the design kerf w_c of (7). Holes and outline are closed paths, offset by half
+//! the kerf (holes inwards, the outline outwards), so that the finished hole and sheet have their
+//! nominal size.
+
+use crate::geometry::polygon::{distance_to_segment, edges};
+use crate::output::cut_file::fabrication_error::FabricationError;
+use crate::pattern::cut_pattern::CutPattern;
+use crate::sheet::cut_sheet::Sheet;
+use crate::sheet::topology::hinge_sites;
+use hinge::SheetMaterial;
+use std::collections::BTreeMap;
+
+/// The layers of both formats.
+pub(super) const CUT: &str = "CUT";
+pub(super) const HOLES: &str = "HOLES";
+pub(super) const OUTLINE: &str = "OUTLINE";
+pub(super) const ANNOTATION: &str = "ANNOTATION";
+
+/// One straight cut through the sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slit {
+    /// Its ends (mm); the first is always the tip O of a hinge.
+    pub ends: [[f64; 2]; 2],
+    /// The hinge at each end; none where the slit is open on the outline.
+    pub hinges: [Option<usize>; 2],
+}
+
+/// The drilled end of a slit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hole {
+    /// The tip O of its hinge (mm).
+    pub centre: [f64; 2],
+    /// Of the finished hole: rho_f w_lig (mm).
+    pub radius: f64,
+}
+
+/// A text beside the cuts: the number of a hinge, or what the sheet is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    /// Middle of the baseline (mm).
+    pub at: [f64; 2],
+    /// mm
+    pub height: f64,
+    pub text: String,
+}
+
+/// The finished geometry of a cut sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutLines {
+    pub slits: Vec<Slit>,
+    /// Hinge by hinge.
+    pub holes: Vec<Hole>,
+    /// Corners of the sheet, counter-clockwise (mm).
+    pub outline: [[f64; 2]; 4],
+    /// Width the tool removes (mm).
+    pub kerf: f64,
+    pub labels: Vec<Label>,
+}
+
+impl CutLines {
+    /// The cuts of a sheet, which must come from `pattern`, in a material, which the labels name.
+    pub fn new(
+        pattern: &CutPattern,
+        sheet: &Sheet,
+        material: &SheetMaterial,
+    ) -> Result<Self, FabricationError> {
+        let process = sheet.options.process;
+        let holes: Vec<Hole> = sheet
+            .hinges
+            .iter()
+            .map(|hinge| Hole {
+                centre: hinge.tip,
+                radius: process.fillet_ratio * hinge.w_lig,
+            })
+            .collect();
+        for (hinge, hole) in holes.iter().enumerate() {
+            if 2.0 * hole.radius <= process.kerf {
+                return Err(FabricationError::HoleTooSmall {
+                    hinge,
+                    diameter: 2.0 * hole.radius,
+                    kerf: process.kerf,
+                });
+            }
+        }
+        Ok(Self {
+            slits: slits(pattern, sheet, &holes)?,
+            holes,
+            outline: sheet.outline.corners,
+            kerf: process.kerf,
+            labels: labels(sheet, material),
+        })
+    }
+
+    /// Width of a ligament as a caliper reads it, from the edge of its hole to the secondary cut (mm).
+    pub fn caliper(&self, hinge: usize) -> f64 {
+        self.clearance(hinge) - self.holes[hinge].radius
+    }
+
+    /// Radius that the tool's centre follows in a hole (mm).
+    pub fn tool_radius(&self, hole: &Hole) -> f64 {
+        hole.radius - self.kerf / 2.0
+    }
+
+    /// The path of the tool's centre around the sheet (mm).
+    pub fn tool_outline(&self) -> [[f64; 2]; 4] {
+        let outward = |k: usize| {
+            let (p, q) = (self.outline[k % 4], self.outline[(k + 1) % 4]);
+            let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
+            [dy / dx.hypot(dy), -dx / dx.hypot(dy)]
+        };
+        std::array::from_fn(|k| {
+            // The corner moves so that both of its edges move by half the kerf.
+            let (a, b) = (outward(k + 3), outward(k));
+            let shift = self.kerf / 2.0 / (1.0 + a[0] * b[0] + a[1] * b[1]);
+            let corner = self.outline[k];
+            [
+                corner[0] + shift * (a[0] + b[0]),
+                corner[1] + shift * (a[1] + b[1]),
+            ]
+        })
+    }
+
+    /// Material left between the tip O of a hinge and the nearest cut other than its own (mm).
+    ///
+    /// It is w_lig for a sound hinge, and less where another cut comes closer than the secondary. Half the kerf of
+    /// a slit lies on this side of its line.
+    pub fn clearance(&self, hinge: usize) -> f64 {
+        let tip = self.holes[hinge].centre;
+        let to_slits = self
+            .slits
+            .iter()
+            .filter(|slit| !slit.hinges.contains(&Some(hinge)))
+            .map(|slit| distance_to_segment(tip, slit.ends[0], slit.ends[1]) - 0.5 * self.kerf);
+        let to_outline = edges(&self.outline).map(|(p, q)| distance_to_segment(tip, p, q));
+        to_slits.chain(to_outline).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Every slit once: the main cut of one hinge (open on the outline) or of two.
+fn slits(
+    pattern: &CutPattern,
+    sheet: &Sheet,
+    holes: &[Hole],
+) -> Result<Vec<Slit>, FabricationError> {
+    let sites = hinge_sites(sheet.grid);
+    let at_corner: BTreeMap<usize, usize> = sites
+        .iter()
+        .enumerate()
+        .map(|(hinge, site)| (site.corner, hinge))
+        .collect();
+    let mut slits = Vec::new();
+    for (hinge, site) in sites.iter().enumerate() {
+        let other = at_corner
+            .get(&site.main_end)
+            .copied()
+            .filter(|&other| sites[other].main_end == site.corner);
+        if other.is_some_and(|other| other < hinge) {
+            continue;
+        }
+        let tip = holes[hinge].centre;
+        let end = other.map_or(pattern.points[site.main_end], |other| holes[other].centre);
+        let main = sheet.hinges[hinge].main;
+        let length = main[0] * (end[0] - tip[0]) + main[1] * (end[1] - tip[1]);
+        let drilled = holes[hinge].radius + other.map_or(0.0, |other| holes[other].radius);
+        if length <= drilled {
+            return Err(FabricationError::SlitVanishes {
+                hinge,
+                length,
+                drilled,
+            });
+        }
+        slits.push(Slit {
+            ends: [tip, end],
+            hinges: [Some(hinge), other],
+        });
+    }
+    Ok(slits)
+}
+
+/// The number of every hinge beside its hole, and a line below the sheet that says how to cut it.
+fn labels(sheet: &Sheet, material: &SheetMaterial) -> Vec<Label> {
+    let [left, right, ..] = sheet.outline.corners;
+    let width = right[0] - left[0];
+    let kerf = sheet.options.process.kerf;
+    let note = Label {
+        at: [
+            (left[0] + right[0]) / 2.0,
+            left[1].min(right[1]) - 0.03 * width,
+        ],
+        height: 0.012 * width,
+        text: format!(
+            "{}, {} mm thick. 1:1 in mm. Kerf {kerf} mm: CUT is one pass; HOLES and OUTLINE are \
+             paths of the tool's centre, {} mm off the finished edge.",
+            material.name,
+            material.thickness,
+            kerf / 2.0
+        ),
+    };
+    let numbers = sheet.hinges.iter().enumerate().map(|(number, hinge)| {
+        let ([mx, my], w) = (hinge.main, hinge.w_lig);
+        // On the side of panel B, a little along the main cut.
+        Label {
+            at: [
+                hinge.tip[0] + w * (0.5 * mx - 1.2 * my),
+                hinge.tip[1] + w * (0.5 * my + 1.2 * mx),
+            ],
+            height: 0.6 * w,
+            text: number.to_string(),
+        }
+    });
+    numbers.chain([note]).collect()
+}

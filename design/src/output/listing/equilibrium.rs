@@ -1,0 +1,148 @@
+//! The equilibrium path in numbers.
+
+use crate::equilibrium::hinged_sheet::HingedSheet;
+use crate::equilibrium::load_step::{LoadStep, Status};
+use crate::equilibrium::solver::EquilibriumSolver;
+use crate::hinge_law::{HingeEnergy, Order};
+use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Model};
+use crate::pattern::design_vector::DesignVector;
+use crate::sheet::kinematics::{Configuration, deployed_corners};
+use crate::sheet::validity::overlap;
+use serde::Serialize;
+use std::fmt;
+
+/// All load steps of a design.
+#[derive(Clone, Debug, Serialize)]
+pub struct EquilibriumListing {
+    pub steps: Vec<StepListing>,
+}
+
+/// One load step.
+#[derive(Clone, Debug, Serialize)]
+pub struct StepListing {
+    pub load_factor: f64,
+    pub status: Status,
+    /// Maximum unbalanced force, relative to the maximum force.
+    pub residual: f64,
+    /// The part of the residual that rounding can cause.
+    pub rounding: f64,
+    pub iterations: usize,
+    pub negative_pivots: usize,
+    /// Estimated condition number of the tangent scaled to a unit diagonal; `None` if it could not be factorised.
+    pub condition: Option<f64>,
+    /// Pi of (10).
+    #[serde(rename = "Pi")]
+    pub potential: f64,
+    pub energy: EnergyParts,
+    pub q: Configuration,
+    pub panel_corners: Vec<[[f64; 2]; 4]>,
+    pub hinge_deformation: Vec<[f64; 3]>,
+    /// Sum of hinge law and contact.
+    pub hinge_force: Vec<[f64; 3]>,
+    pub hinge_energy: Vec<f64>,
+    /// Empty if the hinge law predicts no damage.
+    pub hinge_damage: Vec<f64>,
+    pub inside: Vec<bool>,
+    /// Maximum overlap of two panels, relative to the mean panel area.
+    pub overlap: f64,
+}
+
+/// The parts of the stored energy.
+#[derive(Clone, Debug, Serialize)]
+pub struct EnergyParts {
+    /// U of (10), including contact.
+    pub total: f64,
+    pub law: f64,
+    pub contact: f64,
+    /// Energies of the springs k_a, k_s and k_theta of (11); `None` for other laws.
+    pub springs: Option<[f64; 3]>,
+}
+
+impl EquilibriumListing {
+    pub fn new(problem: &DesignProblem, design: &DesignVector) -> Result<Self, DesignError> {
+        let Model::Equilibrium(mechanics) = &problem.model else {
+            return Err(DesignError::NoMechanics);
+        };
+        let Deployment { sheet, path, .. } = problem.deploy(design)?;
+        let law = mechanics.law.prepare(&sheet.designs());
+        let hinged = mechanics.hinged(&sheet, &*law, false);
+        let list = |step: &LoadStep| StepListing::new(hinged, step, &mechanics.solver);
+        Ok(Self {
+            steps: path.iter().map(list).collect(),
+        })
+    }
+}
+
+impl StepListing {
+    fn new(hinged: HingedSheet, step: &LoadStep, solver: &EquilibriumSolver) -> Self {
+        let condition = step.condition(solver);
+        let hinge_deformation: Vec<[f64; 3]> =
+            step.deformations.iter().map(|eps| eps.to_array()).collect();
+        let of_law = hinged.law.energies(&step.deformations, Order::Forces);
+        let all = hinged.energies(&step.deformations, Order::Forces);
+        let (stored, total) = (
+            sum(&of_law, |energy| energy.w),
+            sum(&all, |energy| energy.w),
+        );
+        let spring = |c: usize| -> f64 {
+            let hinges = std::iter::zip(&of_law, &hinge_deformation);
+            hinges
+                .map(|(energy, eps)| 0.5 * energy.forces[c] * eps[c])
+                .sum()
+        };
+        Self {
+            load_factor: step.load_factor,
+            status: step.status,
+            residual: step.residual,
+            rounding: step.rounding,
+            iterations: step.iterations,
+            negative_pivots: step.negative_pivots,
+            condition: condition.is_finite().then_some(condition),
+            potential: step.potential,
+            energy: EnergyParts {
+                total,
+                law: stored,
+                contact: total - stored,
+                springs: hinged.law.has_constants().then(|| [0, 1, 2].map(spring)),
+            },
+            q: step.configuration.clone(),
+            panel_corners: deployed_corners(hinged.sheet, &step.configuration),
+            hinge_deformation,
+            hinge_force: all.iter().map(|energy| energy.forces).collect(),
+            hinge_energy: all.iter().map(|energy| energy.w).collect(),
+            hinge_damage: step.damage.iter().map(|damage| damage.d).collect(),
+            inside: step.inside.clone(),
+            overlap: overlap(hinged.sheet, &step.configuration),
+        }
+    }
+}
+
+fn sum(energies: &[HingeEnergy], part: impl Fn(&HingeEnergy) -> f64) -> f64 {
+    energies.iter().map(part).sum()
+}
+
+impl fmt::Display for EquilibriumListing {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        writeln!(
+            f,
+            "    zeta  status       residual  its  neg  condition     U (N mm)    Pi (N mm)  opening (deg)"
+        )?;
+        for step in &self.steps {
+            let openings = step.hinge_deformation.iter().map(|eps| eps[2].abs());
+            let open_deg = openings.fold(0.0, f64::max).to_degrees();
+            let condition = step.condition.unwrap_or(f64::INFINITY);
+            writeln!(
+                f,
+                "{:>8.4}  {:<11} {:>9.1e} {:>4} {:>4}  {condition:>9.1e} {:>12.5e} {:>12.5e} {open_deg:>14.2}",
+                step.load_factor,
+                format!("{:?}", step.status),
+                step.residual,
+                step.iterations,
+                step.negative_pivots,
+                step.energy.total,
+                step.potential,
+            )?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,159 @@
+//! What a design run says at its end: the objective before and after, every hinge, what to mind.
+
+mod estimate;
+mod hinge_row;
+mod warning;
+
+pub use estimate::Estimate;
+pub use hinge_row::HingeRow;
+pub use warning::{Concern, Severity, Warning};
+
+use crate::objective::scores::{Scores, shown};
+use crate::optimise::outer_loop::Ended;
+use crate::output::cut_file::{CutLines, FabricationError};
+use crate::scene::Scene;
+use crate::scene::design_run::Designed;
+use serde::Serialize;
+use std::fmt;
+
+/// The report of a run, for people (`Display`) and programs (JSON).
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    pub title: String,
+    pub ended: Ended,
+    /// Steps made, the start not counted.
+    pub steps: usize,
+    /// Steps that had to be halved because a design had no value.
+    pub setbacks: usize,
+    pub before: Scores,
+    /// Of the best design.
+    pub after: Scores,
+    /// How far the networks of the scene's ensemble disagree on the best design's path, if there are several.
+    pub estimate: Option<Estimate>,
+    /// Whether a cut file was written.
+    pub cut_file: bool,
+    pub hinges: Vec<HingeRow>,
+    pub warnings: Vec<Warning>,
+}
+
+impl Report {
+    /// The errors, for which no cut file is written unless it is forced.
+    pub fn errors(&self) -> impl Iterator<Item = &Warning> {
+        let warnings = self.warnings.iter();
+        warnings.filter(|warning| warning.severity == Severity::Error)
+    }
+
+    /// Of a run of `scene`, whose best design has the given cut lines. They are written if there are no errors, or
+    /// although there are some if `force`.
+    pub fn new(
+        scene: &Scene,
+        designed: &Designed,
+        cuts: &Result<CutLines, FabricationError>,
+        force: bool,
+    ) -> Self {
+        let deployment = &designed.best.deployment;
+        let hinges: Vec<HingeRow> = (0..deployment.sheet.hinges.len())
+            .map(|h| HingeRow::new(scene, deployment, h))
+            .collect();
+        let mut report = Self {
+            cut_file: false,
+            title: scene.config.title.clone(),
+            ended: designed.ended.clone(),
+            steps: designed.history.len() - 1,
+            setbacks: designed
+                .history
+                .iter()
+                .filter(|record| record.setback.is_some())
+                .count(),
+            before: Scores::of(&designed.problem.objective, &designed.start),
+            after: Scores::of(&designed.problem.objective, &designed.best),
+            estimate: Estimate::of(&scene.networks(), deployment),
+            warnings: warning::all(scene, deployment, cuts, &hinges),
+            hinges,
+        };
+        report.cut_file = cuts.is_ok() && (force || report.errors().next().is_none());
+        report
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { before, after, .. } = self;
+        writeln!(f, "{}", self.title)?;
+        if !self.cut_file {
+            writeln!(f, "NO CUT FILE")?;
+            self.errors()
+                .try_for_each(|error| writeln!(f, "- {error}"))?;
+        }
+        match &self.ended {
+            Ended::Completed => writeln!(f, "{} steps", self.steps)?,
+            Ended::Stopped => {
+                writeln!(f, "stopped after {} steps; run again to go on", self.steps)?
+            }
+            Ended::Settled => writeln!(
+                f,
+                "settled after {} steps: none lowers the loss any more",
+                self.steps
+            )?,
+            Ended::Stuck { reason } => writeln!(f, "stuck after {} steps: {reason}", self.steps)?,
+        }
+        writeln!(f, "\n{:<24}{:>12}{:>12}", "", "start", "best")?;
+        let rows = |of: &Scores| {
+            let mut rows = vec![("outline error (mm)", of.outline_error)];
+            rows.extend(of.terms());
+            rows.push(("loss (mm^2)", of.loss));
+            rows.push(("inside domain (%)", 100.0 * of.share_inside));
+            rows
+        };
+        for ((name, before), (_, after)) in std::iter::zip(rows(before), rows(after)) {
+            writeln!(f, "{name:<24}{:>12}{:>12}", shown(before), shown(after))?;
+        }
+        if let Some(estimate) = &self.estimate {
+            let percent = |x: f64| format!("{:.1} %", 100.0 * x);
+            writeln!(
+                f,
+                "\nstandard deviation of {} networks on the path inside: energy {}, forces {}, D_peak {}",
+                estimate.networks,
+                percent(estimate.energy),
+                percent(estimate.forces),
+                estimate.damage_peak.map_or("-".into(), percent)
+            )?;
+        }
+        writeln!(
+            f,
+            "\nhinge  panels    w_lig  alpha  theta   eta_a   eta_s       D  D_peak  domain    Gamma\n\
+             {:>20} {:>6} {:>6}",
+            "mm", "deg", "deg"
+        )?;
+        for row in &self.hinges {
+            let panels = format!("{}-{}", row.panels[0], row.panels[1]);
+            let unknown = if row.inside { "-" } else { "?" };
+            let [damage, peak] = [row.damage, row.damage_peak]
+                .map(|damage| damage.map_or(unknown.into(), |damage| format!("{damage:.4}")));
+            writeln!(
+                f,
+                "{:>5}  {panels:>6} {:>8.2} {:>6.1} {:>6.1} {:>7.3} {:>7.3} {damage:>7} {peak:>7}  {:<6} {:>8.3e}",
+                row.hinge,
+                row.w_lig,
+                row.alpha_deg,
+                row.theta_deg,
+                row.eta_a,
+                row.eta_s,
+                if row.inside { "inside" } else { "left" },
+                row.gamma,
+            )?;
+        }
+        writeln!(
+            f,
+            "D and D_peak: maxima along the path of the mean damage of the ligament and of its most strained\n\
+             1 %, which tears at 1; ? not known, as the hinge left the states its law was trained on"
+        )?;
+        if self.warnings.is_empty() {
+            return writeln!(f, "\nno warnings");
+        }
+        writeln!(f, "\nwarnings")?;
+        self.warnings
+            .iter()
+            .try_for_each(|warning| writeln!(f, "- {warning}"))
+    }
+}

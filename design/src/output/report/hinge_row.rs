@@ -1,0 +1,63 @@
+//! One hinge of the report.
+
+use crate::analysis::localisation::gamma;
+use crate::geometry::polygon::edges;
+use crate::hinge_law::DamageMeasure;
+use crate::objective::design_problem::Deployment;
+use crate::scene::Scene;
+use crate::sheet::cut_sheet::{Hinge, Sheet};
+use serde::Serialize;
+
+/// One hinge of the best design, deployed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct HingeRow {
+    pub hinge: usize,
+    /// A and B.
+    pub panels: [usize; 2],
+    /// mm
+    pub w_lig: f64,
+    pub alpha_deg: f64,
+    pub theta_deg: f64,
+    pub eta_a: f64,
+    pub eta_s: f64,
+    /// Maximum D along the path, the mean damage of the ligament; none where it is not known: the hinge law
+    /// predicts none, or was not made for a state of the path.
+    pub damage: Option<f64>,
+    /// The same of D_peak: at 1 the ligament tears.
+    pub damage_peak: Option<f64>,
+    /// Whether the hinge law was made for every state of the path.
+    pub inside: bool,
+    /// (21), with the shortest edge of the two panels.
+    pub gamma: f64,
+}
+
+impl HingeRow {
+    pub(super) fn new(scene: &Scene, deployment: &Deployment, h: usize) -> Self {
+        let sheet = &deployment.sheet;
+        let hinge = &sheet.hinges[h];
+        let last = deployment.final_step().deformations[h];
+        let [eta_a, eta_s] = last.eta(hinge.w_lig);
+        Self {
+            hinge: h,
+            panels: [hinge.panel_a(), hinge.panel_b()],
+            w_lig: hinge.w_lig,
+            alpha_deg: hinge.alpha.to_degrees(),
+            theta_deg: last.theta.to_degrees(),
+            eta_a,
+            eta_s,
+            damage: deployment.damage_max(DamageMeasure::Mean, h),
+            damage_peak: deployment.damage_max(DamageMeasure::Peak, h),
+            inside: deployment.path.iter().all(|step| step.inside[h]),
+            gamma: gamma(&scene.material, hinge.w_lig, shortest_edge(sheet, hinge)),
+        }
+    }
+}
+
+/// The shortest edge of the two panels of a hinge (mm).
+fn shortest_edge(sheet: &Sheet, hinge: &Hinge) -> f64 {
+    [hinge.panel_a(), hinge.panel_b()]
+        .iter()
+        .flat_map(|&panel| edges(&sheet.panels[panel].corners))
+        .map(|(p, q)| f64::hypot(q[0] - p[0], q[1] - p[1]))
+        .fold(f64::INFINITY, f64::min)
+}

@@ -1,0 +1,289 @@
+//! What a design asks to be looked at before it is cut.
+
+use crate::analysis::localisation::critical_edge;
+use crate::equilibrium::load_step::Status;
+use crate::objective::design_problem::Deployment;
+use crate::output::cut_file::{CutLines, FabricationError};
+use crate::output::report::hinge_row::HingeRow;
+use crate::scene::Scene;
+use crate::sheet::hinge_window::Window;
+use serde::Serialize;
+use std::fmt;
+
+/// A limit of the model or of the workshop that a design oversteps.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Warning {
+    pub concern: Concern,
+    pub severity: Severity,
+    /// The hinges it is about; empty if it is about the whole sheet.
+    pub hinges: Vec<usize>,
+    pub message: String,
+}
+
+/// What a warning asks of the reader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Severity {
+    /// The model is less accurate than elsewhere.
+    Note,
+    /// The sheet may not behave as computed: look at it before cutting.
+    Warning,
+    /// The sheet will not behave as computed, or cannot be cut: no cut file unless it is forced.
+    Error,
+}
+
+/// What a warning is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Concern {
+    /// Windows share material: the sum of hinge energies counts it twice.
+    WindowsOverlap,
+    /// Panels are too small for the windows of their hinges.
+    WindowsLeavePanels,
+    /// Gamma < 1 (21): panels tilt out of plane with their ligaments.
+    PanelsTilt,
+    /// w_lig or alpha is outside what the hinge law was trained on.
+    LigamentsOutsideDomain,
+    /// The path left the states that the hinge law was made for.
+    StatesOutsideDomain,
+    /// D_peak of 1 or more: ligaments tear.
+    Tearing,
+    /// |eta| over 1 at full load: a ligament translates by more than its width.
+    Overstrained,
+    /// Another cut comes closer to a hinge's tip than its secondary cut.
+    CutsTooClose,
+    /// There are no cut lines.
+    CannotBeCut,
+    /// The path of equilibria is not one converged, stable path.
+    Path,
+}
+
+impl Concern {
+    /// How severe the concern is wherever it arises.
+    fn severity(self) -> Severity {
+        match self {
+            Self::WindowsLeavePanels => Severity::Note,
+            Self::WindowsOverlap
+            | Self::PanelsTilt
+            | Self::LigamentsOutsideDomain
+            | Self::StatesOutsideDomain
+            | Self::Path => Severity::Warning,
+            Self::Tearing | Self::Overstrained | Self::CutsTooClose | Self::CannotBeCut => {
+                Severity::Error
+            }
+        }
+    }
+
+    /// A warning about the whole sheet.
+    fn of_sheet(self, message: String) -> Warning {
+        Warning {
+            concern: self,
+            severity: self.severity(),
+            hinges: Vec::new(),
+            message,
+        }
+    }
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Note => "note",
+            Self::Warning => "warning",
+            Self::Error => "error",
+        })
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        const NAMED: usize = 12;
+        write!(f, "{}: {}", self.severity, self.message)?;
+        let named: Vec<String> = self
+            .hinges
+            .iter()
+            .take(NAMED)
+            .map(usize::to_string)
+            .collect();
+        match self.hinges.len() {
+            0 => Ok(()),
+            1 => write!(f, " (hinge {})", named[0]),
+            2..=NAMED => write!(f, " (hinges {})", named.join(", ")),
+            all => write!(f, " (hinges {} and {} more)", named.join(", "), all - NAMED),
+        }
+    }
+}
+
+/// Every warning of a deployed design; `cuts` are its cut lines, `hinges` the rows of its report.
+pub(super) fn all(
+    scene: &Scene,
+    deployment: &Deployment,
+    cuts: &Result<CutLines, FabricationError>,
+    hinges: &[HingeRow],
+) -> Vec<Warning> {
+    let mut warnings = windows(deployment);
+    warnings.extend(cutting(deployment, cuts));
+    warnings.extend(tilting(scene, hinges));
+    warnings.extend(domain(scene, hinges));
+    warnings.extend(tearing(hinges));
+    warnings.extend(overstrained(hinges));
+    warnings.extend(path(deployment));
+    warnings.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
+    warnings
+}
+
+/// A warning about the hinges, if there are any.
+fn about(concern: Concern, hinges: Vec<usize>, message: String) -> Option<Warning> {
+    (!hinges.is_empty()).then(|| Warning {
+        hinges,
+        ..concern.of_sheet(message)
+    })
+}
+
+/// The numbers of the rows that `overstep`.
+fn those(hinges: &[HingeRow], overstep: impl Fn(&HingeRow) -> bool) -> Vec<usize> {
+    hinges
+        .iter()
+        .filter(|row| overstep(row))
+        .map(|row| row.hinge)
+        .collect()
+}
+
+fn windows(deployment: &Deployment) -> Vec<Warning> {
+    let sheet = &deployment.sheet;
+    let windows = Window::of_sheet(sheet);
+    let r_win = sheet.options.process.r_win;
+    let overlapping = (0..windows.len())
+        .filter(|&h| {
+            let others = windows.iter().enumerate();
+            others
+                .filter(|(other, _)| *other != h)
+                .any(|(_, other)| windows[h].overlaps(other))
+        })
+        .collect();
+    let leaving = (0..windows.len())
+        .filter(|&h| {
+            let hinge = &sheet.hinges[h];
+            let [a, b] = [hinge.panel_a(), hinge.panel_b()].map(|panel| &sheet.panels[panel]);
+            !windows[h].within(a, b)
+        })
+        .collect();
+    let overlap = format!(
+        "windows of {r_win} mm radius overlap: their ligaments are not independent, and the sum of \
+         hinge energies is not exact"
+    );
+    let leave = format!("panels are too small for the {r_win} mm windows of their hinges");
+    [
+        about(Concern::WindowsOverlap, overlapping, overlap),
+        about(Concern::WindowsLeavePanels, leaving, leave),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+fn cutting(deployment: &Deployment, cuts: &Result<CutLines, FabricationError>) -> Option<Warning> {
+    let cuts = match cuts {
+        Ok(cuts) => cuts,
+        Err(error) => {
+            return Some(Concern::CannotBeCut.of_sheet(error.to_string()));
+        }
+    };
+    const ROUNDING: f64 = 1e-6;
+    let close = deployment
+        .sheet
+        .hinges
+        .iter()
+        .enumerate()
+        .filter(|(h, hinge)| cuts.clearance(*h) < hinge.w_lig - ROUNDING)
+        .map(|(h, _)| h)
+        .collect();
+    let message = "another cut comes closer to the tip than w_lig".into();
+    about(Concern::CutsTooClose, close, message)
+}
+
+fn tilting(scene: &Scene, hinges: &[HingeRow]) -> Option<Warning> {
+    let tilting = those(hinges, |row| row.gamma < 1.0);
+    let edge = tilting
+        .iter()
+        .map(|&h| critical_edge(&scene.material, hinges[h].w_lig))
+        .fold(0.0, f64::max);
+    let message = format!(
+        "panel edges shorter than the critical length of {edge:.0} mm: Gamma < 1, panels tilt out \
+         of plane with their ligaments"
+    );
+    about(Concern::PanelsTilt, tilting, message)
+}
+
+fn domain(scene: &Scene, hinges: &[HingeRow]) -> Vec<Warning> {
+    let Some(domain) = scene.surrogate().map(|surrogate| surrogate.domain()) else {
+        return Vec::new();
+    };
+    let outside = |[least, greatest]: [f64; 2], value: f64| !(least..=greatest).contains(&value);
+    let alpha_deg = domain.alpha.map(f64::to_degrees);
+    let ligaments = those(hinges, |row| {
+        outside(domain.w_lig, row.w_lig) || outside(alpha_deg, row.alpha_deg)
+    });
+    let states = those(hinges, |row| !row.inside);
+    let trained = format!(
+        "ligaments outside the hinge law's training domain, w_lig {:.1} to {:.1} mm and alpha \
+         {:.0} to {:.0} deg",
+        domain.w_lig[0], domain.w_lig[1], alpha_deg[0], alpha_deg[1]
+    );
+    let left = "deformations outside the hinge law's training domain on the way: energy and forces of these \
+                hinges are extrapolated and their damage is not known"
+        .into();
+    [
+        about(Concern::LigamentsOutsideDomain, ligaments, trained),
+        about(Concern::StatesOutsideDomain, states, left),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+fn tearing(hinges: &[HingeRow]) -> Option<Warning> {
+    // The mean tears later than the peak; it is all that weights without D_peak know.
+    let torn = those(hinges, |row| {
+        row.damage_peak
+            .or(row.damage)
+            .is_some_and(|damage| damage >= 1.0)
+    });
+    let message = "predicted peak damage of 1 or more: the ligament tears".into();
+    about(Concern::Tearing, torn, message)
+}
+
+fn overstrained(hinges: &[HingeRow]) -> Option<Warning> {
+    let beyond = those(hinges, |row| row.eta_a.abs().max(row.eta_s.abs()) > 1.0);
+    let message =
+        "ligaments translate by more than their width at full load: no hinge law holds there; \
+                   reduce the load or the size of the target"
+            .into();
+    about(Concern::Overstrained, beyond, message)
+}
+
+fn path(deployment: &Deployment) -> Option<Warning> {
+    let steps: Vec<String> = deployment
+        .path
+        .iter()
+        .filter_map(|step| {
+            let what = match step.status {
+                Status::Converged | Status::LeftDomain => return None,
+                Status::Almost => format!("residual {:.0e}", step.residual),
+                Status::LimitPoint => "a jump past a limit point".into(),
+                Status::Diverged => "no equilibrium".into(),
+            };
+            Some(format!("{what} at load factor {:.3}", step.load_factor))
+        })
+        .collect();
+    (!steps.is_empty()).then(|| {
+        let message = format!("the path is not smooth and stable: {}", steps.join(", "));
+        match deployment.final_step().status {
+            Status::Diverged => Warning {
+                severity: Severity::Error,
+                ..Concern::Path.of_sheet(message)
+            },
+            _ => Concern::Path.of_sheet(message),
+        }
+    })
+}

@@ -1,0 +1,103 @@
+//! What a run leaves in its folder beside its state: report, cut lines, pictures.
+
+use crate::objective::design_problem::Deployment;
+use crate::output::cut_file::{CutLines, FabricationError, write_dxf, write_svg};
+use crate::output::drawing;
+use crate::output::report::Report;
+use crate::scene::Scene;
+use crate::scene::design_run::Designed;
+use crate::sheet::cut_sheet::Sheet;
+use std::path::PathBuf;
+use support::whole_file;
+
+/// A result that could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum ResultsError {
+    #[error(transparent)]
+    Fabrication(#[from] FabricationError),
+    #[error("cannot write {path}: {source}", path = .path.display())]
+    Write {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+}
+
+/// Writes `report.json`, `report.txt`, `deployed-start.svg` and `deployed.svg`; of a design with cut lines `flat.svg`;
+/// and of one without errors, or if `force`, `cut.dxf`, `cut.svg` and `cut-list.csv`.
+///
+/// Otherwise the report says why there is no cut file, and those of an earlier design are removed.
+pub fn write_results(
+    scene: &Scene,
+    designed: &Designed,
+    force: bool,
+) -> Result<Report, ResultsError> {
+    let folder = scene.output();
+    let write = |name: &str, contents: &[u8]| {
+        let path = folder.join(name);
+        whole_file::write(&path, contents).map_err(|source| ResultsError::Write { path, source })
+    };
+    let best = &designed.best.deployment;
+    let cuts = CutLines::new(&best.pattern, &best.sheet, &scene.material);
+    // First of all, so that whoever finds a cut file finds what to mind about it.
+    let report = Report::new(scene, designed, &cuts, force);
+    let json = serde_json::to_vec_pretty(&report).map_err(|error| ResultsError::Write {
+        path: folder.join("report.json"),
+        source: error.into(),
+    })?;
+    write("report.json", &json)?;
+    write("report.txt", report.to_string().as_bytes())?;
+    match &cuts {
+        Ok(cuts) if report.cut_file => {
+            write_dxf(&folder.join("cut.dxf"), cuts)?;
+            write_svg(&folder.join("cut.svg"), cuts)?;
+            write("cut-list.csv", cut_list(&best.sheet, cuts).as_bytes())?;
+        }
+        _ => {
+            for name in ["cut.dxf", "cut.svg", "cut-list.csv"] {
+                remove(folder.join(name))?;
+            }
+        }
+    }
+    match &cuts {
+        Ok(cuts) => {
+            let flat = drawing::flat(&scene.config.title, &best.sheet, cuts);
+            write("flat.svg", flat.as_bytes())?;
+        }
+        Err(_) => {
+            for name in ["flat.svg", "flat.png"] {
+                remove(folder.join(name))?;
+            }
+        }
+    }
+    write(
+        "deployed-start.svg",
+        picture(scene, &designed.start.deployment).as_bytes(),
+    )?;
+    write("deployed.svg", picture(scene, best).as_bytes())?;
+    Ok(report)
+}
+
+/// Hole and ligament of every hinge: as designed, and as a caliper reads the ligament beside its hole.
+fn cut_list(sheet: &Sheet, cuts: &CutLines) -> String {
+    let mut text = "hinge,hole_diameter_mm,w_lig_mm,caliper_mm\n".to_owned();
+    for (h, (hinge, hole)) in std::iter::zip(&sheet.hinges, &cuts.holes).enumerate() {
+        let (diameter, caliper) = (2.0 * hole.radius, cuts.caliper(h));
+        text += &format!("{h},{diameter:.3},{:.3},{caliper:.3}\n", hinge.w_lig);
+    }
+    text
+}
+
+/// Removes a file of an earlier run, if there is one.
+fn remove(path: PathBuf) -> Result<(), ResultsError> {
+    match std::fs::remove_file(&path) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(ResultsError::Write { path, source })
+        }
+        _ => Ok(()),
+    }
+}
+
+fn picture(scene: &Scene, deployment: &Deployment) -> String {
+    let configuration = &deployment.final_step().configuration;
+    drawing::deployed(scene, &deployment.sheet, configuration)
+}

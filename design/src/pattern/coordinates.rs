@@ -1,0 +1,144 @@
+//! The charts (5): unconstrained coordinates of the admissible patterns,
+//!
+//! ```text
+//! r = sigma(z),     tau_(e,s) = sum over m <= s of softmax(ell_e)_m
+//! ```
+
+use crate::pattern::grid::Grid;
+use crate::pattern::pattern_error::PatternError;
+use serde::{Deserialize, Serialize};
+
+/// Unconstrained coordinates of a pattern (5), or a gradient in them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PatternCoordinates {
+    /// Logits of the void aspect ratios of the interior cuts, row by row.
+    pub z: Vec<f64>,
+    /// Logits of the intervals between the cuts on the edges bottom, right, top, left.
+    pub ell: [Vec<f64>; 4],
+}
+
+impl PatternCoordinates {
+    /// r = 1/2 everywhere, and evenly spaced cuts on the outline.
+    pub fn uniform(grid: Grid) -> Self {
+        Self {
+            z: vec![0.0; grid.aspect_ratio_count()],
+            ell: grid.edge_cut_counts().map(|count| vec![0.0; count + 1]),
+        }
+    }
+
+    /// r and tau as one vector. They are unique to a pattern, whereas many logits give the same one.
+    pub fn values(&self) -> Vec<f64> {
+        let r = self.z.iter().map(|z| logistic(*z));
+        r.chain(self.ell.iter().flat_map(|ell| partial_sums(ell)))
+            .collect()
+    }
+
+    /// The logits z of given aspect ratios.
+    pub fn z_of(r: &[f64]) -> Result<Vec<f64>, PatternError> {
+        let inside = |r: f64| r > 0.0 && r < 1.0;
+        match r.iter().position(|r| !inside(*r)) {
+            Some(index) => Err(PatternError::Interval {
+                name: "r",
+                index,
+                value: r[index],
+            }),
+            None => Ok(r.iter().map(|r| logit(*r)).collect()),
+        }
+    }
+
+    /// Logits of given boundary positions on the four edges: the logarithms of their intervals.
+    pub fn ell_of(tau: &[Vec<f64>; 4]) -> Result<[Vec<f64>; 4], PatternError> {
+        for tau in tau {
+            let widths = intervals(tau);
+            if let Some(index) = widths
+                .iter()
+                .position(|width| *width <= 0.0 || width.is_nan())
+            {
+                let index = index.min(tau.len() - 1);
+                return Err(PatternError::Interval {
+                    name: "tau",
+                    index,
+                    value: tau[index],
+                });
+            }
+        }
+        let logits = |tau: &Vec<f64>| intervals(tau).iter().map(|width| width.ln()).collect();
+        Ok(tau.each_ref().map(logits))
+    }
+
+    pub fn check(&self, grid: Grid) -> Result<(), PatternError> {
+        let expected = grid.edge_cut_counts().map(|count| count + 1);
+        let blocks = [
+            ("z", &self.z, grid.aspect_ratio_count()),
+            ("ell of the bottom edge", &self.ell[0], expected[0]),
+            ("ell of the right edge", &self.ell[1], expected[1]),
+            ("ell of the top edge", &self.ell[2], expected[2]),
+            ("ell of the left edge", &self.ell[3], expected[3]),
+        ];
+        for (name, values, expected) in blocks {
+            if values.len() != expected {
+                return Err(PatternError::Count {
+                    name,
+                    found: values.len(),
+                    expected,
+                    m: grid.m,
+                    n: grid.n,
+                });
+            }
+            if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+                let value = values[index];
+                return Err(PatternError::NotFinite { name, index, value });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The logistic function sigma of (5).
+pub fn logistic(z: f64) -> f64 {
+    1.0 / (1.0 + (-z).exp())
+}
+
+/// The inverse of [`logistic`].
+pub fn logit(fraction: f64) -> f64 {
+    (fraction / (1.0 - fraction)).ln()
+}
+
+/// Partial sums of softmax(ell) without the last, which is 1; (5).
+pub fn partial_sums(ell: &[f64]) -> Vec<f64> {
+    let max = ell.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let weights: Vec<f64> = ell.iter().map(|logit| (logit - max).exp()).collect();
+    let total: f64 = weights.iter().sum();
+    let mut sum = 0.0;
+    weights[..weights.len() - 1]
+        .iter()
+        .map(|weight| {
+            sum += weight / total;
+            sum
+        })
+        .collect()
+}
+
+/// The intervals between neighbouring boundary positions: the softmax weights.
+pub fn intervals(tau: &[f64]) -> Vec<f64> {
+    let ends = std::iter::once(0.0)
+        .chain(tau.iter().copied())
+        .chain(std::iter::once(1.0));
+    ends.clone().skip(1).zip(ends).map(|(b, a)| b - a).collect()
+}
+
+/// The gradient in ell from the gradient in tau.
+pub fn partial_sums_pullback(tau: &[f64], gradient: &[f64]) -> Vec<f64> {
+    let weights = intervals(tau);
+    let mut by_weight = vec![0.0; weights.len()];
+    for s in (0..gradient.len()).rev() {
+        by_weight[s] = by_weight[s + 1] + gradient[s];
+    }
+    let mean: f64 = std::iter::zip(&weights, &by_weight)
+        .map(|(w, g)| w * g)
+        .sum();
+    std::iter::zip(&weights, &by_weight)
+        .map(|(w, g)| w * (g - mean))
+        .collect()
+}

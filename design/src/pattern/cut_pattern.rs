@@ -1,0 +1,252 @@
+//! The cut pattern: the outline (4) and the single sparse solve that determines all cut
+//! endpoints (3),
+//!
+//! ```text
+//! x_ij  = r_ij A_ij + (1 - r_ij) B_ij       interior cuts; A, B: the neighbours' facing endpoints
+//! x'_ij = (1 - r_ij) A_ij + r_ij B_ij
+//! x_ij  = x'_ij = (1 - tau) o_0 + tau o_1   cuts on the outline edge from o_0 to o_1
+//! ```
+//!
+//! and its exact vector-Jacobian product by the transposed system.
+
+use crate::geometry::plane::{add, complex, cross, dot};
+use crate::pattern::coordinates::{
+    PatternCoordinates, intervals, logistic, partial_sums, partial_sums_pullback,
+};
+use crate::pattern::grid::{EDGES, Endpoint, Grid};
+use crate::pattern::pattern_error::PatternError;
+use faer::Mat;
+use faer::c64;
+use faer::linalg::solvers::Solve;
+use faer::sparse::linalg::solvers::Lu;
+use faer::sparse::{SparseColMat, Triplet};
+use serde::{Deserialize, Serialize};
+
+/// The fixed outline of the flat sheet: corners SW, SE, NE, NW (mm).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Outline {
+    pub corners: [[f64; 2]; 4],
+}
+
+impl Outline {
+    /// The rectangle with its south-west corner at the origin.
+    pub fn rectangle(width: f64, height: f64) -> Self {
+        Self {
+            corners: [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]],
+        }
+    }
+
+    /// mm^2
+    pub fn area(&self) -> f64 {
+        let [sw, se, ne, nw] = self.corners.map(complex);
+        0.5 * cross(ne - sw, nw - se)
+    }
+
+    /// The larger of width and height (mm).
+    pub fn size(&self) -> f64 {
+        let extent = |axis: usize| {
+            let values = self.corners.map(|corner| corner[axis]);
+            let max = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            max - values.into_iter().fold(f64::INFINITY, f64::min)
+        };
+        f64::max(extent(0), extent(1))
+    }
+
+    /// Whether the outline is strictly convex with counter-clockwise corners.
+    pub fn is_convex(&self) -> bool {
+        let corner = |k: usize| complex(self.corners[k % 4]);
+        (0..4).all(|k| {
+            let turn = cross(corner(k + 1) - corner(k), corner(k + 2) - corner(k + 1));
+            turn > 0.0 && turn.is_finite()
+        })
+    }
+}
+
+/// A flat, gapless, rigidly deployable cut pattern kappa = (r, tau); (2).
+#[derive(Clone, Debug)]
+pub struct CutPattern {
+    pub grid: Grid,
+    pub outline: Outline,
+    /// Void aspect ratios of the interior cuts, row by row, in (0, 1).
+    pub r: Vec<f64>,
+    /// Boundary positions on the edges bottom, right, top, left, as fractions of the edge.
+    pub tau: [Vec<f64>; 4],
+    /// Cut endpoints (mm), row by row: x_ij, then x'_ij of each vertex.
+    pub points: Vec<[f64; 2]>,
+    /// Factors of the collinearity system, stored for the pullback.
+    system: Lu<usize, f64>,
+}
+
+impl CutPattern {
+    /// Computes the endpoints of all cuts.
+    pub fn new(
+        grid: Grid,
+        outline: Outline,
+        coordinates: &PatternCoordinates,
+    ) -> Result<Self, PatternError> {
+        let Grid { m, n } = grid;
+        if m < 2 || n < 2 {
+            return Err(PatternError::TooFewPanels { m, n });
+        }
+        if !outline.is_convex() {
+            return Err(PatternError::Outline {
+                corners: outline.corners,
+            });
+        }
+        coordinates.check(grid)?;
+        let r: Vec<f64> = coordinates.z.iter().copied().map(logistic).collect();
+        if let Some(index) = r.iter().position(|&r| r <= 0.0 || r >= 1.0) {
+            return Err(PatternError::Collision { name: "z", index });
+        }
+        let tau = coordinates.ell.each_ref().map(|ell| partial_sums(ell));
+        for tau in &tau {
+            if let Some(index) = intervals(tau).iter().position(|&interval| interval <= 0.0) {
+                return Err(PatternError::Collision { name: "ell", index });
+            }
+        }
+        let system = SparseColMat::try_new_from_triplets(
+            grid.point_count(),
+            grid.point_count(),
+            &collinearity(grid, &r),
+        )
+        .map_err(|_| PatternError::Singular)?
+        .sp_lu()
+        .map_err(|_| PatternError::Singular)?;
+        let solution = system.solve(outline_points(grid, &outline, &tau));
+        let points: Vec<[f64; 2]> = (0..grid.point_count())
+            .map(|row| [solution[(row, 0)], solution[(row, 1)]])
+            .collect();
+        if points.iter().flatten().any(|value| !value.is_finite()) {
+            return Err(PatternError::Singular);
+        }
+        Ok(Self {
+            grid,
+            outline,
+            r,
+            tau,
+            points,
+            system,
+        })
+    }
+
+    /// x_ij (mm).
+    pub fn x(&self, i: usize, j: usize) -> [f64; 2] {
+        self.points[self.grid.endpoint(i, j, Endpoint::X)]
+    }
+
+    /// x'_ij (mm).
+    pub fn x_prime(&self, i: usize, j: usize) -> [f64; 2] {
+        self.points[self.grid.endpoint(i, j, Endpoint::XPrime)]
+    }
+
+    /// The sides r L and (1 - r) L of the void of every interior cut (mm), row by row.
+    pub fn void_sides(&self) -> Vec<[f64; 2]> {
+        let cuts = std::iter::zip(self.grid.interior_vertices(), &self.r);
+        cuts.map(|((i, j), r)| {
+            let [a, b] = self.grid.facing_endpoints(i, j);
+            let length = (complex(self.points[a]) - complex(self.points[b])).norm();
+            [r * length, (1.0 - r) * length]
+        })
+        .collect()
+    }
+
+    /// The gradient in (z, ell) and in the outline's corners of a function with the given gradient in
+    /// [`points`](Self::points).
+    pub fn pullback(&self, points: &[[f64; 2]]) -> (PatternCoordinates, [[f64; 2]; 4]) {
+        let adjoint = self
+            .system
+            .solve_transpose(Mat::from_fn(points.len(), 2, |row, axis| points[row][axis]));
+        let adjoint = |point: usize| complex([adjoint[(point, 0)], adjoint[(point, 1)]]);
+
+        let z = std::iter::zip(self.grid.interior_vertices(), &self.r)
+            .map(|((i, j), r)| {
+                let [a, b] = self.grid.facing_endpoints(i, j);
+                let slit = complex(self.points[a]) - complex(self.points[b]);
+                let x = self.grid.endpoint(i, j, Endpoint::X);
+                let x_prime = self.grid.endpoint(i, j, Endpoint::XPrime);
+                r * (1.0 - r) * dot(adjoint(x) - adjoint(x_prime), slit)
+            })
+            .collect();
+
+        let ell = std::array::from_fn(|edge| {
+            let [start, end] = EDGES[edge].map(|corner| complex(self.outline.corners[corner]));
+            let tau: Vec<f64> = (1..=self.tau[edge].len())
+                .map(|s| {
+                    let (i, j) = self.grid.edge_vertex(edge, s);
+                    let x = self.grid.endpoint(i, j, Endpoint::X);
+                    let x_prime = self.grid.endpoint(i, j, Endpoint::XPrime);
+                    dot(adjoint(x) + adjoint(x_prime), end - start)
+                })
+                .collect();
+            partial_sums_pullback(&self.tau[edge], &tau)
+        });
+        (
+            PatternCoordinates { z, ell },
+            self.outline_pullback(adjoint),
+        )
+    }
+
+    /// The gradient in the outline's corners, from the adjoint of the cut endpoints.
+    fn outline_pullback(&self, adjoint: impl Fn(usize) -> c64) -> [[f64; 2]; 4] {
+        let mut corners = [[0.0; 2]; 4];
+        for (edge, tau) in self.tau.iter().enumerate() {
+            let [start, end] = EDGES[edge];
+            for (s, tau) in std::iter::zip(1.., tau) {
+                let (i, j) = self.grid.edge_vertex(edge, s);
+                let both =
+                    [Endpoint::X, Endpoint::XPrime].map(|e| adjoint(self.grid.endpoint(i, j, e)));
+                let force = both[0] + both[1];
+                add(&mut corners[start], force * (1.0 - tau));
+                add(&mut corners[end], force * *tau);
+            }
+        }
+        let Grid { m, n } = self.grid;
+        for (corner, (i, j)) in std::iter::zip(&mut corners, [(0, 0), (m, 0), (m, n), (0, n)]) {
+            for endpoint in [Endpoint::X, Endpoint::XPrime] {
+                add(corner, adjoint(self.grid.endpoint(i, j, endpoint)));
+            }
+        }
+        corners
+    }
+}
+
+/// The matrix of (3)-(4): one row per cut endpoint.
+fn collinearity(grid: Grid, r: &[f64]) -> Vec<Triplet<usize, usize, f64>> {
+    let mut entries: Vec<_> = (0..grid.point_count())
+        .map(|point| Triplet::new(point, point, 1.0))
+        .collect();
+    for ((i, j), &r) in std::iter::zip(grid.interior_vertices(), r) {
+        let [a, b] = grid.facing_endpoints(i, j);
+        let x = grid.endpoint(i, j, Endpoint::X);
+        let x_prime = grid.endpoint(i, j, Endpoint::XPrime);
+        entries.extend([
+            Triplet::new(x, a, -r),
+            Triplet::new(x, b, r - 1.0),
+            Triplet::new(x_prime, a, r - 1.0),
+            Triplet::new(x_prime, b, -r),
+        ]);
+    }
+    entries
+}
+
+/// The right-hand side of (3)-(4): the outline points, zero at interior cuts.
+fn outline_points(grid: Grid, outline: &Outline, tau: &[Vec<f64>; 4]) -> Mat<f64> {
+    let mut points = Mat::zeros(grid.point_count(), 2);
+    for (edge, tau) in tau.iter().enumerate() {
+        let [start, end] = EDGES[edge].map(|corner| outline.corners[corner]);
+        let positions = std::iter::once(0.0)
+            .chain(tau.iter().copied())
+            .chain(std::iter::once(1.0));
+        for (s, tau) in positions.enumerate() {
+            let (i, j) = grid.edge_vertex(edge, s);
+            for endpoint in [Endpoint::X, Endpoint::XPrime] {
+                for axis in 0..2 {
+                    points[(grid.endpoint(i, j, endpoint), axis)] =
+                        (1.0 - tau) * start[axis] + tau * end[axis];
+                }
+            }
+        }
+    }
+    points
+}

@@ -1,0 +1,105 @@
+//! A scene that was read and checked, together with the files that it names.
+
+use crate::objective::target::Target;
+use crate::scene::checks;
+use crate::scene::hinge_model::HingeModel;
+use crate::scene::keys::SceneConfig;
+use crate::scene::loaded_hinge::LoadedHinge;
+use crate::scene::relative_path::{beside, folder};
+use crate::scene::scene_error::SceneError;
+use crate::sheet::cut_sheet::{HingePoint, SheetOptions};
+use hinge::SheetMaterial;
+use std::path::{Path, PathBuf};
+use surrogate::Surrogate;
+
+/// A scene with checked values, its material and its sampled target.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    pub config: SceneConfig,
+    pub material: SheetMaterial,
+    pub target: Target,
+    pub(super) hinge: LoadedHinge,
+    pub(super) path: PathBuf,
+}
+
+impl Scene {
+    /// Reads a scene and the files that it names, and checks all values.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        Self::new(support::toml_file::read(path)?, path)
+    }
+
+    /// Reads the material, the target and the weights of a scene whose paths are relative to the
+    /// file at `path`, and checks all values.
+    pub fn new(config: SceneConfig, path: &Path) -> Result<Self, SceneError> {
+        let refuse = |reason| SceneError::Value {
+            path: path.to_owned(),
+            reason,
+        };
+        checks::config(&config).map_err(refuse)?;
+        let material_path = beside(path, &config.material);
+        let material = SheetMaterial::load(&material_path)?;
+        let points = config.objective.target_points;
+        let target = Target::sample(&config.target, folder(path), points).map_err(|source| {
+            SceneError::Target {
+                path: path.to_owned(),
+                source,
+            }
+        })?;
+        checks::target(&target, &config.sheet.outline()).map_err(refuse)?;
+        let hinge = LoadedHinge::load(&config, &material, path)?;
+        Ok(Self {
+            config,
+            material,
+            target,
+            hinge,
+            path: path.to_owned(),
+        })
+    }
+
+    /// The learned hinge law, if the scene uses one.
+    pub fn surrogate(&self) -> Option<&Surrogate> {
+        match &self.hinge {
+            LoadedHinge::Surrogate { law, .. } => Some(law.surrogate()),
+            _ => None,
+        }
+    }
+
+    /// The learned hinge law and the other networks of its ensemble; empty if the scene uses none.
+    pub fn networks(&self) -> Vec<&Surrogate> {
+        match &self.hinge {
+            LoadedHinge::Surrogate { law, ensemble, .. } => {
+                std::iter::once(law.surrogate()).chain(ensemble).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Hash of what a run depends on besides the keys of the scene: the material law and the weights. It is the
+    /// same on every machine, whereas the loss differs in its last digits.
+    pub fn model_hash(&self) -> String {
+        let weights = match &self.hinge {
+            LoadedHinge::Pin { .. } | LoadedHinge::Linear { .. } => String::new(),
+            LoadedHinge::Condensed { law, .. } => law.surrogate().hash(),
+            LoadedHinge::Surrogate { law, .. } => law.surrogate().hash(),
+        };
+        format!("{}-{weights}", self.material.law_hash())
+    }
+
+    /// The options that turn a pattern into the sheet of this scene.
+    pub fn sheet_options(&self) -> SheetOptions {
+        let measured_at = match self.config.hinge {
+            HingeModel::Pin | HingeModel::Linear => HingePoint::Corner,
+            HingeModel::Surrogate => HingePoint::CutTip,
+        };
+        SheetOptions {
+            hinge_point: self.config.hinge_point.unwrap_or(measured_at),
+            centroid: self.config.centroid,
+            process: self.config.process,
+        }
+    }
+
+    /// The run folder.
+    pub fn output(&self) -> PathBuf {
+        beside(&self.path, &self.config.output)
+    }
+}

@@ -1,0 +1,251 @@
+//! A design run: the search that a scene poses, its state kept in the run folder.
+//!
+//! The state is saved about once a second and at the end, and the next run of the scene continues
+//! from it.
+
+use crate::objective::design_problem::{DesignError, DesignProblem, Evaluation};
+use crate::optimise::outer_loop::{Ended, SearchState, StepRecord, optimise};
+use crate::pattern::design_vector::DesignVector;
+use crate::scene::checked_scene::Scene;
+use crate::scene::keys::SceneConfig;
+use crate::scene::scene_error::SceneError;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+use support::whole_file;
+
+const SAVE_EVERY: Duration = Duration::from_secs(1);
+const STATE_FILE: &str = "state.json";
+/// Relative difference of the loss at the start between two machines; only states without a hash are judged by it.
+const SAME_LOSS: f64 = 1e-9;
+
+/// A finished run.
+pub struct Designed {
+    pub problem: DesignProblem,
+    pub ended: Ended,
+    pub history: Vec<StepRecord>,
+    /// The design of the least loss.
+    pub design: DesignVector,
+    pub start: Evaluation,
+    pub best: Evaluation,
+}
+
+/// Why there is no run.
+#[derive(Debug, thiserror::Error)]
+pub enum InverseDesignError {
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error("the start of the search cannot be evaluated: {0}")]
+    Start(DesignError),
+    #[error("the best design of the run cannot be evaluated again: {0}")]
+    Best(DesignError),
+    #[error("cannot use {path}: {source}", path = .path.display())]
+    Folder {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    #[error(
+        "{path} is neither the state of a run nor a design ({source}); give another, or restart the \
+         run",
+        path = .path.display()
+    )]
+    State {
+        path: PathBuf,
+        source: serde_json::Error,
+    },
+    #[error(
+        "{path} holds a design of another size than the scene's; give another, or restart the run",
+        path = .path.display()
+    )]
+    OtherSize { path: PathBuf },
+    #[error(
+        "{path} belongs to a run of another scene; restart it, or choose another output folder",
+        path = .path.display()
+    )]
+    OtherScene { path: PathBuf },
+    #[error(
+        "{path} belongs to a run with other weights or another material: the search started from \
+         a loss of {found}, not {expected}; restart it, or choose another output folder",
+        path = .path.display()
+    )]
+    OtherModel {
+        path: PathBuf,
+        found: f64,
+        expected: f64,
+    },
+}
+
+impl InverseDesignError {
+    /// Whether the run folder holds a run of something else than was asked for.
+    pub fn is_of_another_run(&self) -> bool {
+        matches!(
+            self,
+            Self::OtherSize { .. } | Self::OtherScene { .. } | Self::OtherModel { .. }
+        )
+    }
+}
+
+/// The scene of a run and the state of its search.
+#[derive(Debug, Serialize, Deserialize)]
+struct State {
+    scene: SceneConfig,
+    /// [`Scene::model_hash`]; absent in states of older versions.
+    model: Option<String>,
+    #[serde(flatten)]
+    search: SearchState,
+}
+
+/// The design in a JSON file: the best of a run's state, or one written alone.
+pub fn stored_design(path: &Path, scene: &Scene) -> Result<DesignVector, InverseDesignError> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Stored {
+        Run { best: DesignVector },
+        Alone(DesignVector),
+    }
+    let text = std::fs::read_to_string(path).map_err(|source| InverseDesignError::Folder {
+        path: path.to_owned(),
+        source,
+    })?;
+    let stored = serde_json::from_str(&text).map_err(|source| InverseDesignError::State {
+        path: path.to_owned(),
+        source,
+    })?;
+    let (Stored::Run { best: design } | Stored::Alone(design)) = stored;
+    if design.same_shape(&scene.start()) {
+        return Ok(design);
+    }
+    let path = path.to_owned();
+    Err(InverseDesignError::OtherSize { path })
+}
+
+/// Runs the search of a scene in its run folder, from the state there if there is one.
+///
+/// `progress` sees every step as it is made; the run stops after the step during which `stop`
+/// becomes true.
+pub fn inverse_design(
+    scene: &Scene,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(&StepRecord),
+) -> Result<Designed, InverseDesignError> {
+    let problem = scene.problem()?;
+    let folder = scene.output();
+    std::fs::create_dir_all(&folder).map_err(|source| InverseDesignError::Folder {
+        path: folder.clone(),
+        source,
+    })?;
+    let path = folder.join(STATE_FILE);
+    let design = scene.start();
+    let start = problem
+        .evaluate(&design)
+        .map_err(InverseDesignError::Start)?;
+    let optimiser = &scene.config.optimiser;
+    let mut search = match State::read(&path, scene, &start)? {
+        Some(state) => state.search,
+        None => {
+            let (method, rate) = (optimiser.method, optimiser.learning_rate);
+            let search = SearchState::new(&problem, design, &start, method, rate);
+            progress(search.last());
+            search
+        }
+    };
+    let mut saved = Instant::now();
+    let ended = optimise(
+        &problem,
+        &mut search,
+        optimiser.steps,
+        stop,
+        &mut |search| {
+            progress(search.last());
+            if saved.elapsed() > SAVE_EVERY {
+                State::write(scene, search, &path)?;
+                saved = Instant::now();
+            }
+            Ok::<_, InverseDesignError>(())
+        },
+    )?;
+    State::write(scene, &search, &path)?;
+    let best = problem
+        .evaluate(&search.best)
+        .map_err(InverseDesignError::Best)?;
+    Ok(Designed {
+        problem,
+        ended,
+        history: search.history,
+        design: search.best,
+        start,
+        best,
+    })
+}
+
+/// Forgets an earlier run in the scene's run folder, so that the next one starts afresh.
+pub fn forget(scene: &Scene) -> Result<(), InverseDesignError> {
+    let path = scene.output().join(STATE_FILE);
+    match std::fs::remove_file(&path) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(InverseDesignError::Folder { path, source })
+        }
+        _ => Ok(()),
+    }
+}
+
+impl State {
+    /// The state of an earlier run of the same scene, which may since ask for more steps.
+    fn read(
+        path: &Path,
+        scene: &Scene,
+        start: &Evaluation,
+    ) -> Result<Option<Self>, InverseDesignError> {
+        let text = match std::fs::read_to_string(path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(source) => {
+                let path = path.to_owned();
+                return Err(InverseDesignError::Folder { path, source });
+            }
+        };
+        let mut state: Self =
+            serde_json::from_str(&text).map_err(|source| InverseDesignError::State {
+                path: path.to_owned(),
+                source,
+            })?;
+        let path = path.to_owned();
+        state.scene.optimiser.steps = scene.config.optimiser.steps;
+        if state.scene != scene.config {
+            return Err(InverseDesignError::OtherScene { path });
+        }
+        if !state.search.fits(&scene.start()) {
+            return Err(InverseDesignError::OtherSize { path });
+        }
+        let found = state.search.history[0].scores.loss;
+        let same_model = match &state.model {
+            Some(model) => *model == scene.model_hash(),
+            None => (found - start.loss).abs() <= SAME_LOSS * start.loss.abs(),
+        };
+        if !same_model {
+            let expected = start.loss;
+            return Err(InverseDesignError::OtherModel {
+                path,
+                found,
+                expected,
+            });
+        }
+        Ok(Some(state))
+    }
+
+    fn write(scene: &Scene, search: &SearchState, path: &Path) -> Result<(), InverseDesignError> {
+        let state = Self {
+            scene: scene.config.clone(),
+            model: Some(scene.model_hash()),
+            search: search.clone(),
+        };
+        serde_json::to_vec_pretty(&state)
+            .map_err(std::io::Error::from)
+            .and_then(|text| whole_file::write(path, &text))
+            .map_err(|source| InverseDesignError::Folder {
+                path: path.to_owned(),
+                source,
+            })
+    }
+}

@@ -1,0 +1,179 @@
+//! The keys of a scene file.
+
+use crate::equilibrium::settings::{Method, SolverSettings};
+use crate::geometry::chamfer::Precision;
+use crate::hinge_law::DamageMeasure;
+use crate::objective::loss::OutlinePoints;
+use crate::objective::target::TargetShape;
+use crate::optimise::search::SearchMethod;
+use crate::scene::actuation::{
+    DriveConfig, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig,
+};
+use crate::scene::hinge_model::{
+    CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
+};
+use crate::scene::sheet_config::{LigamentConfig, SheetConfig, StartConfig};
+use crate::sheet::cut_sheet::{Centroid, HingePoint};
+use hinge::HingeConstants;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// The keys of a scene file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneConfig {
+    /// Title of the pictures.
+    pub title: String,
+    /// The TOML file of the sheet material.
+    pub material: PathBuf,
+    pub hinge: HingeModel,
+    /// The attachment points of the panels; by default those that the hinge model was measured with.
+    pub hinge_point: Option<HingePoint>,
+    #[serde(default)]
+    pub centroid: Centroid,
+    /// N of the load steps zeta_i = i/N.
+    #[serde(default = "default_load_steps")]
+    pub load_steps: usize,
+    /// The run folder.
+    pub output: PathBuf,
+    pub sheet: SheetConfig,
+    pub ligament: LigamentConfig,
+    /// The start of the search; by default the uniform sheet.
+    #[serde(default)]
+    pub start: StartConfig,
+    pub process: HingeConstants,
+    /// Read if `hinge = "pin"`.
+    pub pin: Option<PinConfig>,
+    /// Constants of (11); read if `hinge = "linear"`.
+    pub linear: Option<LinearConstants>,
+    /// Constants of (11) from a learned energy, instead of `linear`.
+    pub condensed: Option<CondensedConfig>,
+    /// Read if `hinge = "surrogate"`.
+    pub surrogate: Option<SurrogateFile>,
+    #[serde(default)]
+    pub supports: Vec<SupportConfig>,
+    /// Contact of panel edges; by default that of the hinge law.
+    pub contact: Option<ContactConfig>,
+    #[serde(default)]
+    pub loads: Vec<LoadConfig>,
+    #[serde(default)]
+    pub edge_loads: Vec<EdgeLoadConfig>,
+    #[serde(default)]
+    pub opening_couples: Vec<OpeningCoupleConfig>,
+    /// Displacement control: prescribes the stroke of the loads instead of their magnitude.
+    pub drive: Option<DriveConfig>,
+    #[serde(default)]
+    pub solver: SolverConfig,
+    pub target: TargetShape,
+    pub objective: ObjectiveConfig,
+    pub optimiser: OptimiserConfig,
+}
+
+/// The weights of (16)-(19), relative to the Chamfer distance divided by the mean panel area: at the
+/// weight 1 a functional with the value 1 costs as much as an outline error of one panel size.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectiveConfig {
+    /// w_cov of the Chamfer distance.
+    pub coverage: f64,
+    /// Weight of (17); needs `hinge = "surrogate"`.
+    #[serde(default)]
+    pub damage: f64,
+    /// The damage measure of (17): `mean`, D as in the paper, or `peak`, D_peak, at which 1 means tearing.
+    #[serde(default)]
+    pub damage_measure: DamageMeasure,
+    /// Weight of (18).
+    #[serde(default)]
+    pub compression: f64,
+    /// Weight of (19).
+    #[serde(default)]
+    pub shear: f64,
+    /// Weight of the panel shape penalty: on panels stretched more than eight to one or with angles below 14 degrees,
+    /// which the outline alone does not prevent, and, with learned hinges, on corners of a panel closer than three
+    /// radii of their windows. Never relative to a gradient.
+    #[serde(default)]
+    pub panel_shape: f64,
+    /// Weight of the penalty on states outside the training domain of the hinge law, in squared tenths of its range,
+    /// as a mean over hinges and load steps. Needs `hinge = "surrogate"`. Never relative to a gradient.
+    #[serde(default)]
+    pub domain: f64,
+    /// Whether the weights of (17)-(19) are instead relative to the gradient of the Chamfer distance at the
+    /// start: at the weight 1 the gradient of a functional has the same norm.
+    #[serde(default)]
+    pub balance: bool,
+    /// Temperature of the minima in the Chamfer distance (mm^2); 0 is the hard minimum of the paper.
+    #[serde(default)]
+    pub smoothing: f64,
+    /// What the distance of the outline is measured to: the `samples` of the target, as in the paper, or the
+    /// `curve` through them.
+    #[serde(default)]
+    pub precision: Precision,
+    /// The panel corners on the outline that are compared with the target: `free`, those that belong
+    /// to no hinge, or `all`.
+    #[serde(default)]
+    pub outline: OutlinePoints,
+    /// Number of points on the target outline.
+    pub target_points: usize,
+}
+
+/// The search of the outer loop.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OptimiserConfig {
+    pub steps: usize,
+    /// Length of the first step in every chart coordinate; for Adam also of the later steps.
+    pub learning_rate: f64,
+    /// `adam`, as in the paper, or `lbfgs`.
+    #[serde(default)]
+    pub method: SearchMethod,
+    /// Standard deviation of the random start about the uniform sheet, in the chart coordinates.
+    #[serde(default)]
+    pub start_noise: f64,
+    /// Seed of the random start.
+    #[serde(default)]
+    pub seed: u64,
+}
+
+/// The equilibrium solver.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SolverConfig {
+    /// Residual of a converged state, relative to the largest force.
+    pub tolerance: f64,
+    /// `"newton"`, or `{ lbfgs = { max_iterations = 20000 } }` as in the paper.
+    pub method: Method,
+}
+
+impl Default for SolverConfig {
+    fn default() -> Self {
+        let SolverSettings {
+            tolerance, method, ..
+        } = SolverSettings::default();
+        Self { tolerance, method }
+    }
+}
+
+fn default_load_steps() -> usize {
+    10
+}
+
+impl SceneConfig {
+    /// Replaces the weights; the path is relative to the working folder.
+    pub fn name_weights(&mut self, weights: &Path) -> std::io::Result<()> {
+        let weights = std::path::absolute(weights)?;
+        self.surrogate = Some(SurrogateFile {
+            weights,
+            ensemble: Vec::new(),
+        });
+        Ok(())
+    }
+
+    /// Multiplies every load: on panels, on edges and on hinges.
+    pub fn scale_loads(&mut self, factor: f64) {
+        (self.loads.iter_mut()).for_each(|load| load.scale(factor));
+        for load in &mut self.edge_loads {
+            load.traction = load.traction.map(|traction| factor * traction);
+        }
+        (self.opening_couples.iter_mut()).for_each(|load| load.couple *= factor);
+    }
+}

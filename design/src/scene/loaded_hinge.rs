@@ -1,0 +1,295 @@
+//! The hinge law that a scene names, loaded with what it needs and nothing else.
+
+use crate::hinge_law::{CondensedLaw, Contact, DamageMeasure, LinearLaw, SurrogateLaw};
+use crate::scene::checks::within;
+use crate::scene::hinge_model::{HingeModel, LinearConstants, PinConfig, SurrogateFile};
+use crate::scene::keys::SceneConfig;
+use crate::scene::relative_path::beside;
+use crate::scene::scene_error::SceneError;
+use hinge::SheetMaterial;
+use std::f64::consts::FRAC_PI_2;
+use std::path::Path;
+use std::sync::Arc;
+use surrogate::Surrogate;
+
+/// Stiffness of the contact of panel edges over k_theta, and the void angle (rad) beyond which they
+/// cannot be pressed; the text of (11) leaves both open. The window of a learned law knows no contact of
+/// its flanks: where its domain reaches below the closed sheet, the wall stands at the domain's end.
+const CONTACT_STIFFNESS: f64 = 10.0;
+const CONTACT_WALL: f64 = -0.1;
+/// Angle (rad) whose secant is the stiffness of a learned hinge: 20 deg, as the linear law's of section 3.
+const TYPICAL_SECANT: f64 = 0.35;
+
+/// A [`HingeModel`] with its constants or its weights.
+#[derive(Clone, Debug)]
+pub(super) enum LoadedHinge {
+    /// The opening at the start (rad).
+    Pin { opening: f64 },
+    Linear {
+        law: Arc<LinearLaw>,
+        contact: Contact,
+    },
+    Condensed {
+        law: Arc<CondensedLaw>,
+        contact: Contact,
+    },
+    Surrogate {
+        law: Arc<SurrogateLaw>,
+        ensemble: Vec<Surrogate>,
+        contact: Contact,
+    },
+}
+
+impl LoadedHinge {
+    /// Loads the law of a scene at `path`.
+    pub(super) fn load(
+        config: &SceneConfig,
+        material: &SheetMaterial,
+        path: &Path,
+    ) -> Result<Self, SceneError> {
+        let refuse = |reason| SceneError::Value {
+            path: path.to_owned(),
+            reason,
+        };
+        let missing = |section: &str| {
+            refuse(format!(
+                "hinge = \"{section}\" needs the section [{section}]"
+            ))
+        };
+        match config.hinge {
+            HingeModel::Pin => {
+                let pin = config.pin.ok_or_else(|| missing("pin"))?;
+                pinned(config, pin).map_err(refuse)
+            }
+            HingeModel::Linear => match (config.linear, &config.condensed) {
+                (Some(constants), None) => linear(config, constants).map_err(refuse),
+                (None, Some(file)) => {
+                    no_damage(config).map_err(refuse)?;
+                    within(
+                        "condensed.secant_deg",
+                        file.secant_deg,
+                        [-180.0, 180.0],
+                        "deg",
+                    )
+                    .map_err(refuse)?;
+                    let surrogate = learned(config, material, path, "condensed", &file.weights)?;
+                    condensed(config, surrogate, file.secant_deg).map_err(refuse)
+                }
+                (None, None) => Err(missing("linear")),
+                (Some(_), Some(_)) => {
+                    let reason = "hinge = \"linear\" takes either [linear] or [condensed]";
+                    Err(refuse(reason.into()))
+                }
+            },
+            HingeModel::Surrogate => {
+                let file = config.surrogate.as_ref();
+                let SurrogateFile { weights, ensemble } =
+                    file.ok_or_else(|| missing("surrogate"))?;
+                let load = |file| learned(config, material, path, "surrogate", file);
+                let surrogate = load(weights)?;
+                let ensemble: Vec<Surrogate> = (ensemble.iter())
+                    .map(|file| load(file))
+                    .collect::<Result<_, _>>()?;
+                same_training(&surrogate, &ensemble).map_err(refuse)?;
+                peak_known(config, &surrogate).map_err(refuse)?;
+                learned_with_contact(config, surrogate, ensemble).map_err(refuse)
+            }
+        }
+    }
+}
+
+/// The weights that a section of a scene names, if they are for its hinges.
+fn learned(
+    config: &SceneConfig,
+    material: &SheetMaterial,
+    scene: &Path,
+    section: &str,
+    weights: &Path,
+) -> Result<Surrogate, SceneError> {
+    let refuse = |reason| SceneError::Value {
+        path: scene.to_owned(),
+        reason,
+    };
+    let weights = beside(scene, weights);
+    if !weights.is_file() {
+        return Err(refuse(format!(
+            "{section}.weights: there is no file {}; train one, or give the constants of \
+             hinge = \"linear\"",
+            weights.display()
+        )));
+    }
+    let surrogate = Surrogate::load(&weights)?;
+    same_hinge(config, material, &surrogate).map_err(|reason| {
+        refuse(format!(
+            "the weights {} are for {reason}",
+            weights.display()
+        ))
+    })?;
+    Ok(surrogate)
+}
+
+/// The linear law of a learned energy; the contact is as stiff beside the start's hinges as beside
+/// given ones.
+fn condensed(
+    config: &SceneConfig,
+    surrogate: Surrogate,
+    secant_deg: f64,
+) -> Result<LoadedHinge, String> {
+    let law = CondensedLaw::new(surrogate, secant_deg.to_radians());
+    let [k_a, k_s, k_theta] = constants_at_start(config, &law);
+    if !(k_a > 0.0 && k_s > 0.0 && k_theta > 0.0) {
+        return Err(format!(
+            "condensed: at w_lig = {} mm the weights have k_a = {k_a} N/mm, k_s = {k_s} N/mm, \
+             k_theta = {k_theta} N mm, which are not all positive",
+            config.ligament.start
+        ));
+    }
+    Ok(LoadedHinge::Condensed {
+        law: Arc::new(law),
+        contact: contact(config, k_theta, CONTACT_WALL)?,
+    })
+}
+
+/// The learned law; a closed sheet presses as hard on its edges as a folded one on its ligaments.
+fn learned_with_contact(
+    config: &SceneConfig,
+    surrogate: Surrogate,
+    ensemble: Vec<Surrogate>,
+) -> Result<LoadedHinge, String> {
+    let [_, _, [closed, _]] = surrogate.domain().bounds();
+    let wall = if closed < 0.0 { closed } else { CONTACT_WALL };
+    let secant = CondensedLaw::new(surrogate.clone(), TYPICAL_SECANT);
+    let [.., k_theta] = constants_at_start(config, &secant);
+    Ok(LoadedHinge::Surrogate {
+        law: Arc::new(SurrogateLaw::new(surrogate)),
+        ensemble,
+        contact: contact(config, k_theta.abs().max(f64::MIN_POSITIVE), wall)?,
+    })
+}
+
+/// (k_a, k_s, k_theta) of a hinge of the start's width with cuts at a right angle.
+fn constants_at_start(config: &SceneConfig, law: &CondensedLaw) -> [f64; 3] {
+    let typical = config.process.hinge(config.ligament.start, FRAC_PI_2);
+    law.constants(&[typical])[0].map(|constant| constant.value)
+}
+
+/// The contact that a scene asks for, or one for hinges as stiff as `k_theta` with its wall at the void
+/// angle `wall` (rad).
+fn contact(config: &SceneConfig, k_theta: f64, wall: f64) -> Result<Contact, String> {
+    match config.contact {
+        Some(contact) => contact.contact(),
+        None => {
+            Contact::new(CONTACT_STIFFNESS * k_theta, wall, 0.0).map_err(|error| error.to_string())
+        }
+    }
+}
+
+/// The spread of networks of different data is no measure of either's error.
+fn same_training(surrogate: &Surrogate, ensemble: &[Surrogate]) -> Result<(), String> {
+    let data = |it: &Surrogate| (it.card().dataset_hash.clone(), it.card().split_hash.clone());
+    match ensemble.iter().all(|other| data(other) == data(surrogate)) {
+        true => Ok(()),
+        false => Err(
+            "surrogate.ensemble: the networks were not all trained on the data of surrogate.weights"
+                .into(),
+        ),
+    }
+}
+
+/// An objective of D_peak needs weights that predict it.
+fn peak_known(config: &SceneConfig, surrogate: &Surrogate) -> Result<(), String> {
+    let objective = &config.objective;
+    let asked = objective.damage > 0.0 && objective.damage_measure == DamageMeasure::Peak;
+    if asked && surrogate.card().peak_scale.is_none() {
+        return Err(
+            "objective.damage_measure = \"peak\": the weights predict no D_peak; use \"mean\", or train \
+             on a database that has it"
+                .into(),
+        );
+    }
+    Ok(())
+}
+
+/// Only the learned law predicts damage.
+fn no_damage(config: &SceneConfig) -> Result<(), String> {
+    if config.objective.damage == 0.0 {
+        return Ok(());
+    }
+    Err(
+        "objective.damage: only the learned hinge law predicts damage; use \
+         hinge = \"surrogate\" or damage = 0"
+            .into(),
+    )
+}
+
+fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, String> {
+    no_damage(config)?;
+    within("pin.opening_deg", pin.opening_deg, [-180.0, 180.0], "deg")?;
+    let held_or_loaded = !config.supports.is_empty()
+        || !config.loads.is_empty()
+        || !config.edge_loads.is_empty()
+        || !config.opening_couples.is_empty();
+    if held_or_loaded || config.drive.is_some() || config.contact.is_some() {
+        return Err(
+            "supports, loads, edge_loads, opening_couples, drive, contact: hinge = \"pin\" solves no equilibrium; remove them, or choose \
+             hinge = \"linear\""
+                .into(),
+        );
+    }
+    let opening = pin.opening_deg.to_radians();
+    Ok(LoadedHinge::Pin { opening })
+}
+
+fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHinge, String> {
+    no_damage(config)?;
+    let LinearConstants { k_a, k_s, k_theta } = constants;
+    within("linear.k_a", k_a, [1e-3, 1e6], "N/mm")?;
+    within("linear.k_s", k_s, [1e-3, 1e6], "N/mm")?;
+    within("linear.k_theta", k_theta, [1e-3, 1e9], "N mm/rad")?;
+    let law = LinearLaw::uniform([k_a, k_s, k_theta], config.sheet.grid().hinge_count())
+        .map_err(|error| error.to_string())?;
+    let contact = contact(config, k_theta, CONTACT_WALL)?;
+    Ok(LoadedHinge::Linear {
+        law: Arc::new(law),
+        contact,
+    })
+}
+
+/// A surrogate holds for the material and the hinge constants it was trained with alone.
+fn same_hinge(
+    config: &SceneConfig,
+    material: &SheetMaterial,
+    surrogate: &Surrogate,
+) -> Result<(), String> {
+    let (card, process) = (surrogate.card(), config.process);
+    if card.material != material.name {
+        return Err(format!(
+            "the material `{}`, the scene's is `{}`",
+            card.material, material.name
+        ));
+    }
+    let law = material.law_hash();
+    if let Some(trained) = card.material_hash.as_ref().filter(|hash| **hash != law) {
+        return Err(format!(
+            "another law of the material `{}` ({trained}, the scene's is {law}): its numbers have \
+             changed since; train again, or use the material file of the training",
+            material.name
+        ));
+    }
+    for (key, trained, found) in [
+        (
+            "fillet_ratio",
+            card.hinge.fillet_ratio,
+            process.fillet_ratio,
+        ),
+        ("kerf", card.hinge.kerf, process.kerf),
+        ("r_win", card.hinge.r_win, process.r_win),
+    ] {
+        if trained != found {
+            return Err(format!(
+                "{key} = {trained}, the scene has process.{key} = {found}"
+            ));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,45 @@
+//! The deployed sheet in the position in which the objective compares it with the target.
+
+use crate::objective::design_problem::Deployment;
+use crate::objective::loss::OutlinePoints;
+use crate::scene::checked_scene::Scene;
+use crate::sheet::cut_sheet::Sheet;
+use crate::sheet::kinematics::{Configuration, deployed};
+use crate::sheet::topology::PanelCorner;
+
+/// The configuration in the position in which the objective compares it with the target: a sheet
+/// without supports is centred on the target.
+pub fn placed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> Configuration {
+    let mut placed = configuration.to_vec();
+    if scene.config.supports.is_empty() {
+        let points = scene.config.objective.outline.of(sheet);
+        let points = corners(sheet, points, configuration);
+        for axis in 0..2 {
+            let sum: f64 = points.iter().map(|point| point[axis]).sum();
+            let shift = scene.target.mean()[axis] - sum / points.len() as f64;
+            placed.iter_mut().for_each(|motion| motion[axis] += shift);
+        }
+    }
+    placed
+}
+
+/// The deployed outline through `points`, in the position in which the objective compares it (mm).
+pub fn deployed_outline(
+    scene: &Scene,
+    deployment: &Deployment,
+    points: OutlinePoints,
+) -> Vec<[f64; 2]> {
+    let sheet = &deployment.sheet;
+    let configuration = placed(scene, sheet, &deployment.final_step().configuration);
+    corners(sheet, points.of(sheet), &configuration)
+}
+
+fn corners(sheet: &Sheet, corners: Vec<PanelCorner>, configuration: &[[f64; 3]]) -> Vec<[f64; 2]> {
+    corners
+        .into_iter()
+        .map(|(k, corner)| {
+            let panel = &sheet.panels[k];
+            deployed(panel, configuration[k], panel.corners[corner])
+        })
+        .collect()
+}

@@ -1,0 +1,25 @@
+//! Errors of a scene.
+
+use crate::objective::design_problem::DesignError;
+use crate::objective::target::TargetError;
+use hinge::MaterialError;
+use std::path::PathBuf;
+use support::toml_file::ConfigError;
+use surrogate::WeightsError;
+
+/// Why a scene is invalid; every message names the file and the key.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    #[error(transparent)]
+    Material(#[from] MaterialError),
+    #[error("{path}: {reason}", path = .path.display())]
+    Value { path: PathBuf, reason: String },
+    #[error("{path}: {source}", path = .path.display())]
+    Target { path: PathBuf, source: TargetError },
+    #[error(transparent)]
+    Weights(#[from] WeightsError),
+    #[error("{path}: objective.balance needs the gradients at the start: {source}", path = .path.display())]
+    Balance { path: PathBuf, source: DesignError },
+}

@@ -1,0 +1,375 @@
+//! From cut endpoints to rigid panels and hinges: centroids, cut frames, cut angles, cut tips; and the
+//! exact vector-Jacobian product of this map.
+//!
+//! The slit of C_ij is the segment [A, B]. On each of its flanks is one hinge, at x_ij and at
+//! x'_ij. There C_ij (or the outline edge) is the secondary cut, and the neighbouring cut that ends there is the
+//! main cut. With m the unit vector from the corner C along the main cut and
+//! e_sec = (B - A)/L at x, (A - B)/L at x',
+//!
+//! ```text
+//! alpha = atan2(-m . e_sec_perp, m . e_sec),     O = C + w_lig / sin(alpha) m        (7)
+//! ```
+
+use crate::geometry::plane::{I, add, complex, cross, dot, point};
+use crate::pattern::cut_pattern::{CutPattern, Outline};
+use crate::pattern::grid::{Grid, NE, NW, SE, SW};
+use crate::sheet::topology::{HingeSite, PanelCorner, hinge_sites, panel_endpoints};
+use faer::c64;
+use hinge::{HingeConstants, HingeDesign};
+use serde::{Deserialize, Serialize};
+
+/// Why a pattern and its ligament widths do not define a sheet.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SheetError {
+    #[error("{found} ligament widths for {expected} hinges")]
+    WidthCount { found: usize, expected: usize },
+    #[error("w_lig[{hinge}] = {value} mm is not a positive finite number")]
+    Width { hinge: usize, value: f64 },
+    #[error(
+        "panel {panel} has the area {area} mm^2, which must be positive: its cuts have collapsed"
+    )]
+    PanelArea { panel: usize, area: f64 },
+    #[error(
+        "hinge {hinge} has the cut angle {alpha_deg} deg, outside (0, 180): its cuts have collapsed"
+    )]
+    CutAngle { hinge: usize, alpha_deg: f64 },
+}
+
+/// The point at which the hinge deformation (8) is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum HingePoint {
+    /// The ideal corner shared by the two panels, as in the paper.
+    Corner,
+    /// The tip O of the main cut, where the window is driven: exact for the surrogate.
+    CutTip,
+}
+
+/// The reference point of a panel's rotation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Centroid {
+    #[default]
+    Area,
+    /// The mean of the four corners.
+    Vertices,
+}
+
+/// Options of the sheet that a pattern defines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SheetOptions {
+    pub hinge_point: HingePoint,
+    pub centroid: Centroid,
+    pub process: HingeConstants,
+}
+
+/// A rigid panel in the flat sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Panel {
+    /// SW, SE, NE, NW (mm).
+    pub corners: [[f64; 2]; 4],
+    /// The reference point of its rotation (mm).
+    pub centroid: [f64; 2],
+}
+
+/// The ligament that joins two panels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hinge {
+    /// The two panels and the cuts that bound the hinge.
+    pub site: HingeSite,
+    /// The ideal corner C, shared by the two panels (mm).
+    pub corner: [f64; 2],
+    /// The tip O of the main cut (mm).
+    pub tip: [f64; 2],
+    /// The point at which (8) is measured: `corner` or `tip` (mm).
+    pub attachment: [f64; 2],
+    /// Unit vector along the secondary cut.
+    pub e_sec: [f64; 2],
+    /// Unit vector from the corner along the main cut.
+    pub main: [f64; 2],
+    /// Material between O and the finished edge of the secondary cut (mm).
+    pub w_lig: f64,
+    /// Distance of O from the line of the secondary cut (mm): w_lig plus half the kerf, or w_lig alone if that
+    /// line is the outline of the sheet, which is cut to its finished edge.
+    pub set_back: f64,
+    /// Angle between the cuts, measured into the material (rad).
+    pub alpha: f64,
+}
+
+/// The flat sheet: rigid panels joined by hinges.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    pub grid: Grid,
+    pub outline: Outline,
+    pub options: SheetOptions,
+    /// Row by row.
+    pub panels: Vec<Panel>,
+    /// Ordered by vertex, row by row; at each vertex x before x'.
+    pub hinges: Vec<Hinge>,
+    panel_endpoints: Vec<[usize; 4]>,
+    /// Cut endpoints of the pattern.
+    points: Vec<[f64; 2]>,
+}
+
+/// The gradient of a function of the sheet with respect to all quantities of the sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SheetGradient {
+    pub corners: Vec<[[f64; 2]; 4]>,
+    pub centroids: Vec<[f64; 2]>,
+    pub attachments: Vec<[f64; 2]>,
+    /// With respect to the angle of e_sec, per hinge.
+    pub frame_angles: Vec<f64>,
+    /// With respect to alpha, per hinge.
+    pub alphas: Vec<f64>,
+    /// With respect to w_lig, per hinge, at a fixed attachment point.
+    pub widths: Vec<f64>,
+}
+
+impl SheetGradient {
+    pub fn zeros(grid: Grid) -> Self {
+        let (panels, hinges) = (grid.panel_count(), grid.hinge_count());
+        Self {
+            corners: vec![[[0.0; 2]; 4]; panels],
+            centroids: vec![[0.0; 2]; panels],
+            attachments: vec![[0.0; 2]; hinges],
+            frame_angles: vec![0.0; hinges],
+            alphas: vec![0.0; hinges],
+            widths: vec![0.0; hinges],
+        }
+    }
+}
+
+impl Sheet {
+    /// The sheet of `pattern` with one ligament width (mm) per hinge.
+    pub fn new(
+        pattern: &CutPattern,
+        w_lig: &[f64],
+        options: SheetOptions,
+    ) -> Result<Self, SheetError> {
+        let grid = pattern.grid;
+        if w_lig.len() != grid.hinge_count() {
+            return Err(SheetError::WidthCount {
+                found: w_lig.len(),
+                expected: grid.hinge_count(),
+            });
+        }
+        let panel_endpoints = panel_endpoints(grid);
+        let panels = std::iter::zip(0.., &panel_endpoints)
+            .map(|(k, endpoints)| {
+                let corners = endpoints.map(|endpoint| pattern.points[endpoint]);
+                Panel::new(k, corners, options.centroid)
+            })
+            .collect::<Result<_, _>>()?;
+        let hinges = std::iter::zip(hinge_sites(grid), w_lig)
+            .enumerate()
+            .map(|(h, (site, &w_lig))| {
+                let [i, j] = site.vertex;
+                let half_kerf = match grid.is_interior(i, j) {
+                    true => 0.5 * options.process.kerf,
+                    false => 0.0,
+                };
+                let widths = [w_lig, w_lig + half_kerf];
+                Hinge::new(h, site, &pattern.points, widths, options.hinge_point)
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            grid,
+            outline: pattern.outline,
+            options,
+            panels,
+            hinges,
+            panel_endpoints,
+            points: pattern.points.clone(),
+        })
+    }
+
+    /// The design vectors g of the hinges; (7).
+    pub fn designs(&self) -> Vec<HingeDesign> {
+        let design = |hinge: &Hinge| self.options.process.hinge(hinge.w_lig, hinge.alpha);
+        self.hinges.iter().map(design).collect()
+    }
+
+    /// The panel corners on the outline, counter-clockwise from the south-west: (panel, corner).
+    pub fn outline_corners(&self) -> Vec<PanelCorner> {
+        let Grid { m, n } = self.grid;
+        let bottom = (0..m).map(|p| (self.grid.panel(p, 0), [SW, SE]));
+        let right = (0..n).map(|q| (self.grid.panel(m - 1, q), [SE, NE]));
+        let top = (0..m).rev().map(|p| (self.grid.panel(p, n - 1), [NE, NW]));
+        let left = (0..n).rev().map(|q| (self.grid.panel(0, q), [NW, SW]));
+        let mut ring: Vec<_> = bottom
+            .chain(right)
+            .chain(top)
+            .chain(left)
+            .flat_map(|(panel, ends)| ends.map(|corner| (panel, corner)))
+            .collect();
+        ring.dedup();
+        ring.pop();
+        ring
+    }
+
+    /// The outline corners that belong to no hinge.
+    pub fn free_outline_corners(&self) -> Vec<PanelCorner> {
+        let mut corners = self.outline_corners();
+        corners.retain(|corner| {
+            let belongs = |hinge: &Hinge| [hinge.site.a, hinge.site.b].contains(corner);
+            !self.hinges.iter().any(belongs)
+        });
+        corners
+    }
+
+    /// Gradients in the pattern's cut endpoints and in w_lig, from a gradient in the sheet.
+    pub fn pullback(&self, gradient: &SheetGradient) -> (Vec<[f64; 2]>, Vec<f64>) {
+        let mut points = vec![[0.0; 2]; self.points.len()];
+        for (k, panel) in self.panels.iter().enumerate() {
+            let by_centroid = panel.centroid_pullback(gradient.centroids[k], self.options.centroid);
+            for (corner, &endpoint) in self.panel_endpoints[k].iter().enumerate() {
+                add(&mut points[endpoint], complex(gradient.corners[k][corner]));
+                add(&mut points[endpoint], by_centroid[corner]);
+            }
+        }
+        let mut widths = gradient.widths.clone();
+        for (h, hinge) in self.hinges.iter().enumerate() {
+            let attachment = complex(gradient.attachments[h]);
+            add(&mut points[hinge.site.corner], attachment);
+            let (mut by_alpha, mut by_main_angle) = (gradient.alphas[h], 0.0);
+            if self.options.hinge_point == HingePoint::CutTip {
+                let (sin, cos) = hinge.alpha.sin_cos();
+                let main = complex(hinge.main);
+                let along = dot(attachment, main);
+                widths[h] += along / sin;
+                by_alpha -= along * hinge.set_back * cos / (sin * sin);
+                by_main_angle += dot(attachment, I * main) * hinge.set_back / sin;
+            }
+            // alpha is the angle of e_sec minus that of m.
+            let by_frame_angle = gradient.frame_angles[h] + by_alpha;
+            self.angle_pullback(&mut points, hinge.site.secondary, by_frame_angle);
+            let main_cut = [hinge.site.corner, hinge.site.main_end];
+            self.angle_pullback(&mut points, main_cut, by_main_angle - by_alpha);
+        }
+        (points, widths)
+    }
+
+    /// Adds the gradient of `weight` times the angle of the segment between two cut endpoints.
+    fn angle_pullback(&self, points: &mut [[f64; 2]], [from, to]: [usize; 2], weight: f64) {
+        let segment = complex(self.points[to]) - complex(self.points[from]);
+        let gradient = I * segment * (weight / segment.norm_sqr());
+        add(&mut points[to], gradient);
+        add(&mut points[from], -gradient);
+    }
+}
+
+impl Panel {
+    fn new(panel: usize, corners: [[f64; 2]; 4], centroid: Centroid) -> Result<Self, SheetError> {
+        let mean = corners.map(complex).iter().sum::<c64>() / 4.0;
+        let arms = corners.map(|corner| complex(corner) - mean);
+        let sectors = sectors(&arms);
+        let area = 0.5 * sectors.iter().sum::<f64>();
+        if !(area > 0.0 && area.is_finite()) {
+            return Err(SheetError::PanelArea { panel, area });
+        }
+        let offset = match centroid {
+            Centroid::Vertices => c64::ZERO,
+            Centroid::Area => {
+                let moment: c64 = (0..4)
+                    .map(|j| (arms[j] + arms[(j + 1) % 4]) * sectors[j])
+                    .sum();
+                moment / (6.0 * area)
+            }
+        };
+        Ok(Self {
+            corners,
+            centroid: point(mean + offset),
+        })
+    }
+
+    /// The area of the panel (mm^2).
+    pub fn area(&self) -> f64 {
+        0.5 * sectors(&self.arms()).iter().sum::<f64>()
+    }
+
+    /// Centroid-to-corner vectors.
+    fn arms(&self) -> [c64; 4] {
+        self.corners
+            .map(|corner| complex(corner) - complex(self.centroid))
+    }
+
+    /// The gradient in the corners of a function with the given gradient in the centroid.
+    ///
+    /// With the vectors p_j from the centroid and S_j = p_j x p_(j+1), the area centroid moves by
+    /// sum_j [(dp_j + dp_(j+1)) S_j + (p_j + p_(j+1)) dS_j] / (3 sum_j S_j).
+    fn centroid_pullback(&self, gradient: [f64; 2], centroid: Centroid) -> [c64; 4] {
+        let gradient = complex(gradient);
+        if centroid == Centroid::Vertices {
+            return [gradient / 4.0; 4];
+        }
+        let arms = self.arms();
+        let sectors = sectors(&arms);
+        let scaled = gradient / (3.0 * sectors.iter().sum::<f64>());
+        let mut corners = [c64::ZERO; 4];
+        for j in 0..4 {
+            let next = (j + 1) % 4;
+            let by_sector = dot(scaled, arms[j] + arms[next]);
+            corners[j] += scaled * sectors[j] - I * arms[next] * by_sector;
+            corners[next] += scaled * sectors[j] + I * arms[j] * by_sector;
+        }
+        corners
+    }
+}
+
+/// Twice the signed areas of the triangles between the origin and the panel's edges.
+fn sectors(arms: &[c64; 4]) -> [f64; 4] {
+    std::array::from_fn(|j| cross(arms[j], arms[(j + 1) % 4]))
+}
+
+impl Hinge {
+    fn new(
+        hinge: usize,
+        site: HingeSite,
+        points: &[[f64; 2]],
+        [w_lig, set_back]: [f64; 2],
+        hinge_point: HingePoint,
+    ) -> Result<Self, SheetError> {
+        if !(w_lig > 0.0 && w_lig.is_finite()) {
+            return Err(SheetError::Width {
+                hinge,
+                value: w_lig,
+            });
+        }
+        let unit = |from: usize, to: usize| {
+            let segment = complex(points[to]) - complex(points[from]);
+            segment / segment.norm()
+        };
+        let e_sec = unit(site.secondary[0], site.secondary[1]);
+        let main = unit(site.corner, site.main_end);
+        // m rotated by alpha is e_sec.
+        let alpha = cross(main, e_sec).atan2(dot(main, e_sec));
+        if !(alpha > 0.0 && alpha < std::f64::consts::PI) {
+            let alpha_deg = alpha.to_degrees();
+            return Err(SheetError::CutAngle { hinge, alpha_deg });
+        }
+        let corner = points[site.corner];
+        let tip = point(complex(corner) + main * (set_back / alpha.sin()));
+        Ok(Self {
+            site,
+            corner,
+            tip,
+            attachment: match hinge_point {
+                HingePoint::Corner => corner,
+                HingePoint::CutTip => tip,
+            },
+            e_sec: point(e_sec),
+            main: point(main),
+            w_lig,
+            set_back,
+            alpha,
+        })
+    }
+
+    pub fn panel_a(&self) -> usize {
+        self.site.a.0
+    }
+
+    pub fn panel_b(&self) -> usize {
+        self.site.b.0
+    }
+}

@@ -1,0 +1,246 @@
+//! The hinge deformation (8) as a function of the motions of its two panels, with first and second
+//! derivatives.
+//!
+//! Let O be the attachment point of the hinge, rho = e^(-i beta)(O - c) its position relative to a panel's
+//! centroid in the cut frame (beta: the angle of e_sec), phibar and theta the mean and relative
+//! rotation, and Delta = (c_l + u_l) - (c_k + u_k). In complex numbers
+//!
+//! ```text
+//! a + i s = e^(-i(beta + phibar)) Delta + e^(i theta/2) rho_l - e^(-i theta/2) rho_k
+//! ```
+//!
+//! This depends on only four combinations of the six motions: y = (Delta u_x, Delta u_y, phibar, theta). The sum
+//! is arranged in terms that each vanish in the flat sheet, so that small motions keep their accuracy.
+
+use crate::geometry::plane::{I, complex, cross, dot, point, turn, turn_less_one};
+use crate::sheet::cut_sheet::{Panel, Sheet};
+use faer::c64;
+use hinge::HingeDeformation;
+
+/// A rigid motion (u_x, u_y, phi) of every panel relative to the flat sheet (mm, mm, rad).
+pub type Configuration = Vec<[f64; 3]>;
+
+/// The deployed position of a point of a panel with the motion `motion`.
+pub fn deployed(panel: &Panel, motion: [f64; 3], flat: [f64; 2]) -> [f64; 2] {
+    let [u_x, u_y, phi] = motion;
+    let centroid = complex(panel.centroid);
+    point(c64::new(u_x, u_y) + centroid + turn(phi) * (complex(flat) - centroid))
+}
+
+/// The deployed corners SW, SE, NE, NW of every panel (mm).
+pub fn deployed_corners(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<[[f64; 2]; 4]> {
+    std::iter::zip(&sheet.panels, configuration)
+        .map(|(panel, &motion)| panel.corners.map(|corner| deployed(panel, motion, corner)))
+        .collect()
+}
+
+/// The gradient in (motion, flat point, centroid) of a function with the given gradient in the deployed
+/// position of the point.
+pub fn deployed_pullback(
+    panel: &Panel,
+    motion: [f64; 3],
+    flat: [f64; 2],
+    gradient: [f64; 2],
+) -> ([f64; 3], c64, c64) {
+    let force = complex(gradient);
+    let spin = turn(motion[2]);
+    let arm = spin * (complex(flat) - complex(panel.centroid));
+    let by_flat = force * spin.conj();
+    (
+        [force.re, force.im, cross(arm, force)],
+        by_flat,
+        force - by_flat,
+    )
+}
+
+/// The deformation (8) of every hinge.
+pub fn hinge_deformations(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<HingeDeformation> {
+    (0..sheet.hinges.len())
+        .map(|h| HingeMotion::new(sheet, h, configuration).deformation())
+        .collect()
+}
+
+/// The kinematics of a hinge in one configuration: the terms of (8) from which its derivatives are computed.
+#[derive(Clone, Copy, Debug)]
+pub struct HingeMotion {
+    /// Relative rotation (rad).
+    theta: f64,
+    /// a + i s
+    translation: c64,
+    /// Rounding errors of `translation` and of `theta`.
+    rounding: [f64; 2],
+    /// e^(-i beta), the flat sheet seen from the cut frame.
+    frame: c64,
+    /// e^(i theta/2)
+    half: c64,
+    /// e^(-i(beta + phibar))
+    mean: c64,
+    /// mean Delta
+    separation: c64,
+    /// half rho_l
+    arm_b: c64,
+    /// rho_k / half
+    arm_a: c64,
+}
+
+/// The gradient of a scalar with respect to the flat geometry in (8).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HingeGeometryGradient {
+    pub attachment: [f64; 2],
+    pub centroid_a: [f64; 2],
+    pub centroid_b: [f64; 2],
+    /// With respect to the angle of e_sec.
+    pub frame_angle: f64,
+}
+
+impl HingeMotion {
+    pub fn new(sheet: &Sheet, hinge: usize, configuration: &[[f64; 3]]) -> Self {
+        let hinge = &sheet.hinges[hinge];
+        let (a, b) = (hinge.panel_a(), hinge.panel_b());
+        let (c_a, c_b) = (
+            complex(sheet.panels[a].centroid),
+            complex(sheet.panels[b].centroid),
+        );
+        let ([ax, ay, phi_a], [bx, by, phi_b]) = (configuration[a], configuration[b]);
+        let (theta, phibar) = (phi_b - phi_a, 0.5 * (phi_a + phi_b));
+        let frame = complex(hinge.e_sec).conj();
+        let (turned_back, opened) = (turn_less_one(-phibar), turn_less_one(0.5 * theta));
+        let (mean, half) = (frame + frame * turned_back, 1.0 + opened);
+        let attachment = complex(hinge.attachment);
+        let (rho_a, rho_b) = (frame * (attachment - c_a), frame * (attachment - c_b));
+        let (shift, offset) = (c64::new(bx - ax, by - ay), c_b - c_a);
+        let terms = [
+            mean * shift,
+            frame * turned_back * offset,
+            opened * rho_b,
+            -opened.conj() * rho_a,
+        ];
+        let sizes: f64 = terms.iter().map(|z| z.re.abs() + z.im.abs()).sum();
+        Self {
+            theta,
+            translation: terms.iter().sum(),
+            rounding: [sizes, phi_a.abs() + phi_b.abs()].map(|size| f64::EPSILON * size),
+            frame,
+            half,
+            mean,
+            separation: mean * (shift + offset),
+            arm_b: half * rho_b,
+            arm_a: half.conj() * rho_a,
+        }
+    }
+
+    pub fn deformation(&self) -> HingeDeformation {
+        HingeDeformation {
+            a: self.translation.re,
+            s: self.translation.im,
+            theta: self.theta,
+        }
+    }
+
+    /// Rounding errors of a and s (mm) and of theta (rad), which are differences of larger numbers.
+    pub fn rounding(&self) -> [f64; 2] {
+        self.rounding
+    }
+
+    /// d(a + i s)/dy for y = (Delta u_x, Delta u_y, phibar, theta).
+    fn translation_rates(&self) -> [c64; 4] {
+        [
+            self.mean,
+            I * self.mean,
+            -I * self.separation,
+            0.5 * I * (self.arm_a + self.arm_b),
+        ]
+    }
+
+    /// The generalised forces on panels A and B, (F_x, F_y, M) each, for a gradient in (a, s, theta).
+    pub fn forces(&self, gradient: [f64; 3]) -> [f64; 6] {
+        let [f_a, f_s, m_theta] = gradient;
+        let force = c64::new(f_a, f_s);
+        let mut by_y = self.translation_rates().map(|rate| dot(force, rate));
+        by_y[3] += m_theta;
+        let [x, y, mean, relative] = by_y;
+        [-x, -y, 0.5 * mean - relative, x, y, 0.5 * mean + relative]
+    }
+
+    /// The rate of (a, s, theta) under a motion of panels A and B.
+    pub fn rates(&self, motion: [f64; 6]) -> [f64; 3] {
+        let y = relative_motion(motion);
+        let translation: c64 = std::iter::zip(self.translation_rates(), y)
+            .map(|(rate, y)| rate * y)
+            .sum();
+        [translation.re, translation.im, y[3]]
+    }
+
+    /// The 6 x 6 tangent J^T K J + f . d2(eps), in the motions of panels A and B, of an energy with the stiffness
+    /// K = `tangent` and the forces f.
+    pub fn stiffness(&self, tangent: &[[f64; 3]; 3], forces: [f64; 3]) -> [[f64; 6]; 6] {
+        // In z = (Delta u_x, Delta u_y, phi_k, phi_l); the six motions enter with the signs of COPIES.
+        let [x, y, mean, relative] = self.translation_rates();
+        let rates = [x, y, 0.5 * mean - relative, 0.5 * mean + relative];
+        let jacobian = [
+            rates.map(|rate| rate.re),
+            rates.map(|rate| rate.im),
+            [0.0, 0.0, -1.0, 1.0],
+        ];
+        let product: [[f64; 4]; 3] = tangent
+            .map(|row| std::array::from_fn(|j| (0..3).map(|q| row[q] * jacobian[q][j]).sum()));
+        let mut by_z: [[f64; 4]; 4] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| (0..3).map(|p| jacobian[p][i] * product[p][j]).sum())
+        });
+        let force = c64::new(forces[0], forces[1]);
+        for (axis, rate) in [x, y].into_iter().enumerate() {
+            let mixed = 0.5 * dot(force, -I * rate);
+            for angle in [2, 3] {
+                by_z[axis][angle] += mixed;
+                by_z[angle][axis] += mixed;
+            }
+        }
+        let turned = -0.25 * dot(force, self.separation);
+        let opened = -0.25 * dot(force, self.arm_b - self.arm_a);
+        for (i, j) in [(2, 2), (2, 3), (3, 2), (3, 3)] {
+            by_z[i][j] += if i == j {
+                turned + opened
+            } else {
+                turned - opened
+            };
+        }
+        const COPIES: [(usize, f64); 6] =
+            [(0, -1.0), (1, -1.0), (2, 1.0), (0, 1.0), (1, 1.0), (3, 1.0)];
+        COPIES.map(|(i, sign)| COPIES.map(|(j, other)| sign * other * by_z[i][j]))
+    }
+
+    /// The gradient of `weights . (a, s, theta)` with respect to the flat geometry.
+    pub fn geometry_gradient(&self, weights: [f64; 3]) -> HingeGeometryGradient {
+        let force = c64::new(weights[0], weights[1]);
+        let back = force * self.frame.conj();
+        HingeGeometryGradient {
+            attachment: point(back * (self.half - self.half.conj()).conj()),
+            centroid_a: point(force * (self.frame * self.half.conj() - self.mean).conj()),
+            centroid_b: point(force * (self.mean - self.frame * self.half).conj()),
+            frame_angle: cross(force, self.translation),
+        }
+    }
+
+    /// The gradient of `forces . rates(motion)` with respect to the flat geometry, at fixed `forces`.
+    pub fn rates_geometry_gradient(
+        &self,
+        forces: [f64; 3],
+        motion: [f64; 6],
+    ) -> HingeGeometryGradient {
+        let force = c64::new(forces[0], forces[1]);
+        let [_, _, mean, relative] = relative_motion(motion);
+        let [a, s, _] = self.rates(motion);
+        let (spin, open) = (-I * mean * self.mean, 0.5 * I * relative * self.frame);
+        HingeGeometryGradient {
+            attachment: point(force * (open * (self.half + self.half.conj())).conj()),
+            centroid_a: point(force * (-spin - open * self.half.conj()).conj()),
+            centroid_b: point(force * (spin - open * self.half).conj()),
+            frame_angle: cross(force, c64::new(a, s)),
+        }
+    }
+}
+
+/// y = (Delta u_x, Delta u_y, phibar, theta) of a motion of panels A and B.
+fn relative_motion([ax, ay, phi_a, bx, by, phi_b]: [f64; 6]) -> [f64; 4] {
+    [bx - ax, by - ay, 0.5 * (phi_a + phi_b), phi_b - phi_a]
+}

@@ -1,0 +1,38 @@
+//! Vectors in the degrees of freedom of the panels: all of them as (x, y, phi) per panel, the free
+//! ones as one vector, or the six of the two panels of a hinge.
+
+use crate::sheet::cut_sheet::Hinge;
+
+/// The vector of the free components; `free` holds their indices, three entries per panel.
+pub(crate) fn gather(free: &[Option<usize>], by_panel: &[[f64; 3]]) -> Vec<f64> {
+    let mut row = vec![0.0; free.iter().flatten().count()];
+    for (number, component) in std::iter::zip(free, by_panel.as_flattened()) {
+        if let Some(number) = number {
+            row[*number] = *component;
+        }
+    }
+    row
+}
+
+/// The inverse of [`gather`]; supported components are zero.
+pub(crate) fn spread(free: &[Option<usize>], row: &[f64]) -> Vec<[f64; 3]> {
+    free.chunks(3)
+        .map(|numbers| std::array::from_fn(|d| numbers[d].map_or(0.0, |i| row[i])))
+        .collect()
+}
+
+/// The components of the two panels of a hinge.
+pub(crate) fn at_hinge(hinge: &Hinge, by_panel: &[[f64; 3]]) -> [f64; 6] {
+    let [a, b] = [by_panel[hinge.panel_a()], by_panel[hinge.panel_b()]];
+    [a[0], a[1], a[2], b[0], b[1], b[2]]
+}
+
+/// Adds the components of the two panels of a hinge.
+pub(crate) fn add_at_hinge(by_panel: &mut [[f64; 3]], hinge: &Hinge, components: [f64; 6]) {
+    let (a, b) = components.split_at(3);
+    for (panel, components) in [(hinge.panel_a(), a), (hinge.panel_b(), b)] {
+        for (sum, component) in std::iter::zip(&mut by_panel[panel], components) {
+            *sum += component;
+        }
+    }
+}

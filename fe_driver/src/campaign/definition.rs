@@ -1,0 +1,269 @@
+//! The definition of a campaign: a material, a mesh tier and a box of rays, from which the list of jobs follows.
+
+use crate::campaign::extra_rays::{ExtraRaysError, read_extra_rays};
+use crate::campaign::job::JobSpec;
+use crate::campaign::sampling::RayBox;
+use crate::record_file::FileError;
+use crate::window::ray::Ray;
+use crate::window::solve::{SolveError, WindowProblem};
+use crate::window::step_control::StepControl;
+use crate::window::versions::ToolVersions;
+use hinge::{HingeConstants, InvalidDesign, MaterialError, SheetMaterial};
+use mesher::Tier;
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use support::program::ToolError;
+use support::toml_file::{self, ConfigError};
+
+/// A campaign as configured, with its material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Campaign {
+    /// Name of the campaign; a results folder belongs to the campaign with this name.
+    pub name: String,
+    pub material: SheetMaterial,
+    pub tier: Tier,
+    /// Number of rays of the box, one job each.
+    pub count: usize,
+    pub seed: u64,
+    /// Time limit of one solve.
+    pub time_limit: Duration,
+    pub design: HingeConstants,
+    pub rays: RayBox,
+    /// Rays in addition to those of the box, solved after them.
+    pub further: Vec<Ray>,
+}
+
+/// Why a campaign cannot be read, planned, run or collected.
+#[derive(Debug, thiserror::Error)]
+pub enum CampaignError {
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    #[error("{path}: {reason}", path = .path.display())]
+    Invalid { path: PathBuf, reason: String },
+    #[error(transparent)]
+    Material(#[from] MaterialError),
+    #[error(transparent)]
+    FurtherRays(#[from] ExtraRaysError),
+    #[error(transparent)]
+    Tool(#[from] ToolError),
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(
+        "{folder} contains the campaign `{found}`, not `{asked}`: choose another folder",
+        folder = .folder.display()
+    )]
+    OtherCampaign {
+        folder: PathBuf,
+        found: String,
+        asked: String,
+    },
+    #[error(
+        "the campaign has changed since it was run in {folder} ({changes}): run it again first",
+        folder = .folder.display()
+    )]
+    Changed { folder: PathBuf, changes: String },
+    #[error("{0} contains no campaign: run a campaign there first")]
+    NoCampaign(PathBuf),
+    #[error("another run has locked {0}: wait until it ends, or stop it")]
+    Locked(PathBuf),
+    #[error(
+        "none of the jobs belongs to the campaign (the first is {0}): they were solved with other settings, \
+         with another version of gmsh or ccx, or for another campaign"
+    )]
+    Stranger(String),
+    #[error("the run was stopped by an error at job {job}: {source}")]
+    Halted {
+        job: String,
+        source: Box<SolveError>,
+    },
+}
+
+/// The TOML file; see `configs/campaigns/`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CampaignFile {
+    name: String,
+    material: PathBuf,
+    tier: Tier,
+    count: usize,
+    seed: u64,
+    time_limit_s: f64,
+    further_rays: Option<PathBuf>,
+    design: HingeConstants,
+    rays: RayBox,
+}
+
+/// Maximum number of rays; a larger number is a typing error.
+const MAX_COUNT: usize = 1_000_000;
+/// Maximum time limit of a solve (s): one day.
+const MAX_TIME_LIMIT: f64 = 86_400.0;
+
+impl CampaignFile {
+    /// The first defect of the file; `None` if it is valid.
+    fn defect(&self) -> Option<String> {
+        if self.name.is_empty() {
+            return Some("name is empty".to_owned());
+        }
+        let minimum = usize::from(self.further_rays.is_none());
+        if !(minimum..=MAX_COUNT).contains(&self.count) {
+            let count = self.count;
+            return Some(format!(
+                "count = {count} violates {minimum} <= count <= {MAX_COUNT}"
+            ));
+        }
+        let seconds = self.time_limit_s;
+        if !(1.0..=MAX_TIME_LIMIT).contains(&seconds) {
+            return Some(format!(
+                "time_limit_s = {seconds} violates 1 <= time_limit_s <= {MAX_TIME_LIMIT}"
+            ));
+        }
+        self.rays.defect().or_else(|| {
+            Some(format!(
+                "a corner of the box is not a valid design: {}",
+                self.impossible_design()?
+            ))
+        })
+    }
+
+    /// The defect of the narrowest or the widest hinge of the box; all others lie between them.
+    fn impossible_design(&self) -> Option<InvalidDesign> {
+        self.rays.w_lig.into_iter().find_map(|w_lig| {
+            let design = self
+                .design
+                .hinge(w_lig, self.rays.alpha_deg[0].to_radians());
+            design.validate().err()
+        })
+    }
+}
+
+impl Campaign {
+    /// Reads a campaign and its material. The material's path is relative to the campaign's file.
+    pub fn load(path: &Path) -> Result<Self, CampaignError> {
+        let file: CampaignFile = toml_file::read(path)?;
+        if let Some(reason) = file.defect() {
+            return Err(CampaignError::Invalid {
+                path: path.to_owned(),
+                reason,
+            });
+        }
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let material = SheetMaterial::load(&folder.join(&file.material))?;
+        let further = match &file.further_rays {
+            Some(rays) => read_extra_rays(&folder.join(rays), &file.design)?,
+            None => Vec::new(),
+        };
+        Ok(Self {
+            name: file.name,
+            material,
+            tier: file.tier,
+            count: file.count,
+            seed: file.seed,
+            time_limit: Duration::from_secs_f64(file.time_limit_s),
+            design: file.design,
+            rays: file.rays,
+            further,
+        })
+    }
+
+    /// Number of jobs.
+    pub fn size(&self) -> usize {
+        self.count + self.further.len()
+    }
+
+    /// The jobs in the order in which they are run. Any prefix of them gives a usable database.
+    pub fn jobs(&self, tools: &ToolVersions) -> Vec<JobSpec> {
+        let boxed = self.rays.rays(&self.design, self.count, self.seed);
+        let further = self.further.iter().copied();
+        boxed
+            .into_iter()
+            .chain(further)
+            .map(|ray| {
+                let problem = WindowProblem {
+                    ray,
+                    material: self.material.clone(),
+                    tier: self.tier,
+                    step: StepControl::default(),
+                };
+                JobSpec::new(problem, tools)
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shipped(name: &str) -> PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../configs/campaigns")
+            .join(name)
+    }
+
+    fn versions() -> ToolVersions {
+        ToolVersions {
+            gmsh: "4.8.4".into(),
+            ccx: "2.20".into(),
+        }
+    }
+
+    #[test]
+    fn the_shipped_campaigns_are_read() {
+        for (name, count) in [("demo.toml", 40), ("pet-0.5mm.toml", 1500)] {
+            let campaign = Campaign::load(&shipped(name)).unwrap();
+            let jobs = campaign.jobs(&versions());
+            assert_eq!(jobs.len(), count);
+            let mut ids: Vec<_> = jobs.iter().map(JobSpec::id).collect();
+            ids.sort_unstable();
+            ids.dedup();
+            assert_eq!(ids.len(), count);
+            assert!(
+                jobs.iter()
+                    .all(|job| job.problem.ray.design.validate().is_ok())
+            );
+        }
+    }
+
+    #[test]
+    fn an_id_changes_with_every_input_of_the_result() {
+        let mut campaign = Campaign::load(&shipped("demo.toml")).unwrap();
+        campaign.count = 1;
+        let job = campaign.jobs(&versions()).remove(0);
+        assert_eq!(job.id(), job.clone().id());
+        let newer = ToolVersions {
+            ccx: "2.21".into(),
+            ..versions()
+        };
+        assert_ne!(campaign.jobs(&newer)[0].id(), job.id());
+        assert_eq!(
+            campaign.jobs(&newer)[0].differences(&job),
+            ["tool versions"]
+        );
+        campaign.material.plastic[1][0] += 1e-9;
+        campaign.tier = Tier::Small;
+        let other = &campaign.jobs(&versions())[0];
+        assert_ne!(other.id(), job.id());
+        assert_eq!(other.differences(&job), ["material", "mesh tier"]);
+    }
+
+    #[test]
+    fn errors_name_the_file_and_the_rule() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mine.toml");
+        let material = shipped("../materials/pet-0.5mm.toml");
+        let demo = std::fs::read_to_string(shipped("demo.toml"))
+            .unwrap()
+            .replace("../materials/pet-0.5mm.toml", material.to_str().unwrap());
+        let message = |old: &str, new: &str| {
+            assert!(demo.contains(old), "{old}");
+            std::fs::write(&path, demo.replace(old, new)).unwrap();
+            Campaign::load(&path).unwrap_err().to_string()
+        };
+        assert!(message("count = 40", "count = 0").contains("mine.toml: count = 0"));
+        assert!(message("kerf =", "kerv =").contains("did you mean `kerf`"));
+        assert!(message("r_win = 100.0", "r_win = 50.0").contains("r_win > 2.5 w_lig"));
+        assert!(message("limit_s = 120.0", "limit_s = nan").contains("time_limit_s = NaN"));
+        assert!(message("tier = \"tiny\"", "tier = \"huge\"").contains("huge"));
+    }
+}

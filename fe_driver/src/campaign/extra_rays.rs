@@ -1,0 +1,261 @@
+//! Rays that a campaign solves in addition to those of its box, at states that designs reach outside the data.
+//!
+//! They are in a CSV file with the columns `w_lig` (mm), `alpha_deg`, `eta_a`, `eta_s`, `theta_deg`, one ray per
+//! row. The campaign's key `further_rays` is the path of the file. Lines that start with `#` are comments.
+
+use crate::window::ray::Ray;
+use hinge::{HingeConstants, HingeDeformation};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_PI_2;
+use std::path::{Path, PathBuf};
+
+/// A file that is not a valid list of rays, or that cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub enum ExtraRaysError {
+    #[error("{path}: {source}", path = .path.display())]
+    Csv { path: PathBuf, source: csv::Error },
+    #[error("{path}, ray {row}: {reason}", path = .path.display())]
+    Ray {
+        path: PathBuf,
+        row: usize,
+        reason: String,
+    },
+    #[error("cannot write {path}: {source}", path = .path.display())]
+    Write {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+}
+
+/// One row of the file: a hinge and the end of its ray.
+#[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Row {
+    w_lig: f64,
+    alpha_deg: f64,
+    eta_a: f64,
+    eta_s: f64,
+    theta_deg: f64,
+}
+
+/// Reads the rays of hinges with the constants `common`.
+pub fn read_extra_rays(path: &Path, common: &HingeConstants) -> Result<Vec<Ray>, ExtraRaysError> {
+    let mut rays = Vec::new();
+    for (i, row) in read_rows(path)?.into_iter().enumerate() {
+        let ray = row.ray(common);
+        if let Some(reason) = row.defect(&ray) {
+            return Err(ExtraRaysError::Ray {
+                path: path.to_owned(),
+                row: i + 1,
+                reason,
+            });
+        }
+        // A ray that occurs twice is one job.
+        if !rays.contains(&ray) {
+            rays.push(ray);
+        }
+    }
+    Ok(rays)
+}
+
+/// Numbers of rays that were added, already known, and refused.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Added {
+    pub added: usize,
+    /// Rays that the file already contained.
+    pub known: usize,
+    /// Rays outside the limits of a campaign.
+    pub refused: usize,
+}
+
+/// Appends rays to the file, which is created if it does not exist.
+pub fn add_extra_rays(path: &Path, rays: &[Ray]) -> Result<Added, ExtraRaysError> {
+    let mut rows = match path.exists() {
+        true => read_rows(path)?,
+        false => Vec::new(),
+    };
+    let mut count = Added::default();
+    let mut writer = csv::WriterBuilder::new()
+        .has_headers(rows.is_empty())
+        .from_writer(Vec::new());
+    for ray in rays {
+        let row = Row::of(ray);
+        if row.defect(ray).is_some() {
+            count.refused += 1;
+        } else if rows.contains(&row) {
+            count.known += 1;
+        } else {
+            count.added += 1;
+            let unwritable = |source| ExtraRaysError::Csv {
+                path: path.to_owned(),
+                source,
+            };
+            writer.serialize(row).map_err(unwritable)?;
+            rows.push(row);
+        }
+    }
+    let lines = writer.into_inner().unwrap_or_default();
+    let unwritable = |source| ExtraRaysError::Write {
+        path: path.to_owned(),
+        source,
+    };
+    let mut bytes = match rows.len() > count.added {
+        true => std::fs::read(path).map_err(unwritable)?,
+        false => Vec::new(),
+    };
+    if bytes.last().is_some_and(|last| *last != b'\n') {
+        bytes.push(b'\n');
+    }
+    bytes.extend(lines);
+    support::whole_file::write(path, &bytes).map_err(unwritable)?;
+    Ok(count)
+}
+
+fn read_rows(path: &Path) -> Result<Vec<Row>, ExtraRaysError> {
+    let rows = || -> Result<Vec<Row>, csv::Error> {
+        let mut bytes = std::fs::read(path)?;
+        // A comment at the end of the file without a line break would be read as a row.
+        bytes.push(b'\n');
+        let mut reader = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .comment(Some(b'#'))
+            .from_reader(bytes.as_slice());
+        reader.deserialize().collect()
+    };
+    rows().map_err(|source| ExtraRaysError::Csv {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+impl Row {
+    /// The row of a ray. Numbers are rounded to four decimals, which is accurate enough and keeps the file readable.
+    fn of(ray: &Ray) -> Self {
+        let ray = match ray.design.alpha > FRAC_PI_2 {
+            true => ray.mirrored(),
+            false => *ray,
+        };
+        let [eta_a, eta_s] = ray.end.eta(ray.design.w_lig);
+        let round = |x: f64| (1e4 * x).round() / 1e4;
+        Self {
+            w_lig: round(ray.design.w_lig),
+            alpha_deg: round(ray.design.alpha.to_degrees()),
+            eta_a: round(eta_a),
+            eta_s: round(eta_s),
+            theta_deg: round(ray.end.theta.to_degrees()),
+        }
+    }
+
+    fn ray(&self, common: &HingeConstants) -> Ray {
+        let theta = self.theta_deg.to_radians();
+        let ray = Ray {
+            design: common.hinge(self.w_lig, self.alpha_deg.to_radians()),
+            end: HingeDeformation::from_eta(self.eta_a, self.eta_s, theta, self.w_lig),
+        };
+        match ray.design.alpha > FRAC_PI_2 {
+            true => ray.mirrored(),
+            false => ray,
+        }
+    }
+
+    /// The defect of the ray; `None` if it is valid.
+    fn defect(&self, ray: &Ray) -> Option<String> {
+        let end = [self.eta_a, self.eta_s, self.theta_deg];
+        if !end.iter().all(|x| x.is_finite()) {
+            return Some("a number is not finite".to_owned());
+        }
+        if end == [0.0; 3] {
+            return Some("it ends at the undeformed state, where it begins".to_owned());
+        }
+        if !(-1.0 < self.eta_a && self.eta_a < 1.0 && self.eta_s.abs() < 1.0) {
+            return Some(
+                "violates |eta_a| < 1, |eta_s| < 1 (fractions of w_lig, not mm)".to_owned(),
+            );
+        }
+        if !(-30.0..=120.0).contains(&self.theta_deg) {
+            return Some("violates -30 <= theta_deg <= 120".to_owned());
+        }
+        ray.design.validate().err().map(|error| error.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COMMON: HingeConstants = HingeConstants {
+        fillet_ratio: 0.16,
+        kerf: 0.2,
+        r_win: 100.0,
+    };
+
+    fn ray(alpha_deg: f64) -> Ray {
+        Ray {
+            design: COMMON.hinge(17.123_456, f64::to_radians(alpha_deg)),
+            end: HingeDeformation::from_eta(-0.3, 0.1, 0.5, 17.123_456),
+        }
+    }
+
+    #[test]
+    fn rays_are_added_once_mirrored_to_acute_angles_and_read_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rays.csv");
+        let added = add_extra_rays(&path, &[ray(80.0), ray(100.0)]).unwrap();
+        assert_eq!((added.added, added.known, added.refused), (2, 0, 0));
+        let text = format!(
+            "# of a design\n{}# by hand",
+            std::fs::read_to_string(&path).unwrap()
+        );
+        std::fs::write(&path, text).unwrap();
+        let mut closing = ray(60.0);
+        closing.end.theta = -0.6;
+        let added = add_extra_rays(&path, &[ray(80.0), ray(70.0), closing]).unwrap();
+        assert_eq!((added.added, added.known, added.refused), (1, 1, 1));
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(
+            text.contains("# of a design") && text.contains("# by hand"),
+            "{text}"
+        );
+        let rays = read_extra_rays(&path, &COMMON).unwrap();
+        assert_eq!(rays.len(), 3);
+        assert!((rays[0].design.w_lig - 17.1235).abs() < 1e-12);
+        assert!((rays[1].design.alpha.to_degrees() - 80.0).abs() < 1e-9);
+        assert!((rays[1].end.s + rays[0].end.s).abs() < 1e-9);
+    }
+
+    #[test]
+    fn duplicate_rays_are_merged_and_obtuse_ones_are_mirrored() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rays.csv");
+        let header = "w_lig,alpha_deg,eta_a,eta_s,theta_deg";
+        let text = format!("{header}\n18,80,-0.3,0.1,20\n18,80,-0.3,0.1,20\n18,120,0,0.1,20\n");
+        std::fs::write(&path, text).unwrap();
+        let rays = read_extra_rays(&path, &COMMON).unwrap();
+        assert_eq!(rays.len(), 2);
+        assert!((rays[1].design.alpha.to_degrees() - 60.0).abs() < 1e-9);
+        assert!(rays[1].end.s < 0.0);
+    }
+
+    #[test]
+    fn invalid_rays_are_rejected() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rays.csv");
+        let header = "w_lig,alpha_deg,eta_a,eta_s,theta_deg";
+        for (text, expected) in [
+            ("w_lig,alpha\n1,2\n".to_owned(), "unknown field"),
+            (format!("{header}\n18,90,-5.4,0,20\n"), "|eta_a| < 1"),
+            (format!("{header}\n18,90,0,0,-40\n"), "-30 <= theta_deg"),
+            (format!("{header}\n18,90,0,0,2000\n"), "theta_deg <= 120"),
+            (
+                format!("{header}\n18,90,0,0,20\n18,90,0,0,0\n"),
+                "ray 2: it ends at the undeformed state",
+            ),
+            (format!("{header}\n60,90,0,0,20\n"), "r_win"),
+            (format!("{header}\n18,90,0,x,20\n"), "rays.csv"),
+        ] {
+            std::fs::write(&path, text).unwrap();
+            let message = read_extra_rays(&path, &COMMON).unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+}

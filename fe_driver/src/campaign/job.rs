@@ -1,0 +1,207 @@
+//! One job of a campaign: its identity and its folder.
+//!
+//! The id is a hash of all inputs of the result. The folder contains `job.json` (the inputs), `rows.csv` (the
+//! samples), the input deck and log of a successful attempt, and `result.json`. `result.json` is written last: a job
+//! without it is not done. These files are written atomically.
+
+use crate::record_file::{FileError, read_json, short_hash, write_json};
+use crate::window::failure::{FailureKind, RetryStep};
+use crate::window::solve::WindowProblem;
+use crate::window::versions::{RECIPE_VERSION, ToolVersions};
+use hinge::HingeSample;
+use mesher::{MeshRecipe, Tier};
+use serde::{Deserialize, Serialize};
+use std::io;
+use std::path::PathBuf;
+use support::whole_file;
+
+/// All inputs of the result of a job; its id is a hash of them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct JobSpec {
+    pub problem: WindowProblem,
+    /// The mesh recipe of the tier.
+    pub mesh: MeshRecipe,
+    pub tools: ToolVersions,
+    pub recipe_version: u32,
+}
+
+impl JobSpec {
+    pub fn new(problem: WindowProblem, tools: &ToolVersions) -> Self {
+        Self {
+            mesh: problem.tier.recipe(),
+            problem,
+            tools: tools.clone(),
+            recipe_version: RECIPE_VERSION,
+        }
+    }
+
+    /// The id: 16 hexadecimal digits.
+    pub fn id(&self) -> String {
+        short_hash(self)
+    }
+
+    /// Names of the settings that differ from `other`; empty if only the ray differs.
+    pub fn differences(&self, other: &Self) -> Vec<&'static str> {
+        let (a, b) = (&self.problem, &other.problem);
+        [
+            (a.material != b.material, "material"),
+            (a.tier != b.tier || self.mesh != other.mesh, "mesh tier"),
+            (a.step != b.step, "step control"),
+            (self.tools != other.tools, "tool versions"),
+            (
+                self.recipe_version != other.recipe_version,
+                "recipe version",
+            ),
+        ]
+        .into_iter()
+        .filter_map(|(differs, what)| differs.then_some(what))
+        .collect()
+    }
+}
+
+/// The state of a job after its last attempt.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct JobRecord {
+    /// Why there are no samples, or only samples of a part of the ray; `None` for a complete ray.
+    pub failure: Option<FailureKind>,
+    /// The error message of the failure.
+    pub message: Option<String>,
+    /// The next retry; `None` closes the job.
+    pub next: Option<RetryStep>,
+    pub attempts: u32,
+    /// Tier of the attempt that produced the rows.
+    pub tier: Tier,
+    /// Number of rows in `rows.csv`.
+    pub rows: usize,
+    /// Hash of `rows.csv`.
+    pub rows_hash: String,
+    /// Lambda of the last row; 1 for a complete ray.
+    pub lambda: f64,
+    /// Solver CPU time over all attempts (s).
+    pub cpu_seconds: f64,
+    /// Wall time over all attempts (s).
+    pub wall_seconds: f64,
+    /// Time at which the last attempt ended, in seconds since 1970.
+    pub ended: u64,
+}
+
+impl JobRecord {
+    /// Whether no retry is left.
+    pub fn is_closed(&self) -> bool {
+        self.next.is_none()
+    }
+}
+
+/// The folder of one job.
+#[derive(Clone, Debug)]
+pub struct JobFolder(pub PathBuf);
+
+impl JobFolder {
+    /// Reads the inputs of the job; `None` if the job was never started.
+    pub fn spec(&self) -> Result<Option<JobSpec>, FileError> {
+        read_json(&self.0.join("job.json"))
+    }
+
+    /// Reads the state of the job; `None` before the first attempt has ended.
+    pub fn record(&self) -> Result<Option<JobRecord>, FileError> {
+        read_json(&self.0.join("result.json"))
+    }
+
+    /// Reads the samples; an error if their hash is not the one in `record`.
+    pub fn samples(&self, record: &JobRecord) -> Result<Vec<HingeSample>, FileError> {
+        let path = self.0.join("rows.csv");
+        let bytes = std::fs::read(&path).map_err(FileError::at(&path))?;
+        if blake3::hash(&bytes).to_hex().as_str() != record.rows_hash {
+            let changed = "the rows do not match the hash in result.json: run the campaign again";
+            return Err(FileError::at(&path)(io::Error::other(changed)));
+        }
+        let rows = csv::Reader::from_reader(&bytes[..]).into_deserialize();
+        rows.collect::<Result<_, csv::Error>>()
+            .map_err(FileError::at(&path))
+    }
+
+    pub(crate) fn write_spec(&self, spec: &JobSpec) -> Result<(), FileError> {
+        std::fs::create_dir_all(&self.0).map_err(FileError::at(&self.0))?;
+        write_json(&self.0.join("job.json"), spec)
+    }
+
+    /// Writes the samples so that every number is read back exactly; returns the hash of the file.
+    pub(crate) fn write_samples(&self, samples: &[HingeSample]) -> Result<String, FileError> {
+        let path = self.0.join("rows.csv");
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        samples
+            .iter()
+            .try_for_each(|sample| writer.serialize(sample))
+            .map_err(FileError::at(&path))?;
+        let bytes = writer.into_inner().expect("a vector takes every byte");
+        whole_file::write(&path, &bytes).map_err(FileError::at(&path))?;
+        Ok(blake3::hash(&bytes).to_hex().to_string())
+    }
+
+    pub(crate) fn write_record(&self, record: &JobRecord) -> Result<(), FileError> {
+        write_json(&self.0.join("result.json"), record)
+    }
+
+    /// Creates an empty work folder for an attempt.
+    pub(crate) fn fresh_work(&self) -> Result<PathBuf, FileError> {
+        let work = self.0.join("work");
+        match std::fs::remove_dir_all(&work) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                return Err(FileError::at(&work)(error));
+            }
+            _ => {}
+        }
+        std::fs::create_dir_all(&work).map_err(FileError::at(&work))?;
+        Ok(work)
+    }
+
+    /// Keeps the input deck and the log of a successful attempt and deletes its other files.
+    pub(crate) fn tidy(&self) -> Result<(), FileError> {
+        let work = self.0.join("work");
+        for name in ["window.inp", "window.log"] {
+            std::fs::rename(work.join(name), self.0.join(name)).map_err(FileError::at(&work))?;
+        }
+        std::fs::remove_dir_all(&work).map_err(FileError::at(&work))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn folder() -> (tempfile::TempDir, JobFolder) {
+        let root = tempfile::tempdir().unwrap();
+        let folder = JobFolder(root.path().to_owned());
+        (root, folder)
+    }
+
+    proptest! {
+        #[test]
+        fn rows_are_read_back_bit_exactly(
+            numbers in proptest::array::uniform4(proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL)
+        ) {
+            let [w, f_a, f_s, m_theta] = numbers;
+            let rows = [HingeSample { w, f_a, f_s, m_theta, ..HingeSample::default() }; 2];
+            let (_root, folder) = folder();
+            let rows_hash = folder.write_samples(&rows).unwrap();
+            let record = JobRecord { rows_hash, ..JobRecord::default() };
+            prop_assert_eq!(&folder.samples(&record).unwrap()[..], &rows[..]);
+        }
+    }
+
+    #[test]
+    fn the_error_for_a_damaged_record_says_what_to_do() {
+        let (_root, folder) = folder();
+        assert!(folder.record().unwrap().is_none());
+        folder.write_record(&JobRecord::default()).unwrap();
+        assert_eq!(folder.record().unwrap(), Some(JobRecord::default()));
+        let path = folder.0.join("result.json");
+        std::fs::write(&path, "{\"failure\": nu").unwrap();
+        let message = folder.record().unwrap_err().to_string();
+        assert!(
+            message.contains("result.json") && message.contains("delete it"),
+            "{message}"
+        );
+    }
+}

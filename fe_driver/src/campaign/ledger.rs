@@ -1,0 +1,259 @@
+//! The folder of a campaign, and the state of its jobs.
+//!
+//! `campaign.json` contains the name of the campaign and the ids of its jobs as last run. `jobs/<id>/` contains one
+//! job. `events-<i>-of-<n>.jsonl` is the append-only history of a shard; it is also the shard's lock file.
+
+use crate::campaign::definition::{Campaign, CampaignError};
+use crate::campaign::history::History;
+use crate::campaign::job::{JobFolder, JobRecord, JobSpec};
+use crate::campaign::shard::Shard;
+use crate::record_file::{FileError, read_json, write_json};
+use crate::window::failure::FailureKind;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs::{DirEntry, File};
+use std::path::{Path, PathBuf};
+
+/// The folder of a campaign.
+#[derive(Clone, Debug)]
+pub(crate) struct CampaignFolder(pub PathBuf);
+
+/// The contents of `campaign.json`.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct Index {
+    pub name: String,
+    /// Ids of the jobs of the campaign as last run, in order.
+    pub jobs: Vec<String>,
+}
+
+impl Index {
+    pub fn of(name: &str, specs: &[JobSpec]) -> Self {
+        Self {
+            name: name.to_owned(),
+            jobs: specs.iter().map(JobSpec::id).collect(),
+        }
+    }
+}
+
+impl CampaignFolder {
+    pub fn job(&self, id: &str) -> JobFolder {
+        JobFolder(self.0.join("jobs").join(id))
+    }
+
+    fn index_path(&self) -> PathBuf {
+        self.0.join("campaign.json")
+    }
+
+    /// Reads `campaign.json`.
+    pub fn index(&self) -> Result<Index, CampaignError> {
+        read_json(&self.index_path())?.ok_or_else(|| CampaignError::NoCampaign(self.0.clone()))
+    }
+
+    /// Rejects a folder that belongs to a campaign with another name.
+    pub fn belongs_to(&self, name: &str) -> Result<(), CampaignError> {
+        match read_json::<Index>(&self.index_path())? {
+            Some(index) if index.name != name => Err(CampaignError::OtherCampaign {
+                folder: self.0.clone(),
+                found: index.name,
+                asked: name.to_owned(),
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes `index` to the folder and locks one shard of it until the returned history is dropped.
+    ///
+    /// It is an error if a shard that may overlap with this one is locked.
+    pub fn enter(&self, shard: Shard, index: &Index) -> Result<History, CampaignError> {
+        std::fs::create_dir_all(&self.0).map_err(FileError::at(&self.0))?;
+        // Shards that start at the same time enter one after the other. Otherwise each would find the lock of the
+        // other, and both would write the index.
+        let door = self.0.join("lock");
+        let _held = File::create(&door)
+            .and_then(|file| file.lock().map(|()| file))
+            .map_err(FileError::at(&door))?;
+        self.belongs_to(&index.name)?;
+        for entry in entries(&self.0)? {
+            if shard.overlaps(&entry.file_name().to_string_lossy()) {
+                History::open(&entry.path())?;
+            }
+        }
+        write_json(&self.index_path(), index)?;
+        History::open(&self.0.join(shard.history()))
+    }
+
+    /// Counts the states of the jobs with these ids.
+    pub fn tally<'a>(&self, ids: impl IntoIterator<Item = &'a String>) -> Result<Tally, FileError> {
+        let records = ids.into_iter().map(|id| self.job(id).record());
+        Ok(Tally::of(&records.collect::<Result<Vec<_>, _>>()?))
+    }
+
+    /// Ids of all jobs that were ever started here.
+    pub fn ids(&self) -> Result<Vec<String>, FileError> {
+        let path = self.0.join("jobs");
+        if !path.exists() {
+            return Ok(Vec::new());
+        }
+        let name = |entry: DirEntry| entry.file_name().to_string_lossy().into_owned();
+        Ok(entries(&path)?.into_iter().map(name).collect())
+    }
+}
+
+fn entries(folder: &Path) -> Result<Vec<DirEntry>, FileError> {
+    std::fs::read_dir(folder)
+        .and_then(Iterator::collect)
+        .map_err(FileError::at(folder))
+}
+
+/// Numbers of jobs in each state, with their total cost.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Tally {
+    /// Jobs without a completed attempt.
+    pub open: usize,
+    /// Failed jobs with a retry left.
+    pub retry: usize,
+    /// Jobs solved to the end of the ray.
+    pub complete: usize,
+    /// Closed jobs whose samples end before the end of the ray.
+    pub partial: usize,
+    /// Closed jobs without samples.
+    pub failed: usize,
+    /// Samples of complete and partial jobs.
+    pub rows: usize,
+    /// Kinds of the last failure of partial, failed and retried jobs.
+    pub failures: BTreeMap<FailureKind, usize>,
+    /// Solver CPU time over all attempts (s).
+    pub cpu_seconds: f64,
+    /// Wall time of one worker over all attempts (s); restored jobs have none.
+    pub wall_seconds: f64,
+    /// Closed jobs that were solved in this folder, not restored. The throughput is that of these jobs.
+    pub solved_here: usize,
+    #[serde(skip)]
+    rows_solved_here: usize,
+    #[serde(skip)]
+    cpu_seconds_here: f64,
+}
+
+impl Tally {
+    /// Counts the jobs with these records; a job without one is open.
+    pub(crate) fn of<'a>(records: impl IntoIterator<Item = &'a Option<JobRecord>>) -> Self {
+        let mut tally = Self::default();
+        for record in records {
+            match record {
+                Some(record) => tally.add(record),
+                None => tally.open += 1,
+            }
+        }
+        tally
+    }
+
+    fn add(&mut self, record: &JobRecord) {
+        *match (record.is_closed(), record.failure, record.rows) {
+            (false, ..) => &mut self.retry,
+            (true, None, _) => &mut self.complete,
+            (true, Some(_), 0) => &mut self.failed,
+            (true, Some(_), _) => &mut self.partial,
+        } += 1;
+        if record.is_closed() {
+            self.rows += record.rows;
+        }
+        if let Some(kind) = record.failure {
+            *self.failures.entry(kind).or_default() += 1;
+        }
+        self.cpu_seconds += record.cpu_seconds;
+        self.wall_seconds += record.wall_seconds;
+        if record.wall_seconds > 0.0 {
+            self.cpu_seconds_here += record.cpu_seconds;
+            if record.is_closed() {
+                self.solved_here += 1;
+                self.rows_solved_here += record.rows;
+            }
+        }
+    }
+
+    /// Number of closed jobs.
+    pub fn closed(&self) -> usize {
+        self.complete + self.partial + self.failed
+    }
+
+    /// Number of jobs that a run would work on.
+    pub fn to_run(&self) -> usize {
+        self.open + self.retry
+    }
+
+    /// Wall time of one worker per job (s); `None` before a job was solved in this folder.
+    pub(crate) fn seconds_a_job(&self) -> Option<f64> {
+        (self.solved_here > 0).then(|| self.wall_seconds / self.solved_here as f64)
+    }
+
+    /// The throughput so far; `None` before there are samples of jobs solved in this folder.
+    fn throughput(&self) -> Option<Throughput> {
+        let hours = self.wall_seconds / 3600.0;
+        (self.rows_solved_here > 0).then(|| Throughput {
+            rays_per_hour: self.solved_here as f64 / hours,
+            samples_per_hour: self.rows_solved_here as f64 / hours,
+            cpu_seconds_per_sample: self.cpu_seconds_here / self.rows_solved_here as f64,
+            overhead: 1.0 - self.cpu_seconds_here / self.wall_seconds,
+        })
+    }
+}
+
+/// The throughput of one worker over all attempts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Throughput {
+    /// Closed jobs per hour.
+    pub rays_per_hour: f64,
+    pub samples_per_hour: f64,
+    /// Solver CPU time over all attempts, per sample (s).
+    pub cpu_seconds_per_sample: f64,
+    /// Fraction of the wall time in which the solver did not compute: gmsh, reading and writing, waiting for
+    /// a processor.
+    pub overhead: f64,
+}
+
+/// The state of a campaign.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Status {
+    pub name: String,
+    pub tally: Tally,
+    pub throughput: Option<Throughput>,
+}
+
+/// Rejects a folder in which `campaign` was last run with settings other than its current ones.
+///
+/// Tool versions are taken from the folder: neither gmsh nor ccx needs to be installed.
+pub fn refuse_changed(campaign: &Campaign, folder: &Path) -> Result<(), CampaignError> {
+    let folder = CampaignFolder(folder.to_owned());
+    folder.belongs_to(&campaign.name)?;
+    let ids = folder.index()?.jobs;
+    let mut specs = ids.iter().map(|id| folder.job(id).spec());
+    let Some(solved) = specs.find_map(Result::transpose).transpose()? else {
+        return Ok(());
+    };
+    let asked = campaign.jobs(&solved.tools);
+    if Index::of(&campaign.name, &asked).jobs == ids {
+        return Ok(());
+    }
+    let changes = asked
+        .first()
+        .map_or(Vec::new(), |first| first.differences(&solved));
+    Err(CampaignError::Changed {
+        folder: folder.0,
+        changes: match changes.as_slice() {
+            [] => "its rays".into(),
+            changes => changes.join(", "),
+        },
+    })
+}
+
+/// The state of the campaign in `folder`, as it was last run.
+pub fn status(folder: &Path) -> Result<Status, CampaignError> {
+    let folder = CampaignFolder(folder.to_owned());
+    let Index { name, jobs } = folder.index()?;
+    let tally = folder.tally(&jobs)?;
+    Ok(Status {
+        name,
+        throughput: tally.throughput(),
+        tally,
+    })
+}

@@ -1,0 +1,80 @@
+//! The plan of a run: the jobs that it would solve, and why.
+
+use crate::campaign::definition::{Campaign, CampaignError};
+use crate::campaign::job::{JobRecord, JobSpec};
+use crate::campaign::ledger::{CampaignFolder, Index, Tally};
+use crate::window::versions::ToolVersions;
+use serde::Serialize;
+use std::collections::{BTreeMap, HashSet};
+use std::path::Path;
+
+/// The work that a run would do.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Plan {
+    pub tally: Tally,
+    /// Numbers of jobs that a run would work on, by reason.
+    pub reasons: BTreeMap<String, usize>,
+    /// Jobs in the folder that no longer belong to the campaign; they are kept.
+    pub stale: usize,
+    /// Estimated time of one worker (s).
+    pub seconds: f64,
+}
+
+/// Returns what [`crate::run`] would do in `folder`, without changing anything.
+pub fn plan(
+    campaign: &Campaign,
+    folder: &Path,
+    versions: &ToolVersions,
+) -> Result<Plan, CampaignError> {
+    let folder = CampaignFolder(folder.to_owned());
+    folder.belongs_to(&campaign.name)?;
+    let specs = campaign.jobs(versions);
+    let ids = Index::of(&campaign.name, &specs).jobs;
+    let tally = folder.tally(&ids)?;
+    let stale = stale(&folder, &ids)?;
+    let mut reasons = BTreeMap::new();
+    for (id, spec) in ids.iter().zip(&specs) {
+        let job = folder.job(id);
+        let reason = match job.record()? {
+            Some(record) => retry_reason(&record),
+            None if job.spec()?.is_some() => Some("interrupted".to_owned()),
+            None => Some(new_reason(spec, &stale)),
+        };
+        if let Some(reason) = reason {
+            *reasons.entry(reason).or_default() += 1;
+        }
+    }
+    let seconds_a_job = tally.seconds_a_job();
+    let seconds_a_job = seconds_a_job.unwrap_or_else(|| campaign.tier.usual_cpu_seconds());
+    Ok(Plan {
+        seconds: seconds_a_job * tally.to_run() as f64,
+        tally,
+        reasons,
+        stale: stale.len(),
+    })
+}
+
+/// The inputs of the jobs in the folder whose ids are not in `ids`.
+fn stale(folder: &CampaignFolder, ids: &[String]) -> Result<Vec<JobSpec>, CampaignError> {
+    let asked: HashSet<_> = ids.iter().collect();
+    let others = folder.ids()?.into_iter().filter(|id| !asked.contains(id));
+    let specs = others.map(|id| folder.job(&id).spec());
+    Ok(specs
+        .filter_map(Result::transpose)
+        .collect::<Result<_, _>>()?)
+}
+
+/// Why a job with a completed attempt is retried; `None` if it is not.
+fn retry_reason(record: &JobRecord) -> Option<String> {
+    let (failure, next) = (record.failure?, record.next?);
+    Some(format!("{failure}, next {}", next.name()))
+}
+
+/// Why a job is solved for the first time; its ray may have been solved with other settings.
+fn new_reason(spec: &JobSpec, stale: &[JobSpec]) -> String {
+    let same_ray = |old: &&JobSpec| old.problem.ray == spec.problem.ray;
+    match stale.iter().find(same_ray) {
+        Some(old) => format!("stale: {} changed", spec.differences(old).join(", ")),
+        None => "new".to_owned(),
+    }
+}

@@ -1,0 +1,313 @@
+//! Running a campaign: workers solve jobs, and one dispatcher records their state.
+//!
+//! A job is done when its `result.json` exists. A run can therefore be killed at any time; at most the jobs in
+//! flight are lost. A missing tool or a full disk stops the run immediately, because every other job would
+//! fail too.
+
+use crate::campaign::definition::{Campaign, CampaignError};
+use crate::campaign::history::{Event, History, now};
+use crate::campaign::job::{JobFolder, JobRecord, JobSpec};
+use crate::campaign::ledger::{CampaignFolder, Index, Tally};
+use crate::campaign::shard::Shard;
+use crate::record_file::FileError;
+use crate::window::failure::{FailureKind, RetryStep};
+use crate::window::solve::{SolveError, Tools, solve_window};
+use crate::window::versions::ToolVersions;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::time::{Duration, Instant};
+use support::program::ToolError;
+
+/// Which jobs a run works on, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct RunOptions {
+    pub shard: Shard,
+    /// Number of solves that run in parallel.
+    pub workers: usize,
+    /// No attempt is started after this time; attempts in flight are finished.
+    pub time_limit: Option<Duration>,
+}
+
+/// The progress of a run.
+#[derive(Clone, Debug)]
+pub struct Progress {
+    /// All jobs of the shard, including those of earlier runs.
+    pub tally: Tally,
+    /// Estimated remaining time (s), from the rate of this run; `None` before it has closed a job.
+    pub seconds_left: Option<f64>,
+}
+
+/// One job of the campaign, with its state at the start of the run.
+struct Job {
+    id: String,
+    spec: JobSpec,
+    folder: JobFolder,
+    record: Option<JobRecord>,
+}
+
+impl Job {
+    /// Reads the state of a job from its folder. A record without matching rows, as left by a crash, is ignored.
+    fn found(folder: &CampaignFolder, id: String, spec: JobSpec) -> Result<Self, FileError> {
+        let folder = folder.job(&id);
+        let record = folder
+            .record()?
+            .filter(|record| record.rows == 0 || folder.samples(record).is_ok());
+        Ok(Self {
+            id,
+            spec,
+            folder,
+            record,
+        })
+    }
+}
+
+/// A message from a worker to the dispatcher.
+enum Message {
+    Started {
+        job: usize,
+        rung: RetryStep,
+    },
+    Ended {
+        job: usize,
+        rung: RetryStep,
+        record: JobRecord,
+    },
+    /// The run cannot continue.
+    Halted(CampaignError),
+}
+
+/// Interval at which the dispatcher checks the stop flag.
+const GLANCE: Duration = Duration::from_millis(100);
+
+/// Runs the open jobs of `campaign` in `folder`, and the failed jobs that have a retry left.
+/// `progress` is called at the start and after each message of a worker.
+///
+/// When `stop` becomes true, the solves in flight are terminated and the run returns its progress. The
+/// next run continues from there.
+pub fn run(
+    campaign: &Campaign,
+    folder: &Path,
+    tools: &Tools,
+    options: &RunOptions,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<Progress, CampaignError> {
+    let deadline = options.time_limit.map(|limit| Instant::now() + limit);
+    let folder = CampaignFolder(folder.to_owned());
+    let specs = campaign.jobs(&ToolVersions::of(tools));
+    let index = Index::of(&campaign.name, &specs);
+    let history = folder.enter(options.shard, &index)?;
+    let jobs = index
+        .jobs
+        .into_iter()
+        .zip(specs)
+        .enumerate()
+        .filter(|(place, _)| options.shard.holds(*place))
+        .map(|(_, (id, spec))| Job::found(&folder, id, spec))
+        .collect::<Result<Vec<_>, _>>()?;
+
+    let mut books = Books::new(history, &jobs);
+    let (next, halt) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let (sender, receiver) = mpsc::channel();
+    std::thread::scope(|scope| {
+        for _ in 0..options.workers.max(1) {
+            let (sender, jobs, next, halt) = (sender.clone(), &jobs, &next, &halt);
+            let send = move |message| {
+                if sender.send(message).is_err() {
+                    // The dispatcher has exited.
+                    halt.store(true, Ordering::Relaxed);
+                }
+            };
+            let worker = Worker {
+                tools,
+                limit: campaign.time_limit,
+                deadline,
+                halt,
+            };
+            scope.spawn(move || {
+                while worker.may_start() {
+                    let index = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(job) = jobs.get(index) else { break };
+                    if let Err(error) = worker.climb(job, index, &send) {
+                        send(Message::Halted(error));
+                    }
+                }
+            });
+        }
+        drop(sender);
+        dispatch(receiver, &mut books, stop, &halt, progress)
+    })?;
+    Ok(books.progress())
+}
+
+/// Records the messages until every worker has exited; halts the workers on an error or on request.
+fn dispatch(
+    receiver: Receiver<Message>,
+    books: &mut Books,
+    stop: &AtomicBool,
+    halt: &AtomicBool,
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<(), CampaignError> {
+    progress(&books.progress());
+    let mut outcome = Ok(());
+    loop {
+        match receiver.recv_timeout(GLANCE) {
+            Ok(message) => {
+                outcome = outcome.and(books.note(message));
+                progress(&books.progress());
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return outcome,
+        }
+        if outcome.is_err() || stop.load(Ordering::Relaxed) {
+            halt.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+/// A worker, which solves jobs.
+#[derive(Clone, Copy)]
+struct Worker<'a> {
+    tools: &'a Tools,
+    /// Time limit of one solve.
+    limit: Duration,
+    /// Time after which no attempt is started.
+    deadline: Option<Instant>,
+    /// Terminates the solve in flight when set.
+    halt: &'a AtomicBool,
+}
+
+impl Worker<'_> {
+    fn may_start(&self) -> bool {
+        !self.halt.load(Ordering::Relaxed)
+            && self
+                .deadline
+                .is_none_or(|deadline| Instant::now() < deadline)
+    }
+
+    /// Makes the attempts of the retry ladder of one job until the job is closed or the run ends.
+    fn climb(&self, job: &Job, index: usize, send: &dyn Fn(Message)) -> Result<(), CampaignError> {
+        let mut record = job.record.clone();
+        while self.may_start()
+            && let Some(rung) = record.as_ref().map_or(Some(RetryStep::AsAsked), |r| r.next)
+        {
+            send(Message::Started { job: index, rung });
+            let Some(ended) = self.attempt(job, rung, record)? else {
+                return Ok(());
+            };
+            send(Message::Ended {
+                job: index,
+                rung,
+                record: ended.clone(),
+            });
+            record = Some(ended);
+        }
+        Ok(())
+    }
+
+    /// Makes one attempt at a job and records its result; `None` if it was stopped on request.
+    ///
+    /// The rows of the attempt that reached the largest lambda are kept.
+    fn attempt(
+        &self,
+        job: &Job,
+        rung: RetryStep,
+        before: Option<JobRecord>,
+    ) -> Result<Option<JobRecord>, CampaignError> {
+        let start = Instant::now();
+        let problem = rung.problem(&job.spec.problem);
+        job.folder.write_spec(&job.spec)?;
+        let work = job.folder.fresh_work()?;
+        let (samples, error, cpu_seconds) =
+            match solve_window(&problem, self.tools, &work, self.limit, self.halt) {
+                Ok(solution) => (solution.samples, solution.stopped, solution.cpu_seconds),
+                Err(error) => (Vec::new(), Some(error), None),
+            };
+        let failure = match error {
+            None => None,
+            Some(SolveError::Solver(ToolError::Stopped { .. })) => return Ok(None),
+            Some(error) => match FailureKind::of(&error) {
+                Some(kind) => Some((kind, error.to_string())),
+                None => {
+                    let (job, source) = (job.id.clone(), Box::new(error));
+                    return Err(CampaignError::Halted { job, source });
+                }
+            },
+        };
+        let mut record = before.unwrap_or_default();
+        if let Some(last) = samples.last()
+            && last.lambda > record.lambda
+        {
+            record.rows_hash = job.folder.write_samples(&samples)?;
+            record.rows = samples.len();
+            record.lambda = last.lambda;
+            record.tier = problem.tier;
+        }
+        record.next = failure
+            .as_ref()
+            .and_then(|(kind, _)| kind.next(rung, job.spec.problem.tier, record.lambda));
+        (record.failure, record.message) = failure.unzip();
+        record.attempts += 1;
+        record.cpu_seconds += cpu_seconds.unwrap_or(0.0);
+        record.wall_seconds += start.elapsed().as_secs_f64();
+        record.ended = now();
+        if record.failure.is_none() {
+            job.folder.tidy()?;
+        }
+        job.folder.write_record(&record)?;
+        Ok(Some(record))
+    }
+}
+
+/// The job records of a run, and its history on disk.
+struct Books<'a> {
+    jobs: &'a [Job],
+    /// The current record of every job.
+    records: Vec<Option<JobRecord>>,
+    history: History,
+    start: Instant,
+    closed_before: usize,
+}
+
+impl<'a> Books<'a> {
+    fn new(history: History, jobs: &'a [Job]) -> Self {
+        let records: Vec<_> = jobs.iter().map(|job| job.record.clone()).collect();
+        Self {
+            jobs,
+            closed_before: Tally::of(&records).closed(),
+            records,
+            history,
+            start: Instant::now(),
+        }
+    }
+
+    fn note(&mut self, message: Message) -> Result<(), CampaignError> {
+        match message {
+            Message::Started { job, rung } => {
+                self.history
+                    .note(&self.jobs[job].id, Event::Started { rung })?;
+            }
+            Message::Ended { job, rung, record } => {
+                let event = Event::Ended {
+                    rung,
+                    record: &record,
+                };
+                self.history.note(&self.jobs[job].id, event)?;
+                self.records[job] = Some(record);
+            }
+            Message::Halted(error) => return Err(error),
+        }
+        Ok(())
+    }
+
+    fn progress(&self) -> Progress {
+        let tally = Tally::of(&self.records);
+        let closed = tally.closed() - self.closed_before;
+        let pace = self.start.elapsed().as_secs_f64() / closed as f64;
+        Progress {
+            seconds_left: (closed > 0).then(|| pace * tally.to_run() as f64),
+            tally,
+        }
+    }
+}

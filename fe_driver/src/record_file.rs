@@ -1,0 +1,50 @@
+//! JSON files of jobs and cached solves, and the hashes that name them.
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::io;
+use std::path::{Path, PathBuf};
+use support::whole_file;
+
+/// A file of a campaign that cannot be read, written or parsed.
+#[derive(Debug, thiserror::Error)]
+#[error("{path}: {source}", path = .path.display())]
+pub struct FileError {
+    pub path: PathBuf,
+    pub source: io::Error,
+}
+
+impl FileError {
+    /// Maps the error of an operation on `path`, for use in `map_err`.
+    pub(crate) fn at<E: Into<io::Error>>(path: &Path) -> impl FnOnce(E) -> Self {
+        let path = path.to_owned();
+        move |source| Self {
+            path,
+            source: source.into(),
+        }
+    }
+}
+
+/// Reads a JSON file; `None` if the file does not exist.
+pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, FileError> {
+    match std::fs::read(path) {
+        Ok(bytes) => serde_json::from_slice(&bytes).map(Some).map_err(|error| {
+            let hint = "the file is damaged: delete it, and the next run writes it again";
+            FileError::at(path)(io::Error::other(format!("{error}: {hint}")))
+        }),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(FileError::at(path)(error)),
+    }
+}
+
+/// Writes a JSON file atomically.
+pub(crate) fn write_json<T: Serialize>(path: &Path, value: &T) -> Result<(), FileError> {
+    let bytes = serde_json::to_vec_pretty(value).map_err(FileError::at(path))?;
+    whole_file::write(path, &bytes).map_err(FileError::at(path))
+}
+
+/// Identifies the inputs that determine a result: 16 hexadecimal digits of the hash of their JSON.
+pub(crate) fn short_hash(decisive: &impl Serialize) -> String {
+    let text = serde_json::to_vec(decisive).expect("the inputs are numbers and text");
+    blake3::hash(&text).to_hex()[..16].to_owned()
+}

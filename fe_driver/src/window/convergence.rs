@@ -1,0 +1,239 @@
+//! The convergence study of the window: pure rotations, one modelling choice varied at a time.
+//!
+//! The error of a choice is the root mean square, over the ray, of the difference that it makes
+//! to W, F_a, M_theta and D, divided by the root mean square of the reference solution.
+
+use crate::window::deformation_path::DeformationPath;
+use crate::window::solve_cache::{KeptSolution, KeptSolve};
+use crate::window::step_control::StepControl;
+use hinge::{HingeDeformation, HingeDesign, HingeSample, SheetMaterial};
+use mesher::Tier;
+use std::f64::consts::FRAC_PI_2;
+
+/// Rotation at the end of every ray of the study (deg).
+pub const STUDY_THETA_DEG: f64 = 60.0;
+
+/// One solve of the study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StudyCase {
+    /// The varied quantity: "mesh", "increments", ...
+    pub study: &'static str,
+    /// Its value in this case, as shown in tables.
+    pub value: String,
+    /// The reference value of the same study.
+    pub against: &'static str,
+    pub solve: KeptSolve,
+}
+
+/// All cases for one hinge. `quick` omits the meshes that take minutes. The paper's mesh is included for
+/// comparison, only at the paper's right angle.
+pub fn study_cases(design: HingeDesign, material: &SheetMaterial, quick: bool) -> Vec<StudyCase> {
+    let end = HingeDeformation {
+        theta: STUDY_THETA_DEG.to_radians(),
+        ..HingeDeformation::default()
+    };
+    let usual = KeptSolve {
+        design,
+        path: DeformationPath::straight(end),
+        material: material.clone(),
+        recipe: Tier::Default.recipe(),
+        step: StepControl::default(),
+    };
+    let mut cases = Vec::new();
+    let mut add = |study, value: String, against, vary: &dyn Fn(&mut KeptSolve)| {
+        let mut solve = usual.clone();
+        vary(&mut solve);
+        cases.push(StudyCase {
+            study,
+            value,
+            against,
+            solve,
+        });
+    };
+    let finest = match quick {
+        true => Tier::Fine,
+        false => Tier::Reference,
+    };
+    let square = (design.alpha - FRAC_PI_2).abs() < 1e-9;
+    for tier in Tier::ALL {
+        let wanted = if quick {
+            tier <= finest
+        } else {
+            tier != Tier::Paper || square
+        };
+        if wanted {
+            add("mesh", tier.to_string(), finest.name(), &|solve| {
+                solve.recipe = tier.recipe();
+            });
+        }
+    }
+    for maximum in [0.07, 0.035, 0.0175] {
+        add("increments", maximum.to_string(), "0.0175", &|solve| {
+            solve.step.greatest = maximum;
+        });
+    }
+    for amplitude in [0.1, 0.5, 1.0, 2.0] {
+        let value = format!("{amplitude} t");
+        add("imperfection amplitude", value, "1 t", &|solve| {
+            solve.recipe.imperfection.amplitude = amplitude;
+        });
+    }
+    for widths in [[0.5, 0.5], [1.0, 1.0], [2.0, 1.4]] {
+        let value = format!("{} x {}", widths[0], widths[1]);
+        add("imperfection widths", value, "1 x 1", &|solve| {
+            solve.recipe.imperfection.widths = widths;
+        });
+    }
+    for r_win in [70.0, 100.0, 140.0] {
+        add("window radius", format!("{r_win} mm"), "140 mm", &|solve| {
+            solve.design.r_win = r_win;
+        });
+    }
+    for layers in [1, 2, 3] {
+        add("layers", layers.to_string(), "3", &|solve| {
+            solve.recipe.layers = layers;
+        });
+    }
+    cases
+}
+
+/// W (N mm), F_a (N), M_theta (N mm), D and maximum u_z (mm) of a hinge at one rotation.
+pub type StudyState = [f64; 5];
+
+/// The state of a complete ray of the study at the rotation `theta_deg`.
+pub fn study_state(solution: &KeptSolution, theta_deg: f64) -> StudyState {
+    let x = HingeSample::at(&solution.samples, theta_deg / STUDY_THETA_DEG).unwrap_or_default();
+    [x.w, x.f_a, x.m_theta, x.d, x.uz_max]
+}
+
+/// Relative difference of two solutions in each component of the state: the root mean square of the difference
+/// over the ray from 3 deg on, divided by the root mean square of `against`.
+pub fn study_difference(solution: &KeptSolution, against: &KeptSolution) -> StudyState {
+    let (mut off, mut all) = ([0.0; 5], [0.0; 5]);
+    for degrees in 3..=STUDY_THETA_DEG as u32 {
+        let [x, y] = [solution, against].map(|it| study_state(it, degrees.into()));
+        for i in 0..5 {
+            off[i] += (x[i] - y[i]).powi(2);
+            all[i] += y[i].powi(2);
+        }
+    }
+    std::array::from_fn(|i| (off[i] / all[i]).sqrt())
+}
+
+/// Extrapolation of a quantity from meshes of decreasing element size to size zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Richardson {
+    /// Order of convergence: the power of the element size in the error.
+    pub order: f64,
+    /// Whether the order was observed between the three meshes. If no order between 1/2 and 6 fits them, 2 is
+    /// assumed.
+    pub observed: bool,
+    /// The extrapolated quantity at size zero.
+    pub limit: f64,
+}
+
+/// Extrapolates a quantity known at three sizes, the largest first, to size zero.
+///
+/// Roache, Verification and Validation in Computational Science and Engineering (1998): the order
+/// p solves (f1 - f2) / (f2 - f3) = (h1^p - h2^p) / (h2^p - h3^p), whose right-hand side grows
+/// with p.
+pub fn richardson([h1, h2, h3]: [f64; 3], [f1, f2, f3]: [f64; 3]) -> Richardson {
+    let ratio = |p: f64| (h1.powf(p) - h2.powf(p)) / (h2.powf(p) - h3.powf(p));
+    let seen = (f1 - f2) / (f2 - f3);
+    let [mut low, mut high] = [0.5, 6.0];
+    let observed = ratio(low) <= seen && seen <= ratio(high);
+    while observed && high - low > 1e-9 {
+        let middle = 0.5 * (low + high);
+        match ratio(middle) < seen {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    let order = if observed { low } else { 2.0 };
+    Richardson {
+        order,
+        observed,
+        limit: f3 + (f3 - f2) / ((h2 / h3).powf(order) - 1.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn design() -> HingeDesign {
+        HingeDesign {
+            w_lig: 18.0,
+            alpha: 1.5,
+            fillet_ratio: 0.16,
+            kerf: 0.2,
+            r_win: 100.0,
+        }
+    }
+
+    fn film() -> SheetMaterial {
+        let film = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../configs/materials/pet-0.5mm.toml"
+        );
+        SheetMaterial::load(std::path::Path::new(film)).unwrap()
+    }
+
+    fn solution(scale: f64) -> KeptSolution {
+        let sample = |lambda: f64| HingeSample {
+            lambda,
+            w: scale * lambda * lambda,
+            f_a: scale,
+            m_theta: -scale * lambda,
+            d: scale * lambda,
+            uz_max: scale,
+            ..HingeSample::default()
+        };
+        KeptSolution {
+            elements: 1,
+            cpu_seconds: Some(1.0),
+            overhead: 0.01,
+            peak_memory_mib: Some(100.0),
+            iterations: 1,
+            samples: [0.25, 0.5, 1.0].map(sample).to_vec(),
+            stopped: None,
+        }
+    }
+
+    #[test]
+    fn a_solution_scaled_by_three_percent_differs_by_three_percent() {
+        for difference in study_difference(&solution(1.03), &solution(1.0)) {
+            assert!((difference - 0.03).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_order_of_convergence_and_the_limit_are_found() {
+        let sizes = [1.0, 0.75, 0.5];
+        for order in [1.0, 2.0, 3.3] {
+            let found = richardson(sizes, sizes.map(|h: f64| 90.0 + 7.0 * h.powf(order)));
+            assert!(found.observed && (found.order - order).abs() < 1e-6);
+            assert!((found.limit - 90.0).abs() < 1e-6, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn values_without_an_observed_order_are_extrapolated_with_second_order() {
+        for values in [[1.0, 2.0, 1.0], [1.0, 1.0, 1.0], [1.0, 1.1, 9.0]] {
+            let found = richardson([1.0, 0.75, 0.5], values);
+            assert!(!found.observed && found.order == 2.0, "{found:?}");
+            assert!(found.limit.is_finite());
+        }
+    }
+
+    #[test]
+    fn the_reference_of_every_case_is_itself_a_case() {
+        for quick in [false, true] {
+            let cases = study_cases(design(), &film(), quick);
+            for case in &cases {
+                let mut same = cases.iter().filter(|c| c.study == case.study);
+                assert!(same.any(|c| c.value == case.against), "{case:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,300 @@
+//! Reader of CalculiX .dat files: the printed output of each converged increment.
+//!
+//! A block is a heading that ends with the time (lambda), a blank line, and rows. A solver that was
+//! terminated leaves an incomplete last block: an unterminated line and an incomplete last frame
+//! are dropped. Any input gives either frames or an error that names the line.
+
+/// The numbers of rows that a complete increment prints.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layout {
+    /// Nodes of arc B.
+    pub arc_nodes: usize,
+    /// Nodes of the lower face.
+    pub bottom_nodes: usize,
+    pub elements: usize,
+    /// Gauss points per element.
+    pub points: usize,
+}
+
+/// The printed output of one converged increment.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// Step time: the fraction of the ray.
+    pub lambda: f64,
+    /// Total internal energy: stored plus dissipated (N mm).
+    pub energy: f64,
+    /// Nodes of arc B, counted from 0, with their reaction forces (N).
+    pub reactions: Vec<(usize, [f64; 3])>,
+    /// Out-of-plane displacements of the lower face (mm).
+    pub uz: Vec<f64>,
+    /// Equivalent plastic strain at the Gauss points, element by element.
+    pub peeq: Vec<f64>,
+    /// Cauchy stress (xx, yy, zz, xy, xz, yz) at the Gauss points (MPa), element by element.
+    pub stress: Vec<[f64; 6]>,
+    energies: usize,
+}
+
+/// Why the output of a window solve is rejected.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DatError {
+    #[error("the solver's output, line {line}: {what}")]
+    Line { line: usize, what: &'static str },
+    #[error(
+        "the solver's output is incomplete at lambda = {lambda}, which is not the last increment"
+    )]
+    Incomplete { lambda: f64 },
+}
+
+#[derive(Clone, Copy)]
+enum Block {
+    Energy,
+    Reactions,
+    Displacements,
+    PlasticStrain,
+    Stress,
+}
+
+/// The headings that ccx writes, up to the name of the set.
+const HEADINGS: [(&str, Block); 5] = [
+    ("total internal energy for set", Block::Energy),
+    ("forces (fx,fy,fz) for set", Block::Reactions),
+    ("displacements (vx,vy,vz) for set", Block::Displacements),
+    (
+        "equivalent plastic strain (elem, integ.pnt.,pe)for set",
+        Block::PlasticStrain,
+    ),
+    (
+        "stresses (elem, integ.pnt.,sxx,syy,szz,sxy,sxz,syz) for set",
+        Block::Stress,
+    ),
+];
+
+/// Reads the complete frames, in order of lambda.
+pub fn read_dat(bytes: &[u8], layout: Layout) -> Result<Vec<Frame>, DatError> {
+    // An unterminated last line may contain a truncated number.
+    let end = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
+    let text = String::from_utf8_lossy(&bytes[..end]);
+    let mut frames: Vec<Frame> = Vec::new();
+    let mut block = None;
+    for (number, line) in text.lines().enumerate() {
+        let line_error = |what| DatError::Line {
+            line: number + 1,
+            what,
+        };
+        let line = line.trim();
+        if line.is_empty() {
+            continue;
+        }
+        if let Some((_, time)) = line.rsplit_once(" and time ") {
+            let found = HEADINGS.iter().find(|(start, _)| line.starts_with(start));
+            let (_, kind) = found.ok_or_else(|| line_error("unknown heading"))?;
+            let lambda: f64 =
+                number_in(time).ok_or_else(|| line_error("the heading has no valid time"))?;
+            block = Some(*kind);
+            let last = frames.last().map(|frame| frame.lambda);
+            if last.is_none_or(|last| lambda > last) {
+                frames.push(Frame {
+                    lambda,
+                    ..Frame::default()
+                });
+            } else if last != Some(lambda) {
+                return Err(line_error("the time is smaller than in the block before"));
+            }
+            continue;
+        }
+        let (Some(block), Some(frame)) = (block, frames.last_mut()) else {
+            return Err(line_error("row before the first heading"));
+        };
+        frame
+            .add(block, line, layout)
+            .ok_or_else(|| line_error("malformed or unexpected row"))?;
+    }
+    if frames.last().is_some_and(|last| !last.is_complete(layout)) {
+        frames.pop();
+    }
+    match frames.iter().find(|frame| !frame.is_complete(layout)) {
+        Some(Frame { lambda, .. }) => Err(DatError::Incomplete { lambda: *lambda }),
+        None => Ok(frames),
+    }
+}
+
+impl Frame {
+    /// Adds a row of `block`; `None` if it does not belong there.
+    fn add(&mut self, block: Block, line: &str, layout: Layout) -> Option<()> {
+        let fields: Vec<_> = line.split_whitespace().collect();
+        match block {
+            Block::Energy => {
+                let [energy] = numbers(&fields)?;
+                self.energy = energy;
+                self.energies += 1;
+            }
+            Block::Reactions => {
+                let (node, values) = fields.split_first()?;
+                let node = node.parse::<usize>().ok()?.checked_sub(1)?;
+                self.reactions.push((node, numbers(values)?));
+            }
+            Block::Displacements => {
+                let [_, _, uz] = numbers(fields.get(1..)?)?;
+                self.uz.push(uz);
+            }
+            Block::PlasticStrain => {
+                let [peeq] = numbers(in_order(&fields, self.peeq.len(), layout)?)?;
+                self.peeq.push(peeq);
+            }
+            Block::Stress => {
+                let stress = numbers(in_order(&fields, self.stress.len(), layout)?)?;
+                self.stress.push(stress);
+            }
+        }
+        Some(())
+    }
+
+    fn is_complete(&self, layout: Layout) -> bool {
+        let points = layout.points * layout.elements;
+        self.energies == 1
+            && self.reactions.len() == layout.arc_nodes
+            && self.uz.len() == layout.bottom_nodes
+            && self.peeq.len() == points
+            && self.stress.len() == points
+    }
+}
+
+/// The values of a row, which must belong to Gauss point `index`, counted over all elements.
+fn in_order<'a, 't>(fields: &'a [&'t str], index: usize, layout: Layout) -> Option<&'a [&'t str]> {
+    let [element, point, values @ ..] = fields else {
+        return None;
+    };
+    let expected = [index / layout.points + 1, index % layout.points + 1];
+    let found: [usize; 2] = [element.parse().ok()?, point.parse().ok()?];
+    (index < layout.points * layout.elements && found == expected).then_some(values)
+}
+
+/// Exactly N finite numbers.
+fn numbers<const N: usize>(fields: &[&str]) -> Option<[f64; N]> {
+    let mut values = [0.0; N];
+    if fields.len() != N {
+        return None;
+    }
+    for (value, field) in values.iter_mut().zip(fields) {
+        *value = number_in(field)?;
+    }
+    Some(values)
+}
+
+fn number_in(field: &str) -> Option<f64> {
+    field.trim().parse().ok().filter(|x: &f64| x.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const LAYOUT: Layout = Layout {
+        arc_nodes: 2,
+        bottom_nodes: 1,
+        elements: 1,
+        points: 8,
+    };
+
+    /// The output of one increment, as ccx writes it.
+    fn printed(lambda: f64) -> String {
+        let points = |values: &str| -> String {
+            (1..=8)
+                .map(|point| format!("         1   {point}{values}\n"))
+                .collect()
+        };
+        format!(
+            "\n forces (fx,fy,fz) for set ARCB and time  {lambda:.7E}\n\n\
+             \x20        4  1.0E+00 -2.0E+00  3.0E+00\n         7  4.0E+00  5.0E+00  6.0E+00\n\
+             \n displacements (vx,vy,vz) for set BOTTOM and time  {lambda:.7E}\n\n\
+             \x20        1  0.1E+00  0.2E+00 -0.3E+00\n\
+             \n total internal energy for set EALL and time  {lambda:.7E}\n\n  4.25E+01\n\
+             \n equivalent plastic strain (elem, integ.pnt.,pe)for set EALL and time  {lambda:.7E}\n\n{}\
+             \n stresses (elem, integ.pnt.,sxx,syy,szz,sxy,sxz,syz) for set EALL and time  {lambda:.7E}\n\n{}",
+            points("  1.5E-02"),
+            points("  1.0 2.0 3.0 4.0 5.0 6.0")
+        )
+    }
+
+    fn two_increments() -> String {
+        printed(0.5) + &printed(1.0)
+    }
+
+    #[test]
+    fn frames_are_read_in_order() {
+        let frames = read_dat(two_increments().as_bytes(), LAYOUT).unwrap();
+        assert_eq!(
+            frames.iter().map(|f| f.lambda).collect::<Vec<_>>(),
+            [0.5, 1.0]
+        );
+        let frame = &frames[1];
+        assert_eq!(frame.energy, 42.5);
+        assert_eq!(
+            frame.reactions,
+            [(3, [1.0, -2.0, 3.0]), (6, [4.0, 5.0, 6.0])]
+        );
+        assert_eq!(frame.uz, [-0.3]);
+        assert_eq!(frame.peeq, [0.015; 8]);
+        assert_eq!(frame.stress[7], [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        assert_eq!(read_dat(b"", LAYOUT).unwrap(), []);
+    }
+
+    #[test]
+    fn damage_inside_the_output_is_an_error() {
+        let missing = two_increments().replacen("         1   8  1.5E-02\n", "", 1);
+        let error = read_dat(missing.as_bytes(), LAYOUT).unwrap_err();
+        assert_eq!(error, DatError::Incomplete { lambda: 0.5 });
+        for (old, new) in [
+            ("4.25E+01", "NaN"),
+            (" 1   3 ", " 1   4 "),
+            ("total", "mean"),
+        ] {
+            let damaged = two_increments().replacen(old, new, 1);
+            let error = read_dat(damaged.as_bytes(), LAYOUT).unwrap_err();
+            assert!(matches!(error, DatError::Line { .. }), "{old}: {error}");
+        }
+    }
+
+    proptest! {
+        /// However a killed solver truncated its output, the frames read are complete and correct.
+        #[test]
+        fn a_truncated_output_gives_its_complete_frames(share in 0.0..1.0f64) {
+            let text = two_increments();
+            let whole = read_dat(text.as_bytes(), LAYOUT).unwrap();
+            let cut = (share * text.len() as f64) as usize;
+            let frames = read_dat(&text.as_bytes()[..cut], LAYOUT).unwrap();
+            prop_assert_eq!(&frames[..], &whole[..frames.len()]);
+            prop_assert_eq!(frames.len(), usize::from(cut >= printed(0.5).len()));
+        }
+
+        /// Lines that may occur in an output, in any order and number.
+        #[test]
+        fn shuffled_lines_give_complete_frames_or_an_error(
+            order in proptest::collection::vec(any::<prop::sample::Index>(), 0..120)
+        ) {
+            let text = two_increments();
+            let lines: Vec<_> = text.split_inclusive('\n').collect();
+            let shuffled: String = order.iter().map(|index| *index.get(&lines)).collect();
+            if let Ok(frames) = read_dat(shuffled.as_bytes(), LAYOUT) {
+                prop_assert!(frames.iter().all(|frame| frame.is_complete(LAYOUT)));
+                prop_assert!(frames.windows(2).all(|pair| pair[0].lambda < pair[1].lambda));
+            }
+        }
+
+        #[test]
+        fn any_bytes_give_frames_or_an_error(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+            if let Ok(frames) = read_dat(&bytes, LAYOUT) {
+                prop_assert!(frames.iter().all(|frame| frame.is_complete(LAYOUT)));
+            }
+        }
+
+        #[test]
+        fn corrupted_bytes_never_panic(at in 0..2000usize, byte in any::<u8>()) {
+            let mut bytes = two_increments().into_bytes();
+            let at = at % bytes.len();
+            bytes[at] = byte;
+            let _ = read_dat(&bytes, LAYOUT);
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Converts printed frames to hinge samples: energy, work, forces, damage.
+
+use crate::window::dat::Frame;
+use crate::window::model::WindowModel;
+use crate::window::ray::{PanelMotion, rotated};
+use hinge::{HingeDeformation, HingeForces, HingeSample, SheetMaterial, StrainVolumes};
+use mesher::WindowMesh;
+use std::f64::consts::PI;
+
+/// D_peak is the mean over the most strained part of the window whose volume is this fraction of the ligament's
+/// half-disc volume.
+const PEAK_FRACTION: f64 = 0.01;
+
+/// One sample per frame, in the order of the frames.
+pub(crate) fn samples(model: &WindowModel, frames: &[Frame]) -> Vec<HingeSample> {
+    let (mesh, material) = (model.mesh, model.material);
+    let mut before = (HingeDeformation::default(), HingeForces::default());
+    let energies = frames.iter().map(|frame| frame.energy.abs());
+    let largest_w = energies.fold(f64::MIN_POSITIVE, f64::max);
+    let mut w_work = 0.0;
+    frames
+        .iter()
+        .map(|frame| {
+            let deformation = model.path.at(frame.lambda);
+            let forces = arc_forces(mesh, &deformation, &frame.reactions);
+            w_work += trapezoid(before, (deformation, forces));
+            before = (deformation, forces);
+            let damage = Damage::of(mesh, material, &frame.peeq);
+            HingeSample {
+                lambda: frame.lambda,
+                a: deformation.a,
+                s: deformation.s,
+                theta: deformation.theta,
+                w: frame.energy,
+                w_work,
+                w_elastic: elastic_energy(mesh, material, &frame.stress),
+                f_a: forces.f_a,
+                f_s: forces.f_s,
+                m_theta: forces.m_theta,
+                plastic_integral: damage.plastic_integral,
+                d: damage.d,
+                d_window: damage.d_window,
+                d_peak: Some(damage.d_peak),
+                strain_max: Some(damage.strain_max),
+                strain_volumes: Some(damage.strain_volumes),
+                uz_max: frame.uz.iter().fold(0.0, |most, uz| uz.abs().max(most)),
+                energy_residual: (frame.energy - w_work).abs() / largest_w,
+            }
+        })
+        .collect()
+}
+
+/// The forces conjugate to (a, s, theta), from the resultant of the reactions on arc B and their moment about the
+/// current position of O on panel B.
+fn arc_forces(
+    mesh: &WindowMesh,
+    deformation: &HingeDeformation,
+    reactions: &[(usize, [f64; 3])],
+) -> HingeForces {
+    let tip = mesh.design.tip();
+    let (mut force, mut moment) = ([0.0; 2], 0.0);
+    for (node, [fx, fy, _]) in reactions {
+        let [x, y, _] = mesh.nodes[*node];
+        let arm = rotated([x - tip[0], y - tip[1]], deformation.theta);
+        force[0] += fx;
+        force[1] += fy;
+        moment += arm[0] * fy - arm[1] * fx;
+    }
+    PanelMotion::of(deformation).forces(force, moment)
+}
+
+/// Work between two states: mean force times change of deformation.
+fn trapezoid(
+    (from, force_from): (HingeDeformation, HingeForces),
+    (to, force_to): (HingeDeformation, HingeForces),
+) -> f64 {
+    0.5 * (force_from.f_a + force_to.f_a) * (to.a - from.a)
+        + 0.5 * (force_from.f_s + force_to.f_s) * (to.s - from.s)
+        + 0.5 * (force_from.m_theta + force_to.m_theta) * (to.theta - from.theta)
+}
+
+/// Integral of sigma : C^-1 : sigma / 2 over the window (N mm), assuming small elastic strains.
+fn elastic_energy(mesh: &WindowMesh, material: &SheetMaterial, stress: &[[f64; 6]]) -> f64 {
+    let (young, poisson) = (material.young, material.poisson);
+    mesh.gauss_volumes
+        .iter()
+        .flatten()
+        .zip(stress)
+        .map(|(volume, [xx, yy, zz, xy, xz, yz])| {
+            let trace = xx + yy + zz;
+            let square = xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz);
+            volume * ((1.0 + poisson) * square - poisson * trace * trace) / (2.0 * young)
+        })
+        .sum()
+}
+
+/// Damage measures from the accumulated plastic strain; see the fields of [`HingeSample`].
+struct Damage {
+    plastic_integral: f64,
+    d: f64,
+    d_window: f64,
+    d_peak: f64,
+    strain_max: f64,
+    strain_volumes: StrainVolumes,
+}
+
+impl Damage {
+    fn of(mesh: &WindowMesh, material: &SheetMaterial, peeq: &[f64]) -> Self {
+        let volumes = mesh.gauss_volumes.iter().flatten().copied();
+        let mut points: Vec<_> = peeq.iter().copied().zip(volumes).collect();
+        points.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
+        let plastic_integral = points.iter().map(|(strain, volume)| strain * volume).sum();
+        let ligament = 0.5 * PI * mesh.design.w_lig.powi(2) * mesh.thickness;
+        let fracture = material.fracture_strain;
+        Self {
+            plastic_integral,
+            d: plastic_integral / (fracture * ligament),
+            d_window: plastic_integral / (fracture * mesh.volume()),
+            d_peak: mean_of_first(&points, PEAK_FRACTION * ligament) / fracture,
+            strain_max: points.first().map_or(0.0, |(strain, _)| *strain),
+            strain_volumes: StrainVolumes::of(points),
+        }
+    }
+}
+
+/// The mean strain over the first `volume` of `points`, each (strain, volume). Only the required part of the
+/// last point's volume is counted.
+fn mean_of_first(points: &[(f64, f64)], volume: f64) -> f64 {
+    let mut left = volume;
+    let mut sum = 0.0;
+    for (strain, own) in points {
+        let part = own.min(left);
+        sum += strain * part;
+        left -= part;
+    }
+    sum / volume
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_peak_is_the_mean_over_a_fixed_volume() {
+        let points = [(0.4, 0.5), (0.1, 1.5), (0.0, 98.0)];
+        assert_eq!(mean_of_first(&points, 0.25), 0.4);
+        assert!((mean_of_first(&points, 1.0) - 0.25).abs() < 1e-15);
+        assert!((mean_of_first(&points, 4.0) - 0.0875).abs() < 1e-15);
+        // Splitting a point changes nothing.
+        let split = [(0.4, 0.2), (0.4, 0.3), (0.1, 1.5)];
+        assert!((mean_of_first(&split, 1.0) - 0.25).abs() < 1e-15);
+        // Volume that the points do not cover counts as unstrained.
+        assert_eq!(mean_of_first(&points[..1], 1.0), 0.2);
+    }
+
+    #[test]
+    fn the_trapezoid_is_exact_for_a_linear_force() {
+        let state = |x: f64| {
+            let forces = HingeForces {
+                f_a: 3.0 * x,
+                f_s: 2.0 * x,
+                m_theta: 7.0 * x,
+            };
+            let deformation = HingeDeformation {
+                a: x,
+                s: 2.0 * x,
+                theta: 0.5 * x,
+            };
+            (deformation, forces)
+        };
+        let work = trapezoid(state(0.0), state(0.3)) + trapezoid(state(0.3), state(1.0));
+        assert!((work - 0.5 * (3.0 + 4.0 + 3.5)).abs() < 1e-14);
+    }
+}

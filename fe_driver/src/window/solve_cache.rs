@@ -1,0 +1,151 @@
+//! A cache of window solves: a study or a verification that was stopped continues with the solves it has finished.
+
+use crate::record_file::{FileError, read_json, short_hash, write_json};
+use crate::window::deformation_path::DeformationPath;
+use crate::window::failure::FailureKind;
+use crate::window::model::WindowModel;
+use crate::window::solve::{SolveError, Tools};
+use crate::window::step_control::StepControl;
+use crate::window::versions::{RECIPE_VERSION, ToolVersions};
+use hinge::{HingeDesign, HingeSample, SheetMaterial};
+use mesher::{MeshRecipe, mesh_window};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+/// All inputs of a window solve except the tool versions.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct KeptSolve {
+    pub design: HingeDesign,
+    pub path: DeformationPath,
+    pub material: SheetMaterial,
+    pub recipe: MeshRecipe,
+    pub step: StepControl,
+}
+
+/// The result of a solve.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct KeptSolution {
+    pub elements: usize,
+    /// Solver CPU time (s), if the operating system reports it.
+    pub cpu_seconds: Option<f64>,
+    /// Fraction of the wall time, from mesh to samples, in which the solver did not run.
+    pub overhead: f64,
+    /// Maximum resident memory of the solver (MiB), if the operating system reports it.
+    pub peak_memory_mib: Option<f64>,
+    pub iterations: usize,
+    pub samples: Vec<HingeSample>,
+    /// Why the solver did not follow the path to its end; `None` if it did.
+    pub stopped: Option<String>,
+}
+
+/// Why a solve has no solution to cache.
+#[derive(Debug, thiserror::Error)]
+pub enum KeptSolveError {
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+impl KeptSolve {
+    /// Reads the solution from the cache folder `kept`, or computes it in `work` and writes it to the cache.
+    ///
+    /// A path that the solver does not follow to its end is a result and is cached. A solver that was terminated or
+    /// crashed is an error. ccx is terminated after `limit`, and soon after `stop` becomes true.
+    pub fn solution(
+        &self,
+        kept: &Path,
+        work: &Path,
+        tools: &Tools,
+        limit: Duration,
+        stop: &AtomicBool,
+    ) -> Result<KeptSolution, KeptSolveError> {
+        let file = self.file(kept, &ToolVersions::of(tools));
+        if let Some(solution) = read_json(&file)? {
+            return Ok(solution);
+        }
+        let solution = self.solve(work, tools, limit, stop)?;
+        write_json(&file, &solution)?;
+        Ok(solution)
+    }
+
+    /// The file of the solution. Its name is a hash of all inputs of the result: the solve, the tool versions and the
+    /// recipe version of this crate.
+    fn file(&self, kept: &Path, tools: &ToolVersions) -> PathBuf {
+        let name = short_hash(&(self, tools, RECIPE_VERSION));
+        kept.join(name).with_extension("json")
+    }
+
+    fn solve(
+        &self,
+        work: &Path,
+        tools: &Tools,
+        limit: Duration,
+        stop: &AtomicBool,
+    ) -> Result<KeptSolution, SolveError> {
+        let start = Instant::now();
+        let thickness = self.material.thickness;
+        let mesh = mesh_window(&self.design, thickness, &self.recipe, work, &tools.gmsh)?;
+        let model = WindowModel {
+            mesh: &mesh,
+            path: &self.path,
+            material: &self.material,
+            step: &self.step,
+        };
+        let solution = model.solve(&tools.ccx, work, limit, stop)?;
+        let stopped = match solution.stopped {
+            None => None,
+            Some(reason) => match FailureKind::of(&reason) {
+                Some(FailureKind::Diverged | FailureKind::EnergyImbalance) => {
+                    Some(reason.to_string())
+                }
+                _ => return Err(reason),
+            },
+        };
+        Ok(KeptSolution {
+            elements: mesh.elements.len(),
+            cpu_seconds: solution.cpu_seconds,
+            overhead: 1.0 - solution.solver_seconds / start.elapsed().as_secs_f64(),
+            peak_memory_mib: solution.peak_memory_mib,
+            iterations: solution.iterations,
+            samples: solution.samples,
+            stopped,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hinge::HingeDeformation;
+    use mesher::Tier;
+
+    #[test]
+    fn the_cache_file_depends_on_the_tool_versions() {
+        let material = "name = \"film\"\nthickness = 0.5\nyoung = 3000.0\npoisson = 0.4\n\
+            density_kg_m3 = 1390.0\nfracture_strain = 1.784\nplastic = [[44.0, 0.0]]\n";
+        let solve = KeptSolve {
+            design: HingeDesign {
+                w_lig: 10.0,
+                alpha: 1.5,
+                fillet_ratio: 0.16,
+                kerf: 0.2,
+                r_win: 100.0,
+            },
+            path: DeformationPath::straight(HingeDeformation::default()),
+            material: support::toml_file::parse(material, Path::new("film.toml")).unwrap(),
+            recipe: Tier::Tiny.recipe(),
+            step: StepControl::default(),
+        };
+        let file = |gmsh: &str, ccx: &str| {
+            let (gmsh, ccx) = (gmsh.to_owned(), ccx.to_owned());
+            solve.file(Path::new("kept"), &ToolVersions { gmsh, ccx })
+        };
+        let known = file("4.8.4", "2.20");
+        assert_eq!(known, file("4.8.4", "2.20"));
+        assert_ne!(known, file("4.8.5", "2.20"));
+        assert_ne!(known, file("4.8.4", "2.21"));
+    }
+}

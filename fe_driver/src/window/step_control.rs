@@ -1,0 +1,44 @@
+//! Automatic increments of a window solve.
+
+use serde::{Deserialize, Serialize};
+
+/// Automatic increments of the one static step; lambda runs from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepControl {
+    /// First increment; small, because the sheet buckles immediately.
+    pub initial: f64,
+    /// Minimum increment.
+    pub least: f64,
+    /// Maximum increment; longer increments overshoot and are cut back.
+    pub greatest: f64,
+    pub max_increments: u32,
+    /// Maximum residual force, over the average force.
+    pub residual: f64,
+    /// Maximum displacement correction, over the displacement increment.
+    pub correction: f64,
+}
+
+impl Default for StepControl {
+    fn default() -> Self {
+        Self {
+            initial: 0.005,
+            least: 1e-5,
+            greatest: 0.035,
+            max_increments: 400,
+            residual: 0.02,
+            correction: 0.05,
+        }
+    }
+}
+
+impl StepControl {
+    /// Settings for a ray that stopped early: shorter increments, and more of them.
+    pub fn patient() -> Self {
+        Self {
+            least: 1e-6,
+            greatest: 0.02,
+            max_increments: 1000,
+            ..Self::default()
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! The command line: one subcommand per module of [`crate::commands`].
+
+#[cfg(feature = "pipeline")]
+use crate::commands::pipeline;
+use crate::commands::{completions, design, inspect, man};
+use crate::ui::progress;
+use anyhow::Result;
+use clap::{CommandFactory, Parser, Subcommand};
+
+/// Design kirigami sheets whose hinges are measured by finite elements
+///
+/// Hinge data: mesh, solve, campaign, dataset. Hinge model: train, surrogate.
+/// Sheets: design, inspect, verify. Start with: doctor, demo.
+#[derive(Parser)]
+#[command(name = "kirigami", version, propagate_version = true)]
+#[command(
+    after_help = "Exit codes: 0 done; 1 error; 75 stopped before the work was done, run the same command again."
+)]
+pub struct Cli {
+    /// Show no progress
+    #[arg(long, short, global = true)]
+    quiet: bool,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Design(design::DesignCommand),
+    Inspect(inspect::InspectCommand),
+    #[cfg(feature = "pipeline")]
+    #[command(flatten)]
+    Pipeline(pipeline::PipelineCommand),
+    Completions(completions::CompletionsCommand),
+    Man(man::ManCommand),
+}
+
+impl Cli {
+    pub fn run(&self) -> Result<()> {
+        if self.quiet {
+            progress::silence();
+        }
+        match &self.command {
+            Command::Design(command) => command.run(),
+            Command::Inspect(command) => command.run(),
+            #[cfg(feature = "pipeline")]
+            Command::Pipeline(command) => command.run(),
+            Command::Completions(command) => command.run(Self::command()),
+            Command::Man(command) => command.run(Self::command()),
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! The subcommands, one per file.
+
+#[cfg(feature = "pipeline")]
+pub mod campaign;
+pub mod completions;
+#[cfg(feature = "pipeline")]
+pub mod dataset;
+#[cfg(feature = "pipeline")]
+pub mod demo;
+pub mod design;
+#[cfg(feature = "pipeline")]
+pub mod doctor;
+pub mod inspect;
+pub mod man;
+#[cfg(feature = "pipeline")]
+pub mod mesh;
+#[cfg(feature = "pipeline")]
+pub mod pipeline;
+#[cfg(feature = "pipeline")]
+pub mod solve;
+#[cfg(feature = "pipeline")]
+pub mod surrogate;
+#[cfg(feature = "pipeline")]
+pub mod train;
+#[cfg(feature = "pipeline")]
+pub mod verify;
+#[cfg(feature = "pipeline")]
+mod window_args;

@@ -1,0 +1,52 @@
+//! The command line arguments that select a campaign, and the printed job counts.
+
+use crate::ui::progress::duration;
+use crate::ui::table::table;
+use anyhow::Result;
+use clap::Args;
+use fe_driver::{Campaign, Tally};
+use std::path::{Path, PathBuf};
+
+/// A campaign and the folder of its jobs.
+#[derive(Args)]
+pub struct CampaignArgs {
+    /// Campaign (TOML), for example configs/campaigns/demo.toml
+    #[arg(value_name = "CAMPAIGN")]
+    pub campaign: PathBuf,
+    /// Folder of the jobs [default: runs/<name of the campaign file>]
+    #[arg(long, value_name = "FOLDER")]
+    pub folder: Option<PathBuf>,
+}
+
+impl CampaignArgs {
+    pub fn load(&self) -> Result<Campaign> {
+        Ok(Campaign::load(&self.campaign)?)
+    }
+
+    pub fn folder(&self) -> PathBuf {
+        self.folder.clone().unwrap_or_else(|| {
+            Path::new("runs").join(self.campaign.file_stem().unwrap_or_default())
+        })
+    }
+}
+
+/// Prints the job counts and the reasons of failures.
+pub fn print_tally(tally: &Tally) {
+    println!(
+        "{} rays complete, {} partial, {} failed, {} to retry, {} open; {} samples; {} solver time",
+        tally.complete,
+        tally.partial,
+        tally.failed,
+        tally.retry,
+        tally.open,
+        tally.rows,
+        duration(tally.cpu_seconds)
+    );
+    if !tally.failures.is_empty() {
+        let mut failures = table(["last failure", "rays"]);
+        for (reason, count) in &tally.failures {
+            failures.add_row([reason.to_string(), count.to_string()]);
+        }
+        println!("{failures}");
+    }
+}

@@ -1,0 +1,87 @@
+//! `kirigami campaign collect`
+
+use crate::commands::campaign::campaign_args::CampaignArgs;
+use crate::commands::campaign::rows::rows_of;
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use dataset::{Database, Gates, SplitPlan};
+use fe_driver::{Tally, finished_jobs};
+use std::path::PathBuf;
+
+/// Collect the samples of all finished jobs in a Parquet file with its manifest
+#[derive(Args)]
+pub struct CollectCommand {
+    #[command(flatten)]
+    campaign: CampaignArgs,
+    /// Parquet file to write [default: hinges.parquet in the folder of the jobs]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Collect even if some jobs are not finished
+    #[arg(long)]
+    partial: bool,
+    /// Replace an existing Parquet file
+    #[arg(long)]
+    replace: bool,
+}
+
+impl CollectCommand {
+    pub fn new(campaign: PathBuf, folder: PathBuf, out: PathBuf) -> Self {
+        let campaign = CampaignArgs {
+            campaign,
+            folder: Some(folder),
+        };
+        Self {
+            campaign,
+            out: Some(out),
+            partial: false,
+            replace: true,
+        }
+    }
+
+    pub fn run(&self) -> Result<()> {
+        let folder = self.campaign.folder();
+        fe_driver::refuse_changed(&self.campaign.load()?, &folder)?;
+        let tally = fe_driver::status(&folder)?.tally;
+        let missing = missing(&tally);
+        if tally.to_run() > 0 && !self.partial {
+            bail!(
+                "{missing} in {}: run the campaign, or pass --partial to collect without them",
+                folder.display()
+            );
+        }
+        let mut rows = Vec::new();
+        for job in finished_jobs(&folder)? {
+            rows.extend(rows_of(&job?));
+        }
+        let database = Database::collect(rows, &Gates::default(), &SplitPlan::default())?;
+        let out = self
+            .out
+            .clone()
+            .unwrap_or_else(|| folder.join("hinges.parquet"));
+        if let Some(parent) = out.parent() {
+            std::fs::create_dir_all(parent)
+                .with_context(|| format!("cannot create the folder {}", parent.display()))?;
+        }
+        database.write(&out, self.replace)?;
+        println!("{database}\n{missing}\nwritten to {}", out.display());
+        Ok(())
+    }
+}
+
+/// The counts of rays that the collected database lacks.
+fn missing(tally: &Tally) -> String {
+    let failures: Vec<_> = tally
+        .failures
+        .iter()
+        .map(|(kind, count)| format!("{count} {kind}"))
+        .collect();
+    let reasons = match failures.as_slice() {
+        [] => String::new(),
+        failures => format!(" (last failures: {})", failures.join(", ")),
+    };
+    format!(
+        "missing: {} rays not solved yet, {} to retry, {} failed, {} with only part of their \
+         samples{reasons}",
+        tally.open, tally.retry, tally.failed, tally.partial
+    )
+}

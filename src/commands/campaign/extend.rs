@@ -1,0 +1,138 @@
+//! `kirigami campaign extend`: new rays for hinge states that the training data does not cover.
+
+use crate::commands::inspect::scene_args::Inspected;
+use crate::replays::routes::{HingeRoute, ensemble, hinge_routes};
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use fe_driver::{Added, Ray, add_extra_rays};
+use hinge::HingeDeformation;
+use std::path::PathBuf;
+use surrogate::{Order, Surrogate};
+
+/// Add rays to a campaign where a design leaves the training domain or the ensemble disagrees
+///
+/// A hinge is selected if a state on its path lies outside the training domain, or if the forces of
+/// an ensemble (train --seeds) deviate there by more than --doubt. A ray is then added through the
+/// outermost such state, ending 10 % beyond it. The rays are appended to a CSV file, which a campaign
+/// names as further_rays. Example: kirigami campaign extend configs/scenes/pet-3x3.toml --design
+/// runs/pet-3x3/state.json --rays configs/campaigns/pet-0.5mm-rays.csv
+#[derive(Args)]
+pub struct ExtendCommand {
+    #[command(flatten)]
+    inspected: Inspected,
+    /// Weights of further networks trained on the same data
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    ensemble: Vec<PathBuf>,
+    /// Maximum standard deviation of the ensemble's forces, relative to their root mean square
+    #[arg(long, value_name = "FRACTION", default_value_t = 0.05)]
+    doubt: f64,
+    /// CSV file to append the rays to
+    #[arg(long, value_name = "FILE")]
+    rays: PathBuf,
+}
+
+/// Length of a new ray, relative to the state that it passes through.
+const BEYOND: f64 = 1.1;
+
+impl ExtendCommand {
+    pub fn run(&self) -> Result<()> {
+        let (scene, design) = self.inspected.read()?;
+        let surrogate = scene.surrogate().context(
+            "only the data of a surrogate can be extended: set hinge = \"surrogate\" in the scene",
+        )?;
+        let mut networks = vec![surrogate.clone()];
+        networks.extend(ensemble(surrogate, &self.ensemble)?);
+        let routes = hinge_routes(&scene, &design)?;
+        ensure!(!routes.is_empty(), "the sheet has no hinges");
+        let doubts = doubts(&networks, &routes);
+        let domain = surrogate.domain();
+        let (mut outside, mut doubted, mut rays) = (0, 0, Vec::new());
+        for (route, doubt) in routes.iter().zip(doubts) {
+            let leaves = |state: &&HingeDeformation| !domain.contains(&route.design, state);
+            let left: Vec<_> = route.states.iter().filter(leaves).copied().collect();
+            let through = if !left.is_empty() {
+                outside += 1;
+                furthest(&left, route.design.w_lig)
+            } else if doubt > self.doubt {
+                doubted += 1;
+                furthest(&route.states, route.design.w_lig)
+            } else {
+                continue;
+            };
+            rays.push(Ray {
+                design: route.design,
+                end: through.at(BEYOND),
+            });
+        }
+        let Added {
+            added,
+            known,
+            refused,
+        } = add_extra_rays(&self.rays, &rays)?;
+        println!(
+            "of {} hinges {outside} leave the training domain and {doubted} exceed --doubt; {added} rays added to {}, \
+             {known} already in the file, {refused} rejected (beyond |eta| = 1 or -30 to 120 deg)\n\
+             To solve the new rays, set further_rays = \"FILE\" in a campaign (path relative to the campaign file).",
+            routes.len(),
+            self.rays.display()
+        );
+        Ok(())
+    }
+}
+
+/// The state that is furthest from the undeformed one.
+fn furthest(states: &[HingeDeformation], w_lig: f64) -> HingeDeformation {
+    let size = |state: &HingeDeformation| {
+        let [eta_a, eta_s] = state.eta(w_lig);
+        eta_a * eta_a + eta_s * eta_s + state.theta * state.theta
+    };
+    let furthest = states.iter().max_by(|x, y| size(x).total_cmp(&size(y)));
+    furthest.copied().unwrap_or_default()
+}
+
+/// For each path, the maximum standard deviation of (w_lig F_a, w_lig F_s, M) over the networks,
+/// relative to the root mean square of all; zero with one network.
+fn doubts(networks: &[Surrogate], routes: &[HingeRoute]) -> Vec<f64> {
+    let n = networks.len() as f64;
+    let (mut squares, mut count) = (0.0, 0.0);
+    let deviations: Vec<f64> = routes
+        .iter()
+        .map(|route| {
+            let designs = vec![route.design; route.states.len()];
+            let w_lig = route.design.w_lig;
+            let forces: Vec<Vec<[f64; 3]>> = networks
+                .iter()
+                .map(|network| {
+                    let prepared = network.prepare(&designs);
+                    let energies = network.evaluate(&prepared, &route.states, Order::Forces);
+                    let moments = energies.iter().map(|energy| {
+                        let [f_a, f_s, m] = energy.forces;
+                        [w_lig * f_a, w_lig * f_s, m]
+                    });
+                    moments.collect()
+                })
+                .collect();
+            let mut greatest = 0.0_f64;
+            for k in 0..route.states.len() {
+                let mut variance = 0.0;
+                for c in 0..3 {
+                    let values = || forces.iter().map(|network| network[k][c]);
+                    let mean = values().sum::<f64>() / n;
+                    variance +=
+                        values().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+                    squares += mean * mean;
+                }
+                count += 1.0;
+                greatest = greatest.max(variance.sqrt());
+            }
+            greatest
+        })
+        .collect();
+    let scale = (squares / f64::max(count, 1.0))
+        .sqrt()
+        .max(f64::MIN_POSITIVE);
+    deviations
+        .iter()
+        .map(|deviation| deviation / scale)
+        .collect()
+}

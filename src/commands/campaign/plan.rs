@@ -1,0 +1,53 @@
+//! `kirigami campaign plan`
+
+use crate::commands::campaign::campaign_args::{CampaignArgs, print_tally};
+use crate::ui::processors;
+use crate::ui::progress::duration;
+use crate::ui::table::table;
+use anyhow::Result;
+use clap::Args;
+use fe_driver::{ToolVersions, Tools};
+
+/// Print what a run would solve, why, and the estimated time
+#[derive(Args)]
+pub struct PlanCommand {
+    #[command(flatten)]
+    campaign: CampaignArgs,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+impl PlanCommand {
+    pub fn run(&self) -> Result<()> {
+        let folder = self.campaign.folder();
+        let versions = ToolVersions::of(&Tools::find()?);
+        let plan = fe_driver::plan(&self.campaign.load()?, &folder, &versions)?;
+        if self.json {
+            println!("{}", serde_json::to_string_pretty(&plan)?);
+            return Ok(());
+        }
+        print_tally(&plan.tally);
+        if !plan.reasons.is_empty() {
+            let mut reasons = table(["to be solved because", "rays"]);
+            for (reason, count) in &plan.reasons {
+                reasons.add_row([reason.clone(), count.to_string()]);
+            }
+            println!("{reasons}");
+        }
+        if plan.stale > 0 {
+            println!(
+                "{} jobs in {} no longer belong to the campaign; they are kept",
+                plan.stale,
+                folder.display()
+            );
+        }
+        println!(
+            "a run would solve {} rays in about {} on {} processors",
+            plan.tally.to_run(),
+            duration(plan.seconds / processors() as f64),
+            processors()
+        );
+        Ok(())
+    }
+}

@@ -1,0 +1,49 @@
+//! `kirigami campaign restore`
+
+use crate::commands::campaign::campaign_args::CampaignArgs;
+use crate::commands::campaign::rows::jobs_of;
+use anyhow::{Result, ensure};
+use clap::Args;
+use dataset::Database;
+use std::path::PathBuf;
+
+/// Restore the job folders of a campaign from the database that was collected from them
+///
+/// A later run then solves only the rays that the database lacks. Jobs solved with other settings or
+/// other versions of gmsh and ccx do not belong to the campaign and are skipped.
+#[derive(Args)]
+pub struct RestoreCommand {
+    #[command(flatten)]
+    campaign: CampaignArgs,
+    /// Database (Parquet with its manifest)
+    #[arg(long, value_name = "FILE")]
+    from: PathBuf,
+}
+
+impl RestoreCommand {
+    pub fn run(&self) -> Result<()> {
+        let database = Database::read(&self.from)?;
+        let campaign = self.campaign.load()?;
+        // A corrected database has the same jobs, but its rows are not the solver's output.
+        ensure!(
+            database.manifest().tier == campaign.tier.to_string(),
+            "{} holds rows of the tier `{}`, but the campaign solves the tier `{}`",
+            self.from.display(),
+            database.manifest().tier,
+            campaign.tier
+        );
+        let jobs = jobs_of(database.rows())?;
+        let folder = self.campaign.folder();
+        let restored = fe_driver::restore(&campaign, &folder, &jobs)?;
+        println!(
+            "{} rays restored to {}; {} existed already",
+            restored.written,
+            folder.display(),
+            restored.there
+        );
+        if restored.strangers > 0 {
+            println!("{} rays do not belong to this campaign", restored.strangers);
+        }
+        Ok(())
+    }
+}

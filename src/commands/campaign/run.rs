@@ -1,0 +1,81 @@
+//! `kirigami campaign run`
+
+use crate::commands::campaign::campaign_args::{CampaignArgs, print_tally};
+use crate::ui::exit::Unfinished;
+use crate::ui::interrupt;
+use crate::ui::processors;
+use crate::ui::progress::Progress;
+use anyhow::{Result, bail, ensure};
+use clap::Args;
+use fe_driver::{RunOptions, Shard, Tools};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Solve all rays that are not solved yet
+///
+/// Exit code 0 if nothing is left to solve, 75 if stopped before that by Ctrl-C or by --time-limit:
+/// run the same command again to continue.
+#[derive(Args)]
+pub struct RunCommand {
+    #[command(flatten)]
+    campaign: CampaignArgs,
+    /// Number of solves in parallel [default: one per processor]
+    #[arg(long, value_name = "N")]
+    jobs: Option<usize>,
+    /// Solve only part I of N; parts of the same folder can run at the same time
+    #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE)]
+    shard: Shard,
+    /// Start no solve after this time (minutes); running solves are finished
+    #[arg(long, value_name = "MINUTES", value_parser = minutes)]
+    time_limit: Option<Duration>,
+}
+
+impl RunCommand {
+    pub fn new(campaign: PathBuf, folder: PathBuf) -> Self {
+        let campaign = CampaignArgs {
+            campaign,
+            folder: Some(folder),
+        };
+        Self {
+            campaign,
+            jobs: None,
+            shard: Shard::WHOLE,
+            time_limit: None,
+        }
+    }
+
+    pub fn run(&self) -> Result<()> {
+        let (campaign, folder) = (self.campaign.load()?, self.campaign.folder());
+        let tools = Tools::find()?;
+        let stop = interrupt::stop_flag()?;
+        let options = RunOptions {
+            shard: self.shard,
+            workers: self.jobs.unwrap_or_else(processors),
+            time_limit: self.time_limit,
+        };
+        let bar = Progress::new(campaign.size(), "rays");
+        let end = fe_driver::run(&campaign, &folder, &tools, &options, stop, &mut |now| {
+            let tally = &now.tally;
+            let message = format!("{} samples, {} failed", tally.rows, tally.failed);
+            bar.set_total(tally.closed() + tally.to_run());
+            bar.show(tally.closed(), now.seconds_left, &message);
+        })?;
+        bar.finish();
+        print_tally(&end.tally);
+        if end.tally.to_run() > 0 {
+            let (left, what) = (end.tally.to_run(), "rays");
+            bail!(Unfinished { left, what });
+        }
+        ensure!(
+            end.tally.complete + end.tally.partial > 0,
+            "every ray failed: read a job's log in {}, fix the cause, then run `kirigami campaign retry`",
+            folder.join("jobs").display()
+        );
+        Ok(())
+    }
+}
+
+fn minutes(text: &str) -> Result<Duration, String> {
+    let minutes: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    Duration::try_from_secs_f64(60.0 * minutes).map_err(|error| error.to_string())
+}

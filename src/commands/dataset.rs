@@ -1,0 +1,243 @@
+//! `kirigami dataset`: summarise, join, split, correct, compare hinge databases and exchange them as CSV.
+
+mod compare;
+
+use anyhow::{Context, Result, ensure};
+use clap::{Args, Subcommand};
+use dataset::{ColumnMap, Database, Details, Gates, Mixing, SplitPlan, compare, rows_from_csv};
+use std::path::{Path, PathBuf};
+
+/// Summarise, join, split, correct and compare hinge databases, and exchange them as CSV
+#[derive(Args)]
+pub struct DatasetCommand {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Subcommand)]
+enum Action {
+    Summary(SummaryCommand),
+    Merge(MergeCommand),
+    Split(SplitCommand),
+    Import(ImportCommand),
+    Export(ExportCommand),
+    Compare(compare::CompareCommand),
+    Correct(CorrectCommand),
+}
+
+/// Print counts, ranges, histograms, rejected rows, energy residuals and coverage
+#[derive(Args)]
+struct SummaryCommand {
+    /// Database (Parquet with its manifest)
+    #[arg(value_name = "DATABASE")]
+    database: PathBuf,
+}
+
+/// Join the databases of several campaigns; a job found in several of them is kept once
+#[derive(Args)]
+struct MergeCommand {
+    /// Databases (Parquet with their manifests)
+    #[arg(value_name = "DATABASE", required = true)]
+    databases: Vec<PathBuf>,
+    /// Allow different materials and mesh tiers, which no surrogate can tell apart
+    #[arg(long)]
+    mixed: bool,
+    #[command(flatten)]
+    out: OutArgs,
+}
+
+/// Split the geometries again into training, validation and test
+#[derive(Args)]
+struct SplitCommand {
+    /// Database (Parquet with its manifest)
+    #[arg(value_name = "DATABASE")]
+    database: PathBuf,
+    #[command(flatten)]
+    out: OutArgs,
+}
+
+/// Make a database from a CSV file, written by `dataset export` or by any solver
+#[derive(Args)]
+struct ImportCommand {
+    /// Table (CSV), one hinge state per row
+    #[arg(value_name = "CSV")]
+    table: PathBuf,
+    /// Column names, unit factors and constants of the table (TOML); see configs/import
+    #[arg(long, value_name = "FILE")]
+    columns: Option<PathBuf>,
+    /// Maximum energy residual of an accepted row (relative), if the table has that column
+    #[arg(long, value_name = "FRACTION", default_value_t = Gates::default().energy_residual_max)]
+    energy_residual_max: f64,
+    #[command(flatten)]
+    out: OutArgs,
+}
+
+/// Write the table of a database as CSV
+#[derive(Args)]
+struct ExportCommand {
+    /// Database (Parquet with its manifest)
+    #[arg(value_name = "DATABASE")]
+    database: PathBuf,
+    /// CSV file to write
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+/// Correct a database to a finer mesh, by those of its rays that were also solved on that mesh
+///
+/// The energy is multiplied by a fitted ratio of the two meshes, a polynomial in geometry and deformation;
+/// the forces remain its gradient. D and D_peak have their own factors. The split and the columns that are
+/// not used for training are unchanged. Prints the remaining differences when each ray is corrected
+/// by the others. Example: kirigami dataset correct data/pet-0.5mm/hinges.parquet
+/// data/pet-0.5mm/reference.parquet --out runs/corrected.parquet
+#[derive(Args)]
+struct CorrectCommand {
+    /// Database to correct (Parquet with its manifest)
+    #[arg(value_name = "DATABASE")]
+    database: PathBuf,
+    /// Database with some of its rays on a finer mesh (Parquet with its manifest)
+    #[arg(value_name = "REFERENCE")]
+    reference: PathBuf,
+    /// Parquet file to write
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Replace an existing file
+    #[arg(long)]
+    replace: bool,
+}
+
+/// The database to write, and the split of its geometries.
+#[derive(Args)]
+struct OutArgs {
+    /// Parquet file to write
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Replace an existing file
+    #[arg(long)]
+    replace: bool,
+    /// Seed of the split
+    #[arg(long, value_name = "N", default_value_t = SplitPlan::default().seed)]
+    seed: u64,
+    /// Fraction of the geometries for validation, which selects the checkpoint
+    #[arg(long, value_name = "FRACTION", default_value_t = SplitPlan::default().validation)]
+    validation: f64,
+    /// Fraction of the geometries for the test errors
+    #[arg(long, value_name = "FRACTION", default_value_t = SplitPlan::default().test)]
+    test: f64,
+}
+
+impl DatasetCommand {
+    pub fn run(&self) -> Result<()> {
+        match &self.action {
+            Action::Summary(command) => command.run(),
+            Action::Merge(command) => command.run(),
+            Action::Split(command) => command.run(),
+            Action::Import(command) => command.run(),
+            Action::Export(command) => command.run(),
+            Action::Compare(command) => command.run(),
+            Action::Correct(command) => command.run(),
+        }
+    }
+}
+
+impl SummaryCommand {
+    fn run(&self) -> Result<()> {
+        let database = Database::read(&self.database)?;
+        println!("{database}\n{}", Details(&database));
+        Ok(())
+    }
+}
+
+impl MergeCommand {
+    fn run(&self) -> Result<()> {
+        let databases: Result<Vec<_>, _> = self
+            .databases
+            .iter()
+            .map(|path| Database::read(path))
+            .collect();
+        let mixing = match self.mixed {
+            true => Mixing::Allowed,
+            false => Mixing::Refused,
+        };
+        self.out
+            .write(&Database::merge(&databases?, &self.out.plan(), mixing)?)
+    }
+}
+
+impl SplitCommand {
+    fn run(&self) -> Result<()> {
+        let database = Database::read(&self.database)?;
+        self.out.write(&database.split(&self.out.plan())?)
+    }
+}
+
+impl ImportCommand {
+    fn run(&self) -> Result<()> {
+        let map: ColumnMap = match &self.columns {
+            Some(path) => support::toml_file::read(path)?,
+            None => ColumnMap::default(),
+        };
+        let gates = Gates {
+            energy_residual_max: self.energy_residual_max,
+        };
+        let rows = rows_from_csv(&self.table, &map)?;
+        self.out
+            .write(&Database::collect(rows, &gates, &self.out.plan())?)
+    }
+}
+
+impl ExportCommand {
+    fn run(&self) -> Result<()> {
+        ensure!(
+            !self.out.exists(),
+            "{} exists: choose another name",
+            self.out.display()
+        );
+        let csv = Database::read(&self.database)?.to_csv()?;
+        make_folder(&self.out)?;
+        support::whole_file::write(&self.out, &csv)
+            .with_context(|| format!("cannot write {}", self.out.display()))?;
+        println!("written to {}", self.out.display());
+        Ok(())
+    }
+}
+
+impl CorrectCommand {
+    fn run(&self) -> Result<()> {
+        let database = Database::read(&self.database)?;
+        let reference = Database::read(&self.reference)?;
+        let corrected = database.corrected(&reference)?;
+        write(&corrected, &self.out, self.replace)?;
+        println!("{}", compare::correction(&compare(&database, &reference))?);
+        Ok(())
+    }
+}
+
+impl OutArgs {
+    fn plan(&self) -> SplitPlan {
+        SplitPlan {
+            seed: self.seed,
+            validation: self.validation,
+            test: self.test,
+        }
+    }
+
+    fn write(&self, database: &Database) -> Result<()> {
+        write(database, &self.out, self.replace)
+    }
+}
+
+fn write(database: &Database, out: &Path, replace: bool) -> Result<()> {
+    make_folder(out)?;
+    database.write(out, replace)?;
+    println!("{database}\nwritten to {}", out.display());
+    Ok(())
+}
+
+fn make_folder(file: &Path) -> Result<()> {
+    let Some(folder) = file.parent() else {
+        return Ok(());
+    };
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("cannot create the folder {}", folder.display()))
+}

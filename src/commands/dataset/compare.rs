@@ -1,0 +1,165 @@
+//! `kirigami dataset compare`: differences of a database from a finer one of the same rays.
+
+use crate::replays::comparison;
+use crate::replays::comparison::{SCALE, each_relative, spread_table};
+use crate::ui::run_folder;
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use dataset::{COMPARED, ComparedRay, ComparedState, Database, compare, left_out};
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Compare a database with a finer one of the same rays
+///
+/// Writes compare.md, compare.csv (one row per ray), tradeoff.md and a chart, and prints the differences
+/// that `dataset correct` would leave. Example, the default tier against the reference tier: kirigami dataset
+/// compare data/pet-0.5mm/hinges.parquet data/pet-0.5mm/reference.parquet
+#[derive(Args)]
+pub struct CompareCommand {
+    /// Database to evaluate (Parquet with its manifest)
+    #[arg(value_name = "DATABASE")]
+    database: PathBuf,
+    /// Reference database (Parquet with its manifest)
+    #[arg(value_name = "REFERENCE")]
+    reference: PathBuf,
+    /// Folder for the tables and the chart
+    #[arg(long, value_name = "FOLDER", default_value = "runs/compare")]
+    out: PathBuf,
+}
+
+/// Number of rays listed individually: those with the largest difference in W.
+const WORST: usize = 8;
+
+impl CompareCommand {
+    pub fn run(&self) -> Result<()> {
+        let judged = Database::read(&self.database)?;
+        let reference = Database::read(&self.reference)?;
+        let rays = compare(&judged, &reference);
+        ensure!(
+            !rays.is_empty(),
+            "{} and {} have no ray in common",
+            self.database.display(),
+            self.reference.display()
+        );
+        let states: Vec<_> = rays.iter().map(ComparedRay::states).collect();
+        std::fs::create_dir_all(&self.out)
+            .with_context(|| format!("cannot make the folder {}", self.out.display()))?;
+        let tiers = [&judged, &reference].map(|database| database.manifest().tier.clone());
+        let mut summary = summary(&rays, &states, &tiers)?;
+        match correction(&rays) {
+            Ok(text) => summary += &text,
+            // The comparison is valid without it.
+            Err(reason) => {
+                eprintln!("cannot evaluate what `dataset correct` would leave: {reason}")
+            }
+        }
+        run_folder::write(&self.out, "compare.csv", &csv(&rays, &states)?)?;
+        run_folder::write(
+            &self.out,
+            "compare.md",
+            &format!("{summary}{}", worst(&rays, &states)?),
+        )?;
+        run_folder::write(&self.out, "tradeoff.md", &summary)?;
+        let axes = [tiers[1].as_str(), &tiers[0]];
+        comparison::draw(&groups(&states), axes, &self.out.join("compare"))?;
+        println!("{summary}\nwritten to {}", self.out.display());
+        Ok(())
+    }
+}
+
+/// One row per quantity: the difference over all states, and its distribution over the rays.
+fn summary(
+    rays: &[ComparedRay],
+    states: &[Vec<ComparedState>],
+    [judged, reference]: &[String; 2],
+) -> Result<String> {
+    let count = rays.iter().map(|ray| ray.rows.len()).sum::<usize>();
+    let cpu = [0, 1].map(|i| rays.iter().map(|ray| ray.cpu_s[i]).sum::<f64>() / rays.len() as f64);
+    let heading = format!(
+        "## Tier {judged} against tier {reference}, over all common states\n\n\
+         {count} states of {} rays, {:.1} and {:.1} CPU s per ray. Differences are root mean squares relative \
+         to the root mean square of the tier {reference}: {SCALE}. `kirigami dataset compare`.\n\n\
+         ",
+        rays.len(),
+        cpu[0],
+        cpu[1],
+    );
+    Ok(heading + &spread_table(&groups(states), "ray")?)
+}
+
+/// The remaining differences when every ray is corrected by the others.
+pub fn correction(rays: &[ComparedRay]) -> Result<String> {
+    let table = spread_table(&groups(&left_out(rays)?), "ray")?;
+    Ok(format!(
+        "\nRemaining differences when each of the {} rays is corrected by the others. `kirigami \
+         dataset correct`.\n\n{table}",
+        rays.len()
+    ))
+}
+
+fn groups(states: &[Vec<ComparedState>]) -> Vec<&[ComparedState]> {
+    states.iter().map(Vec::as_slice).collect()
+}
+
+/// The rays with the largest differences in W.
+fn worst(rays: &[ComparedRay], states: &[Vec<ComparedState>]) -> Result<String> {
+    let differences = each_relative(&groups(states));
+    let mut ranked: Vec<_> = differences.into_iter().zip(rays).collect();
+    ranked.sort_by(|(x, _), (y, _)| y[0].total_cmp(&x[0]));
+    let mut text = format!(
+        "\nThe {} rays with the largest difference in W:\n\n| w_lig, mm | alpha, deg | eta_a | eta_s | theta, deg \
+         | W, N mm | {} |\n|---|---|---|---|---|---|{}\n",
+        WORST.min(ranked.len()),
+        COMPARED.join(" | "),
+        "---|".repeat(COMPARED.len())
+    );
+    for (differences, ray) in ranked.iter().take(WORST) {
+        let [w_lig, alpha, eta_a, eta_s, theta] = place(ray);
+        let differences = differences.map(|x| format!("{:.1} %", 100.0 * x));
+        writeln!(
+            text,
+            "| {w_lig:.1} | {alpha:.0} | {eta_a:.2} | {eta_s:.2} | {theta:.0} | {:.1} | {} |",
+            ray.end().sample.w,
+            differences.join(" | ")
+        )?;
+    }
+    Ok(text)
+}
+
+fn csv(rays: &[ComparedRay], states: &[Vec<ComparedState>]) -> Result<String> {
+    let mut text = format!(
+        "w_lig_mm,alpha_deg,eta_a,eta_s,theta_deg,w_end_n_mm,cpu_s,reference_cpu_s,{}\n",
+        COMPARED
+            .map(|name| format!("difference_{name}"))
+            .join(",")
+            .to_lowercase()
+    );
+    for (ray, differences) in rays.iter().zip(each_relative(&groups(states))) {
+        let place = place(ray).map(|x| format!("{x:.5}"));
+        let differences = differences.map(|x| format!("{x:.5}"));
+        writeln!(
+            text,
+            "{},{:.4},{:.2},{:.2},{}",
+            place.join(","),
+            ray.end().sample.w,
+            ray.cpu_s[0],
+            ray.cpu_s[1],
+            differences.join(",")
+        )?;
+    }
+    Ok(text)
+}
+
+/// w_lig (mm), alpha (deg), and the end of the ray: eta_a, eta_s, theta (deg).
+fn place(ray: &ComparedRay) -> [f64; 5] {
+    let end = ray.end();
+    let (design, sample) = (&end.design, &end.sample);
+    let [eta_a, eta_s] = end.eta();
+    [
+        design.w_lig,
+        design.alpha.to_degrees(),
+        eta_a,
+        eta_s,
+        sample.theta.to_degrees(),
+    ]
+}

@@ -1,0 +1,73 @@
+//! The command line arguments that select a scene and a design, and the printing of their numbers.
+
+use anyhow::Result;
+use clap::Args;
+use design::pattern::design_vector::DesignVector;
+use design::scene::design_run::stored_design;
+use design::scene::{Scene, SceneConfig};
+use serde::Serialize;
+use std::fmt::Display;
+use std::path::PathBuf;
+use support::toml_file;
+
+/// A scene and a design of its sheet.
+#[derive(Args)]
+pub struct Inspected {
+    /// Scene (TOML); see configs/scenes
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    /// Design (JSON): the state.json of a run, or a design alone [default: the start design of the scene]
+    #[arg(long, value_name = "FILE")]
+    design: Option<PathBuf>,
+    /// Weights of the hinge energy, instead of the scene's
+    #[arg(long, value_name = "FILE")]
+    weights: Option<PathBuf>,
+}
+
+/// A scene and a design whose numbers are printed.
+#[derive(Args)]
+pub struct Listed {
+    #[command(flatten)]
+    inspected: Inspected,
+    /// Print every number as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+impl Inspected {
+    pub fn new(scene: PathBuf, design: Option<PathBuf>) -> Self {
+        Self {
+            scene,
+            design,
+            weights: None,
+        }
+    }
+
+    pub fn read(&self) -> Result<(Scene, DesignVector)> {
+        let mut config: SceneConfig = toml_file::read(&self.scene)?;
+        if let Some(weights) = &self.weights {
+            config.name_weights(weights)?;
+        }
+        let scene = Scene::new(config, &self.scene)?;
+        let design = match &self.design {
+            Some(path) => stored_design(path, &scene)?,
+            None => scene.start(),
+        };
+        Ok((scene, design))
+    }
+}
+
+impl Listed {
+    pub fn read(&self) -> Result<(Scene, DesignVector)> {
+        self.inspected.read()
+    }
+
+    pub fn print(&self, listing: impl Serialize + Display) -> Result<()> {
+        if self.json {
+            println!("{}", serde_json::to_string_pretty(&listing)?);
+        } else {
+            print!("{listing}");
+        }
+        Ok(())
+    }
+}

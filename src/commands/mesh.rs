@@ -1,0 +1,78 @@
+//! `kirigami mesh`: the finite-element mesh of one hinge window.
+
+use crate::commands::window_args::WindowArgs;
+use crate::ui::{picture, run_folder};
+use anyhow::Result;
+use clap::Args;
+use mesher::{Gmsh, Tier, mesh_window, plane_mesh_svg};
+use serde_json::json;
+use std::path::PathBuf;
+
+/// Mesh one hinge window and draw it
+///
+/// Writes gmsh's script and mesh and a picture of the plane mesh; prints the size and quality of the
+/// mesh. Example: kirigami mesh --w-lig 18 --alpha-deg 60 --tier default
+#[derive(Args)]
+#[command(allow_negative_numbers = true)]
+pub struct MeshCommand {
+    #[command(flatten)]
+    window: WindowArgs,
+    /// Mesh tier: tiny, small, default, fine, reference or paper
+    #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
+    tier: Tier,
+    /// Sheet thickness (mm)
+    #[arg(long, value_name = "MM", default_value_t = 0.5)]
+    thickness: f64,
+    /// Folder for the script, the mesh and the picture
+    #[arg(long, value_name = "FOLDER", default_value = "runs/mesh")]
+    out: PathBuf,
+    /// Print JSON instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+impl MeshCommand {
+    pub fn run(&self) -> Result<()> {
+        let design = self.window.design()?;
+        let _held = run_folder::hold(&self.out)?;
+        let gmsh = Gmsh::find()?;
+        let mesh = mesh_window(
+            &design,
+            self.thickness,
+            &self.tier.recipe(),
+            &self.out,
+            &gmsh,
+        )?;
+        let quality = mesh.quality()?;
+        let pictures = picture::save(&plane_mesh_svg(&mesh), &self.out.join("mesh"), 1600)?;
+        if self.json {
+            let description = json!({
+                "tier": self.tier.name(),
+                "elements": mesh.elements.len(),
+                "nodes": mesh.nodes.len(),
+                "area_mm2": quality.area,
+                "area_error": quality.area_error,
+                "jacobian_ratio": quality.jacobian_ratio,
+                "aspect": quality.aspect,
+                "picture": pictures[1],
+            });
+            println!("{description:#}");
+            return Ok(());
+        }
+        println!(
+            "{} tier: {} elements ({}), {} nodes, {} layers through {} mm",
+            self.tier,
+            mesh.elements.len(),
+            mesh.recipe.element().name(),
+            mesh.nodes.len(),
+            mesh.recipe.layers,
+            self.thickness
+        );
+        println!(
+            "area {:.2} mm^2 (error {:.1e}), minimum Jacobian ratio {:.2}, maximum edge ratio {:.1}",
+            quality.area, quality.area_error, quality.jacobian_ratio, quality.aspect
+        );
+        println!("picture: {}", pictures[1].display());
+        Ok(())
+    }
+}

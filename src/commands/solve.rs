@@ -1,0 +1,192 @@
+//! `kirigami solve`: one window solved along one ray or recorded path, printed as a table.
+
+use crate::commands::window_args::WindowArgs;
+use crate::ui::progress::Progress;
+use crate::ui::table::table;
+use crate::ui::{interrupt, run_folder};
+use anyhow::{Result, bail};
+use clap::Args;
+use comfy_table::Table;
+use fe_driver::{DeformationPath, StepControl, Tools, WindowModel, reached};
+use hinge::{HingeDeformation, HingeDesign, HingeSample, SheetMaterial};
+use mesher::{Tier, mesh_window};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// Solve one hinge window by finite elements and print its ray
+///
+/// Panel A is fixed. Panel B is driven from the undeformed state straight to the given deformation,
+/// or along a recorded path. Every converged increment is one row. Example, the paper's hinge folded
+/// to 45 degrees: kirigami solve --theta-deg 45 --tier tiny
+#[derive(Args)]
+#[command(allow_negative_numbers = true)]
+pub struct SolveCommand {
+    #[command(flatten)]
+    window: WindowArgs,
+    /// Relative rotation at the end of the ray (degrees); positive opens the main cut
+    #[arg(long, value_name = "DEG", default_value_t = 60.0)]
+    theta_deg: f64,
+    /// Axial opening at the end of the ray, divided by the ligament width; negative in compression
+    #[arg(long, value_name = "RATIO", default_value_t = 0.0)]
+    eta_a: f64,
+    /// Shear at the end of the ray, divided by the ligament width
+    #[arg(long, value_name = "RATIO", default_value_t = 0.0)]
+    eta_s: f64,
+    /// Recorded path instead of a straight ray: a CSV file with the columns eta_a, eta_s, theta_deg and,
+    /// if the states are not equally spaced, lambda
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["theta_deg", "eta_a", "eta_s"])]
+    path: Option<PathBuf>,
+    /// Sheet material (TOML)
+    #[arg(
+        long,
+        value_name = "FILE",
+        default_value = "configs/materials/pet-0.5mm.toml"
+    )]
+    material: PathBuf,
+    /// Mesh tier: tiny, small, default, fine, reference or paper
+    #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
+    tier: Tier,
+    /// Folder for the mesh, the input deck, the log and the solver's output
+    #[arg(long, value_name = "FOLDER", default_value = "runs/solve")]
+    out: PathBuf,
+    /// Time limit of the solver (s)
+    #[arg(long, value_name = "SECONDS", default_value_t = 600)]
+    time_limit_s: u64,
+    /// Print JSON instead of a table
+    #[arg(long)]
+    json: bool,
+}
+
+impl SolveCommand {
+    pub fn run(&self) -> Result<()> {
+        let design = self.window.design()?;
+        let w_lig = design.w_lig;
+        let path = match &self.path {
+            Some(file) => DeformationPath::read(file, w_lig)?,
+            None => DeformationPath::straight(HingeDeformation::from_eta(
+                self.eta_a,
+                self.eta_s,
+                self.theta_deg.to_radians(),
+                w_lig,
+            )),
+        };
+        let material = SheetMaterial::load(&self.material)?;
+        let _held = run_folder::hold(&self.out)?;
+        let limit = Duration::from_secs(self.time_limit_s);
+        let stop = interrupt::stop_flag()?;
+        let tools = Tools::find()?;
+        let recipe = self.tier.recipe();
+        let mesh = mesh_window(&design, material.thickness, &recipe, &self.out, &tools.gmsh)?;
+        let model = WindowModel {
+            mesh: &mesh,
+            path: &path,
+            material: &material,
+            step: &StepControl::default(),
+        };
+        warn_of_contact(&design, &path);
+        let solution = watched(&self.out, || {
+            model.solve(&tools.ccx, &self.out, limit, stop)
+        })?;
+        if self.json {
+            let description = json!({
+                "design": design,
+                "path": path,
+                "material": material,
+                "tier": self.tier,
+                "samples": solution.samples,
+                "stopped": solution.stopped.as_ref().map(ToString::to_string),
+                "cpu_seconds": solution.cpu_seconds,
+                "wall_seconds": solution.wall_seconds,
+                "iterations": solution.iterations,
+            });
+            println!("{description:#}");
+        } else if !solution.samples.is_empty() {
+            println!("{}", ray_table(&solution.samples));
+            println!(
+                "{} increments, {} iterations, {:.1} s; mesh, input deck and log in {}",
+                solution.samples.len(),
+                solution.iterations,
+                solution.wall_seconds,
+                self.out.display()
+            );
+        }
+        match solution.stopped {
+            None => Ok(()),
+            Some(reason) => bail!("the solve stopped before the end of the ray: {reason}"),
+        }
+    }
+}
+
+/// Warns if the flanks of the cut pass through each other, since the window model has no contact.
+fn warn_of_contact(design: &HingeDesign, path: &DeformationPath) {
+    let states = (0..=100).map(|i| path.at(f64::from(i) / 100.0));
+    let gaps = states.map(|state| design.flank_gap(&state));
+    let minimum = gaps.fold(f64::INFINITY, f64::min);
+    if minimum < 0.0 {
+        eprintln!(
+            "warning: the flanks of the cut overlap by {:.2} mm at the window's rim, where a real sheet \
+             would be in contact; the results below are without contact",
+            -minimum
+        );
+    }
+}
+
+/// Runs `solve` in `folder` and shows its progress.
+fn watched<T>(folder: &Path, solve: impl FnOnce() -> T) -> T {
+    /// Number of parts of the path on the progress bar.
+    const PARTS: f64 = 1000.0;
+    let done = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let bar = Progress::new(PARTS as usize, "1000 lambda");
+            while !done.load(Ordering::Relaxed) {
+                bar.show((PARTS * reached(folder)) as usize, None, "");
+                std::thread::sleep(Duration::from_millis(100));
+            }
+            bar.finish();
+        });
+        let result = solve();
+        done.store(true, Ordering::Relaxed);
+        result
+    })
+}
+
+/// The rows of a ray, thinned to about twenty.
+fn ray_table(samples: &[HingeSample]) -> Table {
+    let mut table = table([
+        "lambda",
+        "theta\ndeg",
+        "a\nmm",
+        "s\nmm",
+        "W\nN mm",
+        "F_a\nN",
+        "F_s\nN",
+        "M_theta\nN mm",
+        "D",
+        "D_peak",
+        "u_z\nmm",
+        "energy\nresidual",
+    ]);
+    let stride = samples.len().div_ceil(20).max(1);
+    for (i, x) in samples.iter().enumerate() {
+        if (samples.len() - 1 - i).is_multiple_of(stride) {
+            table.add_row([
+                format!("{:.3}", x.lambda),
+                format!("{:.2}", x.theta.to_degrees()),
+                format!("{:.3}", x.a),
+                format!("{:.3}", x.s),
+                format!("{:.3}", x.w),
+                format!("{:.3}", x.f_a),
+                format!("{:.3}", x.f_s),
+                format!("{:.3}", x.m_theta),
+                format!("{:.5}", x.d),
+                x.d_peak.map_or("-".into(), |peak| format!("{peak:.3}")),
+                format!("{:.2}", x.uz_max),
+                format!("{:.1e}", x.energy_residual),
+            ]);
+        }
+    }
+    table
+}

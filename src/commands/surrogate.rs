@@ -1,0 +1,37 @@
+//! `kirigami surrogate`: evaluate exported weights, and measure their errors.
+
+mod card;
+mod errors;
+mod eval;
+mod spot_check;
+mod test;
+
+use anyhow::Result;
+use clap::{Args, Subcommand};
+pub use errors::predicted;
+
+/// Evaluate exported weights, and measure their errors against finite elements
+#[derive(Args)]
+pub struct SurrogateCommand {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Subcommand)]
+enum Action {
+    Eval(eval::EvalCommand),
+    Card(card::CardCommand),
+    Test(test::TestCommand),
+    SpotCheck(spot_check::SpotCheckCommand),
+}
+
+impl SurrogateCommand {
+    pub fn run(&self) -> Result<()> {
+        match &self.action {
+            Action::Eval(command) => command.run(),
+            Action::Card(command) => command.run(),
+            Action::Test(command) => command.run(),
+            Action::SpotCheck(command) => command.run(),
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! `kirigami surrogate card`
+
+use crate::commands::train::{UNSEEN, bin_table, error_table};
+use anyhow::Result;
+use clap::Args;
+use std::path::PathBuf;
+use surrogate::Surrogate;
+
+/// Print what weights were trained on, and their test errors
+#[derive(Args)]
+pub struct CardCommand {
+    /// Weights (safetensors with their card)
+    #[arg(value_name = "WEIGHTS")]
+    weights: PathBuf,
+}
+
+impl CardCommand {
+    pub fn run(&self) -> Result<()> {
+        let surrogate = Surrogate::load(&self.weights)?;
+        let card = surrogate.card();
+        println!("material {}, tier {}", card.material, card.tier);
+        let known = |hash: &Option<String>| hash.clone().unwrap_or_else(|| "not known".into());
+        println!("material law      {}", known(&card.material_hash));
+        println!("campaign settings {}", known(&card.settings_hash));
+        println!("database {}", card.dataset_hash);
+        println!("split    {}", card.split_hash);
+        if let Some(base) = &card.fine_tuned_from {
+            println!("fine-tuned from weights of the database {base}");
+        }
+        let hinge = card.hinge;
+        println!(
+            "hinges with fillet_ratio {}, kerf {} mm, r_win {} mm",
+            hinge.fillet_ratio, hinge.kerf, hinge.r_win
+        );
+        let domain = &card.domain;
+        let [eta_a, eta_s, theta] = domain.bounds();
+        println!("training domain: ranges of the training states");
+        for (name, [min, max], scale) in [
+            ("a / w_lig", eta_a, 1.0),
+            ("s / w_lig", eta_s, 1.0),
+            ("theta (deg)", theta, 1f64.to_degrees()),
+            ("w_lig (mm)", domain.w_lig, 1.0),
+            ("alpha (deg)", domain.alpha, 1f64.to_degrees()),
+        ] {
+            println!("{name:12} from {:.3} to {:.3}", scale * min, scale * max);
+        }
+        println!("\n{}", error_table(&card.test_errors, UNSEEN));
+        if !card.error_bins.is_empty() {
+            println!("\n{}", bin_table(&card.error_bins));
+        }
+        Ok(())
+    }
+}

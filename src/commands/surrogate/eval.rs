@@ -1,0 +1,159 @@
+//! `kirigami surrogate eval`
+
+use anyhow::{Context, Result, bail, ensure};
+use clap::Args;
+use hinge::{HingeDeformation, HingeDesign};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use surrogate::{Order, Surrogate};
+
+/// Evaluate energy, forces, tangent and damage at the hinge states of a CSV file
+///
+/// Reads the columns w_lig, a, s (mm), alpha and theta (rad) or alpha_deg and theta_deg (deg); other columns are
+/// ignored.
+#[derive(Args)]
+pub struct EvalCommand {
+    /// Weights (safetensors with their card)
+    #[arg(value_name = "WEIGHTS")]
+    weights: PathBuf,
+    /// States (CSV)
+    #[arg(value_name = "STATES")]
+    states: PathBuf,
+    /// Print JSON, with the tangent, instead of CSV
+    #[arg(long)]
+    json: bool,
+}
+
+/// One state to be evaluated.
+struct State {
+    w_lig: f64,
+    alpha: f64,
+    a: f64,
+    s: f64,
+    theta: f64,
+}
+
+/// A row of the CSV file, each angle in radians or in degrees.
+#[derive(Deserialize)]
+struct StateRow {
+    w_lig: f64,
+    alpha: Option<f64>,
+    alpha_deg: Option<f64>,
+    a: f64,
+    s: f64,
+    theta: Option<f64>,
+    theta_deg: Option<f64>,
+}
+
+impl StateRow {
+    fn state(&self) -> Result<State> {
+        let angle =
+            |name: &str, radians: Option<f64>, degrees: Option<f64>| match (radians, degrees) {
+                (Some(radians), None) => Ok(radians),
+                (None, Some(degrees)) => Ok(degrees.to_radians()),
+                _ => bail!("give exactly one of the columns {name} (rad) and {name}_deg"),
+            };
+        Ok(State {
+            w_lig: self.w_lig,
+            alpha: angle("alpha", self.alpha, self.alpha_deg)?,
+            a: self.a,
+            s: self.s,
+            theta: angle("theta", self.theta, self.theta_deg)?,
+        })
+    }
+}
+
+/// The prediction of the surrogate at one state.
+#[derive(Serialize)]
+struct Answer {
+    /// Whether the state lies in the training domain.
+    inside: bool,
+    w: f64,
+    f_a: f64,
+    f_s: f64,
+    m_theta: f64,
+    d: f64,
+    d_peak: Option<f64>,
+    /// d2W/d(a, s, theta)^2.
+    tangent: [[f64; 3]; 3],
+}
+
+impl EvalCommand {
+    pub fn run(&self) -> Result<()> {
+        let surrogate = Surrogate::load(&self.weights)?;
+        let answers = answers(&surrogate, &read_states(&self.states)?);
+        if self.json {
+            println!("{}", serde_json::to_string_pretty(&answers)?);
+            return Ok(());
+        }
+        println!("inside,W,F_a,F_s,M_theta,D,D_peak");
+        for it in answers {
+            let peak = it.d_peak.map_or(String::new(), |peak| peak.to_string());
+            println!(
+                "{},{},{},{},{},{},{peak}",
+                it.inside, it.w, it.f_a, it.f_s, it.m_theta, it.d
+            );
+        }
+        Ok(())
+    }
+}
+
+fn answers(surrogate: &Surrogate, states: &[State]) -> Vec<Answer> {
+    let constants = surrogate.card().hinge;
+    let (designs, deformations): (Vec<HingeDesign>, Vec<HingeDeformation>) = states
+        .iter()
+        .map(|it| {
+            let design = constants.hinge(it.w_lig, it.alpha);
+            (design, HingeDeformation::from([it.a, it.s, it.theta]))
+        })
+        .unzip();
+    let prepared = surrogate.prepare(&designs);
+    let energies = surrogate.evaluate(&prepared, &deformations, Order::Tangent);
+    let damages = surrogate.damage(&designs, &deformations);
+    let states = designs.iter().zip(&deformations);
+    states
+        .zip(energies.iter().zip(damages))
+        .map(|((design, deformation), (energy, damage))| Answer {
+            inside: surrogate.domain().contains(design, deformation),
+            w: energy.w,
+            f_a: energy.forces[0],
+            f_s: energy.forces[1],
+            m_theta: energy.forces[2],
+            d: damage.d,
+            d_peak: damage.d_peak,
+            tangent: energy.tangent,
+        })
+        .collect()
+}
+
+fn read_states(path: &Path) -> Result<Vec<State>> {
+    let mut reader =
+        csv::Reader::from_path(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let rows: Result<Vec<StateRow>, _> = reader.deserialize().collect();
+    let rows = rows.with_context(|| format!("{} holds no hinge states", path.display()))?;
+    let states: Result<Vec<State>> = rows.iter().map(StateRow::state).collect();
+    let states = states.with_context(|| path.display().to_string())?;
+    ensure!(!states.is_empty(), "{} has no rows", path.display());
+    for (index, state) in states.iter().enumerate() {
+        let row = || format!("{}, row {}", path.display(), index + 1);
+        if ![state.a, state.s, state.theta]
+            .iter()
+            .all(|it| it.is_finite())
+        {
+            bail!("{}: a number is not finite", row());
+        }
+        ensure!(
+            state.w_lig > 0.0 && state.w_lig.is_finite(),
+            "{}: w_lig = {} violates 0 < w_lig (mm)",
+            row(),
+            state.w_lig
+        );
+        ensure!(
+            (0.0..=std::f64::consts::PI).contains(&state.alpha),
+            "{}: alpha = {} violates 0 <= alpha <= pi (rad)",
+            row(),
+            state.alpha
+        );
+    }
+    Ok(states)
+}

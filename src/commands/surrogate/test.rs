@@ -1,0 +1,47 @@
+//! `kirigami surrogate test`
+
+use crate::commands::surrogate::errors::StateErrors;
+use anyhow::{Result, ensure};
+use clap::Args;
+use dataset::Database;
+use std::path::PathBuf;
+use surrogate::Surrogate;
+
+/// Print the errors of weights on a database, such as a spot check or rays of a finer mesh
+///
+/// Only states inside the training domain are evaluated. Rays that the weights were trained on count too, if the
+/// database has any. Example: kirigami surrogate test data/pet-0.5mm/medium.safetensors
+/// data/pet-0.5mm/spot-check.parquet
+#[derive(Args)]
+pub struct TestCommand {
+    /// Weights (safetensors with their card)
+    #[arg(value_name = "WEIGHTS")]
+    weights: PathBuf,
+    /// Database (Parquet with its manifest)
+    #[arg(value_name = "DATABASE")]
+    database: PathBuf,
+}
+
+impl TestCommand {
+    pub fn run(&self) -> Result<()> {
+        let surrogate = Surrogate::load(&self.weights)?;
+        let database = Database::read(&self.database)?;
+        let (card, manifest) = (surrogate.card(), database.manifest());
+        if let Some(material) = &card.material_hash {
+            ensure!(
+                (manifest.material_hashes.iter()).all(|other| other == material),
+                "{} were trained on {}, but {} is of another material law, {}",
+                self.weights.display(),
+                card.material,
+                self.database.display(),
+                manifest.material
+            );
+        }
+        println!(
+            "weights of tier {}, tested on tier {}, {} rays",
+            card.tier, manifest.tier, manifest.rays
+        );
+        println!("{}", StateErrors::new(&surrogate, database.rows()));
+        Ok(())
+    }
+}

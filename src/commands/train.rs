@@ -1,0 +1,438 @@
+//! `kirigami train`: from a hinge database to weights that `design` reads.
+
+mod slices;
+
+use crate::ui::charts;
+use crate::ui::charts::ParityChart;
+use crate::ui::exit::Unfinished;
+use crate::ui::progress::Progress;
+use crate::ui::table::table;
+use crate::ui::{interrupt, picture};
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use comfy_table::Table;
+use dataset::{Database, Part};
+use std::fmt::Write;
+use std::fs::{File, TryLockError};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+use surrogate::{ErrorBin, FitError, Surrogate, TestErrors};
+use train::{
+    Backend, EnsembleCheck, Epoch, Parity, Start, StiffnessCheck, Trained, Training,
+    TrainingConfig, disagreements,
+};
+
+/// Train the surrogate hinge energy on a database
+///
+/// Writes the weights (of the best epoch and of the last), their card, the learning curve, a parity
+/// plot and slices of the energy, and prints the errors on hinge geometries that the training never
+/// saw. It can be stopped at any time and goes on with --resume. Example:
+/// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml
+#[derive(Args)]
+pub struct TrainCommand {
+    /// Database, as `kirigami campaign collect` writes it (Parquet with its manifest)
+    #[arg(value_name = "DATABASE")]
+    database: PathBuf,
+    /// Sizes, loss and optimiser of the training (TOML)
+    #[arg(
+        long,
+        value_name = "FILE",
+        default_value = "configs/training/medium.toml"
+    )]
+    config: PathBuf,
+    /// Weights to write; the card, the curve and the plot stand beside them
+    #[arg(
+        long,
+        value_name = "FILE",
+        default_value = "runs/weights/surrogate.safetensors"
+    )]
+    out: PathBuf,
+    /// What computes the tensors: flex or ndarray
+    #[arg(long, value_name = "NAME", default_value_t = Backend::default())]
+    backend: Backend,
+    /// Weights to begin from, of the same sizes: fine-tuning
+    #[arg(long, value_name = "WEIGHTS", conflicts_with = "resume")]
+    from: Option<PathBuf>,
+    /// Go on with a training that was stopped
+    #[arg(long, conflicts_with = "seeds")]
+    resume: bool,
+    /// Number of trainings, with successive seeds. The one with the smallest product of the validation errors of W and
+    /// of D is kept as the weights; the spread of their forces estimates the error
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=64))]
+    seeds: u64,
+    /// Replace existing weights
+    #[arg(long)]
+    replace: bool,
+}
+
+/// What errors are measured on.
+pub const UNSEEN: &str = "samples of unseen geometries";
+
+/// Longest time that a kill of the training can cost.
+const SAVE_EVERY: Duration = Duration::from_secs(30);
+
+impl TrainCommand {
+    /// With the default backend, replacing weights that are there.
+    pub fn new(database: PathBuf, config: PathBuf, out: PathBuf) -> Self {
+        Self {
+            database,
+            config,
+            out,
+            backend: Backend::default(),
+            from: None,
+            resume: false,
+            seeds: 1,
+            replace: true,
+        }
+    }
+
+    pub fn run(&self) -> Result<()> {
+        let config: TrainingConfig = support::toml_file::read(&self.config)?;
+        let database = Database::read(&self.database)?;
+        self.refuse_existing(config.seed)?;
+        if let Some(folder) = self.out.parent() {
+            std::fs::create_dir_all(folder)
+                .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+        }
+        let _held = self.hold()?;
+        let base = self.from.as_deref().map(Surrogate::load).transpose()?;
+        let state = self.state();
+        let start = match &base {
+            _ if self.resume => Start::State(&state),
+            Some(weights) => Start::Weights(weights),
+            None => Start::Fresh,
+        };
+        let mut members = Vec::new();
+        for seed in config.seed..config.seed + self.seeds {
+            let config = TrainingConfig {
+                seed,
+                ..config.clone()
+            };
+            members.push(fit(&database, &config, self.backend, start, &state)?);
+        }
+        if members.len() > 1 {
+            self.write_members(&members, &database, config.seed)?;
+        }
+        let best = members
+            .into_iter()
+            .min_by(|left, right| least_error(left).total_cmp(&least_error(right)))
+            .context("`--seeds` must be at least 1")?;
+        self.write(&best, &database)?;
+        std::fs::remove_file(&state).ok();
+        Ok(())
+    }
+
+    /// Holds the weights' files against a second training until the returned file is dropped.
+    fn hold(&self) -> Result<File> {
+        let path = self.out.with_extension("lock");
+        let file =
+            File::create(&path).with_context(|| format!("cannot write {}", path.display()))?;
+        match file.try_lock() {
+            Ok(()) => Ok(file),
+            Err(TryLockError::WouldBlock) => bail!(
+                "another training writes {}: wait for it, or choose another name with --out",
+                self.out.display()
+            ),
+            Err(TryLockError::Error(error)) => {
+                Err(error).with_context(|| format!("cannot lock {}", path.display()))
+            }
+        }
+    }
+
+    fn refuse_existing(&self, first: u64) -> Result<()> {
+        // Card and manifest are both `<stem>.json`.
+        if card_path(&self.out) == card_path(&self.database) {
+            bail!(
+                "the card of {} would replace the database's manifest: choose another name",
+                self.out.display()
+            );
+        }
+        if self.replace || self.resume {
+            return Ok(());
+        }
+        let members =
+            (0..if self.seeds > 1 { self.seeds } else { 0 }).map(|i| self.member(first + i));
+        for path in members.chain([self.out.clone(), card_path(&self.out)]) {
+            if path.exists() {
+                bail!(
+                    "{} exists: choose another name or pass --replace",
+                    path.display()
+                );
+            }
+        }
+        if self.state().exists() {
+            bail!(
+                "{} is what a stopped training left: go on with --resume, or begin again with \
+                 --replace",
+                self.state().display()
+            );
+        }
+        Ok(())
+    }
+
+    /// Weights, last weights, curves and plots of one training, and its errors to the screen.
+    fn write(&self, trained: &Trained, database: &Database) -> Result<()> {
+        trained.surrogate.save(&self.out)?;
+        trained.last.save(&self.beside("last.safetensors"))?;
+        self.write_curve(&trained.history)?;
+        let parity = parity_chart(&trained.parity)?;
+        picture::save(&parity, &self.beside("parity"), 2000)?;
+        let slices = slices::rotations(&trained.surrogate, database);
+        if !slices.is_empty() {
+            picture::save(&charts::slices(&slices)?, &self.beside("slices"), 1200)?;
+        }
+        println!("{}\n", error_table(&trained.test_errors, UNSEEN));
+        println!("{}\n", bin_table(&trained.surrogate.card().error_bins));
+        print_stiffness(&trained.stiffness);
+        if let Some(last) = trained.history.last() {
+            println!(
+                "{} epochs on {} in {:.1} s; weights written to {}",
+                last.epoch,
+                self.backend,
+                last.elapsed_s,
+                self.out.display()
+            );
+        }
+        Ok(())
+    }
+
+    /// The weights of every seed, the spread of their errors, and what it tells.
+    fn write_members(&self, members: &[Trained], database: &Database, first: u64) -> Result<()> {
+        for (seed, member) in (first..).zip(members) {
+            member.surrogate.save(&self.member(seed))?;
+        }
+        let errors: Vec<TestErrors> = members.iter().map(|member| member.test_errors).collect();
+        println!("{}\n", spread_table(&errors));
+        let surrogates: Vec<Surrogate> = members
+            .iter()
+            .map(|member| member.surrogate.clone())
+            .collect();
+        let check = EnsembleCheck::of(&disagreements(&surrogates, &database.part(Part::Test)));
+        println!(
+            "forces of {} networks: they differ by {:.3}, their mean errs by {:.3} (in units of the \
+             forces' RMS);\nthe tenth of the states where they differ most holds {:.0} % of the \
+             squared error; \
+             the logarithms of deviation and error correlate by {:.2}\n",
+            members.len(),
+            check.deviation,
+            check.error,
+            100.0 * check.error_in_top_tenth,
+            check.correlation
+        );
+        Ok(())
+    }
+
+    /// The weights of one seed of several.
+    fn member(&self, seed: u64) -> PathBuf {
+        self.beside(&format!("seed-{seed}.safetensors"))
+    }
+
+    /// What [`Training::save`] writes.
+    fn state(&self) -> PathBuf {
+        self.out.with_extension("state")
+    }
+
+    /// `<stem>-<suffix>` beside the weights.
+    fn beside(&self, suffix: &str) -> PathBuf {
+        let stem = self.out.file_stem().unwrap_or_default().to_string_lossy();
+        self.out.with_file_name(format!("{stem}-{suffix}"))
+    }
+
+    fn write_curve(&self, history: &[Epoch]) -> Result<()> {
+        let mut csv = String::from(
+            "epoch,training_loss,validation_loss,validation_error,validation_d_error,\
+             validation_d_peak_error,learning_rate,elapsed_s\n",
+        );
+        for e in history {
+            writeln!(
+                csv,
+                "{},{:e},{:e},{:e},{:e},{:e},{:e},{:.3}",
+                e.epoch,
+                e.training_loss,
+                e.validation_loss,
+                e.validation_errors[0],
+                e.validation_errors[1],
+                e.validation_errors[2],
+                e.learning_rate,
+                e.elapsed_s
+            )?;
+        }
+        let stem = self.beside("learning-curve");
+        write(&stem.with_extension("csv"), &csv)?;
+        let training: Vec<_> = history.iter().map(|e| e.training_loss).collect();
+        let validation: Vec<_> = history.iter().map(|e| e.validation_loss).collect();
+        picture::save(
+            &charts::learning_curve(&training, &validation)?,
+            &stem,
+            1200,
+        )?;
+        Ok(())
+    }
+}
+
+/// One training, kept in the file `state` every now and then and when it is stopped.
+pub fn fit(
+    database: &Database,
+    config: &TrainingConfig,
+    backend: Backend,
+    start: Start,
+    state: &Path,
+) -> Result<Trained> {
+    let stop = interrupt::stop_flag()?;
+    let mut training = Training::new(database, config, backend, start)?;
+    let bar = Progress::new(config.epochs, "epochs");
+    let mut saved = Instant::now();
+    while !training.is_finished() {
+        let epoch = training.epoch()?;
+        let message = format!(
+            "loss {:.2e}, validation {:.2e}",
+            epoch.training_loss, epoch.validation_loss
+        );
+        bar.show(epoch.epoch, None, &message);
+        let stopping = stop.load(Ordering::Relaxed);
+        if stopping || saved.elapsed() > SAVE_EVERY {
+            training.save(state)?;
+            saved = Instant::now();
+        }
+        if stopping && !training.is_finished() {
+            bail!(Unfinished {
+                left: epoch.epochs - epoch.epoch,
+                what: "epochs (--resume continues)",
+            });
+        }
+    }
+    bar.finish();
+    Ok(training.finish()?)
+}
+
+fn write(path: &Path, text: &str) -> Result<()> {
+    support::whole_file::write(path, text.as_bytes())
+        .with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// Where the card of weights, or the manifest of a database, stands.
+fn card_path(file: &Path) -> PathBuf {
+    file.with_extension("json")
+}
+
+fn parity_chart(parity: &Parity) -> Result<String> {
+    let chart = |title: &str, points| ParityChart {
+        title: title.to_owned(),
+        points,
+    };
+    let mut charts = vec![
+        chart("energy W (N mm)", &parity.energy),
+        chart("axial force F_a (N)", &parity.f_a),
+        chart("shear force F_s (N)", &parity.f_s),
+        chart("moment M (N mm)", &parity.m_theta),
+        chart("damage D", &parity.damage),
+        chart("damage D_peak", &parity.damage_peak),
+    ];
+    charts.retain(|chart| !chart.points.is_empty());
+    charts::parity(&charts, ["finite elements", "surrogate"])
+}
+
+/// The product of the validation errors of the networks of W and of D that were kept.
+fn least_error(trained: &Trained) -> f64 {
+    let least = |network: usize| {
+        let errors = trained
+            .history
+            .iter()
+            .map(|it| it.validation_errors[network]);
+        errors.fold(f64::INFINITY, f64::min)
+    };
+    least(0) * least(1)
+}
+
+/// The errors of each quantity on `what`.
+pub fn error_table(errors: &TestErrors, what: &str) -> Table {
+    let header = format!("on {} {what}", errors.rows);
+    let mut table = table([header.as_str(), "relative RMSE", "median"]);
+    for (name, error) in quantities(errors) {
+        table.add_row([
+            name.to_owned(),
+            format!("{:.2} %", 100.0 * error.relative_rmse),
+            format!("{:.2} %", 100.0 * error.median),
+        ]);
+    }
+    table
+}
+
+fn quantities(errors: &TestErrors) -> [(&'static str, FitError); 6] {
+    [
+        ("energy W", errors.energy),
+        ("axial force F_a", errors.f_a),
+        ("shear force F_s", errors.f_s),
+        ("moment M_theta", errors.m_theta),
+        ("damage D", errors.damage),
+        ("damage D_peak", errors.damage_peak),
+    ]
+}
+
+/// Relative root mean square errors by bins.
+pub fn bin_table(bins: &[ErrorBin]) -> Table {
+    let mut table = table([
+        "relative RMSE (%)",
+        "from",
+        "to",
+        "samples",
+        "W",
+        "F_a",
+        "F_s",
+        "M",
+        "D",
+        "D_peak",
+    ]);
+    for ErrorBin {
+        quantity,
+        range: [lower, upper],
+        errors,
+    } in bins
+    {
+        let mut row = vec![
+            quantity.clone(),
+            format!("{lower:.2}"),
+            format!("{upper:.2}"),
+            errors.rows.to_string(),
+        ];
+        let percent = |error: FitError| format!("{:.2}", 100.0 * error.relative_rmse);
+        row.extend(quantities(errors).map(|(_, error)| percent(error)));
+        table.add_row(row);
+    }
+    table
+}
+
+/// Least, mean and greatest relative root mean square error over trainings.
+fn spread_table(errors: &[TestErrors]) -> Table {
+    let header = format!("relative RMSE (%) of {} seeds", errors.len());
+    let mut table = table([header.as_str(), "least", "mean", "greatest"]);
+    let all: Vec<_> = errors.iter().map(quantities).collect();
+    for quantity in 0..quantities(&TestErrors::default()).len() {
+        let values: Vec<f64> = all
+            .iter()
+            .map(|errors| 100.0 * errors[quantity].1.relative_rmse)
+            .collect();
+        let fold = |pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick).unwrap_or(0.0);
+        table.add_row([
+            all[0][quantity].0.to_owned(),
+            format!("{:.2}", fold(f64::min)),
+            format!("{:.2}", values.iter().sum::<f64>() / values.len() as f64),
+            format!("{:.2}", fold(f64::max)),
+        ]);
+    }
+    table
+}
+
+fn print_stiffness(check: &StiffnessCheck) {
+    println!(
+        "tangent of {} states: {:.1} % indefinite; along the rays the energy is concave in {:.1} % \
+         (finite elements {:.1} %), the curvature errs by {:.1} % (median {:.1} %)",
+        check.pairs,
+        100.0 * check.indefinite,
+        100.0 * check.learned_softening,
+        100.0 * check.softening,
+        100.0 * check.curvature.relative_rmse,
+        100.0 * check.curvature.median
+    );
+}

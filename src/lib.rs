@@ -1,0 +1,7 @@
+//! The command line of kirigami: its subcommands, and the code that `kirigami-studies` shares with them.
+
+pub mod cli;
+pub mod commands;
+#[cfg(feature = "pipeline")]
+pub mod replays;
+pub mod ui;

@@ -1,0 +1,5 @@
+//! Hinge paths of designs, and single hinge states, solved again by finite elements and compared with the surrogate.
+
+pub mod comparison;
+pub mod kept_solves;
+pub mod routes;

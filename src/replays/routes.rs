@@ -1,0 +1,192 @@
+//! The paths of the hinges of a deployed sheet, as windows to be solved.
+
+use anyhow::{Context, Result, ensure};
+use dataset::Fidelity;
+use design::objective::design_problem::{Deployment, Model};
+use design::pattern::design_vector::DesignVector;
+use design::scene::Scene;
+use fe_driver::{DeformationPath, KeptSolve, StepControl};
+use hinge::{HingeDeformation, HingeDesign, SheetMaterial};
+use mesher::Tier;
+use std::path::PathBuf;
+use surrogate::Surrogate;
+
+/// The path of one hinge of a sheet, from the flat sheet to full load.
+#[derive(Clone, Debug)]
+pub struct HingeRoute {
+    /// Number of the hinge: ordered by vertex, x before x'.
+    pub hinge: usize,
+    pub design: HingeDesign,
+    /// One state per load step.
+    pub states: Vec<HingeDeformation>,
+}
+
+/// The paths of all hinges of a design.
+pub fn hinge_routes(scene: &Scene, design: &DesignVector) -> Result<Vec<HingeRoute>> {
+    let problem = scene.problem()?;
+    ensure!(
+        matches!(problem.model, Model::Equilibrium(_)),
+        "hinge paths need a hinge law with stiffness: the scene has hinge = \"pin\""
+    );
+    let deployment = problem.deploy(design)?;
+    deployment.at_full_load()?;
+    let Deployment { sheet, path, .. } = deployment;
+    let designs = sheet.designs().into_iter().enumerate();
+    let routes = designs.map(|(hinge, design)| HingeRoute {
+        hinge,
+        design,
+        states: path.iter().map(|step| step.deformations[hinge]).collect(),
+    });
+    Ok(routes.collect())
+}
+
+/// Loads further networks trained on the data of `surrogate`; their spread estimates its error.
+pub fn ensemble(surrogate: &Surrogate, files: &[PathBuf]) -> Result<Vec<Surrogate>> {
+    let load = |path: &PathBuf| {
+        let network = Surrogate::load(path)?;
+        let (own, other) = (surrogate.card(), network.card());
+        ensure!(
+            own.dataset_hash == other.dataset_hash && own.split_hash == other.split_hash,
+            "{} was not trained on the data of the scene's weights and cannot be in an ensemble with them",
+            path.display()
+        );
+        Ok(network)
+    };
+    files.iter().map(load).collect()
+}
+
+/// The mesh tier to test weights on: `requested`, or that of the database they were trained on, or the finer tier
+/// that the database was corrected to.
+pub fn judging_tier(requested: Option<Tier>, surrogate: &Surrogate) -> Result<Tier> {
+    match requested {
+        Some(tier) => Ok(tier),
+        None => tier_of(&surrogate.card().tier),
+    }
+}
+
+fn tier_of(trained_on: &str) -> Result<Tier> {
+    let tier = Fidelity::of(trained_on).mesh().parse();
+    tier.with_context(|| {
+        format!(
+            "the weights were trained on the tier `{trained_on}`, which is no mesh tier: pass the \
+             tier to compare with as --tier"
+        )
+    })
+}
+
+/// The window of a hinge along a path, with the step control of a campaign.
+pub fn window(
+    design: HingeDesign,
+    path: DeformationPath,
+    material: &SheetMaterial,
+    tier: Tier,
+) -> KeptSolve {
+    KeptSolve {
+        design,
+        path,
+        material: material.clone(),
+        recipe: tier.recipe(),
+        step: StepControl::default(),
+    }
+}
+
+impl HingeRoute {
+    /// The last state.
+    pub fn end(&self) -> HingeDeformation {
+        self.states.last().copied().unwrap_or_default()
+    }
+
+    /// The window solve along the recorded path.
+    pub fn recorded(&self, material: &SheetMaterial, tier: Tier) -> Result<KeptSolve> {
+        let path = DeformationPath::through(&self.states)
+            .with_context(|| format!("hinge {} has no states", self.hinge))?;
+        Ok(window(self.design, path, material, tier))
+    }
+
+    /// The window solve along the straight ray to the same end.
+    pub fn straight(&self, material: &SheetMaterial, tier: Tier) -> KeptSolve {
+        window(
+            self.design,
+            DeformationPath::straight(self.end()),
+            material,
+            tier,
+        )
+    }
+
+    /// Maximum distance between the path and the straight ray to its end, compared at equal fractions
+    /// of their arc length, in ligament widths.
+    ///
+    /// The distance is Euclidean in (eta_a, eta_s, theta): a rotation by one radian moves a point at the distance
+    /// of one ligament width from O by one ligament width.
+    pub fn separation(&self) -> f64 {
+        let w_lig = self.design.w_lig;
+        let place = |state: &HingeDeformation| {
+            let [eta_a, eta_s] = state.eta(w_lig);
+            [eta_a, eta_s, state.theta]
+        };
+        let mut places = vec![[0.0; 3]];
+        places.extend(self.states.iter().map(place));
+        let mut journey = vec![0.0];
+        for pair in places.windows(2) {
+            journey.push(journey[journey.len() - 1] + distance(pair[0], pair[1]));
+        }
+        let whole = journey[journey.len() - 1].max(f64::MIN_POSITIVE);
+        let end = places[places.len() - 1];
+        let gaps = places.iter().zip(&journey).map(|(place, gone)| {
+            let on_the_ray = end.map(|x| gone / whole * x);
+            distance(*place, on_the_ray)
+        });
+        gaps.fold(0.0, f64::max)
+    }
+}
+
+fn distance(x: [f64; 3], y: [f64; 3]) -> f64 {
+    let squares = std::iter::zip(x, y).map(|(x, y)| (x - y).powi(2));
+    squares.sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn route(states: &[[f64; 3]]) -> HingeRoute {
+        HingeRoute {
+            hinge: 0,
+            design: HingeDesign {
+                w_lig: 10.0,
+                alpha: 1.5,
+                fillet_ratio: 0.16,
+                kerf: 0.2,
+                r_win: 100.0,
+            },
+            states: states.iter().map(|state| (*state).into()).collect(),
+        }
+    }
+
+    #[test]
+    fn weights_are_judged_by_the_mesh_they_were_trained_on() {
+        assert_eq!(tier_of("tiny").unwrap(), Tier::Tiny);
+        let corrected = tier_of("default corrected to reference");
+        assert_eq!(corrected.unwrap(), Tier::Reference);
+        for unclear in ["default + tiny", "another solver", ""] {
+            let message = tier_of(unclear).unwrap_err().to_string();
+            assert!(message.contains("--tier"), "{message}");
+        }
+    }
+
+    #[test]
+    fn a_straight_route_is_its_ray_whatever_its_pace() {
+        let route = route(&[[0.1, 0.2, 0.05], [0.2, 0.4, 0.1], [2.0, 4.0, 1.0]]);
+        assert!(route.separation() < 1e-15);
+    }
+
+    #[test]
+    fn a_right_angle_is_separated_at_its_corner() {
+        // Turn by 0.3, then 0.4 ligament widths: the corner is 3/7 along, 0.24 from the ray there.
+        let route = route(&[[0.0, 0.0, 0.3], [4.0, 0.0, 0.3]]);
+        let share = 3.0 / 7.0;
+        let gap = distance([0.0, 0.0, 0.3], [share * 0.4, 0.0, share * 0.3]);
+        assert!((route.separation() - gap).abs() < 1e-15);
+        assert_eq!(route.end().to_array(), [4.0, 0.0, 0.3]);
+    }
+}

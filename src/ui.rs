@@ -1,0 +1,16 @@
+//! The user interface of the commands: progress, tables, pictures, charts, exit codes.
+
+#[cfg(feature = "pipeline")]
+pub mod charts;
+pub mod exit;
+pub mod interrupt;
+pub mod picture;
+pub mod progress;
+pub mod run_folder;
+#[cfg(feature = "pipeline")]
+pub mod table;
+
+/// Number of processors of this machine.
+pub fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}

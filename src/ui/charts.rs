@@ -1,0 +1,69 @@
+//! Charts of trainings, studies and replays as SVG: common helpers; one file per kind of chart.
+
+mod learning_curve;
+mod parity;
+mod slices;
+
+pub use learning_curve::learning_curve;
+pub use parity::{ParityChart, parity};
+pub use slices::{Slice, slices};
+
+use anyhow::{Result, anyhow};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use std::ops::Range;
+
+pub const POINT: RGBColor = RGBColor(31, 110, 140);
+pub const VALIDATION: RGBColor = RGBColor(217, 95, 2);
+pub const SLICES: [RGBColor; 5] = [
+    POINT,
+    VALIDATION,
+    RGBColor(117, 112, 179),
+    RGBColor(102, 166, 30),
+    RGBColor(166, 118, 29),
+];
+pub const GUIDE: RGBColor = RGBColor(120, 120, 120);
+pub const FONT: &str = "DejaVu Sans";
+
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub type ChartResult =
+    Result<(), DrawingAreaErrorKind<<SVGBackend<'static> as DrawingBackend>::ErrorType>>;
+
+/// A chart of the given size on a white background, as SVG.
+pub fn drawn(size: (u32, u32), draw: impl FnOnce(&Area) -> ChartResult) -> Result<String> {
+    let mut svg = String::new();
+    {
+        let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+        let whole = || -> ChartResult {
+            root.fill(&WHITE)?;
+            draw(&root)?;
+            root.present()
+        };
+        whole().map_err(|error| anyhow!("cannot draw the chart: {error}"))?;
+    }
+    Ok(svg)
+}
+
+/// The decades that contain the values, which must be positive.
+pub fn decades(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let (min, max) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, g), v| {
+        (l.min(v), g.max(v))
+    });
+    if min > max {
+        return 1e-3..1.0;
+    }
+    let (from, to) = (min.log10().floor(), max.log10().floor() + 1.0);
+    10f64.powf(from)..10f64.powf(to)
+}
+
+/// The range of the values with a margin of 5 % at both ends.
+pub fn padded(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let (min, max) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, g), v| {
+        (l.min(v), g.max(v))
+    });
+    if min > max {
+        return 0.0..1.0;
+    }
+    let margin = 0.05 * (max - min).max(1e-12);
+    min - margin..max + margin
+}

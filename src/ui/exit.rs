@@ -1,0 +1,59 @@
+//! Exit codes and the error message of a command.
+
+use std::process::{ExitCode, Termination};
+
+/// The exit codes of every command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exit {
+    /// 0: done.
+    Done,
+    /// 1: an error; its message is on standard error.
+    Failed,
+    /// 75 (EX_TEMPFAIL of sysexits.h): stopped before its work was done; the same command continues.
+    Unfinished,
+}
+
+/// A run that was stopped before its work was finished.
+#[derive(Debug, thiserror::Error)]
+#[error("stopped with {left} {what} left; run the same command again to continue")]
+pub struct Unfinished {
+    pub left: usize,
+    pub what: &'static str,
+}
+
+impl Exit {
+    /// Prints the error of a command, if there is one.
+    pub fn of(result: anyhow::Result<()>) -> Self {
+        match result {
+            Ok(()) => Self::Done,
+            Err(error) => {
+                eprintln!("error: {}", message(&error));
+                match error.is::<Unfinished>() {
+                    true => Self::Unfinished,
+                    false => Self::Failed,
+                }
+            }
+        }
+    }
+}
+
+impl Termination for Exit {
+    fn report(self) -> ExitCode {
+        match self {
+            Self::Done => 0.into(),
+            Self::Failed => 1.into(),
+            Self::Unfinished => 75.into(),
+        }
+    }
+}
+
+/// The error and its causes, each printed once.
+fn message(error: &anyhow::Error) -> String {
+    error
+        .chain()
+        .fold(String::new(), |text, cause| match cause.to_string() {
+            cause if text.contains(&cause) => text,
+            cause if text.is_empty() => cause,
+            cause => format!("{text}: {cause}"),
+        })
+}

@@ -1,0 +1,73 @@
+//! Progress with the time left: a bar on a terminal, otherwise one line per minute.
+
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use std::cell::Cell;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Interval between progress lines when the output is no terminal.
+const LINE_EVERY: Duration = Duration::from_secs(60);
+
+static SILENT: AtomicBool = AtomicBool::new(false);
+
+/// Shows no progress from now on.
+pub fn silence() {
+    SILENT.store(true, Ordering::Relaxed);
+}
+
+/// Progress of a task of known length.
+pub struct Progress {
+    bar: ProgressBar,
+    what: &'static str,
+    last_line: Cell<Instant>,
+}
+
+impl Progress {
+    /// A task of `total` units of `what`.
+    pub fn new(total: usize, what: &'static str) -> Self {
+        let style = ProgressStyle::with_template("{prefix:>14} [{bar:30}] {pos}/{len}  {wide_msg}")
+            .expect("the template is a constant");
+        let bar = ProgressBar::new(total as u64)
+            .with_style(style.progress_chars("=> "))
+            .with_prefix(what);
+        Self {
+            bar,
+            what,
+            last_line: Cell::new(Instant::now()),
+        }
+    }
+
+    /// Sets the length of a task that is known only after its start.
+    pub fn set_total(&self, total: usize) {
+        self.bar.set_length(total as u64);
+    }
+
+    /// Shows that `done` units are finished; `seconds_left` replaces the bar's own estimate.
+    pub fn show(&self, done: usize, seconds_left: Option<f64>, message: &str) {
+        if SILENT.load(Ordering::Relaxed) {
+            return;
+        }
+        self.bar.set_position(done as u64);
+        let left = seconds_left.map_or_else(|| self.bar.eta(), Duration::from_secs_f64);
+        let message = match left.as_secs() {
+            0 => message.to_owned(),
+            _ => format!("{} left  {message}", HumanDuration(left)),
+        };
+        if self.bar.is_hidden() && self.last_line.get().elapsed() > LINE_EVERY {
+            self.last_line.set(Instant::now());
+            let total = self.bar.length().unwrap_or_default();
+            eprintln!("{} {done}/{total}  {message}", self.what);
+        }
+        self.bar.set_message(message);
+    }
+
+    /// Clears the bar.
+    pub fn finish(self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// A time in seconds as readable text.
+pub fn duration(seconds: f64) -> String {
+    HumanDuration(Duration::from_secs_f64(seconds)).to_string()
+}

@@ -1,0 +1,30 @@
+//! The output folder of a command: created if missing, and locked against a second run.
+
+use anyhow::{Context, Result, bail};
+use std::fs::{File, TryLockError};
+use std::path::Path;
+
+/// Creates the folder and locks it until the returned file is dropped.
+pub fn hold(folder: &Path) -> Result<File> {
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("cannot create the folder {}", folder.display()))?;
+    let path = folder.join("lock");
+    let file = File::create(&path).with_context(|| format!("cannot write {}", path.display()))?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(TryLockError::WouldBlock) => bail!(
+            "another run uses {}: wait until it ends, or choose another folder with --out",
+            folder.display()
+        ),
+        Err(TryLockError::Error(error)) => {
+            Err(error).with_context(|| format!("cannot lock {}", path.display()))
+        }
+    }
+}
+
+/// Writes a file of the folder atomically.
+pub fn write(folder: &Path, name: &str, text: &str) -> Result<()> {
+    let path = folder.join(name);
+    support::whole_file::write(&path, text.as_bytes())
+        .with_context(|| format!("cannot write {}", path.display()))
+}

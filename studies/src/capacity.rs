@@ -1,0 +1,312 @@
+//! `kirigami-studies capacity`: the load that a cut pattern carries before its deployment fails; section 3.2.
+
+mod capacity_page;
+
+use crate::charts::{self, CapacityCurve};
+use crate::designed::designed;
+use anyhow::{Result, bail, ensure};
+use clap::Args;
+use design::analysis::degeneration::{Degeneration, last_jump};
+use design::analysis::further_load::FurtherLoad;
+use design::objective::design_problem::Deployment;
+use design::objective::outline_error::outline_error;
+use design::output::drawing;
+use design::pattern::design_vector::DesignVector;
+use design::scene::{HingeModel, ObjectiveConfig, PinConfig, Scene, SceneConfig};
+use kirigami::ui::progress::Progress;
+use kirigami::ui::{interrupt, picture, run_folder};
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+
+/// Compare the load capacity of a sheet under a pull and a transverse load, for four ways to design it
+///
+/// The first load of the scene is constant and the second is rho times the scene's. With both loads applied
+/// together, every rho is a separate deployment from the flat sheet; the smallest rho at which the sheet is not
+/// deployed is found by bisection. With the second load applied after the first, in its own and in the opposite
+/// direction, its stroke is prescribed until the sheet reaches its first limit. Writes capacity.csv, ways.csv,
+/// capacity.md and pictures. Example: kirigami-studies capacity
+#[derive(Args)]
+pub struct CapacityStudy {
+    /// Scene (TOML) with the two loads, the second with its value at rho = 1
+    #[arg(value_name = "SCENE", default_value = "configs/scenes/capacity.toml")]
+    scene: PathBuf,
+    /// Maximum rho of both loads together
+    #[arg(long, value_name = "RHO", default_value_t = 6.0)]
+    to: f64,
+    /// Folder for the tables, the pictures and the runs
+    #[arg(long, value_name = "FOLDER", default_value = "runs/study-capacity")]
+    out: PathBuf,
+}
+
+/// Spacing of rho in the sweep.
+const SPACING: f64 = 0.25;
+/// Number of bisections of the interval that contains the capacity.
+const HALVINGS: usize = 8;
+/// Opening angle at the start of the kinematic search (deg).
+const OPENING_DEG: f64 = 70.0;
+/// Maximum stroke of the second load, relative to the width of the target.
+const MAX_STROKE: f64 = 0.2;
+/// The paper's capacities.
+const PAPER: [f64; 4] = [1.66, 1.80, 1.29, 2.95];
+
+/// A way to design a pattern.
+struct Strategy {
+    name: &'static str,
+    /// The scene of the search; `None` leaves the sheet uniform.
+    search: Option<SceneConfig>,
+}
+
+/// A deployment at one rho.
+struct Point {
+    rho: f64,
+    /// Mean and minimum opening (deg).
+    opening_deg: [f64; 2],
+    /// Root mean square distance of the outline from the target, relative to the target's width (%).
+    boundary: f64,
+    degeneration: Option<Degeneration>,
+    last_jump: Option<f64>,
+}
+
+/// The load capacity of the pattern of a strategy.
+struct Capacity {
+    name: &'static str,
+    points: Vec<Point>,
+    /// The maximum rho that is carried, and the deployment just above it; `None` if all are carried.
+    limit: Option<(f64, Point)>,
+    /// The second load after the first, in the direction of the scene and in the opposite direction.
+    after: [FurtherLoad; 2],
+}
+
+impl CapacityStudy {
+    pub fn run(&self) -> Result<()> {
+        // The boundary errors of the patterns are compared at rho = 1.
+        ensure!(
+            (1.0..=1e3).contains(&self.to),
+            "--to must be between 1 and 1000"
+        );
+        let config: SceneConfig = support::toml_file::read(&self.scene)?;
+        let [pull, second] = &config.loads[..] else {
+            bail!(
+                "{}: the scene needs exactly two [[loads]]",
+                self.scene.display()
+            );
+        };
+        ensure!(
+            pull.force != [0.0; 2] && second.force != [0.0; 2],
+            "{}: both loads must have a force",
+            self.scene.display()
+        );
+        ensure!(
+            config.drive.is_none()
+                && config.edge_loads.is_empty()
+                && config.opening_couples.is_empty(),
+            "{}: no other actuation is allowed: remove drive, edge_loads and opening_couples",
+            self.scene.display()
+        );
+        let _held = run_folder::hold(&self.out)?;
+        let stop = interrupt::stop_flag()?;
+        let strategies = strategies(&config);
+        let searches = strategies
+            .iter()
+            .filter(|strategy| strategy.search.is_some())
+            .count();
+        let bar = Progress::new(searches * config.optimiser.steps, "design steps");
+        let mut done = 0;
+        let mut designs = Vec::new();
+        for (i, strategy) in strategies.iter().enumerate() {
+            let Some(search) = &strategy.search else {
+                designs.push(self.scene_of(&config)?.start());
+                continue;
+            };
+            let mut search = search.clone();
+            search.output = std::path::absolute(&self.out)?.join(format!("runs/{i}"));
+            let designed = designed(&self.scene_of(&search)?, &mut |_| {
+                done += 1;
+                bar.show(done, None, strategy.name);
+            })?;
+            designs.push(DesignVector {
+                opening: None,
+                ..designed.design
+            });
+        }
+        bar.finish();
+        let values: Vec<f64> = (0..)
+            .map(|i| SPACING * f64::from(i))
+            .take_while(|rho| *rho <= self.to)
+            .collect();
+        let bar = Progress::new(strategies.len() * values.len(), "deployments");
+        let mut capacities: Vec<Capacity> = Vec::new();
+        for (i, (strategy, design)) in std::iter::zip(strategies, designs).enumerate() {
+            let mut points = Vec::new();
+            for &rho in &values {
+                ensure!(
+                    !stop.load(Ordering::Relaxed),
+                    "stopped; run the same command again to continue"
+                );
+                points.push(self.point(&config, &design, rho)?);
+                bar.show(values.len() * i + points.len(), None, strategy.name);
+            }
+            let limit = self.limit(&config, &design, &points)?;
+            if let Some((_, above)) = &limit {
+                let (scene, deployment) = self.deploy(&config, &design, above.rho)?;
+                let configuration = &deployment.final_step().configuration;
+                let svg = drawing::deployed(&scene, &deployment.sheet, configuration);
+                picture::save(&svg, &self.out.join(format!("above-{}", i + 1)), 1600)?;
+            }
+            capacities.push(Capacity {
+                name: strategy.name,
+                limit,
+                after: self.after(&config, &design)?,
+                points,
+            });
+        }
+        bar.finish();
+        let curves: Vec<CapacityCurve> = capacities.iter().map(Capacity::curve).collect();
+        picture::save(
+            &charts::capacity(&curves)?,
+            &self.out.join("capacity"),
+            2000,
+        )?;
+        run_folder::write(&self.out, "capacity.csv", &capacity_page::csv(&capacities)?)?;
+        run_folder::write(&self.out, "ways.csv", &capacity_page::ways(&capacities)?)?;
+        let page = capacity_page::page(&capacities, &self.scene, self.to)?;
+        run_folder::write(&self.out, "capacity.md", &page)?;
+        println!("{page}\nwritten to {}", self.out.display());
+        Ok(())
+    }
+
+    fn scene_of(&self, config: &SceneConfig) -> Result<Scene> {
+        Ok(Scene::new(config.clone(), &self.scene)?)
+    }
+
+    /// The deployment of a design at one rho, from the flat sheet.
+    fn deploy(
+        &self,
+        config: &SceneConfig,
+        design: &DesignVector,
+        rho: f64,
+    ) -> Result<(Scene, Deployment)> {
+        let mut config = shape_alone(config);
+        config.loads[1].scale(rho);
+        let scene = self.scene_of(&config)?;
+        let deployment = scene.problem()?.deploy(design)?;
+        Ok((scene, deployment))
+    }
+
+    /// The second load in the direction of the scene and in the opposite direction, after the first is applied.
+    fn after(&self, config: &SceneConfig, design: &DesignVector) -> Result<[FurtherLoad; 2]> {
+        let (scene, opened) = self.deploy(config, design, 0.0)?;
+        let problem = scene.problem()?;
+        let way = MAX_STROKE * scene.target.width();
+        let led = |sign: f64| -> Result<FurtherLoad> {
+            let mut second = config.clone();
+            second.loads.remove(0);
+            second.scale_loads(sign);
+            let loads = self.scene_of(&second)?.loads();
+            Ok(problem.further_load(&opened, &loads, way)?)
+        };
+        Ok([led(1.0)?, led(-1.0)?])
+    }
+
+    fn point(&self, config: &SceneConfig, design: &DesignVector, rho: f64) -> Result<Point> {
+        let (scene, deployment) = self.deploy(config, design, rho)?;
+        let states = &deployment.final_step().deformations;
+        let openings = || states.iter().map(|state| state.theta.to_degrees());
+        Ok(Point {
+            rho,
+            opening_deg: [
+                openings().sum::<f64>() / states.len() as f64,
+                openings().fold(f64::INFINITY, f64::min),
+            ],
+            boundary: 100.0 * outline_error(&scene.problem()?.objective, &deployment)
+                / scene.target.width(),
+            degeneration: Degeneration::of(deployment.final_step()),
+            last_jump: last_jump(&deployment),
+        })
+    }
+
+    /// Bisects the interval of the sweep in which the deployment first fails.
+    fn limit(
+        &self,
+        config: &SceneConfig,
+        design: &DesignVector,
+        points: &[Point],
+    ) -> Result<Option<(f64, Point)>> {
+        let Some(first) = points.iter().position(|point| point.degeneration.is_some()) else {
+            return Ok(None);
+        };
+        let mut above = self.point(config, design, points[first].rho)?;
+        let mut carried = (above.rho - SPACING).max(0.0);
+        for _ in 0..HALVINGS {
+            let point = self.point(config, design, 0.5 * (carried + above.rho))?;
+            if point.degeneration.is_some() {
+                above = point;
+            } else {
+                carried = point.rho;
+            }
+        }
+        Ok(Some((carried, above)))
+    }
+}
+
+/// The four ways to design of section 3.2.
+fn strategies(config: &SceneConfig) -> [Strategy; 4] {
+    let mut kinematic = shape_alone(config);
+    kinematic.hinge = HingeModel::Pin;
+    kinematic.pin = Some(PinConfig {
+        opening_deg: OPENING_DEG,
+    });
+    kinematic.supports.clear();
+    kinematic.loads.clear();
+    let searches = [
+        None,
+        Some(kinematic),
+        Some(shape_alone(config)),
+        Some(config.clone()),
+    ];
+    let names = [
+        "uniform sheet",
+        "shape by kinematics alone",
+        "shape through equilibrium",
+        "with compression and shear",
+    ];
+    let mut searches = searches.into_iter();
+    names.map(|name| Strategy {
+        name,
+        search: searches.next().flatten(),
+    })
+}
+
+/// The scene without the objectives on the hinge deformation.
+fn shape_alone(config: &SceneConfig) -> SceneConfig {
+    let mut config = config.clone();
+    config.objective = ObjectiveConfig {
+        compression: 0.0,
+        shear: 0.0,
+        balance: false,
+        ..config.objective
+    };
+    config
+}
+
+impl Capacity {
+    fn curve(&self) -> CapacityCurve<'_> {
+        CapacityCurve {
+            name: self.name,
+            limit: self.limit.as_ref().map(|(carried, _)| *carried),
+            openings: self
+                .points
+                .iter()
+                .map(|it| (it.rho, it.opening_deg[1]))
+                .collect(),
+            errors: self.points.iter().map(|it| (it.rho, it.boundary)).collect(),
+            ways: self.after.each_ref().map(|load| load.curve.clone()),
+        }
+    }
+
+    /// The boundary error at rho = 1 (%).
+    fn boundary(&self) -> Option<f64> {
+        let point = self.points.iter().find(|point| point.rho == 1.0)?;
+        Some(point.boundary)
+    }
+}

@@ -1,0 +1,337 @@
+//! `kirigami-studies chain`: one task, from windows to the deployed sheet, with the choices of the
+//! chain varied one at a time.
+//!
+//! Each choice is compared twice with the reference, which takes the most accurate option of every choice.
+//! *Prediction*: the design of the reference is deployed with the choice. *Design*: the design made with the
+//! choice is deployed with the reference, as a cut sheet would be.
+
+mod chain_page;
+
+use crate::designed::designed;
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use dataset::Database;
+use design::analysis::force_transmission::ForceTransmission;
+use design::hinge_law::DamageMeasure;
+use design::objective::design_problem::{Deployment, DesignProblem};
+use design::objective::outline_error::outline_error;
+use design::pattern::design_vector::DesignVector;
+use design::scene::{CondensedConfig, HingeModel, Scene, SceneConfig};
+use design::sheet::cut_sheet::HingePoint;
+use design::sheet::kinematics::deployed_corners;
+use kirigami::ui::{interrupt, run_folder};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+use surrogate::{Surrogate, WeightsError};
+
+/// Measure cost and error of every choice of the chain on one sheet
+///
+/// Each of the given networks replaces the scene's in turn; a network of another mesh tier than the
+/// reference's is listed as another window tier. Then every other choice is varied with the scene's own
+/// network. Writes chain.csv, chain.md, tradeoff.md and a chart. Example:
+/// kirigami-studies chain configs/scenes/pet-3x3.toml --reference paper.safetensors small.safetensors
+#[derive(Args)]
+pub struct ChainStudy {
+    /// Scene (TOML) with the learned hinge law
+    #[arg(value_name = "SCENE")]
+    scene: PathBuf,
+    /// Networks to compare with the reference
+    #[arg(value_name = "WEIGHTS")]
+    networks: Vec<PathBuf>,
+    /// The most accurate network, used as the reference
+    #[arg(long, value_name = "WEIGHTS")]
+    reference: PathBuf,
+    /// Databases that the networks were trained on, for the cost of their windows
+    #[arg(long, value_name = "DATABASE", num_args = 1..)]
+    databases: Vec<PathBuf>,
+    /// Folder for the tables, the chart and the designs
+    #[arg(long, value_name = "FOLDER", default_value = "runs/study-chain")]
+    out: PathBuf,
+}
+
+/// Solver tolerance and load steps of the reference.
+const TOLERANCE: f64 = 1e-12;
+const LOAD_STEPS: usize = 40;
+
+const NETWORK: &str = "network";
+const WINDOW_TIER: &str = "window tier";
+
+/// Number of evaluations, the fastest of which is the cost of a step.
+const REPEATS: usize = 5;
+
+/// A choice with its cost and errors.
+struct Row {
+    kind: &'static str,
+    choice: String,
+    /// CPU time of the windows that the network was trained on (s), if known.
+    windows_s: Option<f64>,
+    /// Training time of the network (s), if known.
+    training_s: Option<f64>,
+    /// Time of one design step, equilibria and gradient: the minimum of some repeats (s).
+    step_s: f64,
+    prediction: Difference,
+    /// Root mean square distance from the target (mm): predicted with the choice, and with the reference.
+    outline: [f64; 2],
+    /// Maximum damage of any hinge of its design, by the reference.
+    damage: f64,
+}
+
+/// Difference of the reference's design deployed with a choice from the same design deployed with the reference.
+struct Difference {
+    /// Root mean square over the panel corners (mm), and relative to the side of a square with the sheet's area.
+    shape: [f64; 2],
+    /// Root mean square over the rotations of the hinges (deg).
+    rotation_deg: f64,
+    /// Root mean square relative to that of the reference: of (F_a, F_s), and of D if it is predicted.
+    force: f64,
+    damage: Option<f64>,
+}
+
+/// The compared numbers of a deployed sheet.
+struct Deployed {
+    corners: Vec<[f64; 2]>,
+    rotations: Vec<f64>,
+    forces: Vec<f64>,
+    /// Maximum of each hinge along the path; empty if damage is not predicted.
+    damage: Vec<f64>,
+    outline: f64,
+}
+
+impl ChainStudy {
+    pub fn run(&self) -> Result<()> {
+        let base: SceneConfig = support::toml_file::read(&self.scene)?;
+        ensure!(
+            base.hinge == HingeModel::Surrogate,
+            "{}: the study needs the learned hinge law: set hinge = \"surrogate\"",
+            self.scene.display()
+        );
+        let _held = run_folder::hold(&self.out)?;
+        let databases: Vec<Database> = self
+            .databases
+            .iter()
+            .map(|path| Database::read(path))
+            .collect::<Result<_, _>>()?;
+        let judge = self.judge(&base)?;
+        let reference = self.design(&judge, "reference")?;
+        let problem = judge.problem()?;
+        let sheet = problem.outline.area().sqrt();
+        let truth = Deployed::of(&problem, &reference)?;
+        let (mut rows, mut failures) = (Vec::new(), String::new());
+        let stop = interrupt::stop_flag()?;
+        for (kind, choice, config) in self.choices(&base)? {
+            eprintln!("{kind}: {choice}");
+            let scene = self.scene_of(config, &format!("{kind}-{choice}"))?;
+            let judged = || -> Result<Row> {
+                let design = self.design(&scene, &choice)?;
+                let chosen = scene.problem()?;
+                let mut step_s = f64::INFINITY;
+                for _ in 0..REPEATS {
+                    let began = Instant::now();
+                    chosen.evaluate(&reference)?;
+                    step_s = step_s.min(began.elapsed().as_secs_f64());
+                }
+                let predicted = Deployed::of(&chosen, &reference)?;
+                let own = Deployed::of(&chosen, &design)?;
+                let made = Deployed::of(&problem, &design)?;
+                let network = scene.surrogate();
+                Ok(Row {
+                    kind,
+                    choice: choice.clone(),
+                    windows_s: network.and_then(|it| windows_s(it, &databases)),
+                    training_s: network.and_then(|it| it.card().training_s),
+                    step_s,
+                    prediction: predicted.difference(&truth, sheet),
+                    outline: [own.outline, made.outline],
+                    damage: made.damage.iter().copied().fold(0.0, f64::max),
+                })
+            };
+            match judged() {
+                Ok(row) => rows.push(row),
+                Err(error) if stop.load(Ordering::Relaxed) => return Err(error),
+                // A choice without a result is reported, not an error.
+                Err(error) => writeln!(failures, "* {kind}, {choice}: {error:#}")?,
+            }
+        }
+        chain_page::write(&self.out, &truth, &rows, &failures)
+    }
+
+    /// The scene with the reference option of every choice.
+    fn judge(&self, base: &SceneConfig) -> Result<Scene> {
+        let mut config = with_weights(base, &self.reference)?;
+        config.solver.tolerance = TOLERANCE;
+        config.load_steps = LOAD_STEPS;
+        self.scene_of(config, "reference")
+    }
+
+    /// The scene of a choice; its designs are stored in a folder of this study.
+    fn scene_of(&self, mut config: SceneConfig, name: &str) -> Result<Scene> {
+        let folder = name.replace(|c: char| !c.is_ascii_alphanumeric() && c != '.', "-");
+        config.output = std::path::absolute(self.out.join("designs").join(folder))?;
+        Ok(Scene::new(config, &self.scene)?)
+    }
+
+    fn design(&self, scene: &Scene, name: &str) -> Result<DesignVector> {
+        let designed = designed(scene, &mut |_| ());
+        Ok(designed.with_context(|| format!("with {name}"))?.design)
+    }
+
+    fn choices(&self, base: &SceneConfig) -> Result<Vec<(&'static str, String, SceneConfig)>> {
+        let mut choices: Vec<(&'static str, String, SceneConfig)> = Vec::new();
+        let tier = |weights| Ok::<_, WeightsError>(Surrogate::load(weights)?.card().tier.clone());
+        let judging = tier(&self.reference)?;
+        for path in &self.networks {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            let known = choices.iter().any(|(_, choice, _)| *choice == name);
+            ensure!(
+                !known,
+                "two networks are called {name}: rename one of the files"
+            );
+            let kind = match tier(path)? == judging {
+                true => NETWORK,
+                false => WINDOW_TIER,
+            };
+            choices.push((kind, name.into(), with_weights(base, path)?));
+        }
+        let mut add = |kind, choice: String, change: &dyn Fn(&mut SceneConfig)| {
+            let mut config = base.clone();
+            change(&mut config);
+            choices.push((kind, choice, config));
+        };
+        for tolerance in [1e-10, 1e-6, 1e-3] {
+            let choice = format!("{tolerance:.0e}");
+            add("tolerance", choice, &|config| {
+                config.solver.tolerance = tolerance
+            });
+        }
+        for steps in [20, 10, 5] {
+            let choice = steps.to_string();
+            add("load steps", choice, &|config| config.load_steps = steps);
+        }
+        let weights = self.own_weights(base)?;
+        for secant_deg in [20.0, 0.0] {
+            let choice = format!("linear, secant at {secant_deg} deg");
+            add("hinge law", choice, &|config| {
+                config.hinge = HingeModel::Linear;
+                config.hinge_point = Some(HingePoint::CutTip);
+                config.surrogate = None;
+                config.objective.damage = 0.0;
+                config.condensed = Some(CondensedConfig {
+                    weights: weights.clone(),
+                    secant_deg,
+                });
+            });
+        }
+        add("hinge point", "corner".into(), &|config| {
+            config.hinge_point = Some(HingePoint::Corner);
+        });
+        Ok(choices)
+    }
+
+    /// The weights of the scene, as a path independent of the scene's folder.
+    fn own_weights(&self, base: &SceneConfig) -> Result<PathBuf> {
+        let named = base.surrogate.as_ref();
+        let named = &named
+            .context("the scene has no weights: add surrogate.weights")?
+            .weights;
+        let folder = self.scene.parent().unwrap_or(Path::new(""));
+        Ok(std::path::absolute(folder.join(named))?)
+    }
+}
+
+fn with_weights(base: &SceneConfig, weights: &Path) -> Result<SceneConfig> {
+    let mut config = base.clone();
+    config.name_weights(weights)?;
+    Ok(config)
+}
+
+/// CPU time of the windows of the rays that the network was trained on.
+fn windows_s(network: &Surrogate, databases: &[Database]) -> Option<f64> {
+    let card = network.card();
+    let manifests = databases.iter().map(Database::manifest);
+    let own = manifests
+        .into_iter()
+        .find(|it| it.hash == card.dataset_hash)?;
+    Some(own.cpu_s * card.training_rays? as f64 / own.rays as f64)
+}
+
+impl Deployed {
+    fn of(problem: &DesignProblem, design: &DesignVector) -> Result<Self> {
+        let deployment = problem.deploy(design)?;
+        let last = deployment.at_full_load()?;
+        let transmission = ForceTransmission::new(problem, &deployment)?;
+        Ok(Self {
+            corners: deployed_corners(&deployment.sheet, &last.configuration).concat(),
+            rotations: last.deformations.iter().map(|eps| eps.theta).collect(),
+            forces: (transmission.interfaces.iter())
+                .flat_map(|it| [it.normal, it.tangential])
+                .collect(),
+            damage: known_damage(&deployment).unwrap_or_default(),
+            outline: outline_error(&problem.objective, &deployment),
+        })
+    }
+
+    fn difference(&self, truth: &Self, sheet: f64) -> Difference {
+        let corners = |deployed: &Self| deployed.corners.concat();
+        // The mean square over points is the sum of those of both coordinates.
+        let shape = rms_difference(&corners(self), &corners(truth)) * f64::sqrt(2.0);
+        let relative = |one: &[f64], other: &[f64]| rms_difference(one, other) / rms(other);
+        Difference {
+            shape: [shape, shape / sheet],
+            rotation_deg: rms_difference(&self.rotations, &truth.rotations).to_degrees(),
+            force: relative(&self.forces, &truth.forces),
+            damage: (!self.damage.is_empty() && !truth.damage.is_empty())
+                .then(|| relative(&self.damage, &truth.damage)),
+        }
+    }
+}
+
+/// Maximum D of every hinge; `None` unless it is known for all hinges.
+fn known_damage(deployment: &Deployment) -> Option<Vec<f64>> {
+    let hinges = 0..deployment.sheet.hinges.len();
+    hinges
+        .map(|h| deployment.damage_max(DamageMeasure::Mean, h))
+        .collect()
+}
+
+fn rms(values: &[f64]) -> f64 {
+    let squares: f64 = values.iter().map(|x| x * x).sum();
+    (squares / values.len().max(1) as f64).sqrt()
+}
+
+fn rms_difference(one: &[f64], other: &[f64]) -> f64 {
+    rms(&one
+        .iter()
+        .zip(other)
+        .map(|(x, y)| x - y)
+        .collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn deployed(shift: f64) -> Deployed {
+        Deployed {
+            corners: vec![[shift, 0.0], [2.0, shift]],
+            rotations: vec![0.1, 0.2 + shift],
+            forces: vec![3.0, 4.0 + shift],
+            damage: vec![0.01],
+            outline: 0.0,
+        }
+    }
+
+    #[test]
+    fn differences_are_over_points_and_relative_to_the_reference() {
+        let found = deployed(0.5).difference(&deployed(0.0), 5.0);
+        assert!(
+            (found.shape[0] - 0.5).abs() < 1e-12,
+            "each corner moves by 0.5"
+        );
+        assert!((found.shape[1] - 0.1).abs() < 1e-12);
+        assert!((found.rotation_deg - (0.5 / 2.0_f64.sqrt()).to_degrees()).abs() < 1e-12);
+        assert!((found.force - 0.1).abs() < 1e-12);
+        assert_eq!(found.damage, Some(0.0));
+    }
+}

@@ -1,0 +1,23 @@
+//! Charts of the studies, one file per kind.
+
+mod calibration;
+mod capacity;
+mod convergence;
+mod costs;
+mod front;
+mod rays;
+mod routes;
+mod separations;
+mod solutions;
+mod taylor;
+
+pub use calibration::{Calibration, calibration};
+pub use capacity::{CapacityCurve, capacity};
+pub use convergence::{StudyPanel, studies};
+pub use costs::{CostPanel, costs};
+pub use front::{FrontPanel, front};
+pub use rays::{Curve, against_rays};
+pub use routes::{RoutePanel, routes};
+pub use separations::{SeparationChart, separations};
+pub use solutions::{SolutionChart, solutions};
+pub use taylor::{TaylorLine, taylor};

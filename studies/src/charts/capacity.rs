@@ -1,0 +1,126 @@
+//! Charts of the load capacity: opening and boundary error against the transverse load; load against stroke.
+
+use anyhow::Result;
+use kirigami::ui::charts::*;
+use plotters::prelude::*;
+
+/// A pattern under a transverse load of rho times its pull.
+pub struct CapacityCurve<'a> {
+    pub name: &'a str,
+    /// The maximum rho that is carried.
+    pub limit: Option<f64>,
+    /// (rho, minimum opening in degrees)
+    pub openings: Vec<(f64, f64)>,
+    /// (rho, boundary error in % of the target's width)
+    pub errors: Vec<(f64, f64)>,
+    /// (stroke of the load in mm, rho) of the opened sheet, in the direction of the scene and the opposite one.
+    pub ways: [Vec<(f64, f64)>; 2],
+}
+
+const RHO: &str = "transverse load / pull, rho";
+
+/// Top: both loads together, the minimum opening of a hinge and the boundary error, with a dashed line where a
+/// pattern fails. Bottom: after the pull, rho against the stroke until the first limit.
+pub fn capacity(curves: &[CapacityCurve]) -> Result<String> {
+    drawn((1100, 860), |root| {
+        let areas = root.split_evenly((2, 2));
+        let swept = |points| Drawn {
+            points,
+            swept: true,
+        };
+        let led = |points| Drawn {
+            points,
+            swept: false,
+        };
+        let openings = swept(|curve| &curve.openings);
+        panel(
+            &areas[0],
+            curves,
+            openings,
+            [RHO, "minimum opening of a hinge, deg"],
+        )?;
+        let errors = swept(|curve| &curve.errors);
+        panel(
+            &areas[1],
+            curves,
+            errors,
+            [RHO, "boundary rms, % of the width"],
+        )?;
+        let along = led(|curve| &curve.ways[0]);
+        panel(
+            &areas[2],
+            curves,
+            along,
+            ["stroke of the load, mm", "rho, after the pull"],
+        )?;
+        let against = led(|curve| &curve.ways[1]);
+        panel(
+            &areas[3],
+            curves,
+            against,
+            ["stroke of the reversed load, mm", "rho, after the pull"],
+        )
+    })
+}
+
+/// The data of one panel.
+#[derive(Clone, Copy)]
+struct Drawn {
+    points: for<'a> fn(&'a CapacityCurve<'_>) -> &'a Vec<(f64, f64)>,
+    /// Whether every point is a separate deployment and the limit of rho is drawn; otherwise only the end is marked.
+    swept: bool,
+}
+
+fn panel(
+    area: &Area,
+    curves: &[CapacityCurve],
+    Drawn { points, swept }: Drawn,
+    [abscissa, ordinate]: [&str; 2],
+) -> ChartResult {
+    let all: Vec<_> = curves.iter().flat_map(points).copied().collect();
+    let up = padded(all.iter().map(|point| point.1));
+    let mut chart = ChartBuilder::on(area)
+        .margin(12)
+        .x_label_area_size(40)
+        .y_label_area_size(56)
+        .build_cartesian_2d(padded(all.iter().map(|point| point.0)), up.clone())?;
+    chart
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .label_style((FONT, 13))
+        .x_desc(abscissa)
+        .y_desc(ordinate)
+        .draw()?;
+    for (curve, &colour) in curves.iter().zip(SLICES.iter().cycle()) {
+        let points = points(curve);
+        let (marked, size) = match swept {
+            true => (&points[..], 2),
+            false => (&points[points.len().saturating_sub(1)..], 3),
+        };
+        chart.draw_series(
+            marked
+                .iter()
+                .map(|&at| Circle::new(at, size, colour.filled())),
+        )?;
+        chart
+            .draw_series(LineSeries::new(
+                points.iter().copied(),
+                colour.stroke_width(2),
+            ))?
+            .label(curve.name)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+        if let Some(limit) = curve.limit.filter(|_| swept) {
+            let upright = [(limit, up.start), (limit, up.end)];
+            let style = colour.mix(0.6).stroke_width(1);
+            chart.draw_series(DashedLineSeries::new(upright, 4, 4, style))?;
+        }
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::LowerRight)
+        .label_font((FONT, 12))
+        .border_style(GUIDE)
+        .background_style(WHITE.mix(0.85))
+        .draw()?;
+    Ok(())
+}

@@ -1,0 +1,91 @@
+//! Charts of the errors of a surrogate against its number of training rays.
+
+use anyhow::Result;
+use kirigami::ui::charts::*;
+use plotters::prelude::*;
+
+/// Test errors of one network size against the number of training rays.
+#[derive(Default)]
+pub struct Curve {
+    pub title: String,
+    /// (rays, error of W in percent)
+    pub energy: Vec<(f64, f64)>,
+    /// (rays, error of the forces in percent)
+    pub forces: Vec<(f64, f64)>,
+}
+
+/// Errors against rays on logarithmic axes: one chart for the energy, one for the forces.
+pub fn against_rays(curves: &[Curve]) -> Result<String> {
+    drawn((1000, 420), |root| {
+        type Points = fn(&Curve) -> &[(f64, f64)];
+        let quantities: [(&str, Points); 2] = [
+            ("energy W", |curve| &curve.energy),
+            ("forces", |curve| &curve.forces),
+        ];
+        for (area, (title, points)) in root.split_evenly((1, 2)).iter().zip(quantities) {
+            let lines: Vec<_> = curves
+                .iter()
+                .map(|it| (it.title.as_str(), points(it)))
+                .collect();
+            rays_chart(area, title, &lines)?;
+        }
+        Ok(())
+    })
+}
+
+fn rays_chart(area: &Area, title: &str, lines: &[(&str, &[(f64, f64)])]) -> ChartResult {
+    let all = || lines.iter().flat_map(|(_, points)| *points);
+    let margin = |values: Vec<f64>| {
+        let min = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let max = values.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        (0.8 * min.min(max)..1.25 * max).log_scale()
+    };
+    let mut chart = ChartBuilder::on(area)
+        .caption(title, (FONT, 15))
+        .margin(10)
+        .x_label_area_size(38)
+        .y_label_area_size(56)
+        .build_cartesian_2d(
+            margin(all().map(|point| point.0).collect()),
+            margin(all().map(|point| point.1).collect()),
+        )?;
+    chart
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .label_style((FONT, 12))
+        .x_label_formatter(&|rays| round_number(*rays))
+        .x_desc("training rays")
+        .y_desc("error on unseen geometries, %")
+        .draw()?;
+    for (&(name, points), &colour) in lines.iter().zip(SLICES.iter().cycle()) {
+        chart
+            .draw_series(LineSeries::new(
+                points.iter().copied(),
+                colour.stroke_width(2),
+            ))?
+            .label(name)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+        chart.draw_series(
+            points
+                .iter()
+                .map(|&point| Circle::new(point, 3, colour.filled())),
+        )?;
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .label_font((FONT, 13))
+        .border_style(GUIDE)
+        .background_style(WHITE)
+        .draw()?;
+    Ok(())
+}
+
+/// Labels of 1, 2 and 5 times a power of ten; other ticks, which are too close, have no label.
+fn round_number(value: f64) -> String {
+    let digits = format!("{value:.0}");
+    match digits.trim_end_matches('0') {
+        "1" | "2" | "5" => digits,
+        _ => String::new(),
+    }
+}

@@ -1,0 +1,105 @@
+//! Charts of path dependence: differences against the separation of path and ray.
+
+use anyhow::Result;
+use kirigami::ui::charts::*;
+use plotters::prelude::*;
+
+/// The data of one chart of path dependence.
+pub struct SeparationChart<'a> {
+    /// Pairs of solves along path and ray: (separation, relative difference).
+    pub pairs: &'a [(f64, f64)],
+    /// Exponent and factor of the power law fitted to the pairs, if there is one.
+    pub fit: Option<[f64; 2]>,
+    /// Separations of all recorded paths, for the histogram in the background.
+    pub all: &'a [f64],
+    pub quantity: &'a str,
+}
+
+/// Difference against separation on logarithmic axes, one chart per quantity.
+pub fn separations(charts: &[SeparationChart]) -> Result<String> {
+    let size = (480 * charts.len() as u32, 420);
+    drawn(size, |root| {
+        for (area, chart) in root.split_evenly((1, charts.len())).iter().zip(charts) {
+            separation_chart(area, chart)?;
+        }
+        Ok(())
+    })
+}
+
+fn separation_chart(area: &Area, chart: &SeparationChart) -> ChartResult {
+    /// Smaller differences are drawn at this value.
+    const MIN_DIFFERENCE: f64 = 1e-6;
+    /// Number of bars of the histogram.
+    const BARS: usize = 24;
+    let marks: Vec<_> = (chart.pairs.iter())
+        .map(|(x, y)| (x.max(MIN_DIFFERENCE), y.max(MIN_DIFFERENCE)))
+        .collect();
+    let across = decades(
+        marks
+            .iter()
+            .map(|p| p.0)
+            .chain(chart.all.iter().map(|x| x.max(MIN_DIFFERENCE))),
+    );
+    let up = decades(marks.iter().map(|p| p.1));
+    let mut context = ChartBuilder::on(area)
+        .caption(chart.quantity, (FONT, 15))
+        .margin(10)
+        .x_label_area_size(38)
+        .y_label_area_size(64)
+        .build_cartesian_2d(across.clone().log_scale(), up.clone().log_scale())?;
+    let (width, height) = ((across.end / across.start).ln(), (up.end / up.start).ln());
+    let mut counts = [0usize; BARS];
+    for x in chart.all {
+        let fraction = (x.max(MIN_DIFFERENCE) / across.start).ln() / width;
+        counts[((fraction * BARS as f64) as usize).min(BARS - 1)] += 1;
+    }
+    let most = counts.iter().copied().max().unwrap_or(1).max(1) as f64;
+    context.draw_series(counts.iter().enumerate().map(|(i, count)| {
+        let edge = |i: usize| across.start * (width * i as f64 / BARS as f64).exp();
+        let top = up.start * (0.6 * height * *count as f64 / most).exp();
+        Rectangle::new(
+            [(edge(i), up.start), (edge(i + 1), top)],
+            GUIDE.mix(0.25).filled(),
+        )
+    }))?;
+    context
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .label_style((FONT, 12))
+        .x_label_formatter(&|x| format!("{x:.0e}"))
+        .y_label_formatter(&|y| format!("{y:.0e}"))
+        .x_desc("separation of path and ray, ligament widths")
+        .y_desc("relative difference at the end")
+        .draw()?;
+    if let Some([exponent, factor]) = chart.fit {
+        let line = [across.start, across.end].map(|x| (x, factor * x.powf(exponent)));
+        context.draw_series(LineSeries::new(line, VALIDATION))?;
+    }
+    context.draw_series(marks.iter().map(|p| Circle::new(*p, 4, POINT.filled())))?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn separations_of_any_size_are_drawn() {
+        let pairs = [(0.0, 0.0), (1e-3, 1e-4), (0.2, 0.05)];
+        let chart = SeparationChart {
+            pairs: &pairs,
+            fit: Some([2.0, 1.0]),
+            all: &[1e-9, 0.01, 0.02, 0.3],
+            quantity: "W",
+        };
+        let svg = separations(&[chart]).unwrap();
+        assert_eq!(svg.matches("<circle").count(), 3);
+        let empty = SeparationChart {
+            pairs: &[],
+            fit: None,
+            all: &[],
+            quantity: "D",
+        };
+        assert!(separations(&[empty]).is_ok());
+    }
+}

@@ -1,0 +1,26 @@
+//! The design of a scene that a study evaluates.
+
+use anyhow::{Result, bail};
+use design::optimise::outer_loop::{Ended, StepRecord};
+use design::scene::Scene;
+use design::scene::design_run::{Designed, forget, inverse_design};
+use kirigami::ui::interrupt;
+
+/// The finished search of a scene; a search that was stopped or is stuck is an error.
+pub fn designed(scene: &Scene, progress: &mut dyn FnMut(&StepRecord)) -> Result<Designed> {
+    let stop = interrupt::stop_flag()?;
+    let designed = match inverse_design(scene, stop, progress) {
+        // A run of other weights or of a changed scene, left by an earlier study, is discarded.
+        Err(error) if error.is_of_another_run() => {
+            forget(scene)?;
+            inverse_design(scene, stop, progress)?
+        }
+        designed => designed?,
+    };
+    let title = &scene.config.title;
+    match &designed.ended {
+        Ended::Completed | Ended::Settled => Ok(designed),
+        Ended::Stopped => bail!("stopped; run the same command again to continue"),
+        Ended::Stuck { reason } => bail!("{title}: the search is stuck: {reason}"),
+    }
+}

@@ -1,0 +1,85 @@
+//! `kirigami-studies localisation`: the sheets whose panels stay flat; section 5.1, Table 2.
+
+use anyhow::Result;
+use clap::Args;
+use design::analysis::localisation::{critical_edge, gamma};
+use hinge::SheetMaterial;
+use kirigami::ui::run_folder;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Compute Gamma and the critical panel edge of sheet materials, above which buckling stays in the ligaments
+///
+/// Writes localisation.md. Example: kirigami-studies localisation
+#[derive(Args)]
+pub struct LocalisationStudy {
+    /// Material files (TOML)
+    #[arg(value_name = "MATERIAL", default_values = MATERIALS)]
+    materials: Vec<PathBuf>,
+    /// Ligament width (mm)
+    #[arg(long, value_name = "MM", default_value_t = 18.0)]
+    w_lig: f64,
+    /// Panel edge (mm)
+    #[arg(long, value_name = "MM", default_value_t = 406.4)]
+    edge: f64,
+    /// Folder for the table
+    #[arg(long, value_name = "FOLDER", default_value = "runs/study-localisation")]
+    out: PathBuf,
+}
+
+/// The rows of Table 2.
+const MATERIALS: [&str; 5] = [
+    "configs/materials/paper-0.2mm.toml",
+    "configs/materials/pet-0.5mm.toml",
+    "configs/materials/polypropylene-0.8mm.toml",
+    "configs/materials/aluminium-1.0mm.toml",
+    "configs/materials/s235-1.5mm.toml",
+];
+
+impl LocalisationStudy {
+    pub fn run(&self) -> Result<()> {
+        anyhow::ensure!(
+            self.w_lig > 0.0 && self.w_lig.is_finite() && self.edge > 0.0 && self.edge.is_finite(),
+            "--w-lig and --edge must be positive (mm)"
+        );
+        let _held = run_folder::hold(&self.out)?;
+        let mut text = format!(
+            "# Range of validity of the model\n\n\
+             Panels of {} mm stay coplanar and buckling stays in their ligaments, {} mm wide, if the moment of \
+             gravity on a panel exceeds that of its folded ligament: Gamma = (L/L*)^3 > 1, (21)-(22). The report of a \
+             design lists Gamma for each hinge. The last column is L* of Table 2 of the paper, for 18 mm. \
+             `kirigami-studies localisation`.\n\n\
+             | material | E, GPa | density, kg/m^3 | t, mm | L*, cm | Gamma | paper's L*, cm |\n|---|---|---|---|---|---|---|\n",
+            self.edge, self.w_lig
+        );
+        for path in &self.materials {
+            let material = SheetMaterial::load(path)?;
+            let printed = PAPER
+                .iter()
+                .find(|(name, _)| material.name.starts_with(name));
+            writeln!(
+                text,
+                "| {} | {} | {} | {} | {:.1} | {:.2} | {} |",
+                material.name,
+                material.young / 1e3,
+                material.density_kg_m3,
+                material.thickness,
+                critical_edge(&material, self.w_lig) / 10.0,
+                gamma(&material, self.w_lig, self.edge),
+                printed.map_or("-".into(), |(_, edge)| format!("{edge:.1}")),
+            )?;
+        }
+        run_folder::write(&self.out, "localisation.md", &text)?;
+        println!("{text}\nwritten to {}", self.out.display());
+        Ok(())
+    }
+}
+
+/// L* (cm) of Table 2, by the prefix of the material's name.
+const PAPER: [(&str, f64); 5] = [
+    ("paper", 3.0),
+    ("pet", 6.3),
+    ("polypropylene", 9.3),
+    ("aluminium", 29.0),
+    ("s235", 44.0),
+];

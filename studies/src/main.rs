@@ -1,0 +1,92 @@
+//! `kirigami-studies`: cost and error of the choices at each stage, and the paper's experiments.
+
+mod actuations;
+mod approaches;
+mod capacity;
+mod chain;
+mod charts;
+mod designed;
+mod drawing;
+mod free_panels;
+mod gradient;
+mod kept_fits;
+mod localisation;
+mod noise;
+mod optimisers;
+mod pages;
+mod panel_penalties;
+mod path;
+mod polyester;
+mod sheet;
+mod silhouettes;
+mod solutions;
+mod surrogate;
+mod tessellation;
+mod tradeoff;
+mod trust;
+mod window;
+
+use anyhow::Result;
+use clap::{Parser, Subcommand};
+use kirigami::ui::exit::Exit;
+use kirigami::ui::interrupt;
+
+/// Measure cost and error of the choices at each stage, and repeat the paper's experiments
+#[derive(Parser)]
+#[command(version, propagate_version = true)]
+struct Cli {
+    #[command(subcommand)]
+    study: Study,
+}
+
+#[derive(Subcommand)]
+enum Study {
+    Chain(chain::ChainStudy),
+    Sheet(sheet::SheetStudy),
+    Window(window::WindowStudy),
+    Noise(noise::NoiseStudy),
+    Path(path::PathStudy),
+    Polyester(polyester::PolyesterStudy),
+    Gradient(gradient::GradientStudy),
+    Solutions(solutions::SolutionStudy),
+    Approaches(approaches::ApproachStudy),
+    Silhouettes(silhouettes::SilhouetteStudy),
+    Optimisers(optimisers::OptimiserStudy),
+    Actuations(actuations::ActuationStudy),
+    Capacity(capacity::CapacityStudy),
+    Localisation(localisation::LocalisationStudy),
+    Surrogate(surrogate::SurrogateStudy),
+    Trust(trust::TrustStudy),
+    Tradeoff(tradeoff::TradeoffCommand),
+    Pages(pages::PagesCommand),
+}
+
+impl Study {
+    fn run(&self) -> Result<()> {
+        match self {
+            Self::Chain(study) => study.run(),
+            Self::Sheet(study) => study.run(),
+            Self::Window(study) => study.run(),
+            Self::Noise(study) => study.run(),
+            Self::Path(study) => study.run(),
+            Self::Polyester(study) => study.run(),
+            Self::Gradient(study) => study.run(),
+            Self::Solutions(study) => study.run(),
+            Self::Approaches(study) => study.run(),
+            Self::Silhouettes(study) => study.run(),
+            Self::Optimisers(study) => study.run(),
+            Self::Actuations(study) => study.run(),
+            Self::Capacity(study) => study.run(),
+            Self::Localisation(study) => study.run(),
+            Self::Surrogate(study) => study.run(),
+            Self::Trust(study) => study.run(),
+            Self::Tradeoff(command) => command.run(),
+            Self::Pages(command) => command.run(),
+        }
+    }
+}
+
+fn main() -> Exit {
+    interrupt::end_quietly_when_nobody_reads();
+    Exit::of(Cli::parse().study.run())
+}

@@ -1,0 +1,179 @@
+//! `kirigami-studies pages`: the pages of docs/results and the commands that make them.
+//!
+//! The commands are data, docs/results/pages.toml. A page is always made; a product, which pages need, only if its
+//! file is missing or older than what it is made from.
+
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::SystemTime;
+
+/// Make pages of docs/results, all or those named, and the page that joins their tables
+///
+/// Run it in the root of the repository. All pages together take hours; a page that was interrupted continues where it
+/// was. Example: kirigami-studies pages window trust
+#[derive(Args)]
+pub struct PagesCommand {
+    #[arg(value_name = "PAGE")]
+    pages: Vec<String>,
+    /// Pages, their commands and what they need (TOML)
+    #[arg(long, value_name = "FILE", default_value = "docs/results/pages.toml")]
+    file: PathBuf,
+    /// List the pages and their questions
+    #[arg(long)]
+    list: bool,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Book {
+    page: Vec<Page>,
+    product: Vec<Product>,
+}
+
+/// A folder of docs/results.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Page {
+    name: String,
+    question: String,
+    /// Names of products.
+    #[serde(default)]
+    needs: Vec<String>,
+    commands: Vec<String>,
+}
+
+/// A file or folder that pages are made from.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Product {
+    name: String,
+    file: PathBuf,
+    /// Files that it is made from.
+    from: Vec<PathBuf>,
+    #[serde(default)]
+    needs: Vec<String>,
+    commands: Vec<String>,
+}
+
+impl PagesCommand {
+    pub fn run(&self) -> Result<()> {
+        let book: Book = support::toml_file::read(&self.file)?;
+        if self.list {
+            for page in &book.page {
+                println!("{:<14}{}", page.name, page.question);
+            }
+            return Ok(());
+        }
+        let chosen = book.chosen(&self.pages)?;
+        for page in chosen {
+            page.needs.iter().try_for_each(|name| book.make(name))?;
+            page.commands
+                .iter()
+                .try_for_each(|command| shell(command))?;
+        }
+        shell("kirigami-studies tradeoff")
+    }
+}
+
+impl Book {
+    fn chosen(&self, names: &[String]) -> Result<Vec<&Page>> {
+        if names.is_empty() {
+            return Ok(self.page.iter().collect());
+        }
+        let page = |name: &String| {
+            let page = self.page.iter().find(|page| page.name == *name);
+            page.with_context(|| format!("there is no page `{name}`; --list prints all"))
+        };
+        names.iter().map(page).collect()
+    }
+
+    /// Makes a product unless it is there and newer than what it is made from.
+    fn make(&self, name: &str) -> Result<()> {
+        let product = self.product.iter().find(|product| product.name == name);
+        let product = product.with_context(|| format!("there is no product `{name}`"))?;
+        product.needs.iter().try_for_each(|name| self.make(name))?;
+        match product.is_current() {
+            true => Ok(()),
+            false => product
+                .commands
+                .iter()
+                .try_for_each(|command| shell(command)),
+        }
+    }
+}
+
+impl Product {
+    fn is_current(&self) -> bool {
+        let Some(made) = modified(&self.file) else {
+            return false;
+        };
+        self.from
+            .iter()
+            .all(|from| modified(from).is_none_or(|from| from <= made))
+    }
+}
+
+fn modified(path: &Path) -> Option<SystemTime> {
+    std::fs::metadata(path).and_then(|it| it.modified()).ok()
+}
+
+/// Runs a command line of the book, with the programs beside this one first on the PATH.
+fn shell(command: &str) -> Result<()> {
+    eprintln!("{command}");
+    let own = std::env::current_exe()?;
+    let beside = own.parent().unwrap_or(Path::new("")).to_owned();
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::env::join_paths(std::iter::once(beside).chain(std::env::split_paths(&path)))?;
+    let status = Command::new("sh")
+        .args(["-ec", command])
+        .env("PATH", path)
+        .status()?;
+    ensure!(status.success(), "`{command}` ended with {status}");
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shipped_book_names_products_that_exist() {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/results/pages.toml");
+        let book: Book = support::toml_file::read(&file).unwrap();
+        let needs = book.page.iter().flat_map(|page| &page.needs);
+        for name in needs.chain(book.product.iter().flat_map(|product| &product.needs)) {
+            assert!(
+                book.product.iter().any(|product| product.name == *name),
+                "{name}"
+            );
+        }
+        assert!(book.chosen(&["no such page".into()]).is_err());
+        assert_eq!(book.chosen(&[]).unwrap().len(), book.page.len());
+    }
+
+    #[test]
+    fn a_product_is_made_again_when_its_source_is_newer() {
+        let folder = tempfile::tempdir().unwrap();
+        let [source, made] = ["source", "made"].map(|name| folder.path().join(name));
+        let product = Product {
+            name: "made".into(),
+            file: made.clone(),
+            from: vec![source.clone()],
+            needs: Vec::new(),
+            commands: Vec::new(),
+        };
+        std::fs::write(&source, "").unwrap();
+        assert!(!product.is_current());
+        std::fs::write(&made, "").unwrap();
+        assert!(product.is_current());
+        let later = SystemTime::now() + std::time::Duration::from_secs(60);
+        std::fs::File::open(&source)
+            .unwrap()
+            .set_modified(later)
+            .unwrap();
+        assert!(!product.is_current());
+    }
+}

@@ -1,0 +1,234 @@
+//! Studies of sheets, end to end on small ones: what they write, and what they say to a scene that is none of
+//! theirs.
+
+#[path = "../../tests/common/mod.rs"]
+mod common;
+#[path = "../../tests/common/failing_ccx.rs"]
+mod failing_ccx;
+
+use common::{Workplace, failure};
+use failing_ccx::failing_ccx;
+use std::path::{Path, PathBuf};
+
+const PIN: &str = "configs/scenes/pin-7x7.toml";
+
+/// What a study wrote of a run with arguments.
+fn page(work: &Workplace, arguments: &str, file: &str) -> String {
+    work.output(&format!("{arguments} --out out"));
+    std::fs::read_to_string(work.path("out").join(file)).unwrap()
+}
+
+/// The numbers in the columns of the first table row that begins with `name`.
+fn numbers(page: &str, name: &str) -> Vec<f64> {
+    let begins = format!("| {name} |");
+    let row = page.lines().find(|line| line.starts_with(&begins));
+    let row = row.unwrap_or_else(|| panic!("no row {name} in {page}"));
+    let cells = row.split('|').filter_map(|cell| cell.trim().parse().ok());
+    cells.collect()
+}
+
+/// Copies the shipped weights of the film, the ensemble of its scenes among them.
+fn shipped_weights(work: &Workplace) {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/pet-0.5mm");
+    std::fs::create_dir_all(work.path("data/pet-0.5mm")).unwrap();
+    for name in ["small", "medium", "medium-1", "medium-2", "medium-3"] {
+        for file in ["safetensors", "json"].map(|kind| format!("{name}.{kind}")) {
+            let there = work.path("data/pet-0.5mm").join(&file);
+            std::fs::copy(data.join(&file), there).unwrap();
+        }
+    }
+}
+
+/// Sets how many steps the search of a scene takes.
+fn set_steps(work: &Workplace, scene: &str, steps: usize) {
+    let text = std::fs::read_to_string(work.path(scene)).unwrap();
+    let old = text.lines().find(|line| line.starts_with("steps")).unwrap();
+    work.edit(scene, &[(old, &format!("steps = {steps}"))]);
+}
+
+#[test]
+fn silhouettes_and_what_they_keep() {
+    let work = Workplace::new();
+    let scene = "configs/scenes/shield-16x22.toml";
+    work.edit(scene, &[("panels = [16, 22]", "panels = [4, 6]")]);
+    set_steps(&work, scene, 40);
+    let study = format!("silhouettes {scene} configs/targets/leaf.svg configs/targets/bell.svg");
+    let first = page(&work, &study, "silhouettes.md");
+    let [panel_shape, distance, _, iou] = numbers(&first, "leaf")[..4] else {
+        panic!("{first}");
+    };
+    // Twenty-four panels reach a leaf to some per cent.
+    assert_eq!(panel_shape, 0.03);
+    assert!(distance < 5.0 && (0.8..1.0).contains(&iou), "{first}");
+    assert!(work.path("out/silhouettes.png").exists());
+    // Runs are kept: what more steps are asked for go on from there, and nothing is done twice.
+    let kept = work.path("out/runs/leaf-0.03/state.json");
+    let before = std::fs::read(&kept).unwrap();
+    page(&work, &study, "silhouettes.md");
+    assert!(std::fs::read(&kept).unwrap() == before);
+    let twice = format!("silhouettes {scene} a/leaf.svg b/leaf.svg --out out");
+    assert!(work.error(&twice).contains("b/leaf.svg: another"));
+}
+
+#[test]
+fn optimisers_and_approaches_on_pins() {
+    let work = Workplace::new();
+    work.edit(PIN, &[("panels = [7, 7]", "panels = [4, 4]")]);
+    set_steps(&work, PIN, 20);
+    let optimisers = page(&work, &format!("optimisers {PIN}"), "optimisers.md");
+    for row in [
+        "samples | Adam",
+        "samples | L-BFGS",
+        "curve | Adam",
+        "curve | L-BFGS",
+    ] {
+        let [evaluations, quarter, half, end, _] =
+            numbers(&optimisers, &format!("pin-7x7 | {row}"))[..]
+        else {
+            panic!("{optimisers}");
+        };
+        assert!(evaluations <= 21.0, "{optimisers}");
+        assert!(end <= half && half <= quarter, "{optimisers}");
+    }
+    let approaches = format!("approaches {PIN} --steps 20");
+    let approaches = page(&work, &approaches, "approaches.md");
+    // Free corners open gaps at their hinges, the charts cannot.
+    let gap = |name: &str| numbers(&approaches, name)[4];
+    assert!(
+        gap("**free corners**") > 0.1 && gap("**charts**") < 1e-9,
+        "{approaches}"
+    );
+}
+
+#[test]
+fn the_five_actuations_and_a_missing_one() {
+    let work = Workplace::new();
+    for case in 1..=5 {
+        let scene = format!("configs/scenes/actuation-{case}.toml");
+        set_steps(&work, &scene, 1);
+    }
+    let actuations = page(&work, "actuations", "actuations.md");
+    assert!(actuations.contains("15 x 10 panels"), "{actuations}");
+    assert!(actuations.contains("Voids of the 35 "), "{actuations}");
+    let removed = "configs/scenes/actuation-3.toml";
+    std::fs::remove_file(work.path(removed)).unwrap();
+    assert!(work.error("actuations --out out").contains(removed));
+}
+
+#[test]
+fn what_a_sheet_carries_once_it_is_open() {
+    let work = Workplace::new();
+    let scene = "configs/scenes/capacity.toml";
+    set_steps(&work, scene, 1);
+    let capacity = page(&work, "capacity --to 1", "capacity.md");
+    // Outwards and inwards, by the tables of both orders: both loads together are carried as far as tried.
+    let after = capacity.split("The pull first").nth(1).unwrap();
+    for pattern in ["uniform sheet", "with compression and shear"] {
+        let carried = numbers(after, pattern);
+        assert!(
+            carried[0] > 5.0 && (0.5..1.0).contains(&carried[1]),
+            "{capacity}"
+        );
+    }
+    let ways = std::fs::read_to_string(work.path("out/ways.csv")).unwrap();
+    assert!(ways.lines().count() > 8 * 100, "{ways}");
+    work.edit(scene, &[("panel = [7, 9] ", "panel = [7, 10] ")]);
+    assert!(work.error("capacity --out out").contains("[7, 10]"));
+}
+
+#[test]
+fn where_the_panels_stay_flat() {
+    let work = Workplace::new();
+    let text = page(&work, "localisation", "localisation.md");
+    // L* of (22) in cm, and Table 2.
+    for material in ["pet-0.5mm", "s235-1.5mm"] {
+        let [.., found, _, printed] = numbers(&text, material)[..] else {
+            panic!("{text}");
+        };
+        assert!((found - printed).abs() < 0.051, "{text}");
+    }
+    assert!(
+        work.error("localisation --edge=-1 --out out")
+            .contains("--edge")
+    );
+}
+
+#[test]
+fn the_chain_is_judged_by_the_weights_it_is_told() {
+    let work = Workplace::new();
+    let scene = "configs/scenes/pet-3x3.toml";
+    shipped_weights(&work);
+    set_steps(&work, scene, 2);
+    // As if it had been trained on a coarser mesh.
+    let card = work.path("data/pet-0.5mm/small.json");
+    let mut told: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(&card).unwrap()).unwrap();
+    told["tier"] = "tiny".into();
+    std::fs::write(&card, told.to_string()).unwrap();
+    let weights = |name: &str| format!("data/pet-0.5mm/{name}.safetensors");
+    let study = format!(
+        "chain {scene} {} {} --reference {}",
+        weights("small"),
+        weights("medium"),
+        weights("medium")
+    );
+    let chain = page(&work, &study, "chain.csv");
+    let shape = |choice: &str| -> f64 {
+        let row = chain.lines().find(|line| line.contains(choice)).unwrap();
+        row.split(',').nth(5).unwrap().parse().unwrap()
+    };
+    assert!(chain.contains("window tier,\"small\"") && chain.contains("network,\"medium\""));
+    // The reference differs from itself by its tolerance and load steps alone.
+    assert!(shape("\"medium\"") < 1e-6, "{chain}");
+    assert!(shape("\"small\"") > 1e-4, "{chain}");
+    let linear = "chain configs/scenes/linear-7x7.toml --reference data/pet-0.5mm/small.safetensors --out out";
+    assert!(work.error(linear).contains("hinge = \"surrogate\""));
+}
+
+#[test]
+fn a_study_of_which_nothing_was_solved_is_an_error() {
+    let work = Workplace::new();
+    let study = |ccx: PathBuf| {
+        let mut study = work.program("window --quick --out study");
+        failure(study.env("KIRIGAMI_CCX", ccx))
+    };
+    // A broken solver is no result to keep, and a full disk ends the study.
+    let kept = || {
+        std::fs::read_dir(work.path("study/solutions"))
+            .unwrap()
+            .count()
+    };
+    let message = study(failing_ccx(
+        &work.path(""),
+        "echo ' *ERROR reading *SOLID SECTION'",
+    ));
+    assert!(message.contains("before its first increment"), "{message}");
+    assert_eq!(kept(), 0);
+    let full = "echo '1 1 1U 4 0. 0. 0.005' > window.sta; echo 'No space left on device'";
+    let message = study(failing_ccx(&work.path(""), full));
+    assert!(message.contains("No space left"), "{message}");
+    assert_eq!(kept(), 0);
+}
+
+#[test]
+fn the_tables_of_the_studies_are_joined_to_one_page() {
+    let work = Workplace::new();
+    let row = "| choice | cost | error |\n|---|---|---|\n| fine | 30 s | 1 % |\n";
+    std::fs::create_dir_all(work.path("results/tiers")).unwrap();
+    std::fs::write(work.path("results/tiers/tradeoff.md"), row).unwrap();
+    work.output("tradeoff --results results --out page.md");
+    let page = std::fs::read_to_string(work.path("page.md")).unwrap();
+    assert!(page.starts_with("# Speed against accuracy") && page.contains("30 s"));
+    let error = work.error("tradeoff --results configs --out other.md");
+    assert!(error.contains("kirigami-studies"), "{error}");
+}
+
+/// The path study solves two recorded routes of a sheet with the shipped weights on the coarsest mesh.
+#[test]
+fn recorded_routes_are_solved_beside_their_rays() {
+    let work = Workplace::new();
+    shipped_weights(&work);
+    let study = "path configs/scenes/pet-3x3.toml --routes 2 --tier tiny --out path";
+    assert!(work.output(study).contains("2 of 12 routes"));
+    assert!(work.path("path/path.png").exists());
+}

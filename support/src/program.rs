@@ -1,0 +1,453 @@
+//! External programs: found, checked for their version, run under a time limit, never orphaned.
+//!
+//! A program runs in its own process group. Its output goes to a log file, because a pipe that is not
+//! read would block it. It is terminated by SIGTERM, then SIGKILL, sent to the whole group: at its time
+//! limit, when the caller sets the stop flag, and when the caller exits.
+
+use nix::sys::signal::{Signal, killpg};
+use nix::sys::wait::{Id, WaitPidFlag, WaitStatus, waitid};
+use nix::unistd::Pid;
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::os::unix::process::{CommandExt, ExitStatusExt};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// How to find a program.
+#[derive(Debug)]
+pub struct ToolKind {
+    /// The program's usual name.
+    pub name: &'static str,
+    /// Environment variable that overrides the search with a path.
+    pub variable: &'static str,
+    /// The argument that makes it print its version.
+    pub version_flag: &'static str,
+    /// Command that installs it.
+    pub install: &'static str,
+}
+
+/// A program that was found and has printed its version.
+#[derive(Clone, Debug)]
+pub struct Tool {
+    pub kind: &'static ToolKind,
+    pub program: PathBuf,
+    pub version: String,
+}
+
+/// Result of a completed run, whether it succeeded or not.
+#[derive(Clone, Copy, Debug)]
+pub struct Run {
+    pub status: ExitStatus,
+    /// User and system time of the process (s), if the operating system reports it.
+    pub cpu_seconds: Option<f64>,
+    /// Wall time from start to end (s).
+    pub wall_seconds: f64,
+    /// Maximum resident memory observed during the run (MiB), if the operating system reports it.
+    pub peak_memory_mib: Option<f64>,
+}
+
+/// Why an external program gave no result.
+#[derive(Debug, thiserror::Error)]
+pub enum ToolError {
+    #[error(
+        "{name} was not found{at}; install it ({install}) or set {variable} to its path",
+        name = .kind.name,
+        at = .program.as_ref().map(|p| format!(" at {}", p.display())).unwrap_or(" on PATH".into()),
+        install = .kind.install,
+        variable = .kind.variable
+    )]
+    NotFound {
+        kind: &'static ToolKind,
+        /// The path that was given, `None` if PATH was searched.
+        program: Option<PathBuf>,
+    },
+    #[error("cannot run {program}: {source}", program = .program.display())]
+    Start {
+        program: PathBuf,
+        source: std::io::Error,
+    },
+    #[error("{name} was terminated at its time limit of {limit} s", limit = .limit.as_secs_f64())]
+    TimedOut {
+        name: &'static str,
+        limit: Duration,
+        /// See [`Run::cpu_seconds`].
+        cpu_seconds: Option<f64>,
+    },
+    #[error("{name} was killed by signal {signal} (out of memory, or killed by hand)")]
+    Killed {
+        name: &'static str,
+        signal: i32,
+        /// See [`Run::cpu_seconds`].
+        cpu_seconds: Option<f64>,
+    },
+    #[error("{name} was stopped on request")]
+    Stopped { name: &'static str },
+    #[error("{name} failed with {status}; the end of its log:\n{tail}")]
+    Failed {
+        name: &'static str,
+        status: ExitStatus,
+        tail: String,
+    },
+}
+
+impl ToolError {
+    /// CPU time used until the program was terminated (s), if the operating system reports it.
+    pub fn cpu_seconds(&self) -> Option<f64> {
+        match self {
+            Self::TimedOut { cpu_seconds, .. } | Self::Killed { cpu_seconds, .. } => *cpu_seconds,
+            _ => None,
+        }
+    }
+}
+
+/// Time between SIGTERM and SIGKILL.
+const GRACE: Duration = Duration::from_secs(2);
+/// Time limit of the version query.
+const VERSION_LIMIT: Duration = Duration::from_secs(30);
+/// Maximum polling interval of a running program.
+const POLL: Duration = Duration::from_millis(20);
+/// Number of bytes at the end of a log that an error quotes.
+const TAIL: i64 = 600;
+
+impl Tool {
+    /// Finds the program by its environment variable or on PATH.
+    pub fn find(kind: &'static ToolKind) -> Result<Self, ToolError> {
+        match std::env::var_os(kind.variable) {
+            Some(program) => Self::at(kind, Path::new(&program)),
+            None => {
+                let program = search_path(kind.name).ok_or(ToolError::NotFound {
+                    kind,
+                    program: None,
+                })?;
+                Self::at(kind, &program)
+            }
+        }
+    }
+
+    /// The program at a path.
+    pub fn at(kind: &'static ToolKind, program: &Path) -> Result<Self, ToolError> {
+        let mut tool = Self {
+            kind,
+            program: std::path::absolute(program)
+                .ok()
+                .filter(|program| program.is_file())
+                .ok_or_else(|| ToolError::NotFound {
+                    kind,
+                    program: Some(program.to_owned()),
+                })?,
+            version: String::new(),
+        };
+        tool.version = tool.ask_version()?;
+        Ok(tool)
+    }
+
+    fn ask_version(&self) -> Result<String, ToolError> {
+        let folder = tempfile::tempdir().map_err(|source| self.cannot_start(source))?;
+        let log = folder.path().join("version.log");
+        let arguments = [self.kind.version_flag];
+        self.run(
+            &arguments,
+            folder.path(),
+            &log,
+            VERSION_LIMIT,
+            &AtomicBool::new(false),
+        )?;
+        // ccx prints "This is Version 2.20", gmsh only "4.8.4".
+        let digits = |word: &&str| word.starts_with(|c: char| c.is_ascii_digit());
+        let text = tail(&log);
+        let version = text.split_whitespace().find(digits).map(str::to_owned);
+        version.ok_or_else(|| {
+            self.cannot_start(std::io::Error::other(format!(
+                "`{}` printed no version number: the program is not {}",
+                self.kind.version_flag, self.kind.name
+            )))
+        })
+    }
+
+    /// Runs the program in `folder`, with its output in `log`, until it exits by itself.
+    ///
+    /// A non-zero exit status is not an error here: see [`Tool::expect_success`].
+    pub fn run(
+        &self,
+        arguments: &[&str],
+        folder: &Path,
+        log: &Path,
+        limit: Duration,
+        stop: &AtomicBool,
+    ) -> Result<Run, ToolError> {
+        let start = Instant::now();
+        let mut group = self
+            .spawn(arguments, folder, log)
+            .map_err(|source| self.cannot_start(source))?;
+        let name = self.kind.name;
+        let mut peak_memory_mib = None;
+        while !group.has_ended() {
+            peak_memory_mib = memory_mib(group.0.id()).or(peak_memory_mib);
+            if stop.load(Ordering::Relaxed) {
+                group.end();
+                return Err(ToolError::Stopped { name });
+            }
+            if start.elapsed() > limit {
+                group.end();
+                let cpu_seconds = group.cpu_seconds();
+                return Err(ToolError::TimedOut {
+                    name,
+                    limit,
+                    cpu_seconds,
+                });
+            }
+            std::thread::sleep(POLL.min(Duration::from_millis(1) + start.elapsed() / 10));
+        }
+        let cpu_seconds = group.cpu_seconds();
+        let status = group.0.wait().map_err(|source| self.cannot_start(source))?;
+        if let Some(signal) = status.signal() {
+            return Err(ToolError::Killed {
+                name,
+                signal,
+                cpu_seconds,
+            });
+        }
+        Ok(Run {
+            status,
+            cpu_seconds,
+            wall_seconds: start.elapsed().as_secs_f64(),
+            peak_memory_mib,
+        })
+    }
+
+    /// Returns an error that quotes the end of the log if the exit status is not zero.
+    pub fn expect_success(&self, run: Run, log: &Path) -> Result<(), ToolError> {
+        if run.status.success() {
+            return Ok(());
+        }
+        Err(ToolError::Failed {
+            name: self.kind.name,
+            status: run.status,
+            tail: tail(log),
+        })
+    }
+
+    fn spawn(&self, arguments: &[&str], folder: &Path, log: &Path) -> std::io::Result<Group> {
+        let output = File::create(log)?;
+        let mut command = Command::new(&self.program);
+        command
+            .args(arguments)
+            .current_dir(folder)
+            .stdin(Stdio::null())
+            .stdout(output.try_clone()?)
+            .stderr(output)
+            .process_group(0);
+        // One process runs per core: a second thread gives no speed-up at these problem sizes.
+        for variable in [
+            "OMP_NUM_THREADS",
+            "OPENBLAS_NUM_THREADS",
+            "CCX_NPROC_EQUATION_SOLVER",
+        ] {
+            command.env(variable, "1");
+        }
+        #[cfg(target_os = "linux")]
+        // SAFETY: between fork and exec the closure makes only one prctl system call, which is
+        // async-signal-safe, and does not allocate.
+        unsafe {
+            command.pre_exec(|| Ok(nix::sys::prctl::set_pdeathsig(Signal::SIGKILL)?));
+        }
+        Ok(Group(command.spawn()?))
+    }
+
+    fn cannot_start(&self, source: std::io::Error) -> ToolError {
+        ToolError::Start {
+            program: self.program.clone(),
+            source,
+        }
+    }
+}
+
+/// A child process that leads its own process group; dropping this value kills the group.
+struct Group(Child);
+
+impl Group {
+    fn pid(&self) -> Pid {
+        Pid::from_raw(self.0.id() as i32)
+    }
+
+    /// Whether the leader has exited; it stays a zombie, so its CPU time can still be read.
+    fn has_ended(&self) -> bool {
+        !matches!(self.look(WaitPidFlag::WNOHANG), Ok(WaitStatus::StillAlive))
+    }
+
+    /// Waits for the leader, or polls it with WNOHANG, without reaping it.
+    fn look(&self, how: WaitPidFlag) -> nix::Result<WaitStatus> {
+        let flags = WaitPidFlag::WEXITED | WaitPidFlag::WNOWAIT | how;
+        waitid(Id::Pid(self.pid()), flags)
+    }
+
+    /// User and system seconds of the leader, which has exited or is about to exit.
+    fn cpu_seconds(&self) -> Option<f64> {
+        self.look(WaitPidFlag::empty()).ok()?;
+        cpu_seconds(self.0.id())
+    }
+
+    /// Sends SIGTERM, waits up to the grace period, then sends SIGKILL.
+    fn end(&self) {
+        let deadline = Instant::now() + GRACE;
+        // An error means that the group no longer exists, which is the desired state.
+        let _ = killpg(self.pid(), Signal::SIGTERM);
+        while !self.has_ended() && Instant::now() < deadline {
+            std::thread::sleep(POLL);
+        }
+        let _ = killpg(self.pid(), Signal::SIGKILL);
+    }
+}
+
+impl Drop for Group {
+    /// Kills the remaining processes of the group and reaps its leader.
+    fn drop(&mut self) {
+        if let Ok(None) = self.0.try_wait() {
+            let _ = killpg(self.pid(), Signal::SIGKILL);
+            let _ = self.0.wait();
+        }
+    }
+}
+
+/// User and system seconds of a process that has exited but was not reaped, from /proc.
+fn cpu_seconds(pid: u32) -> Option<f64> {
+    /// Clock ticks per second in /proc, the same on every Linux system.
+    const USER_HZ: f64 = 100.0;
+    let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
+    // The second field, a name in parentheses, may contain any characters.
+    let fields: Vec<_> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    let ticks = |i: usize| fields.get(i)?.parse::<f64>().ok();
+    Some((ticks(11)? + ticks(12)?) / USER_HZ)
+}
+
+/// Maximum resident memory so far of a running process (MiB), from /proc.
+fn memory_mib(pid: u32) -> Option<f64> {
+    let status = std::fs::read_to_string(format!("/proc/{pid}/status")).ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kib: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib / 1024.0)
+}
+
+/// The first executable file with this name on PATH.
+fn search_path(name: &str) -> Option<PathBuf> {
+    use std::os::unix::fs::PermissionsExt;
+    std::env::split_paths(&std::env::var_os("PATH")?)
+        .map(|folder| folder.join(name))
+        .find(|path| {
+            path.metadata()
+                .is_ok_and(|m| m.is_file() && m.permissions().mode() & 0o111 != 0)
+        })
+}
+
+/// Removes the output of an earlier run, so that it is not mistaken for the result of the next.
+pub fn remove_stale(path: &Path) -> std::io::Result<()> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
+}
+
+/// The last bytes of a log, or a note that the log cannot be read.
+pub fn tail(log: &Path) -> String {
+    let read = || -> std::io::Result<Vec<u8>> {
+        let mut file = File::open(log)?;
+        let length = file.metadata()?.len() as i64;
+        file.seek(SeekFrom::End(-length.min(TAIL)))?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes)?;
+        Ok(bytes)
+    };
+    match read() {
+        Ok(bytes) => String::from_utf8_lossy(&bytes).trim().to_owned(),
+        Err(error) => format!("(the log {} cannot be read: {error})", log.display()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    static SHELL: ToolKind = ToolKind {
+        name: "sh",
+        variable: "KIRIGAMI_NO_SUCH_VARIABLE",
+        version_flag: "--version",
+        install: "apt-get install dash",
+    };
+
+    fn shell() -> Tool {
+        Tool {
+            kind: &SHELL,
+            program: "/bin/sh".into(),
+            version: "1".into(),
+        }
+    }
+
+    fn run(script: &str, limit: Duration, stop: bool) -> (Result<Run, ToolError>, String) {
+        let folder = tempfile::tempdir().unwrap();
+        let log = folder.path().join("log");
+        let stop = AtomicBool::new(stop);
+        let result = shell().run(&["-c", script], folder.path(), &log, limit, &stop);
+        (result, tail(&log))
+    }
+
+    const LONG: Duration = Duration::from_secs(60);
+
+    #[test]
+    fn a_run_reports_status_log_time_and_memory() {
+        let (ended, log) = run(
+            "i=0; while [ $i -lt 200000 ]; do i=$((i+1)); done; echo out; echo err >&2; exit 3",
+            LONG,
+            false,
+        );
+        let ended = ended.unwrap();
+        assert_eq!(ended.status.code(), Some(3));
+        assert_eq!(log, "out\nerr");
+        let cpu = ended.cpu_seconds.unwrap();
+        assert!(cpu > 0.0 && cpu < 10.0, "{cpu}");
+        assert!(ended.wall_seconds > 0.0);
+        let memory = ended.peak_memory_mib.unwrap();
+        assert!(memory > 0.1 && memory < 1000.0, "{memory}");
+    }
+
+    #[test]
+    fn a_hanging_program_is_terminated_with_its_children() {
+        let script = "trap '' TERM; sleep 1000 & echo $!; while true; do :; done";
+        let (ended, log) = run(script, Duration::from_millis(200), false);
+        let error = ended.unwrap_err();
+        assert!(matches!(error, ToolError::TimedOut { .. }), "{error}");
+        assert!(error.cpu_seconds().unwrap() > 0.0, "{error:?}");
+        let child: i32 = log.trim().parse().unwrap();
+        let gone = || !Path::new(&format!("/proc/{child}")).exists() || is_zombie(child);
+        let deadline = Instant::now() + GRACE;
+        while !gone() && Instant::now() < deadline {
+            std::thread::sleep(POLL);
+        }
+        assert!(gone());
+    }
+
+    fn is_zombie(pid: i32) -> bool {
+        std::fs::read_to_string(format!("/proc/{pid}/stat")).is_ok_and(|stat| stat.contains(") Z"))
+    }
+
+    #[test]
+    fn signals_and_stops_are_distinguished() {
+        let (killed, _) = run("kill -9 $$", LONG, false);
+        assert!(matches!(killed, Err(ToolError::Killed { signal: 9, .. })));
+        let (stopped, _) = run("sleep 1000", LONG, true);
+        assert!(matches!(stopped, Err(ToolError::Stopped { .. })));
+    }
+
+    #[test]
+    fn the_error_for_a_missing_program_says_how_to_install_it() {
+        let message = Tool::at(&SHELL, Path::new("/no/such/program"))
+            .unwrap_err()
+            .to_string();
+        assert!(message.contains("/no/such/program"), "{message}");
+        assert!(message.contains("apt-get install dash"), "{message}");
+        assert!(message.contains("KIRIGAMI_NO_SUCH_VARIABLE"), "{message}");
+    }
+}

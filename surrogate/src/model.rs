@@ -1,0 +1,191 @@
+//! A surrogate: the networks of (14) with their card.
+
+use crate::card::{Card, ErrorBin, TestErrors};
+use crate::damage::{self, HingeDamage};
+use crate::energy::{self, HingeEnergy, Order, Prepared};
+use crate::network::{InvalidWeights, Layer, Network};
+use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
+
+/// The networks of (14), with the card that contains their scaling and provenance.
+#[derive(Clone, Debug)]
+pub struct Surrogate {
+    /// The embedding chi, with any number of outputs.
+    chi: Network,
+    /// The damage head chi_D, with one output.
+    chi_d: Network,
+    /// The head of D_peak, with one output; it exists if the card has a scale for it.
+    chi_p: Option<Network>,
+    card: Card,
+}
+
+/// The networks of a surrogate as in a weight file, each from its first layer to its last.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layers {
+    /// The embedding chi.
+    pub chi: Vec<Layer>,
+    /// The damage head chi_D.
+    pub chi_d: Vec<Layer>,
+    /// The head of D_peak.
+    pub chi_p: Option<Vec<Layer>>,
+}
+
+impl Surrogate {
+    /// Constructs a surrogate from its networks and its card.
+    ///
+    /// The input of the networks is the standardised features. Each head has one output. There must be a head of
+    /// D_peak if, and only if, the card has a scale for it.
+    pub fn from_parts(layers: Layers, card: Card) -> Result<Self, InvalidWeights> {
+        card.validate()?;
+        let Layers { chi, chi_d, chi_p } = layers;
+        let network =
+            |name, layers, outputs| Network::new(name, layers, outputs, &card.standardisation);
+        let chi = network("chi", chi, None)?;
+        let chi_d = network("chi_d", chi_d, Some(1))?;
+        let chi_p = match (chi_p, card.peak_scale) {
+            (None, None) => None,
+            (layers, Some(_)) => Some(network("chi_p", layers.unwrap_or_default(), Some(1))?),
+            (Some(_), None) => {
+                return Err(InvalidWeights::Missing {
+                    tensor: "d_scale of chi_p".into(),
+                });
+            }
+        };
+        Ok(Self {
+            chi,
+            chi_d,
+            chi_p,
+            card,
+        })
+    }
+
+    /// The same surrogate with test errors on its card; they can only be measured with the surrogate.
+    pub fn with_test_errors(mut self, test_errors: TestErrors, bins: Vec<ErrorBin>) -> Self {
+        self.card.test_errors = test_errors;
+        self.card.error_bins = bins;
+        self
+    }
+
+    /// The metadata: training data, scaling, test errors.
+    pub fn card(&self) -> &Card {
+        &self.card
+    }
+
+    /// The layers of the networks as in the weight file.
+    pub fn layers(&self) -> Layers {
+        let layers = |network: &Network| network.layers().to_vec();
+        Layers {
+            chi: layers(&self.chi),
+            chi_d: layers(&self.chi_d),
+            chi_p: self.chi_p.as_ref().map(layers),
+        }
+    }
+
+    /// BLAKE3 (hexadecimal) of networks and card: equal for equal predictions.
+    pub fn hash(&self) -> String {
+        let mut hasher = blake3::Hasher::new();
+        let networks = [Some(&self.chi), Some(&self.chi_d), self.chi_p.as_ref()];
+        for layer in networks.into_iter().flatten().flat_map(Network::layers) {
+            for tensor in [&layer.weight, &layer.bias] {
+                for value in &tensor.values {
+                    hasher.update(&value.to_le_bytes());
+                }
+            }
+        }
+        hasher.update(&serde_json::to_vec(&self.card).expect("a card is numbers and text"));
+        hasher.finalize().to_hex().to_string()
+    }
+
+    /// The hinge states that the training data cover.
+    pub fn domain(&self) -> &TrainingDomain {
+        &self.card.domain
+    }
+
+    /// W_s of (14): the root mean square of the training energies (N mm).
+    pub fn energy_scale(&self) -> f64 {
+        self.card.energy_scale
+    }
+
+    /// D_s of (14): the root mean square of the training damage.
+    pub fn damage_scale(&self) -> f64 {
+        self.card.damage_scale
+    }
+
+    /// Computes the quantities that depend on the designs alone: chi(xi(0, g)) and its derivative in g.
+    pub fn prepare(&self, designs: &[HingeDesign]) -> Prepared {
+        Prepared::new(&self.chi, designs)
+    }
+
+    /// W of (14) and its derivatives up to `order`, for each prepared hinge.
+    ///
+    /// # Panics
+    /// If the numbers of prepared designs and of deformations differ.
+    pub fn evaluate(
+        &self,
+        prepared: &Prepared,
+        deformations: &[HingeDeformation],
+        order: Order,
+    ) -> Vec<HingeEnergy> {
+        energy::evaluate(
+            &self.chi,
+            self.energy_scale(),
+            prepared,
+            deformations,
+            order,
+        )
+    }
+
+    /// D and D_peak of (14) and their gradients, for each hinge.
+    ///
+    /// # Panics
+    /// If the numbers of designs and of deformations differ.
+    pub fn damage(
+        &self,
+        designs: &[HingeDesign],
+        deformations: &[HingeDeformation],
+    ) -> Vec<HingeDamage> {
+        self.damages(designs, deformations, true)
+    }
+
+    /// D and D_peak of (14) for each hinge, without gradients (they are zero): only the forward pass is evaluated.
+    ///
+    /// # Panics
+    /// If the numbers of designs and of deformations differ.
+    pub fn damage_values(
+        &self,
+        designs: &[HingeDesign],
+        deformations: &[HingeDeformation],
+    ) -> Vec<HingeDamage> {
+        self.damages(designs, deformations, false)
+    }
+
+    fn damages(
+        &self,
+        designs: &[HingeDesign],
+        deformations: &[HingeDeformation],
+        with_gradient: bool,
+    ) -> Vec<HingeDamage> {
+        assert_eq!(
+            designs.len(),
+            deformations.len(),
+            "one deformation for each hinge"
+        );
+        let sharpness = self.card.damage_sharpness;
+        let evaluate = |head, scale| {
+            damage::evaluate(head, scale, sharpness, designs, deformations, with_gradient)
+        };
+        let averages = evaluate(&self.chi_d, self.card.damage_scale).into_iter();
+        let mut damages: Vec<HingeDamage> = averages
+            .map(|(d, gradient)| HingeDamage {
+                d,
+                gradient,
+                ..HingeDamage::default()
+            })
+            .collect();
+        if let (Some(chi_p), Some(scale)) = (&self.chi_p, self.card.peak_scale) {
+            for (damage, (peak, gradient)) in damages.iter_mut().zip(evaluate(chi_p, scale)) {
+                (damage.d_peak, damage.peak_gradient) = (Some(peak), gradient);
+            }
+        }
+        damages
+    }
+}

@@ -1,0 +1,253 @@
+//! Tests the structure stated in docs/ARCHITECTURE.md against the `use` declarations of the sources.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// The modules of one crate by their path, with their source text up to the unit tests.
+struct Crate {
+    name: String,
+    sources: BTreeMap<String, String>,
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn crates() -> Vec<Crate> {
+    let manifest = std::fs::read_to_string(root().join("Cargo.toml")).unwrap();
+    let members = manifest.lines().find(|line| line.starts_with("members"));
+    let members = members.unwrap().split('"').skip(1).step_by(2);
+    (members.chain(["."]))
+        .map(|member| Crate::read(member, &root().join(member).join("src")))
+        .collect()
+}
+
+impl Crate {
+    fn read(name: &str, folder: &Path) -> Self {
+        let mut sources = BTreeMap::new();
+        for path in files(folder) {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let text = text.split("#[cfg(test)]").next().unwrap().to_owned();
+            let module = path.strip_prefix(folder).unwrap().with_extension("");
+            sources.insert(module.to_str().unwrap().replace('/', "::"), text);
+        }
+        let name = name.to_owned();
+        Self { name, sources }
+    }
+
+    /// The modules that each module imports from; re-exports of a module's own submodules do not count.
+    fn imports(&self) -> BTreeMap<&str, BTreeSet<&str>> {
+        let imports = |module: &str, text: &str| -> BTreeSet<&str> {
+            uses(text)
+                .into_iter()
+                .flat_map(|(public, tree)| {
+                    leaves(&tree).into_iter().map(move |leaf| (public, leaf))
+                })
+                .filter_map(|(public, leaf)| {
+                    Some((public, self.defining(&absolute(module, &leaf)?)?))
+                })
+                .filter(|(public, other)| !(*public && is_part(module, other)))
+                .map(|(_, other)| other)
+                .filter(|other| *other != module)
+                .collect()
+        };
+        let modules = self.sources.iter();
+        modules
+            .map(|(module, text)| (module.as_str(), imports(module, text)))
+            .collect()
+    }
+
+    /// The module that defines the item at a path below the crate's root; re-exports are followed.
+    fn defining(&self, path: &str) -> Option<&str> {
+        let segments: Vec<&str> = path.split("::").collect();
+        for length in (0..=segments.len()).rev() {
+            let prefix = match length {
+                0 => "lib".to_owned(),
+                _ => segments[..length].join("::"),
+            };
+            let Some((module, text)) = self.sources.get_key_value(&prefix) else {
+                continue;
+            };
+            let item = segments.get(length).copied().unwrap_or_default();
+            let exported = uses(text).into_iter().filter(|(public, _)| *public);
+            let exported = exported.flat_map(|(_, tree)| leaves(&tree));
+            let path = exported
+                .filter(|leaf| leaf.rsplit("::").next() == Some(item))
+                .find_map(|leaf| absolute(module, &leaf));
+            return match path.filter(|path| path != &segments.join("::")) {
+                Some(path) => self.defining(&path),
+                None => Some(module),
+            };
+        }
+        None
+    }
+}
+
+/// Every Rust file below a folder.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
+    let (folders, others): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
+    let rust = others
+        .into_iter()
+        .filter(|path| path.extension().is_some_and(|it| it == "rs"));
+    let below = folders.iter().flat_map(|folder| files(folder));
+    rust.chain(below).collect()
+}
+
+/// The trees of the `use` declarations, and whether they are public.
+fn uses(text: &str) -> Vec<(bool, String)> {
+    let mut found = Vec::new();
+    let mut declaration: Option<(bool, String)> = None;
+    for line in text.lines().map(str::trim) {
+        if declaration.is_none() {
+            let public = line.starts_with("pub");
+            let begins = line.strip_prefix("pub use ").or(line.strip_prefix("use "));
+            let begins = begins.or_else(|| line.strip_prefix("pub(crate) use "));
+            declaration = begins.map(|rest| (public, rest.to_owned()));
+        } else if let Some((_, tree)) = &mut declaration {
+            tree.push_str(line);
+        }
+        if let Some((public, tree)) = declaration.take_if(|(_, tree)| tree.ends_with(';')) {
+            let tree = without_renames(tree.trim_end_matches(';'));
+            found.push((public, tree.replace(' ', "")));
+        }
+    }
+    found
+}
+
+/// A tree with the imported names, without their renames.
+fn without_renames(tree: &str) -> String {
+    let mut pieces = tree.split(" as ");
+    let first = pieces.next().unwrap_or_default().to_owned();
+    pieces.fold(first, |text, piece| {
+        text + piece.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_')
+    })
+}
+
+/// The paths in a `use` tree.
+fn leaves(tree: &str) -> Vec<String> {
+    let Some((prefix, rest)) = tree.split_once('{') else {
+        return vec![tree.to_owned()];
+    };
+    let inside = rest.strip_suffix('}').unwrap_or(rest);
+    let (mut depth, mut parts) = (0, vec![String::new()]);
+    for c in inside.chars() {
+        depth += i32::from(c == '{') - i32::from(c == '}');
+        match (c, depth) {
+            (',', 0) => parts.push(String::new()),
+            _ => parts.last_mut().unwrap().push(c),
+        }
+    }
+    let named = parts.iter().filter(|part| !part.is_empty());
+    named
+        .flat_map(|part| leaves(part))
+        .map(|leaf| {
+            format!("{prefix}{leaf}")
+                .trim_end_matches("::self")
+                .to_owned()
+        })
+        .collect()
+}
+
+/// A path of this crate relative to its root; `None` for paths of other crates.
+fn absolute(module: &str, path: &str) -> Option<String> {
+    let inside = |module: &str| match module {
+        "lib" | "main" => Vec::new(),
+        _ => module.split("::").map(str::to_owned).collect(),
+    };
+    let mut at: Vec<String> = inside(module);
+    let mut segments = path.split("::").peekable();
+    match *segments.peek()? {
+        "crate" => at.clear(),
+        "super" => _ = at.pop(),
+        "self" => {}
+        first => {
+            // A submodule of this module, by its relative path.
+            let part = |rest: &str| [at.join("::"), rest.to_owned()].join("::");
+            let relative = part(first).trim_start_matches("::").to_owned();
+            return Some(relative + path.strip_prefix(first)?).filter(|_| first != "std");
+        }
+    }
+    segments.next();
+    at.extend(segments.map(str::to_owned));
+    Some(at.join("::"))
+}
+
+fn is_part(module: &str, of: &str) -> bool {
+    matches!(module, "lib" | "main") || of.starts_with(&format!("{module}::"))
+}
+
+/// The modules on circular imports: what remains after repeatedly removing modules without remaining imports.
+fn circle<'a>(imports: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> Vec<&'a str> {
+    let mut left: BTreeSet<&str> = imports.keys().copied().collect();
+    loop {
+        let before = left.len();
+        let rest = left.clone();
+        left.retain(|module| imports[module].iter().any(|other| rest.contains(other)));
+        if left.len() == before {
+            return left.into_iter().collect();
+        }
+    }
+}
+
+#[test]
+fn no_crate_has_circular_imports() {
+    for member in crates() {
+        let left = circle(&member.imports());
+        assert!(
+            left.is_empty(),
+            "{}: circular imports among {left:?}",
+            member.name
+        );
+    }
+}
+
+/// Each room of `design` imports only from itself and the rooms that the page lists before it.
+#[test]
+fn the_rooms_of_design_follow_the_order_of_the_page() {
+    let page = std::fs::read_to_string(root().join("docs/ARCHITECTURE.md")).unwrap();
+    let order = page
+        .lines()
+        .find(|line| line.starts_with("Order of rooms: "));
+    let order: Vec<&str> = order.unwrap().split('`').skip(1).step_by(2).collect();
+    let design = Crate::read("design", &root().join("design/src"));
+    let room = |module: &str| module.split("::").next().unwrap().to_owned();
+    let place = |module: &str| order.iter().position(|name| *name == room(module));
+    for (module, others) in design
+        .imports()
+        .into_iter()
+        .filter(|(module, _)| *module != "lib")
+    {
+        let own = place(module)
+            .unwrap_or_else(|| panic!("docs/ARCHITECTURE.md lists no room of {module}"));
+        for other in others {
+            assert!(
+                place(other).is_some_and(|at| at <= own),
+                "{module} imports from {other}, which is not listed before it"
+            );
+        }
+    }
+}
+
+#[test]
+fn no_file_name_occurs_four_times() {
+    let mut names: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for member in crates() {
+        for module in member
+            .sources
+            .keys()
+            .filter(|module| *module != "lib" && *module != "main")
+        {
+            let name = module.rsplit("::").next().unwrap().to_owned();
+            names
+                .entry(name)
+                .or_default()
+                .push(format!("{}::{module}", member.name));
+        }
+    }
+    for (name, places) in names {
+        assert!(places.len() < 4, "{name}: {places:?}");
+    }
+}
