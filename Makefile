@@ -12,6 +12,7 @@ test: tools
 lint:
 	cargo fmt --all --check
 	cargo clippy --release --locked --workspace --all-targets -- -D warnings
+	cargo check --release --locked -p kirigami --no-default-features
 
 tools:
 	scripts/install-tools

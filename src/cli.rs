@@ -36,6 +36,7 @@ enum Command {
 }
 
 impl Cli {
+    /// Runs the subcommand.
     pub fn run(&self) -> Result<()> {
         if self.quiet {
             progress::silence();

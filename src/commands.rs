@@ -15,7 +15,7 @@ pub mod man;
 #[cfg(feature = "pipeline")]
 pub mod mesh;
 #[cfg(feature = "pipeline")]
-pub mod pipeline;
+pub(crate) mod pipeline;
 #[cfg(feature = "pipeline")]
 pub mod solve;
 #[cfg(feature = "pipeline")]

@@ -1,5 +1,7 @@
 //! The command line of kirigami: its subcommands, and the code that `kirigami-studies` shares with them.
 
+#![warn(missing_docs)]
+
 pub mod cli;
 pub mod commands;
 #[cfg(feature = "pipeline")]

@@ -142,6 +142,27 @@ fn files_that_are_not_weights_are_refused() {
     assert!(message.contains("w_scale"), "{message}");
 }
 
+/// Neither the environment nor the home of the user reaches the solver.
+#[test]
+fn the_solver_runs_in_its_own_environment() {
+    let work = Workplace::new();
+    let ccx = failing_ccx(&work.path(""), "env > environment.txt");
+    let mut solve = work.program("solve --tier tiny");
+    solve.env("KIRIGAMI_CCX", ccx);
+    solve
+        .env("CCX_NPROC_STIFFNESS", "4")
+        .env("OMP_NUM_THREADS", "4");
+    failure(solve.env("HOME", "/somewhere").env("SECRET", "1"));
+    let seen = std::fs::read_to_string(work.path("runs/solve/environment.txt")).unwrap();
+    for line in ["CCX_NPROC_STIFFNESS=1", "OMP_NUM_THREADS=1"] {
+        assert!(seen.lines().any(|it| it == line), "{seen}");
+    }
+    assert!(
+        !seen.contains("SECRET") && !seen.contains("/somewhere"),
+        "{seen}"
+    );
+}
+
 #[test]
 fn every_command_has_a_help_text() {
     let work = Workplace::new();

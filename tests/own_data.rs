@@ -130,7 +130,10 @@ fn input_that_cannot_be_evaluated_or_resumed_gives_an_error() {
     ));
     assert!(error.contains("own.state"), "{error}");
     let error = work.error("dataset summary own.csv");
-    assert!(error.contains("own.csv is not the file"), "{error}");
+    assert!(
+        error.contains("own.csv does not match its manifest"),
+        "{error}"
+    );
     let error = work.error(&format!("train {DATABASE} --out own.safetensors --replace"));
     assert!(error.contains("manifest"), "{error}");
     let tiny = concat!(

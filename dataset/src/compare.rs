@@ -29,6 +29,7 @@ impl<'a> ComparedRay<'a> {
         std::iter::zip(self.rows.iter().copied(), &self.references)
     }
 
+    /// The state of each row with its reference.
     pub fn states(&self) -> Vec<ComparedState> {
         let states = self.pairs();
         states
@@ -52,6 +53,7 @@ pub struct ComparedState {
 }
 
 impl ComparedState {
+    /// The state in two samples, of the compared database and of the reference.
     pub fn new(value: &HingeSample, reference: &HingeSample) -> Self {
         let compared = |x: &HingeSample| {
             let peak = x.d_peak.unwrap_or(f64::NAN);

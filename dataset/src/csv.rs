@@ -30,7 +30,9 @@ pub struct ColumnMap {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(untagged)]
 pub enum Constant {
+    /// The value of a column of numbers.
     Number(f64),
+    /// The value of a column of texts.
     Text(String),
 }
 

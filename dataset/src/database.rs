@@ -159,7 +159,9 @@ impl Database {
 /// Whether the rows of a database may be of different materials or mesh tiers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mixing {
+    /// Rows of different materials or tiers are an error.
     Refused,
+    /// Rows of different materials and tiers are accepted.
     Allowed,
 }
 

@@ -5,6 +5,7 @@ use crate::error::DatasetError;
 use crate::manifest::{FORMAT_VERSION, Manifest};
 use crate::parquet;
 use std::path::{Path, PathBuf};
+use support::sealed_json::{self, SealError};
 use support::whole_file;
 
 impl Database {
@@ -26,11 +27,17 @@ impl Database {
                 source: Box::new(source),
             }
         })?;
-        Ok(Self {
-            rows,
-            parquet,
-            manifest,
-        })
+        match manifest.disagrees(&rows) {
+            None => Ok(Self {
+                rows,
+                parquet,
+                manifest,
+            }),
+            Some(what) => Err(DatasetError::OtherRows {
+                path: path.to_owned(),
+                what,
+            }),
+        }
     }
 
     /// Writes `X.parquet` and its manifest `X.json`, each atomically.
@@ -46,9 +53,9 @@ impl Database {
             }
         }
         let mut json =
-            serde_json::to_vec_pretty(&self.manifest).map_err(|source| DatasetError::Manifest {
+            sealed_json::to_vec(&self.manifest).map_err(|source| DatasetError::Manifest {
                 path: manifest.clone(),
-                source,
+                source: source.into(),
             })?;
         json.push(b'\n');
         write_bytes(path, &self.parquet)?;
@@ -70,7 +77,9 @@ fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
         source,
     };
     let bytes = read_bytes(path)?;
-    let version: Version = serde_json::from_slice(&bytes).map_err(malformed)?;
+    let version: Version = serde_json::from_slice(&bytes)
+        .map_err(SealError::from)
+        .map_err(malformed)?;
     if !(2..=u64::from(FORMAT_VERSION)).contains(&version.format_version) {
         return Err(DatasetError::UnknownVersion {
             path: path.to_owned(),
@@ -78,7 +87,8 @@ fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
             newest: FORMAT_VERSION,
         });
     }
-    serde_json::from_slice(&bytes).map_err(malformed)
+    let manifest: Manifest = sealed_json::from_slice(&bytes).map_err(malformed)?;
+    Ok(manifest)
 }
 
 fn read_bytes(path: &Path) -> Result<Vec<u8>, DatasetError> {

@@ -4,6 +4,10 @@ use std::path::PathBuf;
 
 /// Why a database cannot be collected, read, written or corrected.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum DatasetError {
     #[error(
         "the tier `{tier}` is already corrected: use databases of solved, uncorrected rows, both for the rows and \
@@ -75,7 +79,7 @@ pub enum DatasetError {
     #[error("{path} is not a manifest of a database: {source}", path = .path.display())]
     Manifest {
         path: PathBuf,
-        source: serde_json::Error,
+        source: support::sealed_json::SealError,
     },
     #[error(
         "{path} has the format version {found}, but this program reads versions 2 to {newest}; \
@@ -97,6 +101,11 @@ pub enum DatasetError {
         expected: String,
         found: String,
     },
+    #[error(
+        "{path} and its manifest do not belong together: {what}; copy the two files again, or collect the campaign again",
+        path = .path.display()
+    )]
+    OtherRows { path: PathBuf, what: &'static str },
     #[error("{path}: {source}", path = .path.display())]
     In {
         path: PathBuf,

@@ -9,7 +9,12 @@ pub enum Fidelity {
     /// Solved on the mesh with this name.
     Solved(String),
     /// Solved on one mesh and corrected to a finer one.
-    Corrected { from: String, to: String },
+    Corrected {
+        /// Name of the mesh on which the rows were solved.
+        from: String,
+        /// Name of the finer mesh.
+        to: String,
+    },
 }
 
 /// Separator of the two mesh names of a corrected tier.

@@ -37,6 +37,8 @@
 //! # Ok::<_, dataset::DatasetError>(())
 //! ```
 
+#![warn(missing_docs)]
+
 mod compare;
 mod csv;
 mod database;

@@ -7,7 +7,9 @@ use hinge::{HingeDesign, HingeSample};
 pub struct Row {
     /// Id of the job (one geometry, one ray) of this row.
     pub job: String,
+    /// The hinge design.
     pub design: HingeDesign,
+    /// Deformation, energy, forces and damage of the increment.
     pub sample: HingeSample,
     /// Why the ray stopped before its end; empty for a complete ray.
     pub failure: String,

@@ -16,6 +16,7 @@ use std::f64::consts::PI;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SplitPlan {
+    /// Seed of the random order of the geometries.
     pub seed: u64,
     /// Fraction of the geometries used to choose the checkpoint, in (0, 1/2).
     pub validation: f64,
@@ -36,8 +37,11 @@ impl Default for SplitPlan {
 /// A part of the database.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
+    /// Fits the weights.
     Training,
+    /// Chooses the checkpoint.
     Validation,
+    /// Measures the published errors.
     Test,
 }
 
@@ -45,8 +49,11 @@ pub enum Part {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Split {
+    /// Jobs that fit the weights.
     pub training: BTreeSet<String>,
+    /// Jobs that choose the checkpoint.
     pub validation: BTreeSet<String>,
+    /// Jobs that measure the published errors.
     pub test: BTreeSet<String>,
 }
 

@@ -89,9 +89,7 @@ impl fmt::Display for Details<'_> {
             "column"
         )?;
         for name in ["w_lig", "alpha", "a", "s", "theta", "W", "D", "D_peak"] {
-            let column = schema::NUMBERS.iter().find(|column| column.name == name);
-            let values: Vec<f64> =
-                column.map_or(Vec::new(), |column| rows.iter().map(column.get).collect());
+            let values = values(rows, name);
             let counts = histogram(&values).map(|count| format!("{count:6}"));
             writeln!(f, "{name:18} {}", counts.join(" "))?;
         }
@@ -128,6 +126,17 @@ impl fmt::Display for Details<'_> {
         }
         writeln!(f, "states solved more than once: {}", repeated(rows))
     }
+}
+
+/// The values of a column of numbers in the rows that have one.
+fn values(rows: &[Row], name: &str) -> Vec<f64> {
+    if let Some(column) = schema::NUMBERS.iter().find(|column| column.name == name) {
+        return rows.iter().map(column.get).collect();
+    }
+    let known = schema::KNOWN.iter().find(|column| column.name == name);
+    known.map_or(Vec::new(), |column| {
+        rows.iter().filter_map(column.get).collect()
+    })
 }
 
 /// The bin of each value, between the minimum and the maximum of all values.
@@ -172,6 +181,15 @@ fn repeated(rows: &[Row]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Rows of older databases have no D_peak.
+    #[test]
+    fn a_value_that_some_rows_lack_is_counted_where_it_is_known() {
+        let mut rows = crate::rows::tests::rows(2);
+        rows[0].sample.d_peak = None;
+        assert_eq!(values(&rows, "D_peak").len(), rows.len() - 1);
+        assert_eq!(values(&rows, "W").len(), rows.len());
+    }
     use crate::rows::tests::rows;
 
     #[test]

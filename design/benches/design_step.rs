@@ -156,6 +156,7 @@ fn network() -> SurrogateLaw {
     };
     let card = Card {
         format_version: surrogate::FORMAT_VERSION,
+        weights_hash: None,
         units: surrogate::UNITS.into(),
         features: FEATURE_NAMES.map(String::from).to_vec(),
         standardisation: surrogate::Standardisation {

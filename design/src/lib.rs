@@ -27,8 +27,8 @@
 //!
 //! A room uses itself and the rooms above it. Lengths are in mm, forces in N, angles in rad.
 //!
-//! The types to know are [`DesignProblem`], [`DesignVector`], [`Deployment`], [`Evaluation`] and [`Scene`]. A scene file
-//! poses a problem by [`Scene::read`] and [`Scene::problem`]; without one:
+//! The main types are [`DesignProblem`], [`DesignVector`], [`Deployment`], [`Evaluation`] and [`Scene`]. A scene file
+//! defines a design problem: [`Scene::read`], then [`Scene::problem`]. Without a scene file:
 //!
 //! ```
 //! use design::equilibrium::settings::SolverSettings;
@@ -78,6 +78,8 @@
 //! assert!(problem.loss(&search.best)? < evaluation.loss);
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
+
+#![warn(missing_docs)]
 
 pub mod analysis;
 pub mod equilibrium;

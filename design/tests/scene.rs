@@ -61,7 +61,7 @@ fn slips_of_units_and_signs_are_named() {
         (
             "range = [10.0, 26.0]",
             "range = [26.0, 10.0]",
-            "least < greatest",
+            "minimum < maximum",
         ),
         ("kerf = 0.2", "kerf = -0.2", "0 < kerf"),
         ("r_win = 70.0", "r_win = 0.1", "r_win > 2.5 w_lig"),
@@ -96,7 +96,11 @@ fn invalid_panels_and_supports_are_named() {
             "panel = [7, 3]",
             "loads[0].panel = [7, 3] violates column < 7",
         ),
-        ("panel = [6, 3]", "panel = [3, 3]", "held against this load"),
+        (
+            "panel = [6, 3]",
+            "panel = [3, 3]",
+            "prevents the motion of this load",
+        ),
         ("panels = [7, 7]", "panels = [1, 7]", "2 <= columns"),
         ("kind = \"clamp\"", "kind = \"glue\"", "glue"),
     ];

@@ -34,6 +34,8 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
+#![warn(missing_docs)]
+
 mod campaign;
 mod doctor;
 mod record_file;

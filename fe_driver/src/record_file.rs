@@ -4,13 +4,15 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::io;
 use std::path::{Path, PathBuf};
-use support::whole_file;
+use support::{sealed_json, whole_file};
 
 /// A file of a campaign that cannot be read, written or parsed.
 #[derive(Debug, thiserror::Error)]
 #[error("{path}: {source}", path = .path.display())]
 pub struct FileError {
+    /// The file.
     pub path: PathBuf,
+    /// Why the operation on the file failed.
     pub source: io::Error,
 }
 
@@ -25,12 +27,24 @@ impl FileError {
     }
 }
 
+/// Separates damage from other errors of reading a file: `Ok(Err(reason))` if the contents are damaged.
+pub(crate) fn or_damage<T>(read: Result<T, FileError>) -> Result<Result<T, String>, FileError> {
+    match read {
+        Ok(contents) => Ok(Ok(contents)),
+        Err(error) if error.source.kind() == io::ErrorKind::InvalidData => {
+            Ok(Err(error.to_string()))
+        }
+        Err(error) => Err(error),
+    }
+}
+
 /// Reads a JSON file; `None` if the file does not exist.
 pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, FileError> {
     match std::fs::read(path) {
-        Ok(bytes) => serde_json::from_slice(&bytes).map(Some).map_err(|error| {
+        Ok(bytes) => sealed_json::from_slice(&bytes).map(Some).map_err(|error| {
             let hint = "the file is damaged: delete it, and the next run writes it again";
-            FileError::at(path)(io::Error::other(format!("{error}: {hint}")))
+            let damage = io::Error::new(io::ErrorKind::InvalidData, format!("{error}: {hint}"));
+            FileError::at(path)(damage)
         }),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(FileError::at(path)(error)),
@@ -39,7 +53,7 @@ pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, F
 
 /// Writes a JSON file atomically.
 pub(crate) fn write_json<T: Serialize>(path: &Path, value: &T) -> Result<(), FileError> {
-    let bytes = serde_json::to_vec_pretty(value).map_err(FileError::at(path))?;
+    let bytes = sealed_json::to_vec(value).map_err(FileError::at(path))?;
     whole_file::write(path, &bytes).map_err(FileError::at(path))
 }
 

@@ -9,6 +9,8 @@ use hinge::HingeDeformation;
 use mesher::{ElementKind, Gmsh, Tier, WindowMesh, mesh_window};
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
 /// A small general displacement gradient.
 const G: [[f64; 3]; 3] = [
@@ -82,7 +84,16 @@ fn patch_test(tier: Tier) {
     let folder = tempfile::tempdir().unwrap();
     let material = film();
     let gmsh = Gmsh::find().unwrap();
-    let mesh = mesh_window(&design(60.0), 0.5, &tier.recipe(), folder.path(), &gmsh).unwrap();
+    let mesh = mesh_window(
+        &design(60.0),
+        0.5,
+        &tier.recipe(),
+        folder.path(),
+        &gmsh,
+        Duration::from_secs(60),
+        &AtomicBool::new(false),
+    )
+    .unwrap();
 
     // Nodes and elements are those of the usual deck; the material and the load are specific to this test.
     let text = deck(&WindowModel {

@@ -323,3 +323,43 @@ fn collected_jobs_are_not_solved_again() {
     let error = restore(&other, folder, &collected).unwrap_err();
     assert!(matches!(error, CampaignError::Stranger(_)), "{error}");
 }
+
+/// Every file of a job, damaged or deleted, makes the job open; nothing of it reaches the database, and the next run
+/// repairs it.
+#[test]
+fn a_damaged_job_is_open_and_is_solved_again() {
+    let replay = tempfile::tempdir().unwrap();
+    let tools = replaying(replay.path(), "");
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    assert_eq!(run_whole(&campaign(RAYS), folder, &tools).complete, RAYS);
+    let whole = timeless(&jobs(folder));
+    let home = folder.join("jobs").join(&whole[1].id);
+    let edit = |name: &str, from: &str, to: &str| {
+        let text = std::fs::read_to_string(home.join(name)).unwrap();
+        assert!(text.contains(from), "{name} has no {from}");
+        std::fs::write(home.join(name), text.replacen(from, to, 1)).unwrap();
+    };
+    let damages: [&dyn Fn(); 6] = [
+        &|| edit("job.json", "\"young\": ", "\"young\": 1"),
+        &|| std::fs::remove_file(home.join("job.json")).unwrap(),
+        &|| edit("job.json", "{", ""),
+        &|| edit("result.json", "{", ""),
+        &|| edit("rows.csv", "0.", "1."),
+        &|| std::fs::remove_file(home.join("rows.csv")).unwrap(),
+    ];
+    for (i, damage) in damages.into_iter().enumerate() {
+        damage();
+        let tally = status(folder).unwrap().tally;
+        assert_eq!((tally.damaged, tally.open), (1, 1), "damage {i}");
+        let planned = plan(&campaign(RAYS), folder, &ToolVersions::of(&tools)).unwrap();
+        let reasons: Vec<&String> = planned.reasons.keys().collect();
+        assert!(
+            reasons.len() == 1 && reasons[0].starts_with("damaged: "),
+            "{reasons:?}"
+        );
+        assert_eq!(jobs(folder).len(), RAYS - 1, "damage {i}");
+        assert_eq!(run_whole(&campaign(RAYS), folder, &tools).complete, RAYS);
+        assert_eq!(timeless(&jobs(folder)), whole, "damage {i}");
+    }
+}

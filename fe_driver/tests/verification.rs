@@ -8,6 +8,8 @@ use fe_driver::{DeformationPath, StepControl, WindowModel, deck};
 use hinge::{HingeDeformation, SheetMaterial};
 use mesher::{Gmsh, Tier, WindowMesh, mesh_window};
 use std::fmt::Write;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
 /// A box of 20-node bricks, in the node order of this crate; nodes count from 0, in decks from 1.
 struct Bricks {
@@ -89,7 +91,16 @@ fn material_block(material: &SheetMaterial) -> String {
 fn window() -> WindowMesh {
     let folder = tempfile::tempdir().unwrap();
     let (gmsh, recipe) = (Gmsh::find().unwrap(), Tier::Tiny.recipe());
-    mesh_window(&design(60.0), 0.5, &recipe, folder.path(), &gmsh).unwrap()
+    mesh_window(
+        &design(60.0),
+        0.5,
+        &recipe,
+        folder.path(),
+        &gmsh,
+        Duration::from_secs(60),
+        &AtomicBool::new(false),
+    )
+    .unwrap()
 }
 
 fn window_deck(mesh: &WindowMesh, path: &DeformationPath, material: &SheetMaterial) -> String {

@@ -118,7 +118,16 @@ fn a_path_that_rotates_first_stores_more_energy_than_its_ray() {
     let path = DeformationPath::read(&file, asked.ray.design.w_lig).unwrap();
     let recipe = asked.tier.recipe();
     let (design, thickness) = (&asked.ray.design, asked.material.thickness);
-    let mesh = mesh_window(design, thickness, &recipe, folder.path(), &tools.gmsh).unwrap();
+    let mesh = mesh_window(
+        design,
+        thickness,
+        &recipe,
+        folder.path(),
+        &tools.gmsh,
+        Duration::from_secs(60),
+        &AtomicBool::new(false),
+    )
+    .unwrap();
     let model = WindowModel {
         mesh: &mesh,
         path: &path,

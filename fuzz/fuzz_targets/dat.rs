@@ -5,6 +5,7 @@ use fe_driver::{Layout, read_dat};
 use libfuzzer_sys::fuzz_target;
 
 const LAYOUT: Layout = Layout {
+    nodes: 1000,
     arc_nodes: 2,
     bottom_nodes: 1,
     elements: 1,

@@ -64,8 +64,11 @@ impl From<[f64; 3]> for HingeDeformation {
 /// Gradient of the stored energy with respect to (a, s, theta): (F_a, F_s, M_theta) in (N, N, N mm).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HingeForces {
+    /// Force conjugate to a (N); positive in tension.
     pub f_a: f64,
+    /// Force conjugate to s (N).
     pub f_s: f64,
+    /// Moment conjugate to theta (N mm).
     pub m_theta: f64,
 }
 

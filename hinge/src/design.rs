@@ -1,6 +1,7 @@
 //! The hinge design vector g of (7).
 
 use crate::deformation::HingeDeformation;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -21,14 +22,14 @@ pub struct HingeDesign {
 }
 
 /// The components of (7) that are the same for all hinges of a sheet: they describe the cutting tool and the window.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HingeConstants {
-    /// Radius of the hole drilled about O, as a multiple of w_lig.
+    /// Radius of the hole drilled about O, as a multiple of w_lig, above 0 and below 1; the paper cuts 0.16.
     pub fillet_ratio: f64,
-    /// Width the cutting tool removes along the main cut (mm).
+    /// Width the cutting tool removes along the main cut (mm), above 0 and below 2 fillet_ratio w_lig.
     pub kerf: f64,
-    /// Radius of the half-disc of sheet assigned to the hinge (mm).
+    /// Radius of the half-disc of sheet assigned to the hinge (mm), above 2.5 w_lig.
     pub r_win: f64,
 }
 
@@ -54,6 +55,10 @@ impl HingeConstants {
 
 /// A hinge design that cannot be cut, with the inequality it violates.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum InvalidDesign {
     #[error("{name} = {value} is not a finite number")]
     NotFinite { name: &'static str, value: f64 },

@@ -51,7 +51,7 @@ pub struct TrainingDomain {
 
 /// A stored domain that violates a rule.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("the training domain violates {0}")]
+#[error("the training domain violates the rule `{0}`")]
 pub struct InvalidDomain(&'static str);
 
 impl TrainingDomain {

@@ -6,12 +6,16 @@ use std::ops::{Add, Mul, Sub};
 /// A number, its gradient and its Hessian in (a, s, theta, w_lig).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jet {
+    /// The number.
     pub value: f64,
+    /// Its gradient in (a, s, theta, w_lig).
     pub gradient: [f64; 4],
+    /// Its Hessian in (a, s, theta, w_lig).
     pub hessian: [[f64; 4]; 4],
 }
 
 impl Jet {
+    /// A number that does not depend on the variables.
     pub const fn constant(value: f64) -> Self {
         Self {
             value,
@@ -38,7 +42,7 @@ impl Jet {
         }
     }
 
-    pub fn powf(self, n: f64) -> Self {
+    pub(crate) fn powf(self, n: f64) -> Self {
         let x = self.value;
         let derivatives = [
             x.powf(n),
@@ -48,6 +52,7 @@ impl Jet {
         self.map(derivatives)
     }
 
+    /// The reciprocal 1/x.
     pub fn recip(self) -> Self {
         let r = 1.0 / self.value;
         self.map([r, -r * r, 2.0 * r * r * r])

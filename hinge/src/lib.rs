@@ -20,6 +20,8 @@
 //! the secondary cut. The origin of the frame is the foot of that perpendicular. Both the window and
 //! the sheet measure (a, s, theta) at O, in the mean frame of the two panels.
 
+#![warn(missing_docs)]
+
 mod deformation;
 mod design;
 mod domain;

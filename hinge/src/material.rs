@@ -1,6 +1,7 @@
 //! The sheet material, as measured on tensile specimens; section 4.1.
 
 use crate::tensile::{TensileError, read_tensile};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use support::toml_file::{self, ConfigError};
@@ -9,8 +10,9 @@ use support::toml_file::{self, ConfigError};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SheetMaterial {
+    /// Name of the material; it is stored in databases and weights.
     pub name: String,
-    /// mm
+    /// Thickness of the sheet (mm).
     pub thickness: f64,
     /// Young's modulus (MPa).
     pub young: f64,
@@ -25,15 +27,23 @@ pub struct SheetMaterial {
 }
 
 /// The TOML file; see `configs/materials/`.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct MaterialFile {
+    /// Name of the material; it is stored in databases and weights.
     name: String,
+    /// Thickness of the sheet (mm), 0.02 to 10.
     thickness: f64,
+    /// Young's modulus (MPa), 10 to 1e6.
     young: f64,
+    /// Poisson's ratio, 0 to 0.499.
     poisson: f64,
+    /// Density (kg/m^3), 50 to 25 000; used only in (21)-(22).
     density_kg_m3: f64,
+    /// Equivalent plastic strain at fracture, eps_f of (12), 0.001 to 10.
     fracture_strain: f64,
+    /// Rows [true stress (MPa), true plastic strain]; the stress is above 0 and below `young`, the strain starts at
+    /// zero and increases.
     plastic: Option<Vec<[f64; 2]>>,
     /// Path of a measured curve instead of `plastic`, relative to the material's file.
     tensile_csv: Option<PathBuf>,
@@ -41,6 +51,10 @@ struct MaterialFile {
 
 /// Why a material could not be read.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum MaterialError {
     #[error(transparent)]
     Config(#[from] ConfigError),
@@ -59,11 +73,18 @@ pub enum MaterialError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("material `{material}`: {reason}")]
 pub struct InvalidMaterial {
+    /// Name of the material.
     pub material: String,
+    /// The violated rule, with the value.
     pub reason: String,
 }
 
 impl SheetMaterial {
+    /// Schema of a material's TOML file.
+    pub fn file_schema() -> schemars::Schema {
+        schemars::schema_for!(MaterialFile)
+    }
+
     /// Reads a material and its tensile curve, and rejects impossible values.
     pub fn load(path: &Path) -> Result<Self, MaterialError> {
         let file: MaterialFile = toml_file::read(path)?;

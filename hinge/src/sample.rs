@@ -85,6 +85,7 @@ impl HingeSample {
         })
     }
 
+    /// The hinge deformation (a, s, theta).
     pub fn deformation(&self) -> HingeDeformation {
         HingeDeformation {
             a: self.a,
@@ -93,6 +94,7 @@ impl HingeSample {
         }
     }
 
+    /// The generalised forces (F_a, F_s, M_theta).
     pub fn forces(&self) -> HingeForces {
         HingeForces {
             f_a: self.f_a,

@@ -31,6 +31,10 @@ const GREATEST_STRAIN: f64 = 10.0;
 
 /// A file that is not a valid tensile curve.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum TensileError {
     #[error("{path}: {source}", path = .path.display())]
     Read { path: PathBuf, source: csv::Error },

@@ -13,7 +13,7 @@ pub static GMSH: ToolKind = ToolKind {
     install: "apt-get install gmsh",
 };
 
-/// Time limit: gmsh meshes a window in milliseconds, so a longer run hangs.
+/// Maximum time limit: gmsh meshes a window in milliseconds, so a longer run hangs.
 const LIMIT: Duration = Duration::from_secs(60);
 
 /// The gmsh program.
@@ -32,7 +32,12 @@ impl Gmsh {
     }
 
     /// Meshes `folder/window.geo` with 8-node quadrilaterals, to `folder/window.msh`.
-    pub(crate) fn mesh(&self, folder: &Path) -> Result<(), ToolError> {
+    pub(crate) fn mesh(
+        &self,
+        folder: &Path,
+        limit: Duration,
+        stop: &AtomicBool,
+    ) -> Result<(), ToolError> {
         let log = folder.join("gmsh.log");
         let arguments = [
             "-2",
@@ -49,10 +54,8 @@ impl Gmsh {
             "window.msh",
             "window.geo",
         ];
-        // No stop flag: the run is too short to be interrupted.
-        let run = self
-            .0
-            .run(&arguments, folder, &log, LIMIT, &AtomicBool::new(false))?;
+        let limit = limit.min(LIMIT);
+        let run = self.0.run(&arguments, folder, &log, limit, stop)?;
         self.0.expect_success(run, &log)
     }
 }

@@ -5,6 +5,8 @@
 //! triangles as in the paper. This crate extrudes the plane mesh to layers of solid elements, adds the
 //! imperfection that initiates buckling, and rejects a mesh that is unsuitable for the solver.
 
+#![warn(missing_docs)]
+
 mod element;
 mod geo;
 mod gmsh;

@@ -12,9 +12,11 @@ use hinge::HingeDesign;
 /// A window of solid elements of one kind; indices count from 0.
 #[derive(Clone, Debug)]
 pub struct WindowMesh {
+    /// The hinge design whose window is meshed.
     pub design: HingeDesign,
     /// Sheet thickness (mm).
     pub thickness: f64,
+    /// The recipe of the mesh.
     pub recipe: MeshRecipe,
     /// The plane mesh that was extruded.
     pub plane: PlaneMesh,

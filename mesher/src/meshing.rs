@@ -10,10 +10,16 @@ use crate::window::Window;
 use hinge::{HingeDesign, InvalidDesign};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 use support::program::{self, ToolError};
 
 /// Why no mesh was generated.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum MeshError {
     #[error(transparent)]
     Design(#[from] InvalidDesign),
@@ -40,12 +46,16 @@ pub enum MeshError {
 }
 
 /// Meshes the window of `design`. The script, log and mesh of gmsh are written to `scratch`.
+///
+/// gmsh is terminated after `limit`, and soon after `stop` becomes true.
 pub fn mesh_window(
     design: &HingeDesign,
     thickness: f64,
     recipe: &MeshRecipe,
     scratch: &Path,
     gmsh: &Gmsh,
+    limit: Duration,
+    stop: &AtomicBool,
 ) -> Result<WindowMesh, MeshError> {
     design.validate()?;
     if !(thickness.is_finite() && thickness > 0.0) {
@@ -60,7 +70,7 @@ pub fn mesh_window(
     std::fs::write(&geo, script).map_err(at(&geo))?;
     let msh = scratch.join("window.msh");
     program::remove_stale(&msh).map_err(at(&msh))?;
-    gmsh.mesh(scratch)?;
+    gmsh.mesh(scratch, limit, stop)?;
     let bytes = match std::fs::read(&msh) {
         // gmsh exited with status zero but wrote no mesh: the reader reports what is missing.
         Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),

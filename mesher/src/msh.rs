@@ -62,6 +62,10 @@ pub(crate) fn sides(face: &[usize]) -> impl Iterator<Item = [usize; 3]> + Clone 
 
 /// Why a mesh file is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum MshError {
     #[error("the mesh file is not a text file: byte {0} is not UTF-8")]
     NotText(usize),
@@ -225,7 +229,7 @@ mod tests {
         assert_eq!(mesh.faces, [[0, 1, 2, 3, 4, 5, 6, 7]]);
         assert_eq!(mesh.nodes[2], [1.0, 1.0]);
         assert_eq!(mesh.nodes_on(Boundary::ArcB), [1, 2, 5]);
-        assert_eq!(mesh.nodes_on(Boundary::ArcA), []);
+        assert!(mesh.nodes_on(Boundary::ArcA).is_empty());
     }
 
     #[test]

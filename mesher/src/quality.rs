@@ -26,6 +26,10 @@ pub struct MeshQuality {
 
 /// Why a mesh is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum MeshDefect {
     #[error("element {element} is folded: its Jacobian is {jacobian} mm^3 at a Gauss point")]
     Folded { element: usize, jacobian: f64 },

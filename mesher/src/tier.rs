@@ -2,6 +2,7 @@
 
 use crate::element::ElementKind;
 use hinge::HingeDesign;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A named mesh fineness, in order of increasing CPU time.
@@ -25,24 +26,34 @@ use serde::{Deserialize, Serialize};
 /// folds along two lines through O, one of them at 40 deg to the other; therefore the columns are fine out to
 /// 0.8 w_lig on the free edge. A hinge in compression bends its panels; therefore the rings around O are as fine
 /// as the columns. The number of rings determines the error of the energy before yield.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum Tier {
+    /// 36 bricks in one layer; 2.5 CPU seconds a ray.
     Tiny,
+    /// 104 bricks in two layers; 6.3 CPU seconds a ray.
     Small,
+    /// 228 bricks in two layers; 17 CPU seconds a ray.
     #[default]
     Default,
+    /// 400 bricks in two layers; 39 CPU seconds a ray.
     Fine,
+    /// 912 bricks in two layers; 126 CPU seconds a ray. The errors of the other tiers are relative to it.
     Reference,
+    /// 1777 wedges in one layer, as in the paper; 171 CPU seconds a ray.
     Paper,
 }
 
 /// All parameters of the mesh of a design, except the sheet thickness.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MeshRecipe {
+    /// How the plane mesh is generated.
     pub plane: PlaneRecipe,
     /// Layers of elements through the thickness.
     pub layers: usize,
+    /// The bump that initiates buckling.
     pub imperfection: Imperfection,
 }
 
@@ -50,7 +61,9 @@ pub struct MeshRecipe {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PlaneRecipe {
+    /// Quadrilaterals in rings and columns, extruded to bricks.
     Structured(Structured),
+    /// Free triangles as in the paper, extruded to wedges.
     Unstructured(Unstructured),
 }
 

@@ -10,7 +10,9 @@ use std::f64::consts::PI;
 /// The two panels of a hinge: A on the -x side of the main cut, B on the +x side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
+    /// Panel A, on the -x side of the main cut.
     A,
+    /// Panel B, on the +x side of the main cut.
     B,
 }
 
@@ -50,7 +52,7 @@ impl Window<'_> {
         self.on_kerf_face(side, along)
     }
 
-    /// The point of a kerf face at the distance `along` the main cut from O (mm).
+    /// The point of a kerf face at the distance `along` (mm) from O along the main cut.
     fn on_kerf_face(&self, side: Side, along: f64) -> [f64; 2] {
         let (o, u, n) = (self.0.tip(), self.0.main_cut(), self.normal());
         let across = 0.5 * self.0.kerf * side.sign();

@@ -8,6 +8,8 @@ use mesher::{
 use std::io::ErrorKind;
 use std::os::unix::fs::PermissionsExt;
 use std::process::Command;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 use support::program::ToolError;
 
 fn design(w_lig: f64, alpha_deg: f64) -> HingeDesign {
@@ -24,8 +26,16 @@ fn mesh(w_lig: f64, alpha_deg: f64, tier: Tier) -> WindowMesh {
     let design = design(w_lig, alpha_deg);
     let scratch = tempfile::tempdir().unwrap();
     let gmsh = Gmsh::find().unwrap();
-    mesh_window(&design, 0.5, &tier.recipe(), scratch.path(), &gmsh)
-        .unwrap_or_else(|e| panic!("w = {w_lig}, alpha = {alpha_deg}, {tier}: {e}"))
+    mesh_window(
+        &design,
+        0.5,
+        &tier.recipe(),
+        scratch.path(),
+        &gmsh,
+        Duration::from_secs(60),
+        &AtomicBool::new(false),
+    )
+    .unwrap_or_else(|e| panic!("w = {w_lig}, alpha = {alpha_deg}, {tier}: {e}"))
 }
 
 /// Difference in area of a circular segment and the segment of the parabola through the ends and the middle of its
@@ -176,6 +186,8 @@ fn with_fake_gmsh(body: &str) -> MeshError {
         &Tier::Tiny.recipe(),
         scratch.path(),
         &gmsh,
+        Duration::from_secs(2),
+        &AtomicBool::new(false),
     )
     .unwrap_err()
 }
@@ -185,6 +197,11 @@ fn a_gmsh_that_fails_or_writes_no_mesh_is_reported() {
     let failed = with_fake_gmsh("echo 'Error : no licence'; exit 1");
     assert!(matches!(failed, MeshError::Gmsh(ToolError::Failed { .. })));
     assert!(failed.to_string().contains("no licence"), "{failed}");
+    let hanging = with_fake_gmsh("sleep 1000");
+    assert!(
+        matches!(hanging, MeshError::Gmsh(ToolError::TimedOut { .. })),
+        "{hanging}"
+    );
     assert!(matches!(with_fake_gmsh("exit 0"), MeshError::Read(_)));
     assert!(matches!(
         with_fake_gmsh("head -c 900 /dev/zero > window.msh"),
@@ -217,6 +234,8 @@ fn a_design_that_cannot_be_cut_is_rejected_before_gmsh_runs() {
         &Tier::Tiny.recipe(),
         scratch.path(),
         &Gmsh::find().unwrap(),
+        Duration::from_secs(60),
+        &AtomicBool::new(false),
     );
     assert!(matches!(error, Err(MeshError::Design(_))));
     assert_eq!(scratch.path().read_dir().unwrap().count(), 0);

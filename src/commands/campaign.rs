@@ -38,7 +38,7 @@ enum Action {
 }
 
 impl CampaignCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(crate) fn run(&self) -> Result<()> {
         match &self.action {
             Action::Plan(command) => command.run(),
             Action::Run(command) => command.run(),

@@ -14,7 +14,7 @@ pub struct CompletionsCommand {
 }
 
 impl CompletionsCommand {
-    /// Of the command line `program`.
+    /// Prints the completions of the command line `program`.
     pub fn run(&self, mut program: Command) -> Result<()> {
         let name = program.get_name().to_owned();
         generate(self.shell, &mut program, name, &mut std::io::stdout());

@@ -127,7 +127,7 @@ struct OutArgs {
 }
 
 impl DatasetCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(crate) fn run(&self) -> Result<()> {
         match &self.action {
             Action::Summary(command) => command.run(),
             Action::Merge(command) => command.run(),

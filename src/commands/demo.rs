@@ -23,7 +23,7 @@ const SCENE: &str = "configs/scenes/demo.toml";
 const FOLDER: &str = "runs/demo";
 
 impl DemoCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(crate) fn run(&self) -> Result<()> {
         ensure!(
             Path::new(CAMPAIGN).exists(),
             "there is no {CAMPAIGN} here: run the demo in the root folder of the repository"

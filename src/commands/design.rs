@@ -1,4 +1,4 @@
-//! `kirigami design`: cut pattern and ligament widths for a scene, and the files to cut it by.
+//! `kirigami design`: cut pattern and ligament widths for a scene, and the cut files.
 
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::Progress;
@@ -13,10 +13,10 @@ use design::scene::design_run::{forget, inverse_design};
 use design::scene::{Scene, SceneConfig};
 use std::path::{Path, PathBuf};
 
-/// Design a sheet: where to cut, and how wide to leave every ligament
+/// Design a sheet: cut pattern and ligament widths for a target shape
 ///
 /// Reads a scene and writes cut files (DXF and SVG, 1:1 in mm), pictures and a report to the
-/// scene's output folder. A run that was stopped goes on from where it was. Example:
+/// scene's output folder. A stopped run continues when it is started again. Example:
 /// kirigami design configs/scenes/linear-7x7.toml
 #[derive(Args)]
 pub struct DesignCommand {
@@ -29,13 +29,13 @@ pub struct DesignCommand {
     /// Run folder, instead of the scene's
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Steps of the search, instead of the scene's
+    /// Number of search steps, instead of the scene's
     #[arg(long, value_name = "N")]
     steps: Option<usize>,
-    /// Start afresh, although the run folder holds a run of this scene
+    /// Begin at the start design even if the run folder contains a run of this scene
     #[arg(long)]
     restart: bool,
-    /// Write the cut files although the report has errors
+    /// Write the cut files even if the report has errors
     #[arg(long)]
     force: bool,
     /// Print the report as JSON
@@ -47,7 +47,7 @@ pub struct DesignCommand {
 const PICTURE_WIDTH: u32 = 1600;
 
 impl DesignCommand {
-    /// As the scene says, from its start.
+    /// A run of the scene without changes, from its start design.
     pub fn afresh(scene: PathBuf) -> Self {
         Self {
             scene,
@@ -60,7 +60,7 @@ impl DesignCommand {
         }
     }
 
-    pub fn run(&self) -> Result<()> {
+    pub(crate) fn run(&self) -> Result<()> {
         let scene = self.scene()?;
         let _held = run_folder::hold(&scene.output())?;
         if self.restart {
@@ -69,7 +69,7 @@ impl DesignCommand {
         let stop = interrupt::stop_flag()?;
         let bar = Progress::new(scene.config.optimiser.steps, "design steps");
         let designed = inverse_design(&scene, stop, &mut |step: &StepRecord| {
-            bar.show(step.step, None, &told(step));
+            bar.show(step.step, None, &progress_line(step));
         })?;
         bar.finish();
         let report = write_results(&scene, &designed, self.force)?;
@@ -82,10 +82,10 @@ impl DesignCommand {
         }
         match designed.ended {
             Ended::Completed | Ended::Settled => {}
-            Ended::Stopped => bail!(Unfinished {
-                left: scene.config.optimiser.steps - report.steps,
-                what: "design steps",
-            }),
+            Ended::Stopped => bail!(Unfinished::new(
+                scene.config.optimiser.steps - report.steps,
+                "design steps"
+            )),
             Ended::Stuck { reason } => bail!("the search is stuck: {reason}"),
         }
         ensure!(
@@ -102,7 +102,7 @@ impl DesignCommand {
 }
 
 impl DesignCommand {
-    /// The scene with what the command line says otherwise.
+    /// The scene with the changes of the command line.
     fn scene(&self) -> Result<Scene> {
         let mut config: SceneConfig = support::toml_file::read(&self.scene)?;
         if let Some(weights) = &self.weights {
@@ -118,8 +118,8 @@ impl DesignCommand {
     }
 }
 
-/// A step in one line: the loss and its terms where they are not zero, boundary error, domain.
-fn told(step: &StepRecord) -> String {
+/// A step in one line: the loss and its non-zero terms, outline error, fraction inside the training domain.
+fn progress_line(step: &StepRecord) -> String {
     let scores = &step.scores;
     let terms: Vec<String> = (scores.terms().iter())
         .filter(|(_, value)| *value != 0.0)
@@ -134,7 +134,7 @@ fn told(step: &StepRecord) -> String {
     )
 }
 
-/// Gives every picture of the run folder its PNG.
+/// Writes a PNG of every picture in the run folder.
 fn rasterise(folder: &Path) -> Result<()> {
     for name in ["flat", "deployed-start", "deployed"] {
         let stem = folder.join(name);

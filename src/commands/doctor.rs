@@ -11,7 +11,7 @@ use clap::Args;
 pub struct DoctorCommand {}
 
 impl DoctorCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(crate) fn run(&self) -> Result<()> {
         let mut missing = 0;
         for diagnosis in fe_driver::doctor() {
             match diagnosis.tool {

@@ -25,7 +25,7 @@ enum Stage {
 }
 
 impl InspectCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(crate) fn run(&self) -> Result<()> {
         match &self.stage {
             Stage::Pattern(command) => command.run(),
             Stage::Deploy(command) => command.run(),

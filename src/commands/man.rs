@@ -15,7 +15,7 @@ pub struct ManCommand {
 }
 
 impl ManCommand {
-    /// Of the command line `program`.
+    /// Writes the pages of the command line `program`.
     pub fn run(&self, program: Command) -> Result<()> {
         std::fs::create_dir_all(&self.folder)
             .and_then(|()| generate_to(program, &self.folder))

@@ -1,12 +1,13 @@
 //! `kirigami mesh`: the finite-element mesh of one hinge window.
 
 use crate::commands::window_args::WindowArgs;
-use crate::ui::{picture, run_folder};
+use crate::ui::{interrupt, picture, run_folder};
 use anyhow::Result;
 use clap::Args;
 use mesher::{Gmsh, Tier, mesh_window, plane_mesh_svg};
 use serde_json::json;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Mesh one hinge window and draw it
 ///
@@ -32,7 +33,7 @@ pub struct MeshCommand {
 }
 
 impl MeshCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(crate) fn run(&self) -> Result<()> {
         let design = self.window.design()?;
         let _held = run_folder::hold(&self.out)?;
         let gmsh = Gmsh::find()?;
@@ -42,6 +43,8 @@ impl MeshCommand {
             &self.tier.recipe(),
             &self.out,
             &gmsh,
+            Duration::MAX,
+            interrupt::stop_flag()?,
         )?;
         let quality = mesh.quality()?;
         let pictures = picture::save(&plane_mesh_svg(&mesh), &self.out.join("mesh"), 1600)?;

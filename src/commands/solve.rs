@@ -60,7 +60,7 @@ pub struct SolveCommand {
 }
 
 impl SolveCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(crate) fn run(&self) -> Result<()> {
         let design = self.window.design()?;
         let w_lig = design.w_lig;
         let path = match &self.path {
@@ -78,7 +78,8 @@ impl SolveCommand {
         let stop = interrupt::stop_flag()?;
         let tools = Tools::find()?;
         let recipe = self.tier.recipe();
-        let mesh = mesh_window(&design, material.thickness, &recipe, &self.out, &tools.gmsh)?;
+        let (thickness, gmsh) = (material.thickness, &tools.gmsh);
+        let mesh = mesh_window(&design, thickness, &recipe, &self.out, gmsh, limit, stop)?;
         let model = WindowModel {
             mesh: &mesh,
             path: &path,

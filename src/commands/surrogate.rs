@@ -26,7 +26,7 @@ enum Action {
 }
 
 impl SurrogateCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(crate) fn run(&self) -> Result<()> {
         match &self.action {
             Action::Eval(command) => command.run(),
             Action::Card(command) => command.run(),

@@ -1,4 +1,4 @@
-//! `kirigami train`: from a hinge database to weights that `design` reads.
+//! `kirigami train`: trains the weights of the hinge energy on a hinge database.
 
 mod slices;
 
@@ -26,35 +26,35 @@ use train::{
 /// Train the surrogate hinge energy on a database
 ///
 /// Writes the weights (of the best epoch and of the last), their card, the learning curve, a parity
-/// plot and slices of the energy, and prints the errors on hinge geometries that the training never
-/// saw. It can be stopped at any time and goes on with --resume. Example:
+/// plot and slices of the energy, and prints the errors on hinge geometries that were not used for
+/// training. A stopped training continues with --resume. Example:
 /// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml
 #[derive(Args)]
 pub struct TrainCommand {
-    /// Database, as `kirigami campaign collect` writes it (Parquet with its manifest)
+    /// Database as written by `kirigami campaign collect` (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
-    /// Sizes, loss and optimiser of the training (TOML)
+    /// Network sizes, loss and optimiser of the training (TOML)
     #[arg(
         long,
         value_name = "FILE",
         default_value = "configs/training/medium.toml"
     )]
     config: PathBuf,
-    /// Weights to write; the card, the curve and the plot stand beside them
+    /// Weights to write; the card, the curve and the plots are written next to them
     #[arg(
         long,
         value_name = "FILE",
         default_value = "runs/weights/surrogate.safetensors"
     )]
     out: PathBuf,
-    /// What computes the tensors: flex or ndarray
+    /// Tensor backend: flex or ndarray
     #[arg(long, value_name = "NAME", default_value_t = Backend::default())]
     backend: Backend,
-    /// Weights to begin from, of the same sizes: fine-tuning
+    /// Fine-tune these weights, which must have the same network sizes
     #[arg(long, value_name = "WEIGHTS", conflicts_with = "resume")]
     from: Option<PathBuf>,
-    /// Go on with a training that was stopped
+    /// Continue a training that was stopped
     #[arg(long, conflicts_with = "seeds")]
     resume: bool,
     /// Number of trainings, with successive seeds. The one with the smallest product of the validation errors of W and
@@ -66,14 +66,14 @@ pub struct TrainCommand {
     replace: bool,
 }
 
-/// What errors are measured on.
+/// The data on which test errors are measured.
 pub const UNSEEN: &str = "samples of unseen geometries";
 
-/// Longest time that a kill of the training can cost.
+/// Maximum training time that is lost if the process is killed.
 const SAVE_EVERY: Duration = Duration::from_secs(30);
 
 impl TrainCommand {
-    /// With the default backend, replacing weights that are there.
+    /// With the default backend; existing weights are replaced.
     pub fn new(database: PathBuf, config: PathBuf, out: PathBuf) -> Self {
         Self {
             database,
@@ -87,13 +87,13 @@ impl TrainCommand {
         }
     }
 
-    pub fn run(&self) -> Result<()> {
+    pub(crate) fn run(&self) -> Result<()> {
         let config: TrainingConfig = support::toml_file::read(&self.config)?;
         let database = Database::read(&self.database)?;
         self.refuse_existing(config.seed)?;
         if let Some(folder) = self.out.parent() {
             std::fs::create_dir_all(folder)
-                .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+                .with_context(|| format!("cannot create the folder {}", folder.display()))?;
         }
         let _held = self.hold()?;
         let base = self.from.as_deref().map(Surrogate::load).transpose()?;
@@ -116,14 +116,14 @@ impl TrainCommand {
         }
         let best = members
             .into_iter()
-            .min_by(|left, right| least_error(left).total_cmp(&least_error(right)))
+            .min_by(|left, right| validation_error(left).total_cmp(&validation_error(right)))
             .context("`--seeds` must be at least 1")?;
         self.write(&best, &database)?;
         std::fs::remove_file(&state).ok();
         Ok(())
     }
 
-    /// Holds the weights' files against a second training until the returned file is dropped.
+    /// Locks the weights' files against a second training until the returned file is dropped.
     fn hold(&self) -> Result<File> {
         let path = self.out.with_extension("lock");
         let file =
@@ -163,7 +163,7 @@ impl TrainCommand {
         }
         if self.state().exists() {
             bail!(
-                "{} is what a stopped training left: go on with --resume, or begin again with \
+                "{} was left by a stopped training: continue with --resume, or start again with \
                  --replace",
                 self.state().display()
             );
@@ -171,7 +171,7 @@ impl TrainCommand {
         Ok(())
     }
 
-    /// Weights, last weights, curves and plots of one training, and its errors to the screen.
+    /// Writes weights, last weights, curves and plots of one training, and prints its errors.
     fn write(&self, trained: &Trained, database: &Database) -> Result<()> {
         trained.surrogate.save(&self.out)?;
         trained.last.save(&self.beside("last.safetensors"))?;
@@ -197,7 +197,7 @@ impl TrainCommand {
         Ok(())
     }
 
-    /// The weights of every seed, the spread of their errors, and what it tells.
+    /// Writes the weights of every seed; prints the spread of their errors and what it implies for the error.
     fn write_members(&self, members: &[Trained], database: &Database, first: u64) -> Result<()> {
         for (seed, member) in (first..).zip(members) {
             member.surrogate.save(&self.member(seed))?;
@@ -210,10 +210,9 @@ impl TrainCommand {
             .collect();
         let check = EnsembleCheck::of(&disagreements(&surrogates, &database.part(Part::Test)));
         println!(
-            "forces of {} networks: they differ by {:.3}, their mean errs by {:.3} (in units of the \
-             forces' RMS);\nthe tenth of the states where they differ most holds {:.0} % of the \
-             squared error; \
-             the logarithms of deviation and error correlate by {:.2}\n",
+            "forces of {} networks, in units of their root mean square: standard deviation {:.3}, error of the mean {:.3};\n\
+             the tenth of the states with the largest deviation has {:.0} % of the squared error; \
+             correlation of the logarithms of deviation and error {:.2}\n",
             members.len(),
             check.deviation,
             check.error,
@@ -223,17 +222,17 @@ impl TrainCommand {
         Ok(())
     }
 
-    /// The weights of one seed of several.
+    /// The path of the weights of one of several seeds.
     fn member(&self, seed: u64) -> PathBuf {
         self.beside(&format!("seed-{seed}.safetensors"))
     }
 
-    /// What [`Training::save`] writes.
+    /// The path of the file written by [`Training::save`].
     fn state(&self) -> PathBuf {
         self.out.with_extension("state")
     }
 
-    /// `<stem>-<suffix>` beside the weights.
+    /// `<stem>-<suffix>` next to the weights.
     fn beside(&self, suffix: &str) -> PathBuf {
         let stem = self.out.file_stem().unwrap_or_default().to_string_lossy();
         self.out.with_file_name(format!("{stem}-{suffix}"))
@@ -271,7 +270,7 @@ impl TrainCommand {
     }
 }
 
-/// One training, kept in the file `state` every now and then and when it is stopped.
+/// One training; its state is saved in the file `state` from time to time and when it is stopped.
 pub fn fit(
     database: &Database,
     config: &TrainingConfig,
@@ -298,7 +297,8 @@ pub fn fit(
         if stopping && !training.is_finished() {
             bail!(Unfinished {
                 left: epoch.epochs - epoch.epoch,
-                what: "epochs (--resume continues)",
+                what: "epochs",
+                again: "add --resume",
             });
         }
     }
@@ -311,7 +311,7 @@ fn write(path: &Path, text: &str) -> Result<()> {
         .with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// Where the card of weights, or the manifest of a database, stands.
+/// The path of the card of weights, or of the manifest of a database.
 fn card_path(file: &Path) -> PathBuf {
     file.with_extension("json")
 }
@@ -333,16 +333,16 @@ fn parity_chart(parity: &Parity) -> Result<String> {
     charts::parity(&charts, ["finite elements", "surrogate"])
 }
 
-/// The product of the validation errors of the networks of W and of D that were kept.
-fn least_error(trained: &Trained) -> f64 {
-    let least = |network: usize| {
+/// The product of the minimum validation errors of the networks of W and of D.
+fn validation_error(trained: &Trained) -> f64 {
+    let minimum = |network: usize| {
         let errors = trained
             .history
             .iter()
             .map(|it| it.validation_errors[network]);
         errors.fold(f64::INFINITY, f64::min)
     };
-    least(0) * least(1)
+    minimum(0) * minimum(1)
 }
 
 /// The errors of each quantity on `what`.
@@ -403,10 +403,10 @@ pub fn bin_table(bins: &[ErrorBin]) -> Table {
     table
 }
 
-/// Least, mean and greatest relative root mean square error over trainings.
+/// Minimum, mean and maximum relative root mean square error over the trainings.
 fn spread_table(errors: &[TestErrors]) -> Table {
     let header = format!("relative RMSE (%) of {} seeds", errors.len());
-    let mut table = table([header.as_str(), "least", "mean", "greatest"]);
+    let mut table = table([header.as_str(), "minimum", "mean", "maximum"]);
     let all: Vec<_> = errors.iter().map(quantities).collect();
     for quantity in 0..quantities(&TestErrors::default()).len() {
         let values: Vec<f64> = all
@@ -427,7 +427,7 @@ fn spread_table(errors: &[TestErrors]) -> Table {
 fn print_stiffness(check: &StiffnessCheck) {
     println!(
         "tangent of {} states: {:.1} % indefinite; along the rays the energy is concave in {:.1} % \
-         (finite elements {:.1} %), the curvature errs by {:.1} % (median {:.1} %)",
+         (finite elements {:.1} %), error of the curvature {:.1} % (median {:.1} %)",
         check.pairs,
         100.0 * check.indefinite,
         100.0 * check.learned_softening,

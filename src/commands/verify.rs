@@ -38,7 +38,7 @@ pub struct VerifyCommand {
     #[arg(long, value_name = "TIER")]
     tier: Option<Tier>,
     /// Folder for the tables, the chart and the solutions
-    #[arg(long, value_name = "FOLDER", default_value = "runs/replay")]
+    #[arg(long, value_name = "FOLDER", default_value = "runs/verify")]
     out: PathBuf,
     #[command(flatten)]
     solve: SolveArgs,
@@ -55,7 +55,7 @@ struct Replayed {
 }
 
 impl VerifyCommand {
-    pub fn run(&self) -> Result<()> {
+    pub(crate) fn run(&self) -> Result<()> {
         let (scene, design) = self.inspected.read()?;
         let surrogate = scene
             .surrogate()

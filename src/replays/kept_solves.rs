@@ -98,7 +98,7 @@ impl SolveArgs {
         let left = outcomes.iter().filter(|outcome| outcome.is_none()).count();
         if stop.load(Ordering::Relaxed) && left > 0 {
             let what = "solves";
-            bail!(Unfinished { left, what });
+            bail!(Unfinished::new(left, what));
         }
         ended?;
         Ok(outcomes.into_iter().flatten().collect())

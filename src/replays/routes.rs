@@ -16,6 +16,7 @@ use surrogate::Surrogate;
 pub struct HingeRoute {
     /// Number of the hinge: ordered by vertex, x before x'.
     pub hinge: usize,
+    /// The hinge design.
     pub design: HingeDesign,
     /// One state per load step.
     pub states: Vec<HingeDeformation>,

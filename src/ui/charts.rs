@@ -13,8 +13,11 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use std::ops::Range;
 
+/// Colour of the first curve and of points.
 pub const POINT: RGBColor = RGBColor(31, 110, 140);
+/// Colour of the second curve, such as the validation error.
 pub const VALIDATION: RGBColor = RGBColor(217, 95, 2);
+/// Colours of the curves of one chart, in order.
 pub const SLICES: [RGBColor; 5] = [
     POINT,
     VALIDATION,
@@ -22,10 +25,14 @@ pub const SLICES: [RGBColor; 5] = [
     RGBColor(102, 166, 30),
     RGBColor(166, 118, 29),
 ];
+/// Colour of guide lines.
 pub const GUIDE: RGBColor = RGBColor(120, 120, 120);
+/// Font of all texts.
 pub const FONT: &str = "DejaVu Sans";
 
+/// A part of the drawing area.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+/// The result of drawing.
 pub type ChartResult =
     Result<(), DrawingAreaErrorKind<<SVGBackend<'static> as DrawingBackend>::ErrorType>>;
 

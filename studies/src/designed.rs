@@ -4,6 +4,7 @@ use anyhow::{Result, bail};
 use design::optimise::outer_loop::{Ended, StepRecord};
 use design::scene::Scene;
 use design::scene::design_run::{Designed, forget, inverse_design};
+use kirigami::ui::exit::Unfinished;
 use kirigami::ui::interrupt;
 
 /// The finished search of a scene; a search that was stopped or is stuck is an error.
@@ -20,7 +21,10 @@ pub fn designed(scene: &Scene, progress: &mut dyn FnMut(&StepRecord)) -> Result<
     let title = &scene.config.title;
     match &designed.ended {
         Ended::Completed | Ended::Settled => Ok(designed),
-        Ended::Stopped => bail!("stopped; run the same command again to continue"),
+        Ended::Stopped => bail!(Unfinished::new(
+            scene.config.optimiser.steps + 1 - designed.history.len(),
+            "design steps"
+        )),
         Ended::Stuck { reason } => bail!("{title}: the search is stuck: {reason}"),
     }
 }

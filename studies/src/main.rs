@@ -10,6 +10,7 @@ mod drawing;
 mod free_panels;
 mod gradient;
 mod kept_fits;
+mod keys;
 mod localisation;
 mod noise;
 mod optimisers;
@@ -59,6 +60,7 @@ enum Study {
     Trust(trust::TrustStudy),
     Tradeoff(tradeoff::TradeoffCommand),
     Pages(pages::PagesCommand),
+    Keys(keys::KeysCommand),
 }
 
 impl Study {
@@ -82,6 +84,7 @@ impl Study {
             Self::Trust(study) => study.run(),
             Self::Tradeoff(command) => command.run(),
             Self::Pages(command) => command.run(),
+            Self::Keys(command) => command.run(),
         }
     }
 }

@@ -1,7 +1,7 @@
-//! `kirigami-studies pages`: the pages of docs/results and the commands that make them.
+//! `kirigami-studies pages`: runs the commands that write the pages of docs/results.
 //!
-//! The commands are data, docs/results/pages.toml. A page is always made; a product, which pages need, only if its
-//! file is missing or older than what it is made from.
+//! The commands are listed in docs/results/pages.toml. A page is always written again; a product, from which pages are
+//! made, only if its file is missing or older than its sources.
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -10,15 +10,16 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::SystemTime;
 
-/// Make pages of docs/results, all or those named, and the page that joins their tables
+/// Write the pages of docs/results, all or those named, and the page that joins their tables
 ///
-/// Run it in the root of the repository. All pages together take hours; a page that was interrupted continues where it
+/// Run it in the root of the repository. All pages together take hours; an interrupted page continues when it
+/// is started again. Example: kirigami-studies pages window trust
 /// was. Example: kirigami-studies pages window trust
 #[derive(Args)]
 pub struct PagesCommand {
     #[arg(value_name = "PAGE")]
     pages: Vec<String>,
-    /// Pages, their commands and what they need (TOML)
+    /// Pages, their commands and the products they need (TOML)
     #[arg(long, value_name = "FILE", default_value = "docs/results/pages.toml")]
     file: PathBuf,
     /// List the pages and their questions
@@ -39,7 +40,7 @@ struct Book {
 struct Page {
     name: String,
     question: String,
-    /// Names of products.
+    /// Names of the products that the page needs.
     #[serde(default)]
     needs: Vec<String>,
     commands: Vec<String>,
@@ -51,7 +52,7 @@ struct Page {
 struct Product {
     name: String,
     file: PathBuf,
-    /// Files that it is made from.
+    /// Files that the product is made from.
     from: Vec<PathBuf>,
     #[serde(default)]
     needs: Vec<String>,
@@ -90,7 +91,7 @@ impl Book {
         names.iter().map(page).collect()
     }
 
-    /// Makes a product unless it is there and newer than what it is made from.
+    /// Makes a product, unless its file exists and is newer than its sources.
     fn make(&self, name: &str) -> Result<()> {
         let product = self.product.iter().find(|product| product.name == name);
         let product = product.with_context(|| format!("there is no product `{name}`"))?;
@@ -120,7 +121,7 @@ fn modified(path: &Path) -> Option<SystemTime> {
     std::fs::metadata(path).and_then(|it| it.modified()).ok()
 }
 
-/// Runs a command line of the book, with the programs beside this one first on the PATH.
+/// Runs a command line of the book; the folder of this program is first on the PATH.
 fn shell(command: &str) -> Result<()> {
     eprintln!("{command}");
     let own = std::env::current_exe()?;

@@ -1,5 +1,4 @@
-//! Studies of sheets, end to end on small ones: what they write, and what they say to a scene that is none of
-//! theirs.
+//! The studies, end to end on small scenes: the files they write, and their errors for unsuitable scenes.
 
 #[path = "../../tests/common/mod.rs"]
 mod common;
@@ -12,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 const PIN: &str = "configs/scenes/pin-7x7.toml";
 
-/// What a study wrote of a run with arguments.
+/// The page that a study writes when run with the given arguments.
 fn page(work: &Workplace, arguments: &str, file: &str) -> String {
     work.output(&format!("{arguments} --out out"));
     std::fs::read_to_string(work.path("out").join(file)).unwrap()
@@ -27,7 +26,7 @@ fn numbers(page: &str, name: &str) -> Vec<f64> {
     cells.collect()
 }
 
-/// Copies the shipped weights of the film, the ensemble of its scenes among them.
+/// Copies the shipped weights of the film, including the ensemble of its scenes.
 fn shipped_weights(work: &Workplace) {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/pet-0.5mm");
     std::fs::create_dir_all(work.path("data/pet-0.5mm")).unwrap();
@@ -39,7 +38,7 @@ fn shipped_weights(work: &Workplace) {
     }
 }
 
-/// Sets how many steps the search of a scene takes.
+/// Sets the number of search steps of a scene.
 fn set_steps(work: &Workplace, scene: &str, steps: usize) {
     let text = std::fs::read_to_string(work.path(scene)).unwrap();
     let old = text.lines().find(|line| line.starts_with("steps")).unwrap();
@@ -47,7 +46,7 @@ fn set_steps(work: &Workplace, scene: &str, steps: usize) {
 }
 
 #[test]
-fn silhouettes_and_what_they_keep() {
+fn silhouettes_and_their_stored_runs() {
     let work = Workplace::new();
     let scene = "configs/scenes/shield-16x22.toml";
     work.edit(scene, &[("panels = [16, 22]", "panels = [4, 6]")]);
@@ -57,11 +56,11 @@ fn silhouettes_and_what_they_keep() {
     let [panel_shape, distance, _, iou] = numbers(&first, "leaf")[..4] else {
         panic!("{first}");
     };
-    // Twenty-four panels reach a leaf to some per cent.
+    // Twenty-four panels match a leaf to a few per cent.
     assert_eq!(panel_shape, 0.03);
     assert!(distance < 5.0 && (0.8..1.0).contains(&iou), "{first}");
     assert!(work.path("out/silhouettes.png").exists());
-    // Runs are kept: what more steps are asked for go on from there, and nothing is done twice.
+    // Finished runs are stored; a repeated study makes no further steps.
     let kept = work.path("out/runs/leaf-0.03/state.json");
     let before = std::fs::read(&kept).unwrap();
     page(&work, &study, "silhouettes.md");
@@ -92,7 +91,7 @@ fn optimisers_and_approaches_on_pins() {
     }
     let approaches = format!("approaches {PIN} --steps 20");
     let approaches = page(&work, &approaches, "approaches.md");
-    // Free corners open gaps at their hinges, the charts cannot.
+    // Free corners have gaps at their hinges, the charts cannot have any.
     let gap = |name: &str| numbers(&approaches, name)[4];
     assert!(
         gap("**free corners**") > 0.1 && gap("**charts**") < 1e-9,
@@ -116,12 +115,12 @@ fn the_five_actuations_and_a_missing_one() {
 }
 
 #[test]
-fn what_a_sheet_carries_once_it_is_open() {
+fn the_load_capacity_of_an_opened_sheet() {
     let work = Workplace::new();
     let scene = "configs/scenes/capacity.toml";
     set_steps(&work, scene, 1);
     let capacity = page(&work, "capacity --to 1", "capacity.md");
-    // Outwards and inwards, by the tables of both orders: both loads together are carried as far as tried.
+    // In both directions, by the tables of both orders: both loads together are carried up to the maximum tested.
     let after = capacity.split("The pull first").nth(1).unwrap();
     for pattern in ["uniform sheet", "with compression and shear"] {
         let carried = numbers(after, pattern);
@@ -137,7 +136,7 @@ fn what_a_sheet_carries_once_it_is_open() {
 }
 
 #[test]
-fn where_the_panels_stay_flat() {
+fn sheets_whose_panels_stay_flat() {
     let work = Workplace::new();
     let text = page(&work, "localisation", "localisation.md");
     // L* of (22) in cm, and Table 2.
@@ -154,17 +153,17 @@ fn where_the_panels_stay_flat() {
 }
 
 #[test]
-fn the_chain_is_judged_by_the_weights_it_is_told() {
+fn the_chain_is_compared_with_the_given_reference() {
     let work = Workplace::new();
     let scene = "configs/scenes/pet-3x3.toml";
     shipped_weights(&work);
     set_steps(&work, scene, 2);
-    // As if it had been trained on a coarser mesh.
+    // The card of a network trained on a coarser mesh.
     let card = work.path("data/pet-0.5mm/small.json");
-    let mut told: serde_json::Value =
+    let mut content: serde_json::Value =
         serde_json::from_slice(&std::fs::read(&card).unwrap()).unwrap();
-    told["tier"] = "tiny".into();
-    std::fs::write(&card, told.to_string()).unwrap();
+    content["tier"] = "tiny".into();
+    std::fs::write(&card, content.to_string()).unwrap();
     let weights = |name: &str| format!("data/pet-0.5mm/{name}.safetensors");
     let study = format!(
         "chain {scene} {} {} --reference {}",
@@ -178,7 +177,7 @@ fn the_chain_is_judged_by_the_weights_it_is_told() {
         row.split(',').nth(5).unwrap().parse().unwrap()
     };
     assert!(chain.contains("window tier,\"small\"") && chain.contains("network,\"medium\""));
-    // The reference differs from itself by its tolerance and load steps alone.
+    // The reference differs from itself by its tolerance and load steps only.
     assert!(shape("\"medium\"") < 1e-6, "{chain}");
     assert!(shape("\"small\"") > 1e-4, "{chain}");
     let linear = "chain configs/scenes/linear-7x7.toml --reference data/pet-0.5mm/small.safetensors --out out";
@@ -186,13 +185,13 @@ fn the_chain_is_judged_by_the_weights_it_is_told() {
 }
 
 #[test]
-fn a_study_of_which_nothing_was_solved_is_an_error() {
+fn a_study_without_any_solution_is_an_error() {
     let work = Workplace::new();
     let study = |ccx: PathBuf| {
         let mut study = work.program("window --quick --out study");
         failure(study.env("KIRIGAMI_CCX", ccx))
     };
-    // A broken solver is no result to keep, and a full disk ends the study.
+    // The result of a broken solver is not stored, and a full disk ends the study.
     let kept = || {
         std::fs::read_dir(work.path("study/solutions"))
             .unwrap()
@@ -211,7 +210,7 @@ fn a_study_of_which_nothing_was_solved_is_an_error() {
 }
 
 #[test]
-fn the_tables_of_the_studies_are_joined_to_one_page() {
+fn the_tables_of_the_studies_are_joined_in_one_page() {
     let work = Workplace::new();
     let row = "| choice | cost | error |\n|---|---|---|\n| fine | 30 s | 1 % |\n";
     std::fs::create_dir_all(work.path("results/tiers")).unwrap();
@@ -223,12 +222,12 @@ fn the_tables_of_the_studies_are_joined_to_one_page() {
     assert!(error.contains("kirigami-studies"), "{error}");
 }
 
-/// The path study solves two recorded routes of a sheet with the shipped weights on the coarsest mesh.
+/// The path study solves two recorded paths of a sheet with the shipped weights on the coarsest mesh.
 #[test]
-fn recorded_routes_are_solved_beside_their_rays() {
+fn recorded_paths_and_their_rays_are_solved() {
     let work = Workplace::new();
     shipped_weights(&work);
     let study = "path configs/scenes/pet-3x3.toml --routes 2 --tier tiny --out path";
-    assert!(work.output(study).contains("2 of 12 routes"));
+    assert!(work.output(study).contains("2 of 12 paths"));
     assert!(work.path("path/path.png").exists());
 }

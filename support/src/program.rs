@@ -31,14 +31,18 @@ pub struct ToolKind {
 /// A program that was found and has printed its version.
 #[derive(Clone, Debug)]
 pub struct Tool {
+    /// How the program is found.
     pub kind: &'static ToolKind,
+    /// Absolute path of the program.
     pub program: PathBuf,
+    /// The version that the program printed.
     pub version: String,
 }
 
 /// Result of a completed run, whether it succeeded or not.
 #[derive(Clone, Copy, Debug)]
 pub struct Run {
+    /// Exit status of the process.
     pub status: ExitStatus,
     /// User and system time of the process (s), if the operating system reports it.
     pub cpu_seconds: Option<f64>,
@@ -50,6 +54,10 @@ pub struct Run {
 
 /// Why an external program gave no result.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum ToolError {
     #[error(
         "{name} was not found{at}; install it ({install}) or set {variable} to its path",
@@ -106,6 +114,8 @@ impl ToolError {
 const GRACE: Duration = Duration::from_secs(2);
 /// Time limit of the version query.
 const VERSION_LIMIT: Duration = Duration::from_secs(30);
+/// Maximum delay between the death of a program by a signal and the stop request that the same signal causes.
+const SAME_SIGNAL: Duration = Duration::from_millis(500);
 /// Maximum polling interval of a running program.
 const POLL: Duration = Duration::from_millis(20);
 /// Number of bytes at the end of a log that an error quotes.
@@ -203,6 +213,15 @@ impl Tool {
         let cpu_seconds = group.cpu_seconds();
         let status = group.0.wait().map_err(|source| self.cannot_start(source))?;
         if let Some(signal) = status.signal() {
+            // A service manager or a scheduler signals all processes of a job at once: the request to stop may
+            // arrive a moment after the program died of the same signal.
+            let patience = Instant::now() + SAME_SIGNAL;
+            while Instant::now() < patience {
+                if stop.load(Ordering::Relaxed) {
+                    return Err(ToolError::Stopped { name });
+                }
+                std::thread::sleep(POLL);
+            }
             return Err(ToolError::Killed {
                 name,
                 signal,
@@ -239,11 +258,20 @@ impl Tool {
             .stdout(output.try_clone()?)
             .stderr(output)
             .process_group(0);
+        // The user's environment and home must not decide a result: ccx reads CCX_NPROC_*, gmsh reads ~/.gmshrc.
+        command.env_clear().env("HOME", folder).env("LC_ALL", "C");
+        for variable in ["PATH", "LD_LIBRARY_PATH", "TMPDIR"] {
+            if let Some(value) = std::env::var_os(variable) {
+                command.env(variable, value);
+            }
+        }
         // One process runs per core: a second thread gives no speed-up at these problem sizes.
         for variable in [
             "OMP_NUM_THREADS",
             "OPENBLAS_NUM_THREADS",
             "CCX_NPROC_EQUATION_SOLVER",
+            "CCX_NPROC_RESULTS",
+            "CCX_NPROC_STIFFNESS",
         ] {
             command.env(variable, "1");
         }

@@ -90,6 +90,7 @@ fn layers(widths: &[usize]) -> Vec<Layer> {
 fn card() -> Card {
     Card {
         format_version: FORMAT_VERSION,
+        weights_hash: None,
         units: UNITS.into(),
         features: FEATURE_NAMES.map(Into::into).to_vec(),
         standardisation: Standardisation {

@@ -10,8 +10,9 @@ use serde::{Deserialize, Serialize};
 /// 1: the damage head predicts D. 2: it may also predict D_peak; errors by bins. 3: the hashes of
 /// the material law and of the campaign's settings. 4: D_peak has a separate head; beta;
 /// the training time. 5: the domain is the set of states that the rows cover, not their box; D_peak is the mean over
-/// the most strained 1 % of the ligament. D_peak of older weights is another measure and is ignored.
-pub const FORMAT_VERSION: u32 = 5;
+/// the most strained 1 % of the ligament. D_peak of older weights is another measure and is ignored. 6: the card
+/// states the hash of the weight file, and has a checksum.
+pub const FORMAT_VERSION: u32 = 6;
 
 /// The units of all inputs and outputs of a surrogate.
 pub const UNITS: &str = "mm, N, MPa, N mm, rad";
@@ -22,6 +23,9 @@ pub const UNITS: &str = "mm, N, MPa, N mm, rad";
 pub struct Card {
     /// [`FORMAT_VERSION`] of the writer.
     pub format_version: u32,
+    /// BLAKE3 of the weight file `X.safetensors`; `None` in memory, and in cards before version 6.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weights_hash: Option<String>,
     /// [`UNITS`]
     pub units: String,
     /// [`FEATURE_NAMES`]
@@ -80,10 +84,15 @@ pub struct Card {
 pub struct TestErrors {
     /// Number of rows.
     pub rows: usize,
+    /// Error of W.
     pub energy: FitError,
+    /// Error of F_a.
     pub f_a: FitError,
+    /// Error of F_s.
     pub f_s: FitError,
+    /// Error of M_theta.
     pub m_theta: FitError,
+    /// Error of D.
     pub damage: FitError,
     /// Error of D_peak; zero if no head predicts it.
     #[serde(default)]
@@ -99,6 +108,7 @@ pub struct ErrorBin {
     pub quantity: String,
     /// Lower and upper limit; the upper limit belongs to the next bin.
     pub range: [f64; 2],
+    /// Errors on the rows of the bin.
     pub errors: TestErrors,
 }
 

@@ -31,7 +31,9 @@ pub fn features(design: &HingeDesign, deformation: &HingeDeformation) -> [f64; F
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Standardisation {
+    /// Mean of each feature, in the order of [`FEATURE_NAMES`].
     pub mean: [f64; FEATURES],
+    /// Standard deviation of each feature, in the order of [`FEATURE_NAMES`].
     pub std: [f64; FEATURES],
 }
 

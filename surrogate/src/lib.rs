@@ -43,6 +43,8 @@
 //! # Ok::<_, surrogate::WeightsError>(())
 //! ```
 
+#![warn(missing_docs)]
+
 mod card;
 mod damage;
 mod energy;

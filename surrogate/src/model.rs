@@ -80,7 +80,7 @@ impl Surrogate {
         }
     }
 
-    /// BLAKE3 (hexadecimal) of networks and card: equal for equal predictions.
+    /// BLAKE3 hash (hexadecimal) of networks and card. Surrogates with the same hash give the same predictions.
     pub fn hash(&self) -> String {
         let mut hasher = blake3::Hasher::new();
         let networks = [Some(&self.chi), Some(&self.chi_d), self.chi_p.as_ref()];

@@ -6,19 +6,27 @@ use faer::Mat;
 /// An array of a weight file, in row-major order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tensor {
+    /// Length of each dimension.
     pub shape: Vec<usize>,
+    /// The values, as many as the product of `shape`.
     pub values: Vec<f64>,
 }
 
 /// One affine map y = weight x + bias; `weight` is (outputs, inputs), `bias` (outputs).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
+    /// The matrix, of shape (outputs, inputs).
     pub weight: Tensor,
+    /// The constant term, of shape (outputs).
     pub bias: Tensor,
 }
 
 /// Why weights or a card are not valid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum InvalidWeights {
     #[error("tensor `{tensor}` is missing; train or export the weights again")]
     Missing { tensor: String },

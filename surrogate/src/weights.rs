@@ -24,9 +24,14 @@ use safetensors::{Dtype, SafeTensorError, SafeTensors};
 use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
+use support::sealed_json::{self, SealError};
 
 /// Why a surrogate could not be read or written.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum WeightsError {
     #[error("cannot read {path}: {source}", path = .path.display())]
     Read { path: PathBuf, source: io::Error },
@@ -38,10 +43,7 @@ pub enum WeightsError {
     )]
     MissingCard { weights: PathBuf, card: PathBuf },
     #[error("{path} is not a card of a surrogate: {source}", path = .path.display())]
-    Card {
-        path: PathBuf,
-        source: serde_json::Error,
-    },
+    Card { path: PathBuf, source: SealError },
     #[error(
         "{path} has the format version {found}, but this program reads versions 1 to {FORMAT_VERSION}; \
          export the weights again, or use a newer program",
@@ -67,6 +69,16 @@ pub enum WeightsError {
         path = .path.display()
     )]
     OtherCard { path: PathBuf, tensor: &'static str },
+    #[error(
+        "{path} is not the file that its card describes (BLAKE3 {found}, not {expected}): it is damaged, or the card is \
+         of another training; copy the two files together",
+        path = .path.display()
+    )]
+    Hash {
+        path: PathBuf,
+        expected: String,
+        found: String,
+    },
     #[error("{path}: {source}", path = .path.display())]
     Invalid {
         path: PathBuf,
@@ -87,8 +99,22 @@ impl Surrogate {
 }
 
 fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
-    let mut tensors = read_tensors(weights)?;
+    let bytes = std::fs::read(weights).map_err(|source| WeightsError::Read {
+        path: weights.to_owned(),
+        source,
+    })?;
+    let mut tensors = read_tensors(weights, &bytes)?;
     let mut card = read_card(weights)?;
+    if let Some(expected) = card.weights_hash.take() {
+        let found = blake3::hash(&bytes).to_hex().to_string();
+        if found != expected {
+            return Err(WeightsError::Hash {
+                path: weights.to_owned(),
+                expected,
+                found,
+            });
+        }
+    }
     let invalid = |source| WeightsError::Invalid {
         path: weights.to_owned(),
         source,
@@ -182,11 +208,14 @@ fn save(surrogate: &Surrogate, weights: &Path) -> Result<(), WeightsError> {
             source,
         })?;
     let path = card_path(weights);
-    let mut card =
-        serde_json::to_vec_pretty(surrogate.card()).map_err(|source| WeightsError::Card {
-            path: path.clone(),
-            source,
-        })?;
+    let stamped = Card {
+        weights_hash: Some(blake3::hash(&file).to_hex().to_string()),
+        ..surrogate.card().clone()
+    };
+    let mut card = sealed_json::to_vec(&stamped).map_err(|source| WeightsError::Card {
+        path: path.clone(),
+        source: source.into(),
+    })?;
     card.push(b'\n');
     write(weights, &file)?;
     write(&path, &card)
@@ -216,22 +245,20 @@ fn read_card(weights: &Path) -> Result<Card, WeightsError> {
         path: path.clone(),
         source,
     };
-    let version: Version = serde_json::from_slice(&text).map_err(malformed)?;
+    let version: Version = serde_json::from_slice(&text)
+        .map_err(SealError::from)
+        .map_err(malformed)?;
     if !(1..=u64::from(FORMAT_VERSION)).contains(&version.format_version) {
         return Err(WeightsError::UnknownVersion {
             path: path.clone(),
             found: version.format_version,
         });
     }
-    serde_json::from_slice(&text).map_err(malformed)
+    sealed_json::from_slice(&text).map_err(malformed)
 }
 
-fn read_tensors(path: &Path) -> Result<BTreeMap<String, Tensor>, WeightsError> {
-    let bytes = std::fs::read(path).map_err(|source| WeightsError::Read {
-        path: path.to_owned(),
-        source,
-    })?;
-    let file = SafeTensors::deserialize(&bytes).map_err(|source| WeightsError::Malformed {
+fn read_tensors(path: &Path, bytes: &[u8]) -> Result<BTreeMap<String, Tensor>, WeightsError> {
+    let file = SafeTensors::deserialize(bytes).map_err(|source| WeightsError::Malformed {
         path: path.to_owned(),
         source,
     })?;

@@ -215,7 +215,7 @@ fn cards_of_other_versions_shapes_and_trainings_are_errors() {
         file.card = file.card.replace(from, to);
         file.load().unwrap_err()
     };
-    for found in [0, 6] {
+    for found in [0, 7] {
         let error = with_card(
             "\"format_version\": 1",
             &format!("\"format_version\": {found}"),
@@ -395,5 +395,44 @@ fn the_head_of_d_peak_is_checked_like_that_of_d() {
                 .is_some_and(|peak| peak >= 0.0 && peak.is_finite())
         );
         assert!(damage.peak_gradient.iter().all(|slope| slope.is_finite()));
+    }
+}
+
+/// Saved files state each other's hashes: no damage of either is read as other numbers, and no card of another training.
+#[test]
+fn damaged_and_exchanged_files_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let [one, other] =
+        ["one", "other"].map(|name| folder.path().join(name).with_extension("safetensors"));
+    let surrogate = tiny();
+    surrogate.save(&one).unwrap();
+    // Another training on the same rows: the same scaling, other weights.
+    let mut layers = surrogate.layers();
+    layers.chi[0].weight.values[0] *= 1.5;
+    let trained = Surrogate::from_parts(layers, surrogate.card().clone()).unwrap();
+    trained.save(&other).unwrap();
+    let card = |weights: &PathBuf| weights.with_extension("json");
+    let whole = [&one, &card(&one)].map(|path| std::fs::read(path).unwrap());
+    std::fs::copy(card(&other), card(&one)).unwrap();
+    assert!(matches!(
+        Surrogate::load(&one),
+        Err(WeightsError::Hash { .. })
+    ));
+    for (path, text) in [&one, &card(&one)].into_iter().zip(&whole) {
+        for i in (0..text.len()).step_by(1 + text.len() / 150) {
+            std::fs::write(&one, &whole[0]).unwrap();
+            std::fs::write(card(&one), &whole[1]).unwrap();
+            let mut damaged = text.clone();
+            damaged[i] ^= 1 << (i % 8);
+            std::fs::write(path, damaged).unwrap();
+            if let Ok(read) = Surrogate::load(&one) {
+                assert_eq!(
+                    read.hash(),
+                    surrogate.hash(),
+                    "byte {i} of {}",
+                    path.display()
+                );
+            }
+        }
     }
 }

@@ -1,5 +1,5 @@
-//! Time of ten training steps (2560 rows in batches of 256) with set-up and one validation, on
-//! each backend, at the sizes of `demo.toml` and `paper.toml`.
+//! Time of ten training steps (2560 rows in batches of 256), including set-up and one validation, for
+//! each backend and for the network sizes of `demo.toml` and `paper.toml`.
 
 use dataset::{Database, Gates, Row, SplitPlan};
 use hinge::{HingeDesign, HingeSample};

@@ -1,9 +1,9 @@
-//! One layer of a network, and tanh networks of them.
+//! One layer of a network, and tanh networks of layers.
 
 use burn::tensor::Tensor;
 use surrogate::tanh_in_place;
 
-/// A layer as it is evaluated: y = x W + b.
+/// A layer as evaluated: y = x W + b.
 #[derive(Clone, Debug)]
 pub(crate) struct Affine {
     /// (inputs, outputs)
@@ -17,7 +17,7 @@ impl Affine {
     }
 }
 
-/// The values of a network; [`crate::force_tangents`] has the derivatives too.
+/// The outputs of a network; [`crate::force_tangents`] also computes derivatives.
 pub(crate) fn forward(layers: &[Affine], inputs: Tensor<2>) -> Tensor<2> {
     let mut values = inputs;
     for (index, layer) in layers.iter().enumerate() {
@@ -29,11 +29,11 @@ pub(crate) fn forward(layers: &[Affine], inputs: Tensor<2>) -> Tensor<2> {
     values
 }
 
-/// tanh; in float32 by the kernel's function, the backends' own library call being several times
+/// tanh. In float32 it is computed by [`tanh_in_place`], because the library call of the backends is several times
 /// slower.
 ///
-/// Burn does not see that function: y + (1 - y^2) (x - x_0), of which only x is differentiated and
-/// x_0 is equal to it, has the value and the derivative of tanh x.
+/// Burn cannot differentiate that function. The result is therefore y + (1 - y^2) (x - x_0), where x_0 equals x but is
+/// not differentiated; it has the value and the derivative of tanh x.
 pub(crate) fn tanh<const D: usize>(x: Tensor<D>) -> Tensor<D> {
     let at = x.clone().detach();
     let mut data = at.clone().into_data();

@@ -7,24 +7,26 @@ use std::str::FromStr;
 #[cfg(not(any(feature = "flex", feature = "ndarray")))]
 compile_error!("training needs one of the features `flex` and `ndarray`");
 
-/// What runs the tensor operations of training; the model is the same on each.
+/// The backend of the tensor operations of a training; the model is the same on all backends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Backend {
+    /// Burn's backend flex.
     #[cfg(feature = "flex")]
     Flex,
+    /// Burn's backend ndarray.
     #[cfg(feature = "ndarray")]
     NdArray,
 }
 
 /// A backend name that is not compiled in.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("unknown backend `{name}`; this program was built with {built}", built = names())]
+#[error("unknown backend `{name}`; this program was built with {built}: choose one of these", built = names())]
 pub struct UnknownBackend {
     name: String,
 }
 
 impl Backend {
-    /// Every backend compiled in, the fastest first.
+    /// All compiled-in backends, the fastest first.
     pub const ALL: &[Self] = &[
         #[cfg(feature = "flex")]
         Self::Flex,
@@ -47,7 +49,7 @@ impl Backend {
         feature = "ndarray",
         expect(
             deprecated,
-            reason = "Burn asks for flex; users may still measure the two"
+            reason = "Burn recommends flex; users may still compare both"
         )
     )]
     pub(crate) fn device(self) -> Device {
@@ -94,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_read_back_and_others_refused_with_the_list() {
+    fn names_round_trip_and_unknown_names_are_errors_with_the_list() {
         for &backend in Backend::ALL {
             assert_eq!(backend.name().parse(), Ok(backend));
         }

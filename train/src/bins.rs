@@ -1,21 +1,21 @@
-//! Errors by bins: where in the training domain a surrogate is good, and where it is not.
+//! Errors by bins: the accuracy of a surrogate over the training domain.
 
 use crate::validation::Parity;
 use dataset::Row;
 use hinge::TrainingDomain;
 use surrogate::ErrorBin;
 
-/// Bins of each quantity, of one width.
+/// Number of bins of each quantity, all of the same width.
 const BINS: usize = 5;
 
-/// What a row is binned by.
+/// The quantity by which rows are binned.
 type Quantity<'a> = &'a dyn Fn(&Row) -> f64;
 
-/// Errors on `rows`, of which `parity` tells targets and predictions, by compression, shear,
-/// rotation, ligament width, cut angle, and distance from the edge of the domain; bins without a
-/// row are left out.
+/// Errors on `rows`, whose targets and predictions are `parity`, by compression, shear,
+/// rotation, ligament width, cut angle, and distance from the edge of the domain. Bins without rows
+/// are omitted.
 pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain) -> Vec<ErrorBin> {
-    let degrees = |[least, greatest]: [f64; 2]| [least.to_degrees(), greatest.to_degrees()];
+    let degrees = |[minimum, maximum]: [f64; 2]| [minimum.to_degrees(), maximum.to_degrees()];
     let edge = |row: &Row| {
         domain
             .depth(&row.design, &row.sample.deformation())
@@ -35,11 +35,11 @@ pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain)
         ("edge", [0.0, 1.0], &edge),
     ];
     let mut bins = Vec::new();
-    for (quantity, [least, greatest], value) in quantities {
-        let width = (greatest - least) / BINS as f64;
+    for (quantity, [minimum, maximum], value) in quantities {
+        let width = (maximum - minimum) / BINS as f64;
         for bin in 0..BINS {
-            let lower = least + bin as f64 * width;
-            let inside = |row: &Row| bin_of(value(row), least, width) == bin;
+            let lower = minimum + bin as f64 * width;
+            let inside = |row: &Row| bin_of(value(row), minimum, width) == bin;
             let indices: Vec<usize> = (0..rows.len()).filter(|&i| inside(&rows[i])).collect();
             if !indices.is_empty() {
                 bins.push(ErrorBin {
@@ -53,9 +53,9 @@ pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain)
     bins
 }
 
-/// The bin of a value; what lies beyond the ends belongs to the bins there.
-fn bin_of(value: f64, least: f64, width: f64) -> usize {
-    (((value - least) / width).max(0.0) as usize).min(BINS - 1)
+/// The bin of a value; values beyond the range belong to the first or last bin.
+fn bin_of(value: f64, minimum: f64, width: f64) -> usize {
+    (((value - minimum) / width).max(0.0) as usize).min(BINS - 1)
 }
 
 #[cfg(test)]
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn every_row_falls_into_one_bin_of_each_quantity() {
+    fn every_row_is_in_exactly_one_bin_of_each_quantity() {
         let rows = [row(5.0, 0.1), row(12.0, 0.5), row(25.0, 1.0)];
         let point = |error: f64| ParityPoint {
             target: 1.0,

@@ -1,64 +1,74 @@
-//! The training configuration, as TOML files hold it.
+//! The training configuration, read from a TOML file.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Sizes, loss weights and optimiser of one training.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrainingConfig {
     /// Seed of the initial weights and of the order of the rows.
     pub seed: u64,
-    /// Units of each layer of chi after the five features; the last is the embedding, linear.
+    /// Number of units of each layer of chi after the five features; the last layer, the embedding, is linear.
+    /// At least one layer, each of 1 to 4096 units, an even number if `mirror`.
     pub embedding: Vec<usize>,
-    /// Units of each hidden layer of the damage heads, of D and of D_peak.
+    /// Number of units of each hidden layer of the damage heads of D and D_peak, each 1 to 4096. If `mirror`, at least
+    /// one layer, each with an even number of units.
     pub damage: Vec<usize>,
-    /// Whether the networks keep the mirror symmetry of hinges by construction: a row then speaks
-    /// for its mirror image too.
+    /// Whether the networks have the mirror symmetry of hinges by construction; a row then also represents
+    /// its mirror image.
     pub mirror: bool,
-    /// Passes over the training rows.
+    /// Maximum number of passes over the training rows, at least 1.
     pub epochs: usize,
-    /// Epochs without a lesser validation loss after which the training stops; never, if absent.
+    /// Number of epochs without a smaller validation error after which the training stops, at least 1; unlimited if
+    /// absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub patience: Option<usize>,
-    /// What the networks are trained in; weights and kernel are float64 in any case.
+    /// Number type of the training; exported weights and their evaluation are always float64.
     #[serde(default)]
     pub precision: Precision,
-    /// Rows in one optimiser step.
+    /// Number of rows in one optimiser step, at least 1.
     pub batch_size: usize,
-    /// The learning rate at the first step.
+    /// The learning rate at the first step, above 0 and at most 1.
     pub learning_rate: f64,
-    /// The learning rate that the cosine schedule ends at.
+    /// The learning rate at the end of the cosine schedule, 0 to `learning_rate`.
     pub learning_rate_end: f64,
-    /// Greatest norm of the gradient of one weight matrix or bias; longer ones are shortened.
+    /// Maximum norm of the gradient of one weight matrix or bias; larger gradients are scaled down to it.
+    /// Positive.
     pub gradient_norm_max: f64,
-    /// gamma of (15): the weight of the energy against the forces, in [0, 1].
+    /// gamma of (15): the weight of the energy relative to the forces, in [0, 1].
     pub energy_weight: f64,
-    /// w_D of (15): the weight of the damage.
+    /// w_D of (15): the weight of the damage, at least 0.
     pub damage_weight: f64,
-    /// beta of the damage heads, D = D_s softplus(beta y) / beta: 1 or more.
+    /// beta of the damage heads, D = D_s softplus(beta y) / beta; from 1 to 1000.
     pub damage_sharpness: f64,
 }
 
-/// Type of the numbers of a training.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+/// Number type of a training.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Precision {
+    /// Single precision.
     #[default]
     F32,
+    /// Double precision.
     F64,
 }
 
-/// A value that no training can have.
+/// A value that violates a rule of the configuration.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("`{key}` = {value} violates {rule}")]
 pub struct InvalidConfig {
+    /// The key.
     pub key: &'static str,
+    /// Its value.
     pub value: String,
+    /// The violated rule.
     pub rule: &'static str,
 }
 
 impl TrainingConfig {
-    /// Refuses impossible values, naming the key and the rule.
+    /// Rejects impossible values; the error names the key and the rule.
     pub fn validate(&self) -> Result<(), InvalidConfig> {
         let sizes = |widths: &[usize]| widths.iter().all(|width| (1..=4096).contains(width));
         let mut units = self.embedding.iter().chain(&self.damage);
@@ -70,7 +80,7 @@ impl TrainingConfig {
             (
                 "embedding",
                 format!("{:?}", self.embedding),
-                "one layer or more, each of 1 to 4096 units",
+                "at least one layer, each of 1 to 4096 units",
                 !self.embedding.is_empty() && sizes(&self.embedding),
             ),
             (
@@ -82,8 +92,8 @@ impl TrainingConfig {
             (
                 "mirror",
                 self.mirror.to_string(),
-                "an even number of units in each layer and a damage head with a hidden layer, for \
-                 units that are mirror images of each other",
+                "an even number of units in each layer and at least one hidden layer of the damage \
+                 heads, because units form pairs of mirror images",
                 !self.mirror || pairs,
             ),
             (
@@ -166,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn impossible_values_name_their_key() {
+    fn errors_of_impossible_values_name_their_key() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/training");
         let demo: TrainingConfig = support::toml_file::read(&folder.join("demo.toml")).unwrap();
         type Change = fn(&mut TrainingConfig);

@@ -1,4 +1,4 @@
-//! Networks of other seeds as a measure of what the data leave open.
+//! The spread of networks with different seeds as a measure of their error.
 //!
 //! ```text
 //! deviation^2 = mean over members and force components of |F_m,c - mean_m F_c|^2 / sigma_c^2
@@ -9,29 +9,30 @@ use crate::validation::root_mean_square;
 use dataset::Row;
 use surrogate::{Order, Surrogate};
 
-/// What the members say of the forces in one state, and what is true.
+/// Deviation of the members' forces at one state, and their error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disagreement {
+    /// Deviation of the members from their mean.
     pub deviation: f64,
-    /// Of the members' mean.
+    /// Error of the members' mean.
     pub error: f64,
 }
 
-/// Whether the members' disagreement tells their error, over many states.
+/// How well the deviation of the members predicts their error, over many states.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnsembleCheck {
     /// Root mean square of the deviation.
     pub deviation: f64,
-    /// The same of the error.
+    /// Root mean square of the error.
     pub error: f64,
-    /// Share of the squared error on the tenth of the states with the greatest deviation: a tenth
-    /// if the deviation tells nothing.
+    /// Fraction of the squared error on the tenth of the states with the largest deviation; it is one tenth
+    /// if deviation and error are independent.
     pub error_in_top_tenth: f64,
     /// Correlation of the logarithms of deviation and error.
     pub correlation: f64,
 }
 
-/// One for each row; sigma_c is the root mean square of a force over all of them.
+/// Deviation and error at each row; sigma_c is the root mean square of a force component over all rows.
 ///
 /// `members` must not be empty.
 pub fn disagreements(members: &[Surrogate], rows: &[Row]) -> Vec<Disagreement> {
@@ -60,7 +61,7 @@ pub fn disagreements(members: &[Surrogate], rows: &[Row]) -> Vec<Disagreement> {
 }
 
 impl EnsembleCheck {
-    /// `states` must not be empty.
+    /// Evaluates the states, of which there must be at least one.
     pub fn of(states: &[Disagreement]) -> Self {
         let logarithm = |value: f64| value.max(f64::MIN_POSITIVE).ln();
         let pairs = states.iter();
@@ -80,7 +81,7 @@ impl EnsembleCheck {
     }
 }
 
-/// Pearson's; zero if one of the two is constant.
+/// Pearson's correlation coefficient; zero if one of the quantities is constant.
 fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
     let mean = |value: fn((f64, f64)) -> f64| {
         let (count, sum) = pairs
@@ -122,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_deviation_that_is_half_the_error_tells_it_fully() {
+    fn a_deviation_in_proportion_to_the_error_has_correlation_one() {
         let states: Vec<_> = (1..=20)
             .map(|k| Disagreement {
                 deviation: 0.5 * f64::from(k),

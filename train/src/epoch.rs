@@ -2,24 +2,24 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What one pass over the training rows did.
+/// The result of one pass over the training rows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Epoch {
-    /// 1, 2, ..., `epochs`
+    /// Number of the epoch: 1, 2, ..., `epochs`.
     pub epoch: usize,
-    /// Of how many.
+    /// Maximum number of epochs.
     pub epochs: usize,
-    /// (15), mean over the batches as they were met.
+    /// The loss (15): mean over the batches, each with the weights before its step.
     pub training_loss: f64,
-    /// (15) on the validation part at the end of the epoch.
+    /// The loss (15) on the validation part at the end of the epoch.
     pub validation_loss: f64,
-    /// Relative errors of each network there: of W and the forces (their geometric mean), of D,
+    /// Relative errors of each network on the validation part: of W and the forces (their geometric mean), of D,
     /// and of D_peak (zero if it is not predicted).
     pub validation_errors: [f64; 3],
-    /// At the end of the epoch.
+    /// Learning rate at the end of the epoch.
     pub learning_rate: f64,
-    /// Whether one of them was less than in every epoch before.
+    /// Whether one of the validation errors is smaller than in all earlier epochs.
     pub best: bool,
-    /// Time that the training took so far (s).
+    /// Training time so far (s).
     pub elapsed_s: f64,
 }

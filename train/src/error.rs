@@ -1,30 +1,34 @@
-//! Everything that can go wrong in a training.
+//! Errors of a training.
 
 use crate::config::InvalidConfig;
 use crate::state::StateError;
 use burn::tensor::TensorReadError;
 use surrogate::InvalidWeights;
 
-/// Why a training gave no surrogate.
+/// Why a training failed.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum TrainError {
     #[error("training configuration: {0}")]
     Config(#[from] InvalidConfig),
     #[error("the {part} part of the split has no rows; collect more geometries")]
     NoRows { part: &'static str },
     #[error(
-        "the feature `{feature}` is {value} in every training row, so nothing can be learned \
-         about it; sample it in the campaign"
+        "the feature `{feature}` is {value} in every training row, so the network cannot learn \
+         its effect; vary it in the campaign"
     )]
     ConstantFeature { feature: &'static str, value: f64 },
     #[error(
-        "the root mean square of {target} over the training rows is {scale}: there is nothing \
-         to fit"
+        "the root mean square of {target} over the training rows is {scale}, so that it cannot be fitted; \
+         check the database"
     )]
     NoScale { target: &'static str, scale: f64 },
     #[error(
-        "job {job}, lambda = {lambda}: {target} = {value:e} is {times:.0} times what nine rows in \
-         ten stay under; it would drown all others, so check that job or remove its rows"
+        "job {job}, lambda = {lambda}: {target} = {value:e} is {times:.0} times the 90 % quantile of the \
+         training rows and would dominate the loss; check that job or remove its rows"
     )]
     Outlier {
         target: &'static str,
@@ -37,24 +41,24 @@ pub enum TrainError {
     Diverged { epoch: usize, learning_rate: f64 },
     #[error("the weights cannot be exported: {0}")]
     Export(#[from] InvalidWeights),
-    #[error("the backend lost a tensor: {0}")]
+    #[error("a tensor cannot be read from the backend: {0}")]
     Backend(#[from] TensorReadError),
     #[error(
-        "the weights to begin from have the layers {found:?}, the configuration asks for \
-         {expected:?} (embedding and damage heads)"
+        "the initial weights have the layers {found:?}, but the configuration has {expected:?} \
+         (embedding and damage heads); change the configuration, or start with random weights"
     )]
     OtherSizes {
         expected: Vec<Vec<usize>>,
         found: Vec<Vec<usize>>,
     },
     #[error(
-        "the weights to begin from have `damage_sharpness = {found}`; set it so in the \
-         configuration, or begin afresh"
+        "the initial weights have `damage_sharpness = {found}`; set this value in the \
+         configuration, or start with random weights"
     )]
     OtherSharpness { found: f64 },
     #[error(
-        "the weights to begin from do not keep the mirror symmetry; set `mirror = false` in the \
-         configuration, or begin afresh"
+        "the initial weights do not have the mirror symmetry; set `mirror = false` in the \
+         configuration, or start with random weights"
     )]
     NotSymmetric,
     #[error(transparent)]

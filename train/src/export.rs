@@ -1,11 +1,11 @@
-//! From Burn's networks to the layers of a weight file.
+//! Conversion of Burn's networks to the layers of a weight file.
 
 use crate::affine::Affine;
 use crate::error::TrainError;
 use crate::networks::{Mlp, Networks};
 use surrogate::{Layer, Layers, Tensor};
 
-/// In float64, weights as (outputs, inputs).
+/// The layers in float64, with weights as (outputs, inputs).
 pub(crate) fn layers(networks: &Networks) -> Result<Layers, TrainError> {
     let layers = |network: &Mlp| network.affine().into_iter().map(layer).collect();
     Ok(Layers {
@@ -82,6 +82,7 @@ mod tests {
     fn surrogate(networks: &Networks, scales: &Scales) -> Surrogate {
         let card = Card {
             format_version: FORMAT_VERSION,
+            weights_hash: None,
             units: UNITS.into(),
             features: FEATURE_NAMES.map(Into::into).to_vec(),
             standardisation: scales.standardisation,
@@ -152,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn the_kernel_agrees_with_burn_in_either_precision() {
+    fn the_kernel_agrees_with_burn_in_both_precisions() {
         for &backend in Backend::ALL {
             for (dtype, tolerance) in [(DType::F32, 1e-6), (DType::F64, 1e-14)] {
                 let errors = disagreement(backend, dtype);

@@ -1,30 +1,30 @@
-//! chi with its derivatives in the standardised (eta_a, eta_s, theta), pushed forward.
+//! chi with its derivatives in the standardised (eta_a, eta_s, theta), by forward differentiation.
 //!
 //! ```text
 //! a_0 = x W_0 + b_0          T_0,k = row k of W_0
 //! a_l = tanh(a_{l-1}) W_l + b_l,   T_l,k = ((1 - tanh(a_{l-1})^2) T_{l-1,k}) W_l
 //! ```
 //!
-//! Every line is an ordinary tensor operation, so one reverse pass through them gives the
-//! parameter gradient of a loss in the forces. The undeformed states, the deformed ones and the
-//! three tangents pass each layer in one product.
+//! All lines are ordinary tensor operations, so that one reverse pass gives the
+//! parameter gradient of a loss that contains forces. The undeformed states, the deformed states and the
+//! three tangents are multiplied by each layer's weight in one matrix product.
 
 use crate::affine::{Affine, tanh};
 use burn::tensor::Tensor;
 
-/// chi of some hinges.
+/// chi and its tangents for a batch of hinges.
 pub(crate) struct Embedding {
-    /// Undeformed and deformed, (2, n, outputs).
+    /// chi at the undeformed and at the deformed states, (2, n, outputs).
     pub values: Tensor<3>,
-    /// Derivatives of the deformed in the first three inputs, (3, n, outputs).
+    /// Derivatives of chi at the deformed states in the first three inputs, (3, n, outputs).
     pub tangents: Tensor<3>,
 }
 
-/// `inputs` are those of the undeformed and of the deformed states, (2, n, 5).
+/// Evaluates chi and its tangents. `inputs` are those of the undeformed and of the deformed states, (2, n, 5).
 pub(crate) fn with_tangents(layers: &[Affine], inputs: Tensor<3>) -> Embedding {
     let (first, following) = layers
         .split_first()
-        .expect("the configuration asks for a layer or more");
+        .expect("a valid configuration has at least one layer");
     let [_, n, features] = inputs.dims();
     let inputs = inputs.reshape([2 * n, features]);
     let values = first.forward(inputs);
@@ -62,7 +62,7 @@ mod tests {
     use burn::tensor::{DType, TensorCreationOptions};
 
     #[test]
-    fn tangents_are_those_of_finite_differences() {
+    fn tangents_agree_with_finite_differences() {
         let step = 1e-5;
         for &backend in Backend::ALL {
             let options = TensorCreationOptions::new(backend.device()).with_dtype(DType::F64);

@@ -1,29 +1,31 @@
 //! Training of the condensed hinge energy with Burn.
 //!
 //! [`train`] takes a database and a configuration and returns a [`surrogate::Surrogate`] with its
-//! test errors. The loss (15) asks for forces; their parameter gradient needs no second-order
-//! differentiation, because the three force tangents are pushed forward through the network as
-//! tensor operations and one reverse pass follows.
+//! test errors. The loss (15) contains forces, which are derivatives of the network. Their parameter gradient needs
+//! no second-order differentiation: the three force tangents are propagated forwards through the network as
+//! tensor operations, followed by one reverse pass.
 //!
-//! | file | idea |
+//! | file | contents |
 //! |---|---|
 //! | `config` | the training configuration |
 //! | `backend` | Burn backends, chosen at run time |
-//! | `samples` | rows as the network sees them: standardised, scaled, batched |
+//! | `samples` | rows as inputs and targets of the network: standardised, scaled, batched |
 //! | `mirror` | mirror symmetry by construction |
 //! | `affine` | a layer, and tanh networks of layers |
 //! | `networks` | chi, chi_D and chi_P |
 //! | `force_tangents` | chi and its derivatives in (eta_a, eta_s, theta) |
-//! | `loss` | (15) |
+//! | `loss` | the loss (15) |
 //! | `optimiser` | Muon and Adam, learning rate |
 //! | `epoch` | the record of one epoch |
-//! | `training` | the loop: steps, best epoch |
-//! | `state` | a training on disk, to go on from |
-//! | `validation` | errors on rows held out |
-//! | `bins` | the same by compression, shear, rotation, width, angle and distance from the edge |
-//! | `stiffness` | the learned tangent against the finite elements |
-//! | `ensemble` | networks of other seeds as a measure of error |
-//! | `export` | Burn to `surrogate` |
+//! | `training` | the training loop: steps, best epoch |
+//! | `state` | the state of a training on disk, for resuming |
+//! | `validation` | errors on rows that are not used in training |
+//! | `bins` | these errors by compression, shear, rotation, width, angle and distance from the domain's edge |
+//! | `stiffness` | the learned tangent compared with the finite elements |
+//! | `ensemble` | the spread of networks with different seeds as a measure of error |
+//! | `export` | conversion of Burn networks to `surrogate` |
+
+#![warn(missing_docs)]
 
 mod affine;
 mod backend;

@@ -5,9 +5,9 @@
 //!     + w_D |D - D*|^2 / D_s^2                                                     (15)
 //! ```
 //!
-//! Where D_peak is predicted too, the last term is the mean of both; rows without a D_peak do not count in its. The damages are
-//! softplus(beta y) / beta of what their heads give: a sharp beta lets a ligament be exactly as
-//! undamaged as it is before it yields, without ado in the network.
+//! If D_peak is also predicted, the last term is the mean over both damage measures, and rows without D_peak do not
+//! contribute to its part. A damage measure is softplus(beta y) / beta of the output y of its head. With a large
+//! beta, a moderately negative y represents the zero damage of a ligament before yield.
 
 use crate::affine::forward;
 use crate::config::TrainingConfig;
@@ -17,17 +17,17 @@ use crate::samples::Batch;
 use burn::tensor::Tensor;
 use burn::tensor::activation::softplus;
 
-/// (14) and its forces in the scales of (15).
+/// The energy, forces and damage of (14), in the scales of (15).
 pub(crate) struct Prediction {
     /// W / W_s, (n, 1)
     pub energy: Tensor<2>,
     /// (F_a, F_s, M_theta) / sigma_F, (n, 3)
     pub forces: Tensor<2>,
-    /// D / D_s and, if predicted, D_peak over its scale, (n, 1 or 2)
+    /// D / D_s and, if predicted, D_peak divided by its scale, (n, 1 or 2)
     pub damage: Tensor<2>,
 }
 
-/// W = |r|^2 with r = chi(xi) - chi(xi0), so dW/dx_k = 2 r . T_k.
+/// Evaluates the networks. W = |r|^2 with r = chi(xi) - chi(xi0), so dW/dx_k = 2 r . T_k.
 pub(crate) fn predict(networks: &Networks, batch: &Batch, damage_sharpness: f64) -> Prediction {
     let [_, n, _] = batch.states.dims();
     let Embedding { values, tangents } =
@@ -44,7 +44,7 @@ pub(crate) fn predict(networks: &Networks, batch: &Batch, damage_sharpness: f64)
     }
 }
 
-/// (15) as a tensor of one number.
+/// The loss (15) as a tensor with one element.
 pub(crate) fn loss(networks: &Networks, batch: &Batch, config: &TrainingConfig) -> Tensor<1> {
     let predicted = predict(networks, batch, config.damage_sharpness);
     let mean_square =
@@ -97,7 +97,7 @@ mod tests {
         &mut network.layers[index]
     }
 
-    /// A direction of no meaning, of the shape asked for.
+    /// An arbitrary direction with the given shape.
     fn direction(shape: [usize; 2], options: &TensorCreationOptions) -> Tensor<2> {
         let values: Vec<f64> = (0..shape[0] * shape[1])
             .map(|index| (1.1 * index as f64 + 0.4).cos())
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn the_parameter_gradient_is_that_of_finite_differences() {
+    fn the_parameter_gradient_agrees_with_finite_differences() {
         for symmetric in [false, true] {
             check_parameter_gradient(symmetric);
         }
@@ -141,7 +141,7 @@ mod tests {
                 along_weight.sum().into_scalar::<f64>() + along_bias.sum().into_scalar::<f64>();
             assert!(
                 exact.abs() > 1e-3,
-                "layer {index} has a gradient to check: {exact:e}"
+                "the gradient of layer {index} is too small for this test: {exact:e}"
             );
             assert!(
                 (difference - exact).abs() < 1e-8 * exact.abs().max(1.0),

@@ -1,15 +1,16 @@
 //! Mirror symmetry by construction, instead of learned from mirror images.
 //!
 //! W(a, s, theta; alpha) = W(a, -s, theta; pi - alpha) is W(x) = W(S x) in standardised features,
-//! with S = diag(1, -1, 1, 1, -1) where the means of eta_s and alpha are 0 and pi / 2. The units of
-//! each layer come in pairs (j, n - 1 - j), of which one sees what the other sees of the image:
+//! with S = diag(1, -1, 1, 1, -1) if the means of eta_s and alpha are 0 and pi / 2. The units of
+//! each layer form pairs (j, n - 1 - j). One unit of a pair has the value of the other unit at the mirror image:
 //!
 //! ```text
 //! h_{n-1-j}(x) = h_j(S x)      if  W_0 = [A, S A R],  W_l = [A, R A R],  b_l = [b, R b]
 //! ```
 //!
-//! with R the reversal of order, and A and b halves, which are all that is trained. |chi - chi_0|^2
-//! takes both of a pair alike; the output of a damage head does with W_L = [B; R B].
+//! with R the reversal of order. Only the halves A and b are trained. |chi - chi_0|^2
+//! is invariant because it is symmetric in the units of a pair; the output of a damage head is invariant with
+//! W_L = [B; R B].
 
 use crate::affine::Affine;
 use burn::tensor::{Tensor, TensorData};
@@ -19,16 +20,16 @@ use surrogate::Standardisation;
 /// The diagonal of S.
 const SIGNS: [f64; 5] = [1.0, -1.0, 1.0, 1.0, -1.0];
 
-/// How a layer is folded onto the part of it that is trained.
+/// How a layer is determined by its trained part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fold {
-    /// Not at all: no symmetry.
+    /// The whole layer is trained; no symmetry.
     Whole,
-    /// The layer takes features; half of its columns are trained.
+    /// The inputs are features; half of the columns are trained.
     First,
-    /// The layer takes pairs and gives pairs; half of its columns are trained.
+    /// The inputs and outputs are pairs; half of the columns are trained.
     Hidden,
-    /// The layer takes pairs, its outputs are their own images; half of its rows are trained.
+    /// The inputs are pairs, the outputs are invariant; half of the rows are trained.
     Invariant,
 }
 
@@ -42,7 +43,7 @@ impl Fold {
         }
     }
 
-    /// The layer of which `part` is trained.
+    /// The whole layer with the trained part `part`.
     pub fn unfold(self, part: Affine) -> Affine {
         let Affine { weight, bias } = part;
         let paired = |bias: Tensor<1>| Tensor::cat(vec![bias.clone(), bias.flip([0])], 0);
@@ -69,7 +70,7 @@ impl Fold {
         }
     }
 
-    /// The part of a whole layer that is trained.
+    /// The trained part of a whole layer.
     pub fn fold(self, whole: Affine) -> Affine {
         let Affine { weight, bias } = whole;
         let [inputs, outputs] = self.shape(weight.dims());
@@ -80,13 +81,14 @@ impl Fold {
     }
 }
 
-/// Whether the mirror image of standardised features is S times them.
+/// Whether the mirror image of standardised features x is S x.
 pub(crate) fn is_centred(standardisation: &Standardisation) -> bool {
     let [_, eta_s, .., alpha] = standardisation.mean;
     eta_s == 0.0 && alpha == FRAC_PI_2
 }
 
-/// Makes it so, to the bit, for the features of rows with their mirror images.
+/// Sets the means of eta_s and alpha of rows with their mirror images to their exact values, so that the mirror image
+/// of standardised features x is S x.
 pub(crate) fn centre(standardisation: &mut Standardisation) {
     let [_, eta_s, .., alpha] = &mut standardisation.mean;
     (*eta_s, *alpha) = (0.0, FRAC_PI_2);

@@ -11,7 +11,7 @@ use surrogate::{Layer, Layers};
 /// The features of (13).
 const INPUTS: usize = 5;
 
-/// The networks share nothing but their inputs: D_peak, which scatters more, would teach D to
+/// The networks have no common layers: D_peak, which has more scatter, would otherwise cause the network of D to
 /// overfit.
 #[derive(Module, Debug)]
 pub(crate) struct Networks {
@@ -26,7 +26,7 @@ pub(crate) struct Mlp {
     pub layers: Vec<Dense>,
 }
 
-/// What is trained of a layer: all of it, or the half that its mirror symmetry leaves free.
+/// The trained part of a layer: the whole layer, or the half that determines it by mirror symmetry.
 #[derive(Module, Debug)]
 pub(crate) struct Dense {
     pub weight: Param<Tensor<2>>,
@@ -36,8 +36,8 @@ pub(crate) struct Dense {
 }
 
 impl Networks {
-    /// Xavier's uniform weights and zero biases. They come from our own generator, so that a seed
-    /// gives the same weights on every backend. `symmetric` networks have an even number of units
+    /// Initial networks with Xavier's uniform weights and zero biases. The random numbers do not come from the backend,
+    /// so that a seed gives the same weights on every backend. `symmetric` networks must have an even number of units
     /// in each layer.
     pub fn new(
         embedding: &[usize],
@@ -68,7 +68,7 @@ impl Networks {
         }
     }
 
-    /// Layers of a weight file.
+    /// The networks of a weight file.
     pub fn of_layers(layers: &Layers, symmetric: bool, options: &TensorCreationOptions) -> Self {
         let network = |layers: &[Layer], folds: Vec<Fold>| {
             let layers = layers.iter().zip(folds);
@@ -93,7 +93,7 @@ impl Networks {
     }
 }
 
-/// The layers of chi.
+/// The folds of the layers of chi.
 fn folds(layers: usize, symmetric: bool) -> Vec<Fold> {
     let mut folds = vec![Fold::Hidden; layers];
     folds[..1].fill(Fold::First);
@@ -103,7 +103,7 @@ fn folds(layers: usize, symmetric: bool) -> Vec<Fold> {
     folds
 }
 
-/// The same of the damage heads, whose outputs are no pairs.
+/// The folds of the layers of a damage head, whose output is not a pair.
 fn head_folds(layers: usize, symmetric: bool) -> Vec<Fold> {
     let mut folds = folds(layers, symmetric);
     if symmetric {
@@ -112,7 +112,7 @@ fn head_folds(layers: usize, symmetric: bool) -> Vec<Fold> {
     folds
 }
 
-/// Units of each layer: of chi, and of the hidden layers of each damage head.
+/// Number of units of each layer: of chi, and of the hidden layers of each damage head.
 pub(crate) fn widths(layers: &Layers) -> Vec<Vec<usize>> {
     let units = |layers: &[Layer]| -> Vec<usize> {
         layers.iter().map(|layer| layer.bias.values.len()).collect()
@@ -129,7 +129,7 @@ pub(crate) fn widths(layers: &Layers) -> Vec<Vec<usize>> {
 }
 
 impl Mlp {
-    /// The layers as they are evaluated.
+    /// The layers as evaluated.
     pub fn affine(&self) -> Vec<Affine> {
         self.layers.iter().map(Dense::affine).collect()
     }
@@ -153,7 +153,7 @@ impl Dense {
         }
     }
 
-    /// Weight files hold (outputs, inputs).
+    /// The trained part of a layer of a weight file, whose weight is (outputs, inputs).
     fn of(layer: &Layer, fold: Fold, options: &TensorCreationOptions) -> Self {
         let tensor = |tensor: &surrogate::Tensor| {
             TensorData::new(tensor.values.clone(), tensor.shape.clone())

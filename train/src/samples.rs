@@ -1,4 +1,4 @@
-//! Rows as the network sees them: standardised features, scaled targets, batches.
+//! Rows as inputs and targets of the networks: standardised features, scaled targets, batches.
 
 use crate::error::TrainError;
 use crate::mirror;
@@ -7,7 +7,7 @@ use dataset::Row;
 use hinge::HingeDeformation;
 use surrogate::{Card, FEATURE_NAMES, Standardisation, features};
 
-/// The scales of (14) and (15), from the training rows.
+/// The scales of (14) and (15), computed from the training rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Scales {
     pub standardisation: Standardisation,
@@ -17,34 +17,35 @@ pub(crate) struct Scales {
     pub forces: [f64; 3],
     /// D_s: root mean square of D.
     pub damage: f64,
-    /// The same of D_peak over the rows that have one; `None` if none has.
+    /// Root mean square of D_peak over the rows that have it; `None` if no row has a non-zero D_peak.
     pub peak: Option<f64>,
-    /// Number of rows over that of the rows with a D_peak: what makes up for those without in a mean.
+    /// Number of rows divided by the number of rows with D_peak. With this weight, a mean over all rows is the mean
+    /// over the rows with D_peak.
     pub peak_weight: f64,
 }
 
-/// One row: inputs of the network and targets of (15), both of order one.
+/// One row: inputs of the networks and targets of (15), both of order one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sample {
     /// Standardised xi(eps, g).
     pub inputs: [f64; 5],
     /// Standardised xi(0, g).
     pub origin: [f64; 5],
-    /// Turns d|r|^2 / d(standardised eta_a, eta_s, theta) into (F_a, F_s, M_theta) / sigma_F.
+    /// Factors from d|r|^2 / d(standardised eta_a, eta_s, theta) to (F_a, F_s, M_theta) / sigma_F.
     pub force_factors: [f64; 3],
     /// W / W_s
     pub energy: f64,
     /// (F_a, F_s, M_theta) / sigma_F
     pub forces: [f64; 3],
-    /// D / D_s, and D_peak over its scale if it has one.
+    /// D / D_s, and D_peak divided by its scale if it has one.
     pub damage: [f64; 2],
-    /// Weights of their errors: that of a D_peak that is not known is zero.
+    /// Weights of the errors of D and D_peak; the weight of an unknown D_peak is zero.
     pub damage_weights: [f64; 2],
 }
 
-/// Samples as tensors, one row each.
+/// Samples as tensors, one row per sample.
 pub(crate) struct Batch {
-    /// Undeformed and deformed, (2, n, 5).
+    /// Inputs of the undeformed and the deformed states, (2, n, 5).
     pub states: Tensor<3>,
     pub force_factors: Tensor<2>,
     /// (n, 1)
@@ -57,9 +58,9 @@ pub(crate) struct Batch {
 }
 
 impl Scales {
-    /// Refuses features and targets with nothing to scale.
+    /// Computes the scales; an error if a feature is constant, or a target is zero or has outliers.
     ///
-    /// `symmetric`: the rows hold their mirror images.
+    /// `symmetric`: the rows include their mirror images.
     pub fn of(rows: &[Row], symmetric: bool) -> Result<Self, TrainError> {
         let count = rows.len() as f64;
         let root_mean_square = |target: &'static str, value: fn(&Row) -> f64| {
@@ -80,7 +81,7 @@ impl Scales {
             (squares / count).sqrt()
         });
         for (k, feature) in FEATURE_NAMES.into_iter().enumerate() {
-            // Rounding of the mean leaves a constant feature a spread of this size.
+            // The rounding error of the mean gives a constant feature a standard deviation of this size.
             if !(std[k] > 1e-12 * mean[k].abs() && std[k].is_finite()) {
                 return Err(TrainError::ConstantFeature {
                     feature,
@@ -106,7 +107,7 @@ impl Scales {
                 root_mean_square("M_theta", |row| row.sample.m_theta)?,
             ],
             damage: root_mean_square("D", |row| row.sample.d)?,
-            // The mean over all rows counts those without a D_peak as zero.
+            // The mean over all rows counts rows without D_peak as zero.
             peak: match rows.iter().any(|row| d_peak(row) != 0.0) {
                 true => Some(root_mean_square("D_peak", d_peak)? * peak_weight.sqrt()),
                 false => None,
@@ -115,7 +116,7 @@ impl Scales {
         })
     }
 
-    /// The scales that weights were trained with; those of the forces from the rows.
+    /// The scales of trained weights; those of the forces are computed from the rows.
     pub fn of_card(card: &Card, rows: &[Row], symmetric: bool) -> Result<Self, TrainError> {
         Ok(Self {
             standardisation: card.standardisation,
@@ -153,8 +154,8 @@ impl Scales {
     }
 }
 
-/// How far above the nine tenths of the rows a target may lie. Deployed hinges and the worst of
-/// the box differ by ten; a solver that lies is off by powers of ten.
+/// Maximum of a target over its 90 % quantile. Deployed hinges and the extremes of the box differ by a factor of ten;
+/// an erroneous solve has larger errors, by powers of ten.
 const OUTLIER: f64 = 100.0;
 
 fn refuse_outlier(
@@ -178,7 +179,7 @@ fn refuse_outlier(
     }
 }
 
-/// Zero where it is not known.
+/// D_peak of a row; zero if it is unknown.
 fn d_peak(row: &Row) -> f64 {
     row.sample.d_peak.unwrap_or(0.0)
 }
@@ -220,7 +221,7 @@ fn columns<const N: usize>(
 pub(crate) mod tests {
     use super::*;
 
-    /// Samples of no meaning, all of order one.
+    /// Arbitrary samples of order one.
     pub fn samples(count: usize) -> Vec<Sample> {
         let value = |row: usize, column: usize| (1.7 * row as f64 + 2.3 * column as f64).sin();
         let sample = |row| Sample {

@@ -1,7 +1,7 @@
-//! A training between two epochs on disk, from which it goes on to the bit.
+//! The state of a training between two epochs on disk. A resumed training continues bit-exactly.
 //!
-//! The file is the BLAKE3 of what follows, then safetensors: the networks, those of the best epoch
-//! and the state of the optimiser as Burn's own records (bytes), and everything else as JSON.
+//! The file is a BLAKE3 hash followed by the hashed safetensors: the networks, those of the best epoch
+//! and the state of the optimiser as Burn's own records (bytes), and all other data as JSON.
 
 use crate::epoch::Epoch;
 use crate::networks::Networks;
@@ -15,24 +15,28 @@ use std::io;
 use std::path::{Path, PathBuf};
 use surrogate::Card;
 
-/// Version of the file; a state is no archive, so no other version is read.
+/// Format version of the file. A state is temporary, so no other version is read.
 const FORMAT_VERSION: u32 = 3;
 
-/// Why a training cannot go on, or cannot be kept.
+/// Why a training cannot be resumed or saved.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum StateError {
     #[error("cannot read {path}: {source}", path = .path.display())]
     Read { path: PathBuf, source: io::Error },
     #[error("cannot write {path}: {source}", path = .path.display())]
     Write { path: PathBuf, source: io::Error },
     #[error(
-        "{path} is no state of a training, or was damaged ({reason}); remove it and begin again",
+        "{path} is not a state of a training, or is damaged ({reason}); delete it and start again",
         path = .path.display()
     )]
     Malformed { path: PathBuf, reason: String },
     #[error(
-        "{path} is the state of another training: the {what} is not the same; go on with the one \
-         it began with, or begin again",
+        "{path} is the state of another training: the {what} is different; resume with the original \
+         one, or start again",
         path = .path.display()
     )]
     Other { path: PathBuf, what: &'static str },
@@ -59,7 +63,7 @@ impl Progress {
     }
 }
 
-/// A state as it was read.
+/// A state read from disk.
 pub(crate) struct State {
     pub progress: Progress,
     path: PathBuf,
@@ -69,7 +73,7 @@ pub(crate) struct State {
 /// The names of the records.
 const RECORDS: [&str; 3] = ["networks", "best", "optimiser"];
 
-/// Writes a state beside its place and renames it.
+/// Writes a state atomically.
 pub(crate) fn write(
     path: &Path,
     progress: &Progress,
@@ -123,7 +127,7 @@ impl State {
             .split_first_chunk::<{ blake3::OUT_LEN }>()
             .ok_or_else(|| malformed("it is too short".into()))?;
         if blake3::hash(body) != *hash {
-            return Err(malformed("its hash is wrong".into()));
+            return Err(malformed("its hash does not match".into()));
         }
         let tensors =
             SafeTensors::deserialize(body).map_err(|error| malformed(error.to_string()))?;
@@ -133,7 +137,7 @@ impl State {
             .metadata()
             .as_ref()
             .and_then(|map| map.get("progress"));
-        let progress = progress.ok_or_else(|| malformed("it tells no progress".into()))?;
+        let progress = progress.ok_or_else(|| malformed("it contains no progress".into()))?;
         let progress: Progress =
             serde_json::from_str(progress).map_err(|error| malformed(error.to_string()))?;
         if progress.format_version != FORMAT_VERSION {
@@ -156,7 +160,7 @@ impl State {
         })
     }
 
-    /// Refuses to go on with another configuration or other rows.
+    /// An error if the configuration, the database or the split is not that of the state.
     pub fn check(&self, card: &Card) -> Result<(), StateError> {
         let saved = &self.progress.card;
         for (what, same) in [
@@ -172,7 +176,7 @@ impl State {
         Ok(())
     }
 
-    /// The networks, those of the best epoch, and the optimiser, given some of the same sizes.
+    /// The networks, those of the best epoch, and the optimiser. The arguments must have the same sizes.
     pub fn restore(
         self,
         networks: &Networks,

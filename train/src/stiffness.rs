@@ -1,35 +1,35 @@
-//! The learned tangent against the finite elements: curvature of the energy along rays.
+//! The learned tangent compared with the finite elements: curvature of the energy along rays.
 //!
-//! Between two increments of a ray the finite elements say
+//! Between two increments of a ray, the curvature of the finite elements is
 //!
 //! ```text
 //! d2W/dlambda2  ~  (F_2 - F_1) . (eps_2 - eps_1) / (lambda_2 - lambda_1)^2
 //! ```
 //!
-//! and the surrogate (eps_2 - eps_1)' H (eps_2 - eps_1) / (lambda_2 - lambda_1)^2 in the middle.
+//! and that of the surrogate is (eps_2 - eps_1)' H (eps_2 - eps_1) / (lambda_2 - lambda_1)^2, evaluated at the middle.
 
 use crate::validation::{ParityPoint, fit_error};
 use dataset::Row;
 use hinge::HingeDeformation;
 use surrogate::{FitError, Order, Surrogate};
 
-/// How the learned tangent behaves on some rays.
+/// Comparison of the learned tangent with the finite elements on a set of rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StiffnessCheck {
-    /// Pairs of increments.
+    /// Number of pairs of increments.
     pub pairs: usize,
-    /// Share of the states whose learned tangent is not positive definite.
+    /// Fraction of the states whose learned tangent is not positive definite.
     pub indefinite: f64,
-    /// Share of the pairs along which the finite elements lose stiffness.
+    /// Fraction of the pairs with negative curvature in the finite elements.
     pub softening: f64,
-    /// The same by the learned tangent.
+    /// Fraction of the pairs with negative learned curvature.
     pub learned_softening: f64,
-    /// Of the learned curvature along the rays.
+    /// Error of the learned curvature along the rays.
     pub curvature: FitError,
 }
 
 impl StiffnessCheck {
-    /// `rows` in the order of job and lambda, as a database has them.
+    /// Compares the tangents on `rows`, which must be in the order of job and lambda, as in a database.
     pub fn of(surrogate: &Surrogate, rows: &[Row]) -> Self {
         let pairs: Vec<(&Row, &Row)> = rows
             .iter()
@@ -63,7 +63,7 @@ impl StiffnessCheck {
     }
 }
 
-/// Part of the way from one increment to the next.
+/// The deformation at the fraction `share` between two increments.
 fn between((left, right): &(&Row, &Row), share: f64) -> HingeDeformation {
     let (from, to) = (left.sample.deformation(), right.sample.deformation());
     let (from, to) = (from.to_array(), to.to_array());
@@ -78,7 +78,7 @@ fn direction((left, right): &(&Row, &Row)) -> [f64; 3] {
     [0, 1, 2].map(|k| (to[k] - from[k]) / step)
 }
 
-/// What the finite elements say.
+/// The curvature of the finite elements.
 fn curvature(pair: &(&Row, &Row)) -> f64 {
     let (left, right) = (pair.0.sample, pair.1.sample);
     let change = [
@@ -90,14 +90,14 @@ fn curvature(pair: &(&Row, &Row)) -> f64 {
     products.map(|(d, f)| d * f).sum::<f64>() / (right.lambda - left.lambda)
 }
 
-/// What the learned tangent says.
+/// The curvature of the learned tangent.
 fn along(tangent: &[[f64; 3]; 3], pair: &(&Row, &Row)) -> f64 {
     let d = direction(pair);
     let row = |i: usize| d[i] * (0..3).map(|j| tangent[i][j] * d[j]).sum::<f64>();
     (0..3).map(row).sum()
 }
 
-/// Sylvester's criterion.
+/// Whether a matrix is positive definite, by Sylvester's criterion.
 fn positive(h: &[[f64; 3]; 3]) -> bool {
     let minor = h[0][0] * h[1][1] - h[0][1] * h[1][0];
     let determinant = h[0][2] * (h[1][0] * h[2][1] - h[1][1] * h[2][0])
@@ -111,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn definiteness_is_that_of_the_eigenvalues() {
+    fn definite_and_indefinite_matrices_are_distinguished() {
         assert!(positive(&[
             [2.0, 1.0, 0.0],
             [1.0, 2.0, 1.0],

@@ -1,5 +1,5 @@
-//! The training loop: steps on a cosine schedule; each network is kept from the epoch of its least
-//! validation error.
+//! The training loop: optimiser steps with a cosine learning-rate schedule. Each network is taken from the epoch of its
+//! minimum validation error.
 
 use crate::backend::Backend;
 use crate::bins::error_bins;
@@ -27,30 +27,31 @@ use std::path::Path;
 use std::time::Instant;
 use surrogate::{Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS};
 
-/// A trained surrogate and what is known about it.
+/// A trained surrogate with its history and test errors.
 #[derive(Clone, Debug)]
 pub struct Trained {
-    /// Each network of the epoch with its least validation error.
+    /// The surrogate in which each network is from the epoch of its minimum validation error.
     pub surrogate: Surrogate,
-    /// Of the last epoch.
+    /// The surrogate of the last epoch.
     pub last: Surrogate,
+    /// One record per epoch.
     pub history: Vec<Epoch>,
-    /// On the test part, which nothing was chosen by.
+    /// Errors on the test part, which was not used for any choice.
     pub test_errors: TestErrors,
     /// Targets and predictions on the test part.
     pub parity: Parity,
-    /// On the test part.
+    /// Check of the learned tangent on the test part.
     pub stiffness: StiffnessCheck,
 }
 
-/// Where a training begins.
+/// The starting point of a training.
 #[derive(Clone, Copy, Debug)]
 pub enum Start<'a> {
     /// Random weights.
     Fresh,
-    /// The weights of another training, in its scales: fine-tuning.
+    /// The weights of another training, with its scales: fine-tuning.
     Weights(&'a Surrogate),
-    /// Where [`Training::save`] left off; what follows is as if it had never stopped, to the bit.
+    /// A state written by [`Training::save`]; the training continues bit-exactly as if it had not been stopped.
     State(&'a Path),
 }
 
@@ -66,7 +67,7 @@ pub struct Training {
     networks: Networks,
     best: Networks,
     history: Vec<Epoch>,
-    /// When the clock of [`Epoch::elapsed_s`] was at `elapsed_s`.
+    /// Time at which [`Epoch::elapsed_s`] was `elapsed_s`.
     began: Instant,
     elapsed_s: f64,
 }
@@ -80,7 +81,7 @@ struct Parts {
 
 /// Fits (14) to the database by minimising (15); section 2.4.
 ///
-/// The same seed gives the same weights on the same machine. `progress` sees every epoch.
+/// The same seed gives the same weights on the same machine. `progress` is called after every epoch.
 pub fn train(
     database: &Database,
     config: &TrainingConfig,
@@ -95,7 +96,7 @@ pub fn train(
 }
 
 impl Training {
-    /// Reads the rows, scales them, and makes or loads the networks.
+    /// Scales the rows of the database, and initialises or loads the networks.
     pub fn new(
         database: &Database,
         config: &TrainingConfig,
@@ -166,7 +167,7 @@ impl Training {
         Ok(training)
     }
 
-    /// Whether every epoch was run, or none was better for as long as the configuration allows.
+    /// Whether all epochs have been run, or the number of epochs without improvement has reached the patience.
     pub fn is_finished(&self) -> bool {
         let since_best = self.history.iter().rev().take_while(|it| !it.best).count();
         let patience = self.config.patience.unwrap_or(usize::MAX);
@@ -201,7 +202,7 @@ impl Training {
             let before = self.history.iter().map(|it| it.validation_errors[network]);
             errors[network] < before.fold(f64::INFINITY, f64::min)
         });
-        // The networks share nothing, and the damage heads overfit sooner.
+        // The networks have no common layers, and the damage heads overfit earlier.
         if better[0] {
             self.best.chi = self.networks.chi.clone();
         }
@@ -225,7 +226,7 @@ impl Training {
         Ok(report)
     }
 
-    /// Exports the best and the last networks and measures the best on the test part.
+    /// Exports the best and the last networks and measures their errors on the test part.
     pub fn finish(mut self) -> Result<Trained, TrainError> {
         self.card.training_s = self.history.last().map(|epoch| epoch.elapsed_s);
         let best = export(&self.best, &self.card)?;
@@ -244,7 +245,7 @@ impl Training {
         })
     }
 
-    /// Writes everything that [`Start::State`] needs, beside its place and renamed.
+    /// Atomically writes the state from which [`Start::State`] continues.
     pub fn save(&self, path: &Path) -> Result<(), TrainError> {
         let progress = Progress::new(&self.card, &self.history);
         state::write(path, &progress, &self.networks, &self.best, &self.optimiser)?;
@@ -261,8 +262,8 @@ impl Training {
         Ok(())
     }
 
-    /// Steps over the samples in an order that the seed and the epoch decide; the mean of
-    /// (15) as it was met.
+    /// Makes the optimiser steps of one epoch, over the samples in an order given by seed and epoch. Returns the mean
+    /// of (15), each batch evaluated before its step.
     fn descend(&mut self, epoch: usize) -> Result<f64, TrainError> {
         let mut order: Vec<usize> = (0..self.samples.len()).collect();
         let mut rng = ChaCha8Rng::seed_from_u64(self.config.seed);
@@ -311,7 +312,7 @@ impl Parts {
     }
 }
 
-/// The networks of weights to begin from, which must be such as the configuration asks for.
+/// The networks of the initial weights, whose sizes, sharpness and symmetry must be those of the configuration.
 fn given(
     weights: &Surrogate,
     config: &TrainingConfig,
@@ -341,7 +342,7 @@ fn given(
     }
 }
 
-/// What is known before training; the test errors follow.
+/// The card before training; the test errors are added at the end.
 fn card(
     manifest: &Manifest,
     training: &[Row],
@@ -355,6 +356,7 @@ fn card(
     let domain = TrainingDomain::covering(states.iter().map(|(g, eps)| (g, eps)));
     Ok(Card {
         format_version: FORMAT_VERSION,
+        weights_hash: None,
         units: UNITS.into(),
         features: FEATURE_NAMES.map(Into::into).to_vec(),
         standardisation: scales.standardisation,
@@ -372,7 +374,7 @@ fn card(
         fine_tuned_from: None,
         split_hash: manifest.split_hash.clone(),
         training: serde_json::to_value(config)
-            .expect("a configuration of numbers and lists is always JSON"),
+            .expect("a configuration of numbers and lists can always be written as JSON"),
         training_rays: Some(manifest.split.training.len()),
         training_s: None,
         test_errors: TestErrors::default(),
@@ -380,7 +382,7 @@ fn card(
     })
 }
 
-/// The hash that all rows share, if they do and it is known.
+/// The common hash of all rows; `None` if there are several or it is unknown.
 fn the_only(hashes: &BTreeSet<String>) -> Option<String> {
     let mut hashes = hashes.iter();
     match (hashes.next(), hashes.next()) {

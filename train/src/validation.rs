@@ -1,15 +1,16 @@
-//! Errors of a surrogate on rows held out, measured with the kernel that will be shipped.
+//! Errors of a surrogate on rows that are not used in training, measured with the exported float64 networks.
 
 use crate::config::TrainingConfig;
 use crate::samples::Scales;
 use dataset::Row;
 use surrogate::{FitError, Order, Surrogate, TestErrors};
 
-/// One number as the finite elements give it, if they do, and as the surrogate does.
+/// One value of the finite elements and of the surrogate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParityPoint {
-    /// Not a number where it is not known.
+    /// Value of the finite elements; NaN if it is unknown.
     pub target: f64,
+    /// Value of the surrogate.
     pub predicted: f64,
 }
 
@@ -24,8 +25,9 @@ pub struct Parity {
     pub f_s: Vec<ParityPoint>,
     /// M_theta (N mm)
     pub m_theta: Vec<ParityPoint>,
+    /// D
     pub damage: Vec<ParityPoint>,
-    /// Empty if the surrogate does not predict it.
+    /// D_peak; empty if the surrogate does not predict it.
     pub damage_peak: Vec<ParityPoint>,
 }
 
@@ -38,7 +40,7 @@ impl Parity {
             .unzip();
         let prepared = surrogate.prepare(&designs);
         let energies = surrogate.evaluate(&prepared, &deformations, Order::Forces);
-        let damages = surrogate.damage(&designs, &deformations);
+        let damages = surrogate.damage_values(&designs, &deformations);
         let mut parity = Self::default();
         for ((row, energy), damage) in rows.iter().zip(energies).zip(damages) {
             let target = row.sample;
@@ -61,7 +63,7 @@ impl Parity {
         parity
     }
 
-    /// The mean of what several networks predict of the same rows.
+    /// The mean of the predictions of several surrogates for the same rows.
     pub fn mean(members: &[Self]) -> Self {
         let mean = |points: fn(&Self) -> &[ParityPoint]| {
             let count = members.len() as f64;
@@ -101,7 +103,7 @@ impl Parity {
         }
     }
 
-    /// Of the rows with these indices alone.
+    /// The targets and predictions of the rows with these indices.
     pub(crate) fn of_rows(&self, indices: &[usize]) -> Self {
         let some = |points: &[ParityPoint]| {
             let chosen = indices.iter().filter_map(|&index| points.get(index));
@@ -117,7 +119,7 @@ impl Parity {
         }
     }
 
-    /// The loss (15), in the scales of the training rows.
+    /// The loss (15) in the scales of the training rows.
     pub(crate) fn loss(&self, scales: &Scales, config: &TrainingConfig) -> f64 {
         let [f_a, f_s, m_theta] = scales.forces;
         let force_weight = (1.0 - config.energy_weight) / 3.0;
@@ -140,10 +142,11 @@ impl Parity {
         .sum()
     }
 
-    /// The relative root mean square errors of each network, which choose its epoch: the geometric mean of
-    /// those of W and the forces, so that a few states of large force, which rule the loss, count no more
-    /// than they should; that of D; and that of D_peak, zero if it is not predicted. No state counts for more
-    /// than an error of the size of its quantity, or one ray that no training ray is near would choose.
+    /// The relative root mean square error of each network, by which its best epoch is chosen: the geometric mean of
+    /// the errors of W and the forces; the error of D; and the error of D_peak, zero if it is not predicted. The
+    /// geometric mean prevents a few states of large force, which dominate the loss, from determining the choice. The
+    /// error of each state is limited to the root mean square of its quantity, so that a single ray far from all
+    /// training rays does not determine the choice.
     pub(crate) fn network_errors(&self) -> [f64; 3] {
         let error = |points: &[ParityPoint]| limited_error(points);
         let potential = [&self.energy, &self.f_a, &self.f_s, &self.m_theta];
@@ -156,7 +159,7 @@ impl Parity {
     }
 }
 
-/// The root mean square error over that of the targets, no error counting for more than the latter.
+/// The root mean square error divided by the root mean square of the targets, each error being limited to the latter.
 fn limited_error(points: &[ParityPoint]) -> f64 {
     let targets: Vec<f64> = known(points).map(|point| point.target).collect();
     let target = root_mean_square(targets.into_iter());
@@ -169,7 +172,7 @@ fn limited_error(points: &[ParityPoint]) -> f64 {
     }
 }
 
-/// Zero if there are no values.
+/// Root mean square of the values; zero if there are none.
 pub(crate) fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     let count = values.len().max(1) as f64;
     (values.map(|value| value * value).sum::<f64>() / count).sqrt()
@@ -187,7 +190,7 @@ fn known(points: &[ParityPoint]) -> impl Iterator<Item = &ParityPoint> {
     points.iter().filter(|point| !point.target.is_nan())
 }
 
-/// Relative to the targets; an error of zero where every target is zero and so predicted.
+/// Errors relative to the targets; zero if all targets are zero.
 pub(crate) fn fit_error(points: &[ParityPoint]) -> FitError {
     let targets: Vec<f64> = known(points).map(|point| point.target).collect();
     let target = root_mean_square(targets.into_iter());
@@ -221,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn one_state_out_of_reach_does_not_choose_the_epoch() {
+    fn the_error_of_one_outlying_state_is_limited() {
         let point = |predicted| ParityPoint {
             target: 2.0,
             predicted,

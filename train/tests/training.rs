@@ -5,7 +5,7 @@
 //! D = (t^2 + u^2) / 100,      u = a / w,  v = s / w,  t = theta,  w = w_lig
 //! ```
 //!
-//! It is positive and keeps the mirror symmetry.
+//! The energy is positive and has the mirror symmetry.
 
 use dataset::{Database, Gates, Row, SplitPlan};
 use hinge::{HingeDeformation, HingeDesign, HingeSample};
@@ -41,7 +41,7 @@ fn sample(design: &HingeDesign, eps: HingeDeformation, lambda: f64) -> HingeSamp
     }
 }
 
-/// Ten increments of each of `jobs` rays, spread over the features by irrational steps.
+/// Ten increments of each of `jobs` rays, distributed over the features by irrational steps.
 fn rows(jobs: usize) -> Vec<Row> {
     let mut rows = Vec::new();
     for job in 0..jobs {
@@ -133,14 +133,14 @@ fn an_energy_in_closed_form_is_learned() {
     }
     assert_eq!(reported, trained.history);
     assert_eq!(reported.len(), 100);
-    let mut least = [f64::INFINITY; 3];
+    let mut minimum = [f64::INFINITY; 3];
     for epoch in &reported {
         let errors = epoch.validation_errors;
-        let better = (0..3).any(|k| errors[k] < least[k]);
+        let better = (0..3).any(|k| errors[k] < minimum[k]);
         assert_eq!(epoch.best, better, "{epoch:?}");
-        least = [0, 1, 2].map(|k| errors[k].min(least[k]));
+        minimum = [0, 1, 2].map(|k| errors[k].min(minimum[k]));
     }
-    assert!(least[0] < 0.1 * reported[0].validation_errors[0]);
+    assert!(minimum[0] < 0.1 * reported[0].validation_errors[0]);
 
     let card = trained.surrogate.card();
     assert_eq!(card.dataset_hash, database.manifest().hash);
@@ -156,7 +156,7 @@ fn an_energy_in_closed_form_is_learned() {
 }
 
 #[test]
-fn mirror_images_are_told_apart_by_nothing() {
+fn mirror_images_give_the_same_energy_and_damage() {
     let surrogate = trained(2, Backend::default()).surrogate;
     let (designs, states): (Vec<_>, Vec<_>) = rows(7)
         .iter()
@@ -186,7 +186,7 @@ fn mirror_images_are_told_apart_by_nothing() {
 }
 
 #[test]
-fn a_seed_gives_the_same_weights_and_another_gives_others() {
+fn equal_seeds_give_equal_weights_and_different_seeds_different_ones() {
     let first = energies(&trained(2, Backend::default()).surrogate);
     assert_eq!(first, energies(&trained(2, Backend::default()).surrogate));
     let other = TrainingConfig {
@@ -214,7 +214,7 @@ fn backends_agree_on_the_first_steps() {
 }
 
 #[test]
-fn a_surrogate_survives_the_disk() {
+fn a_trained_surrogate_round_trips_through_its_files() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("chi.safetensors");
     let trained = trained(1, Backend::default());
@@ -225,11 +225,11 @@ fn a_surrogate_survives_the_disk() {
 }
 
 #[test]
-fn rows_with_nothing_to_learn_are_refused() {
+fn constant_features_and_zero_targets_are_errors() {
     let refusal = |change: fn(&mut Row)| {
         let mut rows = rows(12);
         rows.iter_mut().for_each(change);
-        // Mirroring would give a constant alpha a spread.
+        // With mirror images, alpha would not be constant.
         let config = TrainingConfig {
             mirror: false,
             ..config(1)
@@ -266,7 +266,7 @@ fn rows_with_nothing_to_learn_are_refused() {
 }
 
 #[test]
-fn a_loss_beyond_float32_says_so() {
+fn a_loss_that_overflows_float32_is_an_error() {
     let mut rows = rows(12);
     for row in &mut rows {
         row.sample.f_a *= 1e-60;
@@ -278,7 +278,7 @@ fn a_loss_beyond_float32_says_so() {
     );
 }
 
-/// A training of `epochs` epochs, of which `run` were run.
+/// A training of `epochs` epochs after `run` of them.
 fn begun(epochs: usize, run: usize, backend: Backend) -> Training {
     let database = database(rows(20));
     let mut training = Training::new(&database, &config(epochs), backend, Start::Fresh).unwrap();
@@ -301,7 +301,7 @@ fn resumed(state: &Path, config: &TrainingConfig) -> Result<Training, TrainError
 }
 
 #[test]
-fn a_training_goes_on_to_the_bit() {
+fn a_resumed_training_is_bit_exact() {
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("chi.state");
     for &backend in Backend::ALL {
@@ -325,7 +325,7 @@ fn a_training_goes_on_to_the_bit() {
 }
 
 #[test]
-fn a_damaged_or_foreign_state_is_refused() {
+fn a_damaged_or_foreign_state_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("chi.state");
     begun(3, 1, Backend::default()).save(&state).unwrap();
@@ -361,7 +361,7 @@ fn a_damaged_or_foreign_state_is_refused() {
 }
 
 #[test]
-fn fine_tuning_begins_where_the_weights_are() {
+fn fine_tuning_starts_from_the_given_weights() {
     let base = trained(40, Backend::default());
     let mut stiffer = rows(40);
     for row in &mut stiffer {
@@ -413,7 +413,7 @@ fn fine_tuning_begins_where_the_weights_are() {
 }
 
 #[test]
-fn patience_ends_a_training_that_no_longer_improves() {
+fn a_training_that_no_longer_improves_stops_after_the_patience() {
     let config = TrainingConfig {
         patience: Some(2),
         learning_rate: 1e-30,
@@ -431,7 +431,7 @@ fn patience_ends_a_training_that_no_longer_improves() {
 }
 
 #[test]
-fn members_of_an_ensemble_agree_with_themselves_alone() {
+fn equal_members_of_an_ensemble_agree_and_different_ones_deviate() {
     let rows = rows(20);
     let database = database(rows.clone());
     let member = |seed| {
@@ -449,7 +449,7 @@ fn members_of_an_ensemble_agree_with_themselves_alone() {
 }
 
 #[test]
-fn an_outlier_is_refused_by_name() {
+fn an_outlier_is_an_error_that_names_job_and_target() {
     type Change = fn(&mut Row);
     let changes: [(Change, &str); 3] = [
         (|row| row.sample.f_s = -1e6, "F_s"),
@@ -458,7 +458,7 @@ fn an_outlier_is_refused_by_name() {
     ];
     for (change, name) in changes {
         let mut rows = rows(20);
-        // Every second ray has one, so that the training part has some.
+        // Every second ray has an outlier, so that the training part contains some.
         rows.iter_mut().step_by(20).for_each(change);
         let error =
             train(&database(rows), &config(1), Backend::default(), &mut |_| {}).unwrap_err();
@@ -473,7 +473,7 @@ fn an_outlier_is_refused_by_name() {
 }
 
 #[test]
-fn a_box_without_compression_and_rows_without_a_peak_are_learned() {
+fn a_database_without_compression_and_without_d_peak_can_be_trained_on() {
     let mut tension = rows(20);
     for row in &mut tension {
         let end = HingeDeformation {

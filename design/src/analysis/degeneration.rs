@@ -12,10 +12,16 @@ use std::fmt;
 /// Why a sheet under load is not deployed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Degeneration {
-    /// Panel edges touch at this many hinges at full load.
-    Contact { hinges: usize },
-    /// No equilibrium was found above this load factor.
-    NoEquilibrium { reached: f64 },
+    /// Panel edges touch at full load.
+    Contact {
+        /// Number of hinges whose void is closed.
+        hinges: usize,
+    },
+    /// No equilibrium was found at full load.
+    NoEquilibrium {
+        /// The last load factor with an equilibrium.
+        reached: f64,
+    },
 }
 
 impl Degeneration {

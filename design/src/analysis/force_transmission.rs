@@ -22,8 +22,9 @@ pub struct Interface {
     pub normal: f64,
     /// f_t (N).
     pub tangential: f64,
-    /// Energy stored in opening and shear, and in rotation (N mm).
+    /// f_n a / 2 + f_s s / 2: the energy stored in opening and shear (N mm).
     pub translational: f64,
+    /// M theta / 2: the energy stored in rotation (N mm).
     pub rotational: f64,
 }
 
@@ -44,9 +45,11 @@ pub struct ForceTransmission {
 /// Fractions of the total, each in [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransmissionShares {
-    /// Fractions of the transmitted force: tension, compression, shear.
+    /// Fraction of the transmitted force that is tension.
     pub tension: f64,
+    /// Fraction of the transmitted force that is compression.
     pub compression: f64,
+    /// Fraction of the transmitted force that is shear.
     pub shear: f64,
     /// Fraction of the energy that is stored in rotation.
     pub rotation: f64,

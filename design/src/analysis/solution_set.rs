@@ -54,6 +54,7 @@ fn descending(symmetric: &Mat<f64>) -> (Vec<f64>, Vec<Vec<f64>>) {
 /// The plane of the two largest principal components of a set of points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrincipalPlane {
+    /// Mean of the points, the origin of the plane.
     pub mean: Vec<f64>,
     /// Unit vectors.
     pub axes: [Vec<f64>; 2],

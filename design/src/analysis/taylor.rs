@@ -9,7 +9,9 @@
 /// Taylor remainders along one direction, at h, h/2, h/4, ...
 #[derive(Clone, Debug, PartialEq)]
 pub struct TaylorRemainders {
+    /// The steps h, in descending order.
     pub steps: Vec<f64>,
+    /// R(h) of each step.
     pub remainders: Vec<f64>,
 }
 

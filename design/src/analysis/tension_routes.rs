@@ -14,6 +14,7 @@ const MAX_TURN: f64 = FRAC_PI_3;
 /// A chain of panels that transmit tension.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TensionRoute {
+    /// The panels along the path, in order; the first and the last are equal for a ring.
     pub panels: Vec<usize>,
     /// The interfaces between them.
     pub interfaces: Vec<usize>,

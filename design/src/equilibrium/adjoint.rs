@@ -26,6 +26,7 @@ const SINGULAR: f64 = 1e-6;
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("the tangent is singular at load factor {load_factor:.4}: the gradient does not exist")]
 pub struct SingularTangent {
+    /// The load factor of the singular tangent.
     pub load_factor: f64,
 }
 

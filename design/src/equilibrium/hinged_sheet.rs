@@ -7,8 +7,11 @@ use hinge::HingeDeformation;
 /// The sheet together with the energy of its hinges.
 #[derive(Clone, Copy)]
 pub struct HingedSheet<'a> {
+    /// The flat sheet.
     pub sheet: &'a Sheet,
+    /// The hinge law, prepared for the hinges of the sheet.
     pub law: &'a dyn PreparedLaw,
+    /// Contact of panel edges; `None` without contact.
     pub contact: Option<&'a Contact>,
     /// Whether gradients of the damage along the path are computed.
     pub damage_gradient: bool,

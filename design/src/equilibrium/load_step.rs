@@ -20,7 +20,7 @@ pub enum Status {
     /// A stable equilibrium with hinges outside the domain of the hinge law.
     LeftDomain,
     /// The residual stagnated between the two tolerances, or the state is stationary but its tangent is
-    /// singular.
+    /// singular or rounding leaves a residual above the loose tolerance.
     Almost,
     /// The path ended before this step and the sheet jumped to this stable equilibrium: at a limit point
     /// of the load, or of the stroke under displacement control.
@@ -34,6 +34,7 @@ pub enum Status {
 pub struct LoadStep {
     /// zeta: i/N, or under displacement control the multiplier of the stroke.
     pub load_factor: f64,
+    /// q: the motion of every panel.
     pub configuration: Configuration,
     /// (8) per hinge.
     pub deformations: Vec<HingeDeformation>,
@@ -43,6 +44,7 @@ pub struct LoadStep {
     pub damage: Vec<HingeDamage>,
     /// Pi of (10) (N mm).
     pub potential: f64,
+    /// How the step ended.
     pub status: Status,
     /// Maximum unbalanced force, relative to the maximum force.
     pub residual: f64,

@@ -1,32 +1,38 @@
 //! Settings of the equilibrium solver.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The method of minimisation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Method {
     /// Newton's method on the sparse tangent.
     #[default]
     Newton,
-    /// Limited-memory BFGS as in the paper, with a maximum number of iterations per load increment.
-    Lbfgs { max_iterations: usize },
+    /// Limited-memory BFGS, as in the paper.
+    Lbfgs {
+        /// Maximum number of iterations per load increment, 1 to 10 000 000.
+        max_iterations: usize,
+    },
 }
 
 /// Tolerances and limits of the solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverSettings {
+    /// The method of minimisation; Newton's method by default.
     pub method: Method,
-    /// Residual of a converged state, relative to the maximum force, unless rounding causes a larger one.
+    /// Residual of a converged state, relative to the maximum force, unless rounding causes a larger one;
+    /// 1e-10 by default.
     pub tolerance: f64,
-    /// Residual of an almost converged state.
+    /// Residual of an almost converged state, relative to the maximum force, `tolerance` to 1; 1e-6 by default.
     pub loose_tolerance: f64,
-    /// Maximum number of Newton iterations per load increment.
+    /// Maximum number of Newton iterations per load increment, at least 1; 60 by default.
     pub max_iterations: usize,
-    /// Maximum number of halvings of a load step.
+    /// Maximum number of halvings of a load step, at most 30; 6 by default.
     pub max_halvings: u32,
     /// Smallest rotation (rad) that is tested for a jump past a limit point, if the tangents at both ends of its
-    /// increment do not explain it.
+    /// increment do not explain it; positive, 1e-3 by default.
     pub least_leap: f64,
 }
 

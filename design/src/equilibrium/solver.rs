@@ -15,6 +15,10 @@ use crate::sheet::panel_vectors::gather;
 
 /// Supports, loads or settings that do not define an equilibrium problem.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum EquilibriumError {
     #[error("{what} on panel {panel}: the panels of the sheet are 0..{panels}")]
     NoSuchPanel {

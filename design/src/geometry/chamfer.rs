@@ -10,10 +10,11 @@
 
 use crate::geometry::polygon::nearest_on_outline;
 use crate::geometry::smooth_extrema::smooth_min;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What the distance of outline points in the first sum is measured to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Precision {
     /// The nearest sample of the target, as in the paper.
@@ -26,10 +27,11 @@ pub enum Precision {
 /// Weight and smoothness of the Chamfer distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chamfer {
-    /// w_cov
+    /// w_cov (dimensionless).
     pub coverage_weight: f64,
     /// Temperature of the minimum (mm^2); 0 is the hard minimum of the paper.
     pub smoothing: f64,
+    /// What the distance of outline points in the first sum is measured to.
     pub precision: Precision,
 }
 

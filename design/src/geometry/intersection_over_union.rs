@@ -31,6 +31,7 @@ pub fn crossings(polygon: &[[f64; 2]], y: f64) -> Vec<[f64; 2]> {
     xs.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()
 }
 
+/// Sum of the lengths of intervals [from, to].
 pub fn length(intervals: &[[f64; 2]]) -> f64 {
     intervals.iter().map(|[from, to]| to - from).sum()
 }

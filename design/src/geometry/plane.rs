@@ -6,10 +6,12 @@ use faer::c64;
 /// The imaginary unit: a quarter turn counter-clockwise.
 pub const I: c64 = c64::new(0.0, 1.0);
 
+/// The complex number x + iy of a point.
 pub fn complex([x, y]: [f64; 2]) -> c64 {
     c64::new(x, y)
 }
 
+/// The point (x, y) of the complex number x + iy.
 pub fn point(z: c64) -> [f64; 2] {
     [z.re, z.im]
 }
@@ -25,10 +27,12 @@ pub fn turn_less_one(phi: f64) -> c64 {
     2.0 * sin * c64::new(-sin, cos)
 }
 
+/// The scalar product of two vectors, Re(conj(a) b).
 pub fn dot(a: c64, b: c64) -> f64 {
     a.re * b.re + a.im * b.im
 }
 
+/// The vector product of two vectors, Im(conj(a) b).
 pub fn cross(a: c64, b: c64) -> f64 {
     a.re * b.im - a.im * b.re
 }

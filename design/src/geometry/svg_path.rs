@@ -1,23 +1,27 @@
-//! The first visible path of an SVG file as a polygon: lines as they are, Bezier curves flattened.
+//! The first visible path of an SVG file as a polygon; Bezier curves are approximated by segments.
 //!
-//! usvg reads the document: it turns rect, circle, ellipse and polygon into paths and arcs into
+//! usvg reads the document: it converts rect, circle, ellipse and polygon to paths and arcs to
 //! cubic curves, and it resolves styles, `<use>` and transforms. The path must be one closed
-//! contour that neither crosses nor touches itself. SVG's y runs downwards and is turned upwards
-//! here; the scene says how large the outline is.
+//! contour that neither crosses nor touches itself. The y axis of SVG points downwards; the result has y
+//! upwards. The size of the outline is set by the scene.
 
 use crate::geometry::polygon;
 use usvg::tiny_skia_path::{PathSegment, Point};
 use usvg::{Group, ImageHrefResolver, Node, Options, Path, Transform, Tree};
 
-/// Segments of a flattened curve.
+/// Number of segments of a flattened curve.
 const SEGMENTS: usize = 32;
-/// Points nearer than this part of the largest coordinate are one: usvg rounds to f32.
+/// Points closer than this fraction of the largest coordinate are merged: usvg rounds to f32.
 const WELD: f64 = 1e-6;
-/// usvg draws the background colour of the root element as a path: no outline.
+/// Removes the background colour of the root element, which usvg would draw as a path.
 const NO_BACKGROUND: &str = "svg { background-color: none !important }";
 
-/// Why a file holds no outline; coordinates are those of the path data.
+/// Why a file has no outline; coordinates are those of the path data.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum SvgPathError {
     #[error("the file is empty; draw one closed outline and save it as SVG")]
     Empty,
@@ -56,7 +60,7 @@ pub(crate) fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
     }
     let options = Options {
         style_sheet: Some(NO_BACKGROUND.to_owned()),
-        // An image is no outline: its file is not opened.
+        // An image has no outline; its file is not opened.
         image_href_resolver: ImageHrefResolver {
             resolve_data: Box::new(|_, _, _| None),
             resolve_string: Box::new(|_, _| None),
@@ -81,7 +85,7 @@ pub(crate) fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
     Ok(points.iter().map(turned).collect())
 }
 
-/// The first path that is seen, depth first in the order of the document.
+/// The first visible path, depth first in document order.
 fn first_visible(group: &Group) -> Option<&Path> {
     if group.opacity().get() == 0.0 {
         return None;
@@ -97,11 +101,11 @@ fn first_visible(group: &Group) -> Option<&Path> {
     })
 }
 
-/// The different points of a path that is one closed contour, before its transform.
+/// The distinct points of a path that is one closed contour, before its transform.
 fn contour(path: &Path) -> Result<Vec<[f64; 2]>, SvgPathError> {
     let mut points: Vec<[f64; 2]> = Vec::new();
     let mut closed = false;
-    // Where a second contour would begin: a move at the end of the data draws none.
+    // The start of a second contour; a move at the end of the data draws none.
     let mut second: Option<[f64; 2]> = None;
     for segment in path.data().segments() {
         if let Some([x, y]) = second.map(single)
@@ -144,7 +148,7 @@ fn pair(point: Point) -> [f64; 2] {
     [f64::from(point.x), f64::from(point.y)]
 }
 
-/// For messages: as many digits as the file can mean.
+/// Rounded to the accuracy of the file, for messages.
 fn single(point: [f64; 2]) -> [f32; 2] {
     point.map(|c| c as f32)
 }
@@ -171,9 +175,9 @@ fn transformed(transform: Transform, [x, y]: [f64; 2]) -> [f64; 2] {
     [sx * x + kx * y + tx, ky * x + sy * y + ty]
 }
 
-/// A point that two edges of a closed polygon share, but for the vertices between neighbours.
+/// A common point of two edges of a closed polygon, other than the vertices between neighbours.
 ///
-/// The edges are compared in order of their left end, with those alone that begin before their
+/// The edges are sorted by their left end, and each is compared only with those that begin before its
 /// right end.
 fn self_crossing(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     let edges: Vec<_> = polygon::edges(points).collect();
@@ -193,7 +197,7 @@ fn self_crossing(points: &[[f64; 2]]) -> Option<[f64; 2]> {
 
 type Edge = ([f64; 2], [f64; 2]);
 
-/// A point that two segments share: their boxes overlap, and neither is on one side of the other.
+/// A common point of two segments, if their boxes overlap and neither is on one side of the other.
 fn shared_point((p, q): Edge, (r, s): Edge) -> Option<[f64; 2]> {
     let overlap = |c: usize| p[c].max(q[c]) >= r[c].min(s[c]) && r[c].max(s[c]) >= p[c].min(q[c]);
     if !(overlap(0) && overlap(1)) {
@@ -282,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_drawn_is_skipped() {
+    fn hidden_paths_are_skipped() {
         let expected = [0.0, 10.0, -20.0, 0.0];
         for hidden in [
             format!("<defs>{SMALL}</defs>"),
@@ -351,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn what_crosses_or_touches_itself_is_refused() {
+    fn outlines_that_cross_or_touch_themselves_are_refused() {
         for data in [
             "M 0 -80 L 47 65 L -76 -25 L 76 -25 L -47 65 Z", // a star in one stroke
             "M 0 0 L 10 10 L 10 0 L 0 10 Z",                 // a bow tie
@@ -367,14 +371,14 @@ mod tests {
 
     #[test]
     fn straight_curves_and_slits_do_not_cross() {
-        // Every edge of a side lies on one line, at a slope that is not exact in binary.
+        // All edges of a side lie on one line whose slope is not exact in binary.
         of("M 0 0 C 0.1 0.3 0.2 0.6 0.3 0.9 L 0.7 1.1 C 0.5 0.6 0.6 0.1 0.1 -0.3 Z").unwrap();
         of("M 0 0 H 10 V 10 H 5.01 V 1 H 5 V 10 H 0 Z").unwrap();
         of("M 10000 10000 a 1 1 0 0 1 2 0 a 1 1 0 0 1 -2 0 z").unwrap();
     }
 
     #[test]
-    fn what_is_no_outline_is_named() {
+    fn files_without_an_outline_are_refused() {
         assert_refused(vertices(""), "the file is empty");
         assert_refused(vertices(" \n"), "the file is empty");
         assert_refused(vertices("x,y\n0,0\n"), "not readable as SVG");

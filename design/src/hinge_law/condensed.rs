@@ -1,4 +1,4 @@
-//! The linear law (11) with constants condensed from the learned energy, hinge by hinge, by driving
+//! The linear law (11) with constants condensed from the learned energy for each hinge, by prescribing
 //! one deformation measure at a time:
 //!
 //! ```text
@@ -6,14 +6,14 @@
 //! k_theta(g) = M_theta(theta_0; g) / theta_0             or the secant at an angle theta_0
 //! ```
 //!
-//! The constants follow the design, so that the gradient in w_lig and alpha is exact.
+//! The constants depend on the design, so that the gradient in w_lig and alpha is exact.
 
 use crate::hinge_law::law::{HingeEnergy, HingeLaw, Order, PreparedLaw};
 use crate::hinge_law::linear::spring;
 use hinge::{HingeDeformation, HingeDesign};
 use surrogate::Surrogate;
 
-/// h of a and s (mm) and of theta (rad): the Hessian to 8 digits, the forces to as many.
+/// h of a and s (mm) and of theta (rad); the Hessian is accurate to 8 digits, and so are the forces.
 const SMALL: [f64; 3] = [1e-3, 1e-3, 1e-4];
 
 /// The linear law of a learned energy.
@@ -24,7 +24,7 @@ pub struct CondensedLaw {
 }
 
 impl CondensedLaw {
-    /// With the rotational secant at the angle `secant` (rad), or the Hessian at zero if it is 0.
+    /// With the rotational secant at the angle `secant` (rad), or with the Hessian at zero if it is 0.
     pub fn new(surrogate: Surrogate, secant: f64) -> Self {
         Self { surrogate, secant }
     }
@@ -48,10 +48,10 @@ impl CondensedLaw {
                 state[c] = size;
                 let driven = vec![HingeDeformation::from(state); designs.len()];
                 let energies = self.surrogate.evaluate(&prepared, &driven, Order::Design);
-                let share = 1.0 / (states.len() as f64 * size);
+                let weight = 1.0 / (states.len() as f64 * size);
                 for (constants, energy) in std::iter::zip(&mut constants, energies) {
-                    constants[c].value += share * energy.forces[c];
-                    (0..2).for_each(|g| constants[c].gradient[g] += share * energy.mixed[c][g]);
+                    constants[c].value += weight * energy.forces[c];
+                    (0..2).for_each(|g| constants[c].gradient[g] += weight * energy.mixed[c][g]);
                 }
             }
         }
@@ -62,7 +62,9 @@ impl CondensedLaw {
 /// A spring constant and its gradient in (w_lig, alpha).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Constant {
+    /// k_a or k_s (N/mm), or k_theta (N mm).
     pub value: f64,
+    /// Gradient of `value` in w_lig (per mm) and alpha (per rad).
     pub gradient: [f64; 2],
 }
 
@@ -142,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn the_constants_follow_the_design() {
+    fn the_constants_have_exact_derivatives_in_the_design() {
         let at = [18.0, 1.4];
         for law in [tiny(0.0), tiny(0.35)] {
             for c in 0..3 {

@@ -1,41 +1,44 @@
-//! Contact of panel edges: a barrier on the void angles at a hinge, theta at the main cut and
+//! Contact of panel edges: a barrier on the two void angles at a hinge, theta at the main cut and
 //! pi - theta at the neighbouring corner of the void; text of (11).
 //!
 //! ```text
 //! E(phi) = -k (phi - phi_cut)^2 ln((phi - phi_min) / (phi_cut - phi_min))   for phi_min < phi < phi_cut
 //! ```
 //!
-//! zero above phi_cut, infinite at and beyond phi_min, C^2 in between and at phi_cut.
+//! It is zero above phi_cut, infinite at and below phi_min, and C^2 in between and at phi_cut.
 
 use crate::hinge_law::law::HingeEnergy;
 use hinge::HingeDeformation;
 use std::f64::consts::PI;
 
-/// The barrier's constants.
+/// The constants of the barrier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// N mm
     stiffness: f64,
-    /// Void angle of the wall (rad).
+    /// Void angle at which the barrier becomes infinite (rad).
     phi_min: f64,
     /// Void angle at which contact begins (rad).
     phi_cut: f64,
 }
 
-/// Constants that stress the flat sheet or enclose nothing.
+/// Constants with which the flat sheet is stressed, or that define no barrier.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
     "contact with stiffness = {stiffness} N mm, phi_min = {phi_min} rad, phi_cut = {phi_cut} rad \
      violates stiffness > 0 and -pi < phi_min < phi_cut <= 0 (the closed sheet has phi = 0)"
 )]
 pub struct InvalidContact {
+    /// Stiffness of the rejected barrier (N mm).
     pub stiffness: f64,
+    /// Its void angle at which the barrier becomes infinite (rad).
     pub phi_min: f64,
+    /// Its void angle at which contact begins (rad).
     pub phi_cut: f64,
 }
 
 impl Contact {
-    /// A barrier of the given stiffness (N mm) that begins at `phi_cut` and ends at `phi_min` (rad).
+    /// A barrier with the given stiffness (N mm) between `phi_cut`, where it begins, and `phi_min` (rad).
     pub fn new(stiffness: f64, phi_min: f64, phi_cut: f64) -> Result<Self, InvalidContact> {
         let valid = stiffness > 0.0
             && stiffness.is_finite()
@@ -116,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_zero_when_open_twice_differentiable_at_first_touch_and_infinite_at_the_wall() {
+    fn the_barrier_is_zero_when_open_twice_differentiable_at_phi_cut_and_infinite_at_phi_min() {
         assert_eq!(energy(0.0), HingeEnergy::default());
         assert!(energy(-0.05 - 1e-9).tangent[2][2] < 1e-6);
         assert_eq!(energy(-0.3).w, f64::INFINITY);

@@ -1,15 +1,16 @@
-//! The traits of a hinge law: prepared for the hinges of one sheet, then evaluated for all of them.
+//! The traits of a hinge law, which is prepared for the hinges of one sheet and then evaluated for all of them.
 
 pub use ::surrogate::{HingeDamage, HingeEnergy, Order};
 
 use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Which damage an objective weighs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+/// The damage measure of an objective.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum DamageMeasure {
-    /// D, the mean over the ligament, as the paper.
+    /// D, the mean over the ligament, as in the paper.
     #[default]
     Mean,
     /// D_peak, the mean over the most strained 1 % of the ligament: at 1 it tears.
@@ -17,7 +18,7 @@ pub enum DamageMeasure {
 }
 
 impl DamageMeasure {
-    /// The damage of a hinge by this measure and its gradient in (a, s, theta, w_lig, alpha); zero where the
+    /// The damage of a hinge by this measure and its gradient in (a, s, theta, w_lig, alpha); zero if the
     /// law does not predict it.
     pub fn of(self, damage: &HingeDamage) -> (f64, [f64; 5]) {
         let gradient = match self {
@@ -38,7 +39,7 @@ impl DamageMeasure {
 
 /// A stored-energy function of the hinge deformation, for any hinge design.
 pub trait HingeLaw: Send + Sync {
-    /// Does once what depends on the designs alone.
+    /// Computes what depends on the designs alone.
     fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a>;
 
     /// D_s of (17) for a measure, if the law predicts it.
@@ -46,7 +47,7 @@ pub trait HingeLaw: Send + Sync {
         None
     }
 
-    /// What the law was trained on, if it was.
+    /// The training domain of the law, if it has one.
     fn domain(&self) -> Option<&TrainingDomain> {
         None
     }
@@ -54,12 +55,12 @@ pub trait HingeLaw: Send + Sync {
 
 /// A hinge law for the hinges of one sheet. Each method takes one deformation per hinge.
 pub trait PreparedLaw {
-    /// Energies with their derivatives up to `order`. Beyond a law's reach the energy may be
+    /// Energies with their derivatives up to `order`. Outside the range of a law the energy may be
     /// infinite; it is never NaN for finite deformations.
     fn energies(&self, deformations: &[HingeDeformation], order: Order) -> Vec<HingeEnergy>;
 
     /// The predicted damage (12); empty for a law that predicts none. Its gradients are zero unless they are
-    /// asked for.
+    /// requested.
     fn damage(&self, _deformations: &[HingeDeformation], _with_gradient: bool) -> Vec<HingeDamage> {
         Vec::new()
     }
@@ -69,12 +70,12 @@ pub trait PreparedLaw {
         false
     }
 
-    /// Deformation, of translations over w_lig, that is lost in the law's own rounding.
+    /// Deformation (translations divided by w_lig) below which the law's own rounding dominates.
     fn resolution(&self) -> f64 {
         0.0
     }
 
-    /// Which hinges are in a state that the law was made for.
+    /// Whether each hinge is inside the training domain of the law.
     fn inside(&self, deformations: &[HingeDeformation]) -> Vec<bool> {
         vec![true; deformations.len()]
     }

@@ -10,15 +10,18 @@ pub struct LinearLaw {
     stiffness: Vec<[f64; 3]>,
 }
 
-/// A spring constant that stores no energy.
+/// A spring constant that is not positive and finite.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "hinge {hinge}: {name} = {value} is not positive and finite; give k_a and k_s in N/mm and \
+    "hinge {hinge}: {name} = {value} must be positive and finite; give k_a and k_s in N/mm and \
      k_theta in N mm"
 )]
 pub struct InvalidStiffness {
+    /// Index of the hinge.
     pub hinge: usize,
+    /// Name of the constant: `k_a`, `k_s` or `k_theta`.
     pub name: &'static str,
+    /// The rejected value (N/mm, N/mm or N mm).
     pub value: f64,
 }
 
@@ -35,7 +38,7 @@ impl LinearLaw {
         Ok(Self { stiffness })
     }
 
-    /// The same constants at every one of `hinges` hinges.
+    /// The same constants at all `hinges` hinges.
     pub fn uniform(stiffness: [f64; 3], hinges: usize) -> Result<Self, InvalidStiffness> {
         Self::new(vec![stiffness; hinges])
     }
@@ -43,7 +46,7 @@ impl LinearLaw {
 
 impl HingeLaw for LinearLaw {
     /// # Panics
-    /// If there is not one triple of constants for each hinge.
+    /// If the number of triples of constants differs from the number of hinges.
     fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a> {
         assert_eq!(self.stiffness.len(), designs.len(), "one triple per hinge");
         Box::new(self)
@@ -62,7 +65,7 @@ impl PreparedLaw for &LinearLaw {
     }
 }
 
-/// The energy of three springs, without its derivatives in the design.
+/// The energy of three springs, without derivatives in the design.
 pub(super) fn spring(deformation: [f64; 3], constants: &[f64; 3]) -> HingeEnergy {
     let mut energy = HingeEnergy::default();
     for c in 0..3 {
@@ -86,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn constants_that_store_nothing_are_named() {
+    fn constants_that_store_no_energy_are_refused() {
         let error = LinearLaw::new(vec![[1.0; 3], [1.0, 0.0, 1.0]]).unwrap_err();
         assert_eq!((error.hinge, error.name), (1, "k_s"));
         assert!(LinearLaw::uniform([1.0, 1.0, f64::NAN], 3).is_err());

@@ -1,14 +1,14 @@
-//! The condensed hinge energy (14) inside its training domain, and its continuation beyond.
+//! The learned hinge energy (14) inside its training domain, and its continuation outside.
 //!
 //! ```text
 //! W_law(x; g) = W(y(x); g) + k W_s e^3 / (e + delta),        e = max(0, gamma(x) - 1)
 //! y(x) = c + (x - c) psi(gamma) / gamma,                     psi = 1 + delta z / (1 + z^3)^(1/3),  z = e / delta
 //! ```
 //!
-//! gamma is the gauge of the domain and c its centre. Inside, y = x. Beyond, y stays within delta of the
-//! domain, so that the network is never asked far from its data, and the second term, a cubic at first and
-//! then a parabola, brings the state back: W_law is twice differentiable and coercive for any weights. The
-//! cut angle is drawn into its interval by the same psi.
+//! gamma is the gauge of the domain and c its centre. Inside, y = x. Outside, y stays within delta of the
+//! domain, so that the network is not evaluated far from its data. The second term is cubic near the domain and
+//! quadratic far from it, and returns the state to the domain: W_law is twice differentiable and coercive for any
+//! weights. The cut angle is mapped to its interval by the same psi.
 
 use crate::hinge_law::law::{
     DamageMeasure, HingeDamage, HingeEnergy, HingeLaw, Order, PreparedLaw,
@@ -17,15 +17,15 @@ use hinge::{HingeDeformation, HingeDesign, Jet, TrainingDomain};
 use std::array::from_fn;
 use surrogate::{Prepared, Surrogate};
 
-/// delta: how far beyond the domain, in parts of its half-range, the network is asked.
+/// delta: maximum distance outside the domain at which the network is evaluated, relative to the half-range.
 const BEYOND: f64 = 0.1;
-/// k: a third of a half-range outside, the state is pushed back as hard as a wide ligament pulls at the edge.
+/// k: at a third of a half-range outside, the returning force equals that of a wide ligament at the edge.
 const RETURN_STIFFNESS: f64 = 20.0;
-/// Half-range of the cut angle (rad) of weights that were trained on one.
+/// Half-range of the cut angle (rad) for weights that were trained on a single one.
 const NARROWEST_ANGLE: f64 = 0.01;
 
-/// The standardised features (13) are of order one, and so are the units of the layers behind them: a
-/// deformation is lost in a few of their last digits.
+/// The standardised features (13) and the activations of the layers are of order one: a deformation is resolved
+/// to a few of their last digits.
 const RESOLUTION: f64 = 16.0 * f64::EPSILON;
 
 /// The learned hinge law.
@@ -35,10 +35,12 @@ pub struct SurrogateLaw {
 }
 
 impl SurrogateLaw {
+    /// The hinge law of a learned energy.
     pub fn new(surrogate: Surrogate) -> Self {
         Self { surrogate }
     }
 
+    /// The learned energy of the law.
     pub fn surrogate(&self) -> &Surrogate {
         &self.surrogate
     }
@@ -46,7 +48,7 @@ impl SurrogateLaw {
 
 impl HingeLaw for SurrogateLaw {
     fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a> {
-        let (asked, angle_slopes): (Vec<HingeDesign>, Vec<f64>) = designs
+        let (mapped, angle_slopes): (Vec<HingeDesign>, Vec<f64>) = designs
             .iter()
             .map(|design| {
                 let [alpha, slope] = drawn_in(self.surrogate.domain().alpha, design.alpha);
@@ -57,7 +59,7 @@ impl HingeLaw for SurrogateLaw {
             surrogate: &self.surrogate,
             designs: designs.to_vec(),
             angle_slopes,
-            prepared: self.surrogate.prepare(&asked),
+            prepared: self.surrogate.prepare(&mapped),
         })
     }
 
@@ -76,15 +78,15 @@ impl HingeLaw for SurrogateLaw {
 struct PreparedSurrogate<'a> {
     surrogate: &'a Surrogate,
     designs: Vec<HingeDesign>,
-    /// d(the cut angle that is asked) / d(the hinge's own), per hinge.
+    /// d(mapped cut angle) / d(cut angle of the hinge), per hinge.
     angle_slopes: Vec<f64>,
-    /// With the angles that are asked.
+    /// Prepared for the mapped cut angles.
     prepared: Prepared,
 }
 
 impl PreparedSurrogate<'_> {
-    /// The states to ask the network, and for the hinges outside the domain how they follow from theirs.
-    fn asked(
+    /// The states at which the network is evaluated, and for hinges outside the domain their map from the actual state.
+    fn mapped(
         &self,
         deformations: &[HingeDeformation],
     ) -> (Vec<HingeDeformation>, Vec<Option<Continuation>>) {
@@ -94,8 +96,8 @@ impl PreparedSurrogate<'_> {
             .map(|(design, deformation)| {
                 let beyond = domain.gauge(design.w_lig, deformation) > 1.0;
                 let beyond = beyond.then(|| Continuation::new(domain, design.w_lig, deformation));
-                let asked = beyond.as_ref().map_or(*deformation, Continuation::asked);
-                (asked, beyond)
+                let mapped = beyond.as_ref().map_or(*deformation, Continuation::mapped);
+                (mapped, beyond)
             })
             .unzip()
     }
@@ -103,8 +105,8 @@ impl PreparedSurrogate<'_> {
 
 impl PreparedLaw for PreparedSurrogate<'_> {
     fn energies(&self, deformations: &[HingeDeformation], order: Order) -> Vec<HingeEnergy> {
-        let (asked, continuations) = self.asked(deformations);
-        let mut energies = self.surrogate.evaluate(&self.prepared, &asked, order);
+        let (mapped, continuations) = self.mapped(deformations);
+        let mut energies = self.surrogate.evaluate(&self.prepared, &mapped, order);
         let scale = RETURN_STIFFNESS * self.surrogate.energy_scale();
         for (h, energy) in energies.iter_mut().enumerate() {
             energy.design[1] *= self.angle_slopes[h];
@@ -120,12 +122,12 @@ impl PreparedLaw for PreparedSurrogate<'_> {
     }
 
     fn damage(&self, deformations: &[HingeDeformation], with_gradient: bool) -> Vec<HingeDamage> {
-        let (asked, continuations) = self.asked(deformations);
+        let (mapped, continuations) = self.mapped(deformations);
         let designs = self.prepared.designs();
         if !with_gradient {
-            return self.surrogate.damage_values(designs, &asked);
+            return self.surrogate.damage_values(designs, &mapped);
         }
-        let mut damages = self.surrogate.damage(designs, &asked);
+        let mut damages = self.surrogate.damage(designs, &mapped);
         for (h, damage) in damages.iter_mut().enumerate() {
             for gradient in [&mut damage.gradient, &mut damage.peak_gradient] {
                 gradient[4] *= self.angle_slopes[h];
@@ -153,7 +155,7 @@ struct Continuation {
     /// gamma
     gauge: Jet,
     /// (a, s, theta) of y.
-    asked: [Jet; 3],
+    mapped: [Jet; 3],
 }
 
 impl Continuation {
@@ -162,26 +164,26 @@ impl Continuation {
         let drawn = gauge.map(saturated(gauge.value)) * gauge.recip();
         let state = deformation.to_array();
         let centre = domain.centre();
-        let asked = from_fn(|i| {
+        let mapped = from_fn(|i| {
             let centre = match i {
                 2 => Jet::constant(centre[2]),
                 _ => Jet::variable(3, w_lig) * centre[i],
             };
             centre + (Jet::variable(i, state[i]) - centre) * drawn
         });
-        Self { gauge, asked }
+        Self { gauge, mapped }
     }
 
-    fn asked(&self) -> HingeDeformation {
-        self.asked.map(|y| y.value).into()
+    fn mapped(&self) -> HingeDeformation {
+        self.mapped.map(|y| y.value).into()
     }
 
     /// W_law from the energy at y; `scale` is k W_s.
     fn energy(&self, at: &HingeEnergy, scale: f64, order: Order) -> HingeEnergy {
-        let y = &self.asked;
+        let y = &self.mapped;
         let back = self.gauge.map(returning(self.gauge.value)) * scale;
         let slope = |j: usize| back.gradient[j] + sum(|i| at.forces[i] * y[i].gradient[j]);
-        // d2W/dy_i d(variable j), the variable moving y alone.
+        // d2W/dy_i d(variable j); the variable changes y only.
         let stiffness = |i: usize, j: usize| sum(|l| at.tangent[i][l] * y[l].gradient[j]);
         let curvature = |j: usize, k: usize| {
             back.hessian[j][k]
@@ -205,9 +207,9 @@ impl Continuation {
         energy
     }
 
-    /// A gradient in (a, s, theta, w_lig, alpha) at y, taken back to x.
+    /// A gradient in (a, s, theta, w_lig, alpha) at y, pulled back to x.
     fn gradient(&self, at: &[f64; 5]) -> [f64; 5] {
-        let along = |j: usize| sum(|i| at[i] * self.asked[i].gradient[j]);
+        let along = |j: usize| sum(|i| at[i] * self.mapped[i].gradient[j]);
         [along(0), along(1), along(2), at[3] + along(3), at[4]]
     }
 }
@@ -238,7 +240,7 @@ fn returning(gauge: f64) -> [f64; 3] {
     ]
 }
 
-/// The cut angle that the network is asked for one of a hinge, and its derivative.
+/// The mapped cut angle of a hinge, and its derivative.
 fn drawn_in([minimum, maximum]: [f64; 2], alpha: f64) -> [f64; 2] {
     let middle = 0.5 * (minimum + maximum);
     let half = (0.5 * (maximum - minimum)).max(NARROWEST_ANGLE);
@@ -316,7 +318,7 @@ mod tests {
     #[test]
     fn the_energy_grows_without_bound_and_the_inside_is_untouched() {
         let law = tiny();
-        // Quadratic far out, in each direction and sense.
+        // Quadratic far out, in each direction and sign.
         for c in 0..3 {
             let far = |t: f64| {
                 let mut x = [0.0, 0.0, 0.0, 18.0, 1.5];
@@ -341,8 +343,8 @@ mod tests {
         assert_eq!(law.prepare(&[design]).inside(&[state]), [true]);
     }
 
-    /// Along lines from the centre out, at most one minimum beyond the edge and no maximum above what a
-    /// hinge stores inside: nothing to get stuck in or to climb.
+    /// Along lines from the centre outwards there is at most one minimum beyond the edge, and no maximum above the
+    /// energy of a hinge inside: the solver cannot get stuck there.
     #[test]
     fn beyond_the_edge_there_is_no_ridge() {
         let law = tiny();
@@ -379,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cut_angle_beyond_the_training_is_drawn_to_it_smoothly() {
+    fn a_cut_angle_outside_the_domain_is_mapped_to_it_smoothly() {
         let interval = [0.8, 2.4];
         assert_eq!(drawn_in(interval, 1.0), [1.0, 1.0]);
         for alpha in [0.75, 0.3, 2.41, 3.0] {

@@ -23,6 +23,10 @@ use std::sync::Arc;
 
 /// Why a design has no objective value.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum DesignError {
     #[error(transparent)]
     Pattern(#[from] PatternError),
@@ -49,16 +53,21 @@ pub enum DesignError {
 
 /// Hinge law, supports and loads.
 pub struct Mechanics {
+    /// The hinge law of all hinges.
     pub law: Arc<dyn HingeLaw>,
+    /// Contact of panel edges; `None` without contact.
     pub contact: Option<Contact>,
+    /// Supports, loads and load steps, with the settings of the equilibrium solver.
     pub solver: EquilibriumSolver,
 }
 
 /// How the deployed state of a sheet is computed.
 pub enum Model {
-    /// All hinges are pins and open by the same angle (rad), unless the design has its own opening angle;
-    /// no equilibrium and no hinge energy.
-    Ideal { opening: f64 },
+    /// All hinges are pins and open by the same angle; no equilibrium and no hinge energy.
+    Ideal {
+        /// The opening angle of designs without their own (rad).
+        opening: f64,
+    },
     /// Equilibria under loads.
     Equilibrium(Box<Mechanics>),
 }
@@ -75,17 +84,25 @@ impl Model {
 
 /// A design problem: everything that is constant during the design.
 pub struct DesignProblem {
+    /// Numbers of panels.
     pub grid: Grid,
+    /// Outline of the flat sheet.
     pub outline: Outline,
+    /// Interval of the ligament widths.
     pub widths: WidthChart,
+    /// Options of the sheet that a pattern defines.
     pub options: SheetOptions,
+    /// How the deployed state is computed.
     pub model: Model,
+    /// The objective L of (16).
     pub objective: Objective,
 }
 
 /// A deployed design.
 pub struct Deployment {
+    /// The cut pattern of the design.
     pub pattern: CutPattern,
+    /// The flat sheet that the pattern defines.
     pub sheet: Sheet,
     /// One entry per load step; a single entry for the ideal deployment.
     pub path: Vec<LoadStep>,
@@ -106,11 +123,13 @@ pub struct Sensitivities {
 pub struct Evaluation {
     /// L of (16).
     pub loss: f64,
+    /// The unweighted terms of L.
     pub terms: Terms,
     /// dL/dtheta
     pub gradient: DesignVector,
     /// The gradient with respect to the constants of the design problem.
     pub sensitivities: Sensitivities,
+    /// The deployment of the design.
     pub deployment: Deployment,
     /// Maximum componentwise backward error of the adjoint solves.
     pub adjoint_residual: f64,
@@ -347,7 +366,7 @@ impl DesignProblem {
 }
 
 impl Mechanics {
-    pub fn hinged<'a>(
+    pub(crate) fn hinged<'a>(
         &'a self,
         sheet: &'a Sheet,
         law: &'a dyn PreparedLaw,

@@ -27,6 +27,7 @@ const NARROWEST_INTERVAL: f64 = 0.01;
 /// The training domain and the weight of the penalty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DomainPenalty {
+    /// The training domain of the hinge law.
     pub domain: TrainingDomain,
     /// mm^2
     pub weight: f64,

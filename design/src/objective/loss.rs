@@ -10,15 +10,17 @@ use crate::objective::panel_shape::panel_shape;
 use crate::objective::path_functionals::{HingePath, PathFunctionals, PerFunctional};
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::topology::PanelCorner;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The panel corners on the outline that form the point set P of (16).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum OutlinePoints {
     /// Corners that belong to no hinge.
     #[default]
     Free,
+    /// All corners on the outline.
     All,
 }
 
@@ -37,7 +39,9 @@ impl OutlinePoints {
 pub struct Objective {
     /// T (mm); not empty.
     pub target: Vec<[f64; 2]>,
+    /// Weight and smoothness of the Chamfer distance.
     pub chamfer: Chamfer,
+    /// The panel corners that form P.
     pub outline: OutlinePoints,
     /// Whether P is translated so that its mean is the origin; the target should then be centred too.
     pub centred: bool,
@@ -60,14 +64,17 @@ pub struct Objective {
 pub struct Terms {
     /// mm^2
     pub chamfer: f64,
+    /// The path functionals (17)-(19).
     pub path: PerFunctional,
+    /// The panel shape penalty.
     pub panel_shape: f64,
+    /// The penalty on hinge states outside the training domain.
     pub domain: f64,
 }
 
 /// The objective and its partial derivatives at a deployment.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Judgement {
+pub(crate) struct Judgement {
     /// L of (16).
     pub loss: f64,
     pub terms: Terms,
@@ -103,7 +110,7 @@ impl Objective {
 
     /// Evaluates a path whose last configuration places the points P at `outline` (mm); `damage_scale` is
     /// D_s of (17).
-    pub fn judge(
+    pub(crate) fn judge(
         &self,
         outline: &[[f64; 2]],
         sheet: &Sheet,

@@ -16,14 +16,17 @@ use serde::Serialize;
 /// One number per functional: a value, a weight or a temperature.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct PerFunctional {
+    /// Of the damage functional (17).
     pub damage: f64,
+    /// Of the compression functional (18).
     pub compression: f64,
+    /// Of the shear functional (19).
     pub shear: f64,
 }
 
 /// The path of one hinge, one entry per load step.
 #[derive(Clone, Debug, PartialEq)]
-pub struct HingePath {
+pub(crate) struct HingePath {
     /// mm
     pub w_lig: f64,
     pub deformations: Vec<HingeDeformation>,
@@ -33,7 +36,7 @@ pub struct HingePath {
 
 /// The weights w_j and temperatures tau of the functionals, and D_s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PathFunctionals {
+pub(crate) struct PathFunctionals {
     pub weights: PerFunctional,
     /// In the units of the quantities whose extrema are taken; all dimensionless.
     pub temperatures: PerFunctional,

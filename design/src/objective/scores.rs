@@ -14,9 +14,11 @@ pub struct Scores {
     pub outline_error: f64,
     /// The Chamfer distance including coverage (mm^2).
     pub chamfer: f64,
-    /// (17)-(19), unweighted.
+    /// The damage functional (17), unweighted.
     pub damage: f64,
+    /// The compression functional (18), unweighted.
     pub compression: f64,
+    /// The shear functional (19), unweighted.
     pub shear: f64,
     /// Panel shape penalty, unweighted; 0 if its weight is zero.
     pub panel_shape: f64,
@@ -28,6 +30,7 @@ pub struct Scores {
 }
 
 impl Scores {
+    /// The scores of an evaluated design.
     pub fn of(objective: &Objective, evaluation: &Evaluation) -> Self {
         let terms = &evaluation.terms;
         Self {

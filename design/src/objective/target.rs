@@ -1,44 +1,60 @@
-//! The target outline T of (16): a closed curve, sampled densely and evenly by arc length.
+//! The target outline T of (16): a closed curve, sampled densely at equal arc lengths.
 
 use crate::geometry::polygon;
 use crate::geometry::svg_path::{self, SvgPathError};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-/// A target as a scene writes it; lengths in mm, in the coordinates of the flat sheet.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A target as written in a scene; lengths in mm, in the coordinates of the flat sheet.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum TargetShape {
+    /// A circle.
     Circle {
+        /// Centre (mm).
         centre: [f64; 2],
+        /// Radius (mm), positive.
         radius: f64,
     },
-    /// `size` is [along x, along y] before the counter-clockwise rotation about the centre.
+    /// A rectangle, rotated about its centre.
     Rectangle {
+        /// Centre (mm).
         centre: [f64; 2],
+        /// Side lengths [along x, along y] before the rotation (mm), positive.
         size: [f64; 2],
+        /// Rotation about the centre, counter-clockwise (deg).
         rotation_deg: f64,
     },
-    /// Vertices in order around the outline; the last is joined to the first.
+    /// A polygon; the last vertex is connected to the first.
     Polygon {
+        /// Vertices in order around the outline (mm), at least three.
         vertices: Vec<[f64; 2]>,
     },
-    /// A file with one `x,y` (mm) a line, in order around the outline; `#` starts a comment.
+    /// A polygon in a file with one `x,y` (mm) per line, in order around the outline; `#` starts a comment.
     Csv {
+        /// Path of the file, relative to the folder of the scene.
         file: PathBuf,
     },
-    /// The first visible path of an SVG file, transforms applied, scaled to `height` (mm) about the
-    /// centre of its box.
+    /// The first visible path of an SVG file, transforms applied; it must be one closed contour that does not cross
+    /// itself.
     Svg {
+        /// Path of the file, relative to the folder of the scene.
         file: PathBuf,
+        /// Centre of the bounding box of the outline (mm).
         centre: [f64; 2],
+        /// Height of the bounding box (mm), positive; the width follows from the drawing.
         height: f64,
     },
 }
 
-/// A target that is not an outline.
+/// Why a target is not an outline.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum TargetError {
     #[error("cannot read the target outline {path}: {source}", path = .path.display())]
     Read {
@@ -55,9 +71,9 @@ pub enum TargetError {
     Svg { path: PathBuf, source: SvgPathError },
     #[error("target.{key} = {value} violates 0 < {key} (mm)")]
     Size { key: &'static str, value: f64 },
-    #[error("target.{key} holds a number that is not finite")]
+    #[error("target.{key} contains a number that is not finite")]
     NotFinite { key: &'static str },
-    #[error("the target outline encloses no area: it needs three corners or more, in order")]
+    #[error("the target outline encloses no area: give at least three corners in order")]
     NoArea,
 }
 
@@ -69,7 +85,7 @@ pub struct Target {
 }
 
 impl Target {
-    /// Samples a shape at `count` points; a CSV file is looked for relative to `folder`.
+    /// Samples a shape at `count` points; file names are relative to `folder`.
     pub fn sample(shape: &TargetShape, folder: &Path, count: usize) -> Result<Self, TargetError> {
         match shape {
             TargetShape::Circle { centre, radius } => {
@@ -144,7 +160,7 @@ impl Target {
         f64::hypot(point[0] - x, point[1] - y)
     }
 
-    /// Area within the curve through the samples (mm^2).
+    /// Area inside the curve through the samples (mm^2).
     pub fn area(&self) -> f64 {
         polygon::area(&self.points).abs()
     }
@@ -199,7 +215,7 @@ fn along_polygon(vertices: &[[f64; 2]], count: usize) -> Result<Target, TargetEr
     Ok(Target { points, length })
 }
 
-/// The vertices scaled to a height and moved to a centre, both of their box (mm).
+/// The vertices, scaled and translated so that their bounding box has the given height and centre (mm).
 fn placed(
     vertices: &[[f64; 2]],
     centre: [f64; 2],
@@ -207,8 +223,8 @@ fn placed(
 ) -> Result<Vec<[f64; 2]>, TargetError> {
     let bounds = |axis: usize| {
         let values = vertices.iter().map(|vertex| vertex[axis]);
-        let least = values.clone().fold(f64::INFINITY, f64::min);
-        [least, values.fold(f64::NEG_INFINITY, f64::max)]
+        let minimum = values.clone().fold(f64::INFINITY, f64::min);
+        [minimum, values.fold(f64::NEG_INFINITY, f64::max)]
     };
     let [[left, right], [low, high]] = [bounds(0), bounds(1)];
     if high <= low || vertices.is_empty() {
@@ -301,7 +317,10 @@ mod tests {
             assert!((f64::hypot(b[0] - a[0], b[1] - a[1]) - 10.0).abs() < 1e-9);
         }
         let slope = (p[1][1] - p[0][1]).atan2(p[1][0] - p[0][0]).to_degrees();
-        assert!((slope + 15.4).abs() < 1e-9, "the long side turns clockwise");
+        assert!(
+            (slope + 15.4).abs() < 1e-9,
+            "the long side is rotated clockwise"
+        );
     }
 
     #[test]
@@ -362,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_outline_is_refused() {
+    fn shapes_without_an_outline_are_refused() {
         let line = vec![[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]];
         let error = sample(TargetShape::Polygon { vertices: line }, 10).unwrap_err();
         assert!(error.to_string().contains("no area"), "{error}");

@@ -17,10 +17,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub struct StepRecord {
     /// 0 is the start.
     pub step: usize,
+    /// The objective and its terms.
     #[serde(flatten)]
     pub scores: Scores,
-    /// Number of halvings, including those of a step that was given up, and why there were any.
+    /// Number of halvings, including those of a step that was given up.
     pub halvings: u32,
+    /// Why the first design of the step without objective value had none; `None` if all had one.
     pub setback: Option<String>,
 }
 
@@ -35,7 +37,10 @@ pub enum Ended {
     /// No step from the last design lowers the loss: a minimum, or a kink that L-BFGS cannot leave.
     Settled,
     /// No step from the last design, however small, leads to a design with an equilibrium.
-    Stuck { reason: String },
+    Stuck {
+        /// Why the last design that was tried has no objective value.
+        reason: String,
+    },
 }
 
 /// Everything that the next step depends on, besides the problem.

@@ -6,6 +6,7 @@
 use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::lbfgs_memory::Memory;
 use crate::optimise::adam::Adam;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Armijo constant: the fraction of the decrease predicted by the slope that an L-BFGS step must achieve.
@@ -14,11 +15,13 @@ const ARMIJO: f64 = 1e-4;
 const LONGEST: f64 = 1.0;
 
 /// The optimiser of the outer loop, as a scene names it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SearchMethod {
+    /// Adam, as in the paper.
     #[default]
     Adam,
+    /// L-BFGS with backtracking.
     Lbfgs,
 }
 

@@ -12,11 +12,14 @@ pub struct Canvas {
 /// The point of a text that its position refers to.
 #[derive(Clone, Copy)]
 pub enum Anchor {
+    /// The left end of the baseline.
     Start,
+    /// The middle of the baseline.
     Middle,
 }
 
 impl Canvas {
+    /// An empty document.
     pub fn new(low: [f64; 2], high: [f64; 2]) -> Self {
         let body = String::new();
         Self { low, high, body }
@@ -27,10 +30,12 @@ impl Canvas {
         self.push(format_args!("<g id=\"{}\" {attributes}>", escaped(id)));
     }
 
+    /// Closes the group opened last.
     pub fn close(&mut self) {
         self.push(format_args!("</g>"));
     }
 
+    /// A straight line between two points (mm).
     pub fn line(&mut self, from: [f64; 2], to: [f64; 2], attributes: &str) {
         self.push(format_args!(
             "<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" {attributes}/>",
@@ -41,6 +46,7 @@ impl Canvas {
         ));
     }
 
+    /// A circle with its centre and radius in mm.
     pub fn circle(&mut self, centre: [f64; 2], radius: f64, attributes: &str) {
         self.push(format_args!(
             "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" {attributes}/>",

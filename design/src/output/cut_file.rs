@@ -1,4 +1,4 @@
-//! From a designed sheet to files that a cutting machine reads, at 1:1 in mm.
+//! Cut files of a designed sheet for cutting machines, at 1:1 in mm.
 
 mod cut_lines;
 mod dxf;

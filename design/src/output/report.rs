@@ -1,4 +1,4 @@
-//! What a design run says at its end: the objective before and after, every hinge, what to mind.
+//! The report of a design run: the objective before and after, all hinges, warnings.
 
 mod estimate;
 mod hinge_row;
@@ -19,32 +19,37 @@ use std::fmt;
 /// The report of a run, for people (`Display`) and programs (JSON).
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
+    /// Title of the scene.
     pub title: String,
+    /// Why the run ended.
     pub ended: Ended,
-    /// Steps made, the start not counted.
+    /// Number of steps after the start.
     pub steps: usize,
-    /// Steps that had to be halved because a design had no value.
+    /// Number of steps that were halved because a design had no objective value.
     pub setbacks: usize,
+    /// Scores of the start.
     pub before: Scores,
-    /// Of the best design.
+    /// Scores of the best design.
     pub after: Scores,
-    /// How far the networks of the scene's ensemble disagree on the best design's path, if there are several.
+    /// Standard deviations of the scene's ensemble on the path of the best design, if there is an ensemble.
     pub estimate: Option<Estimate>,
     /// Whether a cut file was written.
     pub cut_file: bool,
+    /// All hinges of the best design.
     pub hinges: Vec<HingeRow>,
+    /// All warnings about the best design, the most severe first.
     pub warnings: Vec<Warning>,
 }
 
 impl Report {
-    /// The errors, for which no cut file is written unless it is forced.
+    /// The errors, for which no cut file is written unless forced.
     pub fn errors(&self) -> impl Iterator<Item = &Warning> {
         let warnings = self.warnings.iter();
         warnings.filter(|warning| warning.severity == Severity::Error)
     }
 
-    /// Of a run of `scene`, whose best design has the given cut lines. They are written if there are no errors, or
-    /// although there are some if `force`.
+    /// The report of a run of `scene`, whose best design has the given cut lines. The cut files are written if there
+    /// are no errors, or if `force`.
     pub fn new(
         scene: &Scene,
         designed: &Designed,
@@ -87,12 +92,14 @@ impl fmt::Display for Report {
         }
         match &self.ended {
             Ended::Completed => writeln!(f, "{} steps", self.steps)?,
-            Ended::Stopped => {
-                writeln!(f, "stopped after {} steps; run again to go on", self.steps)?
-            }
+            Ended::Stopped => writeln!(
+                f,
+                "stopped after {} steps; run again to continue",
+                self.steps
+            )?,
             Ended::Settled => writeln!(
                 f,
-                "settled after {} steps: none lowers the loss any more",
+                "settled after {} steps: no further step lowers the loss",
                 self.steps
             )?,
             Ended::Stuck { reason } => writeln!(f, "stuck after {} steps: {reason}", self.steps)?,
@@ -112,7 +119,7 @@ impl fmt::Display for Report {
             let percent = |x: f64| format!("{:.1} %", 100.0 * x);
             writeln!(
                 f,
-                "\nstandard deviation of {} networks on the path inside: energy {}, forces {}, D_peak {}",
+                "\nstandard deviation of {} networks on the path, inside the domain: energy {}, forces {}, D_peak {}",
                 estimate.networks,
                 percent(estimate.energy),
                 percent(estimate.forces),
@@ -145,8 +152,8 @@ impl fmt::Display for Report {
         }
         writeln!(
             f,
-            "D and D_peak: maxima along the path of the mean damage of the ligament and of its most strained\n\
-             1 %, which tears at 1; ? not known, as the hinge left the states its law was trained on"
+            "D and D_peak: maximum along the path of the mean damage of the ligament and of its most strained 1 %,\n\
+             which tears at 1; ?: not known, since the hinge left the training domain of its law"
         )?;
         if self.warnings.is_empty() {
             return writeln!(f, "\nno warnings");

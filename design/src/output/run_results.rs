@@ -1,4 +1,4 @@
-//! What a run leaves in its folder beside its state: report, cut lines, pictures.
+//! The results of a run, written to its folder besides its state: report, cut files, pictures.
 
 use crate::objective::design_problem::Deployment;
 use crate::output::cut_file::{CutLines, FabricationError, write_dxf, write_svg};
@@ -12,6 +12,10 @@ use support::whole_file;
 
 /// A result that could not be written.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum ResultsError {
     #[error(transparent)]
     Fabrication(#[from] FabricationError),
@@ -22,10 +26,10 @@ pub enum ResultsError {
     },
 }
 
-/// Writes `report.json`, `report.txt`, `deployed-start.svg` and `deployed.svg`; of a design with cut lines `flat.svg`;
-/// and of one without errors, or if `force`, `cut.dxf`, `cut.svg` and `cut-list.csv`.
+/// Writes `report.json`, `report.txt`, `deployed-start.svg` and `deployed.svg`; for a design with cut lines also
+/// `flat.svg`; for a design without errors, or if `force`, also `cut.dxf`, `cut.svg` and `cut-list.csv`.
 ///
-/// Otherwise the report says why there is no cut file, and those of an earlier design are removed.
+/// If no cut file is written, the report states why, and the cut files of an earlier design are removed.
 pub fn write_results(
     scene: &Scene,
     designed: &Designed,
@@ -38,7 +42,7 @@ pub fn write_results(
     };
     let best = &designed.best.deployment;
     let cuts = CutLines::new(&best.pattern, &best.sheet, &scene.material);
-    // First of all, so that whoever finds a cut file finds what to mind about it.
+    // Written first, so that there is never a cut file without its report.
     let report = Report::new(scene, designed, &cuts, force);
     let json = serde_json::to_vec_pretty(&report).map_err(|error| ResultsError::Write {
         path: folder.join("report.json"),
@@ -77,7 +81,7 @@ pub fn write_results(
     Ok(report)
 }
 
-/// Hole and ligament of every hinge: as designed, and as a caliper reads the ligament beside its hole.
+/// Hole and ligament of every hinge: the design values, and the ligament as measured by a caliper beside its hole.
 fn cut_list(sheet: &Sheet, cuts: &CutLines) -> String {
     let mut text = "hinge,hole_diameter_mm,w_lig_mm,caliper_mm\n".to_owned();
     for (h, (hinge, hole)) in std::iter::zip(&sheet.hinges, &cuts.holes).enumerate() {

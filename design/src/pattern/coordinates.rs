@@ -67,7 +67,7 @@ impl PatternCoordinates {
         Ok(tau.each_ref().map(logits))
     }
 
-    pub fn check(&self, grid: Grid) -> Result<(), PatternError> {
+    pub(crate) fn check(&self, grid: Grid) -> Result<(), PatternError> {
         let expected = grid.edge_cut_counts().map(|count| count + 1);
         let blocks = [
             ("z", &self.z, grid.aspect_ratio_count()),

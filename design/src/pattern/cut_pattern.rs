@@ -26,6 +26,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Outline {
+    /// Corners SW, SE, NE, NW (mm).
     pub corners: [[f64; 2]; 4],
 }
 
@@ -37,7 +38,7 @@ impl Outline {
         }
     }
 
-    /// mm^2
+    /// Area of the outline (mm^2).
     pub fn area(&self) -> f64 {
         let [sw, se, ne, nw] = self.corners.map(complex);
         0.5 * cross(ne - sw, nw - se)
@@ -66,7 +67,9 @@ impl Outline {
 /// A flat, gapless, rigidly deployable cut pattern kappa = (r, tau); (2).
 #[derive(Clone, Debug)]
 pub struct CutPattern {
+    /// Numbers of panels.
     pub grid: Grid,
+    /// Outline of the flat sheet.
     pub outline: Outline,
     /// Void aspect ratios of the interior cuts, row by row, in (0, 1).
     pub r: Vec<f64>,

@@ -16,7 +16,9 @@ pub struct Grid {
 /// the opposite side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Endpoint {
+    /// x_ij.
     X,
+    /// x'_ij.
     XPrime,
 }
 
@@ -30,6 +32,7 @@ pub(crate) const NW: usize = 3;
 pub(crate) const EDGES: [[usize; 2]; 4] = [[SW, SE], [SE, NE], [NW, NE], [SW, NW]];
 
 impl Grid {
+    /// Number of panels, MN.
     pub fn panel_count(&self) -> usize {
         self.m * self.n
     }
@@ -59,6 +62,7 @@ impl Grid {
         2 * (j * (self.m + 1) + i) + endpoint as usize
     }
 
+    /// Index of the panel in column `p` and row `q`.
     pub fn panel(&self, p: usize, q: usize) -> usize {
         q * self.m + p
     }

@@ -1,24 +1,27 @@
 //! Supports and loads as written in a scene, with panels named by [column, row].
 
 use crate::pattern::grid::Grid;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A supported panel.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SupportConfig {
+    /// The panel [column, row], counted from [0, 0] at the lower left.
     pub panel: [usize; 2],
+    /// Which motions of the panel's centroid are prescribed.
     pub kind: SupportKind,
-    /// Displacement of the supported translations at full load (mm).
+    /// Displacement [x, y] of the supported translations at full load (mm), each -1e5 to 1e5; zero for free ones.
     #[serde(default)]
     pub displacement: [f64; 2],
-    /// Rotation of a supported rotation at full load, counter-clockwise (deg).
+    /// Rotation at full load, counter-clockwise (deg), -720 to 720; zero unless the rotation is supported.
     #[serde(default)]
     pub rotation_deg: f64,
 }
 
 /// Which motions of a panel's centroid a support prescribes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SupportKind {
     /// Both translations and the rotation.
@@ -32,54 +35,61 @@ pub enum SupportKind {
 }
 
 /// A dead load at the centroid of a panel.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LoadConfig {
+    /// The panel [column, row], counted from [0, 0] at the lower left.
     pub panel: [usize; 2],
-    /// N
+    /// Force [x, y] at full load (N), each -1e5 to 1e5; zero along supported translations.
     #[serde(default)]
     pub force: [f64; 2],
-    /// N mm, counter-clockwise.
+    /// Couple at full load, counter-clockwise (N mm), -1e8 to 1e8; zero if the rotation is supported.
     #[serde(default)]
     pub couple: f64,
 }
 
 /// A dead traction along an edge of the flat sheet. Its resultant is divided equally among the panels of
 /// the edge and acts at their centroids, so the loads do not change with the pattern.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EdgeLoadConfig {
+    /// The loaded edge.
     pub edge: SheetEdge,
-    /// N/mm
+    /// Traction [x, y] at full load (N/mm), each -1e3 to 1e3.
     pub traction: [f64; 2],
 }
 
 /// An edge of the outline.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SheetEdge {
+    /// The edge from the south-west to the south-east corner.
     Bottom,
+    /// The edge from the south-east to the north-east corner.
     Right,
+    /// The edge from the north-west to the north-east corner.
     Top,
+    /// The edge from the south-west to the north-west corner.
     Left,
 }
 
 /// Self-equilibrated couples on the two panels of a hinge that open it. The couple on a panel whose rotation is
 /// supported would do no work and is left out.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OpeningCoupleConfig {
-    /// Two neighbouring panels; by default every hinge of the sheet.
+    /// Two neighbouring panels [column, row]; by default every hinge of the sheet.
     pub panels: Option<[[usize; 2]; 2]>,
-    /// N mm, positive to open.
+    /// Couple at full load (N mm), positive to open, -1e8 to 1e8.
     pub couple: f64,
 }
 
 /// Displacement control: the stroke of the loads is prescribed; the load factor is an unknown.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DriveConfig {
-    /// Stroke at the end of the path: work of the full loads divided by the sum of their magnitudes (mm).
+    /// Stroke at the end of the path: work of the full loads divided by the sum of their magnitudes (mm),
+    /// -1e5 to 1e5.
     pub stroke: f64,
 }
 

@@ -15,8 +15,11 @@ use surrogate::Surrogate;
 /// A scene with checked values, its material and its sampled target.
 #[derive(Clone, Debug)]
 pub struct Scene {
+    /// The keys of the scene file.
     pub config: SceneConfig,
+    /// The sheet material.
     pub material: SheetMaterial,
+    /// The target outline.
     pub target: Target,
     pub(super) hinge: LoadedHinge,
     pub(super) path: PathBuf,

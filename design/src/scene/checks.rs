@@ -1,6 +1,6 @@
-//! What the values of a scene may be.
+//! Admissible ranges of the values of a scene.
 //!
-//! The ranges are wider than any sheet that is cut and narrower than a slip of a factor 1000.
+//! The ranges are wider than those of any real sheet, and narrower than an error by a factor of 1000.
 
 use crate::equilibrium::settings::Method;
 use crate::geometry::polygon::edges;
@@ -13,8 +13,8 @@ use crate::scene::sheet_config::SheetConfig;
 use hinge::HingeDesign;
 use std::f64::consts::FRAC_PI_2;
 
-/// Checks everything that needs no other file; the error says which key, which limit and, where a
-/// factor of 1000 would mend it, which unit was probably meant.
+/// Checks everything that needs no other file. The error states the key, the limit and, if a
+/// factor of 1000 would correct the value, the probable unit.
 pub(super) fn config(scene: &SceneConfig) -> Result<(), String> {
     title(scene)?;
     sheet(scene)?;
@@ -25,11 +25,11 @@ pub(super) fn config(scene: &SceneConfig) -> Result<(), String> {
     search(scene)
 }
 
-/// Perimeter of the largest target over that of the flat sheet. Panels keep their edges: a sheet of squares opens to
-/// twice its width, one of slender panels to more along one axis alone.
+/// Maximum ratio of the target's perimeter to that of the flat sheet. Panels keep their edges: a sheet of squares
+/// opens to twice its width; a sheet of slender panels opens further, but along one axis only.
 const OPENS_TO: f64 = 3.0;
 
-/// A target of a quite different size than the sheet is a slip of units.
+/// A target of a very different size than the sheet is assumed to be in the wrong unit.
 pub(super) fn target(target: &Target, outline: &Outline) -> Result<(), String> {
     let perimeter: f64 = edges(&outline.corners)
         .map(|(p, q)| f64::hypot(q[0] - p[0], q[1] - p[1]))
@@ -40,14 +40,14 @@ pub(super) fn target(target: &Target, outline: &Outline) -> Result<(), String> {
         [0.2 * perimeter, OPENS_TO * perimeter],
         "mm",
     )
-    .map_err(|error| format!("{error} (the sheet's outline is {perimeter:.0} mm long)"))
+    .map_err(|error| format!("{error} (the outline of the flat sheet is {perimeter:.0} mm long)"))
 }
 
-/// A title goes into pictures, which cannot hold control characters.
+/// The title is written to SVG pictures, which must not contain control characters.
 fn title(scene: &SceneConfig) -> Result<(), String> {
     match scene.title.chars().find(|c| c.is_control()) {
         Some(c) => Err(format!(
-            "title holds the control character {c:?}: remove it"
+            "title contains the control character {c:?}: remove it"
         )),
         None => Ok(()),
     }
@@ -87,8 +87,8 @@ fn sheet(scene: &SceneConfig) -> Result<(), String> {
 
 fn ligament(scene: &SceneConfig) -> Result<(), String> {
     let (ligament, process) = (&scene.ligament, &scene.process);
-    let [least, greatest] = ligament.range;
-    for w_lig in [least, greatest] {
+    let [min, max] = ligament.range;
+    for w_lig in [min, max] {
         let design = HingeDesign {
             w_lig,
             alpha: FRAC_PI_2,
@@ -100,25 +100,25 @@ fn ligament(scene: &SceneConfig) -> Result<(), String> {
             format!("ligament.range and process, at w_lig = {w_lig} mm: {error}")
         })?;
     }
-    if least >= greatest {
+    if min >= max {
         return Err(format!(
-            "ligament.range = [{least}, {greatest}] mm violates least < greatest"
+            "ligament.range = [{min}, {max}] mm violates minimum < maximum"
         ));
     }
-    if !(ligament.start > least && ligament.start < greatest) {
+    if !(ligament.start > min && ligament.start < max) {
         return Err(format!(
-            "ligament.start = {} mm violates {least} < start < {greatest} mm (ligament.range)",
+            "ligament.start = {} mm violates {min} < start < {max} mm (ligament.range)",
             ligament.start
         ));
     }
-    // A slit is at most as long as two panels, and each of its ends gives way to a ligament and its hole.
+    // A slit is at most as long as two panels and is shortened at each end by a ligament and its hole.
     let outline = scene.sheet.outline();
     let panel = (outline.area() / scene.sheet.grid().panel_count() as f64).sqrt();
-    let taken = (1.0 + process.fillet_ratio) * least;
+    let taken = (1.0 + process.fillet_ratio) * min;
     if taken >= panel {
         return Err(format!(
-            "ligament.range: ligaments of {least} mm with their holes take {taken:.1} mm, and panels are \
-             {panel:.1} mm wide on average: no slit would be left; narrow the ligaments or use fewer panels"
+            "ligament.range: ligaments of {min} mm with their holes take {taken:.1} mm, but panels are \
+             {panel:.1} mm wide on average, so no slit is left: narrow the ligaments or use fewer panels"
         ));
     }
     Ok(())
@@ -148,10 +148,10 @@ fn start(scene: &SceneConfig) -> Result<(), String> {
             grid.hinge_count()
         ));
     }
-    let [least, greatest] = scene.ligament.range;
-    match w_lig.iter().find(|w| !(**w > least && **w < greatest)) {
+    let [min, max] = scene.ligament.range;
+    match w_lig.iter().find(|w| !(**w > min && **w < max)) {
         Some(w) => Err(format!(
-            "start.w_lig = {w} mm violates {least} < w_lig < {greatest} mm (ligament.range)"
+            "start.w_lig = {w} mm violates {min} < w_lig < {max} mm (ligament.range)"
         )),
         None => Ok(()),
     }
@@ -159,7 +159,9 @@ fn start(scene: &SceneConfig) -> Result<(), String> {
 
 fn supports(scene: &SceneConfig) -> Result<(), String> {
     if scene.supports.is_empty() && scene.hinge != HingeModel::Pin {
-        return Err("supports: a sheet that is held nowhere has no equilibrium".into());
+        return Err(
+            "supports: a sheet without supports has no equilibrium: add [[supports]]".into(),
+        );
     }
     for (i, support) in scene.supports.iter().enumerate() {
         panel(scene, &format!("supports[{i}]"), support.panel)?;
@@ -173,8 +175,13 @@ fn supports(scene: &SceneConfig) -> Result<(), String> {
             ));
         }
         let key = format!("supports[{i}]");
-        for way in support.displacement {
-            within(&format!("{key}.displacement"), way, [-1e5, 1e5], "mm")?;
+        for displacement in support.displacement {
+            within(
+                &format!("{key}.displacement"),
+                displacement,
+                [-1e5, 1e5],
+                "mm",
+            )?;
         }
         within(
             &format!("{key}.rotation_deg"),
@@ -182,10 +189,11 @@ fn supports(scene: &SceneConfig) -> Result<(), String> {
             [-720.0, 720.0],
             "deg",
         )?;
-        let mut ways = support.motion().into_iter().zip(support.kind.holds());
-        if ways.any(|(way, held)| way != 0.0 && !held) {
+        let mut motions = support.motion().into_iter().zip(support.kind.holds());
+        if motions.any(|(motion, held)| motion != 0.0 && !held) {
             return Err(format!(
-                "{key} moves what a support of its kind leaves free"
+                "{key} prescribes a motion that a support of its kind leaves free: change kind, \
+                 displacement or rotation_deg"
             ));
         }
     }
@@ -212,7 +220,7 @@ fn loads(scene: &SceneConfig) -> Result<(), String> {
             .any(|(held, value)| *held && value != 0.0)
         {
             return Err(format!(
-                "{key}: panel {:?} is held against this load by its support, which would do no work",
+                "{key}: the support of panel {:?} prevents the motion of this load, which does no work: remove it",
                 load.panel
             ));
         }
@@ -237,7 +245,7 @@ fn loads(scene: &SceneConfig) -> Result<(), String> {
         panel(scene, &key, second)?;
         if first[0].abs_diff(second[0]) + first[1].abs_diff(second[1]) != 1 {
             return Err(format!(
-                "{key}.panels = [{first:?}, {second:?}] are no neighbours"
+                "{key}.panels = [{first:?}, {second:?}] are not neighbours"
             ));
         }
     }
@@ -303,20 +311,20 @@ fn panel(scene: &SceneConfig, key: &str, [column, row]: [usize; 2]) -> Result<()
     ))
 }
 
-fn counted(key: &str, value: usize, greatest: usize) -> Result<(), String> {
-    if (1..=greatest).contains(&value) {
+fn counted(key: &str, value: usize, maximum: usize) -> Result<(), String> {
+    if (1..=maximum).contains(&value) {
         return Ok(());
     }
-    Err(format!("{key} = {value} violates 1 <= {key} <= {greatest}"))
+    Err(format!("{key} = {value} violates 1 <= {key} <= {maximum}"))
 }
 
 pub(super) fn within(
     key: &str,
     value: f64,
-    [least, greatest]: [f64; 2],
+    [min, max]: [f64; 2],
     unit: &str,
 ) -> Result<(), String> {
-    let range = least..=greatest;
+    let range = min..=max;
     if range.contains(&value) {
         return Ok(());
     }
@@ -327,6 +335,6 @@ pub(super) fn within(
         .map(|meant| format!("; did you mean {meant} {unit}?"))
         .unwrap_or_default();
     Err(format!(
-        "{key} = {value} {unit} violates {least} <= {key} <= {greatest} {unit}{hint}"
+        "{key} = {value} {unit} violates {min} <= {key} <= {max} {unit}{hint}"
     ))
 }

@@ -1,6 +1,6 @@
-//! A design run: the search that a scene poses, its state kept in the run folder.
+//! A design run: the search of a scene, with its state stored in the run folder.
 //!
-//! The state is saved about once a second and at the end, and the next run of the scene continues
+//! The state is saved about once per second and at the end; the next run of the scene continues
 //! from it.
 
 use crate::objective::design_problem::{DesignError, DesignProblem, Evaluation};
@@ -13,26 +13,36 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
+use support::sealed_json::{self, SealError};
 use support::whole_file;
 
 const SAVE_EVERY: Duration = Duration::from_secs(1);
 const STATE_FILE: &str = "state.json";
-/// Relative difference of the loss at the start between two machines; only states without a hash are judged by it.
+/// Relative tolerance of the loss at the start between two machines; used only for states without a hash.
 const SAME_LOSS: f64 = 1e-9;
 
 /// A finished run.
 pub struct Designed {
+    /// The design problem of the scene.
     pub problem: DesignProblem,
+    /// Why the search ended.
     pub ended: Ended,
+    /// One record per step, beginning with that of the start.
     pub history: Vec<StepRecord>,
-    /// The design of the least loss.
+    /// The design with the minimum loss.
     pub design: DesignVector,
+    /// The evaluation of the start.
     pub start: Evaluation,
+    /// The evaluation of `design`.
     pub best: Evaluation,
 }
 
-/// Why there is no run.
+/// Why a run failed.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum InverseDesignError {
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -46,27 +56,24 @@ pub enum InverseDesignError {
         source: std::io::Error,
     },
     #[error(
-        "{path} is neither the state of a run nor a design ({source}); give another, or restart the \
+        "{path} is neither the state of a run nor a design ({source}): give another file, or restart the \
          run",
         path = .path.display()
     )]
-    State {
-        path: PathBuf,
-        source: serde_json::Error,
-    },
+    State { path: PathBuf, source: SealError },
     #[error(
-        "{path} holds a design of another size than the scene's; give another, or restart the run",
+        "{path} contains a design of another size than the scene's: give another file, or restart the run",
         path = .path.display()
     )]
     OtherSize { path: PathBuf },
     #[error(
-        "{path} belongs to a run of another scene; restart it, or choose another output folder",
+        "{path} belongs to a run of another scene: restart the run (--restart), or choose another output folder",
         path = .path.display()
     )]
     OtherScene { path: PathBuf },
     #[error(
-        "{path} belongs to a run with other weights or another material: the search started from \
-         a loss of {found}, not {expected}; restart it, or choose another output folder",
+        "{path} belongs to a run with other weights or another material: its loss at the start is \
+         {found}, not {expected}; restart the run (--restart), or choose another output folder",
         path = .path.display()
     )]
     OtherModel {
@@ -77,7 +84,7 @@ pub enum InverseDesignError {
 }
 
 impl InverseDesignError {
-    /// Whether the run folder holds a run of something else than was asked for.
+    /// Whether the run folder belongs to another scene, size or model.
     pub fn is_of_another_run(&self) -> bool {
         matches!(
             self,
@@ -96,7 +103,7 @@ struct State {
     search: SearchState,
 }
 
-/// The design in a JSON file: the best of a run's state, or one written alone.
+/// The design in a JSON file: the best design of a run's state, or a design alone.
 pub fn stored_design(path: &Path, scene: &Scene) -> Result<DesignVector, InverseDesignError> {
     #[derive(Deserialize)]
     #[serde(untagged)]
@@ -108,10 +115,11 @@ pub fn stored_design(path: &Path, scene: &Scene) -> Result<DesignVector, Inverse
         path: path.to_owned(),
         source,
     })?;
-    let stored = serde_json::from_str(&text).map_err(|source| InverseDesignError::State {
-        path: path.to_owned(),
-        source,
-    })?;
+    let stored =
+        sealed_json::from_slice(text.as_bytes()).map_err(|source| InverseDesignError::State {
+            path: path.to_owned(),
+            source,
+        })?;
     let (Stored::Run { best: design } | Stored::Alone(design)) = stored;
     if design.same_shape(&scene.start()) {
         return Ok(design);
@@ -120,9 +128,9 @@ pub fn stored_design(path: &Path, scene: &Scene) -> Result<DesignVector, Inverse
     Err(InverseDesignError::OtherSize { path })
 }
 
-/// Runs the search of a scene in its run folder, from the state there if there is one.
+/// Runs the search of a scene in its run folder; continues from the state there if there is one.
 ///
-/// `progress` sees every step as it is made; the run stops after the step during which `stop`
+/// `progress` is called after every step; the run stops at the end of the step during which `stop`
 /// becomes true.
 pub fn inverse_design(
     scene: &Scene,
@@ -179,7 +187,7 @@ pub fn inverse_design(
     })
 }
 
-/// Forgets an earlier run in the scene's run folder, so that the next one starts afresh.
+/// Deletes the state in the scene's run folder, so that the next run begins at the start.
 pub fn forget(scene: &Scene) -> Result<(), InverseDesignError> {
     let path = scene.output().join(STATE_FILE);
     match std::fs::remove_file(&path) {
@@ -191,7 +199,7 @@ pub fn forget(scene: &Scene) -> Result<(), InverseDesignError> {
 }
 
 impl State {
-    /// The state of an earlier run of the same scene, which may since ask for more steps.
+    /// The state of an earlier run of the same scene; only the number of steps may differ.
     fn read(
         path: &Path,
         scene: &Scene,
@@ -205,11 +213,12 @@ impl State {
                 return Err(InverseDesignError::Folder { path, source });
             }
         };
-        let mut state: Self =
-            serde_json::from_str(&text).map_err(|source| InverseDesignError::State {
+        let mut state: Self = sealed_json::from_slice(text.as_bytes()).map_err(|source| {
+            InverseDesignError::State {
                 path: path.to_owned(),
                 source,
-            })?;
+            }
+        })?;
         let path = path.to_owned();
         state.scene.optimiser.steps = scene.config.optimiser.steps;
         if state.scene != scene.config {
@@ -240,7 +249,7 @@ impl State {
             model: Some(scene.model_hash()),
             search: search.clone(),
         };
-        serde_json::to_vec_pretty(&state)
+        sealed_json::to_vec(&state)
             .map_err(std::io::Error::from)
             .and_then(|text| whole_file::write(path, &text))
             .map_err(|source| InverseDesignError::Folder {

@@ -1,11 +1,12 @@
 //! The hinge law as written in a scene.
 
 use crate::hinge_law::Contact;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// The hinge law of a scene; each reads the section with its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum HingeModel {
     /// No law: pins that all open by the same angle, without equilibrium; section 3.1.
@@ -17,31 +18,34 @@ pub enum HingeModel {
 }
 
 /// The ideal deployment.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PinConfig {
-    /// The opening angle at the start of the search (deg); it is a design variable.
+    /// The opening angle at the start of the search (deg), -180 to 180; it is a design variable.
     pub opening_deg: f64,
 }
 
-/// k_a, k_s (N/mm) and k_theta (N mm/rad) of (11).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// The spring constants of (11).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LinearConstants {
+    /// Stiffness of the axial opening a (N/mm), 1e-3 to 1e6.
     pub k_a: f64,
+    /// Stiffness of the shear s (N/mm), 1e-3 to 1e6.
     pub k_s: f64,
+    /// Stiffness of the rotation theta (N mm/rad), 1e-3 to 1e9.
     pub k_theta: f64,
 }
 
 /// The barrier on the void angles; see the text of (11).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactConfig {
-    /// N mm
+    /// Stiffness of the barrier (N mm), positive.
     pub stiffness: f64,
-    /// Void angle at which the barrier becomes infinite (deg).
+    /// Void angle at which the barrier becomes infinite (deg), above -180 and below `phi_cut_deg`.
     pub phi_min_deg: f64,
-    /// Void angle at which contact begins (deg).
+    /// Void angle at which contact begins (deg), at most 0.
     pub phi_cut_deg: f64,
 }
 
@@ -53,9 +57,11 @@ impl ContactConfig {
 }
 
 /// The weights of (14).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SurrogateFile {
+    /// Path of the weights `X.safetensors`, relative to the scene file; their card `X.json` is read from the same
+    /// folder.
     pub weights: PathBuf,
     /// Further networks trained on the same data (`train --seeds`); the report states their spread.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -63,11 +69,13 @@ pub struct SurrogateFile {
 }
 
 /// The constants of (11), derived from a learned energy for each hinge.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CondensedConfig {
+    /// Path of the weights `X.safetensors`, relative to the scene file; their card `X.json` is read from the same
+    /// folder.
     pub weights: PathBuf,
-    /// Angle of the rotational secant stiffness (deg); 0 uses the Hessian at the undeformed state.
+    /// Angle of the rotational secant stiffness (deg), -180 to 180; 0 uses the Hessian at the undeformed state.
     #[serde(default)]
     pub secant_deg: f64,
 }

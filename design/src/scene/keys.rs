@@ -15,32 +15,38 @@ use crate::scene::hinge_model::{
 use crate::scene::sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 use crate::sheet::cut_sheet::{Centroid, HingePoint};
 use hinge::HingeConstants;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// The keys of a scene file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneConfig {
     /// Title of the pictures.
     pub title: String,
-    /// The TOML file of the sheet material.
+    /// The TOML file of the sheet material, relative to the scene file.
     pub material: PathBuf,
+    /// The hinge law: `pin`, `linear` or `surrogate`.
     pub hinge: HingeModel,
     /// The attachment points of the panels; by default those that the hinge model was measured with.
     pub hinge_point: Option<HingePoint>,
+    /// The reference point of a panel's rotation: the `area` centroid or the mean of the `vertices`.
     #[serde(default)]
     pub centroid: Centroid,
-    /// N of the load steps zeta_i = i/N.
+    /// N of the load steps zeta_i = i/N, 1 to 10 000.
     #[serde(default = "default_load_steps")]
     pub load_steps: usize,
-    /// The run folder.
+    /// The run folder, relative to the scene file.
     pub output: PathBuf,
+    /// The flat sheet.
     pub sheet: SheetConfig,
+    /// The ligament widths.
     pub ligament: LigamentConfig,
     /// The start of the search; by default the uniform sheet.
     #[serde(default)]
     pub start: StartConfig,
+    /// The cutting tool and the windows of the hinges.
     pub process: HingeConstants,
     /// Read if `hinge = "pin"`.
     pub pin: Option<PinConfig>,
@@ -50,28 +56,38 @@ pub struct SceneConfig {
     pub condensed: Option<CondensedConfig>,
     /// Read if `hinge = "surrogate"`.
     pub surrogate: Option<SurrogateFile>,
+    /// The supported panels; they must prevent the rigid motions of the sheet. Empty if `hinge = "pin"`.
     #[serde(default)]
     pub supports: Vec<SupportConfig>,
-    /// Contact of panel edges; by default that of the hinge law.
+    /// Contact of panel edges; by default with ten times the k_theta of a hinge with the start width, from 0 to
+    /// -5.7 deg or, for a learned law, to the end of its domain.
     pub contact: Option<ContactConfig>,
+    /// Dead loads on panels.
     #[serde(default)]
     pub loads: Vec<LoadConfig>,
+    /// Dead tractions along the edges of the sheet.
     #[serde(default)]
     pub edge_loads: Vec<EdgeLoadConfig>,
+    /// Couples on the panels of hinges.
     #[serde(default)]
     pub opening_couples: Vec<OpeningCoupleConfig>,
     /// Displacement control: prescribes the stroke of the loads instead of their magnitude.
     pub drive: Option<DriveConfig>,
+    /// The equilibrium solver.
     #[serde(default)]
     pub solver: SolverConfig,
+    /// The target outline; its length must be 0.2 to 3 times the perimeter of the flat sheet.
     pub target: TargetShape,
+    /// The objective (16) and its weights.
     pub objective: ObjectiveConfig,
+    /// The search of the outer loop.
     pub optimiser: OptimiserConfig,
 }
 
 /// The weights of (16)-(19), relative to the Chamfer distance divided by the mean panel area: at the
-/// weight 1 a functional with the value 1 costs as much as an outline error of one panel size.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// weight 1 a functional with the value 1 costs as much as an outline error of one panel size. Every weight is 0 to
+/// 1e9.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectiveConfig {
     /// w_cov of the Chamfer distance.
@@ -101,7 +117,7 @@ pub struct ObjectiveConfig {
     /// start: at the weight 1 the gradient of a functional has the same norm.
     #[serde(default)]
     pub balance: bool,
-    /// Temperature of the minima in the Chamfer distance (mm^2); 0 is the hard minimum of the paper.
+    /// Temperature of the minima in the Chamfer distance (mm^2), 0 to 1e9; 0 is the hard minimum of the paper.
     #[serde(default)]
     pub smoothing: f64,
     /// What the distance of the outline is measured to: the `samples` of the target, as in the paper, or the
@@ -112,21 +128,22 @@ pub struct ObjectiveConfig {
     /// to no hinge, or `all`.
     #[serde(default)]
     pub outline: OutlinePoints,
-    /// Number of points on the target outline.
+    /// Number of points on the target outline, 1 to 1 000 000.
     pub target_points: usize,
 }
 
 /// The search of the outer loop.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OptimiserConfig {
+    /// Number of steps after the start, 1 to 10 000 000.
     pub steps: usize,
-    /// Length of the first step in every chart coordinate; for Adam also of the later steps.
+    /// Length of the first step in every chart coordinate, 1e-9 to 10; for Adam also of the later steps.
     pub learning_rate: f64,
     /// `adam`, as in the paper, or `lbfgs`.
     #[serde(default)]
     pub method: SearchMethod,
-    /// Standard deviation of the random start about the uniform sheet, in the chart coordinates.
+    /// Standard deviation of the random start about the uniform sheet, in the chart coordinates, 0 to 10.
     #[serde(default)]
     pub start_noise: f64,
     /// Seed of the random start.
@@ -135,10 +152,10 @@ pub struct OptimiserConfig {
 }
 
 /// The equilibrium solver.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SolverConfig {
-    /// Residual of a converged state, relative to the largest force.
+    /// Residual of a converged state, relative to the largest force, 1e-14 to 0.1.
     pub tolerance: f64,
     /// `"newton"`, or `{ lbfgs = { max_iterations = 20000 } }` as in the paper.
     pub method: Method,

@@ -1,4 +1,4 @@
-//! The hinge law that a scene names, loaded with what it needs and nothing else.
+//! The hinge law of a scene, loaded with the files it needs.
 
 use crate::hinge_law::{CondensedLaw, Contact, DamageMeasure, LinearLaw, SurrogateLaw};
 use crate::scene::checks::within;
@@ -12,18 +12,18 @@ use std::path::Path;
 use std::sync::Arc;
 use surrogate::Surrogate;
 
-/// Stiffness of the contact of panel edges over k_theta, and the void angle (rad) beyond which they
-/// cannot be pressed; the text of (11) leaves both open. The window of a learned law knows no contact of
-/// its flanks: where its domain reaches below the closed sheet, the wall stands at the domain's end.
+/// Stiffness of the contact of panel edges relative to k_theta, and the void angle (rad) at which the barrier
+/// becomes infinite; the text of (11) specifies neither. The window of a learned law has no contact of its
+/// flanks: if its domain extends below the closed sheet, the barrier becomes infinite at the end of the domain.
 const CONTACT_STIFFNESS: f64 = 10.0;
 const CONTACT_WALL: f64 = -0.1;
-/// Angle (rad) whose secant is the stiffness of a learned hinge: 20 deg, as the linear law's of section 3.
+/// Angle (rad) of the secant stiffness of a learned hinge: 20 deg, as for the linear law of section 3.
 const TYPICAL_SECANT: f64 = 0.35;
 
 /// A [`HingeModel`] with its constants or its weights.
 #[derive(Clone, Debug)]
 pub(super) enum LoadedHinge {
-    /// The opening at the start (rad).
+    /// The opening angle at the start (rad).
     Pin { opening: f64 },
     Linear {
         law: Arc<LinearLaw>,
@@ -98,7 +98,7 @@ impl LoadedHinge {
     }
 }
 
-/// The weights that a section of a scene names, if they are for its hinges.
+/// The weights of a section of a scene, or an error if they are not for its hinges.
 fn learned(
     config: &SceneConfig,
     material: &SheetMaterial,
@@ -113,7 +113,7 @@ fn learned(
     let weights = beside(scene, weights);
     if !weights.is_file() {
         return Err(refuse(format!(
-            "{section}.weights: there is no file {}; train one, or give the constants of \
+            "{section}.weights: there is no file {}: train it, or give the constants of \
              hinge = \"linear\"",
             weights.display()
         )));
@@ -128,8 +128,8 @@ fn learned(
     Ok(surrogate)
 }
 
-/// The linear law of a learned energy; the contact is as stiff beside the start's hinges as beside
-/// given ones.
+/// The linear law of a learned energy; the contact has the same stiffness relative to the hinges of the start as
+/// with given constants.
 fn condensed(
     config: &SceneConfig,
     surrogate: Surrogate,
@@ -140,7 +140,7 @@ fn condensed(
     if !(k_a > 0.0 && k_s > 0.0 && k_theta > 0.0) {
         return Err(format!(
             "condensed: at w_lig = {} mm the weights have k_a = {k_a} N/mm, k_s = {k_s} N/mm, \
-             k_theta = {k_theta} N mm, which are not all positive",
+             k_theta = {k_theta} N mm, which must all be positive: use hinge = \"surrogate\" or other weights",
             config.ligament.start
         ));
     }
@@ -150,7 +150,7 @@ fn condensed(
     })
 }
 
-/// The learned law; a closed sheet presses as hard on its edges as a folded one on its ligaments.
+/// The learned law; the contact stiffness is relative to the secant stiffness of a hinge of the start.
 fn learned_with_contact(
     config: &SceneConfig,
     surrogate: Surrogate,
@@ -167,14 +167,14 @@ fn learned_with_contact(
     })
 }
 
-/// (k_a, k_s, k_theta) of a hinge of the start's width with cuts at a right angle.
+/// (k_a, k_s, k_theta) of a hinge with the start width and cuts at a right angle.
 fn constants_at_start(config: &SceneConfig, law: &CondensedLaw) -> [f64; 3] {
     let typical = config.process.hinge(config.ligament.start, FRAC_PI_2);
     law.constants(&[typical])[0].map(|constant| constant.value)
 }
 
-/// The contact that a scene asks for, or one for hinges as stiff as `k_theta` with its wall at the void
-/// angle `wall` (rad).
+/// The contact of a scene, or by default one for hinges with the stiffness `k_theta` that becomes infinite at the
+/// void angle `wall` (rad).
 fn contact(config: &SceneConfig, k_theta: f64, wall: f64) -> Result<Contact, String> {
     match config.contact {
         Some(contact) => contact.contact(),
@@ -184,26 +184,26 @@ fn contact(config: &SceneConfig, k_theta: f64, wall: f64) -> Result<Contact, Str
     }
 }
 
-/// The spread of networks of different data is no measure of either's error.
+/// The spread of networks trained on different data estimates the error of neither.
 fn same_training(surrogate: &Surrogate, ensemble: &[Surrogate]) -> Result<(), String> {
     let data = |it: &Surrogate| (it.card().dataset_hash.clone(), it.card().split_hash.clone());
     match ensemble.iter().all(|other| data(other) == data(surrogate)) {
         true => Ok(()),
         false => Err(
-            "surrogate.ensemble: the networks were not all trained on the data of surrogate.weights"
+            "surrogate.ensemble: all networks must be trained on the data of surrogate.weights"
                 .into(),
         ),
     }
 }
 
-/// An objective of D_peak needs weights that predict it.
+/// An objective on D_peak needs weights that predict it.
 fn peak_known(config: &SceneConfig, surrogate: &Surrogate) -> Result<(), String> {
     let objective = &config.objective;
-    let asked = objective.damage > 0.0 && objective.damage_measure == DamageMeasure::Peak;
-    if asked && surrogate.card().peak_scale.is_none() {
+    let needed = objective.damage > 0.0 && objective.damage_measure == DamageMeasure::Peak;
+    if needed && surrogate.card().peak_scale.is_none() {
         return Err(
-            "objective.damage_measure = \"peak\": the weights predict no D_peak; use \"mean\", or train \
-             on a database that has it"
+            "objective.damage_measure = \"peak\": the weights do not predict D_peak: use \"mean\", or train \
+             on a database that contains it"
                 .into(),
         );
     }
@@ -216,7 +216,7 @@ fn no_damage(config: &SceneConfig) -> Result<(), String> {
         return Ok(());
     }
     Err(
-        "objective.damage: only the learned hinge law predicts damage; use \
+        "objective.damage: only the learned hinge law predicts damage: use \
          hinge = \"surrogate\" or damage = 0"
             .into(),
     )
@@ -231,8 +231,8 @@ fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, String> {
         || !config.opening_couples.is_empty();
     if held_or_loaded || config.drive.is_some() || config.contact.is_some() {
         return Err(
-            "supports, loads, edge_loads, opening_couples, drive, contact: hinge = \"pin\" solves no equilibrium; remove them, or choose \
-             hinge = \"linear\""
+            "supports, loads, edge_loads, opening_couples, drive, contact: hinge = \"pin\" has no equilibrium: \
+             remove these sections, or use hinge = \"linear\""
                 .into(),
         );
     }
@@ -255,7 +255,7 @@ fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHing
     })
 }
 
-/// A surrogate holds for the material and the hinge constants it was trained with alone.
+/// A surrogate is valid only for the material and the hinge constants it was trained with.
 fn same_hinge(
     config: &SceneConfig,
     material: &SheetMaterial,
@@ -272,7 +272,7 @@ fn same_hinge(
     if let Some(trained) = card.material_hash.as_ref().filter(|hash| **hash != law) {
         return Err(format!(
             "another law of the material `{}` ({trained}, the scene's is {law}): its numbers have \
-             changed since; train again, or use the material file of the training",
+             changed since the training: train again, or use the material file of the training",
             material.name
         ));
     }
@@ -287,7 +287,7 @@ fn same_hinge(
     ] {
         if trained != found {
             return Err(format!(
-                "{key} = {trained}, the scene has process.{key} = {found}"
+                "{key} = {trained}, but the scene has process.{key} = {found}"
             ));
         }
     }

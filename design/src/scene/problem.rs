@@ -27,6 +27,7 @@ const TEMPERATURES: PerFunctional = PerFunctional {
 };
 
 impl Scene {
+    /// Numbers of panels.
     pub fn grid(&self) -> Grid {
         self.config.sheet.grid()
     }

@@ -4,33 +4,35 @@ use crate::pattern::coordinates::PatternCoordinates;
 use crate::pattern::cut_pattern::Outline;
 use crate::pattern::grid::Grid;
 use crate::pattern::pattern_error::PatternError;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The flat sheet: a rectangle with a corner at the origin, or any convex quadrilateral, cut into
 /// `panels` = [columns M, rows N].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SheetConfig {
-    /// [along x, along y] (mm)
+    /// Sides [along x, along y] of a rectangle (mm), each 20 to 20 000.
     pub size: Option<[f64; 2]>,
-    /// Corners SW, SE, NE, NW (mm), instead of `size`.
+    /// Corners SW, SE, NE, NW of a convex quadrilateral (mm), instead of `size`.
     pub corners: Option<[[f64; 2]; 4]>,
+    /// [columns M, rows N], each at least 2; at most 100 000 panels.
     pub panels: [usize; 2],
 }
 
 /// The ligament widths: their start value, and the interval of their chart.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LigamentConfig {
-    /// Start width of every hinge (mm).
+    /// Start width of every hinge (mm), strictly inside `range`.
     pub start: f64,
-    /// [w_minus, w_plus] of the chart (mm).
+    /// [w_minus, w_plus] of the chart (mm), 0.5 <= w_minus < w_plus <= 500.
     pub range: [f64; 2],
 }
 
 /// The start of the search: r and tau or their logits, and a width per hinge. Omitted values are
 /// uniform.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct StartConfig {
     /// Void aspect ratios of the interior cuts, row by row, each in (0, 1).
@@ -41,11 +43,12 @@ pub struct StartConfig {
     pub z: Option<Vec<f64>>,
     /// Logits of the intervals of tau, instead of `tau`.
     pub ell: Option<[Vec<f64>; 4]>,
-    /// Width of each hinge (mm), instead of `ligament.start`.
+    /// Width of each hinge (mm), strictly inside `ligament.range`, instead of `ligament.start`.
     pub w_lig: Option<Vec<f64>>,
 }
 
 impl SheetConfig {
+    /// Numbers of panels.
     pub fn grid(&self) -> Grid {
         let [m, n] = self.panels;
         Grid { m, n }

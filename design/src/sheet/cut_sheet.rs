@@ -16,10 +16,15 @@ use crate::pattern::grid::{Grid, NE, NW, SE, SW};
 use crate::sheet::topology::{HingeSite, PanelCorner, hinge_sites, panel_endpoints};
 use faer::c64;
 use hinge::{HingeConstants, HingeDesign};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Why a pattern and its ligament widths do not define a sheet.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum SheetError {
     #[error("{found} ligament widths for {expected} hinges")]
     WidthCount { found: usize, expected: usize },
@@ -36,7 +41,7 @@ pub enum SheetError {
 }
 
 /// The point at which the hinge deformation (8) is measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum HingePoint {
     /// The ideal corner shared by the two panels, as in the paper.
@@ -46,9 +51,10 @@ pub enum HingePoint {
 }
 
 /// The reference point of a panel's rotation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Centroid {
+    /// The centroid of the area.
     #[default]
     Area,
     /// The mean of the four corners.
@@ -58,8 +64,11 @@ pub enum Centroid {
 /// Options of the sheet that a pattern defines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SheetOptions {
+    /// The point at which (8) is measured.
     pub hinge_point: HingePoint,
+    /// The reference point of a panel's rotation.
     pub centroid: Centroid,
+    /// The cutting tool and the windows.
     pub process: HingeConstants,
 }
 
@@ -99,8 +108,11 @@ pub struct Hinge {
 /// The flat sheet: rigid panels joined by hinges.
 #[derive(Clone, Debug)]
 pub struct Sheet {
+    /// Numbers of panels.
     pub grid: Grid,
+    /// Outline of the sheet.
     pub outline: Outline,
+    /// Options with which the sheet was computed.
     pub options: SheetOptions,
     /// Row by row.
     pub panels: Vec<Panel>,
@@ -114,8 +126,11 @@ pub struct Sheet {
 /// The gradient of a function of the sheet with respect to all quantities of the sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SheetGradient {
+    /// With respect to the corners SW, SE, NE, NW of every panel, at a fixed centroid.
     pub corners: Vec<[[f64; 2]; 4]>,
+    /// With respect to the centroid of every panel.
     pub centroids: Vec<[f64; 2]>,
+    /// With respect to the attachment point of every hinge.
     pub attachments: Vec<[f64; 2]>,
     /// With respect to the angle of e_sec, per hinge.
     pub frame_angles: Vec<f64>,
@@ -126,6 +141,7 @@ pub struct SheetGradient {
 }
 
 impl SheetGradient {
+    /// A zero gradient.
     pub fn zeros(grid: Grid) -> Self {
         let (panels, hinges) = (grid.panel_count(), grid.hinge_count());
         Self {
@@ -365,10 +381,12 @@ impl Hinge {
         })
     }
 
+    /// Index of panel A.
     pub fn panel_a(&self) -> usize {
         self.site.a.0
     }
 
+    /// Index of panel B.
     pub fn panel_b(&self) -> usize {
         self.site.b.0
     }

@@ -15,7 +15,7 @@ pub struct Window {
     pub foot: [f64; 2],
     /// Unit vector along the secondary cut.
     pub e_sec: [f64; 2],
-    /// mm
+    /// Radius r_win (mm).
     pub radius: f64,
 }
 
@@ -25,7 +25,7 @@ const ARC: usize = 64;
 const TOUCH: f64 = 1e-6;
 
 impl Window {
-    pub fn new(hinge: &Hinge, r_win: f64) -> Self {
+    pub(crate) fn new(hinge: &Hinge, r_win: f64) -> Self {
         let [x, y] = hinge.e_sec;
         let foot = [
             hinge.tip[0] - hinge.w_lig * y,

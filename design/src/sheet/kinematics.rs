@@ -86,14 +86,18 @@ pub struct HingeMotion {
 /// The gradient of a scalar with respect to the flat geometry in (8).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HingeGeometryGradient {
+    /// With respect to the attachment point.
     pub attachment: [f64; 2],
+    /// With respect to the centroid of panel A.
     pub centroid_a: [f64; 2],
+    /// With respect to the centroid of panel B.
     pub centroid_b: [f64; 2],
     /// With respect to the angle of e_sec.
     pub frame_angle: f64,
 }
 
 impl HingeMotion {
+    /// The kinematics of one hinge, given by its index.
     pub fn new(sheet: &Sheet, hinge: usize, configuration: &[[f64; 3]]) -> Self {
         let hinge = &sheet.hinges[hinge];
         let (a, b) = (hinge.panel_a(), hinge.panel_b());
@@ -129,6 +133,7 @@ impl HingeMotion {
         }
     }
 
+    /// (a, s, theta).
     pub fn deformation(&self) -> HingeDeformation {
         HingeDeformation {
             a: self.translation.re,

@@ -69,7 +69,7 @@ pub fn weights_of_another_hinge_or_material_are_refused() {
     );
     let message = refusal(&[], &[("kerf = 0.2", "kerf = 0.3")]);
     assert!(
-        message.contains("kerf = 0.2, the scene has process.kerf = 0.3"),
+        message.contains("kerf = 0.2, but the scene has process.kerf = 0.3"),
         "{message}"
     );
 }

@@ -93,6 +93,10 @@ fn a_run_continues_with_more_steps_but_not_with_another_scene() {
     state["search"]["adam"]["mean"] = serde_json::json!([0.0]);
     std::fs::write(&path, state.to_string()).unwrap();
     let error = run_with(&[]).err().unwrap().to_string();
+    assert!(error.contains("checksum"), "{error}");
+    state.as_object_mut().unwrap().remove("checksum");
+    std::fs::write(&path, state.to_string()).unwrap();
+    let error = run_with(&[]).err().unwrap().to_string();
     assert!(error.contains("another size"), "{error}");
     std::fs::write(&path, "{").unwrap();
     let error = run_with(&[]).err().unwrap().to_string();

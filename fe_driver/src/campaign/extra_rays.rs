@@ -1,7 +1,7 @@
 //! Rays that a campaign solves in addition to those of its box, at states that designs reach outside the data.
 //!
 //! They are in a CSV file with the columns `w_lig` (mm), `alpha_deg`, `eta_a`, `eta_s`, `theta_deg`, one ray per
-//! row. The campaign's key `further_rays` is the path of the file. Lines that start with `#` are comments.
+//! row. The campaign's key `extra_rays` is the path of the file. Lines that start with `#` are comments.
 
 use crate::window::ray::Ray;
 use hinge::{HingeConstants, HingeDeformation};
@@ -11,6 +11,10 @@ use std::path::{Path, PathBuf};
 
 /// A file that is not a valid list of rays, or that cannot be written.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum ExtraRaysError {
     #[error("{path}: {source}", path = .path.display())]
     Csv { path: PathBuf, source: csv::Error },
@@ -61,6 +65,7 @@ pub fn read_extra_rays(path: &Path, common: &HingeConstants) -> Result<Vec<Ray>,
 /// Numbers of rays that were added, already known, and refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Added {
+    /// Rays that were added.
     pub added: usize,
     /// Rays that the file already contained.
     pub known: usize,

@@ -1,7 +1,7 @@
 //! The finished jobs of a campaign, from which the database is collected.
 
 use crate::campaign::definition::CampaignError;
-use crate::campaign::job::JobSpec;
+use crate::campaign::job::{JobSpec, JobState};
 use crate::campaign::ledger::CampaignFolder;
 use crate::record_file::short_hash;
 use crate::window::failure::FailureKind;
@@ -13,7 +13,9 @@ use std::path::Path;
 /// A job whose samples belong in the database.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FinishedJob {
+    /// Id of the job.
     pub id: String,
+    /// The hinge design.
     pub design: HingeDesign,
     /// Name of the sheet material.
     pub material: String,
@@ -26,6 +28,7 @@ pub struct FinishedJob {
     pub tier: Tier,
     /// Tier on which the samples were solved: a finer one if the requested tier failed.
     pub solved_tier: Tier,
+    /// Versions of the programs that solved the samples.
     pub tools: ToolVersions,
     /// One sample per converged increment.
     pub samples: Vec<HingeSample>,
@@ -50,9 +53,10 @@ pub fn finished_jobs(
 
 fn finished(folder: &CampaignFolder, id: String) -> Result<Option<FinishedJob>, CampaignError> {
     let job = folder.job(&id);
-    let (Some(spec), Some(record)) = (job.spec()?, job.record()?) else {
+    let JobState::Ended(ended) = job.state()? else {
         return Ok(None);
     };
+    let (spec, record) = *ended;
     if !record.is_closed() || record.rows == 0 {
         return Ok(None);
     }

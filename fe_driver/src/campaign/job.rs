@@ -4,7 +4,7 @@
 //! samples), the input deck and log of a successful attempt, and `result.json`. `result.json` is written last: a job
 //! without it is not done. These files are written atomically.
 
-use crate::record_file::{FileError, read_json, short_hash, write_json};
+use crate::record_file::{FileError, or_damage, read_json, short_hash, write_json};
 use crate::window::failure::{FailureKind, RetryStep};
 use crate::window::solve::WindowProblem;
 use crate::window::versions::{RECIPE_VERSION, ToolVersions};
@@ -18,15 +18,18 @@ use support::whole_file;
 /// All inputs of the result of a job; its id is a hash of them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JobSpec {
+    /// The window solve.
     pub problem: WindowProblem,
     /// The mesh recipe of the tier.
     pub mesh: MeshRecipe,
+    /// Versions of the external programs.
     pub tools: ToolVersions,
+    /// Version of the geometry, the input deck and the evaluation.
     pub recipe_version: u32,
 }
 
 impl JobSpec {
-    pub fn new(problem: WindowProblem, tools: &ToolVersions) -> Self {
+    pub(crate) fn new(problem: WindowProblem, tools: &ToolVersions) -> Self {
         Self {
             mesh: problem.tier.recipe(),
             problem,
@@ -92,11 +95,53 @@ impl JobRecord {
     }
 }
 
+/// The state of a job in its folder.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum JobState {
+    /// No attempt has ended; `started` if an attempt was started.
+    Open { started: bool },
+    /// An attempt has ended.
+    Ended(Box<(JobSpec, JobRecord)>),
+    /// The files of the folder are damaged or inconsistent, with the reason. The job counts as open: the next run
+    /// solves it again.
+    Damaged(String),
+}
+
 /// The folder of one job.
 #[derive(Clone, Debug)]
 pub struct JobFolder(pub PathBuf);
 
 impl JobFolder {
+    /// The state of the job. The consistency of its files is checked: the name of the folder must be the hash of
+    /// `job.json`, and `result.json` contains the hash of `rows.csv`.
+    pub(crate) fn state(&self) -> Result<JobState, FileError> {
+        let damaged = |reason: &str| Ok(JobState::Damaged(reason.to_owned()));
+        let spec = match or_damage(self.spec())? {
+            Ok(spec) => spec,
+            Err(reason) => return damaged(&reason),
+        };
+        let record = match or_damage(self.record())? {
+            Ok(record) => record,
+            Err(reason) => return damaged(&reason),
+        };
+        let id = self.0.file_name().unwrap_or_default();
+        if spec.as_ref().is_some_and(|spec| *spec.id() != *id) {
+            return damaged("job.json has changed: its hash is not the name of its folder");
+        }
+        match (spec, record) {
+            (spec, None) => Ok(JobState::Open {
+                started: spec.is_some(),
+            }),
+            (None, Some(_)) => damaged("job.json is missing"),
+            (Some(spec), Some(record)) => {
+                if record.rows > 0 && self.samples(&record).is_err() {
+                    return damaged("rows.csv is missing or does not match result.json");
+                }
+                Ok(JobState::Ended(Box::new((spec, record))))
+            }
+        }
+    }
+
     /// Reads the inputs of the job; `None` if the job was never started.
     pub fn spec(&self) -> Result<Option<JobSpec>, FileError> {
         read_json(&self.0.join("job.json"))
@@ -113,7 +158,8 @@ impl JobFolder {
         let bytes = std::fs::read(&path).map_err(FileError::at(&path))?;
         if blake3::hash(&bytes).to_hex().as_str() != record.rows_hash {
             let changed = "the rows do not match the hash in result.json: run the campaign again";
-            return Err(FileError::at(&path)(io::Error::other(changed)));
+            let damage = io::Error::new(io::ErrorKind::InvalidData, changed);
+            return Err(FileError::at(&path)(damage));
         }
         let rows = csv::Reader::from_reader(&bytes[..]).into_deserialize();
         rows.collect::<Result<_, csv::Error>>()

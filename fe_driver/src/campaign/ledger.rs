@@ -5,7 +5,7 @@
 
 use crate::campaign::definition::{Campaign, CampaignError};
 use crate::campaign::history::History;
-use crate::campaign::job::{JobFolder, JobRecord, JobSpec};
+use crate::campaign::job::{JobFolder, JobRecord, JobSpec, JobState};
 use crate::campaign::shard::Shard;
 use crate::record_file::{FileError, read_json, write_json};
 use crate::window::failure::FailureKind;
@@ -84,8 +84,15 @@ impl CampaignFolder {
 
     /// Counts the states of the jobs with these ids.
     pub fn tally<'a>(&self, ids: impl IntoIterator<Item = &'a String>) -> Result<Tally, FileError> {
-        let records = ids.into_iter().map(|id| self.job(id).record());
-        Ok(Tally::of(&records.collect::<Result<Vec<_>, _>>()?))
+        let mut tally = Tally::default();
+        for id in ids {
+            match self.job(id).state()? {
+                JobState::Open { .. } => tally.open += 1,
+                JobState::Ended(ended) => tally.add(&ended.1),
+                JobState::Damaged(_) => tally.add_damaged(),
+            }
+        }
+        Ok(tally)
     }
 
     /// Ids of all jobs that were ever started here.
@@ -110,6 +117,8 @@ fn entries(folder: &Path) -> Result<Vec<DirEntry>, FileError> {
 pub struct Tally {
     /// Jobs without a completed attempt.
     pub open: usize,
+    /// Open jobs whose files are damaged: the next run solves them again.
+    pub damaged: usize,
     /// Failed jobs with a retry left.
     pub retry: usize,
     /// Jobs solved to the end of the ray.
@@ -145,6 +154,11 @@ impl Tally {
             }
         }
         tally
+    }
+
+    fn add_damaged(&mut self) {
+        self.open += 1;
+        self.damaged += 1;
     }
 
     fn add(&mut self, record: &JobRecord) {
@@ -203,6 +217,7 @@ impl Tally {
 pub struct Throughput {
     /// Closed jobs per hour.
     pub rays_per_hour: f64,
+    /// Samples of closed jobs per hour.
     pub samples_per_hour: f64,
     /// Solver CPU time over all attempts, per sample (s).
     pub cpu_seconds_per_sample: f64,
@@ -214,8 +229,11 @@ pub struct Throughput {
 /// The state of a campaign.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Status {
+    /// Name of the campaign.
     pub name: String,
+    /// Numbers of jobs by their state.
     pub tally: Tally,
+    /// The throughput so far; `None` before a job solved in this folder has samples.
     pub throughput: Option<Throughput>,
 }
 

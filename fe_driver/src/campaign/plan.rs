@@ -1,8 +1,9 @@
 //! The plan of a run: the jobs that it would solve, and why.
 
 use crate::campaign::definition::{Campaign, CampaignError};
-use crate::campaign::job::{JobRecord, JobSpec};
+use crate::campaign::job::{JobRecord, JobSpec, JobState};
 use crate::campaign::ledger::{CampaignFolder, Index, Tally};
+use crate::record_file::or_damage;
 use crate::window::versions::ToolVersions;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashSet};
@@ -11,6 +12,7 @@ use std::path::Path;
 /// The work that a run would do.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Plan {
+    /// Numbers of jobs by their state.
     pub tally: Tally,
     /// Numbers of jobs that a run would work on, by reason.
     pub reasons: BTreeMap<String, usize>,
@@ -35,10 +37,11 @@ pub fn plan(
     let mut reasons = BTreeMap::new();
     for (id, spec) in ids.iter().zip(&specs) {
         let job = folder.job(id);
-        let reason = match job.record()? {
-            Some(record) => retry_reason(&record),
-            None if job.spec()?.is_some() => Some("interrupted".to_owned()),
-            None => Some(new_reason(spec, &stale)),
+        let reason = match job.state()? {
+            JobState::Ended(ended) => retry_reason(&ended.1),
+            JobState::Open { started: true } => Some("interrupted".to_owned()),
+            JobState::Open { started: false } => Some(new_reason(spec, &stale)),
+            JobState::Damaged(reason) => Some(format!("damaged: {reason}")),
         };
         if let Some(reason) = reason {
             *reasons.entry(reason).or_default() += 1;
@@ -58,10 +61,14 @@ pub fn plan(
 fn stale(folder: &CampaignFolder, ids: &[String]) -> Result<Vec<JobSpec>, CampaignError> {
     let asked: HashSet<_> = ids.iter().collect();
     let others = folder.ids()?.into_iter().filter(|id| !asked.contains(id));
-    let specs = others.map(|id| folder.job(&id).spec());
-    Ok(specs
-        .filter_map(Result::transpose)
-        .collect::<Result<_, _>>()?)
+    let mut specs = Vec::new();
+    for id in others {
+        // A damaged job of another campaign is ignored.
+        if let Ok(Some(spec)) = or_damage(folder.job(&id).spec())? {
+            specs.push(spec);
+        }
+    }
+    Ok(specs)
 }
 
 /// Why a job with a completed attempt is retried; `None` if it is not.

@@ -3,7 +3,7 @@
 use crate::campaign::definition::{Campaign, CampaignError};
 use crate::campaign::finished::FinishedJob;
 use crate::campaign::history::{Event, now};
-use crate::campaign::job::JobRecord;
+use crate::campaign::job::{JobRecord, JobState};
 use crate::campaign::ledger::{CampaignFolder, Index};
 use crate::campaign::shard::Shard;
 use crate::window::versions::ToolVersions;
@@ -58,7 +58,7 @@ pub fn restore(
     let mut history = folder.enter(Shard::WHOLE, &index)?;
     for job in ours() {
         let home = folder.job(&job.id);
-        if home.record()?.is_some_and(|record| record.is_closed()) {
+        if matches!(home.state()?, JobState::Ended(ended) if ended.1.is_closed()) {
             restored.there += 1;
             continue;
         }

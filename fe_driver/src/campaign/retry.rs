@@ -2,6 +2,7 @@
 
 use crate::campaign::definition::CampaignError;
 use crate::campaign::history::Event;
+use crate::campaign::job::JobState;
 use crate::campaign::ledger::CampaignFolder;
 use crate::campaign::shard::Shard;
 use crate::window::failure::{FailureKind, RetryStep};
@@ -17,9 +18,13 @@ pub fn retry(folder: &Path, only: Option<FailureKind>) -> Result<usize, Campaign
     let mut reopened = 0;
     for id in &index.jobs {
         let job = folder.job(id);
-        let Some(mut record) = job.record()?.filter(|record| record.is_closed()) else {
+        let JobState::Ended(ended) = job.state()? else {
             continue;
         };
+        let mut record = ended.1;
+        if !record.is_closed() {
+            continue;
+        }
         if record
             .failure
             .is_some_and(|kind| only.is_none_or(|only| kind == only))

@@ -6,13 +6,14 @@
 
 use crate::campaign::definition::{Campaign, CampaignError};
 use crate::campaign::history::{Event, History, now};
-use crate::campaign::job::{JobFolder, JobRecord, JobSpec};
+use crate::campaign::job::{JobFolder, JobRecord, JobSpec, JobState};
 use crate::campaign::ledger::{CampaignFolder, Index, Tally};
 use crate::campaign::shard::Shard;
 use crate::record_file::FileError;
 use crate::window::failure::{FailureKind, RetryStep};
 use crate::window::solve::{SolveError, Tools, solve_window};
 use crate::window::versions::ToolVersions;
+use mesher::MeshError;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
@@ -22,6 +23,7 @@ use support::program::ToolError;
 /// Which jobs a run works on, and how.
 #[derive(Clone, Copy, Debug)]
 pub struct RunOptions {
+    /// The part of the jobs that the run works on.
     pub shard: Shard,
     /// Number of solves that run in parallel.
     pub workers: usize,
@@ -50,9 +52,10 @@ impl Job {
     /// Reads the state of a job from its folder. A record without matching rows, as left by a crash, is ignored.
     fn found(folder: &CampaignFolder, id: String, spec: JobSpec) -> Result<Self, FileError> {
         let folder = folder.job(&id);
-        let record = folder
-            .record()?
-            .filter(|record| record.rows == 0 || folder.samples(record).is_ok());
+        let record = match folder.state()? {
+            JobState::Ended(ended) => Some(ended.1),
+            JobState::Open { .. } | JobState::Damaged(_) => None,
+        };
         Ok(Self {
             id,
             spec,
@@ -226,7 +229,10 @@ impl Worker<'_> {
             };
         let failure = match error {
             None => None,
-            Some(SolveError::Solver(ToolError::Stopped { .. })) => return Ok(None),
+            Some(
+                SolveError::Solver(ToolError::Stopped { .. })
+                | SolveError::Mesh(MeshError::Gmsh(ToolError::Stopped { .. })),
+            ) => return Ok(None),
             Some(error) => match FailureKind::of(&error) {
                 Some(kind) => Some((kind, error.to_string())),
                 None => {

@@ -4,7 +4,7 @@
 //! end of the ray), and 5 of its rays are pure rotations. Therefore any prefix is a usable database, and a larger
 //! campaign with the same seed begins with the smaller one.
 //!
-//! The ends of the rays fill one convex region of (eta_a, eta_s, theta) at every ligament width. Compression
+//! The ends of the rays fill one region of (eta_a, eta_s, theta) at every ligament width. Compression
 //! and rotation always have their full range, because the ligament relieves them by buckling. Tension and shear
 //! stretch a ligament in its plane and store energy in proportion to w_lig^2, whereas a rotation stores energy in
 //! proportion to w_lig. Tension and shear stay inside a half-ellipse that grows with the rotation,
@@ -24,6 +24,7 @@ use hinge::{HingeConstants, HingeDeformation};
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Number of rays in a block.
@@ -37,25 +38,25 @@ const TENSION_SHARE: f64 = 0.4;
 const DIMENSIONS: usize = 5;
 
 /// The region of designs and ray ends.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RayBox {
-    /// Minimum and maximum ligament width (mm), sampled uniformly in its logarithm.
+    /// Minimum and maximum ligament width (mm), 0.5 to 500, sampled uniformly in its logarithm.
     pub w_lig: [f64; 2],
-    /// Minimum and maximum cut angle (degrees); at most 90, because mirroring gives the rest.
+    /// Minimum and maximum cut angle (deg), above 0 and at most 90, because mirroring gives the rest.
     pub alpha_deg: [f64; 2],
-    /// Maximum compression (negative) and maximum tension at the end of a ray, over w_lig.
+    /// Maximum compression (negative) and maximum tension at the end of a ray, over w_lig; above -1 and below 1.
     pub eta_a: [f64; 2],
-    /// Maximum shear of either sign at the end of a ray, over w_lig.
+    /// Maximum shear of either sign at the end of a ray, over w_lig; at least 0 and below 1.
     pub eta_s: f64,
-    /// Minimum and maximum rotation at the end of a ray (degrees); negative closes the cut. Pure rotations end at the
-    /// maximum.
+    /// Minimum and maximum rotation at the end of a ray (deg), -30 to 120; negative closes the cut. Pure rotations end
+    /// at the maximum.
     pub theta_deg: [f64; 2],
-    /// Median rotation at the end of the rays (degrees), pure rotations excluded.
+    /// Median rotation at the end of the rays (deg), inside `theta_deg`, pure rotations excluded.
     pub median_deg: f64,
-    /// Rotation (degrees) above which tension and shear have their full range at any width.
+    /// Rotation above which tension and shear have their full range at any width (deg), 1 to 180.
     pub full_range_deg: f64,
-    /// Ligament width (mm) up to which tension and shear have their full range at any rotation.
+    /// Ligament width up to which tension and shear have their full range at any rotation (mm), at least 0.
     pub full_range_w_lig: f64,
 }
 

@@ -23,6 +23,7 @@ pub struct Ccx(pub Tool);
 /// Result of a completed run of ccx.
 #[derive(Debug)]
 pub struct CcxRun {
+    /// Exit status, times and memory of the process.
     pub run: Run,
     /// Whether the log contains the end marker and the exit status is zero.
     pub finished: bool,

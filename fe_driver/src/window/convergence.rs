@@ -22,6 +22,7 @@ pub struct StudyCase {
     pub value: String,
     /// The reference value of the same study.
     pub against: &'static str,
+    /// The window solve of the case.
     pub solve: KeptSolve,
 }
 

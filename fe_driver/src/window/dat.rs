@@ -7,10 +7,13 @@
 /// The numbers of rows that a complete increment prints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {
+    /// Nodes of the mesh.
+    pub nodes: usize,
     /// Nodes of arc B.
     pub arc_nodes: usize,
     /// Nodes of the lower face.
     pub bottom_nodes: usize,
+    /// Elements of the mesh.
     pub elements: usize,
     /// Gauss points per element.
     pub points: usize,
@@ -36,6 +39,10 @@ pub struct Frame {
 
 /// Why the output of a window solve is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum DatError {
     #[error("the solver's output, line {line}: {what}")]
     Line { line: usize, what: &'static str },
@@ -131,6 +138,9 @@ impl Frame {
             Block::Reactions => {
                 let (node, values) = fields.split_first()?;
                 let node = node.parse::<usize>().ok()?.checked_sub(1)?;
+                if node >= layout.nodes {
+                    return None;
+                }
                 self.reactions.push((node, numbers(values)?));
             }
             Block::Displacements => {
@@ -191,6 +201,7 @@ mod tests {
     use proptest::prelude::*;
 
     const LAYOUT: Layout = Layout {
+        nodes: 1000,
         arc_nodes: 2,
         bottom_nodes: 1,
         elements: 1,
@@ -247,6 +258,8 @@ mod tests {
         assert_eq!(error, DatError::Incomplete { lambda: 0.5 });
         for (old, new) in [
             ("4.25E+01", "NaN"),
+            // A node that the mesh does not have.
+            ("         7  4.0E+00", "      1001  4.0E+00"),
             (" 1   3 ", " 1   4 "),
             ("total", "mean"),
         ] {

@@ -22,6 +22,10 @@ pub struct DeformationPath {
 
 /// Why a file is not a valid deformation path.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum PathError {
     #[error("{path}: {source}", path = .path.display())]
     Read { path: PathBuf, source: csv::Error },

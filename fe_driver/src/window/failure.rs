@@ -66,21 +66,21 @@ impl FailureKind {
             SolveError::Mesh(
                 MeshError::Read(_)
                 | MeshError::Defect { .. }
-                | MeshError::Gmsh(
-                    ToolError::Failed { .. }
-                    | ToolError::TimedOut { .. }
-                    | ToolError::Killed { .. },
-                ),
+                | MeshError::Gmsh(ToolError::Failed { .. }),
             ) => Some(Self::MeshFailed),
-            SolveError::Solver(ToolError::TimedOut { .. }) => Some(Self::TimedOut),
-            SolveError::Solver(ToolError::Killed { .. }) => Some(Self::Killed),
+            // Killed or too slow, gmsh says nothing of the mesh: it is tried again as it was.
+            SolveError::Mesh(MeshError::Gmsh(error)) | SolveError::Solver(error) => match error {
+                ToolError::TimedOut { .. } => Some(Self::TimedOut),
+                ToolError::Killed { .. } => Some(Self::Killed),
+                _ => None,
+            },
             SolveError::NotStarted { .. } => Some(Self::NotStarted),
             SolveError::Diverged { .. } => Some(Self::Diverged),
             SolveError::Truncated { .. } | SolveError::Skipped { .. } | SolveError::Output(_) => {
                 Some(Self::OutputTruncated)
             }
             SolveError::EnergyImbalance { .. } => Some(Self::EnergyImbalance),
-            SolveError::Mesh(_) | SolveError::Solver(_) | SolveError::File { .. } => None,
+            SolveError::Mesh(_) | SolveError::File { .. } => None,
         }
     }
 
@@ -145,9 +145,11 @@ impl std::str::FromStr for FailureKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RetryStep {
+    /// The problem as given.
     AsAsked,
     /// Unchanged, because the problem did not cause the failure.
     Again,
+    /// Shorter increments on the same mesh.
     ShorterIncrements,
     /// Shorter increments on the next finer mesh.
     FinerTier,

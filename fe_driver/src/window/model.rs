@@ -8,8 +8,12 @@ use mesher::WindowMesh;
 /// A meshed window with its path, material and step control.
 #[derive(Clone, Copy, Debug)]
 pub struct WindowModel<'a> {
+    /// The mesh of the window.
     pub mesh: &'a WindowMesh,
+    /// The path along which arc B is driven.
     pub path: &'a DeformationPath,
+    /// The sheet material.
     pub material: &'a SheetMaterial,
+    /// The increments of the solve.
     pub step: &'a StepControl,
 }

@@ -4,7 +4,7 @@
 //! that (a, s, theta) are measured in the mean frame of (8). A point of arc B at the position (X, Y) relative to O
 //! therefore moves by
 //!
-//! u_x = X q1 - Y q2 + q3,   u_y = Y q1 + X q2 + q4,   q = (cos theta - 1, sin theta, du_x, du_y):
+//! u_x = X q1 - Y q2 + q3,   u_y = Y q1 + X q2 + q4,   q = (cos theta - 1, sin theta, du_x, du_y),
 //!
 //! which is linear in the four numbers q at any rotation. These depend only on lambda.
 
@@ -14,7 +14,9 @@ use serde::{Deserialize, Serialize};
 /// One design driven along the straight line from the undeformed state to `end`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ray {
+    /// The hinge design.
     pub design: HingeDesign,
+    /// The deformation at lambda = 1.
     pub end: HingeDeformation,
 }
 

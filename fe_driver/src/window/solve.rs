@@ -26,16 +26,22 @@ use support::program::{ToolError, remove_stale, tail};
 /// All inputs of a window solve except the tool versions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WindowProblem {
+    /// The design and the end of its ray.
     pub ray: Ray,
+    /// The sheet material.
     pub material: SheetMaterial,
+    /// Mesh of the window.
     pub tier: Tier,
+    /// The increments of the solve.
     pub step: StepControl,
 }
 
 /// The two programs that a window solve needs.
 #[derive(Clone, Debug)]
 pub struct Tools {
+    /// Generates the mesh.
     pub gmsh: Gmsh,
+    /// Solves the window.
     pub ccx: Ccx,
 }
 
@@ -70,6 +76,10 @@ pub struct WindowSolution {
 
 /// Why a window solve has no samples, or only samples of a part of the ray.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum SolveError {
     #[error(transparent)]
     Material(#[from] InvalidMaterial),
@@ -135,6 +145,8 @@ pub fn solve_window(
         &problem.tier.recipe(),
         folder,
         &tools.gmsh,
+        limit,
+        stop,
     )?;
     let model = WindowModel {
         mesh: &mesh,
@@ -240,6 +252,7 @@ impl WindowModel<'_> {
     /// The numbers of rows that one increment of this window prints.
     fn layout(&self) -> Layout {
         Layout {
+            nodes: self.mesh.nodes.len(),
             arc_nodes: self.mesh.arc_b.len(),
             bottom_nodes: self.mesh.bottom.len(),
             elements: self.mesh.elements.len(),

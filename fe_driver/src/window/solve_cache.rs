@@ -17,16 +17,22 @@ use std::time::{Duration, Instant};
 /// All inputs of a window solve except the tool versions.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KeptSolve {
+    /// The hinge design.
     pub design: HingeDesign,
+    /// The path along which the window is driven.
     pub path: DeformationPath,
+    /// The sheet material.
     pub material: SheetMaterial,
+    /// The recipe of the mesh.
     pub recipe: MeshRecipe,
+    /// The increments of the solve.
     pub step: StepControl,
 }
 
 /// The result of a solve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KeptSolution {
+    /// Number of elements of the mesh.
     pub elements: usize,
     /// Solver CPU time (s), if the operating system reports it.
     pub cpu_seconds: Option<f64>,
@@ -34,7 +40,9 @@ pub struct KeptSolution {
     pub overhead: f64,
     /// Maximum resident memory of the solver (MiB), if the operating system reports it.
     pub peak_memory_mib: Option<f64>,
+    /// Newton iterations, including those of cut-back increments.
     pub iterations: usize,
+    /// One sample per converged increment, in order of lambda.
     pub samples: Vec<HingeSample>,
     /// Why the solver did not follow the path to its end; `None` if it did.
     pub stopped: Option<String>,
@@ -42,6 +50,10 @@ pub struct KeptSolution {
 
 /// Why a solve has no solution to cache.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum KeptSolveError {
     #[error(transparent)]
     Solve(#[from] SolveError),
@@ -87,7 +99,8 @@ impl KeptSolve {
     ) -> Result<KeptSolution, SolveError> {
         let start = Instant::now();
         let thickness = self.material.thickness;
-        let mesh = mesh_window(&self.design, thickness, &self.recipe, work, &tools.gmsh)?;
+        let (design, recipe) = (&self.design, &self.recipe);
+        let mesh = mesh_window(design, thickness, recipe, work, &tools.gmsh, limit, stop)?;
         let model = WindowModel {
             mesh: &mesh,
             path: &self.path,

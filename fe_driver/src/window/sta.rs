@@ -9,7 +9,9 @@
 pub struct Attempt {
     /// Step time (lambda): at the end of the increment if it converged, otherwise at its start.
     pub lambda: f64,
+    /// Newton iterations of the attempt.
     pub iterations: usize,
+    /// Whether the increment converged.
     pub converged: bool,
 }
 

@@ -11,6 +11,7 @@ pub struct StepControl {
     pub least: f64,
     /// Maximum increment; longer increments overshoot and are cut back.
     pub greatest: f64,
+    /// Maximum number of increments.
     pub max_increments: u32,
     /// Maximum residual force, over the average force.
     pub residual: f64,

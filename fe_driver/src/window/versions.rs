@@ -12,11 +12,14 @@ pub(crate) const RECIPE_VERSION: u32 = 2;
 /// Versions of the external programs that determine a result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ToolVersions {
+    /// Version of gmsh.
     pub gmsh: String,
+    /// Version of CalculiX.
     pub ccx: String,
 }
 
 impl ToolVersions {
+    /// The versions that the programs have printed.
     pub fn of(tools: &Tools) -> Self {
         Self {
             gmsh: tools.gmsh.0.version.clone(),

@@ -42,6 +42,12 @@ pub fn print_tally(tally: &Tally) {
         tally.rows,
         duration(tally.cpu_seconds)
     );
+    if tally.damaged > 0 {
+        println!(
+            "{} of the open rays have damaged files: the next run solves them again (`campaign plan` names the damage)",
+            tally.damaged
+        );
+    }
     if !tally.failures.is_empty() {
         let mut failures = table(["last failure", "rays"]);
         for (reason, count) in &tally.failures {

@@ -25,7 +25,7 @@ pub struct CollectCommand {
 }
 
 impl CollectCommand {
-    pub fn new(campaign: PathBuf, folder: PathBuf, out: PathBuf) -> Self {
+    pub(crate) fn new(campaign: PathBuf, folder: PathBuf, out: PathBuf) -> Self {
         let campaign = CampaignArgs {
             campaign,
             folder: Some(folder),
@@ -38,7 +38,7 @@ impl CollectCommand {
         }
     }
 
-    pub fn run(&self) -> Result<()> {
+    pub(crate) fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
         fe_driver::refuse_changed(&self.campaign.load()?, &folder)?;
         let tally = fe_driver::status(&folder)?.tally;

@@ -14,7 +14,7 @@ use surrogate::{Order, Surrogate};
 /// A hinge is selected if a state on its path lies outside the training domain, or if the forces of
 /// an ensemble (train --seeds) deviate there by more than --doubt. A ray is then added through the
 /// outermost such state, ending 10 % beyond it. The rays are appended to a CSV file, which a campaign
-/// names as further_rays. Example: kirigami campaign extend configs/scenes/pet-3x3.toml --design
+/// names as extra_rays. Example: kirigami campaign extend configs/scenes/pet-3x3.toml --design
 /// runs/pet-3x3/state.json --rays configs/campaigns/pet-0.5mm-rays.csv
 #[derive(Args)]
 pub struct ExtendCommand {
@@ -72,7 +72,7 @@ impl ExtendCommand {
         println!(
             "of {} hinges {outside} leave the training domain and {doubted} exceed --doubt; {added} rays added to {}, \
              {known} already in the file, {refused} rejected (beyond |eta| = 1 or -30 to 120 deg)\n\
-             To solve the new rays, set further_rays = \"FILE\" in a campaign (path relative to the campaign file).",
+             To solve the new rays, set extra_rays = \"FILE\" in a campaign (path relative to the campaign file).",
             routes.len(),
             self.rays.display()
         );

@@ -31,7 +31,7 @@ pub struct RunCommand {
 }
 
 impl RunCommand {
-    pub fn new(campaign: PathBuf, folder: PathBuf) -> Self {
+    pub(crate) fn new(campaign: PathBuf, folder: PathBuf) -> Self {
         let campaign = CampaignArgs {
             campaign,
             folder: Some(folder),
@@ -44,7 +44,7 @@ impl RunCommand {
         }
     }
 
-    pub fn run(&self) -> Result<()> {
+    pub(crate) fn run(&self) -> Result<()> {
         let (campaign, folder) = (self.campaign.load()?, self.campaign.folder());
         let tools = Tools::find()?;
         let stop = interrupt::stop_flag()?;
@@ -64,7 +64,7 @@ impl RunCommand {
         print_tally(&end.tally);
         if end.tally.to_run() > 0 {
             let (left, what) = (end.tally.to_run(), "rays");
-            bail!(Unfinished { left, what });
+            bail!(Unfinished::new(left, what));
         }
         ensure!(
             end.tally.complete + end.tally.partial > 0,

@@ -43,7 +43,7 @@ impl CompareCommand {
         );
         let states: Vec<_> = rays.iter().map(ComparedRay::states).collect();
         std::fs::create_dir_all(&self.out)
-            .with_context(|| format!("cannot make the folder {}", self.out.display()))?;
+            .with_context(|| format!("cannot create the folder {}", self.out.display()))?;
         let tiers = [&judged, &reference].map(|database| database.manifest().tier.clone());
         let mut summary = summary(&rays, &states, &tiers)?;
         match correction(&rays) {

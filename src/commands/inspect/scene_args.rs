@@ -35,6 +35,7 @@ pub struct Listed {
 }
 
 impl Inspected {
+    /// The scene with the weights that it names; its start design if `design` is `None`.
     pub fn new(scene: PathBuf, design: Option<PathBuf>) -> Self {
         Self {
             scene,
@@ -43,7 +44,7 @@ impl Inspected {
         }
     }
 
-    pub fn read(&self) -> Result<(Scene, DesignVector)> {
+    pub(crate) fn read(&self) -> Result<(Scene, DesignVector)> {
         let mut config: SceneConfig = toml_file::read(&self.scene)?;
         if let Some(weights) = &self.weights {
             config.name_weights(weights)?;
@@ -58,11 +59,11 @@ impl Inspected {
 }
 
 impl Listed {
-    pub fn read(&self) -> Result<(Scene, DesignVector)> {
+    pub(crate) fn read(&self) -> Result<(Scene, DesignVector)> {
         self.inspected.read()
     }
 
-    pub fn print(&self, listing: impl Serialize + Display) -> Result<()> {
+    pub(crate) fn print(&self, listing: impl Serialize + Display) -> Result<()> {
         if self.json {
             println!("{}", serde_json::to_string_pretty(&listing)?);
         } else {

@@ -150,7 +150,7 @@ pub fn predicted(
 ) -> Vec<HingeSample> {
     let prepared = surrogate.prepare(designs);
     let energies = surrogate.evaluate(&prepared, deformations, Order::Forces);
-    let damages = surrogate.damage(designs, deformations);
+    let damages = surrogate.damage_values(designs, deformations);
     energies
         .iter()
         .zip(damages)

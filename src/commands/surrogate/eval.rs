@@ -109,7 +109,7 @@ fn answers(surrogate: &Surrogate, states: &[State]) -> Vec<Answer> {
         .unzip();
     let prepared = surrogate.prepare(&designs);
     let energies = surrogate.evaluate(&prepared, &deformations, Order::Tangent);
-    let damages = surrogate.damage(&designs, &deformations);
+    let damages = surrogate.damage_values(&designs, &deformations);
     let states = designs.iter().zip(&deformations);
     states
         .zip(energies.iter().zip(damages))
@@ -130,7 +130,7 @@ fn read_states(path: &Path) -> Result<Vec<State>> {
     let mut reader =
         csv::Reader::from_path(path).with_context(|| format!("cannot read {}", path.display()))?;
     let rows: Result<Vec<StateRow>, _> = reader.deserialize().collect();
-    let rows = rows.with_context(|| format!("{} holds no hinge states", path.display()))?;
+    let rows = rows.with_context(|| format!("{} contains no hinge states", path.display()))?;
     let states: Result<Vec<State>> = rows.iter().map(StateRow::state).collect();
     let states = states.with_context(|| path.display().to_string())?;
     ensure!(!states.is_empty(), "{} has no rows", path.display());

@@ -5,7 +5,9 @@ use train::ParityPoint;
 
 /// One chart of [`parity`].
 pub struct ParityChart<'a> {
+    /// Title of the chart.
     pub title: String,
+    /// The computed and predicted values.
     pub points: &'a [ParityPoint],
 }
 

@@ -4,9 +4,11 @@ use super::*;
 
 /// W against the rotation at one hinge design: the surrogate's curve and the finite-element points.
 pub struct Slice {
+    /// Title of the curve.
     pub title: String,
     /// (theta in degrees, W in N mm)
     pub curve: Vec<(f64, f64)>,
+    /// Finite-element points (theta in degrees, W in N mm).
     pub points: Vec<(f64, f64)>,
 }
 

@@ -1,12 +1,12 @@
-//! What the tool follows, from the geometry that was simulated.
+//! The paths of the cutting tool, from the simulated geometry.
 //!
-//! A slit runs between the tips O of the hinges at its ends, so that each keeps its ligament w_lig;
-//! a slit that is open on the outline starts there. About every O a hole of radius rho_f w_lig is
-//! drilled, which the slit ends in.
+//! A slit runs between the tips O of the hinges at its ends, so that each hinge keeps its ligament w_lig;
+//! a slit that is open on the outline starts there. Each slit ends in a hole of radius rho_f w_lig, which is drilled
+//! about O.
 //!
 //! **Ligament.** w_lig is the material between O and the finished edge of the secondary cut, as in the window:
-//! O stands half a kerf further from the line of that cut. The hole takes its radius of it, so that a caliper
-//! reads (1 - rho_f) w_lig beside the hole, [`CutLines::caliper`].
+//! the distance of O from the line of that cut is larger by half a kerf. The hole reduces the ligament by its radius,
+//! so that a caliper beside the hole reads (1 - rho_f) w_lig, [`CutLines::caliper`].
 //!
 //! **Kerf.** A slit is one pass of the tool along its line and removes the kerf, half on each flank:
 //! the tool's kerf is the design kerf w_c of (7). Holes and outline are closed paths, offset by half
@@ -32,7 +32,7 @@ pub(super) const ANNOTATION: &str = "ANNOTATION";
 pub struct Slit {
     /// Its ends (mm); the first is always the tip O of a hinge.
     pub ends: [[f64; 2]; 2],
-    /// The hinge at each end; none where the slit is open on the outline.
+    /// The hinge at each end; `None` at an end that is open on the outline.
     pub hinges: [Option<usize>; 2],
 }
 
@@ -41,35 +41,38 @@ pub struct Slit {
 pub struct Hole {
     /// The tip O of its hinge (mm).
     pub centre: [f64; 2],
-    /// Of the finished hole: rho_f w_lig (mm).
+    /// Radius of the finished hole: rho_f w_lig (mm).
     pub radius: f64,
 }
 
-/// A text beside the cuts: the number of a hinge, or what the sheet is.
+/// A text beside the cuts: the number of a hinge, or the description of the sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
     /// Middle of the baseline (mm).
     pub at: [f64; 2],
-    /// mm
+    /// Height of the text (mm).
     pub height: f64,
+    /// The text, one line.
     pub text: String,
 }
 
 /// The finished geometry of a cut sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CutLines {
+    /// All cuts inside the sheet, each once.
     pub slits: Vec<Slit>,
-    /// Hinge by hinge.
+    /// One per hinge.
     pub holes: Vec<Hole>,
     /// Corners of the sheet, counter-clockwise (mm).
     pub outline: [[f64; 2]; 4],
-    /// Width the tool removes (mm).
+    /// Width of the kerf (mm).
     pub kerf: f64,
+    /// One per hinge, then the cutting instructions below the sheet.
     pub labels: Vec<Label>,
 }
 
 impl CutLines {
-    /// The cuts of a sheet, which must come from `pattern`, in a material, which the labels name.
+    /// The cuts of `sheet`, which must come from `pattern`; `material` is named in the labels.
     pub fn new(
         pattern: &CutPattern,
         sheet: &Sheet,
@@ -102,12 +105,12 @@ impl CutLines {
         })
     }
 
-    /// Width of a ligament as a caliper reads it, from the edge of its hole to the secondary cut (mm).
+    /// Width of a ligament as measured by a caliper, from the edge of its hole to the secondary cut (mm).
     pub fn caliper(&self, hinge: usize) -> f64 {
         self.clearance(hinge) - self.holes[hinge].radius
     }
 
-    /// Radius that the tool's centre follows in a hole (mm).
+    /// Radius of the path of the tool's centre in a hole (mm).
     pub fn tool_radius(&self, hole: &Hole) -> f64 {
         hole.radius - self.kerf / 2.0
     }
@@ -131,9 +134,9 @@ impl CutLines {
         })
     }
 
-    /// Material left between the tip O of a hinge and the nearest cut other than its own (mm).
+    /// Material between the tip O of a hinge and the nearest cut other than its own (mm).
     ///
-    /// It is w_lig for a sound hinge, and less where another cut comes closer than the secondary. Half the kerf of
+    /// It is w_lig for a valid hinge, and less if another cut is closer than the secondary cut. Half the kerf of
     /// a slit lies on this side of its line.
     pub fn clearance(&self, hinge: usize) -> f64 {
         let tip = self.holes[hinge].centre;
@@ -188,7 +191,7 @@ fn slits(
     Ok(slits)
 }
 
-/// The number of every hinge beside its hole, and a line below the sheet that says how to cut it.
+/// The number of every hinge beside its hole, and a line below the sheet with cutting instructions.
 fn labels(sheet: &Sheet, material: &SheetMaterial) -> Vec<Label> {
     let [left, right, ..] = sheet.outline.corners;
     let width = right[0] - left[0];
@@ -209,7 +212,7 @@ fn labels(sheet: &Sheet, material: &SheetMaterial) -> Vec<Label> {
     };
     let numbers = sheet.hinges.iter().enumerate().map(|(number, hinge)| {
         let ([mx, my], w) = (hinge.main, hinge.w_lig);
-        // On the side of panel B, a little along the main cut.
+        // On the side of panel B, shifted along the main cut.
         Label {
             at: [
                 hinge.tip[0] + w * (0.5 * mx - 1.2 * my),

@@ -1,4 +1,4 @@
-//! The cut lines as a DXF drawing in millimetres, one layer a tool.
+//! The cut lines as a DXF drawing in millimetres, one layer per tool.
 
 use crate::output::cut_file::cut_lines::{ANNOTATION, CUT, CutLines, HOLES, OUTLINE};
 use crate::output::cut_file::fabrication_error::FabricationError;
@@ -8,10 +8,10 @@ use ::dxf::tables::Layer;
 use ::dxf::{Color, Drawing, LwPolylineVertex, Point};
 use std::path::Path;
 
-/// Layers with the AutoCAD colour index that cutting software shows them in.
+/// Layers with their AutoCAD colour index.
 const LAYERS: [(&str, u8); 4] = [(CUT, 1), (HOLES, 5), (OUTLINE, 7), (ANNOTATION, 8)];
 
-/// Writes the cut lines; the file is replaced as a whole and depends on nothing but them.
+/// Writes the cut lines. The file is replaced atomically and is identical for identical cut lines.
 pub fn write_dxf(path: &Path, cuts: &CutLines) -> Result<(), FabricationError> {
     let mut text = Vec::new();
     drawing(cuts)
@@ -29,11 +29,11 @@ pub fn write_dxf(path: &Path, cuts: &CutLines) -> Result<(), FabricationError> {
 fn drawing(cuts: &CutLines) -> Drawing {
     let mut drawing = Drawing::new();
     let header = &mut drawing.header;
-    // Light-weight polylines are lost in the formats before R2000.
+    // Formats before R2000 do not support light-weight polylines.
     header.version = AcadVersion::R2000;
     header.default_drawing_units = Units::Millimeters;
     header.drawing_units = DrawingUnits::Metric;
-    // The same design gives the same file.
+    // Fixed values, so that the same design gives the same file.
     header.creation_date = Default::default();
     header.creation_date_universal = Default::default();
     header.update_date = Default::default();

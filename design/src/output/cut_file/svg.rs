@@ -1,14 +1,14 @@
-//! The cut lines as an SVG drawing at 1:1, one user unit a millimetre, one group a layer.
+//! The cut lines as an SVG drawing at 1:1, one user unit per millimetre, one group per layer.
 
 use crate::output::canvas::{Anchor, Canvas};
 use crate::output::cut_file::cut_lines::{ANNOTATION, CUT, CutLines, HOLES, OUTLINE};
 use crate::output::cut_file::fabrication_error::FabricationError;
 use std::path::Path;
 
-/// Margin around the sheet, as a fraction of its width: room for the note below it.
+/// Margin around the sheet as a fraction of its width, with space for the note below it.
 const MARGIN: f64 = 0.05;
 
-/// Writes the cut lines; the file is replaced as a whole.
+/// Writes the cut lines; the file is replaced atomically.
 pub fn write_svg(path: &Path, cuts: &CutLines) -> Result<(), FabricationError> {
     support::whole_file::write(path, svg(cuts).as_bytes()).map_err(|source| {
         FabricationError::Write {

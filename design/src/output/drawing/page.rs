@@ -2,9 +2,13 @@
 
 use crate::output::canvas::{Anchor, Canvas};
 
+/// Colour of main lines and titles.
 pub const INK: &str = "#1f2933";
+/// Colour of secondary texts.
 pub const MUTED: &str = "#66727f";
+/// Colour of what a picture emphasises.
 pub const ACCENT: &str = "#c2410c";
+/// Second colour of emphasis.
 pub const TEAL: &str = "#0f766e";
 /// Colours of panels with even and odd column + row, which rotate in opposite senses.
 pub const PANELS: [&str; 2] = ["#eaf0f6", "#f6f0e4"];
@@ -13,7 +17,7 @@ pub const PANELS: [&str; 2] = ["#eaf0f6", "#f6f0e4"];
 const WIDTH_PX: f64 = 1400.0;
 
 /// A picture: sheet coordinates with margins for texts.
-pub struct Page {
+pub(crate) struct Page {
     pub canvas: Canvas,
     /// A thousandth of the picture's width (mm): the unit of strokes and texts.
     pub unit: f64,
@@ -171,7 +175,7 @@ impl Page {
 }
 
 /// Values from `low` to `high` as colours.
-pub struct ColourScale {
+pub(crate) struct ColourScale {
     low: f64,
     high: f64,
     /// Distance between two ticks.

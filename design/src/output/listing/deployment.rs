@@ -13,21 +13,27 @@ use std::fmt;
 /// The sheet with the same opening angle at every hinge; panel 0 keeps its centroid.
 #[derive(Clone, Debug, Serialize)]
 pub struct DeploymentListing {
+    /// The opening angle (deg).
     pub theta_deg: f64,
+    /// Motion (u_x, u_y, phi) of every panel (mm, mm, rad).
     pub q: Configuration,
+    /// Deployed corners SW, SE, NE, NW of every panel (mm).
     pub panel_corners: Vec<[[f64; 2]; 4]>,
+    /// (a, s, theta) of every hinge (mm, mm, rad).
     pub hinge_deformation: Vec<[f64; 3]>,
-    /// (panel, corner), counter-clockwise from the south-west.
+    /// (panel, corner) on the outline, counter-clockwise from the south-west.
     pub outline_panel_corner: Vec<PanelCorner>,
+    /// Deployed positions of `outline_panel_corner` (mm).
     pub outline_vertices: Vec<[f64; 2]>,
     /// The outline corners that belong to no hinge.
     pub outline_free_panel_corner: Vec<PanelCorner>,
-    /// Opening angles at which panels touch.
+    /// Opening angles at which panels touch (deg).
     pub contact_deg: [f64; 2],
     /// Maximum overlap of two panels, relative to the mean panel area.
     pub overlap: f64,
     /// lambda of (6) across the columns and across the rows.
     pub stretch: [f64; 2],
+    /// Distances of panels across the columns and across the rows as functions of the opening.
     pub spans: [Span; 2],
 }
 

@@ -14,34 +14,45 @@ use std::fmt;
 /// All load steps of a design.
 #[derive(Clone, Debug, Serialize)]
 pub struct EquilibriumListing {
+    /// The load steps, in order of the path.
     pub steps: Vec<StepListing>,
 }
 
 /// One load step.
 #[derive(Clone, Debug, Serialize)]
 pub struct StepListing {
+    /// zeta.
     pub load_factor: f64,
+    /// How the step ended.
     pub status: Status,
     /// Maximum unbalanced force, relative to the maximum force.
     pub residual: f64,
     /// The part of the residual that rounding can cause.
     pub rounding: f64,
+    /// Newton iterations, summed over all increments.
     pub iterations: usize,
+    /// Number of pivots of the tangent that are not positive; 0 in a state that is stable under dead loads.
     pub negative_pivots: usize,
     /// Estimated condition number of the tangent scaled to a unit diagonal; `None` if it could not be factorised.
     pub condition: Option<f64>,
-    /// Pi of (10).
+    /// Pi of (10) (N mm).
     #[serde(rename = "Pi")]
     pub potential: f64,
+    /// The stored energy and its parts.
     pub energy: EnergyParts,
+    /// Motion (u_x, u_y, phi) of every panel (mm, mm, rad).
     pub q: Configuration,
+    /// Deployed corners SW, SE, NE, NW of every panel (mm).
     pub panel_corners: Vec<[[f64; 2]; 4]>,
+    /// (a, s, theta) of every hinge (mm, mm, rad).
     pub hinge_deformation: Vec<[f64; 3]>,
-    /// Sum of hinge law and contact.
+    /// (F_a, F_s, M_theta) of every hinge (N, N, N mm), sum of hinge law and contact.
     pub hinge_force: Vec<[f64; 3]>,
+    /// Energy of every hinge (N mm), sum of hinge law and contact.
     pub hinge_energy: Vec<f64>,
-    /// Empty if the hinge law predicts no damage.
+    /// D of every hinge; empty if the hinge law predicts no damage.
     pub hinge_damage: Vec<f64>,
+    /// Whether each hinge is inside the training domain of the hinge law.
     pub inside: Vec<bool>,
     /// Maximum overlap of two panels, relative to the mean panel area.
     pub overlap: f64,
@@ -50,15 +61,18 @@ pub struct StepListing {
 /// The parts of the stored energy.
 #[derive(Clone, Debug, Serialize)]
 pub struct EnergyParts {
-    /// U of (10), including contact.
+    /// U of (10), including contact (N mm).
     pub total: f64,
+    /// Energy of the hinge law (N mm).
     pub law: f64,
+    /// Energy of contact (N mm).
     pub contact: f64,
-    /// Energies of the springs k_a, k_s and k_theta of (11); `None` for other laws.
+    /// Energies of the springs k_a, k_s and k_theta of (11) (N mm); `None` for other laws.
     pub springs: Option<[f64; 3]>,
 }
 
 impl EquilibriumListing {
+    /// Follows the equilibrium path of a design; an error if the model has no equilibrium.
     pub fn new(problem: &DesignProblem, design: &DesignVector) -> Result<Self, DesignError> {
         let Model::Equilibrium(mechanics) = &problem.model else {
             return Err(DesignError::NoMechanics);

@@ -14,11 +14,15 @@ use std::fmt;
 /// L of (16), its terms and its gradient in (z, ell, omega).
 #[derive(Clone, Debug, Serialize)]
 pub struct GradientListing {
+    /// L of (16) (mm^2).
     pub loss: f64,
+    /// The unweighted terms of L.
     pub terms: TermsListing,
     /// w_j; that of the Chamfer distance is 1.
     pub weights: PerFunctional,
+    /// dL/dtheta.
     pub grad: DesignVector,
+    /// The gradient with respect to the constants of the design problem.
     pub sensitivities: Sensitivities,
     /// Maximum componentwise backward error of the adjoint solves.
     pub adjoint_residual: f64,
@@ -33,12 +37,17 @@ pub struct GradientListing {
 pub struct TermsListing {
     /// mm^2
     pub chamfer: f64,
+    /// The path functionals (17)-(19).
     #[serde(flatten)]
     pub path: PerFunctional,
 }
 
 /// Why there is no gradient.
 #[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
 pub enum GradientListingError {
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -47,6 +56,7 @@ pub enum GradientListingError {
 }
 
 impl GradientListing {
+    /// Evaluates a design of a scene.
     pub fn new(scene: &Scene, design: &DesignVector) -> Result<Self, GradientListingError> {
         let problem = scene.problem()?;
         let evaluation = problem.evaluate(design)?;

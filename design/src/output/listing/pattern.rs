@@ -14,23 +14,36 @@ use std::fmt;
 /// Pattern, panels and hinges of a design.
 #[derive(Clone, Debug, Serialize)]
 pub struct PatternListing {
+    /// Number of columns, panels along x.
     #[serde(rename = "M")]
     pub m: usize,
+    /// Number of rows, panels along y.
     #[serde(rename = "N")]
     pub n: usize,
+    /// Corners SW, SE, NE, NW of the outline (mm).
     pub outline_corners: [[f64; 2]; 4],
     /// z and ell.
     #[serde(flatten)]
     pub coordinates: PatternCoordinates,
+    /// Void aspect ratios of the interior cuts, row by row.
     pub r: Vec<f64>,
+    /// Boundary positions on the edges bottom, right, top, left, as fractions of the edge.
     pub tau: [Vec<f64>; 4],
+    /// x_ij of every vertex, row by row (mm).
     pub points_x: Vec<[f64; 2]>,
+    /// x'_ij of every vertex, row by row (mm).
     pub points_xp: Vec<[f64; 2]>,
+    /// Corners SW, SE, NE, NW of every panel (mm).
     pub panel_corners: Vec<[[f64; 2]; 4]>,
+    /// Area of every panel (mm^2).
     pub panel_area: Vec<f64>,
+    /// Reference point of the rotation of every panel (mm).
     pub panel_centroid: Vec<[f64; 2]>,
+    /// All hinges, ordered by vertex, row by row; at each vertex x before x'.
     pub hinges: Vec<HingeListing>,
+    /// The sides r L and (1 - r) L of the void of every interior cut (mm).
     pub void_sides: Vec<[f64; 2]>,
+    /// Measures of whether the sheet can be cut and modelled.
     pub validity: Validity,
     /// Spans across the columns and across the rows.
     pub spans: [Span; 2],
@@ -39,24 +52,34 @@ pub struct PatternListing {
 /// A hinge in the flat sheet; the frame is (e_sec, its counter-clockwise normal).
 #[derive(Clone, Debug, Serialize)]
 pub struct HingeListing {
-    /// Panels A and B and their corners.
+    /// Panel A.
     pub k: usize,
+    /// Panel B.
     pub l: usize,
+    /// Corner of panel A at the hinge, counter-clockwise from the south-west.
     pub corner_k: usize,
+    /// Corner of panel B at the hinge, counter-clockwise from the south-west.
     pub corner_l: usize,
+    /// The vertex (i, j) of the secondary cut.
     pub vertex: [usize; 2],
+    /// The endpoint of the secondary cut at the hinge: `x` or `x'`.
     pub endpoint: &'static str,
-    /// The ideal corner.
+    /// The ideal corner, shared by the two panels (mm).
     pub position: [f64; 2],
-    /// The tip O of the main cut.
+    /// The tip O of the main cut (mm).
     pub tip: [f64; 2],
+    /// Unit vector along the secondary cut.
     pub e_sec: [f64; 2],
+    /// Unit vector from the corner along the main cut.
     pub m_hat: [f64; 2],
+    /// Angle between the cuts, measured into the material (rad).
     pub alpha: f64,
+    /// Ligament width (mm).
     pub w_lig: f64,
 }
 
 impl PatternListing {
+    /// Cuts a design and lists its flat sheet.
     pub fn new(problem: &DesignProblem, design: &DesignVector) -> Result<Self, DesignError> {
         let (pattern, sheet) = problem.cut(design)?;
         let side = |endpoint: fn(&CutPattern, usize, usize) -> [f64; 2]| {

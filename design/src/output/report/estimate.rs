@@ -1,12 +1,12 @@
-//! What further networks of the same training say of a design's path: where they disagree, the learned law
-//! is in doubt.
+//! Disagreement of further networks of the same training on the path of a design, an estimate of the error of the
+//! learned law.
 //!
 //! ```text
 //! sigma_X = (mean over states of the variance of X over the networks)^(1/2) / (mean of X^2)^(1/2)
 //! ```
 //!
-//! over the states inside the training domain, for X = W, (w_lig F_a, w_lig F_s, M_theta) and D_peak. It knows
-//! nothing of an error that all networks share, such as that of the window's mesh.
+//! over the states inside the training domain, for X = W, (w_lig F_a, w_lig F_s, M_theta) and D_peak. It does not
+//! contain errors that all networks have in common, such as that of the window's mesh.
 //! (Lakshminarayanan et al., "Simple and scalable predictive uncertainty estimation", 2017.)
 
 use crate::objective::design_problem::Deployment;
@@ -17,10 +17,13 @@ use surrogate::{Order, Surrogate};
 /// Standard deviations over an ensemble, relative to the root mean square over the path.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Estimate {
+    /// Number of networks.
     pub networks: usize,
+    /// Standard deviation of W.
     pub energy: f64,
+    /// Standard deviation of (w_lig F_a, w_lig F_s, M_theta).
     pub forces: f64,
-    /// None where a network does not predict it.
+    /// Standard deviation of D_peak; `None` if a network does not predict it.
     pub damage_peak: Option<f64>,
 }
 
@@ -32,7 +35,8 @@ struct Spread {
 }
 
 impl Estimate {
-    /// Of a path whose law is the first of `networks`; none with a single one, or without a state inside.
+    /// The estimate for a path computed with the first of `networks`; `None` for a single network, or if no state is
+    /// inside the training domain.
     pub fn of(networks: &[&Surrogate], deployment: &Deployment) -> Option<Self> {
         let designs = deployment.sheet.designs();
         let [mut energy, mut forces, mut peak] = [(); 3].map(|()| Spread::default());
@@ -43,7 +47,7 @@ impl Estimate {
             let answers: Vec<Vec<[f64; 5]>> = std::iter::zip(networks, &prepared)
                 .map(|(network, prepared)| {
                     let energies = network.evaluate(prepared, states, Order::Forces);
-                    let damages = network.damage(&designs, states);
+                    let damages = network.damage_values(&designs, states);
                     let hinges = std::iter::zip(energies, damages).zip(&designs);
                     hinges
                         .map(|((energy, damage), design)| {
@@ -78,7 +82,7 @@ impl Estimate {
 }
 
 impl Spread {
-    /// One quantity at one state, by each network.
+    /// Adds one quantity at one state, with its value for each network.
     fn add(&mut self, values: impl Iterator<Item = f64> + Clone) {
         let count = values.clone().count() as f64;
         let mean = values.clone().sum::<f64>() / count;

@@ -1,4 +1,4 @@
-//! One hinge of the report.
+//! One hinge in the report.
 
 use crate::analysis::localisation::gamma;
 use crate::geometry::polygon::edges;
@@ -8,24 +8,29 @@ use crate::scene::Scene;
 use crate::sheet::cut_sheet::{Hinge, Sheet};
 use serde::Serialize;
 
-/// One hinge of the best design, deployed.
+/// One hinge of the best design in the deployed sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HingeRow {
+    /// Index of the hinge.
     pub hinge: usize,
-    /// A and B.
+    /// Panels A and B.
     pub panels: [usize; 2],
-    /// mm
+    /// Ligament width (mm).
     pub w_lig: f64,
+    /// Cut angle (deg).
     pub alpha_deg: f64,
+    /// Opening in the last state of the path (deg).
     pub theta_deg: f64,
+    /// a / w_lig in the last state of the path.
     pub eta_a: f64,
+    /// s / w_lig in the last state of the path.
     pub eta_s: f64,
-    /// Maximum D along the path, the mean damage of the ligament; none where it is not known: the hinge law
-    /// predicts none, or was not made for a state of the path.
+    /// Maximum along the path of D, the mean damage of the ligament; `None` if it is not known: the hinge law
+    /// does not predict it, or a state of the path is outside its training domain.
     pub damage: Option<f64>,
-    /// The same of D_peak: at 1 the ligament tears.
+    /// Maximum along the path of D_peak; at 1 the ligament tears.
     pub damage_peak: Option<f64>,
-    /// Whether the hinge law was made for every state of the path.
+    /// Whether every state of the path is inside the training domain of the hinge law.
     pub inside: bool,
     /// (21), with the shortest edge of the two panels.
     pub gamma: f64,

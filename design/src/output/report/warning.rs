@@ -1,4 +1,4 @@
-//! What a design asks to be looked at before it is cut.
+//! Warnings about a design, to be checked before cutting.
 
 use crate::analysis::localisation::critical_edge;
 use crate::equilibrium::load_step::Status;
@@ -10,56 +10,59 @@ use crate::sheet::hinge_window::Window;
 use serde::Serialize;
 use std::fmt;
 
-/// A limit of the model or of the workshop that a design oversteps.
+/// A limit of the model or of fabrication that a design exceeds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Warning {
+    /// The subject.
     pub concern: Concern,
+    /// The consequence.
     pub severity: Severity,
-    /// The hinges it is about; empty if it is about the whole sheet.
+    /// The hinges concerned; empty if the whole sheet is concerned.
     pub hinges: Vec<usize>,
+    /// The limit that is exceeded, in words.
     pub message: String,
 }
 
-/// What a warning asks of the reader.
+/// The consequence of a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Severity {
     /// The model is less accurate than elsewhere.
     Note,
-    /// The sheet may not behave as computed: look at it before cutting.
+    /// The sheet may not behave as computed: check before cutting.
     Warning,
-    /// The sheet will not behave as computed, or cannot be cut: no cut file unless it is forced.
+    /// The sheet will not behave as computed, or cannot be cut: no cut file is written unless forced.
     Error,
 }
 
-/// What a warning is about.
+/// The subject of a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Concern {
-    /// Windows share material: the sum of hinge energies counts it twice.
+    /// Windows overlap: the sum of hinge energies counts the common material twice.
     WindowsOverlap,
     /// Panels are too small for the windows of their hinges.
     WindowsLeavePanels,
     /// Gamma < 1 (21): panels tilt out of plane with their ligaments.
     PanelsTilt,
-    /// w_lig or alpha is outside what the hinge law was trained on.
+    /// w_lig or alpha is outside the training domain of the hinge law.
     LigamentsOutsideDomain,
-    /// The path left the states that the hinge law was made for.
+    /// The path leaves the training domain of the hinge law.
     StatesOutsideDomain,
     /// D_peak of 1 or more: ligaments tear.
     Tearing,
-    /// |eta| over 1 at full load: a ligament translates by more than its width.
+    /// |eta| > 1 at full load: a ligament translates by more than its width.
     Overstrained,
-    /// Another cut comes closer to a hinge's tip than its secondary cut.
+    /// A cut is closer to a hinge's tip than its secondary cut.
     CutsTooClose,
     /// There are no cut lines.
     CannotBeCut,
-    /// The path of equilibria is not one converged, stable path.
+    /// The equilibrium path is not converged and stable throughout.
     Path,
 }
 
 impl Concern {
-    /// How severe the concern is wherever it arises.
+    /// The severity of the concern.
     fn severity(self) -> Severity {
         match self {
             Self::WindowsLeavePanels => Severity::Note,
@@ -114,7 +117,7 @@ impl fmt::Display for Warning {
     }
 }
 
-/// Every warning of a deployed design; `cuts` are its cut lines, `hinges` the rows of its report.
+/// All warnings of a deployed design; `cuts` are its cut lines, `hinges` the rows of its report.
 pub(super) fn all(
     scene: &Scene,
     deployment: &Deployment,
@@ -140,7 +143,7 @@ fn about(concern: Concern, hinges: Vec<usize>, message: String) -> Option<Warnin
     })
 }
 
-/// The numbers of the rows that `overstep`.
+/// The hinges whose rows `overstep`.
 fn those(hinges: &[HingeRow], overstep: impl Fn(&HingeRow) -> bool) -> Vec<usize> {
     hinges
         .iter()
@@ -198,7 +201,7 @@ fn cutting(deployment: &Deployment, cuts: &Result<CutLines, FabricationError>) -
         .filter(|(h, hinge)| cuts.clearance(*h) < hinge.w_lig - ROUNDING)
         .map(|(h, _)| h)
         .collect();
-    let message = "another cut comes closer to the tip than w_lig".into();
+    let message = "another cut is closer to the tip than w_lig".into();
     about(Concern::CutsTooClose, close, message)
 }
 
@@ -209,7 +212,7 @@ fn tilting(scene: &Scene, hinges: &[HingeRow]) -> Option<Warning> {
         .map(|&h| critical_edge(&scene.material, hinges[h].w_lig))
         .fold(0.0, f64::max);
     let message = format!(
-        "panel edges shorter than the critical length of {edge:.0} mm: Gamma < 1, panels tilt out \
+        "panel edges are shorter than the critical length of {edge:.0} mm: Gamma < 1, panels tilt out \
          of plane with their ligaments"
     );
     about(Concern::PanelsTilt, tilting, message)
@@ -219,19 +222,19 @@ fn domain(scene: &Scene, hinges: &[HingeRow]) -> Vec<Warning> {
     let Some(domain) = scene.surrogate().map(|surrogate| surrogate.domain()) else {
         return Vec::new();
     };
-    let outside = |[least, greatest]: [f64; 2], value: f64| !(least..=greatest).contains(&value);
+    let outside = |[min, max]: [f64; 2], value: f64| !(min..=max).contains(&value);
     let alpha_deg = domain.alpha.map(f64::to_degrees);
     let ligaments = those(hinges, |row| {
         outside(domain.w_lig, row.w_lig) || outside(alpha_deg, row.alpha_deg)
     });
     let states = those(hinges, |row| !row.inside);
     let trained = format!(
-        "ligaments outside the hinge law's training domain, w_lig {:.1} to {:.1} mm and alpha \
+        "ligaments are outside the training domain of the hinge law, w_lig {:.1} to {:.1} mm and alpha \
          {:.0} to {:.0} deg",
         domain.w_lig[0], domain.w_lig[1], alpha_deg[0], alpha_deg[1]
     );
-    let left = "deformations outside the hinge law's training domain on the way: energy and forces of these \
-                hinges are extrapolated and their damage is not known"
+    let left = "deformations leave the training domain of the hinge law along the path: energy and forces of these \
+                hinges are extrapolated, and their damage is not known"
         .into();
     [
         about(Concern::LigamentsOutsideDomain, ligaments, trained),
@@ -243,7 +246,7 @@ fn domain(scene: &Scene, hinges: &[HingeRow]) -> Vec<Warning> {
 }
 
 fn tearing(hinges: &[HingeRow]) -> Option<Warning> {
-    // The mean tears later than the peak; it is all that weights without D_peak know.
+    // The mean reaches 1 later than the peak; weights without D_peak predict the mean only.
     let torn = those(hinges, |row| {
         row.damage_peak
             .or(row.damage)
@@ -256,7 +259,7 @@ fn tearing(hinges: &[HingeRow]) -> Option<Warning> {
 fn overstrained(hinges: &[HingeRow]) -> Option<Warning> {
     let beyond = those(hinges, |row| row.eta_a.abs().max(row.eta_s.abs()) > 1.0);
     let message =
-        "ligaments translate by more than their width at full load: no hinge law holds there; \
+        "ligaments translate by more than their width at full load, where no hinge law is valid: \
                    reduce the load or the size of the target"
             .into();
     about(Concern::Overstrained, beyond, message)
@@ -277,7 +280,10 @@ fn path(deployment: &Deployment) -> Option<Warning> {
         })
         .collect();
     (!steps.is_empty()).then(|| {
-        let message = format!("the path is not smooth and stable: {}", steps.join(", "));
+        let message = format!(
+            "the equilibrium path is not smooth and stable: {}",
+            steps.join(", ")
+        );
         match deployment.final_step().status {
             Status::Diverged => Warning {
                 severity: Severity::Error,
