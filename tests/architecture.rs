@@ -251,3 +251,37 @@ fn no_file_name_occurs_four_times() {
         assert!(places.len() < 4, "{name}: {places:?}");
     }
 }
+
+/// Every test that docs/FAULTS.md names as a proof is a test of the workspace.
+#[test]
+fn the_tests_that_the_page_of_faults_names_exist() {
+    let page = std::fs::read_to_string(root().join("docs/FAULTS.md")).unwrap();
+    let mut sources = String::new();
+    for folder in std::fs::read_dir(root()).unwrap() {
+        for part in ["src", "tests"] {
+            let folder = folder.as_ref().unwrap().path().join(part);
+            if folder.is_dir() {
+                let texts = files(&folder)
+                    .into_iter()
+                    .map(|path| std::fs::read_to_string(path).unwrap());
+                sources.extend(texts);
+            }
+        }
+    }
+    for path in files(&root().join("tests")) {
+        sources.push_str(&std::fs::read_to_string(path).unwrap());
+    }
+    let cells = page
+        .lines()
+        .filter_map(|line| line.strip_prefix("| ")?.rsplit(" | ").next());
+    let tests: Vec<&str> = cells
+        .flat_map(|cell| cell.split('`').skip(1).step_by(2))
+        .collect();
+    assert!(tests.len() > 20);
+    for test in tests {
+        assert!(
+            sources.contains(&format!("fn {test}(")),
+            "there is no test {test}"
+        );
+    }
+}

@@ -16,6 +16,7 @@
 //! | `database` | consistent rows with their manifest: [`Database`] |
 //! | `database_files` | reading and writing a database |
 //! | `parquet` | rows as the bytes of a Parquet file |
+//! | `check` | what makes a consistent database unfit for training |
 //! | `compare` | comparison of rays that two databases contain |
 //! | `fidelity` | the mesh fidelity of the rows |
 //! | `fidelity_correction` | correction of the rows of a coarse mesh to a finer one |
@@ -39,6 +40,7 @@
 
 #![warn(missing_docs)]
 
+mod check;
 mod compare;
 mod csv;
 mod database;
@@ -56,6 +58,7 @@ mod schema;
 mod split;
 mod summary;
 
+pub use check::Finding;
 pub use compare::{COMPARED, ComparedRay, ComparedState, compare, reference_rms, relative_rms};
 pub use csv::{ColumnMap, Constant, rows_from_csv};
 pub use database::{Database, Mixing};

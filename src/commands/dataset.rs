@@ -17,6 +17,7 @@ pub struct DatasetCommand {
 #[derive(Subcommand)]
 enum Action {
     Summary(SummaryCommand),
+    Check(CheckCommand),
     Merge(MergeCommand),
     Split(SplitCommand),
     Import(ImportCommand),
@@ -28,6 +29,18 @@ enum Action {
 /// Print counts, ranges, histograms, rejected rows, energy residuals and coverage
 #[derive(Args)]
 struct SummaryCommand {
+    /// Database (Parquet with its manifest)
+    #[arg(value_name = "DATABASE")]
+    database: PathBuf,
+    /// Print the manifest as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Look for what makes a database unfit for training: negative energies, forces that are not the gradient of the
+/// energy, damage that decreases, states that occur twice, test geometries that were trained on
+#[derive(Args)]
+struct CheckCommand {
     /// Database (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
@@ -130,6 +143,7 @@ impl DatasetCommand {
     pub(crate) fn run(&self) -> Result<()> {
         match &self.action {
             Action::Summary(command) => command.run(),
+            Action::Check(command) => command.run(),
             Action::Merge(command) => command.run(),
             Action::Split(command) => command.run(),
             Action::Import(command) => command.run(),
@@ -143,7 +157,28 @@ impl DatasetCommand {
 impl SummaryCommand {
     fn run(&self) -> Result<()> {
         let database = Database::read(&self.database)?;
+        if self.json {
+            println!("{}", serde_json::to_string_pretty(database.manifest())?);
+            return Ok(());
+        }
         println!("{database}\n{}", Details(&database));
+        Ok(())
+    }
+}
+
+impl CheckCommand {
+    fn run(&self) -> Result<()> {
+        let findings = Database::read(&self.database)?.check();
+        for finding in &findings {
+            println!("{finding}");
+        }
+        ensure!(
+            findings.is_empty(),
+            "{} is not fit for training: {} findings",
+            self.database.display(),
+            findings.len()
+        );
+        println!("{}: nothing found", self.database.display());
         Ok(())
     }
 }

@@ -27,7 +27,15 @@ pub fn kept_fit(
             && card.dataset_hash == manifest.hash
             && card.split_hash == manifest.split_hash
     };
-    let kept = Surrogate::load(&path).ok();
+    let kept = match Surrogate::load(&path) {
+        Ok(kept) => Some(kept),
+        Err(error) => {
+            if path.exists() {
+                eprintln!("{error}: trained again");
+            }
+            None
+        }
+    };
     if let Some(kept) = kept.filter(|kept| same(kept.card())) {
         return Ok(kept);
     }

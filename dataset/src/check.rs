@@ -1,0 +1,232 @@
+//! Checks of a database that is readable and consistent with its manifest, but may be false.
+
+use crate::database::Database;
+use crate::rows::Row;
+use crate::split::geometry;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+
+/// Maximum difference between the energy of a ray and the work of its forces, relative to the energy, as the root mean
+/// square over the rays. Increments of a campaign leave 1 %; a wrong unit or sign of a force leaves more than half.
+const WORK: f64 = 0.2;
+
+/// Something that makes a database unfit for training.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// What is wrong, in one sentence.
+    pub what: &'static str,
+    /// Number of rows or rays.
+    pub count: usize,
+    /// Job of one of them.
+    pub job: String,
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(
+            f,
+            "{} ({} times, for example job {})",
+            self.what, self.count, self.job
+        )
+    }
+}
+
+impl Database {
+    /// Everything that is wrong with the database; empty if nothing was found.
+    pub fn check(&self) -> Vec<Finding> {
+        let rays = self.rays();
+        let rows = self.rows();
+        let row_findings = [
+            (
+                "the energy is negative",
+                rows.iter().filter(|row| row.sample.w < 0.0).collect(),
+            ),
+            (
+                "the same state of the same hinge occurs in two rays",
+                repeated(rows),
+            ),
+            (
+                "a geometry of the test or validation part occurs in the training part",
+                self.leaked(),
+            ),
+        ];
+        let ray_findings = [
+            ("a damage decreases along a ray", with(&rays, healing)),
+            ("a ray has a single state", with(&rays, |ray| ray.len() < 2)),
+        ];
+        let found = row_findings.into_iter().chain(ray_findings);
+        let mut findings: Vec<Finding> = found.filter_map(finding).collect();
+        findings.extend(forces_without_work(&rays));
+        findings
+    }
+
+    /// The rows of each ray, in the order of lambda.
+    fn rays(&self) -> Vec<Vec<&Row>> {
+        let mut rays: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
+        for row in self.rows() {
+            rays.entry(&row.job).or_default().push(row);
+        }
+        rays.into_values().collect()
+    }
+
+    /// One row per held-out ray whose geometry is one of the training rays.
+    fn leaked(&self) -> Vec<&Row> {
+        let split = &self.manifest().split;
+        let (training, others): (Vec<&Row>, Vec<&Row>) = self
+            .rows()
+            .iter()
+            .partition(|row| split.training.contains(&row.job));
+        let trained: BTreeSet<_> = training.into_iter().map(geometry).collect();
+        let mut jobs = BTreeSet::new();
+        let held_out =
+            |row: &&Row| split.test.contains(&row.job) || split.validation.contains(&row.job);
+        (others.into_iter().filter(held_out))
+            .filter(|row| trained.contains(&geometry(row)) && jobs.insert(&row.job))
+            .collect()
+    }
+}
+
+fn finding((what, rows): (&'static str, Vec<&Row>)) -> Option<Finding> {
+    let first = rows.first()?;
+    Some(Finding {
+        what,
+        count: rows.len(),
+        job: first.job.clone(),
+    })
+}
+
+/// The first row of each ray that satisfies a condition.
+fn with<'a>(rays: &[Vec<&'a Row>], condition: fn(&[&Row]) -> bool) -> Vec<&'a Row> {
+    let rays = rays.iter().filter(|ray| condition(ray));
+    rays.map(|ray| ray[0]).collect()
+}
+
+/// Rows whose state occurs in an earlier ray.
+fn repeated(rows: &[Row]) -> Vec<&Row> {
+    let mut seen: BTreeMap<_, &str> = BTreeMap::new();
+    let digits = |value: f64| (1e9 * value).round() as i64;
+    (rows.iter())
+        .filter(|row| {
+            let sample = &row.sample;
+            let state = [sample.a, sample.s, sample.theta].map(digits);
+            let alpha = digits(row.design.alpha);
+            let key = (digits(row.design.w_lig), alpha, state, row.tier.as_str());
+            *seen.entry(key).or_insert(&row.job) != row.job
+        })
+        .collect()
+}
+
+/// Whether the plastic strain recedes by more than its noise.
+fn healing(ray: &[&Row]) -> bool {
+    let maximum = ray.iter().map(|row| row.sample.d).fold(0.0, f64::max);
+    ray.windows(2)
+        .any(|pair| pair[1].sample.d < pair[0].sample.d - 1e-3 * maximum)
+}
+
+/// The energies of the rays against the work of their forces (trapezoidal rule from the undeformed state).
+fn forces_without_work(rays: &[Vec<&Row>]) -> Option<Finding> {
+    let relative = |ray: &Vec<&Row>| -> Option<f64> {
+        let last = ray
+            .last()
+            .filter(|last| ray.len() > 4 && last.sample.w > 0.0)?;
+        let (mut work, mut before) = (0.0, [[0.0; 3]; 2]);
+        for row in ray {
+            let sample = &row.sample;
+            let state = [sample.a, sample.s, sample.theta];
+            let forces = [sample.f_a, sample.f_s, sample.m_theta];
+            work += (0..3)
+                .map(|c| 0.5 * (forces[c] + before[1][c]) * (state[c] - before[0][c]))
+                .sum::<f64>();
+            before = [state, forces];
+        }
+        Some((work / last.sample.w - 1.0).abs())
+    };
+    let errors: Vec<(f64, &Row)> = rays
+        .iter()
+        .filter_map(|ray| Some((relative(ray)?, ray[0])))
+        .collect();
+    let mut sorted: Vec<f64> = errors.iter().map(|(error, _)| *error).collect();
+    sorted.sort_by(f64::total_cmp);
+    // The median: single rays may snap between two rows.
+    let typical = *sorted.get(sorted.len() / 2)?;
+    (typical > WORK).then(|| Finding {
+        what: "the forces are not the gradient of the energy along the rays: check signs and units",
+        count: errors.iter().filter(|(error, _)| *error > WORK).count(),
+        job: errors[0].1.job.clone(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gates::Gates;
+    use crate::rows::tests::rows;
+    use crate::split::SplitPlan;
+
+    fn found(change: impl Fn(&mut Vec<Row>)) -> Vec<&'static str> {
+        let mut rows = rows(12);
+        change(&mut rows);
+        let database = Database::collect(rows, &Gates::default(), &SplitPlan::default());
+        database
+            .unwrap()
+            .check()
+            .into_iter()
+            .map(|it| it.what)
+            .collect()
+    }
+
+    #[test]
+    fn a_sound_database_has_no_findings() {
+        assert_eq!(found(|_| ()), Vec::<&str>::new());
+    }
+
+    #[test]
+    fn false_tables_are_found() {
+        let says = |change: &dyn Fn(&mut Vec<Row>), part: &str| {
+            let found = found(change);
+            assert!(
+                found.iter().any(|what| what.contains(part)),
+                "{part}: {found:?}"
+            );
+        };
+        says(&|rows| rows[7].sample.w = -1.0, "negative");
+        says(
+            &|rows| rows.iter_mut().for_each(|row| row.sample.m_theta *= 57.3),
+            "gradient",
+        );
+        says(&|rows| rows[5].sample.d = 1.0, "decreases");
+        says(
+            &|rows| {
+                let copy = rows[3].clone();
+                rows.push(Row {
+                    job: "job-900".into(),
+                    ..copy
+                });
+            },
+            "two rays",
+        );
+    }
+
+    #[test]
+    fn a_test_geometry_that_was_trained_on_is_found() {
+        let plan = SplitPlan::default();
+        let mut database = Database::collect(rows(12), &Gates::default(), &plan).unwrap();
+        let split = &mut database.manifest.split;
+        let job = split.test.first().unwrap().clone();
+        // The same geometry under another name in the training part.
+        let mut copies: Vec<Row> = database
+            .rows
+            .iter()
+            .filter(|row| row.job == job)
+            .cloned()
+            .collect();
+        copies.iter_mut().for_each(|row| row.job = "job-900".into());
+        split.training.insert("job-900".into());
+        database.rows.extend(copies);
+        let found = database.check();
+        assert!(
+            found.iter().any(|it| it.what.contains("training part")),
+            "{found:?}"
+        );
+    }
+}
