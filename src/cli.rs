@@ -14,7 +14,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 #[derive(Parser)]
 #[command(name = "kirigami", version, propagate_version = true)]
 #[command(
-    after_help = "Exit codes: 0 done; 1 error; 75 stopped before the work was done, run the same command again."
+    after_help = "Exit codes: 0 done; 1 error; 2 wrong command line; 75 stopped before the work was done, run the same command again."
 )]
 pub struct Cli {
     /// Show no progress

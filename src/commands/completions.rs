@@ -9,6 +9,7 @@ use clap_complete::{Shell, generate};
 /// Example: kirigami completions bash > ~/.local/share/bash-completion/completions/kirigami
 #[derive(Args)]
 pub struct CompletionsCommand {
+    /// The shell
     #[arg(value_name = "SHELL")]
     shell: Shell,
 }

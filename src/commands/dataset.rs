@@ -44,6 +44,9 @@ struct CheckCommand {
     /// Database (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
+    /// If nothing is found, write the manifest again with its checksum, which older manifests lack
+    #[arg(long)]
+    seal: bool,
 }
 
 /// Join the databases of several campaigns; a job found in several of them is kept once
@@ -168,7 +171,8 @@ impl SummaryCommand {
 
 impl CheckCommand {
     fn run(&self) -> Result<()> {
-        let findings = Database::read(&self.database)?.check();
+        let database = Database::read(&self.database)?;
+        let findings = database.check();
         for finding in &findings {
             println!("{finding}");
         }
@@ -178,6 +182,9 @@ impl CheckCommand {
             self.database.display(),
             findings.len()
         );
+        if self.seal {
+            database.write(&self.database, true)?;
+        }
         println!("{}: nothing found", self.database.display());
         Ok(())
     }

@@ -10,6 +10,7 @@ use std::path::PathBuf;
 /// Example: kirigami man ~/.local/share/man/man1
 #[derive(Args)]
 pub struct ManCommand {
+    /// Folder to write to
     #[arg(value_name = "FOLDER")]
     folder: PathBuf,
 }

@@ -7,6 +7,7 @@ use crate::ui::progress::Progress;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use fe_driver::{FailureKind, KeptSolution, KeptSolve, KeptSolveError, Tools};
+use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -17,7 +18,7 @@ use std::time::Duration;
 pub struct SolveArgs {
     /// Number of solves in parallel [default: one per processor]
     #[arg(long, value_name = "N")]
-    jobs: Option<usize>,
+    jobs: Option<NonZeroUsize>,
     /// Time limit of each solve (s)
     #[arg(long, value_name = "SECONDS", default_value_t = 3600)]
     time_limit_s: u64,
@@ -54,7 +55,7 @@ impl SolveArgs {
         let limit = Duration::from_secs(self.time_limit_s);
         let workers = self
             .jobs
-            .unwrap_or_else(processors)
+            .map_or_else(processors, NonZeroUsize::get)
             .clamp(1, solves.len().max(1));
         let (next, halt) = (AtomicUsize::new(0), AtomicBool::new(false));
         let (sender, receiver) = mpsc::channel();

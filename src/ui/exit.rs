@@ -2,7 +2,7 @@
 
 use std::process::{ExitCode, Termination};
 
-/// The exit codes of every command.
+/// The exit codes of every command; besides, 2 stands for a wrong command line and 130 for a second Ctrl-C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
     /// 0: done.

@@ -49,12 +49,12 @@ fn page() -> Result<String> {
         let schema = schema.as_value();
         let none = Map::new();
         let definitions = schema["$defs"].as_object().unwrap_or(&none);
-        table(&mut page, schema)?;
+        table(&mut page, title, schema)?;
         for (name, definition) in definitions {
-            writeln!(page, "\n### {name}\n\n{}", text(definition))?;
+            writeln!(page, "\n### {title}: {name}\n\n{}", text(definition))?;
             match definition.get("properties") {
-                Some(_) => table(&mut page, definition)?,
-                None => choices(&mut page, definition)?,
+                Some(_) => table(&mut page, title, definition)?,
+                None => choices(&mut page, title, definition)?,
             }
         }
     }
@@ -62,7 +62,7 @@ fn page() -> Result<String> {
 }
 
 /// One row a key: whether it must be given, its type, its meaning.
-fn table(page: &mut String, schema: &Value) -> Result<()> {
+fn table(page: &mut String, title: &str, schema: &Value) -> Result<()> {
     let none = Map::new();
     let properties = schema["properties"].as_object().unwrap_or(&none);
     let required = schema["required"].as_array().cloned().unwrap_or_default();
@@ -83,14 +83,14 @@ fn table(page: &mut String, schema: &Value) -> Result<()> {
         writeln!(
             page,
             "| `{key}` | {} | {default} | {meaning} |",
-            kind(property)
+            kind(title, property)
         )?;
     }
     Ok(())
 }
 
 /// The alternatives of an enumeration.
-fn choices(page: &mut String, schema: &Value) -> Result<()> {
+fn choices(page: &mut String, title: &str, schema: &Value) -> Result<()> {
     let alternatives = ["oneOf", "anyOf"]
         .iter()
         .find_map(|key| schema[key].as_array());
@@ -106,7 +106,7 @@ fn choices(page: &mut String, schema: &Value) -> Result<()> {
         for (key, value) in alternative["properties"].as_object().into_iter().flatten() {
             writeln!(page, "- `{key}`: {}", text(alternative))?;
             if value.get("properties").is_some() {
-                table(page, value)?;
+                table(page, title, value)?;
                 writeln!(page)?;
             }
         }
@@ -122,6 +122,8 @@ fn quoted(names: &[Value]) -> String {
 /// The documentation of a type or a key on one line.
 fn text(schema: &Value) -> String {
     let text = schema["description"].as_str().unwrap_or_default();
+    // The first paragraph: tables and notes of the sources do not fit into a cell.
+    let text = text.split("\n\n").next().unwrap_or_default();
     text.split_whitespace()
         .collect::<Vec<_>>()
         .join(" ")
@@ -129,14 +131,18 @@ fn text(schema: &Value) -> String {
 }
 
 /// The type of a value in words.
-fn kind(schema: &Value) -> String {
+fn kind(title: &str, schema: &Value) -> String {
     if let Some(name) = schema["$ref"].as_str() {
         let name = name.rsplit('/').next().unwrap_or(name);
-        return format!("[{name}](#{})", name.to_lowercase());
+        let anchor = format!("{title}-{name}").to_lowercase();
+        return format!("[{name}](#{anchor})");
     }
     if let Some(all) = schema["anyOf"].as_array() {
         let not_null = all.iter().filter(|it| it["type"] != "null");
-        return not_null.map(kind).collect::<Vec<_>>().join(" or ");
+        return not_null
+            .map(|it| kind(title, it))
+            .collect::<Vec<_>>()
+            .join(" or ");
     }
     let mut names = match &schema["type"] {
         Value::Array(names) => names.clone(),
@@ -153,7 +159,7 @@ fn kind(schema: &Value) -> String {
                 Some(count) => format!("{count} of "),
                 None => "list of ".to_owned(),
             };
-            many + &kind(&schema["items"])
+            many + &kind(title, &schema["items"])
         }
         name => name.to_owned(),
     }

@@ -14,9 +14,9 @@ use std::time::SystemTime;
 ///
 /// Run it in the root of the repository. All pages together take hours; an interrupted page continues when it
 /// is started again. Example: kirigami-studies pages window trust
-/// was. Example: kirigami-studies pages window trust
 #[derive(Args)]
 pub struct PagesCommand {
+    /// Pages to make, by default all
     #[arg(value_name = "PAGE")]
     pages: Vec<String>,
     /// Pages, their commands and the products they need (TOML)

@@ -2,7 +2,7 @@
 //!
 //! A program runs in its own process group. Its output goes to a log file, because a pipe that is not
 //! read would block it. It is terminated by SIGTERM, then SIGKILL, sent to the whole group: at its time
-//! limit, when the caller sets the stop flag, and when the caller exits.
+//! limit and when the caller sets the stop flag. When the caller dies, the program itself is killed.
 
 use nix::sys::signal::{Signal, killpg};
 use nix::sys::wait::{Id, WaitPidFlag, WaitStatus, waitid};
@@ -330,7 +330,7 @@ impl Group {
 }
 
 impl Drop for Group {
-    /// Kills the remaining processes of the group and reaps its leader.
+    /// Kills the group and reaps its leader, if the leader is still running.
     fn drop(&mut self) {
         if let Ok(None) = self.0.try_wait() {
             let _ = killpg(self.pid(), Signal::SIGKILL);

@@ -80,7 +80,7 @@ impl Surrogate {
         }
     }
 
-    /// BLAKE3 hash (hexadecimal) of networks and card. Surrogates with the same hash give the same predictions.
+    /// BLAKE3 hash (hexadecimal) of everything that predictions depend on: networks, scales, domain, hinge constants.
     pub fn hash(&self) -> String {
         let mut hasher = blake3::Hasher::new();
         let networks = [Some(&self.chi), Some(&self.chi_d), self.chi_p.as_ref()];
@@ -91,7 +91,19 @@ impl Surrogate {
                 }
             }
         }
-        hasher.update(&serde_json::to_vec(&self.card).expect("a card is numbers and text"));
+        let Card {
+            standardisation,
+            energy_scale,
+            damage_scale,
+            peak_scale,
+            damage_sharpness,
+            domain,
+            hinge,
+            ..
+        } = &self.card;
+        let scales = (energy_scale, damage_scale, peak_scale, damage_sharpness);
+        let evaluated = serde_json::to_vec(&(standardisation, scales, domain, hinge));
+        hasher.update(&evaluated.expect("these are numbers and text"));
         hasher.finalize().to_hex().to_string()
     }
 

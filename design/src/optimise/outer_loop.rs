@@ -60,7 +60,7 @@ pub struct SearchState {
 /// Continues the search from `state` until it has made `steps` steps after the start, until no step lowers
 /// the loss, or until the end of the step during which `stop` becomes true.
 ///
-/// `sink` receives the state after every step, including the start, and may end the search by an error.
+/// `sink` receives the state after every step and may end the search by an error.
 pub fn optimise<E>(
     problem: &DesignProblem,
     state: &mut SearchState,

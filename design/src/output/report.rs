@@ -87,9 +87,11 @@ impl fmt::Display for Report {
         writeln!(f, "{}", self.title)?;
         if !self.cut_file {
             writeln!(f, "NO CUT FILE")?;
-            self.errors()
-                .try_for_each(|error| writeln!(f, "- {error}"))?;
+        } else if self.errors().next().is_some() {
+            writeln!(f, "CUT FILE FORCED")?;
         }
+        self.errors()
+            .try_for_each(|error| writeln!(f, "- {error}"))?;
         match &self.ended {
             Ended::Completed => writeln!(f, "{} steps", self.steps)?,
             Ended::Stopped => writeln!(

@@ -12,6 +12,12 @@ use hinge::SheetMaterial;
 use std::path::{Path, PathBuf};
 use surrogate::Surrogate;
 
+/// Version of geometry, mechanics and objective: raised when a change of the code changes the loss of a design, so that
+/// a run of an earlier version is not continued.
+///
+/// 1: O stands half a kerf further from the line of the secondary cut.
+const MODEL_VERSION: u32 = 1;
+
 /// A scene with checked values, its material and its sampled target.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -77,15 +83,19 @@ impl Scene {
         }
     }
 
-    /// Hash of what a run depends on besides the keys of the scene: the material law and the weights. It is the
-    /// same on every machine, whereas the loss differs in its last digits.
+    /// Identifies what a run depends on besides the keys of the scene: the version of the model, the material law, the
+    /// target's points and the weights. It is the same on every machine, whereas the loss differs in its last digits.
     pub fn model_hash(&self) -> String {
         let weights = match &self.hinge {
             LoadedHinge::Pin { .. } | LoadedHinge::Linear { .. } => String::new(),
             LoadedHinge::Condensed { law, .. } => law.surrogate().hash(),
             LoadedHinge::Surrogate { law, .. } => law.surrogate().hash(),
         };
-        format!("{}-{weights}", self.material.law_hash())
+        let points = self.target.points().as_flattened();
+        let bytes: Vec<u8> = points.iter().flat_map(|x| x.to_le_bytes()).collect();
+        let target = blake3::hash(&bytes).to_hex();
+        let material = self.material.law_hash();
+        format!("{MODEL_VERSION}-{material}-{target}-{weights}")
     }
 
     /// The options that turn a pattern into the sheet of this scene.

@@ -72,15 +72,11 @@ pub enum InverseDesignError {
     )]
     OtherScene { path: PathBuf },
     #[error(
-        "{path} belongs to a run with other weights or another material: its loss at the start is \
-         {found}, not {expected}; restart the run (--restart), or choose another output folder",
+        "{path} belongs to a run with other weights, another material, another target or an earlier version of \
+         kirigami; restart it, or choose another output folder",
         path = .path.display()
     )]
-    OtherModel {
-        path: PathBuf,
-        found: f64,
-        expected: f64,
-    },
+    OtherModel { path: PathBuf },
 }
 
 impl InverseDesignError {
@@ -187,15 +183,28 @@ pub fn inverse_design(
     })
 }
 
-/// Deletes the state in the scene's run folder, so that the next run begins at the start.
+/// Deletes the state in the scene's run folder, so that the next run begins at the start, with the report and the cut
+/// files of the design that it held. Nothing is deleted if the start of the scene cannot be evaluated.
 pub fn forget(scene: &Scene) -> Result<(), InverseDesignError> {
-    let path = scene.output().join(STATE_FILE);
-    match std::fs::remove_file(&path) {
-        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-            Err(InverseDesignError::Folder { path, source })
+    let start = scene.problem()?.evaluate(&scene.start());
+    start.map_err(InverseDesignError::Start)?;
+    let results = [
+        "cut.dxf",
+        "cut.svg",
+        "cut-list.csv",
+        "report.txt",
+        "report.json",
+    ];
+    for name in results.into_iter().chain([STATE_FILE]) {
+        let path = scene.output().join(name);
+        match std::fs::remove_file(&path) {
+            Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+                return Err(InverseDesignError::Folder { path, source });
+            }
+            _ => {}
         }
-        _ => Ok(()),
     }
+    Ok(())
 }
 
 impl State {
@@ -221,6 +230,9 @@ impl State {
         })?;
         let path = path.to_owned();
         state.scene.optimiser.steps = scene.config.optimiser.steps;
+        // Neither the folder's name nor the title changes a design.
+        state.scene.output.clone_from(&scene.config.output);
+        state.scene.title.clone_from(&scene.config.title);
         if state.scene != scene.config {
             return Err(InverseDesignError::OtherScene { path });
         }
@@ -233,12 +245,7 @@ impl State {
             None => (found - start.loss).abs() <= SAME_LOSS * start.loss.abs(),
         };
         if !same_model {
-            let expected = start.loss;
-            return Err(InverseDesignError::OtherModel {
-                path,
-                found,
-                expected,
-            });
+            return Err(InverseDesignError::OtherModel { path });
         }
         Ok(Some(state))
     }

@@ -175,13 +175,25 @@ fn default_load_steps() -> usize {
 }
 
 impl SceneConfig {
-    /// Replaces the weights; the path is relative to the working folder.
+    /// Replaces the weights that the hinge law reads; the path is relative to the working folder. An ensemble, which
+    /// belongs to the replaced weights, is dropped. A law without weights is an error.
     pub fn name_weights(&mut self, weights: &Path) -> std::io::Result<()> {
         let weights = std::path::absolute(weights)?;
-        self.surrogate = Some(SurrogateFile {
-            weights,
-            ensemble: Vec::new(),
-        });
+        match (self.hinge, &mut self.condensed) {
+            (HingeModel::Surrogate, _) => {
+                self.surrogate = Some(SurrogateFile {
+                    weights,
+                    ensemble: Vec::new(),
+                });
+            }
+            (HingeModel::Linear, Some(condensed)) => condensed.weights = weights,
+            (HingeModel::Linear | HingeModel::Pin, _) => {
+                return Err(std::io::Error::new(
+                    std::io::ErrorKind::InvalidInput,
+                    "other weights were named, but the hinge law of the scene reads none: use hinge = \"surrogate\"",
+                ));
+            }
+        }
         Ok(())
     }
 

@@ -122,8 +122,8 @@ const MAX_TIME_LIMIT: f64 = 86_400.0;
 impl CampaignFile {
     /// The first defect of the file; `None` if it is valid.
     fn defect(&self) -> Option<String> {
-        if self.name.is_empty() {
-            return Some("name is empty".to_owned());
+        if self.name.is_empty() || self.name.chars().any(char::is_control) {
+            return Some("name is empty or holds a control character".to_owned());
         }
         let minimum = usize::from(self.extra_rays.is_none());
         if !(minimum..=MAX_COUNT).contains(&self.count) {

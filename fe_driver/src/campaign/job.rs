@@ -118,11 +118,11 @@ impl JobFolder {
         let damaged = |reason: &str| Ok(JobState::Damaged(reason.to_owned()));
         let spec = match or_damage(self.spec())? {
             Ok(spec) => spec,
-            Err(reason) => return damaged(&reason),
+            Err(_) => return damaged("job.json cannot be read"),
         };
         let record = match or_damage(self.record())? {
             Ok(record) => record,
-            Err(reason) => return damaged(&reason),
+            Err(_) => return damaged("result.json cannot be read"),
         };
         let id = self.0.file_name().unwrap_or_default();
         if spec.as_ref().is_some_and(|spec| *spec.id() != *id) {
@@ -134,8 +134,12 @@ impl JobFolder {
             }),
             (None, Some(_)) => damaged("job.json is missing"),
             (Some(spec), Some(record)) => {
-                if record.rows > 0 && self.samples(&record).is_err() {
-                    return damaged("rows.csv is missing or does not match result.json");
+                let rows = self.0.join("rows.csv");
+                if record.rows > 0 && !rows.exists() {
+                    return damaged("rows.csv is missing");
+                }
+                if record.rows > 0 && or_damage(self.samples(&record))?.is_err() {
+                    return damaged("rows.csv does not match result.json");
                 }
                 Ok(JobState::Ended(Box::new((spec, record))))
             }
@@ -162,8 +166,9 @@ impl JobFolder {
             return Err(FileError::at(&path)(damage));
         }
         let rows = csv::Reader::from_reader(&bytes[..]).into_deserialize();
-        rows.collect::<Result<_, csv::Error>>()
-            .map_err(FileError::at(&path))
+        rows.collect::<Result<_, csv::Error>>().map_err(|error| {
+            FileError::at(&path)(io::Error::new(io::ErrorKind::InvalidData, error))
+        })
     }
 
     pub(crate) fn write_spec(&self, spec: &JobSpec) -> Result<(), FileError> {

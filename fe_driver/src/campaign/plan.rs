@@ -41,7 +41,7 @@ pub fn plan(
             JobState::Ended(ended) => retry_reason(&ended.1),
             JobState::Open { started: true } => Some("interrupted".to_owned()),
             JobState::Open { started: false } => Some(new_reason(spec, &stale)),
-            JobState::Damaged(reason) => Some(format!("damaged: {reason}")),
+            JobState::Damaged(reason) => Some(format!("damaged: {reason} (job {id})")),
         };
         if let Some(reason) = reason {
             *reasons.entry(reason).or_default() += 1;

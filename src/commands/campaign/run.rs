@@ -8,6 +8,7 @@ use crate::ui::progress::Progress;
 use anyhow::{Result, bail, ensure};
 use clap::Args;
 use fe_driver::{RunOptions, Shard, Tools};
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -21,7 +22,7 @@ pub struct RunCommand {
     campaign: CampaignArgs,
     /// Number of solves in parallel [default: one per processor]
     #[arg(long, value_name = "N")]
-    jobs: Option<usize>,
+    jobs: Option<NonZeroUsize>,
     /// Solve only part I of N; parts of the same folder can run at the same time
     #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE)]
     shard: Shard,
@@ -50,7 +51,7 @@ impl RunCommand {
         let stop = interrupt::stop_flag()?;
         let options = RunOptions {
             shard: self.shard,
-            workers: self.jobs.unwrap_or_else(processors),
+            workers: self.jobs.map_or_else(processors, NonZeroUsize::get),
             time_limit: self.time_limit,
         };
         let bar = Progress::new(campaign.size(), "rays");

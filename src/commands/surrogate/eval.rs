@@ -72,7 +72,8 @@ struct Answer {
     f_a: f64,
     f_s: f64,
     m_theta: f64,
-    d: f64,
+    /// Unknown outside the domain, as is D_peak.
+    d: Option<f64>,
     d_peak: Option<f64>,
     /// d2W/d(a, s, theta)^2.
     tangent: [[f64; 3]; 3],
@@ -88,10 +89,10 @@ impl EvalCommand {
         }
         println!("inside,W,F_a,F_s,M_theta,D,D_peak");
         for it in answers {
-            let peak = it.d_peak.map_or(String::new(), |peak| peak.to_string());
+            let [d, peak] = [it.d, it.d_peak].map(|it| it.map_or(String::new(), |d| d.to_string()));
             println!(
-                "{},{},{},{},{},{},{peak}",
-                it.inside, it.w, it.f_a, it.f_s, it.m_theta, it.d
+                "{},{},{},{},{},{d},{peak}",
+                it.inside, it.w, it.f_a, it.f_s, it.m_theta
             );
         }
         Ok(())
@@ -113,14 +114,18 @@ fn answers(surrogate: &Surrogate, states: &[State]) -> Vec<Answer> {
     let states = designs.iter().zip(&deformations);
     states
         .zip(energies.iter().zip(damages))
-        .map(|((design, deformation), (energy, damage))| Answer {
-            inside: surrogate.domain().contains(design, deformation),
+        .map(|((design, deformation), (energy, damage))| {
+            let inside = surrogate.domain().contains(design, deformation);
+            (inside, energy, damage)
+        })
+        .map(|(inside, energy, damage)| Answer {
+            inside,
             w: energy.w,
             f_a: energy.forces[0],
             f_s: energy.forces[1],
             m_theta: energy.forces[2],
-            d: damage.d,
-            d_peak: damage.d_peak,
+            d: inside.then_some(damage.d),
+            d_peak: damage.d_peak.filter(|_| inside),
             tangent: energy.tangent,
         })
         .collect()
