@@ -13,6 +13,7 @@ lint:
 	cargo fmt --all --check
 	cargo clippy --release --locked --workspace --all-targets -- -D warnings
 	cargo check --release --locked -p kirigami --no-default-features
+	RUSTDOCFLAGS="-D warnings" cargo doc --release --locked --workspace --lib --no-deps
 
 tools:
 	scripts/install-tools

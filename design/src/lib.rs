@@ -20,7 +20,7 @@
 //! | [`hinge_law`] | the energy of a hinge: linear (11), condensed, learned (14), contact |
 //! | [`equilibrium`] | equilibrium paths (10) and their adjoint (20) |
 //! | [`objective`] | objective and gradient (16)-(20) |
-//! | [`optimise`] | the outer loop, Algorithm 1 |
+//! | [`optimise`](mod@optimise) | the outer loop, Algorithm 1 |
 //! | [`scene`] | a design problem read from TOML, and its run folder |
 //! | [`analysis`] | forces, capacity, void families, localisation of a deployed sheet |
 //! | [`output`] | reports, listings, drawings, cut files |

@@ -50,7 +50,7 @@ pub(crate) fn tanh(x: f64) -> f64 {
     (m / (m + 2.0)).copysign(x)
 }
 
-/// tanh of every number in place, computed in float64, for training; see [`tanh`].
+/// tanh of every number in place, computed in float64, for training.
 pub fn tanh_in_place(values: &mut [f32]) {
     struct All<'a>(&'a mut [f32]);
     impl WithSimd for All<'_> {

@@ -6,7 +6,7 @@
 //!
 //! which is local to each hinge in p = (attachment point, centroids, angle of e_sec, w_lig, alpha). Each load
 //! step reuses the factors of its own tangent, refined against that tangent. For the constants
-//! of (11) the bracket is eps_c e_c . D eps_h[lambda], for the loads it is -zeta lambda. Under displacement
+//! of (11) the bracket is `eps_c e_c . D eps_h[lambda]`, for the loads it is `-zeta lambda`. Under displacement
 //! control the system has the border of the stroke, whose condition (f . q)/F = stroke also depends on the loads.
 
 use crate::equilibrium::hinged_sheet::HingedSheet;
