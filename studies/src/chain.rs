@@ -217,6 +217,8 @@ impl ChainStudy {
                 config.hinge_point = Some(HingePoint::CutTip);
                 config.surrogate = None;
                 config.objective.damage = 0.0;
+                // Only a learned law has a domain.
+                config.objective.domain = 0.0;
                 config.condensed = Some(CondensedConfig {
                     weights: weights.clone(),
                     secant_deg,
