@@ -2,7 +2,7 @@
 
 use crate::database::Database;
 use crate::rows::Row;
-use crate::split::geometry;
+use crate::split::{geometry, state};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
@@ -61,12 +61,9 @@ impl Database {
     }
 
     /// The rows of each ray, in the order of lambda.
-    fn rays(&self) -> Vec<Vec<&Row>> {
-        let mut rays: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
-        for row in self.rows() {
-            rays.entry(&row.job).or_default().push(row);
-        }
-        rays.into_values().collect()
+    fn rays(&self) -> Vec<&[Row]> {
+        let same = |left: &Row, right: &Row| left.job == right.job;
+        self.rows().chunk_by(same).collect()
     }
 
     /// One row per held-out ray whose geometry is one of the training rays.
@@ -96,36 +93,29 @@ fn finding((what, rows): (&'static str, Vec<&Row>)) -> Option<Finding> {
 }
 
 /// The first row of each ray that satisfies a condition.
-fn with<'a>(rays: &[Vec<&'a Row>], condition: fn(&[&Row]) -> bool) -> Vec<&'a Row> {
+fn with<'a>(rays: &[&'a [Row]], condition: fn(&[Row]) -> bool) -> Vec<&'a Row> {
     let rays = rays.iter().filter(|ray| condition(ray));
-    rays.map(|ray| ray[0]).collect()
+    rays.map(|ray| &ray[0]).collect()
 }
 
 /// Rows whose state occurs in an earlier ray.
 fn repeated(rows: &[Row]) -> Vec<&Row> {
     let mut seen: BTreeMap<_, &str> = BTreeMap::new();
-    let digits = |value: f64| (1e9 * value).round() as i64;
     (rows.iter())
-        .filter(|row| {
-            let sample = &row.sample;
-            let state = [sample.a, sample.s, sample.theta].map(digits);
-            let alpha = digits(row.design.alpha);
-            let key = (digits(row.design.w_lig), alpha, state, row.tier.as_str());
-            *seen.entry(key).or_insert(&row.job) != row.job
-        })
+        .filter(|row| *seen.entry((state(row), &row.tier)).or_insert(&row.job) != row.job)
         .collect()
 }
 
 /// Whether the plastic strain recedes by more than its noise.
-fn healing(ray: &[&Row]) -> bool {
+fn healing(ray: &[Row]) -> bool {
     let maximum = ray.iter().map(|row| row.sample.d).fold(0.0, f64::max);
     ray.windows(2)
         .any(|pair| pair[1].sample.d < pair[0].sample.d - 1e-3 * maximum)
 }
 
 /// The energies of the rays against the work of their forces (trapezoidal rule from the undeformed state).
-fn forces_without_work(rays: &[Vec<&Row>]) -> Option<Finding> {
-    let relative = |ray: &Vec<&Row>| -> Option<f64> {
+fn forces_without_work(rays: &[&[Row]]) -> Option<Finding> {
+    let relative = |ray: &[Row]| -> Option<f64> {
         let last = ray
             .last()
             .filter(|last| ray.len() > 4 && last.sample.w > 0.0)?;
@@ -143,7 +133,7 @@ fn forces_without_work(rays: &[Vec<&Row>]) -> Option<Finding> {
     };
     let errors: Vec<(f64, &Row)> = rays
         .iter()
-        .filter_map(|ray| Some((relative(ray)?, ray[0])))
+        .filter_map(|ray| Some((relative(ray)?, &ray[0])))
         .collect();
     let mut sorted: Vec<f64> = errors.iter().map(|(error, _)| *error).collect();
     sorted.sort_by(f64::total_cmp);

@@ -10,7 +10,7 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// How geometries are assigned to the parts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -120,6 +120,19 @@ impl Split {
 pub(crate) fn geometry(row: &Row) -> [i64; 2] {
     let alpha = row.design.alpha.min(PI - row.design.alpha);
     [row.design.w_lig, alpha].map(|value| (1e9 * value).round() as i64)
+}
+
+/// The geometry and (a, s, theta) up to mirroring, in units of 1e-9.
+pub(crate) fn state(row: &Row) -> ([i64; 2], [i64; 3]) {
+    let s = match row.design.alpha > FRAC_PI_2 {
+        true => -row.sample.s,
+        false => row.sample.s,
+    };
+    let deformation = [row.sample.a, s, row.sample.theta];
+    (
+        geometry(row),
+        deformation.map(|value| (1e9 * value).round() as i64),
+    )
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use crate::database::Database;
 use crate::noise::noise;
 use crate::rows::Row;
 use crate::schema;
-use crate::split::{Part, geometry};
+use crate::split::{Part, state};
 use std::collections::BTreeSet;
 use std::fmt;
 
@@ -162,19 +162,6 @@ fn covered(rows: &[Row], point: fn(&Row) -> [f64; 2]) -> usize {
 
 /// Number of rows whose state, up to mirroring, is the same as that of an earlier row.
 fn repeated(rows: &[Row]) -> usize {
-    let state = |row: &Row| {
-        let mirrored = row.design.alpha > std::f64::consts::FRAC_PI_2;
-        let s = if mirrored {
-            -row.sample.s
-        } else {
-            row.sample.s
-        };
-        let deformation = [row.sample.a, s, row.sample.theta];
-        (
-            geometry(row),
-            deformation.map(|value| (1e9 * value).round() as i64),
-        )
-    };
     rows.len() - rows.iter().map(state).collect::<BTreeSet<_>>().len()
 }
 

@@ -7,13 +7,13 @@ use crate::ui::charts::ParityChart;
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::Progress;
 use crate::ui::table::table;
-use crate::ui::{interrupt, picture};
+use crate::ui::{interrupt, picture, run_folder};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use comfy_table::Table;
 use dataset::{Database, Part};
 use std::fmt::Write;
-use std::fs::{File, TryLockError};
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -125,19 +125,10 @@ impl TrainCommand {
 
     /// Locks the weights' files against a second training until the returned file is dropped.
     fn hold(&self) -> Result<File> {
-        let path = self.out.with_extension("lock");
-        let file =
-            File::create(&path).with_context(|| format!("cannot write {}", path.display()))?;
-        match file.try_lock() {
-            Ok(()) => Ok(file),
-            Err(TryLockError::WouldBlock) => bail!(
-                "another training writes {}: wait for it, or choose another name with --out",
-                self.out.display()
-            ),
-            Err(TryLockError::Error(error)) => {
-                Err(error).with_context(|| format!("cannot lock {}", path.display()))
-            }
-        }
+        run_folder::lock(&self.out.with_extension("lock"), || {
+            let out = self.out.display();
+            format!("another training writes {out}: wait for it, or choose another name with --out")
+        })
     }
 
     fn refuse_existing(&self, first: u64) -> Result<()> {
@@ -151,8 +142,8 @@ impl TrainCommand {
         if self.replace || self.resume {
             return Ok(());
         }
-        let members =
-            (0..if self.seeds > 1 { self.seeds } else { 0 }).map(|i| self.member(first + i));
+        let seeds = (first..first + self.seeds).filter(|_| self.seeds > 1);
+        let members = seeds.map(|seed| self.member(seed));
         for path in members.chain([self.out.clone(), card_path(&self.out)]) {
             if path.exists() {
                 bail!(

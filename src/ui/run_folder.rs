@@ -8,14 +8,20 @@ use std::path::Path;
 pub fn hold(folder: &Path) -> Result<File> {
     std::fs::create_dir_all(folder)
         .with_context(|| format!("cannot create the folder {}", folder.display()))?;
-    let path = folder.join("lock");
-    let file = File::create(&path).with_context(|| format!("cannot write {}", path.display()))?;
+    lock(&folder.join("lock"), || {
+        let folder = folder.display();
+        format!(
+            "another run uses {folder}: wait until it ends, or choose another folder with --out"
+        )
+    })
+}
+
+/// Locks a file, created if missing, until the returned file is dropped; `taken` says what to do if it is locked.
+pub fn lock(path: &Path, taken: impl FnOnce() -> String) -> Result<File> {
+    let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
     match file.try_lock() {
         Ok(()) => Ok(file),
-        Err(TryLockError::WouldBlock) => bail!(
-            "another run uses {}: wait until it ends, or choose another folder with --out",
-            folder.display()
-        ),
+        Err(TryLockError::WouldBlock) => bail!(taken()),
         Err(TryLockError::Error(error)) => {
             Err(error).with_context(|| format!("cannot lock {}", path.display()))
         }

@@ -144,8 +144,8 @@ pub fn inverse_design(
     let start = problem
         .evaluate(&design)
         .map_err(InverseDesignError::Start)?;
-    let optimiser = &scene.config.optimiser;
-    let mut search = match State::read(&path, scene, &start)? {
+    let (optimiser, model) = (&scene.config.optimiser, scene.model_hash());
+    let mut search = match State::read(&path, scene, &model, &start)? {
         Some(state) => state.search,
         None => {
             let (method, rate) = (optimiser.method, optimiser.learning_rate);
@@ -163,13 +163,13 @@ pub fn inverse_design(
         &mut |search| {
             progress(search.last());
             if saved.elapsed() > SAVE_EVERY {
-                State::write(scene, search, &path)?;
+                State::write(scene, &model, search, &path)?;
                 saved = Instant::now();
             }
             Ok::<_, InverseDesignError>(())
         },
     )?;
-    State::write(scene, &search, &path)?;
+    State::write(scene, &model, &search, &path)?;
     let best = problem
         .evaluate(&search.best)
         .map_err(InverseDesignError::Best)?;
@@ -212,6 +212,7 @@ impl State {
     fn read(
         path: &Path,
         scene: &Scene,
+        model: &str,
         start: &Evaluation,
     ) -> Result<Option<Self>, InverseDesignError> {
         let text = match std::fs::read_to_string(path) {
@@ -241,7 +242,7 @@ impl State {
         }
         let found = state.search.history[0].scores.loss;
         let same_model = match &state.model {
-            Some(model) => *model == scene.model_hash(),
+            Some(earlier) => earlier == model,
             None => (found - start.loss).abs() <= SAME_LOSS * start.loss.abs(),
         };
         if !same_model {
@@ -250,10 +251,15 @@ impl State {
         Ok(Some(state))
     }
 
-    fn write(scene: &Scene, search: &SearchState, path: &Path) -> Result<(), InverseDesignError> {
+    fn write(
+        scene: &Scene,
+        model: &str,
+        search: &SearchState,
+        path: &Path,
+    ) -> Result<(), InverseDesignError> {
         let state = Self {
             scene: scene.config.clone(),
-            model: Some(scene.model_hash()),
+            model: Some(model.to_owned()),
             search: search.clone(),
         };
         sealed_json::to_vec(&state)

@@ -138,7 +138,7 @@ impl JobFolder {
                 if record.rows > 0 && !rows.exists() {
                     return damaged("rows.csv is missing");
                 }
-                if record.rows > 0 && or_damage(self.samples(&record))?.is_err() {
+                if record.rows > 0 && or_damage(self.rows(&record))?.is_err() {
                     return damaged("rows.csv does not match result.json");
                 }
                 Ok(JobState::Ended(Box::new((spec, record))))
@@ -158,6 +158,16 @@ impl JobFolder {
 
     /// Reads the samples; an error if their hash is not the one in `record`.
     pub fn samples(&self, record: &JobRecord) -> Result<Vec<HingeSample>, FileError> {
+        let bytes = self.rows(record)?;
+        let rows = csv::Reader::from_reader(&bytes[..]).into_deserialize();
+        rows.collect::<Result<_, csv::Error>>().map_err(|error| {
+            let damage = io::Error::new(io::ErrorKind::InvalidData, error);
+            FileError::at(&self.0.join("rows.csv"))(damage)
+        })
+    }
+
+    /// The bytes of `rows.csv`, which must have the hash in `record`.
+    fn rows(&self, record: &JobRecord) -> Result<Vec<u8>, FileError> {
         let path = self.0.join("rows.csv");
         let bytes = std::fs::read(&path).map_err(FileError::at(&path))?;
         if blake3::hash(&bytes).to_hex().as_str() != record.rows_hash {
@@ -165,10 +175,7 @@ impl JobFolder {
             let damage = io::Error::new(io::ErrorKind::InvalidData, changed);
             return Err(FileError::at(&path)(damage));
         }
-        let rows = csv::Reader::from_reader(&bytes[..]).into_deserialize();
-        rows.collect::<Result<_, csv::Error>>().map_err(|error| {
-            FileError::at(&path)(io::Error::new(io::ErrorKind::InvalidData, error))
-        })
+        Ok(bytes)
     }
 
     pub(crate) fn write_spec(&self, spec: &JobSpec) -> Result<(), FileError> {

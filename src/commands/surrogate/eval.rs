@@ -116,17 +116,16 @@ fn answers(surrogate: &Surrogate, states: &[State]) -> Vec<Answer> {
         .zip(energies.iter().zip(damages))
         .map(|((design, deformation), (energy, damage))| {
             let inside = surrogate.domain().contains(design, deformation);
-            (inside, energy, damage)
-        })
-        .map(|(inside, energy, damage)| Answer {
-            inside,
-            w: energy.w,
-            f_a: energy.forces[0],
-            f_s: energy.forces[1],
-            m_theta: energy.forces[2],
-            d: inside.then_some(damage.d),
-            d_peak: damage.d_peak.filter(|_| inside),
-            tangent: energy.tangent,
+            Answer {
+                inside,
+                w: energy.w,
+                f_a: energy.forces[0],
+                f_s: energy.forces[1],
+                m_theta: energy.forces[2],
+                d: inside.then_some(damage.d),
+                d_peak: damage.d_peak.filter(|_| inside),
+                tangent: energy.tangent,
+            }
         })
         .collect()
 }
