@@ -10,7 +10,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 /// Design kirigami sheets whose hinges are measured by finite elements
 ///
 /// Hinge data: mesh, solve, campaign, dataset. Hinge model: train, surrogate.
-/// Sheets: design, inspect, verify. Start with: doctor, demo.
+/// Sheets: design, inspect, verify. Start with: doctor, demo, init.
 #[derive(Parser)]
 #[command(name = "kirigami", version, propagate_version = true)]
 #[command(

@@ -10,6 +10,8 @@ pub mod demo;
 pub mod design;
 #[cfg(feature = "pipeline")]
 pub mod doctor;
+#[cfg(feature = "pipeline")]
+pub mod init;
 pub mod inspect;
 pub mod man;
 #[cfg(feature = "pipeline")]

@@ -1,5 +1,6 @@
 //! Hinge paths of designs, and single hinge states, solved again by finite elements and compared with the surrogate.
 
+pub mod balanced_sheet;
 pub mod comparison;
 pub mod kept_solves;
 pub mod routes;

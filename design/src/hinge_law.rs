@@ -5,17 +5,20 @@
 //! | [`LinearLaw`] | (11), three springs | constants |
 //! | [`CondensedLaw`] | (11) with the constants of a learned energy | weights |
 //! | [`SurrogateLaw`] | (14), continued beyond the training domain | weights |
+//! | [`CorrectedLaw`] | another law, corrected to forces measured at one state of each hinge | those forces |
 //!
 //! A law is prepared once for the hinges of a sheet and then evaluated for all of them at once.
 
 mod condensed;
 mod contact;
+mod corrected;
 mod law;
 mod linear;
 mod surrogate;
 
 pub use condensed::{CondensedLaw, Constant};
 pub use contact::{Contact, InvalidContact};
+pub use corrected::{CorrectedLaw, Correction};
 pub use law::{DamageMeasure, HingeDamage, HingeEnergy, HingeLaw, Order, PreparedLaw};
 pub use linear::{InvalidStiffness, LinearLaw};
 pub use surrogate::SurrogateLaw;

@@ -160,3 +160,36 @@ fn the_thinnest_and_the_thickest_sheet_are_solved() {
         assert!(end.energy_residual < 2e-3, "{end:?}");
     }
 }
+
+/// The window is rate-independent and has no length of its own: with all lengths times lambda, W is multiplied by
+/// lambda^3, forces by lambda^2, the moment by lambda^3, and D and D_peak do not change. The solver writes seven digits,
+/// and its increments end when forces agree to 0.5 %; they are the same at every thickness.
+#[test]
+fn windows_of_every_thickness_are_similar() {
+    let asked = problem(80.0, [-0.05, 0.05], 20.0);
+    let solved_at = |thickness: f64| {
+        let factor = thickness / asked.material.thickness;
+        let mut asked = asked.clone();
+        asked.material.thickness = thickness;
+        asked.ray.design = asked.ray.design.scaled(factor);
+        asked.ray.end = asked.ray.end.scaled(factor);
+        let end = *solve(&asked).samples.last().unwrap();
+        let forces = [end.f_a, end.f_s, end.m_theta / factor].map(|f| f / factor.powi(2));
+        let [f_a, f_s, m] = forces;
+        [
+            end.w / factor.powi(3),
+            f_a,
+            f_s,
+            m,
+            end.d,
+            end.d_peak.unwrap(),
+        ]
+    };
+    let film = solved_at(0.5);
+    for thickness in [0.1, 2.0] {
+        let found = solved_at(thickness);
+        for (found, expected) in std::iter::zip(found, film) {
+            assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
+        }
+    }
+}

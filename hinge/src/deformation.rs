@@ -40,6 +40,15 @@ impl HingeDeformation {
         }
     }
 
+    /// The similar deformation in a sheet of `factor` times the thickness.
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self {
+            a: factor * self.a,
+            s: factor * self.s,
+            theta: self.theta,
+        }
+    }
+
     /// The same deformation after reflection of x:
     /// W(a, s, theta; alpha) = W(a, -s, theta; pi - alpha).
     pub fn mirrored(&self) -> Self {
@@ -73,6 +82,11 @@ pub struct HingeForces {
 }
 
 impl HingeForces {
+    /// As the array [F_a, F_s, M_theta].
+    pub fn to_array(self) -> [f64; 3] {
+        [self.f_a, self.f_s, self.m_theta]
+    }
+
     /// Forces of the mirrored hinge; see [`HingeDeformation::mirrored`].
     pub fn mirrored(&self) -> Self {
         Self {

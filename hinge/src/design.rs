@@ -27,9 +27,11 @@ pub struct HingeDesign {
 pub struct HingeConstants {
     /// Radius of the hole drilled about O, as a multiple of w_lig, above 0 and below 1; the paper cuts 0.16.
     pub fillet_ratio: f64,
-    /// Width the cutting tool removes along the main cut (mm), above 0 and below 2 fillet_ratio w_lig.
+    /// Width the cutting tool removes along the main cut (mm), above 0 and below 2 fillet_ratio w_lig. It may differ from
+    /// that of the weights: from 0.002 to 0.15 w_lig it changes W by less than 0.5 % and the force by less than 2.5 %.
     pub kerf: f64,
-    /// Radius of the half-disc of sheet assigned to the hinge (mm), above 2.5 w_lig.
+    /// Radius of the half-disc of sheet assigned to the hinge (mm), above 2.5 w_lig. For learned hinges that of the
+    /// weights, times the thickness of the sheet over that of the training.
     pub r_win: f64,
 }
 
@@ -128,6 +130,16 @@ impl HingeDesign {
             fillet_ratio: self.fillet_ratio,
             kerf: self.kerf,
             r_win: self.r_win,
+        }
+    }
+
+    /// The similar design in a sheet of `factor` times the thickness.
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self {
+            w_lig: factor * self.w_lig,
+            kerf: factor * self.kerf,
+            r_win: factor * self.r_win,
+            ..*self
         }
     }
 

@@ -1,6 +1,8 @@
 //! The subcommands of the pipeline from a material to weights; absent from a build for design alone.
 
-use crate::commands::{campaign, dataset, demo, doctor, mesh, solve, surrogate, train, verify};
+use crate::commands::{
+    campaign, dataset, demo, doctor, init, mesh, solve, surrogate, train, verify,
+};
 use anyhow::Result;
 use clap::Subcommand;
 
@@ -8,6 +10,7 @@ use clap::Subcommand;
 pub enum PipelineCommand {
     Demo(demo::DemoCommand),
     Doctor(doctor::DoctorCommand),
+    Init(init::InitCommand),
     Mesh(mesh::MeshCommand),
     Solve(solve::SolveCommand),
     Campaign(campaign::CampaignCommand),
@@ -22,6 +25,7 @@ impl PipelineCommand {
         match self {
             Self::Demo(command) => command.run(),
             Self::Doctor(command) => command.run(),
+            Self::Init(command) => command.run(),
             Self::Mesh(command) => command.run(),
             Self::Solve(command) => command.run(),
             Self::Campaign(command) => command.run(),

@@ -1,6 +1,9 @@
 //! `kirigami verify`: the hinges of a designed sheet solved by finite elements, compared with the surrogate.
 
+mod equilibrium;
+
 use crate::commands::inspect::scene_args::Inspected;
+use crate::replays::balanced_sheet::WindowSolves;
 use crate::replays::comparison;
 use crate::replays::comparison::{SCALE, spread_table};
 use crate::replays::kept_solves::{Outcome, SolveArgs};
@@ -21,8 +24,9 @@ use surrogate::Surrogate;
 /// Solve the hinges of a design by finite elements, along their paths in the sheet
 ///
 /// Compares energy, forces and damage of the surrogate with CalculiX on the same paths, hinge by hinge: the
-/// error of the whole chain on one design. Writes replay.md, replay.csv and a chart.
-/// Example: kirigami verify configs/scenes/demo.toml --design runs/demo/design/state.json
+/// error of the whole chain on one design. Writes replay.md, replay.csv and a chart. With --equilibrium the sheet is
+/// balanced with the forces of the finite elements: the error of its deployed shape. Writes equilibrium.md.
+/// Example: kirigami verify configs/scenes/demo.toml --design runs/demo/design/state.json --equilibrium
 #[derive(Args)]
 pub struct VerifyCommand {
     #[command(flatten)]
@@ -37,6 +41,15 @@ pub struct VerifyCommand {
     /// corrected to]; a window of the tier reference takes two minutes on one core
     #[arg(long, value_name = "TIER")]
     tier: Option<Tier>,
+    /// Deploy the sheet with finite elements for its hinges, which are solved several times
+    #[arg(long, conflicts_with_all = ["ensemble", "sample"])]
+    equilibrium: bool,
+    /// Maximum number of times that all hinges are solved
+    #[arg(long, value_name = "N", default_value_t = 6, requires = "equilibrium")]
+    rounds: usize,
+    /// Print JSON instead of text
+    #[arg(long, requires = "equilibrium")]
+    json: bool,
     /// Folder for the tables, the chart and the solutions
     #[arg(long, value_name = "FOLDER", default_value = "runs/verify")]
     out: PathBuf,
@@ -60,8 +73,22 @@ impl VerifyCommand {
         let surrogate = scene
             .surrogate()
             .context("only a surrogate can be verified: set hinge = \"surrogate\" in the scene")?;
-        let networks = ensemble(surrogate, &self.ensemble)?;
+        let networks = ensemble(&scene, surrogate, &self.ensemble)?;
         let tier = judging_tier(self.tier, surrogate)?;
+        if self.equilibrium {
+            let _held = run_folder::hold(&self.out)?;
+            let windows = WindowSolves {
+                tier,
+                args: &self.solve,
+                folder: &self.out,
+            };
+            let errors = equilibrium::run(&scene, &design, &windows, self.rounds)?;
+            match self.json {
+                true => println!("{}", serde_json::to_string_pretty(&errors)?),
+                false => println!("{errors}\nwritten to {}", self.out.display()),
+            }
+            return Ok(());
+        }
         let mut routes = hinge_routes(&scene, &design)?;
         if let Some(sample) = self.sample {
             let (all, sample) = (routes.len(), sample.get());

@@ -1,8 +1,9 @@
 //! The hinge design (7) as command line arguments, shared by `mesh` and `solve`.
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::Args;
 use hinge::HingeDesign;
+use std::f64::consts::PI;
 
 /// One hinge; lengths in mm, angles in degrees.
 #[derive(Args)]
@@ -36,6 +37,13 @@ impl WindowArgs {
             r_win: self.r_win,
         };
         design.validate()?;
+        // No hinge has cuts that meet at less than 4 degrees, but every angle in radians is below.
+        ensure!(
+            self.alpha_deg > PI,
+            "--alpha-deg {} is in degrees: did you mean {:.1}?",
+            self.alpha_deg,
+            self.alpha_deg.to_degrees()
+        );
         Ok(design)
     }
 }

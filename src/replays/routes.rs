@@ -31,6 +31,11 @@ pub fn hinge_routes(scene: &Scene, design: &DesignVector) -> Result<Vec<HingeRou
     );
     let deployment = problem.deploy(design)?;
     deployment.at_full_load()?;
+    Ok(routes_of(&deployment))
+}
+
+/// The paths of all hinges of a deployed sheet.
+pub fn routes_of(deployment: &Deployment) -> Vec<HingeRoute> {
     let Deployment { sheet, path, .. } = deployment;
     let designs = sheet.designs().into_iter().enumerate();
     let routes = designs.map(|(hinge, design)| HingeRoute {
@@ -38,13 +43,13 @@ pub fn hinge_routes(scene: &Scene, design: &DesignVector) -> Result<Vec<HingeRou
         design,
         states: path.iter().map(|step| step.deformations[hinge]).collect(),
     });
-    Ok(routes.collect())
+    routes.collect()
 }
 
-/// Loads further networks trained on the data of `surrogate`; their spread estimates its error.
-pub fn ensemble(surrogate: &Surrogate, files: &[PathBuf]) -> Result<Vec<Surrogate>> {
+/// Loads further networks trained on the data of the scene's `surrogate`; their spread estimates its error.
+pub fn ensemble(scene: &Scene, surrogate: &Surrogate, files: &[PathBuf]) -> Result<Vec<Surrogate>> {
     let load = |path: &PathBuf| {
-        let network = Surrogate::load(path)?;
+        let network = scene.network(path)?;
         let (own, other) = (surrogate.card(), network.card());
         ensure!(
             own.dataset_hash == other.dataset_hash && own.split_hash == other.split_hash,
@@ -92,6 +97,16 @@ pub fn window(
 }
 
 impl HingeRoute {
+    /// The similar path of the hinge in a sheet of `factor` times the thickness.
+    pub fn scaled(&self, factor: f64) -> Self {
+        let states = self.states.iter();
+        Self {
+            hinge: self.hinge,
+            design: self.design.scaled(factor),
+            states: states.map(|state| state.scaled(factor)).collect(),
+        }
+    }
+
     /// The last state.
     pub fn end(&self) -> HingeDeformation {
         self.states.last().copied().unwrap_or_default()

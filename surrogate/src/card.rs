@@ -1,6 +1,6 @@
 //! The card of a weight file: units, scaling, training domain, provenance, test errors.
 
-use crate::features::{FEATURE_NAMES, Standardisation};
+use crate::features::{FEATURE_NAMES, LOG_WIDTH, Standardisation};
 use crate::network::InvalidWeights;
 use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Serialize};
@@ -139,6 +139,23 @@ impl TestErrors {
 }
 
 impl Card {
+    /// The card of the same networks with all lengths multiplied by `factor`; see [`Surrogate::scaled`].
+    ///
+    /// [`Surrogate::scaled`]: crate::Surrogate::scaled
+    pub(crate) fn scaled(mut self, factor: f64) -> Self {
+        self.standardisation.mean[LOG_WIDTH] += factor.ln();
+        self.energy_scale *= factor.powi(3);
+        self.domain.w_lig = self.domain.w_lig.map(|w_lig| factor * w_lig);
+        self.hinge.kerf *= factor;
+        self.hinge.r_win *= factor;
+        for bin in &mut self.error_bins {
+            if bin.quantity == "w_lig" {
+                bin.range = bin.range.map(|w_lig| factor * w_lig);
+            }
+        }
+        self
+    }
+
     /// The scale of D, followed by that of D_peak if there is a head for it.
     pub(crate) fn damage_scales(&self) -> Vec<f64> {
         std::iter::once(self.damage_scale)

@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 /// Number of features of (13).
 pub(crate) const FEATURES: usize = 5;
 
+/// Position of log w_lig among the features.
+pub(crate) const LOG_WIDTH: usize = 3;
+
 /// The features of (13) in their order; the card of a surrogate contains them too.
 pub const FEATURE_NAMES: [&str; FEATURES] =
     ["a / w_lig", "s / w_lig", "theta", "log w_lig", "alpha"];

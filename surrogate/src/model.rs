@@ -65,6 +65,24 @@ impl Surrogate {
         self
     }
 
+    /// The surrogate of the same material at `factor` times the thickness, exact for geometrically similar hinges.
+    ///
+    /// The window is rate-independent and has no length of its own, so that with all lengths multiplied by `factor`,
+    /// W is multiplied by its cube, and D and D_peak do not change. A hinge of width w_lig therefore has `factor`^3
+    /// times the energy of the hinge w_lig / `factor` of this surrogate, at the same (eta_a, eta_s, theta).
+    ///
+    /// # Panics
+    /// If `factor` is not positive and finite.
+    pub fn scaled(self, factor: f64) -> Self {
+        assert!(
+            factor > 0.0 && factor.is_finite(),
+            "the ratio of two thicknesses is positive"
+        );
+        let layers = self.layers();
+        Self::from_parts(layers, self.card.scaled(factor))
+            .expect("layers and scales were valid before")
+    }
+
     /// The metadata: training data, scaling, test errors.
     pub fn card(&self) -> &Card {
         &self.card

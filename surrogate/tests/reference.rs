@@ -262,3 +262,43 @@ fn a_batch_gives_the_same_results_as_single_hinges() {
         assert_close("mixed", many, alone, 1e-12);
     }
 }
+
+/// Lengths times 0.2: W times 0.2^3, forces times 0.2^2, the moment times 0.2^3, damage unchanged.
+#[test]
+fn weights_of_another_thickness_follow_similarity() {
+    const FACTOR: f64 = 0.2;
+    let surrogate = with_peak();
+    let thin = surrogate.clone().scaled(FACTOR);
+    let (designs, deformations) = hinges(&states());
+    let thin_designs: Vec<_> = designs.iter().map(|it| it.scaled(FACTOR)).collect();
+    let thin_deformations: Vec<_> = deformations.iter().map(|it| it.scaled(FACTOR)).collect();
+    let evaluate = |of: &Surrogate, designs: &[HingeDesign], states: &[HingeDeformation]| {
+        let energies = of.evaluate(&of.prepare(designs), states, Order::Design);
+        (energies, of.damage(designs, states))
+    };
+    let (energies, damages) = evaluate(&surrogate, &designs, &deformations);
+    let (thin_energies, thin_damages) = evaluate(&thin, &thin_designs, &thin_deformations);
+    let force = FACTOR.powi(2);
+    for (thick, thin) in std::iter::zip(&energies, &thin_energies) {
+        let [f_a, f_s, m] = thick.forces;
+        assert_close("W", &[thin.w], &[FACTOR * force * thick.w], 1e-12);
+        let expected = [force * f_a, force * f_s, FACTOR * force * m];
+        assert_close("forces", &thin.forces, &expected, 1e-12);
+        let [by_width, by_angle] = thick.design;
+        let expected = [force * by_width, FACTOR * force * by_angle];
+        assert_close("by design", &thin.design, &expected, 1e-12);
+        let expected = FACTOR * thick.tangent[0][0];
+        assert_close("tangent", &[thin.tangent[0][0]], &[expected], 1e-12);
+    }
+    for (thick, thin) in std::iter::zip(&damages, &thin_damages) {
+        assert_close("D", &[thin.d], &[thick.d], 1e-12);
+        let peaks = [thin, thick].map(|damage| damage.d_peak.unwrap());
+        assert_close("D_peak", &peaks[..1], &peaks[1..], 1e-12);
+    }
+    let inside = |of: &Surrogate, design: &HingeDesign, state: &HingeDeformation| {
+        of.domain().contains(design, state)
+    };
+    let thick = std::iter::zip(&designs, &deformations).map(|(g, x)| inside(&surrogate, g, x));
+    let thin = std::iter::zip(&thin_designs, &thin_deformations).map(|(g, x)| inside(&thin, g, x));
+    assert!(thick.eq(thin));
+}

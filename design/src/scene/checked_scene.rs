@@ -4,7 +4,7 @@ use crate::objective::target::Target;
 use crate::scene::checks;
 use crate::scene::hinge_model::HingeModel;
 use crate::scene::keys::SceneConfig;
-use crate::scene::loaded_hinge::LoadedHinge;
+use crate::scene::loaded_hinge::{LoadedHinge, learned};
 use crate::scene::relative_path::{beside, folder};
 use crate::scene::scene_error::SceneError;
 use crate::sheet::cut_sheet::{HingePoint, SheetOptions};
@@ -23,8 +23,10 @@ const MODEL_VERSION: u32 = 1;
 pub struct Scene {
     /// The keys of the scene file.
     pub config: SceneConfig,
-    /// The sheet material.
+    /// The material of the sheet, in its thickness.
     pub material: SheetMaterial,
+    /// The material in the thickness of its file, which is that of the training of learned laws.
+    measured: SheetMaterial,
     /// The target outline.
     pub target: Target,
     pub(super) hinge: LoadedHinge,
@@ -46,7 +48,14 @@ impl Scene {
         };
         checks::config(&config).map_err(refuse)?;
         let material_path = beside(path, &config.material);
-        let material = SheetMaterial::load(&material_path)?;
+        let measured = SheetMaterial::load(&material_path)?;
+        let material = SheetMaterial {
+            thickness: config.thickness.unwrap_or(measured.thickness),
+            ..measured.clone()
+        };
+        material
+            .validate()
+            .map_err(|error| refuse(error.to_string()))?;
         let points = config.objective.target_points;
         let target = Target::sample(&config.target, folder(path), points).map_err(|source| {
             SceneError::Target {
@@ -55,10 +64,11 @@ impl Scene {
             }
         })?;
         checks::target(&target, &config.sheet.outline()).map_err(refuse)?;
-        let hinge = LoadedHinge::load(&config, &material, path)?;
+        let hinge = LoadedHinge::load(&config, &measured, path)?;
         Ok(Self {
             config,
             material,
+            measured,
             target,
             hinge,
             path: path.to_owned(),
@@ -81,6 +91,16 @@ impl Scene {
             }
             _ => Vec::new(),
         }
+    }
+
+    /// Further weights for the hinges of this scene, at the thickness of its sheet.
+    pub fn network(&self, weights: &Path) -> Result<Surrogate, SceneError> {
+        learned(&self.config, &self.measured, &self.path, weights)
+    }
+
+    /// Thickness of the sheet over that of the material file, at which learned laws were trained.
+    pub fn scale(&self) -> f64 {
+        self.config.scale(&self.measured)
     }
 
     /// Identifies what a run depends on besides the keys of the scene: the version of the model, the material law, the

@@ -14,7 +14,7 @@ use crate::scene::hinge_model::{
 };
 use crate::scene::sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 use crate::sheet::cut_sheet::{Centroid, HingePoint};
-use hinge::HingeConstants;
+use hinge::{HingeConstants, SheetMaterial};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -25,8 +25,11 @@ use std::path::{Path, PathBuf};
 pub struct SceneConfig {
     /// Title of the pictures.
     pub title: String,
-    /// The TOML file of the sheet material, relative to the scene file.
+    /// The TOML file of the sheet material, relative to the scene file. For a learned law, the file of the training.
     pub material: PathBuf,
+    /// Thickness of the sheet (mm), 0.02 to 10, instead of the material's: the same law in another thickness. Learned
+    /// energies are converted exactly, by similarity: ligament widths and r_win scale with the thickness.
+    pub thickness: Option<f64>,
     /// The hinge law: `pin`, `linear` or `surrogate`.
     pub hinge: HingeModel,
     /// The attachment points of the panels; by default those that the hinge model was measured with.
@@ -195,6 +198,12 @@ impl SceneConfig {
             }
         }
         Ok(())
+    }
+
+    /// Thickness of the sheet over that of the material file `material`.
+    pub(super) fn scale(&self, material: &SheetMaterial) -> f64 {
+        self.thickness
+            .map_or(1.0, |thickness| thickness / material.thickness)
     }
 
     /// Multiplies every load: on panels, on edges and on hinges.

@@ -41,15 +41,26 @@ pub(super) enum LoadedHinge {
 }
 
 impl LoadedHinge {
-    /// Loads the law of a scene at `path`.
+    /// Loads the law of a scene at `path`; `measured` is the material in the thickness of its file.
     pub(super) fn load(
         config: &SceneConfig,
-        material: &SheetMaterial,
+        measured: &SheetMaterial,
         path: &Path,
     ) -> Result<Self, SceneError> {
         let refuse = |reason| SceneError::Value {
             path: path.to_owned(),
             reason,
+        };
+        let load = |section: &str, weights: &Path| {
+            let weights = beside(path, weights);
+            if !weights.is_file() {
+                return Err(refuse(format!(
+                    "{section}.weights: there is no file {}: train it, or give the constants of \
+                     hinge = \"linear\"",
+                    weights.display()
+                )));
+            }
+            learned(config, measured, path, &weights)
         };
         let missing = |section: &str| {
             refuse(format!(
@@ -72,7 +83,7 @@ impl LoadedHinge {
                         "deg",
                     )
                     .map_err(refuse)?;
-                    let surrogate = learned(config, material, path, "condensed", &file.weights)?;
+                    let surrogate = load("condensed", &file.weights)?;
                     condensed(config, surrogate, file.secant_deg).map_err(refuse)
                 }
                 (None, None) => Err(missing("linear")),
@@ -85,10 +96,9 @@ impl LoadedHinge {
                 let file = config.surrogate.as_ref();
                 let SurrogateFile { weights, ensemble } =
                     file.ok_or_else(|| missing("surrogate"))?;
-                let load = |file| learned(config, material, path, "surrogate", file);
-                let surrogate = load(weights)?;
+                let surrogate = load("surrogate", weights)?;
                 let ensemble: Vec<Surrogate> = (ensemble.iter())
-                    .map(|file| load(file))
+                    .map(|file| load("surrogate", file))
                     .collect::<Result<_, _>>()?;
                 same_training(&surrogate, &ensemble).map_err(refuse)?;
                 peak_known(config, &surrogate).map_err(refuse)?;
@@ -98,34 +108,19 @@ impl LoadedHinge {
     }
 }
 
-/// The weights of a section of a scene, or an error if they are not for its hinges.
-fn learned(
+/// Weights at the thickness of the sheet of the scene at `path`, or an error if they are not for its hinges. `measured`
+/// is the material in the thickness of its file.
+pub(super) fn learned(
     config: &SceneConfig,
-    material: &SheetMaterial,
-    scene: &Path,
-    section: &str,
+    measured: &SheetMaterial,
+    path: &Path,
     weights: &Path,
 ) -> Result<Surrogate, SceneError> {
-    let refuse = |reason| SceneError::Value {
-        path: scene.to_owned(),
-        reason,
-    };
-    let weights = beside(scene, weights);
-    if !weights.is_file() {
-        return Err(refuse(format!(
-            "{section}.weights: there is no file {}: train it, or give the constants of \
-             hinge = \"linear\"",
-            weights.display()
-        )));
-    }
-    let surrogate = Surrogate::load(&weights)?;
-    same_hinge(config, material, &surrogate).map_err(|reason| {
-        refuse(format!(
-            "the weights {} are for {reason}",
-            weights.display()
-        ))
-    })?;
-    Ok(surrogate)
+    let surrogate = Surrogate::load(weights)?;
+    fitted(config, measured, surrogate).map_err(|reason| SceneError::Value {
+        path: path.to_owned(),
+        reason: format!("the weights {} are for {reason}", weights.display()),
+    })
 }
 
 /// The linear law of a learned energy; the contact has the same stiffness relative to the hinges of the start as
@@ -255,41 +250,52 @@ fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHing
     })
 }
 
-/// A surrogate is valid only for the material and the hinge constants it was trained with.
-fn same_hinge(
+/// Relative difference of r_win from that of the weights that rounding in a scene file may cause.
+const ROUNDED: f64 = 1e-6;
+
+/// The surrogate at the thickness of the scene's sheet. It is valid only for the material law and for hinges similar
+/// to those it was trained with; the kerf of the cutter may differ.
+fn fitted(
     config: &SceneConfig,
     material: &SheetMaterial,
-    surrogate: &Surrogate,
-) -> Result<(), String> {
+    surrogate: Surrogate,
+) -> Result<Surrogate, String> {
     let (card, process) = (surrogate.card(), config.process);
-    if card.material != material.name {
-        return Err(format!(
-            "the material `{}`, the scene's is `{}`",
-            card.material, material.name
-        ));
-    }
     let law = material.law_hash();
-    if let Some(trained) = card.material_hash.as_ref().filter(|hash| **hash != law) {
-        return Err(format!(
-            "another law of the material `{}` ({trained}, the scene's is {law}): its numbers have \
-             changed since the training: train again, or use the material file of the training",
-            material.name
-        ));
-    }
-    for (key, trained, found) in [
-        (
-            "fillet_ratio",
-            card.hinge.fillet_ratio,
-            process.fillet_ratio,
-        ),
-        ("kerf", card.hinge.kerf, process.kerf),
-        ("r_win", card.hinge.r_win, process.r_win),
-    ] {
-        if trained != found {
+    match &card.material_hash {
+        Some(trained) if *trained == law => {}
+        Some(trained) => {
             return Err(format!(
-                "{key} = {trained}, but the scene has process.{key} = {found}"
+                "another material law than that of the scene: `{}` ({trained}, that of the file `{}` is {law}). Name the \
+                 material file of the training, with its thickness; the key `thickness` of the scene gives that of \
+                 the sheet. If its numbers have changed, train again",
+                card.material, material.name
+            ));
+        }
+        None if card.material == material.name => {}
+        None => {
+            return Err(format!(
+                "the material `{}`, the scene's is `{}`",
+                card.material, material.name
             ));
         }
     }
-    Ok(())
+    let scale = config.scale(material);
+    if card.hinge.fillet_ratio != process.fillet_ratio {
+        return Err(format!(
+            "fillet_ratio = {}, but the scene has process.fillet_ratio = {}",
+            card.hinge.fillet_ratio, process.fillet_ratio
+        ));
+    }
+    let r_win = scale * card.hinge.r_win;
+    if (process.r_win / r_win - 1.0).abs() > ROUNDED {
+        return Err(format!(
+            "windows of r_win = {r_win} mm in a sheet of this thickness, but the scene has process.r_win = {}",
+            process.r_win
+        ));
+    }
+    Ok(match scale == 1.0 {
+        true => surrogate,
+        false => surrogate.scaled(scale),
+    })
 }

@@ -2,6 +2,7 @@
 //! the objective counts, and the report shows the training domain.
 
 use super::{FILM, read, run, with};
+use design::objective::target::TargetShape;
 use design::output::report::{Concern, Report};
 use design::output::run_results::write_results;
 use design::scene::Scene;
@@ -63,15 +64,52 @@ pub fn weights_of_another_hinge_or_material_are_refused() {
         "\"material_hash\": \"0123456789abcdef\", \"tier\"",
     );
     let message = refusal(&[changed], &[]);
+    assert!(message.contains("another material law"), "{message}");
+    let message = refusal(&[], &[("fillet_ratio = 0.16", "fillet_ratio = 0.2")]);
     assert!(
-        message.contains("another law of the material `film`"),
+        message.contains("fillet_ratio = 0.16, but the scene has process.fillet_ratio = 0.2"),
         "{message}"
     );
-    let message = refusal(&[], &[("kerf = 0.2", "kerf = 0.3")]);
+    // A sheet of a fifth of the thickness has windows of a fifth of the radius.
+    let thin = ("load_steps = 4", "load_steps = 4\nthickness = 0.1");
+    let message = refusal(&[], &[thin]);
     assert!(
-        message.contains("kerf = 0.2, but the scene has process.kerf = 0.3"),
+        message.contains("windows of r_win = 20 mm in a sheet of this thickness, but the scene has process.r_win = 100"),
         "{message}"
     );
+}
+
+/// The same scene at a fifth of every length, with a twenty-fifth of every force, deploys to the same shape.
+#[test]
+fn a_similar_sheet_of_another_thickness_deploys_to_a_similar_shape() {
+    const FACTOR: f64 = 0.2;
+    let folder = tempfile::tempdir().unwrap();
+    weights(folder.path(), &[]);
+    let thick = read(folder.path(), &learned(&[]));
+    let mut config = thick.config.clone();
+    config.thickness = Some(FACTOR * thick.material.thickness);
+    config.sheet.size = config.sheet.size.map(|size| size.map(|side| FACTOR * side));
+    config.ligament.start *= FACTOR;
+    config.ligament.range = config.ligament.range.map(|width| FACTOR * width);
+    config.process.kerf *= FACTOR;
+    config.process.r_win *= FACTOR;
+    config.scale_loads(FACTOR.powi(2));
+    if let TargetShape::Circle { centre, radius } = &mut config.target {
+        *centre = centre.map(|x| FACTOR * x);
+        *radius *= FACTOR;
+    }
+    let thin = Scene::new(config, &folder.path().join("scene.toml")).unwrap();
+    let [thick, thin] = [thick, thin].map(|scene| {
+        let deployment = scene.problem().unwrap().deploy(&scene.start()).unwrap();
+        deployment.path.last().unwrap().clone()
+    });
+    assert!((thin.potential / thick.potential / FACTOR.powi(3) - 1.0).abs() < 1e-9);
+    for (thin, thick) in std::iter::zip(&thin.configuration, &thick.configuration) {
+        let expected = [FACTOR * thick[0], FACTOR * thick[1], thick[2]];
+        for (found, expected) in std::iter::zip(thin, expected) {
+            assert!((found - expected).abs() < 1e-6, "{found} {expected}");
+        }
+    }
 }
 
 #[test]

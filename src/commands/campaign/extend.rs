@@ -41,7 +41,7 @@ impl ExtendCommand {
             "only the data of a surrogate can be extended: set hinge = \"surrogate\" in the scene",
         )?;
         let mut networks = vec![surrogate.clone()];
-        networks.extend(ensemble(surrogate, &self.ensemble)?);
+        networks.extend(ensemble(&scene, surrogate, &self.ensemble)?);
         let routes = hinge_routes(&scene, &design)?;
         ensure!(!routes.is_empty(), "the sheet has no hinges");
         let doubts = doubts(&networks, &routes);
@@ -59,9 +59,10 @@ impl ExtendCommand {
             } else {
                 continue;
             };
+            // The campaign solves sheets of the thickness of the material file.
             rays.push(Ray {
-                design: route.design,
-                end: through.at(BEYOND),
+                design: route.design.scaled(scene.scale().recip()),
+                end: through.scaled(scene.scale().recip()).at(BEYOND),
             });
         }
         let Added {

@@ -164,7 +164,7 @@ impl SpotCheckCommand {
         let wanted = self.count.div_ceil(states).max(MIN_RAYS).min(routes.len());
         (0..wanted)
             .map(|i| {
-                let route = &routes[i * routes.len() / wanted];
+                let route = routes[i * routes.len() / wanted].scaled(scene.scale().recip());
                 let path = DeformationPath::through(&route.states)
                     .with_context(|| format!("hinge {} has no states", route.hinge))?;
                 let count = route.states.len();

@@ -1,0 +1,212 @@
+//! `kirigami init`: a folder with the files of a new project, scaled to the thickness of its sheet.
+
+mod edited;
+mod first_scene;
+
+use crate::commands::init::edited::{heading, scale, set};
+use crate::commands::init::first_scene::FirstScene;
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use hinge::SheetMaterial;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use support::whole_file;
+use surrogate::Surrogate;
+use toml_edit::DocumentMut;
+
+/// Create a folder with material, campaign, training and scene for a sheet of your own
+///
+/// Ligament widths, windows, number of panels, stroke and target are scaled to the thickness and the size of the
+/// sheet. The files run as they are: with a material that has weights, `design` at once; with another, after its
+/// campaign and training. README.md in the folder lists the commands.
+/// Example: kirigami init my-sheet --thickness 0.1 --size 210x297
+#[derive(Args)]
+pub struct InitCommand {
+    /// Folder to create
+    #[arg(value_name = "FOLDER")]
+    folder: PathBuf,
+    /// Sheet material (TOML)
+    #[arg(
+        long,
+        value_name = "FILE",
+        default_value = "configs/materials/pet-0.5mm.toml"
+    )]
+    material: PathBuf,
+    /// Thickness of the sheet (mm) [default: that of the material file]
+    #[arg(long, value_name = "MM")]
+    thickness: Option<f64>,
+    /// Width and height of the sheet (mm)
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "210x297")]
+    size: Size,
+    /// Weights that the scene uses if they are for this material
+    #[arg(
+        long,
+        value_name = "FILE",
+        default_value = "data/pet-0.5mm/medium.safetensors"
+    )]
+    weights: PathBuf,
+}
+
+/// Width and height of a sheet (mm).
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Size([f64; 2]);
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let sides = text.trim_end_matches("mm").split_once(['x', 'X']);
+        sides
+            .and_then(|(width, height)| {
+                let size = [width, height].map(|side| side.trim().parse::<f64>());
+                let [Ok(width), Ok(height)] = size else {
+                    return None;
+                };
+                let positive = |side: f64| side > 0.0 && side.is_finite();
+                (positive(width) && positive(height)).then_some(Self([width, height]))
+            })
+            .ok_or_else(|| "expected two lengths in mm, for example 210x297".to_owned())
+    }
+}
+
+/// The shipped files that are scaled.
+const CAMPAIGN: &str = include_str!("../../configs/campaigns/pet-0.5mm.toml");
+const TRAINING: &str = include_str!("../../configs/training/medium.toml");
+/// Thickness of the shipped campaign's sheet (mm).
+const CAMPAIGN_THICKNESS: f64 = 0.5;
+
+impl InitCommand {
+    pub(crate) fn run(&self) -> Result<()> {
+        ensure!(
+            !self.folder.exists(),
+            "{} exists already: name a new folder",
+            self.folder.display()
+        );
+        let measured = SheetMaterial::load(&self.material)?;
+        let text = std::fs::read_to_string(&self.material)
+            .with_context(|| format!("cannot read {}", self.material.display()))?;
+        let sheet = SheetMaterial {
+            thickness: self.thickness.unwrap_or(measured.thickness),
+            ..measured.clone()
+        };
+        sheet.validate()?;
+        let weights = self.weights_of(&measured)?;
+        let trained = weights.is_some();
+        let scene = FirstScene::new(self.size.0, sheet.thickness)?;
+        let weights = weights.unwrap_or_else(|| "weights.safetensors".into());
+        let scene = scene.text(&weights)?;
+        let name = self
+            .folder
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy();
+        let campaign = campaign(&name, measured.thickness / CAMPAIGN_THICKNESS)?;
+
+        std::fs::create_dir_all(&self.folder)
+            .with_context(|| format!("cannot create {}", self.folder.display()))?;
+        let readme = readme(&self.folder, trained);
+        for (file, contents) in [
+            ("material.toml", &text),
+            ("campaign.toml", &campaign),
+            ("training.toml", &TRAINING.to_owned()),
+            ("scene.toml", &scene),
+            ("README.md", &readme),
+        ] {
+            let path = self.folder.join(file);
+            whole_file::write(&path, contents.as_bytes())
+                .with_context(|| format!("cannot write {}", path.display()))?;
+        }
+        println!("{readme}");
+        Ok(())
+    }
+
+    /// The path of the weights, if they exist and are for the material.
+    fn weights_of(&self, material: &SheetMaterial) -> Result<Option<PathBuf>> {
+        if !self.weights.is_file() {
+            return Ok(None);
+        }
+        let trained = Surrogate::load(&self.weights)?.card().material_hash.clone();
+        let fits = trained == Some(material.law_hash());
+        Ok(fits
+            .then(|| std::path::absolute(&self.weights))
+            .transpose()?)
+    }
+}
+
+/// The shipped campaign with all lengths multiplied by `factor`.
+fn campaign(name: &str, factor: f64) -> Result<String> {
+    let mut campaign: DocumentMut = CAMPAIGN.parse()?;
+    set(&mut campaign["name"], name);
+    set(&mut campaign["material"], "material.toml");
+    heading(
+        &mut campaign,
+        "# Hinge windows of the material, from which its hinge energy is trained. Six hours on one core.\n",
+    );
+    for (section, key) in [
+        ("design", "kerf"),
+        ("design", "r_win"),
+        ("rays", "full_range_w_lig"),
+    ] {
+        scale(&mut campaign[section][key], factor);
+    }
+    scale(&mut campaign["rays"]["w_lig"], factor);
+    Ok(campaign.to_string())
+}
+
+/// The commands of the project, in their order.
+fn readme(folder: &Path, trained: bool) -> String {
+    let path = |name: &str| folder.join(name).display().to_string();
+    let (campaign, scene) = (path("campaign.toml"), path("scene.toml"));
+    let (jobs, database) = (path("campaign"), path("hinges.parquet"));
+    let (weights, training) = (path("weights.safetensors"), path("training.toml"));
+    let learn = format!(
+        "kirigami campaign plan {campaign} --folder {jobs}      # number of rays and time\n\
+         kirigami campaign run {campaign} --folder {jobs}\n\
+         kirigami campaign collect {campaign} --folder {jobs} --out {database}\n\
+         kirigami train {database} --config {training} --out {weights}\n"
+    );
+    let design = format!("kirigami design {scene}\n");
+    let (first, then) = match trained {
+        true => (
+            "The material has weights. Design the sheet:",
+            format!("{design}```\n\nTrain weights of your own:\n\n```sh\n{learn}"),
+        ),
+        false => (
+            "The material has no weights yet. Solve its hinges, train them, and design the sheet:",
+            format!("{learn}{design}"),
+        ),
+    };
+    format!("# A sheet of your own\n\n{first}\n\n```sh\n{then}```\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_two_lengths() {
+        assert_eq!("210x297".parse(), Ok(Size([210.0, 297.0])));
+        assert_eq!("1200 x 600mm".parse(), Ok(Size([1200.0, 600.0])));
+        for wrong in ["210", "x", "axb", "0x5", "-1x5", "infx5", "1x2x3"] {
+            assert!(wrong.parse::<Size>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_campaign_is_scaled_and_keeps_its_comments() {
+        let text = campaign("thin", 0.2).unwrap();
+        for line in [
+            "name = \"thin\"",
+            "r_win = 20.0        # mm; radius of the window",
+            "w_lig = [1.0, 5.0]       # mm",
+            "full_range_w_lig = 1.6    # mm, 16 thicknesses",
+            "median_deg = 25.0",
+        ] {
+            assert!(text.contains(line), "{line}\n{text}");
+        }
+        assert!(
+            text.starts_with("# Hinge windows of the material"),
+            "{text}"
+        );
+    }
+}

@@ -1,0 +1,168 @@
+//! The first scene of a project: a sheet that hangs from its middle panel at the top and is pulled at the bottom.
+//!
+//! The shipped A4 scene, with lengths in proportion to the thickness and the panels as small as their windows allow. The
+//! target is the rectangle that the uniform sheet of rigid panels a x b fills when every hinge opens by theta; (6):
+//!
+//! ```text
+//! pitch = (a cos(theta/2) + b sin(theta/2),  b cos(theta/2) + a sin(theta/2))
+//! ```
+//!
+//! It is rotated about the held panel by the rotation that the panel would have in the symmetric deployment.
+
+use crate::commands::init::edited::{heading, rounded, scale, set};
+use anyhow::{Result, ensure};
+use std::path::Path;
+use toml_edit::{Array, DocumentMut};
+
+const SCENE: &str = include_str!("../../../configs/scenes/a4-polyester.toml");
+/// Thickness of the shipped scene's sheet, and the radius of its windows (mm).
+const THICKNESS: f64 = 0.1;
+const R_WIN: f64 = 20.0;
+/// Minimum side of a panel over the radius of a window: windows of neighbouring hinges do not overlap.
+const PANEL: f64 = 3.5;
+/// theta (rad): 25 degrees.
+const OPENING: f64 = 0.436;
+/// Fewest panels along a side: below three, no panel has a neighbour on both sides.
+const FEWEST: usize = 3;
+
+pub(super) struct FirstScene {
+    size: [f64; 2],
+    panels: [usize; 2],
+    thickness: f64,
+}
+
+impl FirstScene {
+    /// The scene of a sheet of the given size and thickness (mm); an error if it is too thick for its size.
+    pub(super) fn new(size: [f64; 2], thickness: f64) -> Result<Self> {
+        let panel = PANEL * R_WIN * thickness / THICKNESS;
+        let panels = size.map(|side| (side / panel) as usize);
+        let least = FEWEST as f64;
+        let thickest = size[0].min(size[1]) / least / PANEL / R_WIN * THICKNESS;
+        ensure!(
+            panels.iter().all(|&count| count >= FEWEST),
+            "a sheet of {thickness} mm has panels of at least {panel:.0} mm, and needs {FEWEST} of them along each side: \
+             use a larger sheet (--size) or a thinner one (--thickness, at most {:.2} mm for this size)",
+            thickest
+        );
+        Ok(Self {
+            size,
+            panels,
+            thickness,
+        })
+    }
+
+    /// The scene file, in a folder with `material.toml`.
+    pub(super) fn text(&self, weights: &Path) -> Result<String> {
+        let factor = self.thickness / THICKNESS;
+        let [columns, rows] = self.panels;
+        let (held, pulled) = ([columns / 2, rows - 1], [columns / 2, 0]);
+        let mut scene: DocumentMut = SCENE.parse()?;
+        heading(
+            &mut scene,
+            "# A sheet that hangs from a clip and is pulled at the bottom, written by `kirigami init`.\n\
+             # Lengths in mm, forces in N, couples in N mm; paths are relative to this file.\n\n",
+        );
+        set(&mut scene["title"], "My first sheet");
+        set(&mut scene["material"], "material.toml");
+        set(&mut scene["thickness"], self.thickness);
+        set(&mut scene["output"], "design");
+        set(&mut scene["sheet"]["size"], Array::from_iter(self.size));
+        set(&mut scene["sheet"]["panels"], whole(self.panels));
+        for key in ["start", "range"] {
+            scale(&mut scene["ligament"][key], factor);
+        }
+        scale(&mut scene["process"]["r_win"], factor);
+        let surrogate = &mut scene["surrogate"];
+        set(&mut surrogate["weights"], weights.display().to_string());
+        if let Some(surrogate) = surrogate.as_table_mut() {
+            surrogate.remove("ensemble");
+        }
+        set(&mut scene["supports"][0]["panel"], whole(held));
+        set(&mut scene["loads"][0]["panel"], whole(pulled));
+        let Target {
+            centre,
+            size,
+            rotation_deg,
+            stroke,
+        } = self.target(held);
+        set(&mut scene["drive"]["stroke"], rounded(stroke));
+        let target = &mut scene["target"]["rectangle"];
+        set(&mut target["centre"], Array::from_iter(centre.map(rounded)));
+        set(&mut target["size"], Array::from_iter(size.map(rounded)));
+        set(&mut target["rotation_deg"], rounded(rotation_deg));
+        Ok(scene.to_string())
+    }
+
+    /// The rectangle of the sheet opened by [`OPENING`] with the panel `held` fixed, and the distance by which the
+    /// panel at the other end of its column moves along it.
+    fn target(&self, held: [usize; 2]) -> Target {
+        let panel: [f64; 2] = std::array::from_fn(|i| self.size[i] / self.panels[i] as f64);
+        let (sin, cos) = (0.5 * OPENING).sin_cos();
+        let [a, b] = panel;
+        let pitch = [a * cos + b * sin, b * cos + a * sin];
+        // Even panels rotate by -theta/2, odd ones by theta/2; the held panel stays.
+        let sign = if (held[0] + held[1]) % 2 == 0 {
+            1.0
+        } else {
+            -1.0
+        };
+        let rotation = sign * 0.5 * OPENING;
+        let fixed: [f64; 2] = std::array::from_fn(|i| (held[i] as f64 + 0.5) * panel[i]);
+        // From the held panel to the middle of the sheet, before the rotation.
+        let arm: [f64; 2] = std::array::from_fn(|i| {
+            (0.5 * (self.panels[i] as f64 - 1.0) - held[i] as f64) * pitch[i]
+        });
+        let (sin, cos) = rotation.sin_cos();
+        let length = (self.panels[1] - 1) as f64;
+        Target {
+            centre: [
+                fixed[0] + cos * arm[0] - sin * arm[1],
+                fixed[1] + sin * arm[0] + cos * arm[1],
+            ],
+            size: std::array::from_fn(|i| self.panels[i] as f64 * pitch[i]),
+            rotation_deg: rotation.to_degrees(),
+            stroke: length * (pitch[1] * cos - panel[1]),
+        }
+    }
+}
+
+struct Target {
+    centre: [f64; 2],
+    size: [f64; 2],
+    rotation_deg: f64,
+    stroke: f64,
+}
+
+fn whole(panel: [usize; 2]) -> Array {
+    panel.into_iter().map(|index| index as i64).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The published rectangle of the sheet of section 4.3, opened by 25 degrees.
+    #[test]
+    fn the_target_is_the_opened_sheet() {
+        let scene = FirstScene {
+            size: [2438.4, 1219.2],
+            panels: [3, 3],
+            thickness: 0.5,
+        };
+        let target = scene.target([1, 1]);
+        assert!((target.size[0] - 2644.5).abs() < 0.5, "{:?}", target.size);
+        assert!((target.size[1] - 1718.1).abs() < 0.5, "{:?}", target.size);
+        let middle = [1219.2, 609.6];
+        assert!(std::iter::zip(target.centre, middle).all(|(x, y)| (x - y).abs() < 1e-9));
+    }
+
+    #[test]
+    fn a_sheet_that_is_too_thick_is_refused_with_the_thickness_that_fits() {
+        let message = FirstScene::new([210.0, 297.0], 0.5)
+            .err()
+            .unwrap()
+            .to_string();
+        assert!(message.contains("at most 0.10 mm"), "{message}");
+        assert_eq!(FirstScene::new([210.0, 297.0], 0.1).unwrap().panels, [3, 4]);
+    }
+}

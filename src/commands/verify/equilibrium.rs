@@ -1,0 +1,167 @@
+//! `kirigami verify --equilibrium`: the error of a deployed sheet, judged by finite elements for its hinges.
+
+use crate::replays::balanced_sheet::{
+    BALANCED, Balanced, Round, WindowSolves, balanced, movements, size,
+};
+use crate::ui::run_folder;
+use anyhow::Result;
+use design::objective::design_problem::Deployment;
+use design::output::drawing;
+use design::pattern::design_vector::DesignVector;
+use design::scene::Scene;
+use mesher::Tier;
+use serde::Serialize;
+use std::fmt;
+
+/// The equilibrium by the hinge law compared with that by finite elements.
+#[derive(Debug, Serialize)]
+pub(super) struct SheetErrors {
+    /// Mesh tier of the windows.
+    tier: Tier,
+    rounds: Vec<Round>,
+    /// Whether the panels stay where they are within [`BALANCED`].
+    converged: bool,
+    /// Diagonal of the deployed sheet (mm).
+    size: f64,
+    /// Distance of the panel corners (mm): root mean square and maximum.
+    corners: [f64; 2],
+    /// Difference of the hinge rotations (deg): root mean square and maximum.
+    rotations_deg: [f64; 2],
+    /// Load factor at the end of the path, by the law and by finite elements; equal under dead loads.
+    load_factor: [f64; 2],
+    hinges: Vec<HingeErrors>,
+}
+
+/// One hinge at full load.
+#[derive(Debug, Serialize)]
+struct HingeErrors {
+    hinge: usize,
+    /// Rotation (deg), by the law and by finite elements.
+    theta_deg: [f64; 2],
+    /// Maximum D_peak, by the law and by finite elements; `None` if not known.
+    damage_peak: [Option<f64>; 2],
+}
+
+/// Balances the sheet and writes `equilibrium.md` and a picture of the deployed sheet.
+pub(super) fn run(
+    scene: &Scene,
+    design: &DesignVector,
+    windows: &WindowSolves,
+    rounds: usize,
+) -> Result<SheetErrors> {
+    let found = balanced(scene, design, windows, rounds)?;
+    let errors = SheetErrors::new(&found, windows.tier);
+    run_folder::write(windows.folder, "equilibrium.md", &errors.to_string())?;
+    let end = &found.by_elements.final_step().configuration;
+    let picture = drawing::deployed(scene, &found.by_elements.sheet, end);
+    run_folder::write(windows.folder, "deployed.svg", &picture)?;
+    Ok(errors)
+}
+
+impl SheetErrors {
+    fn new(found: &Balanced, tier: Tier) -> Self {
+        let Balanced {
+            by_law,
+            by_elements,
+            ..
+        } = found;
+        let ends = [by_law, by_elements].map(Deployment::final_step);
+        let peak_by_law = |hinge: usize| {
+            let damages = by_law.path.iter().map(|step| {
+                let inside = step.inside[hinge];
+                let damage = step.damage.get(hinge).filter(|_| inside);
+                damage.and_then(|damage| damage.d_peak)
+            });
+            damages.fold(Some(0.0), |most: Option<f64>, peak| Some(most?.max(peak?)))
+        };
+        let hinges: Vec<HingeErrors> = (0..found.hinges.len())
+            .map(|hinge| HingeErrors {
+                hinge,
+                theta_deg: ends.map(|end| end.deformations[hinge].theta.to_degrees()),
+                damage_peak: [peak_by_law(hinge), found.hinges[hinge].d_peak],
+            })
+            .collect();
+        let turned = |hinge: &HingeErrors| hinge.theta_deg[1] - hinge.theta_deg[0];
+        Self {
+            tier,
+            rounds: found.rounds.clone(),
+            converged: found.converged,
+            size: size(by_elements),
+            corners: rms_and_maximum(movements(by_law, by_elements)),
+            rotations_deg: rms_and_maximum(hinges.iter().map(turned)),
+            load_factor: ends.map(|end| end.load_factor),
+            hinges,
+        }
+    }
+}
+
+fn rms_and_maximum(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let (mut squares, mut count, mut maximum) = (0.0, 0.0, 0.0_f64);
+    for value in values {
+        squares += value * value;
+        count += 1.0;
+        maximum = maximum.max(value.abs());
+    }
+    [f64::sqrt(squares / f64::max(count, 1.0)), maximum]
+}
+
+impl fmt::Display for SheetErrors {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let [rms, maximum] = self.corners;
+        let percent = |length: f64| 100.0 * length / self.size;
+        let [turned, most_turned] = self.rotations_deg;
+        let [by_law, by_elements] = self.load_factor;
+        writeln!(
+            f,
+            "# The deployed sheet, by finite elements\n\n\
+             Equilibrium with finite elements for all {} hinges, windows of tier {}. Every round solves the hinges along \
+             their paths, corrects the hinge law to their forces and deploys the sheet again.\n\n\
+             | round | force error | movement, mm |\n|---|---|---|",
+            self.hinges.len(),
+            self.tier
+        )?;
+        for (
+            round,
+            Round {
+                force_error,
+                movement,
+            },
+        ) in self.rounds.iter().enumerate()
+        {
+            let percent = 100.0 * force_error;
+            writeln!(f, "| {} | {percent:.2} % | {movement:.3} |", round + 1)?;
+        }
+        let ended = match self.converged {
+            true => "The panels stay where they are",
+            false => "NOT BALANCED: the panels still move; use more --rounds. The limit is",
+        };
+        writeln!(
+            f,
+            "\nForce error: finite elements against the law of the round, root mean square over all hinges. Movement: of the \
+             panel corner that moves furthest. {ended} {:.3} mm ({BALANCED:.0e} of the sheet).\n\n\
+             | error of the hinge law at full load | root mean square | maximum |\n|---|---|---|\n\
+             | deployed corners | {rms:.3} mm, {:.3} % of the sheet | {maximum:.3} mm, {:.3} % |\n\
+             | rotation of the hinges | {turned:.3} deg | {most_turned:.3} deg |\n",
+            BALANCED * self.size,
+            percent(rms),
+            percent(maximum),
+        )?;
+        writeln!(
+            f,
+            "Load factor {by_law:.4} by the law, {by_elements:.4} by finite elements.\n\n\
+             | hinge | theta, deg | by FE | D_peak | by FE |\n|---|---|---|---|---|"
+        )?;
+        for hinge in &self.hinges {
+            let [theta, theta_fe] = hinge.theta_deg;
+            let [peak, peak_fe] = hinge
+                .damage_peak
+                .map(|peak| peak.map_or("?".into(), |peak| format!("{peak:.3}")));
+            writeln!(
+                f,
+                "| {} | {theta:.2} | {theta_fe:.2} | {peak} | {peak_fe} |",
+                hinge.hinge
+            )?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,192 @@
+//! The equilibrium of a sheet with finite elements for its hinges.
+//!
+//! Every hinge is solved along its path in the sheet. The hinge law is corrected to the forces of the finite elements at
+//! full load ([`CorrectedLaw`]), and the sheet is deployed again; hinges then have other states, and this is repeated
+//! until the panels stay where they are. It is a quasi-Newton iteration for the equilibrium of the finite-element
+//! hinges with the tangent of the hinge law.
+
+use crate::replays::kept_solves::SolveArgs;
+use crate::replays::routes::routes_of;
+use anyhow::{Result, bail, ensure};
+use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, Order};
+use design::objective::design_problem::{Deployment, Model};
+use design::pattern::design_vector::DesignVector;
+use design::scene::Scene;
+use design::sheet::kinematics::deployed_corners;
+use fe_driver::KeptSolve;
+use hinge::HingeSample;
+use mesher::Tier;
+use serde::Serialize;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Largest movement of a panel corner in a round, relative to the size of the deployed sheet, at which the iteration
+/// ends: a tenth of a millimetre in a metre.
+pub const BALANCED: f64 = 1e-4;
+
+/// One round: the hinges are solved, and the sheet is deployed with their forces.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Round {
+    /// Root mean square difference of (F_a, F_s, M_theta / w_lig) of all hinges between finite elements and corrected
+    /// law, relative to the root mean square of the former.
+    pub force_error: f64,
+    /// Largest movement of a panel corner (mm).
+    pub movement: f64,
+}
+
+/// A sheet in equilibrium with the forces of finite elements.
+pub struct Balanced {
+    /// By the hinge law alone.
+    pub by_law: Deployment,
+    /// With the corrected law of the last round.
+    pub by_elements: Deployment,
+    /// The last state of each hinge by finite elements.
+    pub hinges: Vec<HingeSample>,
+    /// All rounds in their order.
+    pub rounds: Vec<Round>,
+    /// Whether the last round moved the panels by less than [`BALANCED`].
+    pub converged: bool,
+}
+
+/// Windows and their limits.
+pub struct WindowSolves<'a> {
+    /// Tier of the meshes.
+    pub tier: Tier,
+    /// Number of parallel solves, and their time limit.
+    pub args: &'a SolveArgs,
+    /// Folder in which solutions are kept.
+    pub folder: &'a Path,
+}
+
+/// Deploys a design with finite elements for its hinges, in at most `rounds` rounds.
+pub fn balanced(
+    scene: &Scene,
+    design: &DesignVector,
+    windows: &WindowSolves,
+    rounds: usize,
+) -> Result<Balanced> {
+    ensure!(rounds > 0, "at least one round is needed");
+    let mut problem = scene.problem()?;
+    let law = match &problem.model {
+        Model::Equilibrium(mechanics) => mechanics.law.clone(),
+        Model::Ideal { .. } => bail!("pin hinges have no forces to be balanced"),
+    };
+    let by_law = problem.deploy(design)?;
+    by_law.at_full_load()?;
+    let (mut by_elements, mut hinges) = (problem.deploy(design)?, Vec::new());
+    let mut done: Vec<Round> = Vec::new();
+    let mut converged = false;
+    while done.len() < rounds && !converged {
+        hinges = solved(scene, &by_elements, windows)?;
+        let force_error = force_error(&problem.model, &by_elements, &hinges);
+        let corrected = corrected(&law, &by_elements, &hinges);
+        if let Model::Equilibrium(mechanics) = &mut problem.model {
+            mechanics.law = Arc::new(corrected);
+        }
+        let next = problem.deploy(design)?;
+        next.at_full_load()?;
+        let movement = movements(&by_elements, &next)
+            .into_iter()
+            .fold(0.0, f64::max);
+        converged = movement <= BALANCED * size(&next);
+        by_elements = next;
+        done.push(Round {
+            force_error,
+            movement,
+        });
+    }
+    Ok(Balanced {
+        by_law,
+        by_elements,
+        hinges,
+        rounds: done,
+        converged,
+    })
+}
+
+/// The last state of each hinge by finite elements, along its path in the sheet.
+fn solved(
+    scene: &Scene,
+    deployment: &Deployment,
+    windows: &WindowSolves,
+) -> Result<Vec<HingeSample>> {
+    let routes = routes_of(deployment);
+    let solves: Vec<KeptSolve> = routes
+        .iter()
+        .map(|route| route.recorded(&scene.material, windows.tier))
+        .collect::<Result<_>>()?;
+    let outcomes = windows
+        .args
+        .solve(&solves.iter().collect::<Vec<_>>(), windows.folder)?;
+    let mut failures = Vec::new();
+    let mut ends = Vec::new();
+    for (hinge, outcome) in outcomes.into_iter().enumerate() {
+        match outcome.map(|solution| solution.samples.last().copied()) {
+            Ok(Some(end)) => ends.push(end),
+            Ok(None) => failures.push(format!("hinge {hinge}: no increment")),
+            Err(reason) => failures.push(format!("hinge {hinge}: {reason}")),
+        }
+    }
+    ensure!(
+        failures.is_empty(),
+        "the equilibrium needs the forces of every hinge; not solved: {}. Try another mesh with --tier",
+        failures.join("; ")
+    );
+    Ok(ends)
+}
+
+/// The law corrected to the forces of finite elements at the last state of the path.
+fn corrected(
+    law: &Arc<dyn HingeLaw>,
+    deployment: &Deployment,
+    hinges: &[HingeSample],
+) -> CorrectedLaw {
+    let designs = deployment.sheet.designs();
+    let states = &deployment.final_step().deformations;
+    let own = law.prepare(&designs).energies(states, Order::Forces);
+    let corrections = (0..designs.len()).map(|h| {
+        let forces = hinges[h].forces().to_array();
+        Correction::new(&designs[h], &states[h], forces, own[h].forces)
+    });
+    CorrectedLaw::new(law.clone(), corrections.collect())
+}
+
+/// See [`Round::force_error`].
+fn force_error(model: &Model, deployment: &Deployment, hinges: &[HingeSample]) -> f64 {
+    let Model::Equilibrium(mechanics) = model else {
+        return 0.0;
+    };
+    let designs = deployment.sheet.designs();
+    let states = &deployment.final_step().deformations;
+    let prepared = mechanics.law.prepare(&designs);
+    let own = prepared.energies(states, Order::Forces);
+    let (mut errors, mut squares) = (0.0, 0.0);
+    for (h, design) in designs.iter().enumerate() {
+        let measured = hinges[h].forces().to_array();
+        for (i, arm) in [1.0, 1.0, design.w_lig].into_iter().enumerate() {
+            errors += ((measured[i] - own[h].forces[i]) / arm).powi(2);
+            squares += (measured[i] / arm).powi(2);
+        }
+    }
+    (errors / squares.max(f64::MIN_POSITIVE)).sqrt()
+}
+
+/// Distance of each panel corner between the last states of two deployments of one sheet (mm).
+pub fn movements(from: &Deployment, to: &Deployment) -> Vec<f64> {
+    let corners =
+        |of: &Deployment| deployed_corners(&of.sheet, &of.final_step().configuration).concat();
+    std::iter::zip(corners(from), corners(to))
+        .map(|([x, y], [x2, y2])| f64::hypot(x2 - x, y2 - y))
+        .collect()
+}
+
+/// Diagonal of the deployed sheet's bounding box (mm).
+pub fn size(deployment: &Deployment) -> f64 {
+    let corners =
+        deployed_corners(&deployment.sheet, &deployment.final_step().configuration).concat();
+    let extent = |i: usize| {
+        let along = corners.iter().map(|corner| corner[i]);
+        along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+    };
+    f64::hypot(extent(0), extent(1))
+}
