@@ -1,0 +1,98 @@
+//! A project of one's own: its files, for a material with weights and for one without.
+
+mod common;
+
+use common::Workplace;
+use std::path::Path;
+
+/// A folder with the film's weights, for a sheet of another thickness.
+fn weights() -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let weights = root.join("data/pet-0.5mm/medium.safetensors");
+    weights.display().to_string()
+}
+
+/// The keys of a scene as a table.
+fn keys(work: &Workplace, scene: &str) -> toml_edit::DocumentMut {
+    let text = std::fs::read_to_string(work.path(scene)).unwrap();
+    text.parse().unwrap()
+}
+
+#[test]
+fn a_project_with_weights_is_designed_at_once() {
+    let work = Workplace::new();
+    let said = work.output(&format!(
+        "init sheet --thickness 0.1 --size 210x297 --weights {}",
+        weights()
+    ));
+    assert!(said.contains("kirigami design sheet/scene.toml"), "{said}");
+    // The shipped sheet of A4 is the project of this size.
+    let [project, shipped] =
+        ["sheet/scene.toml", "configs/scenes/a4-polyester.toml"].map(|file| keys(&work, file));
+    for (section, key) in [
+        ("sheet", "panels"),
+        ("ligament", "range"),
+        ("process", "r_win"),
+        ("supports", "panel"),
+        ("loads", "panel"),
+    ] {
+        let of = |scene: &toml_edit::DocumentMut| match scene[section].as_array_of_tables() {
+            Some(tables) => tables.get(0).unwrap()[key].to_string(),
+            None => scene[section][key].to_string(),
+        };
+        assert_eq!(of(&project), of(&shipped), "{section}.{key}");
+    }
+    let number = |scene: &toml_edit::DocumentMut, section: &str, key: &str| {
+        scene[section][key].as_float().unwrap()
+    };
+    let strokes = [&project, &shipped].map(|scene| number(scene, "drive", "stroke"));
+    assert!((strokes[0] - strokes[1]).abs() < 0.1, "{strokes:?}");
+
+    work.output("design sheet/scene.toml --steps 2");
+    assert!(work.path("sheet/design/cut.dxf").exists());
+    let message = work.error("init sheet --thickness 0.1");
+    assert!(message.contains("sheet exists already"), "{message}");
+}
+
+#[test]
+fn a_project_without_weights_begins_with_its_campaign() {
+    let work = Workplace::new();
+    let steel = "--material configs/materials/s235-1.5mm.toml";
+    let message = work.error(&format!("init steel {steel}"));
+    assert!(
+        message.contains("at most 0.10 mm for this size"),
+        "{message}"
+    );
+    let said = work.output(&format!(
+        "init steel {steel} --size 3300x4600 --weights {}",
+        weights()
+    ));
+    assert!(
+        said.contains("kirigami campaign run steel/campaign.toml"),
+        "{said}"
+    );
+    // Lengths of the campaign are those of the film, times the ratio of the thicknesses.
+    let campaign = keys(&work, "steel/campaign.toml");
+    assert_eq!(campaign["design"]["r_win"].as_float(), Some(300.0));
+    let message = work.error("design steel/scene.toml");
+    assert!(
+        message.contains("there is no file") && message.contains("weights.safetensors"),
+        "{message}"
+    );
+    let small = [
+        ("tier = \"default\"", "tier = \"tiny\""),
+        ("count = 1500", "count = 6"),
+        ("theta_deg = [-5.0, 75.0]", "theta_deg = [-5.0, 15.0]"),
+        ("median_deg = 25.0", "median_deg = 10.0"),
+    ];
+    work.edit("steel/campaign.toml", &small);
+    work.edit("steel/training.toml", &[("epochs = 80", "epochs = 2")]);
+    for line in said.lines().filter(|line| line.starts_with("kirigami ")) {
+        let command = line.split(" #").next().unwrap().trim();
+        let command = command.strip_prefix("kirigami ").unwrap();
+        match command.starts_with("design") {
+            true => work.output(&format!("{command} --steps 1 --force")),
+            false => work.output(command),
+        };
+    }
+}
