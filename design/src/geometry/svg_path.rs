@@ -1,7 +1,7 @@
-//! The first visible path of an SVG file as a polygon; Bezier curves are approximated by segments.
+//! The visible path of an SVG file as a polygon; Bezier curves are approximated by segments.
 //!
 //! usvg reads the document: it converts rect, circle, ellipse and polygon to paths and arcs to
-//! cubic curves, and it resolves styles, `<use>` and transforms. The path must be one closed
+//! cubic curves, and it resolves styles, `<use>` and transforms. There must be one visible path, and it must be one closed
 //! contour that neither crosses nor touches itself. The y axis of SVG points downwards; the result has y
 //! upwards. The size of the outline is set by the scene.
 
@@ -32,28 +32,28 @@ pub enum SvgPathError {
          or ellipse with a fill or a stroke, outside of <defs>"
     )]
     NoPath,
+    #[error("the file has {found} visible paths; keep the outline and hide or delete the others")]
+    SeveralPaths { found: usize },
     #[error(
-        "the first visible path has a second contour at ({x}, {y}); keep one closed contour and \
+        "the path has a second contour at ({x}, {y}); keep one closed contour and \
          delete the others"
     )]
     SecondContour { x: f32, y: f32 },
     #[error(
-        "the first visible path ends open at ({x}, {y}); end its data with Z, or correct the \
+        "the path ends open at ({x}, {y}); end its data with Z, or correct the \
          mistake in the data after this point"
     )]
     Open { x: f32, y: f32 },
-    #[error(
-        "the first visible path has {found} different points; draw an outline of at least 3 points"
-    )]
+    #[error("the path has {found} different points; draw an outline of at least 3 points")]
     TooFewPoints { found: usize },
     #[error(
-        "the first visible path crosses or touches itself near ({x}, {y}); move its points until \
+        "the path crosses or touches itself near ({x}, {y}); move its points until \
          the outline is one simple loop"
     )]
     SelfCrossing { x: f32, y: f32 },
 }
 
-/// The vertices of the first visible path in an SVG text, y upwards.
+/// The vertices of the only visible path in an SVG text, y upwards.
 pub(crate) fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
     if svg.trim().is_empty() {
         return Err(SvgPathError::Empty);
@@ -68,7 +68,16 @@ pub(crate) fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
         ..Options::default()
     };
     let tree = Tree::from_str(svg, &options).map_err(SvgPathError::NotSvg)?;
-    let path = first_visible(tree.root()).ok_or(SvgPathError::NoPath)?;
+    let mut paths = Vec::new();
+    add_visible(tree.root(), &mut paths);
+    let path = match paths[..] {
+        [] => return Err(SvgPathError::NoPath),
+        [path] => path,
+        _ => {
+            let found = paths.len();
+            return Err(SvgPathError::SeveralPaths { found });
+        }
+    };
     let points = contour(path)?;
     if points.len() < 3 {
         let found = points.len();
@@ -85,20 +94,24 @@ pub(crate) fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
     Ok(points.iter().map(turned).collect())
 }
 
-/// The first visible path, depth first in document order.
-fn first_visible(group: &Group) -> Option<&Path> {
+/// Adds the visible paths of a group, in document order.
+fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) {
     if group.opacity().get() == 0.0 {
-        return None;
+        return;
     }
-    group.children().iter().find_map(|node| match node {
-        Node::Group(group) => first_visible(group),
-        Node::Path(path) => {
-            let filled = path.fill().is_some_and(|fill| fill.opacity().get() > 0.0);
-            let stroked = (path.stroke()).is_some_and(|stroke| stroke.opacity().get() > 0.0);
-            (path.is_visible() && (filled || stroked)).then_some(&**path)
+    for node in group.children() {
+        match node {
+            Node::Group(group) => add_visible(group, paths),
+            Node::Path(path) => {
+                let filled = path.fill().is_some_and(|fill| fill.opacity().get() > 0.0);
+                let stroked = (path.stroke()).is_some_and(|stroke| stroke.opacity().get() > 0.0);
+                if path.is_visible() && (filled || stroked) {
+                    paths.push(path);
+                }
+            }
+            Node::Image(_) | Node::Text(_) => {}
         }
-        Node::Image(_) | Node::Text(_) => None,
-    })
+    }
 }
 
 /// The distinct points of a path that is one closed contour, before its transform.
@@ -309,11 +322,12 @@ mod tests {
     }
 
     #[test]
-    fn the_first_path_of_the_document_is_taken_depth_first() {
-        let nested = format!("<g><g>{LARGE}</g></g>{SMALL}");
+    fn one_path_is_found_in_groups_and_uses_and_several_are_refused() {
+        let nested = format!("<g><g>{LARGE}</g></g>");
         assert_near(bounds(drawn(&nested)), [0.0, 10.0, -20.0, 0.0]);
-        let used = format!("<defs><g id=\"a\">{LARGE}</g></defs><use href=\"#a\" x=\"5\"/>{SMALL}");
+        let used = format!("<defs><g id=\"a\">{LARGE}</g></defs><use href=\"#a\" x=\"5\"/>");
         assert_near(bounds(drawn(&used)), [5.0, 15.0, -20.0, 0.0]);
+        assert_refused(drawn(&(nested + SMALL)), "2 visible paths");
     }
 
     #[test]

@@ -37,7 +37,7 @@ pub enum TargetShape {
         /// Path of the file, relative to the folder of the scene.
         file: PathBuf,
     },
-    /// The first visible path of an SVG file, transforms applied; it must be one closed contour that does not cross
+    /// The only visible path of an SVG file, transforms applied; it must be one closed contour that does not cross
     /// itself.
     Svg {
         /// Path of the file, relative to the folder of the scene.
