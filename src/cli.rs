@@ -2,7 +2,7 @@
 
 #[cfg(feature = "pipeline")]
 use crate::commands::pipeline;
-use crate::commands::{completions, design, inspect, man};
+use crate::commands::{completions, cut, design, inspect, man};
 use crate::ui::progress;
 use anyhow::Result;
 use clap::{CommandFactory, Parser, Subcommand};
@@ -10,7 +10,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 /// Design kirigami sheets whose hinges are measured by finite elements
 ///
 /// Hinge data: mesh, solve, campaign, dataset. Hinge model: train, surrogate.
-/// Sheets: design, inspect, verify. Start with: doctor, demo, init.
+/// Sheets: design, cut, inspect, verify. Start with: doctor, demo, init.
 #[derive(Parser)]
 #[command(name = "kirigami", version, propagate_version = true)]
 #[command(
@@ -27,6 +27,7 @@ pub struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Design(design::DesignCommand),
+    Cut(cut::CutCommand),
     Inspect(inspect::InspectCommand),
     #[cfg(feature = "pipeline")]
     #[command(flatten)]
@@ -43,6 +44,7 @@ impl Cli {
         }
         match &self.command {
             Command::Design(command) => command.run(),
+            Command::Cut(command) => command.run(),
             Command::Inspect(command) => command.run(),
             #[cfg(feature = "pipeline")]
             Command::Pipeline(command) => command.run(),

@@ -3,6 +3,7 @@
 #[cfg(feature = "pipeline")]
 pub mod campaign;
 pub mod completions;
+pub mod cut;
 #[cfg(feature = "pipeline")]
 pub mod dataset;
 #[cfg(feature = "pipeline")]

@@ -7,6 +7,7 @@ mod actuation;
 mod boundary_values;
 mod checked_scene;
 mod checks;
+mod cutting;
 pub mod design_run;
 mod hinge_model;
 mod keys;
@@ -22,6 +23,7 @@ pub use actuation::{
     SupportKind,
 };
 pub use checked_scene::Scene;
+pub use cutting::CuttingConfig;
 pub use hinge_model::{
     CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
 };

@@ -58,6 +58,22 @@ pub fn distance_to_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     f64::hypot(point[0] - x, point[1] - y)
 }
 
+/// Distance between two segments; zero if they cross (mm).
+pub fn distance_between_segments(s: [[f64; 2]; 2], t: [[f64; 2]; 2]) -> f64 {
+    let side = |[a, b]: [[f64; 2]; 2], p: [f64; 2]| {
+        (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+    };
+    let separates = |s, [p, q]: [[f64; 2]; 2]| side(s, p) * side(s, q) < 0.0;
+    if separates(s, t) && separates(t, s) {
+        return 0.0;
+    }
+    let from_ends = |s: [[f64; 2]; 2], t: [[f64; 2]; 2]| {
+        let [p, q] = s.map(|end| distance_to_segment(end, t[0], t[1]));
+        p.min(q)
+    };
+    from_ends(s, t).min(from_ends(t, s))
+}
+
 /// The point of the segment from `a` to `b` nearest to `point`.
 pub fn nearest_on_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     let (d, e) = (
@@ -96,6 +112,16 @@ mod tests {
         assert_eq!(distance_to_segment([5.0, 3.0], a, b), 3.0);
         assert_eq!(distance_to_segment([13.0, 4.0], a, b), 5.0);
         assert_eq!(distance_to_segment([3.0, 4.0], a, a), 5.0);
+    }
+
+    #[test]
+    fn distances_between_segments() {
+        let s = [[0.0, 0.0], [10.0, 0.0]];
+        let to = |t| distance_between_segments(s, t);
+        assert_eq!(to([[4.0, 1.0], [5.0, -1.0]]), 0.0);
+        assert_eq!(to([[4.0, 1.0], [5.0, 3.0]]), 1.0);
+        assert_eq!(to([[13.0, -4.0], [13.0, 8.0]]), 3.0);
+        assert_eq!(to([[12.0, 0.0], [15.0, 0.0]]), 2.0);
     }
 
     #[test]

@@ -8,6 +8,7 @@ pub use estimate::Estimate;
 pub use hinge_row::HingeRow;
 pub use warning::{Concern, Severity, Warning};
 
+use crate::objective::design_problem::Deployment;
 use crate::objective::scores::{Scores, shown};
 use crate::optimise::outer_loop::Ended;
 use crate::output::cut_file::{CutLines, FabricationError};
@@ -39,6 +40,19 @@ pub struct Report {
     pub hinges: Vec<HingeRow>,
     /// All warnings about the best design, the most severe first.
     pub warnings: Vec<Warning>,
+}
+
+/// All warnings about a deployed design with the given cut lines, the most severe first.
+pub fn warnings(
+    scene: &Scene,
+    deployment: &Deployment,
+    cuts: &Result<CutLines, FabricationError>,
+) -> Vec<Warning> {
+    let hinges = 0..deployment.sheet.hinges.len();
+    let hinges: Vec<HingeRow> = hinges
+        .map(|h| HingeRow::new(scene, deployment, h))
+        .collect();
+    warning::all(scene, deployment, cuts, &hinges)
 }
 
 impl Report {

@@ -1,12 +1,16 @@
 //! The results of a run, written to its folder besides its state: report, cut files, pictures.
 
 use crate::objective::design_problem::Deployment;
-use crate::output::cut_file::{CutLines, FabricationError, write_dxf, write_svg};
+use crate::output::cut_file::{
+    CutLines, FabricationError, SheetDrawing, cut_list, cut_summary, deployed_panels, write_dxf,
+    write_svg,
+};
 use crate::output::drawing;
 use crate::output::report::Report;
 use crate::scene::Scene;
-use crate::scene::design_run::Designed;
-use crate::sheet::cut_sheet::Sheet;
+use crate::scene::design_run::{CUT_FILES, Designed};
+use crate::scene::placement::placed;
+use crate::sheet::kinematics::deployed_corners;
 use std::path::PathBuf;
 use support::whole_file;
 
@@ -27,7 +31,7 @@ pub enum ResultsError {
 }
 
 /// Writes `report.json`, `report.txt`, `deployed-start.svg` and `deployed.svg`; for a design with cut lines also
-/// `flat.svg`; for a design without errors, or if `force`, also `cut.dxf`, `cut.svg` and `cut-list.csv`.
+/// `flat.svg`; for a design without errors, or if `force`, also the [`CUT_FILES`].
 ///
 /// If no cut file is written, the report states why, and the cut files of an earlier design are removed.
 pub fn write_results(
@@ -41,7 +45,7 @@ pub fn write_results(
         whole_file::write(&path, contents).map_err(|source| ResultsError::Write { path, source })
     };
     let best = &designed.best.deployment;
-    let cuts = CutLines::new(&best.pattern, &best.sheet, &scene.material);
+    let cuts = CutLines::new(&best.pattern, &best.sheet, scene.config.cutting);
     // Written first, so that there is never a cut file without its report.
     let report = Report::new(scene, designed, &cuts, force);
     let json = serde_json::to_vec_pretty(&report).map_err(|error| ResultsError::Write {
@@ -52,12 +56,21 @@ pub fn write_results(
     write("report.txt", report.to_string().as_bytes())?;
     match &cuts {
         Ok(cuts) if report.cut_file => {
-            write_dxf(&folder.join("cut.dxf"), cuts)?;
-            write_svg(&folder.join("cut.svg"), cuts)?;
+            let drawing = SheetDrawing::new(cuts, &best.sheet, &scene.material);
+            let annotated = drawing.annotated();
+            write_dxf(&folder.join("cut.dxf"), &annotated)?;
+            write_svg(&folder.join("cut.svg"), &annotated)?;
             write("cut-list.csv", cut_list(&best.sheet, cuts).as_bytes())?;
+            write(
+                "cut-summary.csv",
+                cut_summary(cuts, &drawing.totals).as_bytes(),
+            )?;
+            let configuration = placed(scene, &best.sheet, &best.final_step().configuration);
+            let deployed = deployed_panels(&deployed_corners(&best.sheet, &configuration));
+            write_dxf(&folder.join("deployed.dxf"), &deployed)?;
         }
         _ => {
-            for name in ["cut.dxf", "cut.svg", "cut-list.csv"] {
+            for name in CUT_FILES {
                 remove(folder.join(name))?;
             }
         }
@@ -79,16 +92,6 @@ pub fn write_results(
     )?;
     write("deployed.svg", picture(scene, best).as_bytes())?;
     Ok(report)
-}
-
-/// Hole and ligament of every hinge: the design values, and the ligament as measured by a caliper beside its hole.
-fn cut_list(sheet: &Sheet, cuts: &CutLines) -> String {
-    let mut text = "hinge,hole_diameter_mm,w_lig_mm,caliper_mm\n".to_owned();
-    for (h, (hinge, hole)) in std::iter::zip(&sheet.hinges, &cuts.holes).enumerate() {
-        let (diameter, caliper) = (2.0 * hole.radius, cuts.caliper(h));
-        text += &format!("{h},{diameter:.3},{:.3},{caliper:.3}\n", hinge.w_lig);
-    }
-    text
 }
 
 /// Removes a file of an earlier run, if there is one.

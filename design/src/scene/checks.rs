@@ -19,6 +19,12 @@ pub(super) fn config(scene: &SceneConfig) -> Result<(), String> {
     title(scene)?;
     sheet(scene)?;
     ligament(scene)?;
+    within(
+        "cutting.over_run",
+        scene.cutting.over_run,
+        [0.0, 50.0],
+        "mm",
+    )?;
     start(scene)?;
     supports(scene)?;
     loads(scene)?;

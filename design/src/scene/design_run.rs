@@ -18,6 +18,14 @@ use support::whole_file;
 
 const SAVE_EVERY: Duration = Duration::from_secs(1);
 const STATE_FILE: &str = "state.json";
+/// The files of a run that are written only for a design that can be cut.
+pub const CUT_FILES: [&str; 5] = [
+    "cut.dxf",
+    "cut.svg",
+    "cut-list.csv",
+    "cut-summary.csv",
+    "deployed.dxf",
+];
 /// Relative tolerance of the loss at the start between two machines; used only for states without a hash.
 const SAME_LOSS: f64 = 1e-9;
 
@@ -188,14 +196,8 @@ pub fn inverse_design(
 pub fn forget(scene: &Scene) -> Result<(), InverseDesignError> {
     let start = scene.problem()?.evaluate(&scene.start());
     start.map_err(InverseDesignError::Start)?;
-    let results = [
-        "cut.dxf",
-        "cut.svg",
-        "cut-list.csv",
-        "report.txt",
-        "report.json",
-    ];
-    for name in results.into_iter().chain([STATE_FILE]) {
+    let results = ["report.txt", "report.json", STATE_FILE];
+    for name in CUT_FILES.into_iter().chain(results) {
         let path = scene.output().join(name);
         match std::fs::remove_file(&path) {
             Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
@@ -231,9 +233,10 @@ impl State {
         })?;
         let path = path.to_owned();
         state.scene.optimiser.steps = scene.config.optimiser.steps;
-        // Neither the folder's name nor the title changes a design.
+        // Neither the folder's name nor the title nor the cutting changes a design.
         state.scene.output.clone_from(&scene.config.output);
         state.scene.title.clone_from(&scene.config.title);
+        state.scene.cutting = scene.config.cutting;
         if state.scene != scene.config {
             return Err(InverseDesignError::OtherScene { path });
         }

@@ -9,6 +9,7 @@ use crate::optimise::search::SearchMethod;
 use crate::scene::actuation::{
     DriveConfig, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig,
 };
+use crate::scene::cutting::CuttingConfig;
 use crate::scene::hinge_model::{
     CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
 };
@@ -51,6 +52,9 @@ pub struct SceneConfig {
     pub start: StartConfig,
     /// The cutting tool and the windows of the hinges.
     pub process: HingeConstants,
+    /// How the sheet is cut.
+    #[serde(default)]
+    pub cutting: CuttingConfig,
     /// Read if `hinge = "pin"`.
     pub pin: Option<PinConfig>,
     /// Constants of (11); read if `hinge = "linear"`.

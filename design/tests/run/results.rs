@@ -3,6 +3,7 @@
 use super::{SCENE, read, run, with};
 use design::output::report::{Concern, Report};
 use design::output::run_results::write_results;
+use design::scene::design_run::CUT_FILES;
 
 fn report(changes: &[(&str, &str)]) -> (tempfile::TempDir, Report) {
     let folder = tempfile::tempdir().unwrap();
@@ -46,9 +47,11 @@ fn a_sound_design_writes_all_files_and_no_warning() {
         names,
         [
             "cut-list.csv",
+            "cut-summary.csv",
             "cut.dxf",
             "cut.svg",
             "deployed-start.svg",
+            "deployed.dxf",
             "deployed.svg",
             "flat.svg",
             "report.json",
@@ -164,7 +167,7 @@ fn a_load_far_too_large_leaves_no_cut_file_unless_it_is_forced() {
     assert!(report.cut_file && folder.path().join("run/cut.dxf").exists());
     let report = write_results(&scene, &designed, false).unwrap();
     assert!(!report.cut_file && report.errors().count() > 0);
-    for name in ["cut.dxf", "cut.svg", "cut-list.csv"] {
+    for name in CUT_FILES {
         assert!(!folder.path().join("run").join(name).exists(), "{name}");
     }
 }

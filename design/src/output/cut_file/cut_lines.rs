@@ -12,20 +12,19 @@
 //! the tool's kerf is the design kerf w_c of (7). Holes and outline are closed paths, offset by half
 //! the kerf (holes inwards, the outline outwards), so that the finished hole and sheet have their
 //! nominal size.
+//!
+//! **Over-run.** A slit that is open on the outline is cut beyond the finished edge, so that no web is left between
+//! the two cuts.
 
 use crate::geometry::polygon::{distance_to_segment, edges};
+use crate::output::cut_file::cut_drawing::{CutDrawing, Layer, Shape, distance};
 use crate::output::cut_file::fabrication_error::FabricationError;
+use crate::output::cut_file::written_check;
 use crate::pattern::cut_pattern::CutPattern;
+use crate::scene::CuttingConfig;
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::topology::hinge_sites;
-use hinge::SheetMaterial;
 use std::collections::BTreeMap;
-
-/// The layers of both formats.
-pub(super) const CUT: &str = "CUT";
-pub(super) const HOLES: &str = "HOLES";
-pub(super) const OUTLINE: &str = "OUTLINE";
-pub(super) const ANNOTATION: &str = "ANNOTATION";
 
 /// One straight cut through the sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,17 +44,6 @@ pub struct Hole {
     pub radius: f64,
 }
 
-/// A text beside the cuts: the number of a hinge, or the description of the sheet.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Label {
-    /// Middle of the baseline (mm).
-    pub at: [f64; 2],
-    /// Height of the text (mm).
-    pub height: f64,
-    /// The text, one line.
-    pub text: String,
-}
-
 /// The finished geometry of a cut sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CutLines {
@@ -67,16 +55,17 @@ pub struct CutLines {
     pub outline: [[f64; 2]; 4],
     /// Width of the kerf (mm).
     pub kerf: f64,
-    /// One per hinge, then the cutting instructions below the sheet.
-    pub labels: Vec<Label>,
+    /// How the sheet is cut.
+    pub cutting: CuttingConfig,
 }
 
 impl CutLines {
-    /// The cuts of `sheet`, which must come from `pattern`; `material` is named in the labels.
+    /// The cuts of `sheet`, which must come from `pattern`. They are checked to be those of the simulated sheet, to
+    /// meet nowhere and to leave the sheet in one piece.
     pub fn new(
         pattern: &CutPattern,
         sheet: &Sheet,
-        material: &SheetMaterial,
+        cutting: CuttingConfig,
     ) -> Result<Self, FabricationError> {
         let process = sheet.options.process;
         let holes: Vec<Hole> = sheet
@@ -96,13 +85,42 @@ impl CutLines {
                 });
             }
         }
-        Ok(Self {
+        let cuts = Self {
             slits: slits(pattern, sheet, &holes)?,
             holes,
             outline: sheet.outline.corners,
             kerf: process.kerf,
-            labels: labels(sheet, material),
-        })
+            cutting,
+        };
+        written_check::check(&cuts.drawing(), sheet)?;
+        Ok(cuts)
+    }
+
+    /// The paths of the tool, in the order of the pattern.
+    pub fn drawing(&self) -> CutDrawing {
+        let mut drawing = CutDrawing::default();
+        for hole in &self.holes {
+            let (centre, radius) = (hole.centre, self.tool_radius(hole));
+            drawing.add(Layer::Holes, Shape::Circle { centre, radius });
+        }
+        for slit in &self.slits {
+            drawing.add(Layer::Cut, Shape::Line(self.tool_slit(slit)));
+        }
+        drawing.add(Layer::Outline, Shape::Polygon(self.tool_outline().to_vec()));
+        drawing
+    }
+
+    /// The path of the tool along a slit: with the over-run at an end that is open on the outline (mm).
+    pub fn tool_slit(&self, slit: &Slit) -> [[f64; 2]; 2] {
+        let [from, to] = slit.ends;
+        match slit.hinges[1] {
+            Some(_) => slit.ends,
+            None => {
+                let longer = 1.0 + self.cutting.over_run / distance(from, to);
+                let end = [0, 1].map(|axis| from[axis] + longer * (to[axis] - from[axis]));
+                [from, end]
+            }
+        }
     }
 
     /// Width of a ligament as measured by a caliper, from the edge of its hole to the secondary cut (mm).
@@ -189,38 +207,4 @@ fn slits(
         });
     }
     Ok(slits)
-}
-
-/// The number of every hinge beside its hole, and a line below the sheet with cutting instructions.
-fn labels(sheet: &Sheet, material: &SheetMaterial) -> Vec<Label> {
-    let [left, right, ..] = sheet.outline.corners;
-    let width = right[0] - left[0];
-    let kerf = sheet.options.process.kerf;
-    let note = Label {
-        at: [
-            (left[0] + right[0]) / 2.0,
-            left[1].min(right[1]) - 0.03 * width,
-        ],
-        height: 0.012 * width,
-        text: format!(
-            "{}, {} mm thick. 1:1 in mm. Kerf {kerf} mm: CUT is one pass; HOLES and OUTLINE are \
-             paths of the tool's centre, {} mm off the finished edge.",
-            material.name,
-            material.thickness,
-            kerf / 2.0
-        ),
-    };
-    let numbers = sheet.hinges.iter().enumerate().map(|(number, hinge)| {
-        let ([mx, my], w) = (hinge.main, hinge.w_lig);
-        // On the side of panel B, shifted along the main cut.
-        Label {
-            at: [
-                hinge.tip[0] + w * (0.5 * mx - 1.2 * my),
-                hinge.tip[1] + w * (0.5 * my + 1.2 * mx),
-            ],
-            height: 0.6 * w,
-            text: number.to_string(),
-        }
-    });
-    numbers.chain([note]).collect()
 }

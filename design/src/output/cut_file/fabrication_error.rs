@@ -27,14 +27,72 @@ pub enum FabricationError {
         diameter: f64,
         kerf: f64,
     },
+    #[error(
+        "the cuts at the hinges {} and {} leave {gap:.3} mm between them, less than the kerf of {least} mm: move them \
+         apart (objective.panel_shape) or narrow the ligaments",
+        .hinges[0], .hinges[1]
+    )]
+    CutsMeet {
+        hinges: [usize; 2],
+        gap: f64,
+        least: f64,
+    },
+    #[error(
+        "the hole of hinge {hinge} leaves {gap:.3} mm to the outline, less than the kerf of {least} mm: move the cut \
+         (objective.panel_shape) or reduce the fillet ratio"
+    )]
+    CutMeetsOutline { hinge: usize, gap: f64, least: f64 },
+    #[error(
+        "the hole of hinge {hinge} is written with a diameter of {written:.6} mm and simulated with {simulated:.6} mm: \
+         this is an error of kirigami"
+    )]
+    HoleDiffers {
+        hinge: usize,
+        written: f64,
+        simulated: f64,
+    },
+    #[error(
+        "the ligament of hinge {hinge} is written {written:.6} mm wide and simulated {simulated:.6} mm wide: this is \
+         an error of kirigami"
+    )]
+    LigamentDiffers {
+        hinge: usize,
+        written: f64,
+        simulated: f64,
+    },
+    #[error(
+        "panel {panel} is written with {written:.3} mm^2 and simulated with {simulated:.3} mm^2: this is an error of \
+         kirigami"
+    )]
+    PanelDiffers {
+        panel: usize,
+        written: f64,
+        simulated: f64,
+    },
+    #[error(
+        "panel {panel} with its joints is {} x {} mm large and does not fit on the bed of {} x {} mm",
+        size[0].ceil(), size[1].ceil(), bed[0], bed[1]
+    )]
+    PartTooLarge {
+        panel: usize,
+        size: [f64; 2],
+        bed: [f64; 2],
+    },
+    #[error(
+        "the joint at hinge {hinge} needs {needed:.1} mm along the edges of panel {panel}, which have room for \
+         {room:.1} mm: reduce --lap, or use a larger bed"
+    )]
+    NoRoomForSeam {
+        hinge: usize,
+        panel: usize,
+        needed: f64,
+        room: f64,
+    },
+    #[error("the drawing takes {pages} pages, more than {limit}: choose a larger paper")]
+    TooManyPages { pages: usize, limit: usize },
     #[error("cannot write {path}: {source}", path = .path.display())]
     Write {
         path: PathBuf,
         source: std::io::Error,
-    },
-    #[error("cannot write {path}: {source}", path = .path.display())]
-    Dxf {
-        path: PathBuf,
-        source: ::dxf::DxfError,
     },
 }

@@ -1,16 +1,18 @@
-//! The cut lines as an SVG drawing at 1:1, one user unit per millimetre, one group per layer.
+//! SVG at 1:1, one user unit per millimetre, one group per layer.
 
 use crate::output::canvas::{Anchor, Canvas};
-use crate::output::cut_file::cut_lines::{ANNOTATION, CUT, CutLines, HOLES, OUTLINE};
+use crate::output::cut_file::cut_drawing::{CutDrawing, Layer, Shape, Text};
 use crate::output::cut_file::fabrication_error::FabricationError;
 use std::path::Path;
 
-/// Margin around the sheet as a fraction of its width, with space for the note below it.
-const MARGIN: f64 = 0.05;
+/// Margin around the drawing (mm).
+const MARGIN: f64 = 5.0;
+/// Height of the capitals of DejaVu Sans, relative to the size of the font.
+const CAPITALS: f64 = 0.729;
 
-/// Writes the cut lines; the file is replaced atomically.
-pub fn write_svg(path: &Path, cuts: &CutLines) -> Result<(), FabricationError> {
-    support::whole_file::write(path, svg(cuts).as_bytes()).map_err(|source| {
+/// Writes a drawing; the file is replaced atomically.
+pub fn write_svg(path: &Path, drawing: &CutDrawing) -> Result<(), FabricationError> {
+    support::whole_file::write(path, svg(drawing).as_bytes()).map_err(|source| {
         FabricationError::Write {
             path: path.to_owned(),
             source,
@@ -18,34 +20,38 @@ pub fn write_svg(path: &Path, cuts: &CutLines) -> Result<(), FabricationError> {
     })
 }
 
-fn svg(cuts: &CutLines) -> String {
-    let outline = cuts.tool_outline();
-    let along = |axis: usize| outline.iter().map(move |corner| corner[axis]);
-    let low = [0, 1].map(|axis| along(axis).fold(f64::INFINITY, f64::min));
-    let high = [0, 1].map(|axis| along(axis).fold(f64::NEG_INFINITY, f64::max));
-    let margin = MARGIN * (high[0] - low[0]);
-    let low = low.map(|value| value - margin);
-    let high = high.map(|value| value + margin);
-
-    let line = |colour| format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"0.1\"");
+fn svg(drawing: &CutDrawing) -> String {
+    let [low, high] = drawing.bounds();
+    let (low, high) = (low.map(|x| x - MARGIN), high.map(|x| x + MARGIN));
     let mut canvas = Canvas::new(low, high);
-    canvas.open(CUT, &line("#ff0000"));
-    for slit in &cuts.slits {
-        canvas.line(slit.ends[0], slit.ends[1], "");
+    for layer in Layer::ALL {
+        let mut shapes = drawing.on(layer).peekable();
+        if shapes.peek().is_none() {
+            continue;
+        }
+        let [r, g, b] = layer.rgb();
+        let colour = format!("#{r:02x}{g:02x}{b:02x}");
+        let style = format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"0.1\"");
+        canvas.open(layer.name(), &style);
+        for shape in shapes {
+            match shape {
+                Shape::Line([from, to]) => canvas.line(*from, *to, ""),
+                Shape::Circle { centre, radius } => canvas.circle(*centre, *radius, ""),
+                Shape::Polygon(corners) => canvas.polygon(corners, ""),
+                Shape::Text(text) => write_text(&mut canvas, text, &colour),
+            }
+        }
+        canvas.close();
     }
-    canvas.close();
-    canvas.open(HOLES, &line("#0000ff"));
-    for hole in &cuts.holes {
-        canvas.circle(hole.centre, cuts.tool_radius(hole), "");
-    }
-    canvas.close();
-    canvas.open(OUTLINE, &line("#000000"));
-    canvas.polygon(&outline, "");
-    canvas.close();
-    canvas.open(ANNOTATION, "fill=\"#808080\"");
-    for label in &cuts.labels {
-        canvas.text(label.at, label.height, Anchor::Middle, "", &label.text);
-    }
-    canvas.close();
     canvas.finish(high[0] - low[0], "mm")
+}
+
+fn write_text(canvas: &mut Canvas, text: &Text, colour: &str) {
+    let [x, y] = text.at;
+    let (at, anchor) = match text.centred {
+        true => ([x, y - 0.5 * text.height], Anchor::Middle),
+        false => (text.at, Anchor::Start),
+    };
+    let style = format!("fill=\"{colour}\" stroke=\"none\"");
+    canvas.text(at, text.height / CAPITALS, anchor, &style, &text.text);
 }

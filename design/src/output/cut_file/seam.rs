@@ -1,0 +1,85 @@
+//! The seam at a hinge between two parts of a sheet.
+//!
+//! Parts are separated along panel edges, which are slits except at the hinges. At a hinge the seam leaves the edges and
+//! crosses the corner of one of the two panels, so that the ligament stays whole on the other panel's part:
+//!
+//! ```text
+//!   ----C--E----------   secondary cut         C: corner of the hinge, o: tip of the main cut, with its hole
+//!         /                                    E: ends of the seam, on the two edges of panel B
+//!       o/                                     The triangle C E E stays with panel A, and is joined to the
+//!   A   E    B                                 rest of panel B by adhesive tape over the seam E E.
+//!       |  main cut
+//! ```
+
+use crate::output::cut_file::cut_drawing::distance;
+use crate::output::cut_file::fabrication_error::FabricationError;
+use crate::sheet::cut_sheet::{Hinge, Sheet};
+use crate::sheet::topology::PanelCorner;
+
+/// Distance of the tape from the tip, in ligament widths: the tip region of the smallest window.
+const CLEAR_OF_TIP: f64 = 2.5;
+/// Maximum length that a seam takes of a panel's edge, relative to the edge.
+const OF_EDGE: f64 = 0.45;
+
+/// The cut across the corner of a panel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seam {
+    /// The hinge whose ligament it keeps whole.
+    pub hinge: usize,
+    /// The panel that it crosses.
+    pub panel: usize,
+    /// The corner of the panel at the hinge, counter-clockwise from the south-west.
+    pub(super) corner: usize,
+    /// Its ends on the edges of the panel after and before the corner (mm).
+    pub ends: [[f64; 2]; 2],
+}
+
+impl Seam {
+    /// The seam at a hinge, in the panel that has more room for it. Tape reaches `lap` (mm) to either side of a seam.
+    pub(super) fn new(sheet: &Sheet, number: usize, lap: f64) -> Result<Self, FabricationError> {
+        let hinge = &sheet.hinges[number];
+        let [a, b] = [hinge.site.a, hinge.site.b].map(|at| Self::across(sheet, hinge, at, lap));
+        let fill = |(_, needed, room): &([[f64; 2]; 2], f64, f64)| needed / room;
+        let (at, (ends, needed, room)) = match fill(&a) < fill(&b) {
+            true => (hinge.site.a, a),
+            false => (hinge.site.b, b),
+        };
+        let (hinge, (panel, corner)) = (number, at);
+        if needed > room {
+            return Err(FabricationError::NoRoomForSeam {
+                hinge,
+                panel,
+                needed,
+                room,
+            });
+        }
+        Ok(Self {
+            hinge,
+            panel,
+            corner,
+            ends,
+        })
+    }
+
+    /// Ends of the seam across a corner, the length that it needs of both edges, and their room (mm).
+    fn across(
+        sheet: &Sheet,
+        hinge: &Hinge,
+        (panel, corner): PanelCorner,
+        lap: f64,
+    ) -> ([[f64; 2]; 2], f64, f64) {
+        let corners = &sheet.panels[panel].corners;
+        let from = corners[corner];
+        let neighbours = [corners[(corner + 1) % 4], corners[(corner + 3) % 4]];
+        let lengths = neighbours.map(|to| distance(from, to));
+        let [u, v] = std::array::from_fn(|side| {
+            let along = |axis: usize| (neighbours[side][axis] - from[axis]) / lengths[side];
+            [along(0), along(1)]
+        });
+        // Half the length of u + v is the cosine of half the angle between the edges.
+        let cos = 0.5 * f64::hypot(u[0] + v[0], u[1] + v[1]);
+        let needed = distance(from, hinge.tip) + (CLEAR_OF_TIP * hinge.w_lig + lap) / cos;
+        let ends = [u, v].map(|[x, y]| [from[0] + needed * x, from[1] + needed * y]);
+        (ends, needed, OF_EDGE * lengths[0].min(lengths[1]))
+    }
+}

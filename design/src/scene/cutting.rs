@@ -1,0 +1,23 @@
+//! How the sheet is cut: settings of the cut files that no equilibrium depends on.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// How the sheet is cut. A run continues under other values, which change its cut files only.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct CuttingConfig {
+    /// Length by which a slit that is open on the outline is cut beyond the finished edge (mm), 0 to 50.
+    pub over_run: f64,
+    /// Whether registration marks are drawn outside of the outline, on a layer of their own.
+    pub registration_marks: bool,
+}
+
+impl Default for CuttingConfig {
+    fn default() -> Self {
+        Self {
+            over_run: 1.0,
+            registration_marks: true,
+        }
+    }
+}
