@@ -2,7 +2,7 @@
 
 #[cfg(feature = "pipeline")]
 use crate::commands::pipeline;
-use crate::commands::{completions, cut, design, inspect, man};
+use crate::commands::{compare, completions, cut, design, export, inspect, man};
 use crate::ui::progress;
 use anyhow::Result;
 use clap::{CommandFactory, Parser, Subcommand};
@@ -10,7 +10,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 /// Design kirigami sheets whose hinges are measured by finite elements
 ///
 /// Hinge data: mesh, solve, campaign, dataset. Hinge model: train, surrogate.
-/// Sheets: design, cut, inspect, verify. Start with: doctor, demo, init.
+/// Sheets: design, cut, inspect, verify, compare, export. Start with: doctor, demo, init.
 #[derive(Parser)]
 #[command(name = "kirigami", version, propagate_version = true)]
 #[command(
@@ -29,6 +29,8 @@ enum Command {
     Design(design::DesignCommand),
     Cut(cut::CutCommand),
     Inspect(inspect::InspectCommand),
+    Compare(compare::CompareCommand),
+    Export(export::ExportCommand),
     #[cfg(feature = "pipeline")]
     #[command(flatten)]
     Pipeline(pipeline::PipelineCommand),
@@ -46,6 +48,8 @@ impl Cli {
             Command::Design(command) => command.run(),
             Command::Cut(command) => command.run(),
             Command::Inspect(command) => command.run(),
+            Command::Compare(command) => command.run(),
+            Command::Export(command) => command.run(),
             #[cfg(feature = "pipeline")]
             Command::Pipeline(command) => command.run(),
             Command::Completions(command) => command.run(Self::command()),

@@ -2,6 +2,7 @@
 
 #[cfg(feature = "pipeline")]
 pub mod campaign;
+pub mod compare;
 pub mod completions;
 pub mod cut;
 #[cfg(feature = "pipeline")]
@@ -11,6 +12,7 @@ pub mod demo;
 pub mod design;
 #[cfg(feature = "pipeline")]
 pub mod doctor;
+pub mod export;
 #[cfg(feature = "pipeline")]
 pub mod init;
 pub mod inspect;

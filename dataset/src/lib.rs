@@ -16,6 +16,7 @@
 //! | `database` | consistent rows with their manifest: [`Database`] |
 //! | `database_files` | reading and writing a database |
 //! | `parquet` | rows as the bytes of a Parquet file |
+//! | `plain_table` | other tables as Parquet files |
 //! | `check` | what makes a consistent database unfit for training |
 //! | `compare` | comparison of rays that two databases contain |
 //! | `fidelity` | the mesh fidelity of the rows |
@@ -53,6 +54,7 @@ mod manifest;
 mod mirror;
 mod noise;
 mod parquet;
+mod plain_table;
 mod rows;
 mod schema;
 mod split;
@@ -69,6 +71,7 @@ pub use gates::{Gates, Rejection};
 pub use manifest::{FORMAT_VERSION, Manifest};
 pub use mirror::with_mirrored;
 pub use noise::noise;
+pub use plain_table::{Values, parquet_table};
 pub use rows::Row;
 pub use split::{Part, Split, SplitPlan};
 pub use summary::Details;

@@ -1,9 +1,16 @@
-//! Analyses of a deployed sheet beyond its shape: forces, capacity, voids, tilting panels; section 3.2.
+//! Analyses of a deployed sheet beyond its shape: forces, capacity, voids, tilting panels (section 3.2), comparison with
+//! measured points (section 4.4).
 
 pub mod degeneration;
 pub mod force_transmission;
 pub mod further_load;
 pub mod localisation;
+pub mod marks;
+pub mod measured_openings;
+pub mod measured_sheet;
+pub mod misread;
+pub mod robust_pose;
+pub mod shape_path;
 pub mod solution_set;
 pub mod taylor;
 pub mod tension_routes;

@@ -4,5 +4,6 @@ pub mod chamfer;
 pub mod intersection_over_union;
 pub mod plane;
 pub mod polygon;
+pub mod similarity;
 pub mod smooth_extrema;
 pub mod svg_path;

@@ -6,6 +6,7 @@ pub(crate) mod dat;
 pub(crate) mod deck;
 pub(crate) mod deformation_path;
 pub(crate) mod failure;
+pub(crate) mod fields;
 pub(crate) mod model;
 pub(crate) mod ray;
 pub(crate) mod response;

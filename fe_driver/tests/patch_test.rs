@@ -101,6 +101,7 @@ fn patch_test(tier: Tier) {
         path: &DeformationPath::straight(HingeDeformation::default()),
         material: &material,
         step: &StepControl::default(),
+        print_all: false,
     });
     let mut text = text[..text.find("*MATERIAL").unwrap()].to_owned();
     let (young, poisson) = (material.young, material.poisson);

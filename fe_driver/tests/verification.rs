@@ -109,6 +109,7 @@ fn window_deck(mesh: &WindowMesh, path: &DeformationPath, material: &SheetMateri
         path,
         material,
         step: &StepControl::default(),
+        print_all: false,
     })
 }
 

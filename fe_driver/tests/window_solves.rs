@@ -133,6 +133,7 @@ fn a_path_that_rotates_first_stores_more_energy_than_its_ray() {
         path: &path,
         material: &asked.material,
         step: &asked.step,
+        print_all: false,
     };
     let limit = Duration::from_secs(300);
     let stop = AtomicBool::new(false);
@@ -192,4 +193,84 @@ fn windows_of_every_thickness_are_similar() {
             assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
         }
     }
+}
+
+/// Printing all displacements changes no sample, and the fields are those of the prescribed motion and of the sample.
+#[test]
+fn the_fields_of_a_window_agree_with_its_last_sample() {
+    let asked = problem(70.0, [0.1, -0.05], 40.0);
+    let (folder, tools) = (tempfile::tempdir().unwrap(), Tools::find().unwrap());
+    let (limit, stop) = (Duration::from_secs(300), AtomicBool::new(false));
+    let mesh = mesh_window(
+        &asked.ray.design,
+        asked.material.thickness,
+        &asked.tier.recipe(),
+        folder.path(),
+        &tools.gmsh,
+        limit,
+        &stop,
+    )
+    .unwrap();
+    let model = WindowModel {
+        mesh: &mesh,
+        path: &DeformationPath::straight(asked.ray.end),
+        material: &asked.material,
+        step: &asked.step,
+        print_all: true,
+    };
+    assert!(model.fields(folder.path()).unwrap().is_none());
+    let solution = model
+        .solve(&tools.ccx, folder.path(), limit, &stop)
+        .unwrap();
+    assert_eq!(solution.samples, solve(&asked).samples);
+    let last = solution.samples.last().unwrap();
+
+    let grid = model.fields(folder.path()).unwrap().unwrap();
+    let field = |name: &str| {
+        let mut fields = grid.point_data.iter().chain(&grid.cell_data);
+        &fields.find(|field| field.name == name).unwrap().values
+    };
+    let displacements = field("displacement (mm)").as_chunks::<3>().0;
+    assert_eq!(displacements.len(), grid.points.len());
+    let tip = mesh.design.tip();
+    let (sin, cos) = last.theta.sin_cos();
+    let (half_sin, half_cos) = (0.5 * last.theta).sin_cos();
+    let du = [
+        half_cos * last.a - half_sin * last.s,
+        half_sin * last.a + half_cos * last.s,
+    ];
+    for &node in &mesh.arc_b {
+        let [x, y] = [0, 1].map(|axis| grid.points[node][axis] - tip[axis]);
+        let expected = [
+            cos * x - sin * y - x + du[0],
+            sin * x + cos * y - y + du[1],
+            0.0,
+        ];
+        for (found, expected) in displacements[node].iter().zip(expected) {
+            // Printed with seven digits; positions are up to 100 mm from the tip.
+            assert!((found - expected).abs() < 1e-4, "{found} {expected}");
+        }
+    }
+    assert!(
+        mesh.arc_a
+            .iter()
+            .all(|&node| displacements[node] == [0.0; 3])
+    );
+    let highest = mesh.bottom.iter().map(|&node| displacements[node][2].abs());
+    assert_eq!(highest.fold(0.0, f64::max), last.uz_max);
+    let volumes = mesh
+        .gauss_volumes
+        .iter()
+        .map(|volumes| volumes.iter().sum::<f64>());
+    let plastic: f64 = field("plastic strain")
+        .iter()
+        .zip(volumes)
+        .map(|(strain, volume)| strain * volume)
+        .sum();
+    assert!((plastic / last.plastic_integral - 1.0).abs() < 1e-12);
+    let maximum = field("plastic strain, maximum")
+        .iter()
+        .copied()
+        .fold(0.0, f64::max);
+    assert_eq!(Some(maximum), last.strain_max);
 }

@@ -7,7 +7,7 @@ use libfuzzer_sys::fuzz_target;
 const LAYOUT: Layout = Layout {
     nodes: 1000,
     arc_nodes: 2,
-    bottom_nodes: 1,
+    displaced_nodes: 1,
     elements: 1,
     points: 8,
 };

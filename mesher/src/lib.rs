@@ -16,6 +16,7 @@ mod msh;
 mod quality;
 mod svg;
 mod tier;
+mod vtk_cells;
 mod window;
 
 pub use element::ElementKind;
@@ -26,4 +27,5 @@ pub use msh::{Boundary, MshError, PlaneMesh, read_msh};
 pub use quality::{MeshDefect, MeshQuality};
 pub use svg::plane_mesh_svg;
 pub use tier::{Imperfection, MeshRecipe, PlaneRecipe, Structured, Tier, Unstructured};
+pub use vtk_cells::vtk_grid;
 pub use window::{Side, Window};

@@ -4,7 +4,7 @@ use crate::commands::window_args::WindowArgs;
 use crate::ui::{interrupt, picture, run_folder};
 use anyhow::Result;
 use clap::Args;
-use mesher::{Gmsh, Tier, mesh_window, plane_mesh_svg};
+use mesher::{Gmsh, Tier, mesh_window, plane_mesh_svg, vtk_grid};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -27,6 +27,9 @@ pub struct MeshCommand {
     /// Folder for the script, the mesh and the picture
     #[arg(long, value_name = "FOLDER", default_value = "runs/mesh")]
     out: PathBuf,
+    /// Also write mesh.vtu, for ParaView or meshio
+    #[arg(long)]
+    vtu: bool,
     /// Print JSON instead of text
     #[arg(long)]
     json: bool,
@@ -48,6 +51,9 @@ impl MeshCommand {
         )?;
         let quality = mesh.quality()?;
         let pictures = picture::save(&plane_mesh_svg(&mesh), &self.out.join("mesh"), 1600)?;
+        if self.vtu {
+            run_folder::write(&self.out, "mesh.vtu", &vtk_grid(&mesh).to_vtu())?;
+        }
         if self.json {
             let description = json!({
                 "tier": self.tier.name(),

@@ -54,6 +54,9 @@ pub struct SolveCommand {
     /// Time limit of the solver (s)
     #[arg(long, value_name = "SECONDS", default_value_t = 600)]
     time_limit_s: u64,
+    /// Also write window.vtu, for ParaView or meshio: displacements, plastic strain and stress of the last increment
+    #[arg(long)]
+    vtu: bool,
     /// Print JSON instead of a table
     #[arg(long)]
     json: bool,
@@ -85,11 +88,17 @@ impl SolveCommand {
             path: &path,
             material: &material,
             step: &StepControl::default(),
+            print_all: self.vtu,
         };
         warn_of_contact(&design, &path);
         let solution = watched(&self.out, || {
             model.solve(&tools.ccx, &self.out, limit, stop)
         })?;
+        if self.vtu
+            && let Some(grid) = model.fields(&self.out)?
+        {
+            run_folder::write(&self.out, "window.vtu", &grid.to_vtu())?;
+        }
         if self.json {
             let description = json!({
                 "design": design,

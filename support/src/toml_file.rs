@@ -1,5 +1,6 @@
 //! Reading TOML configuration files. An unknown key is an error that names the most similar known key.
 
+use crate::nearest::nearest;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 
@@ -54,7 +55,7 @@ pub fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ConfigEr
             Some((key, known)) => ConfigError::UnknownKey {
                 path,
                 line,
-                nearest: nearest(&key, &known),
+                nearest: nearest(&key, known.iter().map(String::as_str)).map(str::to_owned),
                 key,
             },
             None => ConfigError::Syntax {
@@ -75,16 +76,6 @@ fn unknown_field(message: &str) -> Option<(String, Vec<String>)> {
         .step_by(2)
         .map(str::to_owned);
     Some((quoted.next()?, quoted.collect()))
-}
-
-/// The known key most similar to `key`, if any is similar enough.
-fn nearest(key: &str, known: &[String]) -> Option<String> {
-    known
-        .iter()
-        .map(|candidate| (strsim::jaro_winkler(key, candidate), candidate))
-        .filter(|(likeness, _)| *likeness > 0.8)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, candidate)| candidate.clone())
 }
 
 #[cfg(test)]

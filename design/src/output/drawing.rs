@@ -1,8 +1,13 @@
-//! Pictures of the flat pattern and the deployed sheet, as SVG.
+//! Pictures of the flat pattern, the deployed sheet and the measured sheet, as SVG.
 
+mod chart;
 mod deployed;
 mod flat;
+mod measured;
+mod numbering;
 pub mod page;
 
 pub use deployed::deployed;
 pub use flat::flat;
+pub use measured::measured;
+pub use numbering::numbering;

@@ -11,8 +11,8 @@ pub struct Layout {
     pub nodes: usize,
     /// Nodes of arc B.
     pub arc_nodes: usize,
-    /// Nodes of the lower face.
-    pub bottom_nodes: usize,
+    /// Nodes whose displacements are printed; they are the first of the mesh.
+    pub displaced_nodes: usize,
     /// Elements of the mesh.
     pub elements: usize,
     /// Gauss points per element.
@@ -28,8 +28,8 @@ pub struct Frame {
     pub energy: f64,
     /// Nodes of arc B, counted from 0, with their reaction forces (N).
     pub reactions: Vec<(usize, [f64; 3])>,
-    /// Out-of-plane displacements of the lower face (mm).
-    pub uz: Vec<f64>,
+    /// Displacements (mm) of the first nodes of the mesh: those of the lower face, or all.
+    pub displacements: Vec<[f64; 3]>,
     /// Equivalent plastic strain at the Gauss points, element by element.
     pub peeq: Vec<f64>,
     /// Cauchy stress (xx, yy, zz, xy, xz, yz) at the Gauss points (MPa), element by element.
@@ -144,8 +144,11 @@ impl Frame {
                 self.reactions.push((node, numbers(values)?));
             }
             Block::Displacements => {
-                let [_, _, uz] = numbers(fields.get(1..)?)?;
-                self.uz.push(uz);
+                let (node, values) = fields.split_first()?;
+                if node.parse() != Ok(self.displacements.len() + 1) {
+                    return None;
+                }
+                self.displacements.push(numbers(values)?);
             }
             Block::PlasticStrain => {
                 let [peeq] = numbers(in_order(&fields, self.peeq.len(), layout)?)?;
@@ -163,7 +166,7 @@ impl Frame {
         let points = layout.points * layout.elements;
         self.energies == 1
             && self.reactions.len() == layout.arc_nodes
-            && self.uz.len() == layout.bottom_nodes
+            && self.displacements.len() == layout.displaced_nodes
             && self.peeq.len() == points
             && self.stress.len() == points
     }
@@ -203,7 +206,7 @@ mod tests {
     const LAYOUT: Layout = Layout {
         nodes: 1000,
         arc_nodes: 2,
-        bottom_nodes: 1,
+        displaced_nodes: 1,
         elements: 1,
         points: 8,
     };
@@ -245,7 +248,7 @@ mod tests {
             frame.reactions,
             [(3, [1.0, -2.0, 3.0]), (6, [4.0, 5.0, 6.0])]
         );
-        assert_eq!(frame.uz, [-0.3]);
+        assert_eq!(frame.displacements, [[0.1, 0.2, -0.3]]);
         assert_eq!(frame.peeq, [0.015; 8]);
         assert_eq!(frame.stress[7], [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
         assert_eq!(read_dat(b"", LAYOUT).unwrap(), []);
@@ -261,6 +264,8 @@ mod tests {
             // A node that the mesh does not have.
             ("         7  4.0E+00", "      1001  4.0E+00"),
             (" 1   3 ", " 1   4 "),
+            // Displacements of another node than the first.
+            ("         1  0.1E+00", "         2  0.1E+00"),
             ("total", "mean"),
         ] {
             let damaged = two_increments().replacen(old, new, 1);

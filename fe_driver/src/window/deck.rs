@@ -53,7 +53,8 @@ fn write_deck(d: &mut String, model: &WindowModel) -> fmt::Result {
         writeln!(d, "{node},{freedom},{freedom},1.")?;
     }
     writeln!(d, "*NODE PRINT,NSET=ARCB,FREQUENCY=1\nRF")?;
-    writeln!(d, "*NODE PRINT,NSET=BOTTOM,FREQUENCY=1\nU")?;
+    let displaced = if model.print_all { "NALL" } else { "BOTTOM" };
+    writeln!(d, "*NODE PRINT,NSET={displaced},FREQUENCY=1\nU")?;
     writeln!(d, "*EL PRINT,ELSET=EALL,TOTALS=ONLY,FREQUENCY=1\nELSE")?;
     writeln!(d, "*EL PRINT,ELSET=EALL,FREQUENCY=1\nPEEQ,S\n*END STEP")
 }

@@ -43,7 +43,8 @@ pub(crate) fn samples(model: &WindowModel, frames: &[Frame]) -> Vec<HingeSample>
                 d_peak: Some(damage.d_peak),
                 strain_max: Some(damage.strain_max),
                 strain_volumes: Some(damage.strain_volumes),
-                uz_max: frame.uz.iter().fold(0.0, |most, uz| uz.abs().max(most)),
+                uz_max: (frame.displacements.iter().take(mesh.bottom.len()))
+                    .fold(0.0, |most, [_, _, uz]| uz.abs().max(most)),
                 energy_residual: (frame.energy - w_work).abs() / largest_w,
             }
         })

@@ -153,6 +153,7 @@ pub fn solve_window(
         path: &DeformationPath::straight(problem.ray.end),
         material: &problem.material,
         step: &problem.step,
+        print_all: false,
     };
     let solution = model.solve(&tools.ccx, folder, limit, stop)?;
     Ok(WindowSolution {
@@ -249,12 +250,21 @@ impl WindowModel<'_> {
         Ok((samples, stopped))
     }
 
+    /// The last converged increment of a solve in `folder`; `None` if there is none.
+    pub(crate) fn last_frame(&self, folder: &Path) -> Result<Option<Frame>, SolveError> {
+        let output = folder.join(JOB).with_extension("dat");
+        Ok(read_dat(&read_if_there(&output)?, self.layout())?.pop())
+    }
+
     /// The numbers of rows that one increment of this window prints.
     fn layout(&self) -> Layout {
         Layout {
             nodes: self.mesh.nodes.len(),
             arc_nodes: self.mesh.arc_b.len(),
-            bottom_nodes: self.mesh.bottom.len(),
+            displaced_nodes: match self.print_all {
+                true => self.mesh.nodes.len(),
+                false => self.mesh.bottom.len(),
+            },
             elements: self.mesh.elements.len(),
             points: self.mesh.recipe.element().gauss_points(),
         }

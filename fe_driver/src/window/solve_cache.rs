@@ -106,6 +106,7 @@ impl KeptSolve {
             path: &self.path,
             material: &self.material,
             step: &self.step,
+            print_all: false,
         };
         let solution = model.solve(&tools.ccx, work, limit, stop)?;
         let stopped = match solution.stopped {

@@ -1,6 +1,6 @@
 //! The command line arguments that select a scene and a design, and the printing of their numbers.
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::Args;
 use design::pattern::design_vector::DesignVector;
 use design::scene::design_run::stored_design;
@@ -45,16 +45,37 @@ impl Inspected {
     }
 
     pub(crate) fn read(&self) -> Result<(Scene, DesignVector)> {
-        let mut config: SceneConfig = toml_file::read(&self.scene)?;
-        if let Some(weights) = &self.weights {
-            config.name_weights(weights)?;
-        }
-        let scene = Scene::new(config, &self.scene)?;
+        let scene = self.scene()?;
         let design = match &self.design {
             Some(path) => stored_design(path, &scene)?,
             None => scene.start(),
         };
         Ok((scene, design))
+    }
+
+    /// The scene with its designed sheet: without `--design`, the state of its run folder.
+    pub(crate) fn read_run(&self) -> Result<(Scene, DesignVector)> {
+        let scene = self.scene()?;
+        let path = match &self.design {
+            Some(path) => path.clone(),
+            None => scene.output().join("state.json"),
+        };
+        ensure!(
+            self.design.is_some() || path.exists(),
+            "the scene has no run: there is no {}. Run `kirigami design {}`, or name a design (--design)",
+            path.display(),
+            self.scene.display()
+        );
+        let design = stored_design(&path, &scene)?;
+        Ok((scene, design))
+    }
+
+    fn scene(&self) -> Result<Scene> {
+        let mut config: SceneConfig = toml_file::read(&self.scene)?;
+        if let Some(weights) = &self.weights {
+            config.name_weights(weights)?;
+        }
+        Ok(Scene::new(config, &self.scene)?)
     }
 }
 

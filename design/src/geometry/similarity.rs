@@ -1,0 +1,202 @@
+//! The rigid motion, with or without a change of scale, that maps one set of labelled points onto another.
+//!
+//! In complex numbers it is z -> turn z + shift: |turn| is the scale and arg(turn) the rotation. With p' and m'
+//! relative to their means, sum |m - turn p - shift|^2 is least at
+//!
+//! ```text
+//! turn = sum conj(p') m' / sum |p'|^2,     shift = mean(m) - turn mean(p),
+//! ```
+//!
+//! the plane case of Umeyama (IEEE Trans. PAMI 13, 1991, 376). At a fixed scale, turn is divided by its magnitude.
+
+use faer::c64;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Whether the scale is a part of the fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// The scale is 1.
+    Given,
+    /// The scale is fitted.
+    Free,
+}
+
+/// z -> turn z + shift.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Similarity {
+    /// Scale and rotation.
+    pub turn: c64,
+    /// The image of the origin.
+    pub shift: c64,
+}
+
+/// A point and its image.
+pub type Pair = [c64; 2];
+
+/// Maximum number of two-point fits of [`Similarity::least_median`]. With half of the points wrong, none of 500 pairs
+/// consists of two correct ones with a probability of 0.75^500.
+const MAX_TRIALS: usize = 500;
+
+impl Similarity {
+    /// The least-squares fit; `None` if the points, or their images, coincide.
+    pub fn least_squares(pairs: &[Pair], scale: Scale) -> Option<Self> {
+        let count = pairs.len() as f64;
+        let mean = |i: usize| pairs.iter().map(|pair| pair[i]).sum::<c64>() / count;
+        let (from, to) = (mean(0), mean(1));
+        let (mut product, mut square) = (c64::ZERO, 0.0);
+        for [p, m] in pairs {
+            product += (p - from).conj() * (m - to);
+            square += (p - from).norm_sqr();
+        }
+        let turn = match scale {
+            Scale::Given => product / product.norm(),
+            Scale::Free => product / square,
+        };
+        let usable = turn.is_finite() && turn.norm() > 0.0;
+        usable.then(|| Self {
+            turn,
+            shift: to - turn * from,
+        })
+    }
+
+    /// The two-point fit with the least median of the residuals, and that median: half of the points may be
+    /// wrong by any amount (Rousseeuw, J. Am. Stat. Assoc. 79, 1984, 871). At most 500 pairs of points are tried.
+    pub fn least_median(pairs: &[Pair], scale: Scale) -> Option<(Self, f64)> {
+        let count = pairs.len();
+        let all = (0..count).flat_map(|i| (0..i).map(move |j| (i, j)));
+        let mut trials: Vec<(usize, usize)> = all.take(MAX_TRIALS + 1).collect();
+        if trials.len() > MAX_TRIALS {
+            let mut random = ChaCha8Rng::seed_from_u64(0);
+            let mut one = || random.random_range(0..count);
+            trials = (0..MAX_TRIALS).map(|_| (one(), one())).collect();
+        }
+        let fits = trials
+            .into_iter()
+            .filter_map(|(i, j)| Self::least_squares(&[pairs[i], pairs[j]], scale));
+        fits.map(|fit| (fit, fit.median(pairs)))
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The median of the residuals, as lengths before the motion.
+    fn median(&self, pairs: &[Pair]) -> f64 {
+        let mut residuals: Vec<f64> = pairs.iter().map(|pair| self.residual(pair)).collect();
+        median(&mut residuals)
+    }
+
+    /// Distance of the image from its prediction, as a length before the motion.
+    pub fn residual(&self, [p, m]: &Pair) -> f64 {
+        (m - self.of(*p)).norm() / self.scale()
+    }
+
+    /// The image of a point.
+    pub fn of(&self, z: c64) -> c64 {
+        self.turn * z + self.shift
+    }
+
+    /// The point of an image.
+    pub fn back(&self, z: c64) -> c64 {
+        (z - self.shift) / self.turn
+    }
+
+    /// Lengths after the motion over lengths before it.
+    pub fn scale(&self) -> f64 {
+        self.turn.norm()
+    }
+
+    /// The rotation (rad).
+    pub fn rotation(&self) -> f64 {
+        self.turn.arg()
+    }
+}
+
+/// The upper median; the values are reordered. Zero without values.
+pub fn median(values: &mut [f64]) -> f64 {
+    let middle = values.len() / 2;
+    match values.len() {
+        0 => 0.0,
+        _ => *values.select_nth_unstable_by(middle, f64::total_cmp).1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MOTION: Similarity = Similarity {
+        turn: c64::new(0.6, 1.7),
+        shift: c64::new(-300.0, 40.0),
+    };
+
+    fn pairs(motion: Similarity) -> Vec<Pair> {
+        let points = (0..60)
+            .map(f64::from)
+            .map(|i| c64::new(37.0 * i % 101.0, 53.0 * i % 89.0));
+        points.map(|point| [point, motion.of(point)]).collect()
+    }
+
+    #[test]
+    fn a_similarity_is_recovered_and_inverted() {
+        let fit = Similarity::least_squares(&pairs(MOTION), Scale::Free).unwrap();
+        assert!((fit.turn - MOTION.turn).norm() < 1e-14);
+        assert!((fit.shift - MOTION.shift).norm() < 1e-12);
+        let point = c64::new(3.0, -8.0);
+        assert!((fit.back(fit.of(point)) - point).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_given_scale_leaves_the_rotation_of_the_free_fit() {
+        let [given, free] = [Scale::Given, Scale::Free]
+            .map(|scale| Similarity::least_squares(&pairs(MOTION), scale).unwrap());
+        assert!((given.scale() - 1.0).abs() < 1e-15);
+        assert!((given.rotation() - free.rotation()).abs() < 1e-14);
+    }
+
+    /// The sum of squares is stationary at the fit.
+    #[test]
+    fn every_small_change_of_the_fit_increases_the_sum_of_squares() {
+        let mut pairs = pairs(MOTION);
+        for (i, pair) in pairs.iter_mut().enumerate() {
+            pair[1] += c64::cis(i as f64) * (i % 7) as f64;
+        }
+        let sum = |fit: Similarity| -> f64 {
+            pairs.iter().map(|[p, m]| (m - fit.of(*p)).norm_sqr()).sum()
+        };
+        let fit = Similarity::least_squares(&pairs, Scale::Free).unwrap();
+        for step in [c64::ONE, -c64::ONE, c64::I, -c64::I] {
+            let turned = Similarity {
+                turn: fit.turn + 1e-4 * step,
+                ..fit
+            };
+            let shifted = Similarity {
+                shift: fit.shift + 1e-3 * step,
+                ..fit
+            };
+            assert!(sum(turned) > sum(fit) && sum(shifted) > sum(fit));
+        }
+    }
+
+    #[test]
+    fn four_tenths_of_wrong_points_do_not_move_the_least_median() {
+        let mut pairs = pairs(MOTION);
+        for pair in pairs.iter_mut().step_by(5).take(12) {
+            pair[1] += c64::new(1e5, -400.0);
+        }
+        for pair in pairs.iter_mut().skip(1).step_by(5).take(12) {
+            pair[1] = c64::new(7.0, 7.0);
+        }
+        let (fit, median) = Similarity::least_median(&pairs, Scale::Free).unwrap();
+        assert!(median < 1e-10, "{median}");
+        assert!((fit.turn - MOTION.turn).norm() < 1e-12);
+    }
+
+    #[test]
+    fn coinciding_points_have_no_fit() {
+        let same = [[c64::ONE, c64::I]; 5];
+        for scale in [Scale::Given, Scale::Free] {
+            assert_eq!(Similarity::least_squares(&same, scale), None);
+            assert_eq!(Similarity::least_median(&same, scale), None);
+            assert_eq!(Similarity::least_squares(&[], scale), None);
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! `kirigami export`: the deployment of a designed sheet for other programs.
+
+#[cfg(feature = "pipeline")]
+mod parquet;
+
+use crate::commands::inspect::scene_args::Inspected;
+use crate::ui::run_folder;
+use anyhow::{Context, Result};
+use clap::Args;
+use design::output::vtk_sheet::vtk_states;
+use std::path::PathBuf;
+use support::vtk;
+
+/// Write the deployment of a designed sheet for ParaView, meshio and data frames
+///
+/// sheet.pvd opens in ParaView: panels and hinges at every load step, moved by the point data `displacement (mm)`
+/// (filter Warp By Vector). The full build also writes hinges.parquet, one row a hinge and load step, and path.parquet,
+/// one row a load step. Lengths in mm, forces in N, angles in rad unless the name says deg.
+/// Example: kirigami export configs/scenes/pet-3x3.toml
+#[derive(Args)]
+#[command(mut_arg("design", |arg| arg.help(
+    "Design (JSON): the state.json of a run, or a design alone [default: the state.json of the scene's run folder]"
+)))]
+pub struct ExportCommand {
+    #[command(flatten)]
+    designed: Inspected,
+    /// Folder for the files
+    #[arg(long, value_name = "FOLDER", default_value = "runs/export")]
+    out: PathBuf,
+}
+
+impl ExportCommand {
+    pub(crate) fn run(&self) -> Result<()> {
+        let (scene, design) = self.designed.read_run()?;
+        let deployment = scene.problem()?.deploy(&design)?;
+        let _held = run_folder::hold(&self.out)?;
+        let folder = self.out.join("vtk");
+        std::fs::create_dir_all(&folder)
+            .with_context(|| format!("cannot create the folder {}", folder.display()))?;
+        let mut grids = Vec::new();
+        for (i, state) in vtk_states(&deployment).iter().enumerate() {
+            for (part, (kind, grid)) in [("panels", &state.panels), ("hinges", &state.hinges)]
+                .into_iter()
+                .enumerate()
+            {
+                let name = format!("{kind}-{i:03}.vtu");
+                run_folder::write(&folder, &name, &grid.to_vtu())?;
+                grids.push((state.load_factor, part, format!("vtk/{name}")));
+            }
+        }
+        run_folder::write(&self.out, "sheet.pvd", &vtk::collection(&grids))?;
+        println!(
+            "{} states of the sheet in {}",
+            grids.len() / 2,
+            self.out.join("sheet.pvd").display()
+        );
+        #[cfg(feature = "pipeline")]
+        parquet::write(&deployment, &self.out)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,24 @@
+//! The known name that a misspelt one probably means.
+
+/// The name of `known` that is most similar to `name`, if any is similar enough.
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    known
+        .into_iter()
+        .map(|candidate| (strsim::jaro_winkler(name, candidate), candidate))
+        .filter(|(likeness, _)| *likeness > 0.8)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| candidate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_of_a_letter_is_recognised_and_another_word_is_not() {
+        let known = ["panel", "corner", "unit"];
+        assert_eq!(nearest("pannel", known), Some("panel"));
+        assert_eq!(nearest("cornr", known), Some("corner"));
+        assert_eq!(nearest("thickness", known), None);
+    }
+}
