@@ -2,14 +2,14 @@
 
 #[cfg(feature = "pipeline")]
 use crate::commands::pipeline;
-use crate::commands::{compare, completions, cut, design, export, inspect, man};
+use crate::commands::{compare, completions, cut, design, export, inspect, man, material};
 use crate::ui::progress;
 use anyhow::Result;
 use clap::{CommandFactory, Parser, Subcommand};
 
 /// Design kirigami sheets whose hinges are measured by finite elements
 ///
-/// Hinge data: mesh, solve, campaign, dataset. Hinge model: train, surrogate.
+/// Material: material. Hinge data: mesh, solve, campaign, dataset. Hinge model: train, surrogate.
 /// Sheets: design, cut, inspect, verify, compare, export. Start with: doctor, demo, init.
 #[derive(Parser)]
 #[command(name = "kirigami", version, propagate_version = true)]
@@ -26,6 +26,7 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Material(material::MaterialCommand),
     Design(design::DesignCommand),
     Cut(cut::CutCommand),
     Inspect(inspect::InspectCommand),
@@ -45,6 +46,7 @@ impl Cli {
             progress::silence();
         }
         match &self.command {
+            Command::Material(command) => command.run(),
             Command::Design(command) => command.run(),
             Command::Cut(command) => command.run(),
             Command::Inspect(command) => command.run(),

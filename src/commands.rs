@@ -17,6 +17,7 @@ pub mod export;
 pub mod init;
 pub mod inspect;
 pub mod man;
+pub mod material;
 #[cfg(feature = "pipeline")]
 pub mod mesh;
 #[cfg(feature = "pipeline")]

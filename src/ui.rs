@@ -1,13 +1,11 @@
 //! The user interface of the commands: progress, tables, pictures, charts, exit codes.
 
-#[cfg(feature = "pipeline")]
 pub mod charts;
 pub mod exit;
 pub mod interrupt;
 pub mod picture;
 pub mod progress;
 pub mod run_folder;
-#[cfg(feature = "pipeline")]
 pub mod table;
 
 /// Number of processors of this machine.

@@ -5,6 +5,7 @@ pub mod cut_file;
 pub mod drawing;
 pub mod hinge_states;
 pub mod listing;
+pub mod material_check;
 pub mod measurement;
 pub mod report;
 pub mod run_results;

@@ -29,7 +29,7 @@ mod jet;
 mod material;
 mod sample;
 mod strain_volumes;
-mod tensile;
+pub mod tensile;
 
 pub use deformation::{HingeDeformation, HingeForces};
 pub use design::{HingeConstants, HingeDesign, InvalidDesign};

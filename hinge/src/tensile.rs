@@ -1,193 +1,99 @@
-//! A measured tensile curve (CSV) as the hardening table of a material.
+//! Tensile tests: from the files of a testing machine to the hardening table of a material; section 4.1.
 //!
-//! One of two pairs of columns is read; other columns are ignored. Lines that start with `#` are
-//! comments.
-//!
-//! | columns | meaning |
+//! | step | file |
 //! |---|---|
-//! | `true_stress_mpa`, `plastic_strain` | the hardening table itself |
-//! | `engineering_stress_mpa`, `engineering_strain` | force over initial section, elongation over initial length |
+//! | text, columns, units | `number_table`, `quantity`, `record` |
+//! | unloading, break, shaking strains | `cleaning`, `isotonic` |
+//! | Young's modulus and toe (ISO 527-1, ASTM D638) | `linear_part` |
+//! | yield, plateau, natural draw ratio, necking | `landmarks` |
+//! | one specimen, its local curve | `specimen`, `local_curve` |
+//! | local curve in the neck | `drawing` |
+//! | mean over the specimens, table, fracture strain | `mean_curve`, `thinning`, `fit` |
+//! | the material file | `material_file` |
 //!
-//! Engineering values are converted up to the maximum stress, where necking begins (Considere):
-//! sigma = s (1 + e), eps_p = ln(1 + e) - sigma / E. The yield stress is the stress at a plastic strain of 0.2 %
-//! (Rp0.2, ISO 6892-1); plastic strain is counted from there. Data beyond necking must be measured on the neck
-//! and given as true stress. A curve whose initial slope is not Young's modulus is rejected: it is in other
-//! units, or it contains a toe region or the compliance of the testing machine.
+//! A material file may name a clean curve as `tensile_csv`. It is read without corrections: a curve that needs one is
+//! rejected, with the advice to use `kirigami material fit`, which reports them.
 
-use std::path::{Path, PathBuf};
+mod cleaning;
+mod drawing;
+mod error;
+mod fit;
+mod isotonic;
+mod landmarks;
+mod linear_part;
+mod local_curve;
+mod material_file;
+mod mean_curve;
+mod number_table;
+mod quantity;
+mod record;
+mod specimen;
+mod thinning;
 
-/// Plastic strain at the yield stress Rp0.2.
-const OFFSET: f64 = 0.002;
+pub use cleaning::{Cause, DroppedRow};
+pub use error::TensileError;
+pub use fit::{FitOptions, FractureSource, HardeningRow, MaterialFit, Origin, Statistic};
+pub use landmarks::Draw;
+pub use linear_part::LinearPart;
+pub use material_file::{SheetFacts, material_file};
+pub use quantity::Quantity;
+pub use record::RecordOptions;
+pub use specimen::{End, Specimen, SpecimenOptions};
+
+use quantity::Quantity::PlasticStrain;
+use record::Record;
+use std::path::Path;
+
 /// Maximum number of rows of a converted table; a testing machine records thousands.
 const MOST_ROWS: usize = 40;
-/// Fraction of the maximum stress up to which the initial slope is measured.
-const FIRST_SHARE: f64 = 0.2;
 /// Maximum factor between the initial slope and Young's modulus; wrong units give factors of 100 and more.
 const SLOPE_FACTOR: f64 = 2.0;
-/// Maximum decrease of the strain from one row to the next: the noise of an extensometer.
-const NOISE: f64 = 1e-3;
-/// Maximum strain accepted (dimensionless, not per cent).
-const GREATEST_STRAIN: f64 = 10.0;
+/// Maximum toe: a quarter of the offset strain at which the yield stress is defined.
+const MAX_TOE: f64 = 5e-4;
 
-/// A file that is not a valid tensile curve.
-#[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
-pub enum TensileError {
-    #[error("{path}: {source}", path = .path.display())]
-    Read { path: PathBuf, source: csv::Error },
-    #[error(
-        "{path} has the columns {found}: name either true_stress_mpa and plastic_strain, or \
-         engineering_stress_mpa and engineering_strain, in the first line, separated by commas",
-        path = .path.display()
-    )]
-    Columns { path: PathBuf, found: String },
-    #[error("{path}:{line}: {what}", path = .path.display())]
-    Row {
-        path: PathBuf,
-        line: u64,
-        what: String,
-    },
-    #[error("{path} has no rows", path = .path.display())]
-    Empty { path: PathBuf },
-    #[error(
-        "{path}: the initial slope is {slope:.3e} MPa, but young = {young:.3e} MPa: is the strain in \
-         per cent, is the stress not in MPa, or does the curve contain a toe region or the machine's compliance?",
-        path = .path.display()
-    )]
-    Slope {
-        path: PathBuf,
-        slope: f64,
-        young: f64,
-    },
-    #[error(
-        "{path} ends before a plastic strain of 0.2 %: it contains no hardening data",
-        path = .path.display()
-    )]
-    NoYield { path: PathBuf },
-}
-
-/// Reads the hardening table of a material of Young's modulus `young` (MPa): rows [true stress
-/// (MPa), true plastic strain].
+/// Reads the hardening table of a material of Young's modulus `young` (MPa): rows [true stress (MPa), true plastic
+/// strain].
 pub(crate) fn read_tensile(path: &Path, young: f64) -> Result<Vec<[f64; 2]>, TensileError> {
-    let (rows, is_engineering) = read_rows(path)?;
-    if rows.is_empty() {
-        let path = path.to_owned();
-        return Err(TensileError::Empty { path });
+    let record = Record::read(path, &RecordOptions::default())?;
+    let refuse = |what| TensileError::File {
+        path: path.to_owned(),
+        what,
+    };
+    if record.deformation == PlasticStrain {
+        return Ok(record
+            .rows
+            .iter()
+            .map(|row| [row.stress, row.strain])
+            .collect());
     }
-    if !is_engineering {
-        return Ok(rows);
-    }
-    let slope = first_slope(&rows);
+    let young_known = SpecimenOptions {
+        young: Some(young),
+        ..SpecimenOptions::default()
+    };
+    let specimen = Specimen::new(&record, &young_known)?;
+    let fit = "`kirigami material fit` corrects and reports it, and writes the table `plastic`";
+    let slope = specimen.linear.young;
     if !(young / SLOPE_FACTOR..=young * SLOPE_FACTOR).contains(&slope) {
-        return Err(TensileError::Slope {
-            path: path.to_owned(),
-            slope,
-            young,
-        });
+        return Err(refuse(format!(
+            "has the initial slope {slope:.3e} MPa, but young = {young:.3e} MPa: is the strain in per cent, is the stress \
+             not in MPa, or does the curve contain the machine's compliance? {fit}"
+        )));
     }
-    converted(&rows, young).ok_or_else(|| TensileError::NoYield {
-        path: path.to_owned(),
-    })
-}
-
-/// Rows [stress, strain], and whether they are engineering values.
-fn read_rows(path: &Path) -> Result<(Vec<[f64; 2]>, bool), TensileError> {
-    let unreadable = |source| TensileError::Read {
-        path: path.to_owned(),
-        source,
-    };
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_path(path)
-        .map_err(unreadable)?;
-    let headers = reader.headers().map_err(unreadable)?.clone();
-    let place = |name| headers.iter().position(|header| header == name);
-    let table = place("true_stress_mpa").zip(place("plastic_strain"));
-    let engineering = place("engineering_stress_mpa").zip(place("engineering_strain"));
-    let ((stress, strain), is_engineering) = match (table, engineering) {
-        (Some(columns), None) => (columns, false),
-        (None, Some(columns)) => (columns, true),
-        _ => {
-            return Err(TensileError::Columns {
-                path: path.to_owned(),
-                found: headers.iter().collect::<Vec<_>>().join(", "),
-            });
-        }
-    };
-    let mut rows: Vec<[f64; 2]> = Vec::new();
-    for record in reader.into_records() {
-        let record = record.map_err(unreadable)?;
-        let refuse = |what| TensileError::Row {
-            path: path.to_owned(),
-            line: record.position().map_or(0, csv::Position::line),
-            what,
-        };
-        let number = |column| {
-            let text = record.get(column).unwrap_or_default();
-            let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-            number.ok_or_else(|| refuse(format!("`{text}` is not a number")))
-        };
-        let row = [number(stress)?, number(strain)?];
-        if !(-0.1..=GREATEST_STRAIN).contains(&row[1]) {
-            return Err(refuse(format!(
-                "strain = {} violates -0.1 <= strain <= {GREATEST_STRAIN}: is it in per cent?",
-                row[1]
-            )));
-        }
-        if rows.last().is_some_and(|before| row[1] < before[1] - NOISE) {
-            return Err(refuse(
-                "the strain decreases from the row before: sort the rows by strain".into(),
-            ));
-        }
-        rows.push(row);
+    if specimen.toe.abs() > MAX_TOE {
+        return Err(refuse(format!(
+            "has a toe: its linear part starts at a strain of {:.2} %, not at zero; {fit}",
+            100.0 * specimen.toe
+        )));
     }
-    Ok((rows, is_engineering))
-}
-
-/// Slope (MPa) from the first row to the first row whose stress is higher by a fifth of the maximum stress; NaN for
-/// a curve without slope.
-fn first_slope(curve: &[[f64; 2]]) -> f64 {
-    let maximum = curve.iter().map(|row| row[0]).fold(0.0, f64::max);
-    let start = curve[0];
-    let risen = curve
-        .iter()
-        .find(|row| row[0] >= start[0] + FIRST_SHARE * maximum);
-    risen.map_or(f64::NAN, |row| (row[0] - start[0]) / (row[1] - start[1]))
-}
-
-/// The hardening table of an engineering curve; `None` if the curve does not reach the yield stress.
-fn converted(curve: &[[f64; 2]], young: f64) -> Option<Vec<[f64; 2]>> {
-    let maximum = curve.iter().map(|row| row[0]).fold(0.0, f64::max);
-    let uniform = curve.iter().position(|row| row[0] >= maximum)?;
-    let true_curve: Vec<_> = curve[..=uniform]
-        .iter()
-        .map(|[stress, strain]| {
-            let stress = stress * (1.0 + strain);
-            [stress, strain.ln_1p() - stress / young]
-        })
-        .collect();
-    let yields = true_curve.iter().position(|row| row[1] >= OFFSET)?;
-    let onset = match yields.checked_sub(1) {
-        Some(before) => {
-            let ([s0, e0], [s1, e1]) = (true_curve[before], true_curve[yields]);
-            s0 + (s1 - s0) * (OFFSET - e0) / (e1 - e0)
-        }
-        None => true_curve[yields][0],
-    };
-    let last = true_curve[uniform][1] - OFFSET;
-    let step = last / MOST_ROWS as f64;
-    let mut table = vec![[onset, 0.0]];
-    for [stress, strain] in &true_curve[yields..] {
-        let strain = strain - OFFSET;
-        if strain >= table[table.len() - 1][1] + step.max(1e-9) {
-            table.push([*stress, strain]);
-        }
+    if let Some(draw) = &specimen.draw {
+        return Err(refuse(format!(
+            "has a yield peak of {:.1} MPa and a draw plateau of {:.1} MPa, along which its strain is not that of the \
+             material; {fit}",
+            draw.upper_yield, draw.plateau
+        )));
     }
-    Some(table)
+    let (kept, _) = thinning::thinned(&specimen.before, MOST_ROWS);
+    Ok(kept.into_iter().map(|row| specimen.before[row]).collect())
 }
 
 #[cfg(test)]
@@ -196,10 +102,8 @@ mod tests {
 
     /// Writes `text` to a temporary file and reads it as a tensile curve.
     fn read(text: &str, young: f64) -> Result<Vec<[f64; 2]>, TensileError> {
-        let digest: u64 = text
-            .bytes()
-            .fold(7, |sum, b| sum.wrapping_mul(31) + u64::from(b));
-        let path = std::env::temp_dir().join(format!("kirigami-tensile-{digest:x}.csv"));
+        let digest = blake3::hash(text.as_bytes()).to_hex();
+        let path = std::env::temp_dir().join(format!("kirigami-tensile-{}.csv", &digest[..16]));
         std::fs::write(&path, text).unwrap();
         let table = read_tensile(&path, young);
         std::fs::remove_file(path).unwrap();
@@ -236,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_true_curve_is_read_unchanged_and_other_columns_are_ignored() {
+    fn a_hardening_table_is_read_unchanged_and_other_columns_are_ignored() {
         let text = "# comment\ntime_s, true_stress_mpa, plastic_strain\n0,44.0, 0\n1,33.6, 0.05\n";
         assert_eq!(read(text, 3000.0).unwrap(), [[44.0, 0.0], [33.6, 0.05]]);
     }
@@ -244,35 +148,76 @@ mod tests {
     #[test]
     fn an_engineering_curve_is_converted_to_the_law_that_generated_it() {
         let table = read(&with_header(&recorded(1.0, 1.0)), YOUNG).unwrap();
-        assert!(
-            (10..=MOST_ROWS + 1).contains(&table.len()),
-            "{}",
-            table.len()
-        );
+        assert!(table.len() <= MOST_ROWS, "{}", table.len());
         assert_eq!(table[0][1], 0.0);
         for [stress, strain] in table {
-            let law = 200.0 + 1000.0 * (strain + OFFSET);
-            assert!((stress - law).abs() < 0.1, "{stress} {strain}");
-            assert!(strain < 0.2);
+            let law = 200.0 + 1000.0 * strain;
+            assert!((stress - law).abs() < 0.5, "{stress} {strain}");
+            assert!(strain < 0.201);
         }
+    }
+
+    /// A toe of 0.3 % moved the yield stress of the law above from 200 to 17 MPa without a message.
+    #[test]
+    fn a_toe_is_refused_with_the_command_that_corrects_it() {
+        // Slack of 0.25 %, a parabola over 0.1 % whose tangent has the slope E, then the elastic line.
+        let stress = |strain: f64| match strain - 0.0025 {
+            x if x < 0.0 => 0.0,
+            x if x < 0.001 => 0.5 * YOUNG * x * x / 0.001,
+            x => YOUNG * (x - 0.0005),
+        };
+        let mut rows: Vec<String> = (0..58)
+            .map(|i| 1e-4 * f64::from(i))
+            .map(|strain| format!("{strain},{}", stress(strain)))
+            .collect();
+        rows.extend(recorded(1.0, 1.0).iter().skip(2).map(|row| {
+            let (strain, stress) = row.split_once(',').unwrap();
+            format!("{},{stress}", strain.parse::<f64>().unwrap() + 0.003)
+        }));
+        let message = read(&with_header(&rows), YOUNG).unwrap_err().to_string();
+        assert!(
+            message.contains("has a toe: its linear part starts at a strain of 0.30 %"),
+            "{message}"
+        );
+        assert!(message.contains("kirigami material fit"), "{message}");
+    }
+
+    /// The curve of a film that draws was cut at its yield peak without a message.
+    #[test]
+    fn a_draw_is_refused_with_the_command_that_evaluates_it() {
+        let stress = |strain: f64| match strain {
+            x if x < 0.016 => 3000.0 * x,
+            x if x < 0.1 => (48.0 + 20.0 * (x - 0.016)).min(48.2) - 170.0 * (x - 0.026f64).max(0.0),
+            x => 35.62 + 6.0 * (x - 2.0f64).max(0.0),
+        };
+        let rows = (0..4000)
+            .map(|i| 1e-3 * f64::from(i))
+            .map(|e| format!("{e},{}", stress(e)));
+        let text = with_header(&rows.collect::<Vec<_>>()).replace("strain,", "strain (1),");
+        let message = read(&text, 3000.0).unwrap_err().to_string();
+        assert!(message.contains("draw plateau of 35.6 MPa"), "{message}");
+        assert!(message.contains("kirigami material fit"), "{message}");
     }
 
     #[test]
     fn other_units_and_unsorted_rows_are_rejected() {
         for (stress, strain, expected) in [
             (1.0, 0.01, "per cent"),
-            (1.0, 0.001, "per cent"),
-            (1000.0, 1.0, "not in MPa"),
-            (1e-6, 1.0, "not in MPa"),
+            (1.0, 0.001, "--units engineering"),
+            (1000.0, 1.0, "in other units"),
+            (1e-6, 1.0, "in Pa"),
         ] {
             let text = with_header(&recorded(stress, strain));
             let message = read(&text, YOUNG).unwrap_err().to_string();
-            assert!(message.contains(expected), "{message}");
+            assert!(
+                message.contains(expected) || message.contains("--units strain=%"),
+                "{message}"
+            );
         }
         let mut rows = recorded(1.0, 1.0);
         rows.reverse();
         let message = read(&with_header(&rows), YOUNG).unwrap_err().to_string();
-        assert!(message.contains(":3: the strain decreases"), "{message}");
+        assert!(message.contains("strain falls"), "{message}");
         // The machine's compliance adds half a per cent of strain before yield.
         let soft = ["0,0", "0.004,100", "0.008,200", "0.1,250", "0.2,260"].map(str::to_owned);
         let message = read(&with_header(&soft), YOUNG).unwrap_err().to_string();
@@ -284,24 +229,24 @@ mod tests {
         let engineering = "engineering_stress_mpa,engineering_strain";
         for (text, expected) in [
             (
-                "stress,strain\n1,2\n".to_owned(),
-                "has the columns stress, strain",
+                "wear,tear\n1,2\n".to_owned(),
+                "has the columns 1 `wear`, 2 `tear`",
             ),
             (
                 "true_stress_mpa,engineering_strain\n1,2\n".to_owned(),
-                "name either",
+                "no pair of stress",
             ),
             (
                 format!("{engineering},true_stress_mpa,plastic_strain\n1,2,3,4\n"),
-                "name either",
+                "both engineering and true values",
             ),
             (
-                "true_stress_mpa,plastic_strain\n44,nan\n".to_owned(),
-                ":2: `nan` is not",
+                "true_stress_mpa,plastic_strain\n44,0\n45,nan\n".to_owned(),
+                ":3: `nan` in column 2",
             ),
             (
-                "true_stress_mpa,plastic_strain\n44,\n".to_owned(),
-                ":2: `` is not",
+                "true_stress_mpa,plastic_strain\n44,0\n44,\n".to_owned(),
+                ":3: `` in column 2",
             ),
             (
                 "true_stress_mpa,plastic_strain\n44,0\n50,60\n".to_owned(),
@@ -310,8 +255,8 @@ mod tests {
             (format!("{engineering}\n0,0\n30,-2\n"), "violates"),
             (format!("{engineering}\n"), "no rows"),
             (
-                format!("{engineering}\n0,0\n30,0.01\n"),
-                "ends before a plastic strain",
+                format!("{engineering}\n0,0\n15,0.005\n30,0.01\n"),
+                "before a plastic strain of 0.2 %",
             ),
         ] {
             let message = read(&text, 3000.0).unwrap_err().to_string();

@@ -1,12 +1,16 @@
-//! Charts of trainings, studies and replays as SVG: common helpers; one file per kind of chart.
+//! Charts of tensile tests, trainings, studies and replays as SVG: common helpers; one file per kind of chart.
 
 mod learning_curve;
+#[cfg(feature = "pipeline")]
 mod parity;
 mod slices;
+mod tensile_test;
 
 pub use learning_curve::learning_curve;
+#[cfg(feature = "pipeline")]
 pub use parity::{ParityChart, parity};
 pub use slices::{Slice, slices};
+pub use tensile_test::tensile_test;
 
 use anyhow::{Result, anyhow};
 use plotters::coord::Shift;

@@ -1,0 +1,187 @@
+//! The linear part of a curve: Young's modulus, and the strain at which its line reaches zero stress.
+//!
+//! The seed is the steepest window over a tenth of the maximum stress. It is extended in both directions while the
+//! rows stay on its line, and the line is fitted again. ISO 527-1 and ASTM D638 extend the line to zero stress: the strain
+//! there is the slack and toe of the curve, and is subtracted from all strains.
+
+use serde::Serialize;
+
+/// The linear part of a curve.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LinearPart {
+    /// Slope (MPa).
+    pub young: f64,
+    /// Strain at which the line has zero stress.
+    pub toe: f64,
+    /// Strains of the first and the last row, from the toe.
+    pub strain: [f64; 2],
+    /// Number of rows.
+    pub rows: usize,
+    /// Index of the first row.
+    #[serde(skip)]
+    pub(super) first: usize,
+}
+
+/// The rows of a linear part with their regression line.
+struct Line {
+    first: usize,
+    last: usize,
+    slope: f64,
+    /// Strain at zero stress.
+    zero: f64,
+}
+
+/// Fraction of the maximum stress that the seed covers.
+const SEED: f64 = 0.1;
+/// Distance of a row from the line, over the elastic strain at the maximum stress, at which the linear part ends.
+const STRAIGHT: f64 = 0.005;
+/// Minimum number of rows of the seed.
+const MIN_SEED: usize = 3;
+/// Number of extensions. More of them would follow the bend of a law without a linear part, such as Ramberg and Osgood's.
+const EXTENSIONS: usize = 3;
+
+impl LinearPart {
+    /// The linear part of a curve [strain, stress (MPa)] with increasing strain and the given `noise` of strain and
+    /// stress; `None` for a curve without a rising part.
+    pub(super) fn find(curve: &[[f64; 2]], noise: [f64; 2]) -> Option<Self> {
+        let top = (0..curve.len()).max_by(|a, b| curve[*a][1].total_cmp(&curve[*b][1]))?;
+        let maximum = curve[top][1];
+        let mut line = seed(&curve[..=top], (SEED * maximum).max(12.0 * noise[1]), noise)?;
+        for _ in 0..EXTENSIONS {
+            let straight = STRAIGHT * maximum / line.slope;
+            let tolerance = straight + 3.0 * f64::hypot(noise[0], noise[1] / line.slope);
+            let on_line =
+                |row: &[f64; 2]| (row[0] - line.zero - row[1] / line.slope).abs() <= tolerance;
+            let (mut first, mut last) = (line.first, line.last);
+            while first > 0 && on_line(&curve[first - 1]) {
+                first -= 1;
+            }
+            while last < top && on_line(&curve[last + 1]) {
+                last += 1;
+            }
+            if (first, last) == (line.first, line.last) {
+                break;
+            }
+            line = Line::fitted(curve, first, last).filter(|line| line.slope > 0.0)?;
+        }
+        Some(line.part(curve))
+    }
+
+    /// The line through the rows between two strains from the toe, which are those of a test standard.
+    pub(super) fn between(curve: &[[f64; 2]], toe: f64, range: [f64; 2]) -> Option<Self> {
+        let first = curve.iter().position(|row| row[0] >= toe + range[0])?;
+        let last = curve.iter().rposition(|row| row[0] <= toe + range[1])?;
+        Self::through(curve, first, last)
+    }
+
+    /// The line through the rows `first` to `last`, if it rises.
+    pub(super) fn through(curve: &[[f64; 2]], first: usize, last: usize) -> Option<Self> {
+        let line = (last > first).then(|| Line::fitted(curve, first, last))??;
+        (line.slope > 0.0).then(|| line.part(curve))
+    }
+}
+
+impl Line {
+    /// The regression of the stress on the strain.
+    fn fitted(curve: &[[f64; 2]], first: usize, last: usize) -> Option<Self> {
+        let rows = &curve[first..=last];
+        let count = rows.len() as f64;
+        let mean = |of: usize| rows.iter().map(|row| row[of]).sum::<f64>() / count;
+        let [strain, stress] = [mean(0), mean(1)];
+        let (mut variance, mut covariance) = (0.0, 0.0);
+        for row in rows {
+            variance += (row[0] - strain).powi(2);
+            covariance += (row[0] - strain) * (row[1] - stress);
+        }
+        let slope = covariance / variance;
+        slope.is_finite().then(|| Self {
+            first,
+            last,
+            slope,
+            zero: strain - stress / slope,
+        })
+    }
+
+    /// Standard error of the slope for the noise of strain and stress.
+    fn error(&self, curve: &[[f64; 2]], noise: [f64; 2]) -> f64 {
+        let rows = &curve[self.first..=self.last];
+        let mean = rows.iter().map(|row| row[0]).sum::<f64>() / rows.len() as f64;
+        let variance: f64 = rows.iter().map(|row| (row[0] - mean).powi(2)).sum();
+        f64::hypot(noise[1], self.slope * noise[0]) / variance.sqrt()
+    }
+
+    fn part(&self, curve: &[[f64; 2]]) -> LinearPart {
+        LinearPart {
+            young: self.slope,
+            toe: self.zero,
+            strain: [self.first, self.last].map(|row| curve[row][0] - self.zero),
+            rows: self.last - self.first + 1,
+            first: self.first,
+        }
+    }
+}
+
+/// The window over the stress `span` whose slope, less twice its standard error, is largest.
+fn seed(curve: &[[f64; 2]], span: f64, noise: [f64; 2]) -> Option<Line> {
+    let mut last = 0;
+    let mut best: Option<(f64, Line)> = None;
+    for first in 0..curve.len() {
+        let from = curve[first][1];
+        last = last.max(first + MIN_SEED - 1);
+        while last < curve.len() && curve[last][1] - from < span {
+            last += 1;
+        }
+        if last >= curve.len() {
+            break;
+        }
+        if let Some(line) = Line::fitted(curve, first, last) {
+            let score = line.slope - 2.0 * line.error(curve, noise);
+            if line.slope > 0.0 && best.as_ref().is_none_or(|(other, _)| score > *other) {
+                best = Some((score, line));
+            }
+        }
+    }
+    best.map(|(_, line)| line)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A bilinear curve with the modulus 2000 MPa up to 40 MPa, after a quadratic toe of `toe` strain.
+    fn curve(toe: f64) -> Vec<[f64; 2]> {
+        let stress = |strain: f64| {
+            let knee = 2.0 * toe;
+            let elastic = match strain < knee {
+                true => 2000.0 * strain * strain / (2.0 * knee),
+                false => 2000.0 * (strain - toe),
+            };
+            elastic.min(40.0 + 10.0 * (strain - toe))
+        };
+        (0..1000)
+            .map(|i| 1e-4 * f64::from(i))
+            .map(|strain| [strain, stress(strain)])
+            .collect()
+    }
+
+    #[test]
+    fn modulus_and_toe_are_those_of_the_line() {
+        for toe in [0.0, 1e-3, 3e-3, 1e-2] {
+            let part = LinearPart::find(&curve(toe), [0.0; 2]).unwrap();
+            // The rows within 0.5 % of the elastic strain of the knees bend the line by less than that.
+            assert!((part.young / 2000.0 - 1.0).abs() < 0.01, "{part:?}");
+            assert!((part.toe - toe).abs() < 2e-4, "{part:?}");
+            let given = LinearPart::between(&curve(toe), part.toe, [0.011, 0.018]).unwrap();
+            assert!((given.young / 2000.0 - 1.0).abs() < 1e-9, "{given:?}");
+        }
+    }
+
+    #[test]
+    fn a_curve_that_does_not_rise_has_no_linear_part() {
+        for stress in [0.0, 5.0] {
+            let flat: Vec<[f64; 2]> = (0..9).map(|i| [f64::from(i), stress]).collect();
+            assert_eq!(LinearPart::find(&flat, [0.0; 2]), None);
+        }
+        assert_eq!(LinearPart::find(&[], [0.0; 2]), None);
+    }
+}

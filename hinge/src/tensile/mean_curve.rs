@@ -1,0 +1,75 @@
+//! The mean hardening curve of several specimens.
+
+/// Number of intervals of the mean curve; they grow linearly, because a curve bends most after yield.
+const INTERVALS: usize = 400;
+
+/// The mean of curves [stress, strain] with increasing strain that start at zero strain, up to the strain `end`.
+///
+/// The stress at zero is the mean. From there the mean increment of the curves that reach an interval is added, so
+/// that a specimen that breaks early leaves no jump.
+pub(super) fn mean_curve(curves: &[&[[f64; 2]]], end: f64) -> Vec<[f64; 2]> {
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let starts: Vec<f64> = curves.iter().map(|curve| stress(curve, 0.0)).collect();
+    let mut rows = vec![[mean(&starts), 0.0]];
+    if end <= 0.0 {
+        return rows;
+    }
+    for interval in 1..=INTERVALS {
+        let [before, strain] =
+            [interval - 1, interval].map(|it| end * (it as f64 / INTERVALS as f64).powi(2));
+        let reached = |curve: &&&[[f64; 2]]| curve.last().is_some_and(|row| row[1] >= before);
+        let increments: Vec<f64> = (curves.iter().filter(reached))
+            .map(|curve| stress(curve, strain) - stress(curve, before))
+            .collect();
+        let increment = if increments.is_empty() {
+            0.0
+        } else {
+            mean(&increments)
+        };
+        rows.push([rows[rows.len() - 1][0] + increment, strain]);
+    }
+    rows
+}
+
+/// The stress of a curve at a strain, constant beyond its ends.
+pub(super) fn stress(curve: &[[f64; 2]], strain: f64) -> f64 {
+    let after = curve.partition_point(|row| row[1] < strain);
+    match after {
+        0 => curve[0][0],
+        after if after == curve.len() => curve[after - 1][0],
+        after => {
+            let ([s0, e0], [s1, e1]) = (curve[after - 1], curve[after]);
+            s0 + (s1 - s0) * (strain - e0) / (e1 - e0)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mean_of_parts_of_one_law_is_the_law() {
+        let law = |strain: f64| 100.0 + 50.0 * strain.sqrt();
+        let curve = |end: f64| -> Vec<[f64; 2]> {
+            let strains = (0..=2000).map(|i| end * f64::from(i) / 2000.0);
+            strains.map(|strain| [law(strain), strain]).collect()
+        };
+        let curves = [curve(0.1), curve(0.5), curve(1.0)];
+        let borrowed: Vec<&[[f64; 2]]> = curves.iter().map(Vec::as_slice).collect();
+        let mean = mean_curve(&borrowed, 0.8);
+        for [stress, strain] in mean {
+            assert!((stress - law(strain)).abs() < 0.5, "{strain}");
+        }
+    }
+
+    #[test]
+    fn the_mean_of_two_constants_is_between_them() {
+        let curves = [
+            vec![[10.0, 0.0], [10.0, 1.0]],
+            vec![[20.0, 0.0], [20.0, 0.5]],
+        ];
+        let borrowed: Vec<&[[f64; 2]]> = curves.iter().map(Vec::as_slice).collect();
+        assert!(mean_curve(&borrowed, 1.0).iter().all(|row| row[0] == 15.0));
+    }
+}

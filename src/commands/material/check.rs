@@ -1,0 +1,144 @@
+//! `kirigami material check`: what a material means for windows and sheets.
+
+use crate::ui::table::table;
+use anyhow::{Result, bail, ensure};
+use clap::Args;
+use design::output::material_check::{Intended, MaterialCheck};
+use design::output::report::Severity;
+use design::scene::SceneConfig;
+use hinge::SheetMaterial;
+use std::path::PathBuf;
+use support::toml_file;
+
+/// Check a material before windows are solved with it
+///
+/// Prints the law as the window solver reads it, the critical panel edge L* and Gamma (21)-(22), thickness against
+/// ligament width, buckling against yield, and the strain of a fold against the fracture strain. Exits with 1 if a
+/// verdict is an error. Example: kirigami material check configs/materials/pet-0.5mm.toml
+/// configs/scenes/pet-7x7.toml
+#[derive(Args)]
+pub struct CheckCommand {
+    /// Material (TOML); see configs/materials
+    #[arg(value_name = "MATERIAL")]
+    material: PathBuf,
+    /// Scene (TOML) whose ligament widths and panels are intended; its own material is not read
+    #[arg(value_name = "SCENE")]
+    scene: Option<PathBuf>,
+    /// Ligament widths (mm) [default: those of the scene, or 10 and 50 thicknesses]
+    #[arg(long, value_name = "MIN,MAX", value_delimiter = ',', num_args = 2)]
+    w_lig: Vec<f64>,
+    /// Panel pitch (mm) [default: that of the scene]
+    #[arg(long, value_name = "MM")]
+    pitch: Option<f64>,
+    /// Rotation of the hinges (deg)
+    #[arg(long, value_name = "DEG", default_value_t = 60.0)]
+    theta_deg: f64,
+    /// Print JSON instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+impl CheckCommand {
+    pub(crate) fn run(&self) -> Result<()> {
+        let material = SheetMaterial::load(&self.material)?;
+        let check = MaterialCheck::new(&material, &self.intended(&material)?);
+        if self.json {
+            println!("{}", serde_json::to_string_pretty(&check)?);
+        } else {
+            print(&material, &check);
+        }
+        let errors = check
+            .verdicts
+            .iter()
+            .filter(|it| it.severity == Severity::Error);
+        match errors.count() {
+            0 => Ok(()),
+            1 => bail!("the material has 1 error for this use"),
+            count => bail!("the material has {count} errors for this use"),
+        }
+    }
+
+    /// The use that options and scene state.
+    fn intended(&self, material: &SheetMaterial) -> Result<Intended> {
+        let scene: Option<SceneConfig> = self.scene.as_deref().map(toml_file::read).transpose()?;
+        let w_lig = match (&self.w_lig[..], &scene) {
+            (&[min, max], _) => [min, max],
+            (_, Some(scene)) => scene.ligament.range,
+            _ => [10.0, 50.0].map(|ratio| ratio * material.thickness),
+        };
+        let pitch = self.pitch.or(scene.as_ref().map(|scene| {
+            let panels = scene.sheet.grid().panel_count();
+            (scene.sheet.outline().area() / panels as f64).sqrt()
+        }));
+        ensure!(
+            w_lig[0] > 0.0 && w_lig[0] <= w_lig[1] && w_lig[1].is_finite(),
+            "the ligament widths {w_lig:?} violate 0 < minimum <= maximum (mm)"
+        );
+        ensure!(
+            pitch.is_none_or(|pitch| pitch > 0.0 && pitch.is_finite()),
+            "the panel pitch must be positive (mm)"
+        );
+        ensure!(
+            self.theta_deg > 0.0 && self.theta_deg <= 180.0,
+            "--theta-deg {} violates 0 < theta <= 180 deg",
+            self.theta_deg
+        );
+        Ok(Intended {
+            w_lig,
+            pitch,
+            theta: self.theta_deg.to_radians(),
+        })
+    }
+}
+
+fn print(material: &SheetMaterial, check: &MaterialCheck) {
+    println!(
+        "{}, {} mm (law {})\n",
+        material.name, material.thickness, check.law_hash
+    );
+    println!(
+        "*ELASTIC as the window solver reads it: E = {} MPa, nu = {}",
+        material.young, material.poisson
+    );
+    println!("*PLASTIC:");
+    let mut rows = table(["row", "true stress, MPa", "plastic strain", "slope, MPa"]);
+    for (index, [stress, strain]) in material.plastic.iter().enumerate() {
+        let slope = match material.plastic.get(index + 1) {
+            Some([next, to]) => format!("{:.0}", (next - stress) / (to - strain)),
+            None => "constant".into(),
+        };
+        rows.add_row([
+            (index + 1).to_string(),
+            stress.to_string(),
+            strain.to_string(),
+            slope,
+        ]);
+    }
+    println!("{rows}\n");
+    let mut widths = table([
+        "w_lig, mm",
+        "w/t",
+        "buckles at",
+        "surface yields at",
+        "surface strain",
+        "tip strain",
+        "L*, mm",
+        "Gamma",
+    ]);
+    for it in &check.ligaments {
+        widths.add_row([
+            format!("{}", it.w_lig),
+            format!("{:.1}", it.slenderness),
+            format!("{:.2} deg", it.buckles_at_deg),
+            format!("{:.1} deg", it.yields_at_deg),
+            format!("{:.3}", it.surface_strain),
+            format!("{:.3} to {:.3}", it.tip_strain[0], it.tip_strain[1]),
+            format!("{:.0}", it.critical_edge),
+            it.gamma.map_or("-".into(), |gamma| format!("{gamma:.3}")),
+        ]);
+    }
+    println!("{widths}\n");
+    for verdict in &check.verdicts {
+        println!("{}: {}", verdict.severity, verdict.message);
+    }
+}

@@ -1,0 +1,344 @@
+//! `kirigami material fit`: from the files of a testing machine to a material file.
+
+use crate::ui::charts::tensile_test;
+use crate::ui::table::table;
+use crate::ui::{picture, run_folder};
+use anyhow::{Result, ensure};
+use clap::Args;
+use hinge::tensile::{
+    Cause, FitOptions, FractureSource, MaterialFit, Origin, Quantity, RecordOptions, SheetFacts,
+    Specimen, SpecimenOptions, Statistic, material_file,
+};
+use std::path::{Path, PathBuf};
+
+/// Fit a material to tensile tests: modulus, yield, hardening, fracture strain
+///
+/// One file a specimen, as the testing machine exports it. Columns, units, separators and decimal signs are
+/// recognised, or given by --columns and --units. Slack and toe are removed (ISO 527-1, ASTM D638), and unloading
+/// loops and rows after the break are dropped. Beyond a yield peak with a draw plateau the curve of the material
+/// is constructed from the work of the machine; docs/MATERIALS.md states the rules. Writes the material file and a
+/// picture of all curves. Example: kirigami material fit strip-*.csv --name film --thickness 0.5
+/// --density-kg-m3 1390
+#[derive(Args)]
+pub struct FitCommand {
+    /// Records of the specimens (CSV or text with semicolons or tabs), one file a specimen
+    #[arg(value_name = "TEST", required = true)]
+    tests: Vec<PathBuf>,
+    /// Name of the material and of the files written
+    #[arg(long, value_name = "NAME")]
+    name: String,
+    /// Thickness of the sheet and its specimens (mm)
+    #[arg(long, value_name = "MM")]
+    thickness: f64,
+    /// Density (kg/m^3)
+    #[arg(long, value_name = "DENSITY")]
+    density_kg_m3: f64,
+    /// Poisson's ratio [default: 0.35, noted as assumed]
+    #[arg(long, value_name = "RATIO")]
+    poisson: Option<f64>,
+    /// Folder for the material file and the picture
+    #[arg(long, value_name = "FOLDER", default_value = "runs/material")]
+    out: PathBuf,
+    /// Print JSON instead of tables
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    columns: ColumnArgs,
+    #[command(flatten)]
+    evaluation: EvaluationArgs,
+}
+
+/// How the files are read.
+#[derive(Args)]
+#[command(next_help_heading = "Files")]
+struct ColumnArgs {
+    /// Columns by number or name, such as strain=3,stress=Load; quantities: force, stress, true-stress, extension,
+    /// strain, true-strain
+    #[arg(long, value_name = "QUANTITY=COLUMN,...", value_delimiter = ',', value_parser = assignment)]
+    columns: Vec<(Quantity, String)>,
+    /// Units, such as strain=%,force=kN, instead of those in the names of the columns
+    #[arg(long, value_name = "QUANTITY=UNIT,...", value_delimiter = ',', value_parser = assignment)]
+    units: Vec<(Quantity, String)>,
+    /// Initial gauge length, for an extension (mm); one for all files, or one a file
+    #[arg(long, value_name = "MM,...", value_delimiter = ',')]
+    gauge_length: Vec<f64>,
+    /// Width of the specimen, for a force (mm); one for all files, or one a file
+    #[arg(long, value_name = "MM,...", value_delimiter = ',')]
+    width: Vec<f64>,
+}
+
+/// How the curves are evaluated.
+#[derive(Args)]
+#[command(next_help_heading = "Evaluation")]
+struct EvaluationArgs {
+    /// Young's modulus (MPa), if it is known better than from these records; the compliance of the machine is removed
+    #[arg(long, value_name = "MPA")]
+    young: Option<f64>,
+    /// Strains from the toe between which the modulus is measured (%), such as 0.05,0.25 of ISO 527-1 [default: the
+    /// linear part that is found]
+    #[arg(long, value_name = "FROM,TO", value_delimiter = ',', num_args = 2)]
+    modulus_range_percent: Vec<f64>,
+    /// Natural draw ratio, measured on the neck: initial over drawn section [default: where the stress rises again]
+    #[arg(long, value_name = "RATIO")]
+    draw_ratio: Option<f64>,
+    /// True plastic strain at fracture, measured on the broken section: ln(A0 / A) [default: from the records]
+    #[arg(long, value_name = "STRAIN")]
+    fracture_strain: Option<f64>,
+    /// Maximum number of rows of the hardening table, 2 to 200
+    #[arg(long, value_name = "N", default_value_t = 30)]
+    rows: usize,
+}
+
+/// Poisson's ratio if none is given.
+const ASSUMED_POISSON: f64 = 0.35;
+/// Width of the picture (px).
+const PICTURE_WIDTH: u32 = 1800;
+
+impl FitCommand {
+    pub(crate) fn run(&self) -> Result<()> {
+        let fit = MaterialFit::new(&self.records()?, &self.options()?)?;
+        let facts = SheetFacts {
+            name: self.name.clone(),
+            thickness: self.thickness,
+            poisson: self.poisson.unwrap_or(ASSUMED_POISSON),
+            poisson_assumed: self.poisson.is_none(),
+            density_kg_m3: self.density_kg_m3,
+        };
+        let material = fit.material(&facts)?;
+        let _held = run_folder::hold(&self.out)?;
+        let file = format!("{}.toml", self.name);
+        run_folder::write(&self.out, &file, &material_file(&fit, &facts))?;
+        let chart = tensile_test(&fit, &self.name)?;
+        let pictures = picture::save(&chart, &self.out.join(&self.name), PICTURE_WIDTH)?;
+        let file = self.out.join(file);
+        if self.json {
+            let json = serde_json::json!({
+                "file": file,
+                "picture": pictures[1],
+                "material": material,
+                "law_hash": material.law_hash(),
+                "fit": fit,
+                "notes": notes(&fit),
+            });
+            println!("{json:#}");
+            return Ok(());
+        }
+        println!("{}\n", specimen_table(&fit.specimens));
+        println!("{}\n", law_table(&fit));
+        for note in notes(&fit) {
+            println!("note: {note}");
+        }
+        println!(
+            "\nmaterial: {} (law {})",
+            file.display(),
+            material.law_hash()
+        );
+        println!("picture:  {}", pictures[1].display());
+        println!("next:     kirigami material check {}", file.display());
+        Ok(())
+    }
+
+    /// Each file with what it does not say about itself.
+    fn records(&self) -> Result<Vec<(PathBuf, RecordOptions)>> {
+        let named = Path::new(&self.name)
+            .file_name()
+            .is_some_and(|name| name == self.name.as_str());
+        ensure!(named, "--name {:?} is not a file name", self.name);
+        let files = self.tests.len();
+        let each = |option: &str, values: &[f64], file: usize| match values {
+            [] => Ok(None),
+            [one] => Ok(Some(*one)),
+            values if values.len() == files => Ok(Some(values[file])),
+            values => Err(anyhow::anyhow!(
+                "--{option} has {} values for {files} files: give one for all, or one a file",
+                values.len()
+            )),
+        };
+        let record = |(file, path): (usize, &PathBuf)| {
+            let columns = &self.columns;
+            let record = RecordOptions {
+                columns: columns.columns.clone(),
+                units: columns.units.clone(),
+                gauge_length: each("gauge-length", &columns.gauge_length, file)?,
+                width: each("width", &columns.width, file)?,
+                thickness: Some(self.thickness),
+            };
+            Ok((path.clone(), record))
+        };
+        self.tests.iter().enumerate().map(record).collect()
+    }
+
+    fn options(&self) -> Result<FitOptions> {
+        let EvaluationArgs {
+            young,
+            ref modulus_range_percent,
+            draw_ratio,
+            fracture_strain,
+            rows,
+        } = self.evaluation;
+        let within = |option: &str, value: Option<f64>, [min, max]: [f64; 2]| match value {
+            Some(value) if !(min..=max).contains(&value) => Err(anyhow::anyhow!(
+                "--{option} {value} violates {min} <= {option} <= {max}"
+            )),
+            _ => Ok(()),
+        };
+        within("young", young, [10.0, 1e6])?;
+        within("draw-ratio", draw_ratio, [1.001, 50.0])?;
+        within("fracture-strain", fracture_strain, [1e-3, 10.0])?;
+        ensure!(
+            (2..=200).contains(&rows),
+            "--rows {rows} violates 2 <= rows <= 200"
+        );
+        let modulus_range = match modulus_range_percent[..] {
+            [from, to] => {
+                ensure!(
+                    0.0 <= from && from < to && to <= 20.0,
+                    "--modulus-range-percent {from},{to} violates 0 <= from < to <= 20 %"
+                );
+                Some([from / 100.0, to / 100.0])
+            }
+            _ => None,
+        };
+        Ok(FitOptions {
+            specimen: SpecimenOptions {
+                young,
+                modulus_range,
+                draw_ratio,
+            },
+            fracture_strain,
+            rows,
+        })
+    }
+}
+
+/// A pair such as `strain=3`.
+fn assignment(text: &str) -> Result<(Quantity, String), String> {
+    let (quantity, value) = text
+        .split_once('=')
+        .ok_or("write QUANTITY=VALUE, such as strain=3")?;
+    Ok((quantity.trim().parse()?, value.trim().to_owned()))
+}
+
+/// The specimens, one a row.
+fn specimen_table(specimens: &[Specimen]) -> comfy_table::Table {
+    let mut table = table([
+        "specimen",
+        "rows",
+        "toe",
+        "unloading",
+        "broken",
+        "averaged",
+        "toe, %",
+        "linear, %",
+        "E, MPa",
+        "Rp0.2, MPa",
+        "upper, MPa",
+        "plateau, MPa",
+        "draw ratio",
+    ]);
+    for it in specimens {
+        let draw = |value: fn(&hinge::tensile::Draw) -> f64, digits: usize| {
+            it.draw
+                .as_ref()
+                .map_or("-".into(), |draw| format!("{:.digits$}", value(draw)))
+        };
+        let [from, to] = it.linear.strain.map(|strain| 100.0 * strain);
+        table.add_row([
+            it.path
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned(),
+            it.rows.to_string(),
+            it.dropped_for(Cause::Toe).to_string(),
+            it.dropped_for(Cause::Unloading).to_string(),
+            it.dropped_for(Cause::Broken).to_string(),
+            it.averaged.to_string(),
+            format!("{:.3}", 100.0 * it.toe),
+            format!("{from:.3} to {to:.3}"),
+            format!("{:.0}", it.linear.young),
+            format!("{:.2}", it.offset_yield),
+            draw(|draw| draw.upper_yield, 2),
+            draw(|draw| draw.plateau, 2),
+            draw(|draw| draw.draw_ratio, 3),
+        ]);
+    }
+    table
+}
+
+/// The numbers of the law with their scatter.
+fn law_table(fit: &MaterialFit) -> comfy_table::Table {
+    let mut table = table(["law", "mean", "standard deviation"]);
+    let mut row = |name: &str, of: &Statistic, digits: usize| {
+        let deviation = of
+            .deviation
+            .map_or("-".into(), |value| format!("{value:.digits$}"));
+        table.add_row([name.into(), format!("{:.digits$}", of.mean), deviation]);
+    };
+    row("Young's modulus, MPa", &fit.young, 0);
+    row("offset yield Rp0.2, MPa", &fit.offset_yield, 2);
+    for (name, of, digits) in [
+        ("upper yield, MPa", &fit.upper_yield, 2),
+        ("draw plateau, MPa", &fit.plateau, 2),
+        ("natural draw ratio", &fit.draw_ratio, 3),
+    ] {
+        if let Some(of) = of {
+            row(name, of, digits);
+        }
+    }
+    let fracture = Statistic {
+        mean: fit.fracture_strain,
+        deviation: fit.fracture_scatter,
+    };
+    row("fracture strain (true, plastic)", &fracture, 4);
+    table
+}
+
+/// What a user must know about the law, one sentence each.
+fn notes(fit: &MaterialFit) -> Vec<String> {
+    let mut notes = vec![format!(
+        "the table has {} rows and deviates from the mean curve by at most {:.2} %",
+        fit.table.len(),
+        100.0 * fit.table_deviation
+    )];
+    let ends = |origin| {
+        let rows = fit.curve.iter().filter(|row| row.origin == origin);
+        rows.clone()
+            .next()
+            .zip(rows.last())
+            .map(|(first, last)| [first.strain, last.strain])
+    };
+    if let Some([from, to]) = ends(Origin::Drawn) {
+        notes.push(format!(
+            "between the plastic strains {from:.3} and {to:.3} a neck runs along the specimen and the record is not \
+             local: the curve there is constructed, such that its work is that of the machine"
+        ));
+    }
+    if let Some(yields) = fit.cut_yield {
+        notes.push(format!(
+            "the upper yield is cut to the mean true stress of the draw, {yields:.2} MPa: a hardening table does not soften"
+        ));
+    }
+    if let Some([_, to]) = ends(Origin::Extrapolated) {
+        notes.push(format!(
+            "beyond the maximum force the curve is extrapolated to {to:.3} by Considere's tangent, an upper bound"
+        ));
+    }
+    if fit.young_given {
+        let measured = Statistic::of(fit.specimens.iter().map(|it| it.linear.young));
+        notes.push(format!(
+            "the records have a mean slope of {:.0} MPa; the difference to the given modulus is removed as the compliance \
+             of the machine",
+            measured.mean
+        ));
+    }
+    notes.push(match fit.fracture_source {
+        FractureSource::MaximumForce => {
+            "the fracture strain is that at the maximum force, a lower bound: measure the \
+             broken section and give --fracture-strain, ln(A0 / A)"
+                .into()
+        }
+        source => format!("fracture strain: {}", source.words()),
+    });
+    notes
+}

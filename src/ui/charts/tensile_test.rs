@@ -1,0 +1,262 @@
+//! Chart of a fitted material: the records of its specimens at small strains and in full, and the hardening curve.
+
+use super::*;
+use hinge::tensile::{HardeningRow, MaterialFit, Origin, Specimen};
+use plotters::coord::types::RangedCoordf64;
+
+/// Maximum number of points of a drawn curve; a record may have a hundred thousand.
+const POINTS: usize = 1500;
+/// Size of one panel (px).
+const PANEL: (u32, u32) = (500, 440);
+/// Half the size of the cross of a dropped row (px).
+const CROSS: i32 = 3;
+
+/// A panel with a strain and a stress (MPa) as axes.
+type StressChart<'a, 'b> =
+    ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// Three panels: the linear part with modulus and offset yield, the whole records with the draw, and the hardening table
+/// on the curve that it approximates.
+pub fn tensile_test(fit: &MaterialFit, name: &str) -> Result<String> {
+    drawn((3 * PANEL.0, PANEL.1), |root| {
+        let areas = root.split_evenly((1, 3));
+        small_strains(&areas[0], fit)?;
+        records(&areas[1], fit, name)?;
+        hardening(&areas[2], fit)
+    })
+}
+
+/// Modulus and offset yield, up to three times the strain at yield.
+fn small_strains(area: &Area, fit: &MaterialFit) -> ChartResult {
+    let (young, yields) = (fit.young.mean, fit.offset_yield.mean);
+    let end = 300.0 * (yields / young + 0.002);
+    let toes = fit.specimens.iter().map(|it| -100.0 * it.toe);
+    let start = toes.fold(0.0, f64::min).max(-0.5 * end);
+    let seen = (fit.specimens.iter().flat_map(|it| &it.nominal)).filter(|row| 100.0 * row[0] < end);
+    let top = 1.25 * seen.map(|row| row[1]).fold(yields, f64::max);
+    let ranges = [start - 0.03 * end..end, 0.0..top];
+    let mut chart = axes(area, "Modulus and offset yield", ranges, "strain, %")?;
+    draw_records(&mut chart, &fit.specimens, [start, end])?;
+    for offset in [0.0, 0.2] {
+        let at = |stress: f64| (offset + 100.0 * stress / young, stress);
+        let line = DashedLineSeries::new([at(0.0), at(0.97 * top)], 6, 4, GUIDE.stroke_width(1));
+        chart.draw_series(line)?;
+    }
+    let at_yield = (100.0 * yields / young + 0.2, yields);
+    mark(&mut chart, at_yield)?;
+    let right = 0.03 * (end - start);
+    write_at(
+        &mut chart,
+        (at_yield.0 + right, 0.5 * yields),
+        &format!("E = {young:.0} MPa"),
+    )?;
+    write_at(
+        &mut chart,
+        (at_yield.0 + right, 0.4 * yields),
+        &format!("Rp0.2 = {yields:.1} MPa"),
+    )?;
+    legend(&mut chart, SeriesLabelPosition::LowerRight)
+}
+
+/// The whole records, with upper yield, plateau and natural draw ratio.
+fn records(area: &Area, fit: &MaterialFit, name: &str) -> ChartResult {
+    let rows = || fit.specimens.iter().flat_map(|it| &it.nominal);
+    let end = 100.0 * rows().map(|row| row[0]).fold(0.0, f64::max);
+    let top = 1.25 * rows().map(|row| row[1]).fold(0.0, f64::max);
+    let ranges = [-0.02 * end..1.03 * end, 0.0..top];
+    let mut chart = axes(area, name, ranges, "strain, %")?;
+    draw_records(&mut chart, &fit.specimens, [-end, end])?;
+    if let (Some(upper), Some(plateau), Some(ratio)) =
+        (fit.upper_yield, fit.plateau, fit.draw_ratio)
+    {
+        let (stress, natural) = (plateau.mean, 100.0 * (ratio.mean - 1.0));
+        for line in [
+            [(0.0, stress), (natural, stress)],
+            [(natural, 0.0), (natural, 1.06 * stress)],
+        ] {
+            chart.draw_series(DashedLineSeries::new(line, 6, 4, GUIDE.stroke_width(1)))?;
+        }
+        for it in fit.specimens.iter().filter_map(|it| it.draw) {
+            mark(&mut chart, (100.0 * it.upper_yield_strain, it.upper_yield))?;
+        }
+        let upper_text = format!("upper yield {:.1} MPa", upper.mean);
+        write_at(&mut chart, (0.04 * end, 1.06 * upper.mean), &upper_text)?;
+        write_at(
+            &mut chart,
+            (0.08 * end, 0.9 * stress),
+            &format!("draw plateau {stress:.1} MPa"),
+        )?;
+        let ratio = format!("natural draw ratio {:.2}", ratio.mean);
+        write_at(
+            &mut chart,
+            ((natural - 0.47 * end).max(0.08 * end), 0.2 * stress),
+            &ratio,
+        )?;
+    }
+    legend(&mut chart, SeriesLabelPosition::UpperRight)
+}
+
+/// The hardening curve by its origin, the rows of the table, and the fracture strain.
+fn hardening(area: &Area, fit: &MaterialFit) -> ChartResult {
+    let end = 1.05
+        * fit
+            .fracture_strain
+            .max(fit.curve[fit.curve.len() - 1].strain);
+    let top = 1.25 * fit.curve.iter().map(|row| row.stress).fold(0.0, f64::max);
+    let ranges = [-0.02 * end..1.02 * end, 0.0..top];
+    let mut chart = axes(area, "Hardening table", ranges, "true plastic strain")?;
+    for (origin, name, colour) in [
+        (Origin::Measured, "measured", POINT),
+        (Origin::Drawn, "neck: equal work", VALIDATION),
+        (Origin::Extrapolated, "Considere's tangent", SLICES[2]),
+    ] {
+        let mut named = false;
+        for part in parts(&fit.curve, origin) {
+            let line = LineSeries::new(
+                part.iter().map(|row| (row.strain, row.stress)),
+                colour.stroke_width(2),
+            );
+            let series = chart.draw_series(line)?;
+            if !named {
+                series.label(name).legend(move |(x, y)| {
+                    PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2))
+                });
+                named = true;
+            }
+        }
+    }
+    let rows = fit
+        .table
+        .iter()
+        .map(|row| Circle::new((row.strain, row.stress), 3, BLACK));
+    chart
+        .draw_series(rows)?
+        .label(format!("table, {} rows", fit.table.len()))
+        .legend(|(x, y)| Circle::new((x + 9, y), 3, BLACK));
+    let fracture = [(fit.fracture_strain, 0.0), (fit.fracture_strain, 0.8 * top)];
+    let colour = SLICES[4];
+    chart
+        .draw_series(DashedLineSeries::new(
+            fracture,
+            6,
+            4,
+            colour.stroke_width(1),
+        ))?
+        .label(format!("fracture strain {:.3}", fit.fracture_strain))
+        .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(1)));
+    legend(&mut chart, SeriesLabelPosition::UpperLeft)
+}
+
+/// The connected parts of a curve with one origin. A part begins at the last row of the part before it.
+fn parts(curve: &[HardeningRow], origin: Origin) -> Vec<&[HardeningRow]> {
+    let mut start = 0;
+    let mut parts = Vec::new();
+    for part in curve.chunk_by(|a, b| a.origin == b.origin) {
+        if part[0].origin == origin {
+            parts.push(&curve[start.max(1) - 1..start + part.len()]);
+        }
+        start += part.len();
+    }
+    parts
+}
+
+/// Empty axes.
+fn axes<'a, 'b>(
+    area: &'a Area<'b>,
+    title: &str,
+    [x, y]: [Range<f64>; 2],
+    x_name: &str,
+) -> std::result::Result<StressChart<'a, 'b>, DrawingAreaErrorKind<std::io::Error>> {
+    let mut chart = ChartBuilder::on(area)
+        .caption(title, (FONT, 15))
+        .margin(12)
+        .x_label_area_size(40)
+        .y_label_area_size(56)
+        .build_cartesian_2d(x, y)?;
+    chart
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .x_labels(6)
+        .y_labels(6)
+        .label_style((FONT, 12))
+        .x_desc(x_name)
+        .y_desc(if x_name.starts_with("true") {
+            "true stress, MPa"
+        } else {
+            "stress, MPa"
+        })
+        .draw()?;
+    Ok(chart)
+}
+
+/// The used rows of each specimen as a line and the dropped ones as crosses, between two strains (%).
+fn draw_records(
+    chart: &mut StressChart,
+    specimens: &[Specimen],
+    [from, to]: [f64; 2],
+) -> ChartResult {
+    let within = move |strain: f64| (from..=to).contains(&(100.0 * strain));
+    for (index, specimen) in specimens.iter().enumerate() {
+        let seen: Vec<_> = specimen
+            .nominal
+            .iter()
+            .filter(|row| within(row[0]))
+            .collect();
+        let step = seen.len().div_ceil(POINTS).max(1);
+        let points = seen.iter().step_by(step).chain(seen.last());
+        let line = LineSeries::new(
+            points.map(|row| (100.0 * row[0], row[1])),
+            POINT.mix(0.8).stroke_width(1),
+        );
+        let series = chart.draw_series(line)?;
+        if index == 0 {
+            series
+                .label(if specimens.len() == 1 {
+                    "record"
+                } else {
+                    "records"
+                })
+                .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], POINT.stroke_width(1)));
+        }
+    }
+    let dropped = specimens.iter().flat_map(|it| &it.dropped);
+    let dropped: Vec<_> = dropped
+        .filter(|row| within(row.strain) && row.stress >= 0.0)
+        .collect();
+    if dropped.is_empty() {
+        return Ok(());
+    }
+    let step = dropped.len().div_ceil(POINTS / 5).max(1);
+    let crosses = dropped.iter().step_by(step).map(|row| {
+        let at = (100.0 * row.strain, row.stress);
+        Cross::new(at, CROSS, VALIDATION.stroke_width(1))
+    });
+    chart
+        .draw_series(crosses)?
+        .label("rows not used")
+        .legend(|(x, y)| Cross::new((x + 9, y), CROSS, VALIDATION.stroke_width(1)));
+    Ok(())
+}
+
+fn mark(chart: &mut StressChart, at: (f64, f64)) -> ChartResult {
+    chart.draw_series([Circle::new(at, 4, BLACK.stroke_width(1))])?;
+    Ok(())
+}
+
+fn write_at(chart: &mut StressChart, at: (f64, f64), text: &str) -> ChartResult {
+    chart.draw_series([Text::new(text.to_owned(), at, (FONT, 12).into_font())])?;
+    Ok(())
+}
+
+fn legend<'a, 'b: 'a>(
+    chart: &mut StressChart<'a, 'b>,
+    position: SeriesLabelPosition,
+) -> ChartResult {
+    chart
+        .configure_series_labels()
+        .position(position)
+        .label_font((FONT, 12))
+        .border_style(GUIDE)
+        .background_style(WHITE)
+        .draw()
+}
