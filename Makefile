@@ -6,7 +6,8 @@
 demo: tools
 	cargo run --release --locked -- demo
 
-test: tools
+test:
+	scripts/install-tools tests
 	cargo test --release --locked --workspace
 
 lint:

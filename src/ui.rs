@@ -1,5 +1,6 @@
 //! The user interface of the commands: progress, tables, pictures, charts, exit codes.
 
+pub mod animation;
 pub mod charts;
 pub mod exit;
 pub mod interrupt;

@@ -64,7 +64,9 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
         "cut.svg",
         "flat.png",
         "deployed.png",
+        "deployment.png",
         "report.txt",
+        "run.html",
     ] {
         let size = std::fs::metadata(work.path("runs/demo/design").join(made))
             .unwrap()

@@ -1,6 +1,7 @@
 //! Analyses of a deployed sheet beyond its shape: forces, capacity, voids, tilting panels (section 3.2), comparison with
 //! measured points (section 4.4).
 
+pub mod actuation_curve;
 pub mod degeneration;
 pub mod force_transmission;
 pub mod further_load;

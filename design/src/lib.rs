@@ -23,7 +23,7 @@
 //! | [`optimise`](mod@optimise) | the outer loop, Algorithm 1 |
 //! | [`scene`] | a design problem read from TOML, and its run folder |
 //! | [`analysis`] | forces, capacity, void families, localisation of a deployed sheet; measured sheets |
-//! | [`output`] | reports, listings, drawings, cut files, VTK grids |
+//! | [`output`] | reports, the page of a run, listings, drawings, cut files, VTK grids |
 //!
 //! A room uses itself and the rooms above it. Lengths are in mm, forces in N, angles in rad.
 //!

@@ -1,12 +1,14 @@
-//! Output of a design: reports, listings, drawings, cut files.
+//! Output of a design: reports, the page of a run, listings, drawings, cut files.
 
 pub mod canvas;
 pub mod cut_file;
+mod deployment_states;
 pub mod drawing;
 pub mod hinge_states;
 pub mod listing;
 pub mod material_check;
 pub mod measurement;
 pub mod report;
+mod run_page;
 pub mod run_results;
 pub mod vtk_sheet;

@@ -92,6 +92,7 @@ fn product_table() -> Table {
         ("deployed sheet", "design/deployed.png"),
         ("cut file", "design/cut.dxf"),
         ("report", "design/report.txt"),
+        ("page of the run", "design/run.html"),
     ] {
         let path = PathBuf::from(FOLDER).join(name);
         let size = std::fs::metadata(&path).map_or("missing".into(), |file| {

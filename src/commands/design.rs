@@ -2,11 +2,12 @@
 
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::Progress;
-use crate::ui::{interrupt, picture, run_folder};
+use crate::ui::{animation, interrupt, picture, run_folder};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use design::objective::scores::shown;
 use design::optimise::outer_loop::{Ended, StepRecord};
+use design::output::drawing::deployment_frames;
 use design::output::report::Warning;
 use design::output::run_results::write_results;
 use design::scene::design_run::{forget, inverse_design};
@@ -15,8 +16,8 @@ use std::path::{Path, PathBuf};
 
 /// Design a sheet: cut pattern and ligament widths for a target shape
 ///
-/// Reads a scene and writes cut files (DXF and SVG, 1:1 in mm), pictures and a report to the
-/// scene's output folder. A stopped run continues when it is started again. Example:
+/// Reads a scene and writes cut files (DXF and SVG, 1:1 in mm), pictures, a report and a page
+/// that shows the run in a browser (run.html) to the scene's output folder. A stopped run continues when it is started again. Example:
 /// kirigami design configs/scenes/linear-7x7.toml
 #[derive(Args)]
 pub struct DesignCommand {
@@ -45,6 +46,9 @@ pub struct DesignCommand {
 
 /// Width of the pictures (px).
 const PICTURE_WIDTH: u32 = 1600;
+/// Width (px) and maximum number of the frames of the animation.
+const FRAME_WIDTH: u32 = 640;
+const MOST_FRAMES: usize = 40;
 
 impl DesignCommand {
     /// A run of the scene without changes, from its start design.
@@ -74,6 +78,8 @@ impl DesignCommand {
         bar.finish();
         let report = write_results(&scene, &designed, self.force)?;
         rasterise(&scene.output())?;
+        let frames = deployment_frames(&scene, &designed, MOST_FRAMES);
+        animation::save(&frames, &scene.output().join("deployment.png"), FRAME_WIDTH)?;
         if self.json {
             println!("{}", serde_json::to_string_pretty(&report)?);
         } else {

@@ -17,8 +17,8 @@ pub fn save(svg: &str, stem: &Path, width: u32) -> Result<[PathBuf; 2]> {
     Ok([vector, raster])
 }
 
-/// Uses only the bundled DejaVu Sans, so that a picture is the same on every machine.
-fn rasterise(svg: &str, width: u32) -> Result<tiny_skia::Pixmap> {
+/// The pixels of a picture. Uses only the bundled DejaVu Sans, so that it is the same on every machine.
+pub(super) fn rasterise(svg: &str, width: u32) -> Result<tiny_skia::Pixmap> {
     let mut fonts = usvg::fontdb::Database::new();
     fonts.load_font_data(dejavu::sans::regular().to_vec());
     fonts.load_font_data(dejavu::sans::bold().to_vec());

@@ -1,12 +1,13 @@
 //! The state of the sheet at one step of the equilibrium path, and how it was found.
 
-use crate::equilibrium::displacement_control::HeldFactor;
+use crate::equilibrium::displacement_control::{HeldFactor, Stroke, dot};
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::potential::State;
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::HingeDamage;
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::kinematics::{Configuration, hinge_deformations};
+use crate::sheet::panel_vectors::gather;
 use hinge::HingeDeformation;
 use serde::Serialize;
 
@@ -83,6 +84,18 @@ impl LoadStep {
             }) => solver.pattern.condition(values, &held.factor),
             _ => f64::INFINITY,
         }
+    }
+
+    /// Stiffness of the sheet against a further load, the supports being held: increment of the sum of the loads for
+    /// an increment of their stroke, 1 / (c . H^-1 c) (N/mm; N mm/rad if there are only couples). Negative past a
+    /// limit point of the load; `None` without loads, or if the tangent could not be factorised.
+    pub fn stiffness(&self, solver: &EquilibriumSolver) -> Option<f64> {
+        let held = self.tangent.as_ref()?.factor.as_ref()?;
+        let stroke = Stroke::new(&solver.loads, &gather(&solver.free, &solver.loads))?;
+        let mut response = stroke.direction().to_vec();
+        solver.pattern.solve(&held.factor, &mut response);
+        let stiffness = 1.0 / dot(stroke.direction(), &response);
+        (!held.shifted && stiffness.is_finite()).then_some(stiffness)
     }
 
     /// The ideal deployment as a path of one step, without energy and without unbalanced forces.

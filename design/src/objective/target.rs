@@ -137,6 +137,13 @@ impl Target {
         }
     }
 
+    /// BLAKE3 hash of the samples.
+    pub fn hash(&self) -> String {
+        let points = self.points.as_flattened();
+        let bytes: Vec<u8> = points.iter().flat_map(|x| x.to_le_bytes()).collect();
+        blake3::hash(&bytes).to_hex().to_string()
+    }
+
     /// The samples, evenly spaced along the outline (mm).
     pub fn points(&self) -> &[[f64; 2]] {
         &self.points

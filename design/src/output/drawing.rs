@@ -7,7 +7,7 @@ mod measured;
 mod numbering;
 pub mod page;
 
-pub use deployed::deployed;
+pub use deployed::{deployed, deployment_frames};
 pub use flat::flat;
 pub use measured::measured;
 pub use numbering::numbering;

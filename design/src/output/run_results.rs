@@ -7,6 +7,7 @@ use crate::output::cut_file::{
 };
 use crate::output::drawing;
 use crate::output::report::Report;
+use crate::output::run_page::run_page;
 use crate::scene::Scene;
 use crate::scene::design_run::{CUT_FILES, Designed};
 use crate::scene::placement::placed;
@@ -30,7 +31,7 @@ pub enum ResultsError {
     },
 }
 
-/// Writes `report.json`, `report.txt`, `deployed-start.svg` and `deployed.svg`; for a design with cut lines also
+/// Writes `report.json`, `report.txt`, `run.html`, `deployed-start.svg` and `deployed.svg`; for a design with cut lines also
 /// `flat.svg`; for a design without errors, or if `force`, also the [`CUT_FILES`].
 ///
 /// If no cut file is written, the report states why, and the cut files of an earlier design are removed.
@@ -48,12 +49,18 @@ pub fn write_results(
     let cuts = CutLines::new(&best.pattern, &best.sheet, scene.config.cutting);
     // Written first, so that there is never a cut file without its report.
     let report = Report::new(scene, designed, &cuts, force);
-    let json = serde_json::to_vec_pretty(&report).map_err(|error| ResultsError::Write {
-        path: folder.join("report.json"),
-        source: error.into(),
-    })?;
+    let not_json = |name: &str| {
+        let path = folder.join(name);
+        |error: serde_json::Error| ResultsError::Write {
+            path,
+            source: error.into(),
+        }
+    };
+    let json = serde_json::to_vec_pretty(&report).map_err(not_json("report.json"))?;
     write("report.json", &json)?;
     write("report.txt", report.to_string().as_bytes())?;
+    let page = run_page(scene, designed, &report).map_err(not_json("run.html"))?;
+    write("run.html", page.as_bytes())?;
     match &cuts {
         Ok(cuts) if report.cut_file => {
             let drawing = SheetDrawing::new(cuts, &best.sheet, &scene.material);

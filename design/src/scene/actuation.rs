@@ -122,7 +122,8 @@ impl LoadConfig {
 }
 
 impl SheetEdge {
-    pub(super) fn panels(self, grid: Grid) -> Vec<usize> {
+    /// The panels along the edge.
+    pub(crate) fn panels(self, grid: Grid) -> Vec<usize> {
         let row = |q| (0..grid.m).map(|p| grid.panel(p, q)).collect();
         let column = |p| (0..grid.n).map(|q| grid.panel(p, q)).collect();
         match self {

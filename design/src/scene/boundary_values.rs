@@ -2,6 +2,7 @@
 
 use crate::equilibrium::supports::{Dof, Load, Support};
 use crate::pattern::grid::EDGES;
+use crate::scene::actuation::EdgeLoadConfig;
 use crate::scene::checked_scene::Scene;
 use crate::sheet::topology::{HingeSite, hinge_sites};
 
@@ -31,11 +32,8 @@ impl Scene {
             sum[2] += load.couple;
         }
         for load in &self.config.edge_loads {
-            let [from, to] =
-                EDGES[load.edge as usize].map(|k| self.config.sheet.outline().corners[k]);
-            let length = f64::hypot(to[0] - from[0], to[1] - from[1]);
             let panels = load.edge.panels(self.grid());
-            let [x, y] = load.traction.map(|t| t * length / panels.len() as f64);
+            let [x, y] = (self.edge_resultant(load)).map(|force| force / panels.len() as f64);
             for panel in panels {
                 total[panel][0] += x;
                 total[panel][1] += y;
@@ -60,6 +58,13 @@ impl Scene {
             Dof::ALL.into_iter().zip(values).map(load)
         });
         loads.filter(|load| load.value != 0.0).collect()
+    }
+
+    /// The resultant (N) of a traction at full load.
+    pub(crate) fn edge_resultant(&self, load: &EdgeLoadConfig) -> [f64; 2] {
+        let [from, to] = EDGES[load.edge as usize].map(|k| self.config.sheet.outline().corners[k]);
+        let length = f64::hypot(to[0] - from[0], to[1] - from[1]);
+        load.traction.map(|traction| traction * length)
     }
 
     fn panel(&self, [column, row]: [usize; 2]) -> usize {

@@ -103,17 +103,31 @@ impl Scene {
         self.config.scale(&self.measured)
     }
 
+    /// The weights that the hinge law reads: those of the learned law, or those that linear constants are condensed from.
+    pub fn weights(&self) -> Option<&Surrogate> {
+        match &self.hinge {
+            LoadedHinge::Pin { .. } | LoadedHinge::Linear { .. } => None,
+            LoadedHinge::Condensed { law, .. } => Some(law.surrogate()),
+            LoadedHinge::Surrogate { law, .. } => Some(law.surrogate()),
+        }
+    }
+
+    /// BLAKE3 hash of the keys of the scene without title and run folder, which change no design.
+    pub fn hash(&self) -> String {
+        let keys = SceneConfig {
+            title: String::new(),
+            output: PathBuf::new(),
+            ..self.config.clone()
+        };
+        let keys = serde_json::to_vec(&keys).expect("a run writes the same keys to its state");
+        blake3::hash(&keys).to_hex().to_string()
+    }
+
     /// Identifies what a run depends on besides the keys of the scene: the version of the model, the material law, the
     /// target's points and the weights. It is the same on every machine, whereas the loss differs in its last digits.
     pub fn model_hash(&self) -> String {
-        let weights = match &self.hinge {
-            LoadedHinge::Pin { .. } | LoadedHinge::Linear { .. } => String::new(),
-            LoadedHinge::Condensed { law, .. } => law.surrogate().hash(),
-            LoadedHinge::Surrogate { law, .. } => law.surrogate().hash(),
-        };
-        let points = self.target.points().as_flattened();
-        let bytes: Vec<u8> = points.iter().flat_map(|x| x.to_le_bytes()).collect();
-        let target = blake3::hash(&bytes).to_hex();
+        let weights = self.weights().map_or(String::new(), Surrogate::hash);
+        let target = self.target.hash();
         let material = self.material.law_hash();
         format!("{MODEL_VERSION}-{material}-{target}-{weights}")
     }

@@ -191,12 +191,18 @@ pub fn inverse_design(
     })
 }
 
-/// Deletes the state in the scene's run folder, so that the next run begins at the start, with the report and the cut
-/// files of the design that it held. Nothing is deleted if the start of the scene cannot be evaluated.
+/// Deletes the state in the scene's run folder, so that the next run begins at the start, with the report, the page
+/// and the cut files of the design that it held. Nothing is deleted if the start of the scene cannot be evaluated.
 pub fn forget(scene: &Scene) -> Result<(), InverseDesignError> {
     let start = scene.problem()?.evaluate(&scene.start());
     start.map_err(InverseDesignError::Start)?;
-    let results = ["report.txt", "report.json", STATE_FILE];
+    let results = [
+        "report.txt",
+        "report.json",
+        "run.html",
+        "deployment.png",
+        STATE_FILE,
+    ];
     for name in CUT_FILES.into_iter().chain(results) {
         let path = scene.output().join(name);
         match std::fs::remove_file(&path) {

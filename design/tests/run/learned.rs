@@ -27,7 +27,7 @@ pub fn weights(folder: &Path, changes: &[(&str, &str)]) {
     std::fs::write(folder.join("tiny.json"), card).unwrap();
 }
 
-fn learned(changes: &[(&str, &str)]) -> String {
+pub fn learned(changes: &[(&str, &str)]) -> String {
     let law = [
         ("hinge = \"linear\"", "hinge = \"surrogate\""),
         (
@@ -236,7 +236,7 @@ fn the_report_states_how_far_the_networks_of_an_ensemble_disagree() {
     assert!(
         report
             .to_string()
-            .contains("standard deviation of 2 networks")
+            .contains("2 networks; standard deviation")
     );
 
     save(1.1, "other data");

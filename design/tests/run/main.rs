@@ -1,8 +1,10 @@
-//! Whole runs of small scenes: the outer loop, the learned hinge law, the files of a run.
+//! Whole runs of small scenes: the outer loop, the learned hinge law, the files and the page of a run.
 
+mod actuation_curve;
 mod learned;
 mod outer_loop;
 mod results;
+mod run_page;
 mod sections;
 
 use design::optimise::outer_loop::StepRecord;

@@ -56,6 +56,7 @@ fn a_sound_design_writes_all_files_and_no_warning() {
             "flat.svg",
             "report.json",
             "report.txt",
+            "run.html",
             "state.json"
         ]
     );

@@ -74,6 +74,55 @@ fn the_stroke_of_a_load_reproduces_the_load() {
     }
 }
 
+/// dP/d(stroke) by central differences of the whole load P.
+#[test]
+fn the_stiffness_is_the_slope_of_the_load_over_its_stroke() {
+    let sheet = cases::sheet(&case("p1_3x3_random"));
+    let law = LinearLaw::uniform([90.0, 40.0, 0.8], 12).unwrap();
+    let load = |panel, dof, value| Load { panel, dof, value };
+    for (loads, size) in [
+        (vec![load(5, Dof::UX, 1.5)], 1.5),
+        (
+            vec![
+                load(5, Dof::UX, 0.8),
+                load(5, Dof::UY, 0.6),
+                load(7, Dof::Phi, 0.2),
+            ],
+            1.0,
+        ),
+        (vec![load(5, Dof::Phi, -0.4)], 0.4),
+    ] {
+        let stroke = |factor: f64| {
+            let scaled: Vec<Load> = (loads.iter())
+                .map(|load| Load {
+                    value: factor * load.value,
+                    ..*load
+                })
+                .collect();
+            let end = path(&sheet, &law, &clamp(3), &scaled, 4);
+            let moved = |load: &Load| end[3].configuration[load.panel][load.dof.index()];
+            let work: f64 = loads.iter().map(|load| load.value * moved(load)).sum();
+            work / size
+        };
+        let step = 1e-3;
+        let slope = 2.0 * step * size / (stroke(1.0 + step) - stroke(1.0 - step));
+        let settings = SolverSettings::default();
+        let solver = EquilibriumSolver::new(sheet.grid, &clamp(3), &loads, 4, settings).unwrap();
+        let prepared = law.prepare(&sheet.designs());
+        let path = solver.path(HingedSheet {
+            sheet: &sheet,
+            law: &*prepared,
+            contact: None,
+            damage_gradient: false,
+        });
+        let stiffness = path[3].stiffness(&solver).unwrap();
+        assert!(
+            (stiffness / slope - 1.0).abs() < 1e-5,
+            "{stiffness} {slope}"
+        );
+    }
+}
+
 /// Hinges of W = theta^2 (theta - 1)^2 soften beyond 0.21 rad, one after the other. Under displacement control the
 /// path is followed where the load decreases, and the stored energy equals the work of the loads.
 #[test]

@@ -1,9 +1,12 @@
 //! The deployed sheet with its target; the hinge windows are coloured by their opening angle.
 
+use crate::equilibrium::load_step::LoadStep;
 use crate::output::canvas::{Anchor, number};
+use crate::output::deployment_states::{kept, states_before};
 use crate::output::drawing::page::{ACCENT, ColourScale, INK, MUTED, PANELS, Page};
+use crate::scene::design_run::Designed;
 use crate::scene::placement::placed;
-use crate::scene::{LoadConfig, Scene, SupportKind};
+use crate::scene::{HingeModel, LoadConfig, Scene, SupportKind};
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::hinge_window::Window;
 use crate::sheet::kinematics::{
@@ -13,15 +16,8 @@ use crate::sheet::topology::is_even;
 
 /// The sheet of a scene in the configuration (u_x, u_y, phi) of its panels.
 pub fn deployed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> String {
-    let state = State {
-        scene,
-        sheet,
-        configuration: placed(scene, sheet, configuration),
-    };
-    let openings_deg: Vec<f64> = hinge_deformations(sheet, configuration)
-        .iter()
-        .map(|deformation| deformation.theta.to_degrees())
-        .collect();
+    let state = State::new(scene, sheet, configuration);
+    let openings_deg = &state.openings_deg;
     let mean = openings_deg.iter().sum::<f64>() / openings_deg.len() as f64;
     let max = openings_deg
         .iter()
@@ -31,18 +27,40 @@ pub fn deployed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> Str
         "Deployed: mean hinge opening {mean:.1}\u{b0}, maximum {max:.1}\u{b0}. Target dashed"
     );
     let scale = ColourScale::covering(openings_deg.iter().copied());
+    state.drawn(state.extent(), &subtitle, &scale)
+}
 
-    let mut page = Page::around(state.extent(), &scene.config.title, &subtitle, true);
-    let ghost = page.dashed(MUTED, 0.8, 3.0);
-    page.canvas.polygon(&sheet.outline.corners, &ghost);
-    state.panels(&mut page);
-    state.windows(&mut page, &openings_deg, &scale);
-    let target = page.dashed(ACCENT, 2.2, 9.0);
-    page.canvas.polygon(scene.target.points(), &target);
-    state.supports(&mut page);
-    state.loads(&mut page);
-    page.colour_scale(&scale, "\u{3b8} (deg)");
-    page.finish()
+/// The frames of the deployment of a run: at most `most` states from the flat sheet to the last one, on the same page
+/// and in the same colours.
+pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec<String> {
+    let deployment = &designed.best.deployment;
+    let before = states_before(&designed.problem, deployment);
+    let all: Vec<&LoadStep> = before.iter().chain(&deployment.path).collect();
+    let index = kept(all.len(), most);
+    let states: Vec<State> = (index.iter())
+        .map(|&i| State::new(scene, &deployment.sheet, &all[i].configuration))
+        .collect();
+    let extent: Vec<[f64; 2]> = states.iter().flat_map(State::extent).collect();
+    let openings = states
+        .iter()
+        .flat_map(|state| state.openings_deg.iter().copied());
+    let scale = ColourScale::covering(openings);
+    let frame = |(&i, state): (&usize, &State)| {
+        let place = match scene.config.hinge {
+            HingeModel::Pin => format!("opening {:.1}\u{b0}", state.openings_deg[0]),
+            _ => format!(
+                "load step {i} of {}, load factor {:.2}",
+                all.len() - 1,
+                all[i].load_factor
+            ),
+        };
+        state.drawn(
+            extent.clone(),
+            &format!("Deployment: {place}. Target dashed"),
+            &scale,
+        )
+    };
+    std::iter::zip(&index, &states).map(frame).collect()
 }
 
 /// The drawn state.
@@ -50,9 +68,38 @@ struct State<'a> {
     scene: &'a Scene,
     sheet: &'a Sheet,
     configuration: Configuration,
+    openings_deg: Vec<f64>,
 }
 
-impl State<'_> {
+impl<'a> State<'a> {
+    fn new(scene: &'a Scene, sheet: &'a Sheet, configuration: &[[f64; 3]]) -> Self {
+        let deformations = hinge_deformations(sheet, configuration);
+        Self {
+            scene,
+            sheet,
+            configuration: placed(scene, sheet, configuration),
+            openings_deg: deformations
+                .iter()
+                .map(|it| it.theta.to_degrees())
+                .collect(),
+        }
+    }
+
+    /// The picture of the state on a page around the points `extent`.
+    fn drawn(&self, extent: Vec<[f64; 2]>, subtitle: &str, scale: &ColourScale) -> String {
+        let mut page = Page::around(extent, &self.scene.config.title, subtitle, true);
+        let ghost = page.dashed(MUTED, 0.8, 3.0);
+        page.canvas.polygon(&self.sheet.outline.corners, &ghost);
+        self.panels(&mut page);
+        self.windows(&mut page, scale);
+        let target = page.dashed(ACCENT, 2.2, 9.0);
+        page.canvas.polygon(self.scene.target.points(), &target);
+        self.supports(&mut page);
+        self.loads(&mut page);
+        page.colour_scale(scale, "\u{3b8} (deg)");
+        page.finish()
+    }
+
     /// The deployed position of a point of panel k.
     fn moved(&self, k: usize, point: [f64; 2]) -> [f64; 2] {
         moved(&self.sheet.panels[k], self.configuration[k], point)
@@ -91,9 +138,9 @@ impl State<'_> {
     }
 
     /// Draws each window in two parts, which move with their panels.
-    fn windows(&self, page: &mut Page, openings_deg: &[f64], scale: &ColourScale) {
+    fn windows(&self, page: &mut Page, scale: &ColourScale) {
         let hinges = self.sheet.hinges.iter().zip(Window::of_sheet(self.sheet));
-        for ((hinge, window), &opening_deg) in hinges.zip(openings_deg) {
+        for ((hinge, window), &opening_deg) in hinges.zip(&self.openings_deg) {
             let style = format!(
                 "fill=\"{}\" fill-opacity=\"0.85\"",
                 scale.colour(opening_deg)

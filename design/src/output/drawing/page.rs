@@ -16,6 +16,24 @@ pub const PANELS: [&str; 2] = ["#eaf0f6", "#f6f0e4"];
 /// Width of a picture on a screen (px).
 const WIDTH_PX: f64 = 1400.0;
 
+/// Mean width of a character of DejaVu Sans Bold and DejaVu Sans, relative to the height of the font, at its upper end.
+const BOLD_WIDTH: f64 = 0.72;
+const PLAIN_WIDTH: f64 = 0.62;
+/// Height below which a text is cut off instead of becoming smaller.
+const SMALLEST: f64 = 12.0;
+
+/// A text that is at most `wide`, and its height: smaller than `size` if it is long, and cut off if it is very long.
+fn fitted(text: &str, size: f64, character: f64, wide: f64) -> (f64, String) {
+    let count = text.chars().count();
+    let fits = wide / (character * count.max(1) as f64);
+    if fits >= SMALLEST {
+        return (size.min(fits), text.to_owned());
+    }
+    let room = (wide / (character * SMALLEST)) as usize;
+    let kept: String = text.chars().take(room.saturating_sub(1)).collect();
+    (SMALLEST, kept + "\u{2026}")
+}
+
 /// A picture: sheet coordinates with margins for texts.
 pub(crate) struct Page {
     pub canvas: Canvas,
@@ -69,16 +87,19 @@ impl Page {
         let left = page_low[0] + 40.0 * unit;
         let ink = format!("fill=\"{INK}\" font-weight=\"bold\"");
         let top = page_high[1];
+        let wide = (page_high[0] - left) / unit - 20.0;
+        let (size, title) = fitted(title, 24.0, BOLD_WIDTH, wide);
         canvas.text(
             [left, top - 44.0 * unit],
-            24.0 * unit,
+            size * unit,
             Anchor::Start,
             &ink,
-            title,
+            &title,
         );
         let muted = format!("fill=\"{MUTED}\"");
         let below = [left, top - 70.0 * unit];
-        canvas.text(below, 15.0 * unit, Anchor::Start, &muted, subtitle);
+        let (size, subtitle) = fitted(subtitle, 15.0, PLAIN_WIDTH, wide);
+        canvas.text(below, size * unit, Anchor::Start, &muted, &subtitle);
         let mut page = Self {
             canvas,
             unit,
@@ -116,9 +137,9 @@ impl Page {
     /// Attributes of a text that remains readable over lines.
     pub fn haloed(&self, colour: &str) -> String {
         format!(
-            "fill=\"{colour}\" stroke=\"#ffffff\" stroke-width=\"{:.4}\" stroke-opacity=\"0.8\" \
+            "fill=\"{colour}\" stroke=\"#ffffff\" stroke-width=\"{:.4}\" stroke-opacity=\"0.9\" \
              stroke-linejoin=\"round\" paint-order=\"stroke\"",
-            3.0 * self.unit
+            4.0 * self.unit
         )
     }
 
@@ -244,6 +265,24 @@ mod tests {
                 "{value}"
             );
         }
+    }
+
+    #[test]
+    fn long_titles_become_smaller_and_very_long_ones_are_cut_off() {
+        let width = |(size, text): &(f64, String)| size * BOLD_WIDTH * text.chars().count() as f64;
+        for length in [1, 30, 60, 90, 107, 108, 500] {
+            let title = "n".repeat(length);
+            let found = fitted(&title, 24.0, BOLD_WIDTH, 930.0);
+            assert!(
+                width(&found) <= 930.0 + 1e-9 && found.0 >= SMALLEST,
+                "{found:?}"
+            );
+            assert_eq!(found.1 == title, length <= 107, "{found:?}");
+        }
+        assert_eq!(
+            fitted("short", 24.0, BOLD_WIDTH, 930.0),
+            (24.0, "short".into())
+        );
     }
 
     #[test]

@@ -38,38 +38,16 @@ impl Estimate {
     /// The estimate for a path computed with the first of `networks`; `None` for a single network, or if no state is
     /// inside the training domain.
     pub fn of(networks: &[&Surrogate], deployment: &Deployment) -> Option<Self> {
-        let designs = deployment.sheet.designs();
         let [mut energy, mut forces, mut peak] = [(); 3].map(|()| Spread::default());
         let mut peak_known = true;
-        let prepared: Vec<_> = networks.iter().map(|it| it.prepare(&designs)).collect();
-        for step in &deployment.path {
-            let states: &[HingeDeformation] = &step.deformations;
-            let answers: Vec<Vec<[f64; 5]>> = std::iter::zip(networks, &prepared)
-                .map(|(network, prepared)| {
-                    let energies = network.evaluate(prepared, states, Order::Forces);
-                    let damages = network.damage_values(&designs, states);
-                    let hinges = std::iter::zip(energies, damages).zip(&designs);
-                    hinges
-                        .map(|((energy, damage), design)| {
-                            let [f_a, f_s, m] = energy.forces;
-                            let w = design.w_lig;
-                            [
-                                energy.w,
-                                w * f_a,
-                                w * f_s,
-                                m,
-                                damage.d_peak.unwrap_or(f64::NAN),
-                            ]
-                        })
-                        .collect()
-                })
-                .collect();
-            for h in (0..designs.len()).filter(|&h| step.inside[h]) {
-                let of = |i: usize| answers.iter().map(move |network| network[h][i]);
-                energy.add(of(0));
-                (1..4).for_each(|i| forces.add(of(i)));
-                peak_known &= of(4).all(|x| !x.is_nan());
-                peak.add(of(4));
+        for (step, answers) in std::iter::zip(&deployment.path, answers(networks, deployment)) {
+            for (_, [w, f_a, f_s, m, d_peak]) in
+                std::iter::zip(&step.inside, answers).filter(|(inside, _)| **inside)
+            {
+                energy.add(&w);
+                [f_a, f_s, m].iter().for_each(|force| forces.add(force));
+                peak_known &= d_peak.iter().all(|x| !x.is_nan());
+                peak.add(&d_peak);
             }
         }
         (networks.len() > 1 && energy.squares > 0.0).then(|| Self {
@@ -81,12 +59,71 @@ impl Estimate {
     }
 }
 
+/// sigma of the forces of every hinge at every load step, relative to the root mean square of the forces over the
+/// path; NaN outside the training domain. `None` for a single network.
+pub(crate) fn force_spreads(
+    networks: &[&Surrogate],
+    deployment: &Deployment,
+) -> Option<Vec<Vec<f64>>> {
+    if networks.len() < 2 {
+        return None;
+    }
+    let (mut squares, mut count) = (0.0, 0);
+    let mut deviations: Vec<Vec<f64>> = Vec::new();
+    for (step, answers) in std::iter::zip(&deployment.path, answers(networks, deployment)) {
+        let of_hinge = |(inside, [_, f_a, f_s, m, _]): (&bool, [Vec<f64>; 5])| {
+            let mut forces = Spread::default();
+            [f_a, f_s, m].iter().for_each(|force| forces.add(force));
+            if !inside {
+                return f64::NAN;
+            }
+            squares += forces.squares;
+            count += 1;
+            forces.variances.sqrt()
+        };
+        deviations.push(
+            std::iter::zip(&step.inside, answers)
+                .map(of_hinge)
+                .collect(),
+        );
+    }
+    let scale = (squares / f64::from(count.max(1))).sqrt();
+    let relative = deviations.iter_mut().flatten();
+    relative.for_each(|deviation| *deviation /= scale.max(f64::MIN_POSITIVE));
+    Some(deviations)
+}
+
+/// At every load step and hinge: (W, w_lig F_a, w_lig F_s, M_theta, D_peak), each with one value for each network.
+fn answers(
+    networks: &[&Surrogate],
+    deployment: &Deployment,
+) -> impl Iterator<Item = Vec<[Vec<f64>; 5]>> {
+    let designs = deployment.sheet.designs();
+    let prepared: Vec<_> = networks.iter().map(|it| it.prepare(&designs)).collect();
+    deployment.path.iter().map(move |step| {
+        let states: &[HingeDeformation] = &step.deformations;
+        let mut answers = vec![<[Vec<f64>; 5]>::default(); designs.len()];
+        for (network, prepared) in std::iter::zip(networks, &prepared) {
+            let energies = network.evaluate(prepared, states, Order::Forces);
+            let damages = network.damage_values(&designs, states);
+            let hinges = std::iter::zip(energies, damages).zip(&designs);
+            for (((energy, damage), design), answers) in hinges.zip(&mut answers) {
+                let ([f_a, f_s, m], w) = (energy.forces, design.w_lig);
+                let peak = damage.d_peak.unwrap_or(f64::NAN);
+                let values = [energy.w, w * f_a, w * f_s, m, peak];
+                std::iter::zip(answers, values).for_each(|(all, value)| all.push(value));
+            }
+        }
+        answers
+    })
+}
+
 impl Spread {
     /// Adds one quantity at one state, with its value for each network.
-    fn add(&mut self, values: impl Iterator<Item = f64> + Clone) {
-        let count = values.clone().count() as f64;
-        let mean = values.clone().sum::<f64>() / count;
-        let squares: f64 = values.map(|value| (value - mean).powi(2)).sum();
+    fn add(&mut self, values: &[f64]) {
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
         self.variances += squares / (count - 1.0).max(1.0);
         self.squares += mean * mean;
     }
@@ -104,8 +141,8 @@ mod tests {
     fn a_known_spread_is_found() {
         let mut spread = Spread::default();
         // Deviations of 0.1 about 1 and of 0.2 about -2.
-        spread.add([0.9, 1.0, 1.1].into_iter());
-        spread.add([-1.8, -2.0, -2.2].into_iter());
+        spread.add(&[0.9, 1.0, 1.1]);
+        spread.add(&[-1.8, -2.0, -2.2]);
         assert!((spread.relative() - 0.1).abs() < 1e-12);
         assert_eq!(Spread::default().relative(), 0.0);
     }

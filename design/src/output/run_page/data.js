@@ -1,0 +1,86 @@
+"use strict";
+
+// The data of the run, and numbers as text.
+
+window.addEventListener("error", (event) => { document.documentElement.dataset.error = event.message; });
+
+const byId = (id) => document.getElementById(id);
+const run = JSON.parse(byId("run").textContent);
+
+function floats(base64) {
+  const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+  return new Float32Array(bytes.buffer);
+}
+
+/** Replaces packed lists by arrays of floats. */
+function unpack(object, names) {
+  for (const name of names) if (typeof object[name] === "string") object[name] = floats(object[name]);
+}
+unpack(run, ["target"]);
+unpack(run.panels, ["corners", "centroids"]);
+unpack(run.hinges, ["w_lig", "alpha_deg", "gamma", "damage", "damage_peak"]);
+unpack(run.states, ["motions", "deformations", "inside", "energy", "forces", "damage", "damage_peak", "spread", "reactions"]);
+
+const states = run.states;
+const stateCount = states.index.length;
+const panelCount = run.panels.grid[0] * run.panels.grid[1];
+const hingeCount = run.hinges.sites.length;
+const DEG = 180 / Math.PI;
+
+/** Significant digits, in full between 1e-3 and 1e6. */
+function shown(x, digits = 4) {
+  if (!Number.isFinite(x)) return "not known";
+  if (x === 0) return "0";
+  const size = Math.abs(x);
+  if (size < 1e-3 || size >= 1e6) return x.toExponential(2).replace("e+", "e").replace("-", "\u2212");
+  return String(Number(x.toPrecision(Math.max(digits, Math.floor(Math.log10(size)) + 1)))).replace("-", "\u2212");
+}
+
+function fixed(x, decimals) {
+  if (!Number.isFinite(x)) return "not known";
+  return Math.abs(x) >= 1e6 ? shown(x) : x.toFixed(decimals).replace("-", "\u2212");
+}
+
+/** The deformation of a hinge in a state: a (mm), s (mm), theta (rad). */
+function deformation(state, hinge) {
+  const at = 3 * (state * hingeCount + hinge);
+  return [states.deformations[at], states.deformations[at + 1], states.deformations[at + 2]];
+}
+
+/** (F_a, F_s, M_theta) of a hinge in a state (N, N, N mm). */
+function forces(state, hinge) {
+  const at = 3 * (state * hingeCount + hinge);
+  return [states.forces[at], states.forces[at + 1], states.forces[at + 2]];
+}
+
+function of(list, state, hinge) { return list[state * hingeCount + hinge]; }
+
+const SVG = byId("marks").namespaceURI;
+
+/** An SVG element with attributes and a text, appended to its parent. */
+function draw(parent, name, attributes, text) {
+  const element = document.createElementNS(SVG, name);
+  for (const key in attributes) element.setAttribute(key, attributes[key]);
+  if (text !== undefined) element.textContent = text;
+  parent.appendChild(element);
+  return element;
+}
+
+/** An HTML element with a text, appended to its parent. */
+function write(parent, name, text, className) {
+  const element = document.createElement(name);
+  if (text !== undefined) element.textContent = text;
+  if (className) element.className = className;
+  parent.appendChild(element);
+  return element;
+}
+
+/** Round numbers that cover an interval. */
+function ticks(low, high, count) {
+  const raw = (high - low) / count || 1;
+  const decade = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].map((m) => m * decade).find((s) => s >= raw * 0.999);
+  const first = Math.ceil(low / step - 1e-9);
+  const last = Math.floor(high / step + 1e-9);
+  return Array.from({ length: last - first + 1 }, (_, i) => Number(((first + i) * step).toPrecision(12)));
+}

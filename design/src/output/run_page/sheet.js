@@ -1,0 +1,275 @@
+// The sheet in one state: panels and hinges on a canvas; target, supports, loads and reactions as SVG above it.
+
+const stage = byId("stage");
+const canvas = byId("panels");
+const marks = byId("marks");
+const INK = "#1f2933";
+const ACCENT = "#c2410c";
+const TEAL = "#0f766e";
+
+/** Position of a point of a panel in a state (mm). */
+function moved(state, k, x, y) {
+  const at = 3 * (state * panelCount + k);
+  const [ux, uy, phi] = [states.motions[at], states.motions[at + 1], states.motions[at + 2]];
+  const [cx, cy] = [run.panels.centroids[2 * k], run.panels.centroids[2 * k + 1]];
+  const [cos, sin] = [Math.cos(phi), Math.sin(phi)];
+  return [cx + ux + cos * (x - cx) - sin * (y - cy), cy + uy + sin * (x - cx) + cos * (y - cy)];
+}
+
+function corner(state, k, c) {
+  const at = 2 * (4 * k + c);
+  return moved(state, k, run.panels.corners[at], run.panels.corners[at + 1]);
+}
+
+function centroid(state, k) {
+  const at = 3 * (state * panelCount + k);
+  return [run.panels.centroids[2 * k] + states.motions[at], run.panels.centroids[2 * k + 1] + states.motions[at + 1]];
+}
+
+/** The rectangle that holds the sheet in every state, its outline and the target (mm). */
+const extent = (() => {
+  const box = { x0: Infinity, y0: Infinity, x1: -Infinity, y1: -Infinity };
+  const add = ([x, y]) => {
+    box.x0 = Math.min(box.x0, x);
+    box.y0 = Math.min(box.y0, y);
+    box.x1 = Math.max(box.x1, x);
+    box.y1 = Math.max(box.y1, y);
+  };
+  for (let i = 0; i < stateCount; i++)
+    for (let k = 0; k < panelCount; k++) for (let c = 0; c < 4; c++) add(corner(i, k, c));
+  for (let i = 0; i < run.target.length; i += 2) add([run.target[i], run.target[i + 1]]);
+  if (run.model !== "pin") run.outline.forEach(add);
+  return box;
+})();
+
+/** The view: pixels of a point = origin + scale (x - centre), y downwards; `zoom` 1 shows the whole sheet. */
+const view = { width: 0, height: 0, scale: 1, x: 0, y: 0, zoom: 1 };
+
+/** Room around the sheet for arrows and labels (px). */
+function margin() {
+  const { loads, supports, edges } = run.actuation;
+  const widest = edges.length ? 150 : loads.length + supports.length ? 80 : 25;
+  return Math.min(widest, 0.14 * view.width);
+}
+
+function fitView() {
+  view.x = (extent.x0 + extent.x1) / 2;
+  view.y = (extent.y0 + extent.y1) / 2;
+  view.zoom = 1;
+}
+
+function resizeStage(width, height, ratio) {
+  Object.assign(view, { width, height });
+  stage.style.height = `${height}px`;
+  canvas.width = Math.round(width * ratio);
+  canvas.height = Math.round(height * ratio);
+  marks.setAttribute("viewBox", `0 0 ${width} ${height}`);
+  canvas.getContext("2d").setTransform(ratio, 0, 0, ratio, 0, 0);
+}
+
+function toPixels([x, y]) {
+  return [view.width / 2 + view.scale * (x - view.x), view.height / 2 - view.scale * (y - view.y)];
+}
+
+function updateScale() {
+  const [w, h] = [view.width - 2 * margin(), view.height - 2 * Math.min(margin(), 60)];
+  view.scale = view.zoom * Math.min(w / (extent.x1 - extent.x0), h / (extent.y1 - extent.y0));
+}
+
+/** Pixel positions of the corners of every panel in the state drawn last. */
+let cornersDrawn = [];
+
+function hingePixel(h) {
+  const [a, atA, b, atB] = run.hinges.sites[h];
+  const [p, q] = [cornersDrawn[a][atA], cornersDrawn[b][atB]];
+  return [(p[0] + q[0]) / 2, (p[1] + q[1]) / 2];
+}
+
+/** The hinge next to a pixel, within 24 px; -1 if there is none. */
+function hingeAt(x, y) {
+  let [nearest, least] = [-1, 24];
+  for (let h = 0; h < hingeCount; h++) {
+    const [px, py] = hingePixel(h);
+    const distance = Math.hypot(px - x, py - y);
+    if (distance < least) [nearest, least] = [h, distance];
+  }
+  return nearest;
+}
+
+function drawSheet(state, quantity, selected) {
+  updateScale();
+  const pen = canvas.getContext("2d");
+  pen.fillStyle = "#ffffff";
+  pen.fillRect(0, 0, view.width, view.height);
+  cornersDrawn = Array.from({ length: panelCount }, (_, k) => [0, 1, 2, 3].map((c) => toPixels(corner(state, k, c))));
+  const colour = colours(quantity, state);
+  const edge = Math.sqrt(((extent.x1 - extent.x0) * (extent.y1 - extent.y0)) / panelCount) * view.scale;
+  pen.lineJoin = "round";
+  pen.strokeStyle = INK;
+  pen.lineWidth = Math.min(1.2, edge / 25);
+  cornersDrawn.forEach((corners, k) => {
+    pen.beginPath();
+    corners.forEach(([x, y], c) => (c === 0 ? pen.moveTo(x, y) : pen.lineTo(x, y)));
+    pen.closePath();
+    pen.fillStyle = colour.panels[k];
+    pen.fill();
+    pen.stroke();
+  });
+  for (let h = 0; h < hingeCount; h++) {
+    const [a, atA, b, atB] = run.hinges.sites[h];
+    pen.fillStyle = colour.hinges[h];
+    sector(pen, cornersDrawn[a], atA);
+    sector(pen, cornersDrawn[b], atB);
+  }
+  drawMarks(state, selected);
+}
+
+/** The part of a hinge's window on a panel, about a corner of the panel. */
+function sector(pen, corners, at) {
+  const [x, y] = corners[at];
+  const [next, previous] = [corners[(at + 1) % 4], corners[(at + 3) % 4]];
+  const [toNext, toPrevious] = [next, previous].map((p) => Math.hypot(p[0] - x, p[1] - y));
+  const window = Math.max(run.hinges.r_win * view.scale, 3);
+  pen.beginPath();
+  pen.moveTo(x, y);
+  pen.arc(x, y, Math.min(window, 0.45 * toNext, 0.45 * toPrevious), Math.atan2(next[1] - y, next[0] - x), Math.atan2(previous[1] - y, previous[0] - x), true);
+  pen.fill();
+}
+
+function outlinePath(points) {
+  return points.map((p, i) => `${i ? "L" : "M"}${toPixels(p).map((v) => v.toFixed(1)).join(" ")}`).join("") + "Z";
+}
+
+function drawMarks(state, selected) {
+  marks.textContent = "";
+  if (run.model !== "pin")
+    draw(marks, "path", { d: outlinePath(run.outline), fill: "none", stroke: "#8a949e", "stroke-dasharray": "3 3" });
+  const target = Array.from({ length: run.target.length / 2 }, (_, i) => [run.target[2 * i], run.target[2 * i + 1]]);
+  draw(marks, "path", { d: outlinePath(target), fill: "none", stroke: ACCENT, "stroke-width": 1.8, "stroke-dasharray": "9 6" });
+  const labels = [];
+  const obstacles = [];
+  drawSupports(state, obstacles);
+  drawLoads(state, labels, obstacles);
+  if (selected >= 0) {
+    const [x, y] = hingePixel(selected);
+    draw(marks, "circle", { cx: x, cy: y, r: 12, fill: "none", stroke: "#fff", "stroke-width": 5, "stroke-opacity": 0.8 });
+    draw(marks, "circle", { cx: x, cy: y, r: 12, fill: "none", stroke: INK, "stroke-width": 2 });
+    obstacles.push({ x0: x - 12, x1: x + 12, y0: y - 12, y1: y + 12 });
+    labels.push({ text: `hinge ${selected}`, x, y: y - 12, dx: 0.3, dy: -1, colour: INK });
+  }
+  obstacles.push(drawScaleBar());
+  placeLabels(marks, labels, obstacles, view.width, view.height);
+}
+
+/** A square on a clamped panel, a triangle on a pinned one, a disc on a roller with its rail. */
+function drawSupports(state, obstacles) {
+  for (const support of run.actuation.supports) {
+    const [x, y] = toPixels(centroid(state, support.panel));
+    const style = { fill: INK, stroke: "#fff", "stroke-width": 1.5 };
+    if (support.kind === "clamp") draw(marks, "rect", { x: x - 7, y: y - 7, width: 14, height: 14, ...style });
+    else if (support.kind === "pin") draw(marks, "path", { d: `M${x} ${y - 8}l8 14h-16Z`, ...style });
+    else {
+      const [dx, dy] = support.kind === "roller-x" ? [14, 0] : [0, 14];
+      draw(marks, "line", { x1: x - dx, y1: y - dy, x2: x + dx, y2: y + dy, stroke: INK, "stroke-width": 2 });
+      draw(marks, "circle", { cx: x, cy: y, r: 6.5, ...style });
+    }
+    obstacles.push({ x0: x - 9, x1: x + 9, y0: y - 9, y1: y + 9 });
+  }
+}
+
+/** Forces below this fraction of the largest one are rounding, and are not drawn. */
+const NEGLIGIBLE = 1e-6;
+
+/** The forces and couples on panels in a state: loads first, then reactions. */
+function forcesOnPanels(state) {
+  const zeta = states.load_factor[state];
+  const list = run.actuation.loads.map((load) => ({
+    panel: load.panel, name: `load, panel [${load.place}]`, colour: ACCENT,
+    force: load.force.map((f) => f * zeta), couple: load.couple * zeta,
+  }));
+  run.actuation.supports.forEach((support, i) => {
+    const at = 3 * (state * run.actuation.supports.length + i);
+    list.push({
+      panel: support.panel, name: `${support.kind}, panel [${support.place}]`, colour: TEAL, reaction: true,
+      force: [states.reactions[at], states.reactions[at + 1]], couple: states.reactions[at + 2],
+    });
+  });
+  return list;
+}
+
+/** The largest force and couple of the path. */
+const largest = (() => {
+  let [force, couple] = [0, 0];
+  for (let i = 0; i < stateCount; i++) {
+    for (const item of forcesOnPanels(i)) {
+      force = Math.max(force, Math.hypot(...item.force));
+      couple = Math.max(couple, Math.abs(item.couple));
+    }
+    for (const edge of run.actuation.edges) force = Math.max(force, Math.abs(states.load_factor[i]) * Math.hypot(...edge.force));
+  }
+  return { force, couple };
+})();
+
+function drawLoads(state, labels, obstacles) {
+  for (const item of forcesOnPanels(state)) {
+    const at = toPixels(centroid(state, item.panel));
+    const force = Math.hypot(...item.force);
+    if (force > NEGLIGIBLE * largest.force) {
+      const end = drawArrow(at, item.force, item.colour, obstacles);
+      labels.push({ text: `${shown(force)} N`, colour: item.colour, ...end });
+    }
+    if (Math.abs(item.couple) > NEGLIGIBLE * largest.couple) {
+      drawCouple(at, item.couple, item.colour, item.reaction ? 20 : 26);
+      labels.push({ text: `${shown(Math.abs(item.couple))} N mm`, colour: item.colour, x: at[0], y: at[1] + 26, dx: 0, dy: 1 });
+      obstacles.push({ x0: at[0] - 26, x1: at[0] + 26, y0: at[1] - 26, y1: at[1] + 26 });
+    }
+  }
+  const zeta = states.load_factor[state];
+  for (const edge of run.actuation.edges) {
+    const force = edge.force.map((f) => f * zeta);
+    const total = Math.hypot(...force) * edge.panels.length;
+    if (!(total > NEGLIGIBLE * largest.force)) continue;
+    const ends = edge.panels.map((k) => drawArrow(toPixels(centroid(state, k)), force, ACCENT, obstacles, 26));
+    labels.push({ text: `${edge.edge} edge ${shown(total)} N`, colour: ACCENT, ...ends[Math.floor(ends.length / 2)] });
+  }
+}
+
+/** Draws an arrow along a force; its length grows with the force. Returns its tip and direction. */
+function drawArrow([x, y], force, colour, obstacles, longest = 62) {
+  const size = Math.hypot(...force);
+  const [dx, dy] = [force[0] / size, -force[1] / size];
+  const length = 12 + (longest - 12) * Math.min(size / largest.force, 1);
+  const tip = [x + length * dx, y + length * dy];
+  const neck = [tip[0] - 9 * dx, tip[1] - 9 * dy];
+  const halo = { x1: x, y1: y, x2: neck[0], y2: neck[1], "stroke-linecap": "round" };
+  draw(marks, "line", { ...halo, stroke: "#fff", "stroke-width": 5, "stroke-opacity": 0.7 });
+  draw(marks, "line", { ...halo, stroke: colour, "stroke-width": 2.5 });
+  draw(marks, "path", { d: `M${tip}L${neck[0] - 5 * dy} ${neck[1] + 5 * dx}L${neck[0] + 5 * dy} ${neck[1] - 5 * dx}Z`, fill: colour });
+  // The shaft in pieces, as a slanted one covers little of its bounding box.
+  for (let f = 0; f <= 1; f += 0.2)
+    obstacles.push({ x0: x + f * length * dx - 4, x1: x + f * length * dx + 4, y0: y + f * length * dy - 4, y1: y + f * length * dy + 4 });
+  return { x: tip[0], y: tip[1], dx, dy };
+}
+
+/** Draws a curved arrow in the sense of a couple. */
+function drawCouple([x, y], couple, colour, r) {
+  const sense = couple > 0 ? -1 : 1;
+  const point = (angle) => [x + r * Math.cos(angle), y + sense * r * Math.sin(angle)];
+  const [from, to] = [point(-0.6), point(Math.PI + 0.6)];
+  const sweep = sense > 0 ? 1 : 0;
+  draw(marks, "path", { d: `M${from}A${r} ${r} 0 1 ${sweep} ${to}`, fill: "none", stroke: colour, "stroke-width": 2.5 });
+  const along = [-Math.sin(Math.PI + 0.6), sense * Math.cos(Math.PI + 0.6)];
+  const side = [-along[1], along[0]];
+  const p = (f, g) => [to[0] + f * along[0] + g * side[0], to[1] + f * along[1] + g * side[1]];
+  draw(marks, "path", { d: `M${p(8, 0)}L${p(-3, 5)}L${p(-3, -5)}Z`, fill: colour });
+}
+
+function drawScaleBar() {
+  const longest = (0.25 * view.width) / view.scale;
+  const decade = 10 ** Math.floor(Math.log10(longest));
+  const length = [5, 2, 1].map((m) => m * decade).find((l) => l <= longest);
+  const [x, y, w] = [12, view.height - 12, length * view.scale];
+  draw(marks, "path", { d: `M${x} ${y - 4}v8m0 -4h${w}m0 -4v8`, stroke: INK, fill: "none", "stroke-width": 1.4 });
+  draw(marks, "text", { x: x + w + 8, y: y + 4, "font-size": 12.5, class: "muted halo" }, `${length} mm`);
+  return { x0: 0, x1: x + w + 90, y0: y - 10, y1: view.height };
+}

@@ -1,0 +1,122 @@
+//! Load against displacement, and the forces that hold a sheet in its states.
+
+use super::{read, with};
+use design::analysis::actuation_curve::{ActuationCurve, Mover, holding_forces};
+use design::equilibrium::load_step::{LoadStep, Status};
+use design::objective::design_problem::{Deployment, DesignProblem, Mechanics, Model};
+
+const LOAD: &str = "[[loads]]\npanel = [2, 1]\nforce = [2.0, 0.0]";
+
+/// The deployment of a scene with another actuation, in many load steps.
+fn deployed(actuation: &str) -> (DesignProblem, Deployment) {
+    let folder = tempfile::tempdir().unwrap();
+    let changes = [(LOAD, actuation), ("load_steps = 4", "load_steps = 200")];
+    let scene = read(folder.path(), &with(&changes));
+    let problem = scene.problem().unwrap();
+    let deployment = problem.deploy(&scene.start()).unwrap();
+    (problem, deployment)
+}
+
+fn mechanics(problem: &DesignProblem) -> &Mechanics {
+    match &problem.model {
+        Model::Equilibrium(mechanics) => mechanics,
+        Model::Ideal { .. } => panic!("the scene has an equilibrium"),
+    }
+}
+
+/// The area below the curve is the energy stored in the hinges, whatever moves the sheet.
+#[test]
+fn the_work_along_the_curve_is_the_stored_energy() {
+    let load = "[[loads]]\npanel = [2, 1]\n";
+    let support = "[[supports]]\npanel = [2, 1]\n";
+    for (actuation, mover, translational) in [
+        (format!("{load}force = [2.0, 0.0]"), Mover::Loads, true),
+        (
+            format!(
+                "{load}force = [1.0, 0.0]\n{}",
+                "[[loads]]\npanel = [2, 2]\nforce = [0.0, 1.0]\ncouple = 90.0"
+            ),
+            Mover::Loads,
+            true,
+        ),
+        (format!("{load}couple = -300.0"), Mover::Loads, false),
+        (
+            format!("{support}kind = \"roller-y\"\ndisplacement = [40.0, 0.0]"),
+            Mover::Supports,
+            true,
+        ),
+        (
+            format!("{support}kind = \"clamp\"\nrotation_deg = -15.0"),
+            Mover::Supports,
+            false,
+        ),
+    ] {
+        let (problem, deployment) = deployed(&actuation);
+        // A jump past a limit point would dissipate energy.
+        let smooth = |step: &LoadStep| step.status == Status::Converged;
+        assert!(deployment.path.iter().all(smooth), "{actuation}");
+        let curve = ActuationCurve::new(mechanics(&problem), &deployment).unwrap();
+        assert_eq!(
+            (curve.mover, curve.translational),
+            (mover, translational),
+            "{actuation}"
+        );
+        assert_eq!((curve.points.len(), curve.points[0]), (201, [0.0; 2]));
+        let trapezoids = curve.points.windows(2).map(|ends| {
+            let [[x0, p0], [x1, p1]] = [ends[0], ends[1]];
+            0.5 * (p0 + p1) * (x1 - x0)
+        });
+        let work: f64 = trapezoids.sum();
+        let stored: f64 = deployment.final_step().energies.iter().sum();
+        // The error of the trapezoids decreases with the square of their number.
+        assert!(
+            (work / stored - 1.0).abs() < 1e-3,
+            "{actuation}: {work} {stored}"
+        );
+    }
+}
+
+/// The holding forces are the loads on free panels, and with the reactions they balance.
+#[test]
+fn loads_and_reactions_balance() {
+    let (problem, deployment) =
+        deployed("[[loads]]\npanel = [2, 1]\nforce = [1.2, 0.5]\ncouple = 80.0");
+    let (mechanics, sheet) = (mechanics(&problem), &deployment.sheet);
+    let step = &deployment.path[100];
+    let forces = holding_forces(mechanics, sheet, step);
+    let (mut sum, mut moment) = ([0.0; 2], 0.0);
+    for (k, ([x, y, m], [u_x, u_y, _])) in std::iter::zip(&forces, &step.configuration).enumerate()
+    {
+        let [c_x, c_y] = sheet.panels[k].centroid;
+        sum[0] += x;
+        sum[1] += y;
+        moment += m + (c_x + u_x) * y - (c_y + u_y) * x;
+        // Panel 5 is loaded, panel 3 is clamped.
+        let expected = match k {
+            3 => continue,
+            5 => [1.2, 0.5, 80.0].map(|load| step.load_factor * load),
+            _ => [0.0; 3],
+        };
+        for (found, expected) in std::iter::zip([x, y, m], expected) {
+            assert!(
+                (found - expected).abs() < 1e-5,
+                "panel {k}: {found} {expected}"
+            );
+        }
+    }
+    assert!(
+        sum[0].abs() < 1e-9 && sum[1].abs() < 1e-9 && moment.abs() < 1e-6,
+        "{sum:?} {moment}"
+    );
+    assert!(
+        (forces[3][0] + 1.2 * step.load_factor).abs() < 1e-5,
+        "{:?}",
+        forces[3]
+    );
+}
+
+#[test]
+fn a_sheet_that_nothing_moves_has_no_curve() {
+    let (problem, deployment) = deployed("");
+    assert_eq!(ActuationCurve::new(mechanics(&problem), &deployment), None);
+}
