@@ -1,13 +1,12 @@
 # Two commands: `make demo` runs the main job, `make test` passes all tests.
 # Both first install what is missing.
 
-.PHONY: demo test lint tools
+.PHONY: demo test lint tools test-tools
 
 demo: tools
 	cargo run --release --locked -- demo
 
-test:
-	scripts/install-tools tests
+test: test-tools
 	cargo test --release --locked --workspace
 
 lint:
@@ -18,3 +17,6 @@ lint:
 
 tools:
 	scripts/install-tools
+
+test-tools:
+	scripts/install-tools tests

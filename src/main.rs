@@ -2,10 +2,11 @@
 
 use clap::Parser;
 use kirigami::cli::Cli;
-use kirigami::ui::exit::Exit;
+use kirigami::ui::exit::{self, Exit};
 use kirigami::ui::interrupt;
 
 fn main() -> Exit {
     interrupt::end_quietly_when_nobody_reads();
+    exit::report_unwritable_output();
     Exit::of(Cli::parse().run())
 }

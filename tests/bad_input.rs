@@ -188,3 +188,45 @@ fn every_command_has_a_help_text() {
         );
     }
 }
+
+/// As `kirigami ... > /dev/full`, and as into a pipe that is full and does not block.
+#[test]
+fn output_that_cannot_be_written_is_an_error_and_no_panic() {
+    let work = Workplace::new();
+    let full = std::fs::File::options().write(true).open("/dev/full");
+    let message = failure(work.program("completions bash").stdout(full.unwrap()));
+    assert!(message.contains("No space left"), "{message}");
+    let full = std::fs::File::options().write(true).open("/dev/full");
+    let message = failure(
+        work.program(&format!("campaign plan {DEMO}"))
+            .stdout(full.unwrap()),
+    );
+    assert!(
+        message.starts_with("error: cannot write to stdout: No space left")
+            && message.lines().count() == 1,
+        "{message}"
+    );
+}
+
+#[test]
+fn a_pipe_in_place_of_a_file_is_refused() {
+    let work = Workplace::new();
+    for kind in ["toml", "json", "safetensors"] {
+        let pipe = work.path("pipe").with_extension(kind);
+        let made = std::process::Command::new("mkfifo").arg(pipe).status();
+        assert!(made.unwrap().success());
+    }
+    for command in [
+        "campaign plan pipe.toml",
+        "train pipe.parquet",
+        "surrogate card pipe.safetensors",
+        "solve --path pipe.toml --tier tiny",
+        "design pipe.toml",
+    ] {
+        let message = work.error(command);
+        assert!(
+            message.contains("not a regular file"),
+            "{command}: {message}"
+        );
+    }
+}

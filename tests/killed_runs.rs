@@ -1,11 +1,14 @@
 //! A campaign that is killed repeatedly, or whose folder is lost, gives the same database.
 
 mod common;
+#[path = "common/failing_ccx.rs"]
+mod failing_ccx;
 #[path = "../fe_driver/tests/common/processes.rs"]
 mod processes;
 
-use common::Workplace;
+use common::{Workplace, failure};
 use dataset::{Database, Row};
+use failing_ccx::failing_ccx;
 use processes::left_running;
 use std::os::unix::fs::PermissionsExt;
 use std::path::PathBuf;
@@ -32,8 +35,8 @@ impl Replay {
         );
         let replay = Self { work };
         std::fs::create_dir(replay.work.path("recorded")).unwrap();
-        // The programs run in jobs/<id>/work.
-        let id = "id=${PWD%/work}; id=${id##*/}";
+        // The programs run in jobs/<id>/work-<host>.
+        let id = "id=${PWD%/work-*}; id=${id##*/}";
         let recorded = replay.work.path("recorded").display().to_string();
         let script = |program: &str, body: &str| {
             let path = replay.work.path(program);
@@ -72,12 +75,17 @@ impl Replay {
 
     /// A run in a folder with the replaying programs.
     fn run(&self, folder: &str) -> Command {
+        self.campaign("run", folder, "--jobs 2")
+    }
+
+    /// A command on a campaign with the replaying programs.
+    fn campaign(&self, verb: &str, folder: &str, options: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_kirigami"));
         command
-            .args([
-                "campaign", "run", CAMPAIGN, "--jobs", "2", "--folder", folder,
-            ])
+            .args(["campaign", verb, CAMPAIGN, "--folder", folder])
+            .args(options.split_whitespace())
             .current_dir(self.work.path(""))
+            .env("KIRIGAMI_HOST", "a")
             .env("KIRIGAMI_GMSH", self.work.path("replaying-gmsh"))
             .env("KIRIGAMI_CCX", self.work.path("replaying-ccx"))
             .stdout(Stdio::null());
@@ -86,7 +94,7 @@ impl Replay {
 
     /// Number of lines of a campaign's event log.
     fn events(&self, folder: &str) -> usize {
-        let history = self.work.path(folder).join("events-1-of-1.jsonl");
+        let history = self.work.path(folder).join("hosts/a/events-1-of-1.jsonl");
         std::fs::read_to_string(history).map_or(0, |text| text.lines().count())
     }
 
@@ -213,4 +221,123 @@ fn a_run_that_ends_early_has_its_own_exit_code() {
         .output(&format!("campaign plan {arguments} --json"));
     let plan: serde_json::Value = serde_json::from_str(&plan).unwrap();
     assert_eq!(plan["reasons"], serde_json::json!({}));
+}
+
+/// As after the failure of a node whose processes still run, and on a file system whose locks end at the host.
+#[test]
+fn a_ray_that_two_hosts_solve_is_counted_once() {
+    let replay = Replay::new();
+    let whole = timeless(&replay.collected("recorded-campaign"));
+    let start = |host: &str| replay.run("shared").env("KIRIGAMI_HOST", host).spawn();
+    let runs = ["a", "b"].map(|host| start(host).unwrap());
+    for mut run in runs {
+        assert!(run.wait().unwrap().success());
+    }
+    assert_eq!(timeless(&replay.collected("shared")), whole);
+    let solved = |host: &str| {
+        let history = format!("shared/hosts/{host}/events-1-of-1.jsonl");
+        let text = std::fs::read_to_string(replay.work.path(&history)).unwrap();
+        text.matches("started").count()
+    };
+    assert!((6..=12).contains(&(solved("a") + solved("b"))));
+    for job in std::fs::read_dir(replay.work.path("shared/jobs")).unwrap() {
+        let mut files = std::fs::read_dir(job.unwrap().path()).unwrap();
+        let work = |name: &str| name.starts_with("work") || name.ends_with(".partial");
+        assert!(!files.any(|file| work(file.unwrap().file_name().to_str().unwrap())));
+    }
+}
+
+#[test]
+fn a_host_with_another_version_of_a_solver_is_refused() {
+    let replay = Replay::new();
+    let shard = |shard: &str| {
+        let mut run = replay.run("versions");
+        run.args(["--shard", shard]);
+        run
+    };
+    assert!(shard("1/2").status().unwrap().success());
+    let newer = failing_ccx(&replay.work.path(""), "");
+    let text = std::fs::read_to_string(&newer).unwrap();
+    std::fs::write(&newer, text.replace("2.20", "2.99")).unwrap();
+    let message = failure(
+        shard("2/2")
+            .env("KIRIGAMI_HOST", "b")
+            .env("KIRIGAMI_CCX", &newer),
+    );
+    assert!(
+        message.contains("b has gmsh")
+            && message.contains("ccx 2.99")
+            && message.contains("campaign.json"),
+        "{message}"
+    );
+    // Nothing of the first shard was lost.
+    assert!(shard("2/2").status().unwrap().success());
+    let whole = timeless(&replay.collected("recorded-campaign"));
+    assert_eq!(timeless(&replay.collected("versions")), whole);
+}
+
+/// Some parallel file systems are mounted without locks.
+#[test]
+fn a_file_system_without_locks_is_no_obstacle() {
+    let replay = Replay::new();
+    let run = replay.run("unlocked");
+    let mut traced = Command::new("strace");
+    traced
+        .args([
+            "-f",
+            "-qqq",
+            "-o",
+            "trace",
+            "-e",
+            "trace=flock",
+            "-e",
+            "inject=flock:error=ENOSYS",
+        ])
+        .arg(run.get_program())
+        .args(run.get_args())
+        .current_dir(replay.work.path(""))
+        .stdout(Stdio::null());
+    for (variable, value) in run.get_envs() {
+        traced.env(variable, value.unwrap());
+    }
+    assert!(traced.status().unwrap().success());
+    let trace = std::fs::read_to_string(replay.work.path("trace")).unwrap();
+    assert!(trace.contains("ENOSYS"), "{trace}");
+    let whole = timeless(&replay.collected("recorded-campaign"));
+    assert_eq!(timeless(&replay.collected("unlocked")), whole);
+}
+
+#[test]
+fn a_ray_that_is_solved_differently_is_named() {
+    let replay = Replay::new();
+    assert!(replay.run("checked").status().unwrap().success());
+    let check = || replay.campaign("check", "checked", "--every 2");
+    let same = check().stdout(Stdio::piped()).output().unwrap();
+    let text = String::from_utf8(same.stdout).unwrap();
+    assert!(
+        same.status.success() && text.contains("3 rays solved again"),
+        "{text}"
+    );
+
+    // One digit of the first forces of a ray.
+    let index = std::fs::read_to_string(replay.work.path("checked/campaign.json")).unwrap();
+    let index: serde_json::Value = serde_json::from_str(&index).unwrap();
+    let job = index["jobs"][2].as_str().unwrap();
+    let output = replay.work.path(&format!("recorded/{job}.dat"));
+    let text = std::fs::read_to_string(&output).unwrap();
+    let place = text.find("E-").unwrap() - 3;
+    let digit = if &text[place..=place] == "5" {
+        "6"
+    } else {
+        "5"
+    };
+    std::fs::write(
+        &output,
+        [&text[..place], digit, &text[place + 1..]].concat(),
+    )
+    .unwrap();
+    let differs = check().stdout(Stdio::piped()).output().unwrap();
+    assert_eq!(differs.status.code(), Some(1));
+    let text = String::from_utf8(differs.stdout).unwrap();
+    assert!(text.contains("1 differ") && text.contains(job), "{text}");
 }

@@ -27,7 +27,11 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
 
     let run = format!("campaign run {CAMPAIGN} --folder runs/demo/campaign");
     assert!(work.output(&run).contains("6 rays complete"));
-    let events = || std::fs::read(work.path("runs/demo/campaign/events-1-of-1.jsonl")).unwrap();
+    let events = || {
+        let hosts = std::fs::read_dir(work.path("runs/demo/campaign/hosts")).unwrap();
+        let host = hosts.map(|entry| entry.unwrap().path()).next().unwrap();
+        std::fs::read(host.join("events-1-of-1.jsonl")).unwrap()
+    };
     let first = events();
     work.output(&run);
     assert_eq!(events(), first, "finished jobs are not run again");

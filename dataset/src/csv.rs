@@ -64,7 +64,7 @@ impl Database {
 /// Reads the rows of a CSV file, to be collected into a database.
 pub fn rows_from_csv(path: &Path, map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
     map.check()?;
-    let bytes = std::fs::read(path).map_err(|source| DatasetError::Read {
+    let bytes = support::regular_file::read(path).map_err(|source| DatasetError::Read {
         path: path.to_owned(),
         source,
     })?;

@@ -5,6 +5,7 @@ use crate::error::DatasetError;
 use crate::manifest::{FORMAT_VERSION, Manifest};
 use crate::parquet;
 use std::path::{Path, PathBuf};
+use support::regular_file;
 use support::sealed_json::{self, SealError};
 use support::whole_file;
 
@@ -92,7 +93,7 @@ fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
 }
 
 fn read_bytes(path: &Path) -> Result<Vec<u8>, DatasetError> {
-    std::fs::read(path).map_err(|source| DatasetError::Read {
+    regular_file::read(path).map_err(|source| DatasetError::Read {
         path: path.to_owned(),
         source,
     })

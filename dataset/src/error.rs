@@ -61,6 +61,11 @@ pub enum DatasetError {
     ColumnMap { key: String },
     #[error("job {job}, lambda = {lambda}: the row contains a number that is not finite")]
     NotFinite { job: String, lambda: f64 },
+    #[error(
+        "the file claims {values} values in {bytes} bytes, which measured data never do: it is damaged, or made to fill \
+         the memory"
+    )]
+    Expanding { values: usize, bytes: usize },
     #[error("cannot read {path}: {source}", path = .path.display())]
     Read {
         path: PathBuf,

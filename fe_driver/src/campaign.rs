@@ -1,9 +1,11 @@
 //! A campaign of window solves: definition, plan, run, job records, retries, results.
 
+pub(crate) mod array_script;
 pub(crate) mod definition;
 pub(crate) mod extra_rays;
 pub(crate) mod finished;
 pub(crate) mod history;
+pub(crate) mod host;
 pub(crate) mod job;
 pub(crate) mod ledger;
 pub(crate) mod plan;
@@ -12,3 +14,5 @@ pub(crate) mod retry;
 pub(crate) mod run;
 pub(crate) mod sampling;
 pub(crate) mod shard;
+pub(crate) mod slurm;
+pub(crate) mod solve_again;

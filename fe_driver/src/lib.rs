@@ -41,17 +41,22 @@ mod doctor;
 mod record_file;
 mod window;
 
+pub use campaign::array_script::{ArrayScript, SLURM, UnknownTemplateKey};
 pub use campaign::definition::{Campaign, CampaignError};
 pub use campaign::extra_rays::{Added, ExtraRaysError, add_extra_rays};
 pub use campaign::finished::{FinishedJob, finished_jobs};
 pub use campaign::job::JobSpec;
 pub use campaign::ledger::{Status, Tally, Throughput, refuse_changed, status};
-pub use campaign::plan::{Plan, plan};
+pub use campaign::plan::{Plan, plan, prepare};
 pub use campaign::restore::{Restored, restore};
 pub use campaign::retry::retry;
 pub use campaign::run::{Progress, RunOptions, run};
 pub use campaign::sampling::RayBox;
 pub use campaign::shard::{InvalidShard, Shard};
+pub use campaign::slurm::{
+    ArrayStates, SlurmError, Submission, array_states, slurm_folder, submit_array,
+};
+pub use campaign::solve_again::{Difference, SolvedAgain, solve_again};
 pub use doctor::{Diagnosis, doctor};
 pub use record_file::FileError;
 pub use window::ccx::{CCX, Ccx, CcxRun};

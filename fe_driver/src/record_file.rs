@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::io;
 use std::path::{Path, PathBuf};
-use support::{sealed_json, whole_file};
+use support::{regular_file, sealed_json, whole_file};
 
 /// A file of a campaign that cannot be read, written or parsed.
 #[derive(Debug, thiserror::Error)]
@@ -40,7 +40,7 @@ pub(crate) fn or_damage<T>(read: Result<T, FileError>) -> Result<Result<T, Strin
 
 /// Reads a JSON file; `None` if the file does not exist.
 pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, FileError> {
-    match std::fs::read(path) {
+    match regular_file::read(path) {
         Ok(bytes) => sealed_json::from_slice(&bytes).map(Some).map_err(|error| {
             let hint = "the file is damaged: delete it, and the next run writes it again";
             let damage = io::Error::new(io::ErrorKind::InvalidData, format!("{error}: {hint}"));

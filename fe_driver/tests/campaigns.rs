@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{TWO_WORKERS, campaign, fake_ccx, jobs, run_with};
+use common::{TWO_WORKERS, campaign, fake_ccx, history, jobs, run_with};
 use fe_driver::{
     Campaign, CampaignError, Ccx, FailureKind, ToolVersions, Tools, plan, run, status,
 };
@@ -106,7 +106,7 @@ fn a_failing_solver_is_retried_and_counted() {
     assert_eq!(status.tally.failures[&FailureKind::Diverged], 1);
     assert!(jobs(folder.path()).is_empty());
     // Three attempts: as asked, with shorter increments, on a finer mesh; each has a start and an end event.
-    let events = std::fs::read_to_string(folder.path().join("events-1-of-1.jsonl")).unwrap();
+    let events = std::fs::read_to_string(history(folder.path(), "events-1-of-1.jsonl")).unwrap();
     assert_eq!(events.lines().count(), 6);
     assert!(events.lines().next_back().unwrap().contains("finer-tier"));
 }

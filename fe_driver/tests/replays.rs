@@ -4,7 +4,7 @@
 mod common;
 
 use common::processes::left_running;
-use common::{TWO_WORKERS, campaign, fake_ccx, jobs, run_with};
+use common::{TWO_WORKERS, campaign, fake_ccx, history, jobs, run_with};
 use fe_driver::{
     Campaign, CampaignError, Ccx, FailureKind, FinishedJob, Restored, RunOptions, Shard, Tally,
     ToolVersions, Tools, plan, restore, retry, status,
@@ -47,8 +47,8 @@ static RECORDING: LazyLock<Recording> = LazyLock::new(|| {
     }
 });
 
-/// Sets $id to the job's id; ccx runs in jobs/<id>/work.
-const JOB_ID: &str = "id=${PWD%/work}; id=${id##*/}";
+/// Sets $id to the job's id; ccx runs in jobs/<id>/work-<host>.
+const JOB_ID: &str = "id=${PWD%/work-*}; id=${id##*/}";
 
 /// gmsh, and a fake ccx that runs `fault` before it replays the recorded output.
 fn replaying(folder: &Path, fault: &str) -> Tools {
@@ -251,7 +251,7 @@ fn shards_run_in_parallel_and_complete_the_campaign() {
         let first = scope.spawn(move || run("1/2"));
         let second = scope.spawn(move || run("2/2"));
         // While both are running, every overlapping shard is rejected.
-        let history = |name: &str| folder.join(name).exists();
+        let history = |name: &str| history(folder, name).exists();
         while !history("events-1-of-2.jsonl") || !history("events-2-of-2.jsonl") {
             std::thread::sleep(Duration::from_millis(1));
         }
@@ -267,7 +267,7 @@ fn shards_run_in_parallel_and_complete_the_campaign() {
     // A later run finds all jobs done.
     assert_eq!(run_whole(&campaign(RAYS), folder, &tools).complete, RAYS);
     assert_eq!(
-        std::fs::read(folder.join("events-1-of-1.jsonl")).unwrap(),
+        std::fs::read(history(folder, "events-1-of-1.jsonl")).unwrap(),
         b""
     );
 }

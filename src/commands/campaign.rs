@@ -1,6 +1,7 @@
 //! `kirigami campaign`: plan, run, monitor and collect a campaign of window solves.
 
 mod campaign_args;
+mod check;
 mod collect;
 mod extend;
 mod plan;
@@ -9,6 +10,7 @@ mod retry;
 mod rows;
 mod run;
 mod status;
+mod submit;
 
 pub use collect::CollectCommand;
 pub use run::RunCommand;
@@ -30,8 +32,10 @@ pub struct CampaignCommand {
 enum Action {
     Plan(plan::PlanCommand),
     Run(RunCommand),
+    Submit(submit::SubmitCommand),
     Status(status::StatusCommand),
     Retry(retry::RetryCommand),
+    Check(check::CheckCommand),
     Collect(CollectCommand),
     Restore(restore::RestoreCommand),
     Extend(extend::ExtendCommand),
@@ -42,8 +46,10 @@ impl CampaignCommand {
         match &self.action {
             Action::Plan(command) => command.run(),
             Action::Run(command) => command.run(),
+            Action::Submit(command) => command.run(),
             Action::Status(command) => command.run(),
             Action::Retry(command) => command.run(),
+            Action::Check(command) => command.run(),
             Action::Collect(command) => command.run(),
             Action::Restore(command) => command.run(),
             Action::Extend(command) => command.run(),

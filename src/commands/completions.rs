@@ -1,8 +1,9 @@
 //! `kirigami completions`
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::{Args, Command};
 use clap_complete::{Shell, generate};
+use std::io::Write;
 
 /// Print the completions of a shell
 ///
@@ -18,7 +19,10 @@ impl CompletionsCommand {
     /// Prints the completions of the command line `program`.
     pub fn run(&self, mut program: Command) -> Result<()> {
         let name = program.get_name().to_owned();
-        generate(self.shell, &mut program, name, &mut std::io::stdout());
-        Ok(())
+        let mut script = Vec::new();
+        generate(self.shell, &mut program, name, &mut script);
+        let mut output = std::io::stdout();
+        let written = output.write_all(&script).and_then(|()| output.flush());
+        written.context("cannot write to stdout")
     }
 }

@@ -1,5 +1,6 @@
 //! Exit codes and the error message of a command.
 
+use std::io::Write;
 use std::process::{ExitCode, Termination};
 
 /// The exit codes of every command; besides, 2 stands for a wrong command line and 130 for a second Ctrl-C.
@@ -47,6 +48,22 @@ impl Exit {
             }
         }
     }
+}
+
+/// Ends the program with an error, not a panic, when its output cannot be written: a full disk, a closed terminal.
+///
+/// `println!` panics then. The panic is recognised by its message, so that not every printed line needs an error path.
+pub fn report_unwritable_output() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| match panic.payload_as_str() {
+        Some(message) if message.starts_with("failed printing to ") => {
+            let reason = message.replacen("failed printing", "cannot write", 1);
+            // Standard error may be what cannot be written.
+            let _ = writeln!(std::io::stderr(), "error: {reason}");
+            std::process::exit(1);
+        }
+        _ => usual(panic),
+    }));
 }
 
 impl Termination for Exit {

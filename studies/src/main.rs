@@ -29,7 +29,7 @@ mod window;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
-use kirigami::ui::exit::Exit;
+use kirigami::ui::exit::{self, Exit};
 use kirigami::ui::interrupt;
 
 /// Measure cost and error of the choices at each stage, and repeat the paper's experiments
@@ -91,5 +91,6 @@ impl Study {
 
 fn main() -> Exit {
     interrupt::end_quietly_when_nobody_reads();
+    exit::report_unwritable_output();
     Exit::of(Cli::parse().study.run())
 }

@@ -2,8 +2,12 @@
 //!
 //! A program runs in its own process group. Its output goes to a log file, because a pipe that is not
 //! read would block it. It is terminated by SIGTERM, then SIGKILL, sent to the whole group: at its time
-//! limit and when the caller sets the stop flag. When the caller dies, the program itself is killed.
+//! limit and when the caller sets the stop flag. When the caller dies, the program itself is killed. Whatever it
+//! started is killed when it has ended, and what a killed caller left is killed before the next program runs in the
+//! same folder.
 
+use crate::processes::{FOLDER, cpu_seconds, kill_all_of, memory_mib};
+use nix::sys::resource::{Resource, setrlimit};
 use nix::sys::signal::{Signal, killpg};
 use nix::sys::wait::{Id, WaitPidFlag, WaitStatus, waitid};
 use nix::unistd::Pid;
@@ -90,6 +94,15 @@ pub enum ToolError {
         /// See [`Run::cpu_seconds`].
         cpu_seconds: Option<f64>,
     },
+    #[error(
+        "{name} wrote a file of over {MAX_FILE_MIB} MiB and was terminated: no window needs as much, so it would fill \
+         the disk"
+    )]
+    TooMuchOutput {
+        name: &'static str,
+        /// See [`Run::cpu_seconds`].
+        cpu_seconds: Option<f64>,
+    },
     #[error("{name} was stopped on request")]
     Stopped { name: &'static str },
     #[error("{name} failed with {status}; the end of its log:\n{tail}")]
@@ -104,12 +117,16 @@ impl ToolError {
     /// CPU time used until the program was terminated (s), if the operating system reports it.
     pub fn cpu_seconds(&self) -> Option<f64> {
         match self {
-            Self::TimedOut { cpu_seconds, .. } | Self::Killed { cpu_seconds, .. } => *cpu_seconds,
+            Self::TimedOut { cpu_seconds, .. }
+            | Self::Killed { cpu_seconds, .. }
+            | Self::TooMuchOutput { cpu_seconds, .. } => *cpu_seconds,
             _ => None,
         }
     }
 }
 
+/// Maximum size of a file that a program writes (MiB). Results are read into memory as a whole.
+const MAX_FILE_MIB: u64 = 1024;
 /// Time between SIGTERM and SIGKILL.
 const GRACE: Duration = Duration::from_secs(2);
 /// Time limit of the version query.
@@ -194,7 +211,7 @@ impl Tool {
         let name = self.kind.name;
         let mut peak_memory_mib = None;
         while !group.has_ended() {
-            peak_memory_mib = memory_mib(group.0.id()).or(peak_memory_mib);
+            peak_memory_mib = memory_mib(group.child.id()).or(peak_memory_mib);
             if stop.load(Ordering::Relaxed) {
                 group.end();
                 return Err(ToolError::Stopped { name });
@@ -211,7 +228,13 @@ impl Tool {
             std::thread::sleep(POLL.min(Duration::from_millis(1) + start.elapsed() / 10));
         }
         let cpu_seconds = group.cpu_seconds();
-        let status = group.0.wait().map_err(|source| self.cannot_start(source))?;
+        let status = group
+            .child
+            .wait()
+            .map_err(|source| self.cannot_start(source))?;
+        if status.signal() == Some(Signal::SIGXFSZ as i32) {
+            return Err(ToolError::TooMuchOutput { name, cpu_seconds });
+        }
         if let Some(signal) = status.signal() {
             // A service manager or a scheduler signals all processes of a job at once: the request to stop may
             // arrive a moment after the program died of the same signal.
@@ -249,17 +272,20 @@ impl Tool {
     }
 
     fn spawn(&self, arguments: &[&str], folder: &Path, log: &Path) -> std::io::Result<Group> {
+        let folder = std::path::absolute(folder)?;
+        kill_all_of(&folder);
         let output = File::create(log)?;
         let mut command = Command::new(&self.program);
         command
             .args(arguments)
-            .current_dir(folder)
+            .current_dir(&folder)
             .stdin(Stdio::null())
             .stdout(output.try_clone()?)
             .stderr(output)
             .process_group(0);
         // The user's environment and home must not decide a result: ccx reads CCX_NPROC_*, gmsh reads ~/.gmshrc.
-        command.env_clear().env("HOME", folder).env("LC_ALL", "C");
+        command.env_clear().env("HOME", &folder).env("LC_ALL", "C");
+        command.env(FOLDER, &folder);
         for variable in ["PATH", "LD_LIBRARY_PATH", "TMPDIR"] {
             if let Some(value) = std::env::var_os(variable) {
                 command.env(variable, value);
@@ -276,12 +302,17 @@ impl Tool {
             command.env(variable, "1");
         }
         #[cfg(target_os = "linux")]
-        // SAFETY: between fork and exec the closure makes only one prctl system call, which is
+        // SAFETY: between fork and exec the closure makes only two system calls, prctl and setrlimit, which are
         // async-signal-safe, and does not allocate.
         unsafe {
-            command.pre_exec(|| Ok(nix::sys::prctl::set_pdeathsig(Signal::SIGKILL)?));
+            command.pre_exec(|| {
+                let bytes = MAX_FILE_MIB << 20;
+                setrlimit(Resource::RLIMIT_FSIZE, bytes, bytes)?;
+                Ok(nix::sys::prctl::set_pdeathsig(Signal::SIGKILL)?)
+            });
         }
-        Ok(Group(command.spawn()?))
+        let child = command.spawn()?;
+        Ok(Group { child, folder })
     }
 
     fn cannot_start(&self, source: std::io::Error) -> ToolError {
@@ -292,12 +323,17 @@ impl Tool {
     }
 }
 
-/// A child process that leads its own process group; dropping this value kills the group.
-struct Group(Child);
+/// A child process that leads its own process group; dropping this value kills the group and every other process that
+/// the child started.
+struct Group {
+    child: Child,
+    /// The folder that it runs in.
+    folder: PathBuf,
+}
 
 impl Group {
     fn pid(&self) -> Pid {
-        Pid::from_raw(self.0.id() as i32)
+        Pid::from_raw(self.child.id() as i32)
     }
 
     /// Whether the leader has exited; it stays a zombie, so its CPU time can still be read.
@@ -314,7 +350,7 @@ impl Group {
     /// User and system seconds of the leader, which has exited or is about to exit.
     fn cpu_seconds(&self) -> Option<f64> {
         self.look(WaitPidFlag::empty()).ok()?;
-        cpu_seconds(self.0.id())
+        cpu_seconds(self.child.id())
     }
 
     /// Sends SIGTERM, waits up to the grace period, then sends SIGKILL.
@@ -330,34 +366,14 @@ impl Group {
 }
 
 impl Drop for Group {
-    /// Kills the group and reaps its leader, if the leader is still running.
+    /// Kills the group and reaps its leader, if the leader is still running, and kills what it left running.
     fn drop(&mut self) {
-        if let Ok(None) = self.0.try_wait() {
+        if let Ok(None) = self.child.try_wait() {
             let _ = killpg(self.pid(), Signal::SIGKILL);
-            let _ = self.0.wait();
+            let _ = self.child.wait();
         }
+        kill_all_of(&self.folder);
     }
-}
-
-/// User and system seconds of a process that has exited but was not reaped, from /proc.
-fn cpu_seconds(pid: u32) -> Option<f64> {
-    /// Clock ticks per second in /proc, the same on every Linux system.
-    const USER_HZ: f64 = 100.0;
-    let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
-    // The second field, a name in parentheses, may contain any characters.
-    let fields: Vec<_> = stat.rsplit_once(')')?.1.split_whitespace().collect();
-    let ticks = |i: usize| fields.get(i)?.parse::<f64>().ok();
-    Some((ticks(11)? + ticks(12)?) / USER_HZ)
-}
-
-/// Maximum resident memory so far of a running process (MiB), from /proc.
-fn memory_mib(pid: u32) -> Option<f64> {
-    let status = std::fs::read_to_string(format!("/proc/{pid}/status")).ok()?;
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kib: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kib / 1024.0)
 }
 
 /// The first executable file with this name on PATH.
@@ -448,7 +464,12 @@ mod tests {
         let error = ended.unwrap_err();
         assert!(matches!(error, ToolError::TimedOut { .. }), "{error}");
         assert!(error.cpu_seconds().unwrap() > 0.0, "{error:?}");
-        let child: i32 = log.trim().parse().unwrap();
+        assert_ends(&log);
+    }
+
+    /// The process with the number `pid` ends soon.
+    fn assert_ends(pid: &str) {
+        let child: i32 = pid.trim().parse().unwrap();
         let gone = || !Path::new(&format!("/proc/{child}")).exists() || is_zombie(child);
         let deadline = Instant::now() + GRACE;
         while !gone() && Instant::now() < deadline {
@@ -459,6 +480,37 @@ mod tests {
 
     fn is_zombie(pid: i32) -> bool {
         std::fs::read_to_string(format!("/proc/{pid}/stat")).is_ok_and(|stat| stat.contains(") Z"))
+    }
+
+    /// Also if it left the process group and the session, and the program succeeded.
+    #[test]
+    fn a_detached_process_does_not_outlive_the_program() {
+        let (ended, log) = run("setsid sleep 1000 & echo $!; sleep 0.2", LONG, false);
+        assert!(ended.unwrap().status.success());
+        assert_ends(&log);
+    }
+
+    #[test]
+    fn what_a_killed_run_left_is_ended_before_the_next() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut command = Command::new("setsid");
+        command.args(["sh", "-c", "sleep 1000; true"]);
+        let mut left = command.env(FOLDER, folder.path()).spawn().unwrap();
+        // Until exec, its environment is that of this test.
+        std::thread::sleep(Duration::from_millis(200));
+        let log = folder.path().join("log");
+        let never = AtomicBool::new(false);
+        shell()
+            .run(&["-c", "true"], folder.path(), &log, LONG, &never)
+            .unwrap();
+        assert_eq!(left.wait().unwrap().signal(), Some(9));
+    }
+
+    #[test]
+    fn a_program_that_fills_the_disk_is_ended() {
+        let (ended, _) = run("exec truncate -s 2G huge", LONG, false);
+        let error = ended.unwrap_err();
+        assert!(matches!(error, ToolError::TooMuchOutput { .. }), "{error}");
     }
 
     #[test]

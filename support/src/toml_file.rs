@@ -1,6 +1,7 @@
 //! Reading TOML configuration files. An unknown key is an error that names the most similar known key.
 
 use crate::nearest::nearest;
+use crate::regular_file;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 
@@ -37,7 +38,7 @@ pub enum ConfigError {
 
 /// Reads a TOML file into `T`, which should deny unknown fields.
 pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, ConfigError> {
-    let text = std::fs::read_to_string(path).map_err(|source| ConfigError::Read {
+    let text = regular_file::read_to_string(path).map_err(|source| ConfigError::Read {
         path: path.to_owned(),
         source,
     })?;

@@ -24,6 +24,22 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     File::open(folder)?.sync_all()
 }
 
+/// Creates a folder and its missing parents, and syncs their entries to the disk: a synced file is not lost with its
+/// folder.
+pub fn create_folder(path: &Path) -> io::Result<()> {
+    if path == Path::new("") || path.is_dir() {
+        return Ok(());
+    }
+    let parent = path.parent().unwrap_or(Path::new(""));
+    create_folder(parent)?;
+    match std::fs::create_dir(path) {
+        // Another process may create it at the same time.
+        Err(error) if error.kind() != io::ErrorKind::AlreadyExists => Err(error),
+        _ if parent == Path::new("") => File::open(".")?.sync_all(),
+        _ => File::open(parent)?.sync_all(),
+    }
+}
+
 /// The default permissions of a new file, before the umask is applied; a temporary file would be private.
 fn permissions() -> std::fs::Permissions {
     std::os::unix::fs::PermissionsExt::from_mode(0o666)

@@ -24,6 +24,7 @@ use safetensors::{Dtype, SafeTensorError, SafeTensors};
 use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
+use support::regular_file;
 use support::sealed_json::{self, SealError};
 
 /// Why a surrogate could not be read or written.
@@ -99,7 +100,7 @@ impl Surrogate {
 }
 
 fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
-    let bytes = std::fs::read(weights).map_err(|source| WeightsError::Read {
+    let bytes = regular_file::read(weights).map_err(|source| WeightsError::Read {
         path: weights.to_owned(),
         source,
     })?;
@@ -231,7 +232,7 @@ fn read_card(weights: &Path) -> Result<Card, WeightsError> {
         format_version: u64,
     }
     let path = card_path(weights);
-    let text = std::fs::read(&path).map_err(|source| match source.kind() {
+    let text = regular_file::read(&path).map_err(|source| match source.kind() {
         io::ErrorKind::NotFound => WeightsError::MissingCard {
             weights: weights.to_owned(),
             card: path.clone(),

@@ -1,4 +1,5 @@
 //! A working folder with small configurations, in which the program of the package under test is run.
+#![allow(dead_code)] // every test program uses only a part
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -119,7 +119,7 @@ impl State {
             path: path.to_owned(),
             reason,
         };
-        let bytes = std::fs::read(path).map_err(|source| StateError::Read {
+        let bytes = support::regular_file::read(path).map_err(|source| StateError::Read {
             path: path.to_owned(),
             source,
         })?;

@@ -78,6 +78,18 @@ pub enum CampaignError {
     #[error("another run has locked {0}: wait until it ends, or stop it")]
     Locked(PathBuf),
     #[error(
+        "{host} has {here}, but the campaign is solved with {known}: rows of different versions are not collected \
+         together. Use the same versions on every host; or delete {index}, and all rays are solved again with the \
+         versions of the next run (no file of a job is lost)",
+        index = .index.display()
+    )]
+    OtherVersions {
+        index: PathBuf,
+        host: String,
+        here: Box<ToolVersions>,
+        known: Box<ToolVersions>,
+    },
+    #[error(
         "none of the jobs belongs to the campaign (the first is {0}): they were solved with other settings, \
          with another version of gmsh or ccx, or for another campaign"
     )]

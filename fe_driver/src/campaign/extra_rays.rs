@@ -118,7 +118,7 @@ pub fn add_extra_rays(path: &Path, rays: &[Ray]) -> Result<Added, ExtraRaysError
 
 fn read_rows(path: &Path) -> Result<Vec<Row>, ExtraRaysError> {
     let rows = || -> Result<Vec<Row>, csv::Error> {
-        let mut bytes = std::fs::read(path)?;
+        let mut bytes = support::regular_file::read(path)?;
         // A comment at the end of the file without a line break would be read as a row.
         bytes.push(b'\n');
         let mut reader = csv::ReaderBuilder::new()

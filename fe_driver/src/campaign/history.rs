@@ -1,12 +1,13 @@
 //! The history of a shard: an append-only file of events, locked by the process that writes it.
 
 use crate::campaign::definition::CampaignError;
+use crate::campaign::host::lock;
 use crate::campaign::job::JobRecord;
 use crate::record_file::FileError;
 use crate::window::failure::RetryStep;
 use serde::Serialize;
-use std::fs::{File, OpenOptions, TryLockError};
-use std::io::Write;
+use std::fs::{File, OpenOptions};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -50,10 +51,12 @@ impl History {
             .open(path)
             .map_err(FileError::at(path))?;
         let path = path.to_owned();
-        match file.try_lock() {
+        match lock(&file, |file| file.try_lock().map_err(io::Error::from)) {
             Ok(()) => Ok(Self { path, file }),
-            Err(TryLockError::WouldBlock) => Err(CampaignError::Locked(path)),
-            Err(TryLockError::Error(source)) => Err(FileError { path, source }.into()),
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
+                Err(CampaignError::Locked(path))
+            }
+            Err(source) => Err(FileError { path, source }.into()),
         }
     }
 

@@ -4,6 +4,7 @@
 //! samples), the input deck and log of a successful attempt, and `result.json`. `result.json` is written last: a job
 //! without it is not done. These files are written atomically.
 
+use crate::campaign::host::host;
 use crate::record_file::{FileError, or_damage, read_json, short_hash, write_json};
 use crate::window::failure::{FailureKind, RetryStep};
 use crate::window::solve::WindowProblem;
@@ -13,7 +14,7 @@ use mesher::{MeshRecipe, Tier};
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::PathBuf;
-use support::whole_file;
+use support::{regular_file, whole_file};
 
 /// All inputs of the result of a job; its id is a hash of them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -169,7 +170,7 @@ impl JobFolder {
     /// The bytes of `rows.csv`, which must have the hash in `record`.
     fn rows(&self, record: &JobRecord) -> Result<Vec<u8>, FileError> {
         let path = self.0.join("rows.csv");
-        let bytes = std::fs::read(&path).map_err(FileError::at(&path))?;
+        let bytes = regular_file::read(&path).map_err(FileError::at(&path))?;
         if blake3::hash(&bytes).to_hex().as_str() != record.rows_hash {
             let changed = "the rows do not match the hash in result.json: run the campaign again";
             let damage = io::Error::new(io::ErrorKind::InvalidData, changed);
@@ -179,7 +180,7 @@ impl JobFolder {
     }
 
     pub(crate) fn write_spec(&self, spec: &JobSpec) -> Result<(), FileError> {
-        std::fs::create_dir_all(&self.0).map_err(FileError::at(&self.0))?;
+        whole_file::create_folder(&self.0).map_err(FileError::at(&self.0))?;
         write_json(&self.0.join("job.json"), spec)
     }
 
@@ -200,26 +201,45 @@ impl JobFolder {
         write_json(&self.0.join("result.json"), record)
     }
 
+    /// The record of the job if its files are consistent; `None` if no attempt has ended, or if the files are damaged.
+    pub(crate) fn ended(&self) -> Result<Option<JobRecord>, FileError> {
+        Ok(match self.state()? {
+            JobState::Ended(ended) => Some(ended.1),
+            JobState::Open { .. } | JobState::Damaged(_) => None,
+        })
+    }
+
+    /// The work folder of attempts on this host; another host may try the same job at the same time.
+    fn work(&self) -> PathBuf {
+        self.0.join(format!("work-{}", host()))
+    }
+
     /// Creates an empty work folder for an attempt.
     pub(crate) fn fresh_work(&self) -> Result<PathBuf, FileError> {
-        let work = self.0.join("work");
-        match std::fs::remove_dir_all(&work) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => {
-                return Err(FileError::at(&work)(error));
-            }
-            _ => {}
-        }
+        self.remove_work()?;
+        let work = self.work();
         std::fs::create_dir_all(&work).map_err(FileError::at(&work))?;
         Ok(work)
     }
 
+    /// Removes the work folder, if there is one.
+    pub(crate) fn remove_work(&self) -> Result<(), FileError> {
+        let work = self.work();
+        match std::fs::remove_dir_all(&work) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                Err(FileError::at(&work)(error))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Keeps the input deck and the log of a successful attempt and deletes its other files.
     pub(crate) fn tidy(&self) -> Result<(), FileError> {
-        let work = self.0.join("work");
+        let work = self.work();
         for name in ["window.inp", "window.log"] {
             std::fs::rename(work.join(name), self.0.join(name)).map_err(FileError::at(&work))?;
         }
-        std::fs::remove_dir_all(&work).map_err(FileError::at(&work))
+        self.remove_work()
     }
 }
 

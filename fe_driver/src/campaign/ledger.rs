@@ -1,18 +1,25 @@
 //! The folder of a campaign, and the state of its jobs.
 //!
-//! `campaign.json` contains the name of the campaign and the ids of its jobs as last run. `jobs/<id>/` contains one
-//! job. `events-<i>-of-<n>.jsonl` is the append-only history of a shard; it is also the shard's lock file.
+//! `campaign.json` contains the name of the campaign, the versions of gmsh and ccx, and the ids of its jobs as last
+//! run. `jobs/<id>/` contains one job. `hosts/<host>/` contains what only the runs on one host write: the append-only
+//! history `events-<i>-of-<n>.jsonl` of each shard, which is also its lock file.
+//!
+//! Hosts may share the folder, also on a file system whose locks do not work across hosts: locks only prevent that
+//! two runs on one host do the same work. Runs on different hosts may solve the same job twice; it is counted once.
 
 use crate::campaign::definition::{Campaign, CampaignError};
 use crate::campaign::history::History;
+use crate::campaign::host::{host, lock};
 use crate::campaign::job::{JobFolder, JobRecord, JobSpec, JobState};
 use crate::campaign::shard::Shard;
 use crate::record_file::{FileError, read_json, write_json};
 use crate::window::failure::FailureKind;
+use crate::window::versions::ToolVersions;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{DirEntry, File};
 use std::path::{Path, PathBuf};
+use support::whole_file;
 
 /// The folder of a campaign.
 #[derive(Clone, Debug)]
@@ -22,6 +29,9 @@ pub(crate) struct CampaignFolder(pub PathBuf);
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Index {
     pub name: String,
+    /// Versions of the programs that solve the jobs; `None` in folders of earlier versions.
+    #[serde(default)]
+    pub tools: Option<ToolVersions>,
     /// Ids of the jobs of the campaign as last run, in order.
     pub jobs: Vec<String>,
 }
@@ -30,6 +40,7 @@ impl Index {
     pub fn of(name: &str, specs: &[JobSpec]) -> Self {
         Self {
             name: name.to_owned(),
+            tools: specs.first().map(|spec| spec.tools.clone()),
             jobs: specs.iter().map(JobSpec::id).collect(),
         }
     }
@@ -61,25 +72,45 @@ impl CampaignFolder {
         }
     }
 
-    /// Writes `index` to the folder and locks one shard of it until the returned history is dropped.
+    /// Writes `index` to the folder and locks one shard of it on this host until the returned history is dropped.
     ///
-    /// It is an error if a shard that may overlap with this one is locked.
+    /// It is an error if a shard that may overlap with this one is locked on this host, or if this is a part of a
+    /// campaign whose other parts are solved with other versions of gmsh and ccx.
     pub fn enter(&self, shard: Shard, index: &Index) -> Result<History, CampaignError> {
-        std::fs::create_dir_all(&self.0).map_err(FileError::at(&self.0))?;
+        let home = self.0.join("hosts").join(host());
+        whole_file::create_folder(&home).map_err(FileError::at(&home))?;
         // Shards that start at the same time enter one after the other. Otherwise each would find the lock of the
-        // other, and both would write the index.
-        let door = self.0.join("lock");
+        // other.
+        let door = home.join("lock");
         let _held = File::create(&door)
-            .and_then(|file| file.lock().map(|()| file))
+            .and_then(|file| lock(&file, File::lock).map(|()| file))
             .map_err(FileError::at(&door))?;
         self.belongs_to(&index.name)?;
-        for entry in entries(&self.0)? {
+        if shard != Shard::WHOLE {
+            self.refuse_other_versions(index)?;
+        }
+        for entry in entries(&home)? {
             if shard.overlaps(&entry.file_name().to_string_lossy()) {
                 History::open(&entry.path())?;
             }
         }
         write_json(&self.index_path(), index)?;
-        History::open(&self.0.join(shard.history()))
+        History::open(&home.join(shard.history()))
+    }
+
+    /// Rejects versions of gmsh and ccx other than those with which the campaign was last run. Only the rows of one
+    /// pair of versions are collected.
+    fn refuse_other_versions(&self, index: &Index) -> Result<(), CampaignError> {
+        let known = read_json::<Index>(&self.index_path())?.and_then(|known| known.tools);
+        match (known, &index.tools) {
+            (Some(known), Some(here)) if known != *here => Err(CampaignError::OtherVersions {
+                index: self.index_path(),
+                host: host(),
+                here: Box::new(here.clone()),
+                known: Box::new(known),
+            }),
+            _ => Ok(()),
+        }
     }
 
     /// Counts the states of the jobs with these ids.
@@ -267,7 +298,7 @@ pub fn refuse_changed(campaign: &Campaign, folder: &Path) -> Result<(), Campaign
 /// The state of the campaign in `folder`, as it was last run.
 pub fn status(folder: &Path) -> Result<Status, CampaignError> {
     let folder = CampaignFolder(folder.to_owned());
-    let Index { name, jobs } = folder.index()?;
+    let Index { name, jobs, .. } = folder.index()?;
     let tally = folder.tally(&jobs)?;
     Ok(Status {
         name,

@@ -3,6 +3,7 @@
 use crate::campaign::definition::{Campaign, CampaignError};
 use crate::campaign::job::{JobRecord, JobSpec, JobState};
 use crate::campaign::ledger::{CampaignFolder, Index, Tally};
+use crate::campaign::shard::Shard;
 use crate::record_file::or_damage;
 use crate::window::versions::ToolVersions;
 use serde::Serialize;
@@ -55,6 +56,18 @@ pub fn plan(
         reasons,
         stale: stale.len(),
     })
+}
+
+/// Enters the jobs of the campaign in `folder` before any of them is solved, so that every shard finds the same jobs
+/// and the same versions of gmsh and ccx.
+pub fn prepare(
+    campaign: &Campaign,
+    folder: &Path,
+    versions: &ToolVersions,
+) -> Result<(), CampaignError> {
+    let index = Index::of(&campaign.name, &campaign.jobs(versions));
+    CampaignFolder(folder.to_owned()).enter(Shard::WHOLE, &index)?;
+    Ok(())
 }
 
 /// The inputs of the jobs in the folder whose ids are not in `ids`.

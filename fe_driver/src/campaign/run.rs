@@ -6,7 +6,7 @@
 
 use crate::campaign::definition::{Campaign, CampaignError};
 use crate::campaign::history::{Event, History, now};
-use crate::campaign::job::{JobFolder, JobRecord, JobSpec, JobState};
+use crate::campaign::job::{JobFolder, JobRecord, JobSpec};
 use crate::campaign::ledger::{CampaignFolder, Index, Tally};
 use crate::campaign::shard::Shard;
 use crate::record_file::FileError;
@@ -52,21 +52,22 @@ impl Job {
     /// Reads the state of a job from its folder. A record without matching rows, as left by a crash, is ignored.
     fn found(folder: &CampaignFolder, id: String, spec: JobSpec) -> Result<Self, FileError> {
         let folder = folder.job(&id);
-        let record = match folder.state()? {
-            JobState::Ended(ended) => Some(ended.1),
-            JobState::Open { .. } | JobState::Damaged(_) => None,
-        };
         Ok(Self {
             id,
             spec,
+            record: folder.ended()?,
             folder,
-            record,
         })
     }
 }
 
 /// A message from a worker to the dispatcher.
 enum Message {
+    /// The record of a job when a worker takes it up; another host may have changed it since the run began.
+    Found {
+        job: usize,
+        record: Option<JobRecord>,
+    },
     Started {
         job: usize,
         rung: RetryStep,
@@ -191,7 +192,11 @@ impl Worker<'_> {
 
     /// Makes the attempts of the retry ladder of one job until the job is closed or the run ends.
     fn climb(&self, job: &Job, index: usize, send: &dyn Fn(Message)) -> Result<(), CampaignError> {
-        let mut record = job.record.clone();
+        let mut record = job.folder.ended()?;
+        send(Message::Found {
+            job: index,
+            record: record.clone(),
+        });
         while self.may_start()
             && let Some(rung) = record.as_ref().map_or(Some(RetryStep::AsAsked), |r| r.next)
         {
@@ -211,7 +216,8 @@ impl Worker<'_> {
 
     /// Makes one attempt at a job and records its result; `None` if it was stopped on request.
     ///
-    /// The rows of the attempt that reached the largest lambda are kept.
+    /// The rows of the attempt that reached the largest lambda are kept. If another host has recorded an attempt in the
+    /// meantime, its record is returned, and that of this attempt is dropped.
     fn attempt(
         &self,
         job: &Job,
@@ -241,6 +247,14 @@ impl Worker<'_> {
                 }
             },
         };
+        if let Some(theirs) = job
+            .folder
+            .ended()?
+            .filter(|now| before.as_ref() != Some(now))
+        {
+            job.folder.remove_work()?;
+            return Ok(Some(theirs));
+        }
         let mut record = before.unwrap_or_default();
         if let Some(last) = samples.last()
             && last.lambda > record.lambda
@@ -290,6 +304,7 @@ impl<'a> Books<'a> {
 
     fn note(&mut self, message: Message) -> Result<(), CampaignError> {
         match message {
+            Message::Found { job, record } => self.records[job] = record,
             Message::Started { job, rung } => {
                 self.history
                     .note(&self.jobs[job].id, Event::Started { rung })?;

@@ -134,10 +134,11 @@ impl Row {
 
 /// The rows of the file, each with its line number.
 fn read_rows(path: &Path) -> Result<Vec<(u64, Row)>, csv::Error> {
+    let bytes = support::regular_file::read(path)?;
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
-        .from_path(path)?;
+        .from_reader(bytes.as_slice());
     let headers = reader.headers()?.clone();
     reader
         .into_records()

@@ -72,6 +72,7 @@ impl FailureKind {
             SolveError::Mesh(MeshError::Gmsh(error)) | SolveError::Solver(error) => match error {
                 ToolError::TimedOut { .. } => Some(Self::TimedOut),
                 ToolError::Killed { .. } => Some(Self::Killed),
+                ToolError::TooMuchOutput { .. } => Some(Self::OutputTruncated),
                 _ => None,
             },
             SolveError::NotStarted { .. } => Some(Self::NotStarted),

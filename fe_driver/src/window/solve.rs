@@ -190,7 +190,11 @@ impl WindowModel<'_> {
 
         let run = match ccx.run(folder, JOB, limit, stop) {
             // The increments that converged before the termination are valid.
-            Err(error @ (ToolError::TimedOut { .. } | ToolError::Killed { .. })) => Err(error),
+            Err(
+                error @ (ToolError::TimedOut { .. }
+                | ToolError::Killed { .. }
+                | ToolError::TooMuchOutput { .. }),
+            ) => Err(error),
             other => Ok(other?),
         };
         let attempts = read_sta(&read_if_there(&status)?);

@@ -27,3 +27,9 @@ impl ToolVersions {
         }
     }
 }
+
+impl std::fmt::Display for ToolVersions {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "gmsh {} and ccx {}", self.gmsh, self.ccx)
+    }
+}

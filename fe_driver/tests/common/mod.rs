@@ -63,6 +63,15 @@ pub fn jobs(folder: &Path) -> Vec<FinishedJob> {
         .unwrap()
 }
 
+/// The history of a shard that ran on this host; the path does not exist before that.
+pub fn history(folder: &Path, name: &str) -> PathBuf {
+    let hosts = std::fs::read_dir(folder.join("hosts"))
+        .into_iter()
+        .flatten();
+    let host = hosts.map(|entry| entry.unwrap().path()).next();
+    host.unwrap_or_default().join(name)
+}
+
 pub const TWO_WORKERS: RunOptions = RunOptions {
     shard: Shard::WHOLE,
     workers: 2,

@@ -3,8 +3,10 @@
 use crate::commands::campaign::campaign_args::{CampaignArgs, print_tally};
 use anyhow::Result;
 use clap::Args;
+use fe_driver::{ArrayStates, Status};
+use serde::Serialize;
 
-/// Print the state of the jobs, the reasons of failures and the throughput
+/// Print the state of the jobs, the reasons of failures, the throughput, and the tasks on a cluster
 #[derive(Args)]
 pub struct StatusCommand {
     #[command(flatten)]
@@ -14,13 +16,24 @@ pub struct StatusCommand {
     json: bool,
 }
 
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Report {
+    #[serde(flatten)]
+    status: Status,
+    /// The last submission to Slurm; null if there is none, or if Slurm does not answer.
+    slurm: Option<ArrayStates>,
+}
+
 impl StatusCommand {
     pub fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
         fe_driver::refuse_changed(&self.campaign.load()?, &folder)?;
         let status = fe_driver::status(&folder)?;
+        let slurm = fe_driver::array_states(&folder)?;
         if self.json {
-            println!("{}", serde_json::to_string_pretty(&status)?);
+            let report = Report { status, slurm };
+            println!("{}", serde_json::to_string_pretty(&report)?);
             return Ok(());
         }
         print_tally(&status.tally);
@@ -33,6 +46,9 @@ impl StatusCommand {
                 pace.cpu_seconds_per_sample,
                 100.0 * pace.overhead
             );
+        }
+        if let Some(states) = slurm {
+            println!("{states}");
         }
         Ok(())
     }

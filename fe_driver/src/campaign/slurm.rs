@@ -1,0 +1,230 @@
+//! Slurm: submits the array of a campaign with the job that collects it, and reports the states of both.
+
+use crate::record_file::{FileError, read_json, write_json};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use support::whole_file;
+
+/// Why an array was not submitted.
+#[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
+pub enum SlurmError {
+    #[error("cannot start {program}: {source}; is Slurm installed on this host?")]
+    NotFound {
+        program: &'static str,
+        source: std::io::Error,
+    },
+    #[error("{program} failed: {message}")]
+    Refused {
+        program: &'static str,
+        message: String,
+    },
+    #[error("{0}: wait until it ends, or cancel it with `scancel {id}`", id = .0.array)]
+    Active(ArrayStates),
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+/// The jobs of the last submission of a campaign.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Submission {
+    /// Id of the array.
+    pub array: String,
+    /// Number of tasks of the array.
+    pub tasks: usize,
+    /// Id of the job that collects the database after the array.
+    pub collect: String,
+}
+
+/// The states of the last submission of a campaign.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct ArrayStates {
+    /// Id of the array.
+    pub array: String,
+    /// Number of tasks in each state, in Slurm's words; tasks that Slurm no longer knows are "unknown".
+    pub tasks: BTreeMap<String, usize>,
+    /// Id of the job that collects the database.
+    pub collect: String,
+    /// State of this job; "unknown" if Slurm no longer knows it.
+    pub collect_state: String,
+}
+
+/// The state of a job that Slurm does not know.
+const UNKNOWN: &str = "unknown";
+
+/// The states in which a job has ended; in all others it is waiting or active.
+const ENDED: [&str; 11] = [
+    "boot_fail",
+    "cancelled",
+    "completed",
+    "deadline",
+    "failed",
+    "node_fail",
+    "out_of_memory",
+    "preempted",
+    "revoked",
+    "timeout",
+    UNKNOWN,
+];
+
+impl ArrayStates {
+    /// Whether a task or the collecting job waits or runs.
+    pub fn is_active(&self) -> bool {
+        let mut states = self.tasks.keys().chain([&self.collect_state]);
+        states.any(|state| !ENDED.contains(&state.as_str()))
+    }
+}
+
+impl fmt::Display for ArrayStates {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let tasks: Vec<_> = self
+            .tasks
+            .iter()
+            .map(|(state, n)| format!("{n} {state}"))
+            .collect();
+        write!(
+            f,
+            "Slurm array {}: {}; job {} to collect: {}",
+            self.array,
+            tasks.join(", "),
+            self.collect,
+            self.collect_state
+        )
+    }
+}
+
+/// The folder of scripts, logs and the record of the last submission, in the folder of a campaign.
+pub fn slurm_folder(campaign_folder: &Path) -> PathBuf {
+    campaign_folder.join("slurm")
+}
+
+fn record_path(campaign_folder: &Path) -> PathBuf {
+    slurm_folder(campaign_folder).join("submission.json")
+}
+
+/// Writes the script to the folder of the campaign and submits it twice: as an array of `tasks` tasks, and as the job
+/// that collects the database when all tasks have ended, in whatever state.
+///
+/// It is an error if the last submission has not ended.
+pub fn submit_array(
+    campaign_folder: &Path,
+    script: &str,
+    tasks: usize,
+    partition: Option<&str>,
+) -> Result<Submission, SlurmError> {
+    if let Some(states) = array_states(campaign_folder)?.filter(ArrayStates::is_active) {
+        return Err(SlurmError::Active(states));
+    }
+    let folder = slurm_folder(campaign_folder);
+    std::fs::create_dir_all(&folder).map_err(FileError::at(&folder))?;
+    let path = folder.join("array.sh");
+    whole_file::write(&path, script.as_bytes()).map_err(FileError::at(&path))?;
+    let sbatch = |options: &str, argument: Option<&str>| {
+        let mut command = Command::new("sbatch");
+        command.arg("--parsable").arg(options);
+        command.args(partition.map(|name| format!("--partition={name}")));
+        command.arg(&path).args(argument);
+        // The output is the id, followed by the name of the cluster if there are several.
+        let id = output("sbatch", &mut command)?;
+        Ok::<_, SlurmError>(id.trim().split(';').next().unwrap_or_default().to_owned())
+    };
+    let array = sbatch(&format!("--array=1-{tasks}"), None)?;
+    let collect = sbatch(&format!("--dependency=afterany:{array}"), Some("collect"))?;
+    let submission = Submission {
+        array,
+        tasks,
+        collect,
+    };
+    write_json(&record_path(campaign_folder), &submission)?;
+    Ok(submission)
+}
+
+/// The states of the last submission of a campaign; `None` if it was never submitted, or if Slurm does not answer.
+pub fn array_states(campaign_folder: &Path) -> Result<Option<ArrayStates>, SlurmError> {
+    let Some(submission) = read_json::<Submission>(&record_path(campaign_folder))? else {
+        return Ok(None);
+    };
+    let Submission {
+        array,
+        tasks,
+        collect,
+    } = submission;
+    let Some(known) = known_states(&[&array, &collect]) else {
+        return Ok(None);
+    };
+    let state = |job: &str| known.get(job).map_or(UNKNOWN, String::as_str).to_owned();
+    let mut counts = BTreeMap::new();
+    for task in 1..=tasks {
+        *counts.entry(state(&format!("{array}_{task}"))).or_default() += 1;
+    }
+    Ok(Some(ArrayStates {
+        tasks: counts,
+        collect_state: state(&collect),
+        array,
+        collect,
+    }))
+}
+
+/// The states of jobs and tasks by their ids: those of the queue, which forgets jobs minutes after their end, before
+/// those of the accounting, which not every site keeps. `None` if neither answers.
+fn known_states(jobs: &[&str]) -> Option<BTreeMap<String, String>> {
+    let jobs = format!("--jobs={}", jobs.join(","));
+    let mut squeue = Command::new("squeue");
+    squeue.args([
+        "--noheader",
+        "--array",
+        "--states=all",
+        "--format=%i|%T",
+        &jobs,
+    ]);
+    let mut sacct = Command::new("sacct");
+    sacct.args([
+        "--noheader",
+        "--array",
+        "--allocations",
+        "--parsable2",
+        "--format=JobID,State",
+        &jobs,
+    ]);
+    let queue = match output("squeue", &mut squeue) {
+        Ok(text) => Some(text),
+        // The queue has forgotten all of the jobs.
+        Err(SlurmError::Refused { message, .. }) if message.contains("Invalid job id") => {
+            Some(String::new())
+        }
+        Err(_) => None,
+    };
+    let accounting = output("sacct", &mut sacct).ok();
+    let answers = [accounting, queue];
+    answers.iter().any(Option::is_some).then(|| {
+        let lines = answers.iter().flatten().flat_map(|text| text.lines());
+        lines.filter_map(state).collect()
+    })
+}
+
+/// The id and the state in a line like `12_3|CANCELLED by 1000`.
+fn state(line: &str) -> Option<(String, String)> {
+    let (job, state) = line.trim().split_once('|')?;
+    let state = state.split_whitespace().next()?;
+    Some((job.to_owned(), state.to_lowercase()))
+}
+
+/// What a program of Slurm prints.
+fn output(program: &'static str, command: &mut Command) -> Result<String, SlurmError> {
+    let output = command
+        .output()
+        .map_err(|source| SlurmError::NotFound { program, source })?;
+    match output.status.success() {
+        true => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
+        false => Err(SlurmError::Refused {
+            program,
+            message: String::from_utf8_lossy(&output.stderr).trim().to_owned(),
+        }),
+    }
+}

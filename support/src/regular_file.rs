@@ -1,0 +1,52 @@
+//! Reading of input files. A pipe or a device is refused: a read of it could wait forever or never end.
+
+use std::fs::FileType;
+use std::io::{self, ErrorKind};
+use std::path::Path;
+
+/// The bytes of a file; an error if it is not a regular file.
+pub fn read(path: &Path) -> io::Result<Vec<u8>> {
+    let kind = std::fs::metadata(path)?.file_type();
+    match is_endless(kind) {
+        false => std::fs::read(path),
+        true => Err(io::Error::new(
+            ErrorKind::InvalidInput,
+            "it is a pipe, a socket or a device, not a regular file: copy its contents to a file first",
+        )),
+    }
+}
+
+/// The text of a file in UTF-8; an error if it is not a regular file.
+pub fn read_to_string(path: &Path) -> io::Result<String> {
+    String::from_utf8(read(path)?).map_err(|error| io::Error::new(ErrorKind::InvalidData, error))
+}
+
+/// A folder is not endless: reading it fails with a message of its own.
+fn is_endless(kind: FileType) -> bool {
+    !kind.is_file() && !kind.is_dir()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::process::Command;
+
+    #[test]
+    fn a_pipe_and_a_device_are_refused_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        let made = Command::new("mkfifo").arg(&pipe).status();
+        assert!(made.unwrap().success());
+        for path in [pipe.as_path(), Path::new("/dev/zero")] {
+            let message = read(path).unwrap_err().to_string();
+            assert!(message.contains("not a regular file"), "{message}");
+        }
+        assert_eq!(
+            read(&folder.path().join("none")).unwrap_err().kind(),
+            ErrorKind::NotFound
+        );
+        let file = folder.path().join("file");
+        std::fs::write(&file, "text").unwrap();
+        assert_eq!(read_to_string(&file).unwrap(), "text");
+    }
+}

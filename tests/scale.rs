@@ -1,0 +1,94 @@
+//! A campaign of many rays, whose folders are written from the shipped rows: the time, memory and files that `status` and
+//! `collect` need. It asserts little and prints much:
+//! `RAYS=10000 cargo test --release --test scale -- --ignored --nocapture`
+
+mod common;
+
+use common::Workplace;
+use dataset::Database;
+use fe_driver::{Campaign, FinishedJob, ToolVersions, restore};
+use nix::sys::resource::{UsageWho, getrusage};
+use std::os::unix::fs::MetadataExt;
+use std::path::Path;
+use std::time::Instant;
+
+const CAMPAIGN: &str = "configs/campaigns/pet-0.5mm.toml";
+
+#[test]
+#[ignore = "a measurement of minutes and gigabytes"]
+fn the_cost_of_many_rays() {
+    let count = std::env::var("RAYS").map_or(10_000, |text| text.parse().unwrap());
+    let work = Workplace::new();
+    let mut campaign = Campaign::load(&work.path(CAMPAIGN)).unwrap();
+    work.edit(
+        CAMPAIGN,
+        &[(
+            &format!("count = {}", campaign.count),
+            &format!("count = {count}"),
+        )],
+    );
+    campaign.count = count;
+    campaign.further.clear();
+    let folder = work.path("runs/pet-0.5mm");
+
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/hinges.parquet");
+    let database = Database::read(&shipped).unwrap();
+    let rays: Vec<_> = database.rows().chunk_by(|a, b| a.job == b.job).collect();
+    let (gmsh, ccx) = ("4.8.4".to_owned(), "2.20".to_owned());
+    let tools = ToolVersions { gmsh, ccx };
+    let jobs = campaign.jobs(&tools).into_iter().zip(rays.iter().cycle());
+    let finished = |(spec, rows): (fe_driver::JobSpec, &&[dataset::Row])| FinishedJob {
+        id: spec.id(),
+        design: spec.problem.ray.design,
+        material: spec.problem.material.name.clone(),
+        material_hash: spec.problem.material.law_hash(),
+        settings_hash: String::new(),
+        tier: spec.problem.tier,
+        solved_tier: spec.problem.tier,
+        tools: spec.tools.clone(),
+        samples: rows.iter().map(|row| row.sample).collect(),
+        cpu_seconds: 1.0,
+        failure: None,
+    };
+    let jobs: Vec<FinishedJob> = jobs.map(finished).collect();
+    let start = Instant::now();
+    restore(&campaign, &folder, &jobs).unwrap();
+    println!(
+        "{count} rays written in {:.1} s",
+        start.elapsed().as_secs_f64()
+    );
+    drop(jobs);
+    let (files, bytes) = size(&folder);
+    println!("{files} files and folders, {:.1} MB", bytes as f64 / 1e6);
+    for command in ["plan", "status", "collect"] {
+        let start = Instant::now();
+        work.output(&format!("campaign {command} {CAMPAIGN}"));
+        let memory = getrusage(UsageWho::RUSAGE_CHILDREN).unwrap().max_rss() as f64 / 1024.0;
+        println!(
+            "{command}: {:.1} s, {memory:.0} MiB at most so far",
+            start.elapsed().as_secs_f64()
+        );
+    }
+    for file in ["hinges.parquet", "hinges.json", "campaign.json"] {
+        let bytes = folder.join(file).metadata().unwrap().len();
+        println!("{file}: {:.2} MB", bytes as f64 / 1e6);
+    }
+}
+
+/// The number of files and folders below a folder, and their size on the disk.
+fn size(folder: &Path) -> (usize, u64) {
+    let entries = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap());
+    entries.fold((0, 0), |(files, bytes), entry| {
+        let metadata = entry.metadata().unwrap();
+        let below = match metadata.is_dir() {
+            true => size(&entry.path()),
+            false => (0, 0),
+        };
+        (
+            files + 1 + below.0,
+            bytes + 512 * metadata.blocks() + below.1,
+        )
+    })
+}

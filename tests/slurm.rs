@@ -1,0 +1,263 @@
+//! A campaign on a real Slurm, of one controller and two nodes on this machine: tasks are cancelled, stopped, frozen
+//! until their time limit and lost with their node, the controller is restarted, and the database is that of one run.
+
+mod common;
+
+use common::Workplace;
+use dataset::{Database, Gates, Row, SplitPlan};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+const CAMPAIGN: &str = "configs/campaigns/demo.toml";
+
+/// Slurm and a workplace; dropping it ends every daemon.
+struct Cluster {
+    slurm: TempDir,
+    work: Workplace,
+}
+
+impl Cluster {
+    fn up() -> Self {
+        let (slurm, work) = (tempfile::tempdir().unwrap(), Workplace::new());
+        // 40 rays with small rotations, which are solved fast.
+        work.edit(
+            CAMPAIGN,
+            &[
+                ("theta_deg = [-5.0, 40.0]", "theta_deg = [2.0, 4.0]"),
+                ("median_deg = 20.0", "median_deg = 3.0"),
+            ],
+        );
+        let cluster = Self { slurm, work };
+        let output = cluster.here("up");
+        assert!(output.status.success(), "{}", cluster.logs(&output));
+        cluster
+    }
+
+    fn here(&self, verb: &str) -> Output {
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/slurm-here");
+        let mut command = Command::new(script);
+        // A daemon that inherits a pipe would keep its reader waiting.
+        let errors = std::fs::File::create(self.slurm.path().join("errors")).unwrap();
+        command.arg(verb).arg(self.slurm.path());
+        command.stdout(Stdio::null()).stderr(errors);
+        let status = command.status().unwrap();
+        let stderr = std::fs::read(self.slurm.path().join("errors")).unwrap();
+        Output {
+            status,
+            stdout: Vec::new(),
+            stderr,
+        }
+    }
+
+    fn logs(&self, output: &Output) -> String {
+        let log = std::fs::read_to_string(self.slurm.path().join("slurmctld.log"));
+        String::from_utf8_lossy(&output.stderr).into_owned() + &log.unwrap_or_default()
+    }
+
+    /// A command with the cluster's configuration; the program is kirigami if its name is empty.
+    fn command(&self, line: &str) -> Command {
+        let (program, arguments) = line.split_once(' ').unwrap();
+        let mut command = match program {
+            "kirigami" => self.work.program(arguments),
+            _ => {
+                let mut command = Command::new(program);
+                command.args(arguments.split(' '));
+                command
+            }
+        };
+        command.env("SLURM_CONF", self.slurm.path().join("slurm.conf"));
+        command
+    }
+
+    fn output(&self, line: &str) -> String {
+        let output = self.command(line).output().unwrap();
+        assert!(output.status.success(), "{line}: {}", self.logs(&output));
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// Waits until `ready` is true.
+    fn until(&self, what: &str, ready: impl Fn() -> bool) {
+        let start = Instant::now();
+        while !ready() {
+            if start.elapsed() > Duration::from_secs(600) {
+                panic!("not within ten minutes: {what}\n{}", self.queue());
+            }
+            std::thread::sleep(Duration::from_millis(300));
+        }
+    }
+
+    fn queue(&self) -> String {
+        let queue = self
+            .command("squeue --array --states=all")
+            .output()
+            .unwrap();
+        String::from_utf8_lossy(&queue.stdout).into_owned()
+    }
+
+    fn submit(&self) -> String {
+        self.output(&format!(
+            "kirigami campaign submit {CAMPAIGN} --shards 4 --time 1"
+        ))
+    }
+
+    fn status(&self) -> Value {
+        let status = self.output(&format!("kirigami campaign status {CAMPAIGN} --json"));
+        serde_json::from_str(&status).unwrap()
+    }
+
+    /// The kirigami process of a task, if it runs.
+    fn process(&self, task: usize) -> Option<String> {
+        let task = format!("SLURM_ARRAY_TASK_ID={task}");
+        let processes = environments(self.slurm.path());
+        processes.into_iter().find_map(|(pid, environment)| {
+            let name = std::fs::read_to_string(format!("/proc/{pid}/comm")).ok()?;
+            let ours = name.trim() == "kirigami" && environment.split('\0').any(|it| it == task);
+            ours.then_some(pid)
+        })
+    }
+
+    /// Number of rays solved by shard `task`, in all of its runs.
+    fn solved(&self, task: usize) -> usize {
+        let hosts = self.work.path("runs/demo/hosts");
+        let host = std::fs::read_dir(hosts).into_iter().flatten().next();
+        let folder = host.map_or_else(PathBuf::new, |host| host.unwrap().path());
+        let history = folder.join(format!("events-{task}-of-4.jsonl"));
+        let text = std::fs::read_to_string(history).unwrap_or_default();
+        text.matches("\"ended\":{\"rung\"").count()
+    }
+
+    /// Waits until a task has solved a ray and goes on to the next.
+    fn at_work(&self, task: usize) {
+        let before = self.solved(task);
+        let ready = || self.process(task).is_some() && self.solved(task) > before;
+        self.until(&format!("task {task} solves rays"), ready);
+    }
+}
+
+impl Drop for Cluster {
+    fn drop(&mut self) {
+        self.here("down");
+    }
+}
+
+/// The processes whose environment names `folder`, with their environments.
+fn environments(folder: &Path) -> Vec<(String, String)> {
+    let folder = folder.to_str().unwrap();
+    let processes = std::fs::read_dir("/proc").unwrap().flatten();
+    processes
+        .filter_map(|process| {
+            let environment = std::fs::read(process.path().join("environ")).ok()?;
+            let environment = String::from_utf8_lossy(&environment).into_owned();
+            let pid = process.file_name().to_string_lossy().into_owned();
+            environment.contains(folder).then_some((pid, environment))
+        })
+        .collect()
+}
+
+/// The Parquet file of a database with the CPU times, which no two runs share, set to zero.
+fn timeless(path: &Path) -> Vec<u8> {
+    let rows = Database::read(path).unwrap().rows().to_vec();
+    let rows = rows
+        .into_iter()
+        .map(|row| Row { cpu_s: 0.0, ..row })
+        .collect();
+    let database = Database::collect(rows, &Gates::default(), &SplitPlan::default()).unwrap();
+    let path = path.with_extension("timeless.parquet");
+    database.write(&path, false).unwrap();
+    std::fs::read(path).unwrap()
+}
+
+#[test]
+fn a_campaign_on_slurm_gives_the_database_of_one_run() {
+    let cluster = Cluster::up();
+    let submitted = cluster.submit();
+    assert!(submitted.contains("40 rays to solve"), "{submitted}");
+    let array = cluster.status()["slurm"]["array"]
+        .as_str()
+        .unwrap()
+        .to_owned();
+    let again = format!("kirigami campaign submit {CAMPAIGN} --shards 4 --time 1");
+    let refused = cluster.command(&again).output().unwrap();
+    assert_eq!(refused.status.code(), Some(1));
+    let message = String::from_utf8(refused.stderr).unwrap();
+    assert!(message.contains(&format!("scancel {array}")), "{message}");
+
+    // Tasks 1 and 2 start. A frozen process obeys no signal: Slurm kills it at the time limit.
+    cluster.at_work(2);
+    let frozen = cluster.process(2).unwrap();
+    cluster.output(&format!("kill -STOP {frozen}"));
+    cluster.at_work(1);
+    cluster.output(&format!("scancel {array}_1"));
+    // Task 3 loses its node, and is queued again by Slurm.
+    cluster.at_work(3);
+    let task = |format: &str, task: usize| {
+        let shown = cluster.output(&format!(
+            "squeue --noheader --format={format} --jobs={array}_{task}"
+        ));
+        shown.trim().to_owned()
+    };
+    let node = task("%N", 3);
+    cluster.output(&format!(
+        "scontrol update nodename={node} state=down reason=test"
+    ));
+    cluster.until("task 3 is queued again", || task("%T", 3) == "PENDING");
+    cluster.output(&format!("scontrol update nodename={node} state=resume"));
+    // Task 4 is stopped as by the signal before the time limit, and queues itself again.
+    cluster.at_work(4);
+    cluster.output(&format!("scancel --signal=TERM --batch {array}_4"));
+    cluster.until("task 4 is queued again", || task("%T", 4) == "PENDING");
+    // The controller is restarted. (Killed, it would forget the last seconds.)
+    let pid = std::fs::read_to_string(cluster.slurm.path().join("slurmctld.pid")).unwrap();
+    let pid = pid.trim();
+    cluster.output(&format!("kill {pid}"));
+    let process = Path::new("/proc").join(pid).join("environ");
+    cluster.until("the controller has ended", || {
+        std::fs::read(&process).is_ok_and(|environment| environment.is_empty()) || !process.exists()
+    });
+    cluster.output("env PATH=/usr/sbin:/usr/bin:/sbin:/bin slurmctld");
+
+    let run = format!("kirigami campaign run {CAMPAIGN} --folder runs/whole");
+    cluster.output(&run);
+    cluster.output(&format!(
+        "kirigami campaign collect {CAMPAIGN} --folder runs/whole"
+    ));
+    let whole = timeless(&cluster.work.path("runs/whole/hinges.parquet"));
+
+    let collected = cluster.work.path("runs/demo/hinges.parquet");
+    let ended = |state: &str| {
+        let status = cluster.status();
+        assert!(state == "completed" || status["slurm"]["collect_state"] != "completed");
+        status["slurm"]["collect_state"] == state
+    };
+    cluster.until("the array has ended", || ended("failed"));
+    let status = cluster.status();
+    let expected = serde_json::json!({ "cancelled": 1, "completed": 2, "timeout": 1 });
+    assert_eq!(status["slurm"]["tasks"], expected, "{}", cluster.queue());
+    assert!(status["tally"]["open"].as_u64().unwrap() > 0, "{status}");
+    assert!(
+        !collected.exists(),
+        "nothing is collected while rays are missing"
+    );
+    let log = format!("runs/demo/slurm/demo-{array}-4.log");
+    let log = std::fs::read_to_string(cluster.work.path(&log)).unwrap();
+    assert!(log.contains("run the same command again"), "{log}");
+    let shown = cluster.output(&format!("kirigami campaign status {CAMPAIGN}"));
+    assert!(
+        shown.contains("1 cancelled, 2 completed, 1 timeout"),
+        "{shown}"
+    );
+
+    cluster.submit();
+    cluster.until("the database is collected", || ended("completed"));
+    assert_eq!(cluster.status()["tally"]["complete"], 40);
+    assert!(timeless(&collected) == whole, "the databases differ");
+    let done = cluster.submit();
+    assert!(done.contains("nothing is left to solve"), "{done}");
+
+    cluster.here("down");
+    let left = environments(cluster.slurm.path());
+    assert!(left.is_empty(), "{left:?}");
+}
