@@ -57,7 +57,9 @@ pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String 
     }
     outlines(&mut page, sheet, fit);
     residuals(&mut page, fit, factor, panel_size);
-    outliers(&mut page, fit, [low, high]);
+    let margin = 0.2 * panel_size;
+    let around = [low.map(|x| x - margin), high.map(|x| x + margin)];
+    outliers(&mut page, fit, around);
     openings(
         &mut page,
         [[left, top - 1.05 * side], [left + side, top - 0.05 * side]],
