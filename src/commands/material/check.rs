@@ -17,6 +17,7 @@ use support::toml_file;
 /// verdict is an error. Example: kirigami material check configs/materials/pet-0.5mm.toml
 /// configs/scenes/pet-7x7.toml
 #[derive(Args)]
+#[command(allow_negative_numbers = true)]
 pub struct CheckCommand {
     /// Material (TOML); see configs/materials
     #[arg(value_name = "MATERIAL")]

@@ -20,6 +20,7 @@ use std::path::{Path, PathBuf};
 /// picture of all curves. Example: kirigami material fit strip-*.csv --name film --thickness 0.5
 /// --density-kg-m3 1390
 #[derive(Args)]
+#[command(allow_negative_numbers = true)]
 pub struct FitCommand {
     /// Records of the specimens (CSV or text with semicolons or tabs), one file a specimen
     #[arg(value_name = "TEST", required = true)]

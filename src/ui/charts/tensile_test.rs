@@ -83,15 +83,16 @@ fn records(area: &Area, fit: &MaterialFit, name: &str) -> ChartResult {
         write_at(&mut chart, (0.04 * end, 1.06 * upper.mean), &upper_text)?;
         write_at(
             &mut chart,
-            (0.08 * end, 0.9 * stress),
+            (0.15 * end, 1.13 * stress),
             &format!("draw plateau {stress:.1} MPa"),
         )?;
         let ratio = format!("natural draw ratio {:.2}", ratio.mean);
-        write_at(
-            &mut chart,
-            ((natural - 0.47 * end).max(0.08 * end), 0.2 * stress),
-            &ratio,
-        )?;
+        // The text takes a third of the width.
+        let beside = match natural + 0.36 * end < end {
+            true => natural + 0.02 * end,
+            false => natural - 0.36 * end,
+        };
+        write_at(&mut chart, (beside, 0.5 * stress), &ratio)?;
     }
     legend(&mut chart, SeriesLabelPosition::UpperRight)
 }
