@@ -86,6 +86,11 @@ fn a_brittle_material_fails_its_check() {
         "{printed}"
     );
     work.output("material check configs/materials/s235-1.5mm.toml");
+    work.edit(
+        "configs/materials/s235-1.5mm.toml",
+        &[("fracture_strain = 0.92", "fracture_strain = 0.02")],
+    );
+    work.error("material check configs/materials/s235-1.5mm.toml");
     work.output("material check configs/materials/paper-0.2mm.toml --theta-deg 5");
 }
 
@@ -101,7 +106,7 @@ fn wrong_options_name_the_option() {
             "--width 10,11 --gauge-length 50",
             "--width has 2 values for 1 files",
         ),
-        ("--width -1 --gauge-length 50", "positive --width"),
+        ("--width=-1 --gauge-length 50", "positive --width"),
         ("--width 10 --gauge-length 50 --rows 1", "2 <= rows"),
         (
             "--width 10 --gauge-length 50 --young 3",
@@ -127,7 +132,7 @@ fn wrong_options_name_the_option() {
     for (options, expected) in [
         ("--w-lig 5,1", "minimum <= maximum"),
         ("--theta-deg 0", "0 < theta"),
-        ("--pitch -1", "pitch"),
+        ("--pitch=-1", "pitch"),
     ] {
         let message = work.error(&format!(
             "material check configs/materials/pet-0.5mm.toml {options}"

@@ -26,7 +26,7 @@ pub struct CheckCommand {
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Ligament widths (mm) [default: those of the scene, or 10 and 50 thicknesses]
-    #[arg(long, value_name = "MIN,MAX", value_delimiter = ',', num_args = 2)]
+    #[arg(long, value_name = "MIN,MAX", value_delimiter = ',')]
     w_lig: Vec<f64>,
     /// Panel pitch (mm) [default: that of the scene]
     #[arg(long, value_name = "MM")]
@@ -64,6 +64,7 @@ impl CheckCommand {
         let scene: Option<SceneConfig> = self.scene.as_deref().map(toml_file::read).transpose()?;
         let w_lig = match (&self.w_lig[..], &scene) {
             (&[min, max], _) => [min, max],
+            ([_, ..], _) => bail!("--w-lig takes two widths, such as 5,25 (mm)"),
             (_, Some(scene)) => scene.ligament.range,
             _ => [10.0, 50.0].map(|ratio| ratio * material.thickness),
         };

@@ -77,7 +77,7 @@ struct EvaluationArgs {
     young: Option<f64>,
     /// Strains from the toe between which the modulus is measured (%), such as 0.05,0.25 of ISO 527-1 [default: the
     /// linear part that is found]
-    #[arg(long, value_name = "FROM,TO", value_delimiter = ',', num_args = 2)]
+    #[arg(long, value_name = "FROM,TO", value_delimiter = ',')]
     modulus_range_percent: Vec<f64>,
     /// Natural draw ratio, measured on the neck: initial over drawn section [default: where the stress rises again]
     #[arg(long, value_name = "RATIO")]
@@ -198,7 +198,8 @@ impl FitCommand {
                 );
                 Some([from / 100.0, to / 100.0])
             }
-            _ => None,
+            [] => None,
+            _ => anyhow::bail!("--modulus-range-percent takes two strains, such as 0.05,0.25"),
         };
         Ok(FitOptions {
             specimen: SpecimenOptions {
