@@ -41,8 +41,15 @@ pub struct CheckCommand {
 
 impl CheckCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        let material = SheetMaterial::load(&self.material)?;
-        let check = MaterialCheck::new(&material, &self.intended(&material)?);
+        let measured = SheetMaterial::load(&self.material)?;
+        let scene: Option<SceneConfig> = self.scene.as_deref().map(toml_file::read).transpose()?;
+        let thickness = scene.as_ref().and_then(|scene| scene.thickness);
+        let material = SheetMaterial {
+            thickness: thickness.unwrap_or(measured.thickness),
+            ..measured
+        };
+        let intended = self.intended(&material, scene.as_ref())?;
+        let check = MaterialCheck::new(&material, &intended);
         if self.json {
             println!("{}", serde_json::to_string_pretty(&check)?);
         } else {
@@ -60,15 +67,14 @@ impl CheckCommand {
     }
 
     /// The use that options and scene state.
-    fn intended(&self, material: &SheetMaterial) -> Result<Intended> {
-        let scene: Option<SceneConfig> = self.scene.as_deref().map(toml_file::read).transpose()?;
-        let w_lig = match (&self.w_lig[..], &scene) {
+    fn intended(&self, material: &SheetMaterial, scene: Option<&SceneConfig>) -> Result<Intended> {
+        let w_lig = match (&self.w_lig[..], scene) {
             (&[min, max], _) => [min, max],
             ([_, ..], _) => bail!("--w-lig takes two widths, such as 5,25 (mm)"),
             (_, Some(scene)) => scene.ligament.range,
             _ => [10.0, 50.0].map(|ratio| ratio * material.thickness),
         };
-        let pitch = self.pitch.or(scene.as_ref().map(|scene| {
+        let pitch = self.pitch.or(scene.map(|scene| {
             let panels = scene.sheet.grid().panel_count();
             (scene.sheet.outline().area() / panels as f64).sqrt()
         }));
