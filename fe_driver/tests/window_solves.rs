@@ -163,8 +163,8 @@ fn the_thinnest_and_the_thickest_sheet_are_solved() {
 }
 
 /// The window is rate-independent and has no length of its own: with all lengths times lambda, W is multiplied by
-/// lambda^3, forces by lambda^2, the moment by lambda^3, and D and D_peak do not change. The solver writes seven digits,
-/// and its increments end when forces agree to 0.5 %; they are the same at every thickness.
+/// lambda^3, forces by lambda^2, the moment by lambda^3, and D and D_peak do not change. Decks and results have seven
+/// digits, and iterations that end at a residual of 0.5 % amplify their rounding to a few 1e-5.
 #[test]
 fn windows_of_every_thickness_are_similar() {
     let asked = problem(80.0, [-0.05, 0.05], 20.0);
@@ -190,7 +190,7 @@ fn windows_of_every_thickness_are_similar() {
     for thickness in [0.1, 2.0] {
         let found = solved_at(thickness);
         for (found, expected) in std::iter::zip(found, film) {
-            assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
+            assert!((found / expected - 1.0).abs() < 1e-4, "{found} {expected}");
         }
     }
 }

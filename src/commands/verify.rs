@@ -1,6 +1,6 @@
 //! `kirigami verify`: the hinges of a designed sheet solved by finite elements, compared with the surrogate.
 
-mod equilibrium;
+mod sheet_errors;
 
 use crate::commands::inspect::scene_args::Inspected;
 use crate::replays::balanced_sheet::WindowSolves;
@@ -82,7 +82,7 @@ impl VerifyCommand {
                 args: &self.solve,
                 folder: &self.out,
             };
-            let errors = equilibrium::run(&scene, &design, &windows, self.rounds)?;
+            let errors = sheet_errors::run(&scene, &design, &windows, self.rounds)?;
             match self.json {
                 true => println!("{}", serde_json::to_string_pretty(&errors)?),
                 false => println!("{errors}\nwritten to {}", self.out.display()),

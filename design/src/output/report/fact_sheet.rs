@@ -140,7 +140,7 @@ impl FactSheet {
             facts.extend(reached.rows());
         }
         facts.push((
-            "least Gamma",
+            "minimum Gamma",
             format!("{} (panels stay flat above 1)", rounded(self.gamma_min, 4)),
         ));
         if let Some(weights) = &self.weights {
