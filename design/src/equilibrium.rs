@@ -1,13 +1,16 @@
 //! Equilibria of the sheet under loads, the equilibrium path and the adjoint; equations (10) and (20).
 
 pub mod adjoint;
+pub mod branch;
 pub mod displacement_control;
+pub mod follower;
 pub mod hinged_sheet;
 pub mod lbfgs;
 pub mod lbfgs_memory;
 pub mod load_step;
 pub mod newton;
 pub mod path_following;
+pub mod place;
 pub mod potential;
 pub mod refined_solve;
 pub mod settings;

@@ -45,7 +45,7 @@ impl Degeneration {
 /// The load factor of the last jump past a limit point before full load, if there was one.
 pub fn last_jump(deployment: &Deployment) -> Option<f64> {
     let mut back = deployment.path.iter().rev();
-    let jump = back.find(|step| step.status == Status::LimitPoint)?;
+    let jump = back.find(|step| step.jumps > 0)?;
     Some(jump.load_factor)
 }
 

@@ -69,7 +69,7 @@ impl GivesWay {
     fn between(before: f64, step: &LoadStep) -> Option<Self> {
         match (step.status, Degeneration::of(step)) {
             (Status::Diverged, _) => Some(Self::NoEquilibrium),
-            (Status::LimitPoint, _) => Some(Self::Snaps),
+            _ if step.jumps > 0 => Some(Self::Snaps),
             _ if step.load_factor < before => Some(Self::Falls),
             (_, Some(_)) => Some(Self::Shut),
             (_, None) => None,

@@ -42,6 +42,11 @@ impl Stroke {
         &self.direction
     }
 
+    /// The stroke of a configuration, given by its free degrees of freedom (mm).
+    pub fn of(&self, free: &[f64]) -> f64 {
+        dot(&self.direction, free)
+    }
+
     /// The gradient of the stroke of a configuration with respect to the loads.
     pub fn by_loads(&self, loads: &[[f64; 3]], configuration: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let work: f64 = std::iter::zip(loads.as_flattened(), configuration.as_flattened())

@@ -6,6 +6,7 @@
 
 use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::lbfgs_memory::Memory;
+use crate::equilibrium::load_step::Effort;
 use crate::equilibrium::newton::{Failure, Minimum};
 use crate::equilibrium::potential::{Potential, State, moved};
 use crate::equilibrium::settings::SolverSettings;
@@ -29,12 +30,9 @@ impl Potential<'_> {
         start: Configuration,
         settings: &SolverSettings,
         max_iterations: usize,
+        effort: &mut Effort,
     ) -> Result<Minimum, Failure> {
-        let failure = |residual, iterations| Failure {
-            residual,
-            iterations,
-        };
-        let mut state = self.forces(start).ok_or(failure(f64::INFINITY, 0))?;
+        let mut state = self.forces(start).ok_or(Failure(f64::INFINITY))?;
         let scale = vec![[1.0, 1.0, 1.0 / self.panel_size]; state.configuration.len()];
         let scale = gather(self.free, &scale);
         let mut gradient = self.scaled(&state, &scale);
@@ -54,19 +52,18 @@ impl Potential<'_> {
             memory.remember(step, change);
             (state, gradient, iterations) = (next, next_gradient, iterations + 1);
         }
+        effort.iterations += iterations;
+        effort.factorisations += 1;
         if state.residual > settings.loose_tolerance {
-            return Err(failure(state.residual, iterations));
+            return Err(Failure(state.residual));
         }
-        let residual = state.residual;
         let state = self.state(state.configuration);
-        let state = state.ok_or(failure(residual, iterations))?;
+        let state = state.ok_or(Failure(f64::INFINITY))?;
         let tangent = self.tangent(&state);
         Ok(Minimum {
             factor: self.factorise(&tangent, Vec::new()),
             tangent,
             state,
-            iterations,
-            unstable: false,
         })
     }
 

@@ -23,11 +23,24 @@ pub enum Status {
     /// The residual stagnated between the two tolerances, or the state is stationary but its tangent is
     /// singular or rounding leaves a residual above the loose tolerance.
     Almost,
-    /// The path ended before this step and the sheet jumped to this stable equilibrium: at a limit point
-    /// of the load, or of the stroke under displacement control.
+    /// A stable equilibrium on another branch than the state before: that branch ended at a limit point of the load, or
+    /// of the stroke under displacement control, and the sheet jumped.
     LimitPoint,
     /// No equilibrium was found: this is the last one found before, and the path ends.
     Diverged,
+}
+
+/// What a part of the path cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Effort {
+    /// Newton corrections; iterations of L-BFGS.
+    pub iterations: usize,
+    /// Factorisations of a tangent.
+    pub factorisations: usize,
+    /// Increments of the path that were accepted.
+    pub increments: usize,
+    /// Increments that were repeated with a shorter one.
+    pub rejected: usize,
 }
 
 /// The state at one load factor.
@@ -51,8 +64,12 @@ pub struct LoadStep {
     pub residual: f64,
     /// The part of the residual that rounding can cause: below it no state is closer to equilibrium.
     pub rounding: f64,
-    /// Newton iterations, summed over all increments.
+    /// Newton iterations, summed over all increments since the step before.
     pub iterations: usize,
+    /// What the path cost since the step before.
+    pub effort: Effort,
+    /// Number of jumps since the step before, at limit points or bifurcations.
+    pub jumps: usize,
     /// Number of pivots of the tangent that are not positive: 0 in a state that is stable under dead loads, and
     /// where `pivot_ratio` is 0. Under displacement control past a limit point of the load it is 1.
     pub negative_pivots: usize,
@@ -112,6 +129,8 @@ impl LoadStep {
             residual: 0.0,
             rounding: 0.0,
             iterations: 0,
+            effort: Effort::default(),
+            jumps: 0,
             negative_pivots: 0,
             pivot_ratio: 1.0,
             inside: vec![true; hinges],
@@ -125,7 +144,8 @@ impl LoadStep {
         [work, held]: [f64; 2],
         tangent: Option<StepTangent>,
         status: Status,
-        iterations: usize,
+        effort: Effort,
+        jumps: usize,
     ) -> Self {
         let deformations = state.deformations();
         let factor = tangent.as_ref().and_then(|tangent| tangent.factor.as_ref());
@@ -140,7 +160,9 @@ impl LoadStep {
             status,
             residual: state.residual,
             rounding: state.rounding,
-            iterations,
+            iterations: effort.iterations,
+            effort,
+            jumps,
             negative_pivots: factor.map_or(0, |factor| factor.negative_pivots),
             pivot_ratio: factor.map_or(0.0, |factor| factor.pivot_ratio),
             configuration: state.configuration,

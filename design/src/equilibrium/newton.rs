@@ -10,6 +10,7 @@
 //! (Magisano, Leonetti and Garcea 2017), until the state is stationary or no descent step is found.
 
 use crate::equilibrium::displacement_control::{HeldFactor, dot};
+use crate::equilibrium::load_step::Effort;
 use crate::equilibrium::potential::{Potential, State, moved};
 use crate::equilibrium::settings::SolverSettings;
 use crate::sheet::kinematics::Configuration;
@@ -17,6 +18,8 @@ use crate::sheet::panel_vectors::spread;
 
 /// Maximum length of a step: rotations in rad, hinge translations in panel sizes.
 const LONGEST_STEP: f64 = 0.5;
+/// Length to which a step that is shortened by a shift is extended.
+const REACH: f64 = 0.05;
 /// Fraction of the predicted decrease of Pi that a step must achieve.
 const SUFFICIENT_FALL: f64 = 1e-4;
 /// Factor by which a rejected step is shortened.
@@ -37,78 +40,65 @@ pub(crate) struct Minimum {
     pub tangent: Vec<f64>,
     /// `None` if the tangent is singular.
     pub factor: Option<HeldFactor>,
-    pub iterations: usize,
-    /// Whether the tangent was indefinite at any iteration.
-    pub unstable: bool,
 }
 
-/// A minimisation that found no minimum.
-pub(crate) struct Failure {
-    pub residual: f64,
-    pub iterations: usize,
-}
+/// The residual at which a minimisation ended without a minimum.
+#[derive(Debug)]
+pub(crate) struct Failure(pub f64);
 
 impl Potential<'_> {
-    /// A minimum near `start`; `forces` are the predicted hinge forces there.
+    /// A minimum near `start`, at lower energy.
     pub fn minimise(
         &self,
         start: Configuration,
-        forces: Vec<[f64; 3]>,
         settings: &SolverSettings,
+        effort: &mut Effort,
     ) -> Result<Minimum, Failure> {
-        let mut state = self.state(start).ok_or(Failure {
-            residual: f64::INFINITY,
-            iterations: 0,
-        })?;
-        state.expected = Some(forces);
+        let mut state = self.state(start).ok_or(Failure(f64::INFINITY))?;
         let (mut scale, mut memory) = (None, Vec::new());
-        let (mut longest, mut unstable) = (LONGEST_STEP, false);
-        for iterations in 0..settings.max_iterations {
+        let (mut longest, mut shift) = (LONGEST_STEP, SHIFTS[0]);
+        for _ in 0..settings.max_iterations {
             let stationary = state.is_balanced(settings.tolerance);
             if stationary {
                 state.expected = None;
             }
             let tangent = self.tangent(&state);
             let scale = scale.get_or_insert_with(|| self.pattern.shift_scale(&tangent));
+            effort.factorisations += 1;
             let factor = self.factorise(&tangent, std::mem::take(&mut memory));
             let stable = factor
                 .as_ref()
                 .filter(|factor| factor.unstable_directions() == 0);
-            unstable |= stable.is_none();
             let next = match stable {
                 Some(_) if stationary => None,
                 Some(factor) => self.step(&state, factor, &mut longest, settings),
-                None if stationary => self.escape(&state, &tangent, scale),
-                None => self
-                    .shifted_factor(&tangent, scale)
-                    .and_then(|factor| self.step(&state, &factor, &mut longest, settings)),
+                None => {
+                    let shifted = self.shifted_factor(&tangent, scale, &mut shift, effort);
+                    shifted.and_then(|factor| match stationary {
+                        true => self.escape(&state, &tangent, scale, &factor),
+                        false => self.step(&state, &factor, &mut longest, settings),
+                    })
+                }
             };
             let residual = state.residual;
             match next {
-                Some(next) => state = next,
+                Some(next) => {
+                    effort.iterations += 1;
+                    state = next;
+                }
                 None if state.expected.is_some() => state.expected = None,
                 None if stationary || residual <= settings.loose_tolerance => {
                     return Ok(Minimum {
                         state,
                         tangent,
                         factor,
-                        iterations,
-                        unstable,
                     });
                 }
-                None => {
-                    return Err(Failure {
-                        residual,
-                        iterations,
-                    });
-                }
+                None => return Err(Failure(residual)),
             }
             memory = factor.map_or(Vec::new(), |held| held.factor.values);
         }
-        Err(Failure {
-            residual: state.residual,
-            iterations: settings.max_iterations,
-        })
+        Err(Failure(state.residual))
     }
 
     /// The state after a damped Newton step; `None` if no state along it is better, or if the
@@ -126,11 +116,13 @@ impl Potential<'_> {
         let slope = dot(&state.gradient, &direction);
         let motion = spread(self.free, &direction);
         let length = self.length(state, &motion);
-        let mut fraction = (*longest / length).min(1.0);
+        // A shifted step is too short where the energy curves downwards.
+        let reach = if factor.shifted { REACH / length } else { 1.0 };
+        let mut fraction = (*longest / length).min(reach.max(1.0));
         while fraction > SHORTEST_FRACTION {
             if let Some(mut next) = self.moved(state, &motion, fraction) {
                 let fall = state.potential - next.potential;
-                let predicted = -slope * fraction * (1.0 - 0.5 * fraction);
+                let predicted = -slope * fraction * (1.0 - 0.5 * fraction.min(1.0));
                 // If the change of Pi is lost in rounding, its slope along the step is still accurate.
                 let level = fall.abs() <= LEVEL * state.magnitude
                     && dot(&next.gradient, &direction).abs() <= 0.5 * slope.abs();
@@ -158,28 +150,42 @@ impl Potential<'_> {
         HeldFactor::new(self.pattern, factor, self.control.stroke())
     }
 
-    /// H + sigma S, positive definite; `None` if no sigma up to the maximum makes it so.
-    fn shifted_factor(&self, tangent: &[f64], scale: &[f64]) -> Option<HeldFactor> {
-        let [mut shift, growth, maximum] = SHIFTS;
-        while shift <= maximum {
+    /// H + sigma S, positive definite; `None` if no sigma up to the maximum makes it so. The search begins below
+    /// `shift`, the sigma found last.
+    fn shifted_factor(
+        &self,
+        tangent: &[f64],
+        scale: &[f64],
+        shift: &mut f64,
+        effort: &mut Effort,
+    ) -> Option<HeldFactor> {
+        let [first, growth, maximum] = SHIFTS;
+        *shift = first.max(*shift / growth);
+        while *shift <= maximum {
             let shifted = self
                 .pattern
-                .shifted(tangent, scale.iter().map(|entry| shift * entry));
+                .shifted(tangent, scale.iter().map(|entry| *shift * entry));
+            effort.factorisations += 1;
             match self.factorise(&shifted, Vec::new()) {
                 Some(mut factor) if factor.unstable_directions() == 0 => {
                     factor.shifted = true;
                     return Some(factor);
                 }
-                _ => shift *= growth,
+                _ => *shift *= growth,
             }
         }
         None
     }
 
     /// A state of lower energy near a stationary point that is no minimum, along the direction of the most
-    /// negative curvature, found by inverse iteration.
-    fn escape(&self, state: &State, tangent: &[f64], scale: &[f64]) -> Option<State> {
-        let factor = self.shifted_factor(tangent, scale)?;
+    /// negative curvature, found by inverse iteration with the factors of a shifted tangent.
+    fn escape(
+        &self,
+        state: &State,
+        tangent: &[f64],
+        scale: &[f64],
+        factor: &HeldFactor,
+    ) -> Option<State> {
         // A start vector that no symmetry of the sheet makes orthogonal to the direction.
         let mut direction: Vec<f64> = (1..=scale.len()).map(|i| (i as f64).sqrt().sin()).collect();
         for _ in 0..20 {

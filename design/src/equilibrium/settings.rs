@@ -29,11 +29,8 @@ pub struct SolverSettings {
     pub loose_tolerance: f64,
     /// Maximum number of Newton iterations per load increment, at least 1; 60 by default.
     pub max_iterations: usize,
-    /// Maximum number of halvings of a load step, at most 30; 6 by default.
-    pub max_halvings: u32,
-    /// Smallest rotation (rad) that is tested for a jump past a limit point, if the tangents at both ends of its
-    /// increment do not explain it; positive, 1e-3 by default.
-    pub least_leap: f64,
+    /// Maximum number of increments of a path, at least 1; 100 000 by default.
+    pub max_increments: usize,
 }
 
 impl Default for SolverSettings {
@@ -43,8 +40,7 @@ impl Default for SolverSettings {
             tolerance: 1e-10,
             loose_tolerance: 1e-6,
             max_iterations: 60,
-            max_halvings: 6,
-            least_leap: 1e-3,
+            max_increments: 100_000,
         }
     }
 }
@@ -55,7 +51,6 @@ impl SolverSettings {
             && self.tolerance <= self.loose_tolerance
             && self.loose_tolerance < 1.0
             && self.max_iterations >= 1
-            && self.max_halvings <= 30
-            && self.least_leap > 0.0
+            && self.max_increments >= 1
     }
 }

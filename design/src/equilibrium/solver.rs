@@ -51,7 +51,7 @@ pub enum EquilibriumError {
     NoSteps(usize),
     #[error(
         "solver settings {0:?} violate 0 < tolerance <= loose_tolerance < 1, max_iterations >= 1, \
-         max_halvings <= 30, least_leap > 0"
+         max_increments >= 1"
     )]
     Settings(SolverSettings),
 }

@@ -15,8 +15,9 @@ use surrogate::Surrogate;
 /// Version of geometry, mechanics and objective: raised when a change of the code changes the loss of a design, so that
 /// a run of an earlier version is not continued.
 ///
-/// 1: O stands half a kerf further from the line of the secondary cut.
-const MODEL_VERSION: u32 = 1;
+/// 1: O stands half a kerf further from the line of the secondary cut. 2: the path is followed in increments of its own, so
+/// that a sheet that jumps may end on another branch.
+const MODEL_VERSION: u32 = 2;
 
 /// A scene with checked values, its material and its sampled target.
 #[derive(Clone, Debug)]

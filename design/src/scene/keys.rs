@@ -38,7 +38,8 @@ pub struct SceneConfig {
     /// The reference point of a panel's rotation: the `area` centroid or the mean of the `vertices`.
     #[serde(default)]
     pub centroid: Centroid,
-    /// N of the load steps zeta_i = i/N, 1 to 10 000.
+    /// N of the load steps zeta_i = i/N, 1 to 10 000: where the path is read for pictures and path functionals. The solver
+    /// chooses its own increments between them.
     #[serde(default = "default_load_steps")]
     pub load_steps: usize,
     /// The run folder, relative to the scene file.

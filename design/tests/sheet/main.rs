@@ -10,8 +10,8 @@ mod extremes;
 mod gradient;
 mod invariance;
 mod kinematics;
-
 mod limits;
+mod load_steps;
 mod pattern;
 mod pullbacks;
 mod random;

@@ -1,7 +1,7 @@
 //! The equilibrium path in numbers.
 
 use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::{LoadStep, Status};
+use crate::equilibrium::load_step::{Effort, LoadStep, Status};
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::{HingeEnergy, Order};
 use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Model};
@@ -31,6 +31,8 @@ pub struct StepListing {
     pub rounding: f64,
     /// Newton iterations, summed over all increments.
     pub iterations: usize,
+    /// Factorisations of the tangent, and increments accepted and rejected since the step before.
+    pub effort: Effort,
     /// Number of pivots of the tangent that are not positive; 0 in a state that is stable under dead loads.
     pub negative_pivots: usize,
     /// Estimated condition number of the tangent scaled to a unit diagonal; `None` if it could not be factorised.
@@ -110,6 +112,7 @@ impl StepListing {
             residual: step.residual,
             rounding: step.rounding,
             iterations: step.iterations,
+            effort: step.effort,
             negative_pivots: step.negative_pivots,
             condition: condition.is_finite().then_some(condition),
             potential: step.potential,
@@ -139,7 +142,7 @@ impl fmt::Display for EquilibriumListing {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         writeln!(
             f,
-            "    zeta  status       residual  its  neg  condition     U (N mm)    Pi (N mm)  opening (deg)"
+            "    zeta  status       residual  its  fac  rej  neg  condition     U (N mm)    Pi (N mm)  opening (deg)"
         )?;
         for step in &self.steps {
             let openings = step.hinge_deformation.iter().map(|eps| eps[2].abs());
@@ -147,11 +150,13 @@ impl fmt::Display for EquilibriumListing {
             let condition = step.condition.unwrap_or(f64::INFINITY);
             writeln!(
                 f,
-                "{:>8.4}  {:<11} {:>9.1e} {:>4} {:>4}  {condition:>9.1e} {:>12.5e} {:>12.5e} {open_deg:>14.2}",
+                "{:>8.4}  {:<11} {:>9.1e} {:>4} {:>4} {:>4} {:>4}  {condition:>9.1e} {:>12.5e} {:>12.5e} {open_deg:>14.2}",
                 step.load_factor,
                 format!("{:?}", step.status),
                 step.residual,
                 step.iterations,
+                step.effort.factorisations,
+                step.effort.rejected,
                 step.negative_pivots,
                 step.energy.total,
                 step.potential,

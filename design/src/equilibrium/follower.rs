@@ -1,0 +1,322 @@
+//! Following the stable branch of an equilibrium path by its length, and past its limit points.
+//!
+//! An increment is predicted by the cubic through the last two points and corrected in the plane normal to the path.
+//! It is accepted if the equilibrium is stable and the prediction was right to AGREEMENT in every rotation and every
+//! hinge translation: a hinge that jumps by more is noticed. Otherwise the increment is shortened. The length of the
+//! next increment follows from the error of the prediction.
+//!
+//! Where an increment shorter than the resolution leads to an unstable equilibrium, the branch has ended: at a limit
+//! point, beyond which the load decreases, or at a bifurcation. Dead loads then move the sheet downhill in energy, from
+//! the unstable side of the limit point, to another minimum, from which its branch is followed.
+//!
+//! The increments do not depend on the load steps, which are read off the path between them.
+
+use crate::equilibrium::branch::{Branch, Corrected, Point, Until};
+use crate::equilibrium::displacement_control::HeldFactor;
+use crate::equilibrium::hinged_sheet::HingedSheet;
+use crate::equilibrium::newton::{Failure, Minimum};
+use crate::equilibrium::place::{Arc, Place, bisected};
+use crate::equilibrium::potential::State;
+use crate::equilibrium::settings::Method;
+use crate::equilibrium::solver::EquilibriumSolver;
+use crate::hinge_law::Order;
+use crate::sheet::kinematics::Configuration;
+
+/// Length of the first increment of a branch. Lengths are in rad, or in panel sizes for hinge translations.
+const FIRST: f64 = 0.04;
+/// Maximum rotation in an increment (rad).
+const TURN: f64 = 0.1;
+/// Error of a prediction that increments aim at, and the maximum that is accepted.
+const AGREEMENT: [f64; 2] = [1e-3, 4e-3];
+/// Distance of the path from the middle of the cubic between two points from which a jump is suspected between them.
+const DOUBT: f64 = 1e-3;
+/// Range of the ratio of an increment to the last, if that was accepted and if it was rejected.
+const GROWTH: [f64; 2] = [0.5, 2.0];
+const CUT: [f64; 2] = [0.1, 0.5];
+/// Resolution of a limit point and of a bifurcation, from which the next branch grows like a square root.
+const RESOLVED: [f64; 2] = [1e-3, 1e-5];
+/// Length below which increments are given up.
+const SHORTEST: f64 = 1e-9;
+/// Length from which the motion at a bifurcation is a jump.
+pub(crate) const LEAP: f64 = 0.03;
+
+/// A path up to its last point.
+pub(crate) struct Follower<'a> {
+    pub branch: Branch<'a>,
+    pub last: Point,
+    /// The increment that ends in `last`; `None` at the beginning of a branch.
+    pub arc: Option<Arc>,
+    /// Ratio of lengths by the rates at the two ends of the arc.
+    stretch: f64,
+    /// Length of the next increment.
+    length: f64,
+    /// Distance of an unstable point ahead, and the resolution of the end of the branch between.
+    unstable: Option<(f64, f64)>,
+    /// Number of increments tried.
+    tried: usize,
+    /// Number of jumps since the last load step.
+    pub jumps: usize,
+}
+
+impl<'a> Follower<'a> {
+    /// The beginning of the path, an equilibrium at the load parameter 0; `None` if its energy is not finite. A start
+    /// that is not stable is left.
+    pub fn new(
+        solver: &'a EquilibriumSolver,
+        sheet: HingedSheet<'a>,
+        start: Configuration,
+    ) -> Option<Self> {
+        let mut branch = Branch::new(solver, sheet);
+        let potential = branch.potential(0.0);
+        let state = potential.state(start.clone())?;
+        let place = Place {
+            at: 0.0,
+            configuration: start,
+            forces: state.forces(),
+        };
+        let (values, factor) = branch.factor(&potential, &state, None);
+        let stable = factor.filter(|factor| factor.unstable_directions() == 0);
+        let mut follower = Self {
+            branch,
+            last: Point::still(place.clone()),
+            arc: None,
+            stretch: 1.0,
+            length: FIRST,
+            unstable: None,
+            tried: 0,
+            jumps: 0,
+        };
+        let begin = match stable {
+            Some(factor) => Some(Corrected {
+                at: 0.0,
+                state,
+                values,
+                factor,
+                error: 0.0,
+            }),
+            None => follower.branch.settled(place.clone()),
+        };
+        if let Some(begin) = begin {
+            let moved = follower.branch.distance(&begin.state, &place);
+            follower.jumps = usize::from(moved > LEAP);
+            follower.restart(begin);
+        }
+        Some(follower)
+    }
+
+    /// The predicted place at a length ahead.
+    fn ahead(&self, length: f64) -> Place {
+        let mut place = match &self.arc {
+            Some(arc) => arc.place(arc.length + length * self.stretch),
+            None => Place::sum([(1.0, &self.last.place), (length, &self.last.rate)]),
+        };
+        if self.at_ahead(length) >= 1.0 {
+            place.at = 1.0;
+        }
+        self.branch.hold(&mut place, &self.last.place);
+        place
+    }
+
+    fn at_ahead(&self, length: f64) -> f64 {
+        match &self.arc {
+            Some(arc) => arc.at(arc.length + length * self.stretch),
+            None => self.last.place.at + length * self.last.rate.at,
+        }
+    }
+
+    /// One increment, or a jump from the end of the branch to another; `None` if the path ends.
+    pub fn advance(&mut self) -> Option<()> {
+        loop {
+            self.tried += 1;
+            if self.tried > self.branch.solver.settings.max_increments {
+                return None;
+            }
+            let mut length = self.length.min(TURN / self.last.turning);
+            if let Some((distance, resolution)) = self.unstable {
+                length = length.min(if distance > resolution { 0.5 } else { 1.0 } * distance);
+            }
+            // The last increment ends at full load.
+            let full = self.at_ahead(1.2 * length) >= 1.0;
+            if full {
+                length = bisected(0.0, 1.2 * length, |length| self.at_ahead(length) < 1.0);
+            }
+            let order = if self.arc.is_some() { 4.0 } else { 2.0 };
+            let ratio = |error: f64| 0.8 * (AGREEMENT[0] / error).powf(1.0 / order);
+            let limit = AGREEMENT[1] * length.max(1.0);
+            let start = self.ahead(length);
+            let normal = (!full && !self.last.is_still()).then_some(&self.last.rate);
+            // An error above the limit is measured, so that the increment is cut by the right factor.
+            let found = self
+                .branch
+                .corrected(start, normal, Until::Close, 30.0 * limit);
+            let Some(mut corrected) = found else {
+                self.reject(length, CUT[0].max(0.25))?;
+                continue;
+            };
+            let error = corrected.error;
+            if error > limit {
+                self.reject(length, ratio(error).clamp(CUT[0], CUT[1]))?;
+                continue;
+            }
+            let stable = self.branch.is_stable(&mut corrected);
+            let (point, factor) = self.branch.point(corrected, Some(&self.last.rate));
+            if !stable {
+                let fold = point.rate.at <= 0.0;
+                let resolution = RESOLVED[usize::from(!fold)];
+                if length <= resolution {
+                    return self.jump(point, fold);
+                }
+                self.unstable = Some((length, resolution));
+                self.branch.effort.rejected += 1;
+                continue;
+            }
+            let next = length * ratio(error).clamp(GROWTH[0], GROWTH[1]);
+            let (arc, stretch) = self.arc_to(&point);
+            let doubt = self.branch.doubt(&arc, &factor);
+            if doubt > DOUBT {
+                self.reject(length, 0.5)?;
+                continue;
+            }
+            self.accept(point, (arc, stretch), next);
+            return Some(());
+        }
+    }
+
+    fn reject(&mut self, length: f64, factor: f64) -> Option<()> {
+        self.branch.effort.rejected += 1;
+        self.length = factor * length;
+        (self.length > SHORTEST).then_some(())
+    }
+
+    /// The arc from the last point to another, and the ratio of lengths by the rates at its two ends.
+    fn arc_to(&self, point: &Point) -> (Arc, f64) {
+        let last = &self.last;
+        let along = |place: &Place| {
+            let of = |place: &Place| {
+                self.branch
+                    .product(&last.rate.configuration, &place.configuration)
+            };
+            of(place) / of(&last.rate)
+        };
+        let change = Place::sum([(1.0, &point.place), (-1.0, &last.place)]);
+        let (length, stretch) = match last.is_still() {
+            true => (change.at, 1.0),
+            false => (along(&change), along(&point.rate)),
+        };
+        let arc = Arc {
+            from: last.place.clone(),
+            from_rate: last.rate.clone(),
+            to: point.place.clone(),
+            to_rate: Place::sum([(1.0 / stretch, &point.rate)]),
+            length,
+        };
+        (arc, stretch)
+    }
+
+    fn accept(&mut self, point: Point, (arc, stretch): (Arc, f64), next: f64) {
+        let left = |(distance, resolution)| ((distance - arc.length) / stretch, resolution);
+        self.unstable = self
+            .unstable
+            .map(left)
+            .filter(|(distance, _)| *distance > 0.0);
+        (self.last, self.arc) = (point, Some(arc));
+        (self.stretch, self.length) = (stretch, next);
+        self.branch.effort.increments += 1;
+    }
+
+    /// The jump that dead loads cause at the end of the branch; `beyond` is the unstable point next to it.
+    fn jump(&mut self, beyond: Point, fold: bool) -> Option<()> {
+        let from = self.last.place.clone();
+        let mut start = beyond.place.clone();
+        if fold {
+            // Beyond the limit point the unstable equilibrium is the ridge of the energy: at the maximum load the
+            // sheet moves away from it.
+            let (arc, _) = self.arc_to(&beyond);
+            let top = bisected(0.0, arc.length, |length| arc.slope(length) > 0.0);
+            start.at = arc.at(top).max(from.at);
+            self.branch.hold(&mut start, &from);
+        }
+        let landed = self.branch.settled(start)?;
+        let moved = self.branch.distance(&landed.state, &from);
+        self.jumps += usize::from(fold || moved > LEAP);
+        self.restart(landed);
+        Some(())
+    }
+
+    /// Continues the path on the branch of a stable equilibrium.
+    fn restart(&mut self, landed: Corrected) {
+        self.last = self.branch.point(landed, None).0;
+        self.begin();
+    }
+
+    /// Continues the path from a place whose rate is not known.
+    pub fn continue_from(&mut self, place: Place) {
+        self.last = Point::still(place);
+        self.begin();
+    }
+
+    fn begin(&mut self) {
+        (self.arc, self.stretch) = (None, 1.0);
+        (self.length, self.unstable) = (FIRST, None);
+    }
+}
+
+impl Branch<'_> {
+    /// The distance of the path from the middle of an arc, by factors of a tangent near its end.
+    fn doubt(&self, arc: &Arc, factor: &HeldFactor) -> f64 {
+        let middle = arc.place(0.5 * arc.length);
+        let potential = self.potential(middle.at);
+        potential
+            .state_up_to(middle.configuration, Order::Forces)
+            .map_or(f64::INFINITY, |state| {
+                let direct = self.direct(&state, factor);
+                let (motion, _) = self.in_plane(&direct, &arc.to_rate.configuration, &arc.to_rate);
+                potential.length(&state, &motion)
+            })
+    }
+
+    /// Whether a corrected place is stable. If the tangent near it is not, its own decides.
+    fn is_stable(&mut self, corrected: &mut Corrected) -> bool {
+        if corrected.factor.unstable_directions() > 0 {
+            let potential = self.potential(corrected.at);
+            if let (values, Some(factor)) = self.factor(&potential, &corrected.state, None) {
+                (corrected.values, corrected.factor) = (values, factor);
+            }
+        }
+        corrected.factor.unstable_directions() == 0
+    }
+
+    /// The stable equilibrium that is reached downhill from a place at constant load.
+    pub fn settled(&mut self, start: Place) -> Option<Corrected> {
+        let minimum = self.minimum(&start).ok()?;
+        let factor = (minimum.factor).filter(|factor| factor.unstable_directions() == 0)?;
+        Some(Corrected {
+            at: start.at,
+            state: minimum.state,
+            values: minimum.tangent,
+            factor,
+            error: 0.0,
+        })
+    }
+
+    /// The minimum of the potential that is reached downhill from a place at constant load.
+    pub fn minimum(&mut self, start: &Place) -> Result<Minimum, Failure> {
+        let potential = self.potential(start.at);
+        let configuration = start.configuration.clone();
+        let (settings, effort) = (&self.solver.settings, &mut self.effort);
+        match settings.method {
+            Method::Newton => potential.minimise(configuration, settings, effort),
+            Method::Lbfgs { max_iterations } => {
+                potential.minimise_lbfgs(configuration, settings, max_iterations, effort)
+            }
+        }
+    }
+
+    /// The maximum rotation or hinge translation between a state and a place.
+    pub fn distance(&self, state: &State, from: &Place) -> f64 {
+        let motion: Vec<[f64; 3]> = std::iter::zip(&state.configuration, &from.configuration)
+            .map(|(to, from)| std::array::from_fn(|d| to[d] - from[d]))
+            .collect();
+        self.potential(from.at).length(state, &motion)
+    }
+}
