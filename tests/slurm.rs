@@ -204,7 +204,13 @@ fn a_campaign_on_slurm_gives_the_database_of_one_run() {
         "scontrol update nodename={node} state=down reason=test"
     ));
     cluster.until("task 3 is queued again", || task("%T", 3) == "PENDING");
-    cluster.output(&format!("scontrol update nodename={node} state=resume"));
+    cluster.until("the node is in service again", || {
+        // A node that has returned by itself cannot be resumed.
+        let resume = format!("scontrol update nodename={node} state=resume");
+        cluster.command(&resume).output().unwrap();
+        let state = cluster.output(&format!("sinfo --noheader --nodes={node} --format=%T"));
+        !state.contains("down")
+    });
     // Task 4 is stopped as by the signal before the time limit, and queues itself again.
     cluster.at_work(4);
     cluster.output(&format!("scancel --signal=TERM --batch {array}_4"));

@@ -37,9 +37,9 @@ pub struct Statistic {
 pub enum Origin {
     /// From rows at which the strain is uniform.
     Measured,
-    /// In the running neck, from the work of the machine; see [`drawing`](super::drawing).
+    /// In the running neck, from the work of the machine; see `drawing`.
     Drawn,
-    /// Beyond the maximum force, by Considere's condition; see [`drawing`](super::drawing).
+    /// Beyond the maximum force, by Considere's condition; see `drawing`.
     Extrapolated,
 }
 

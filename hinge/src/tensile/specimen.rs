@@ -1,11 +1,11 @@
 //! The evaluation of one specimen: from its record to its local hardening curve.
 //!
-//! 1. Unloading loops, rows after the break and falling strains are removed ([`cleaning`](super::cleaning)).
+//! 1. Unloading loops, rows after the break and falling strains are removed (`cleaning`).
 //! 2. The line through the linear part is extended to zero stress; the strain there, slack and toe, is subtracted.
 //! 3. If Young's modulus is given, the compliance of the testing machine is removed:
 //!    e - s (1 / E_measured - 1 / E).
-//! 4. Landmarks are read from the nominal curve ([`landmarks`](super::landmarks)).
-//! 5. Where the strain is uniform, nominal rows become local ones ([`local_curve`](super::local_curve)).
+//! 4. Landmarks are read from the nominal curve (`landmarks`).
+//! 5. Where the strain is uniform, nominal rows become local ones (`local_curve`).
 
 use crate::tensile::cleaning::{Cause, DroppedRow, cleaned};
 use crate::tensile::error::TensileError;

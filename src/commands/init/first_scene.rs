@@ -101,7 +101,7 @@ impl FirstScene {
         let [a, b] = panel;
         let pitch = [a * cos + b * sin, b * cos + a * sin];
         // Even panels rotate by -theta/2, odd ones by theta/2; the held panel stays.
-        let sign = if (held[0] + held[1]) % 2 == 0 {
+        let sign = if (held[0] + held[1]).is_multiple_of(2) {
             1.0
         } else {
             -1.0

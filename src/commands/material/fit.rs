@@ -304,10 +304,10 @@ fn notes(fit: &MaterialFit) -> Vec<String> {
         100.0 * fit.table_deviation
     )];
     let ends = |origin| {
-        let rows = fit.curve.iter().filter(|row| row.origin == origin);
+        let mut rows = fit.curve.iter().filter(|row| row.origin == origin);
         rows.clone()
             .next()
-            .zip(rows.last())
+            .zip(rows.next_back())
             .map(|(first, last)| [first.strain, last.strain])
     };
     if let Some([from, to]) = ends(Origin::Drawn) {

@@ -67,12 +67,12 @@ impl SheetErrors {
         } = found;
         let ends = [by_law, by_elements].map(Deployment::final_step);
         let peak_by_law = |hinge: usize| {
-            let damages = by_law.path.iter().map(|step| {
+            let mut damages = by_law.path.iter().map(|step| {
                 let inside = step.inside[hinge];
                 let damage = step.damage.get(hinge).filter(|_| inside);
                 damage.and_then(|damage| damage.d_peak)
             });
-            damages.fold(Some(0.0), |most: Option<f64>, peak| Some(most?.max(peak?)))
+            damages.try_fold(0.0, |most: f64, peak| Some(most.max(peak?)))
         };
         let hinges: Vec<HingeErrors> = (0..found.hinges.len())
             .map(|hinge| HingeErrors {
