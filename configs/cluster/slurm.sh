@@ -28,8 +28,10 @@ if [ $code -gt 128 ]; then
 fi
 
 # 75: stopped before its work was done. The last task of an array has the array's own SLURM_JOB_ID, which stands for all
-# tasks: a task is named by both numbers.
-if [ $code -eq 75 ] && [ "${SLURM_RESTART_COUNT:-0}" -lt @requeues@ ]; then
-    scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
+# tasks: a task is named by both numbers. A task that was cancelled is not running any more and stays cancelled.
+task=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID
+state=$(squeue --noheader --format=%T --jobs="$task")
+if [ $code -eq 75 ] && [ "$state" = RUNNING ] && [ "${SLURM_RESTART_COUNT:-0}" -lt @requeues@ ]; then
+    scontrol requeue "$task"
 fi
 exit $code
