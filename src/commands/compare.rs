@@ -2,7 +2,7 @@
 
 mod points_file;
 
-use crate::commands::inspect::scene_args::Inspected;
+use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
 use crate::ui::{picture, run_folder};
 use anyhow::{Context, Result, bail, ensure};
 use clap::{Args, ValueEnum};
@@ -27,9 +27,7 @@ use std::path::{Path, PathBuf};
 /// kirigami compare configs/scenes/pet-3x3.toml --template;
 /// kirigami compare configs/scenes/pet-3x3.toml points.csv --unit cm
 #[derive(Args)]
-#[command(mut_arg("design", |arg| arg.help(
-    "Design (JSON): the state.json of a run, or a design alone [default: the state.json of the scene's run folder]"
-)))]
+#[command(mut_arg("design", |arg| arg.help(DESIGN_OF_RUN)))]
 pub struct CompareCommand {
     #[command(flatten)]
     designed: Inspected,

@@ -1,5 +1,6 @@
 //! `kirigami cut`: the cut files of a designed sheet, tiles of paper, and parts for a bed.
 
+use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
 use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -8,8 +9,6 @@ use design::output::cut_file::{
     write_pdf, write_svg,
 };
 use design::output::report::{Severity, Warning, warnings};
-use design::scene::design_run::stored_design;
-use design::scene::{Scene, SceneConfig};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -19,16 +18,10 @@ use std::path::{Path, PathBuf};
 /// With --paper also a PDF at 1:1 on pages that overlap, with --bed also one DXF and SVG a part. docs/CUTTING.md
 /// describes the files. Example: kirigami cut configs/scenes/demo.toml --paper a4 --bed 900x600
 #[derive(Args)]
+#[command(mut_arg("design", |arg| arg.help(DESIGN_OF_RUN)))]
 pub struct CutCommand {
-    /// Scene (TOML); see configs/scenes
-    #[arg(value_name = "SCENE")]
-    scene: PathBuf,
-    /// Design (JSON): the state.json of a run, or a design alone [default: that in the run folder of the scene]
-    #[arg(long, value_name = "FILE")]
-    design: Option<PathBuf>,
-    /// Weights of the hinge energy, instead of the scene's
-    #[arg(long, value_name = "FILE")]
-    weights: Option<PathBuf>,
+    #[command(flatten)]
+    designed: Inspected,
     /// Folder of the files [default: `cut` in the run folder of the scene]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
@@ -51,17 +44,7 @@ pub struct CutCommand {
 
 impl CutCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        let mut config: SceneConfig = support::toml_file::read(&self.scene)?;
-        if let Some(weights) = &self.weights {
-            config.name_weights(weights)?;
-        }
-        let scene = Scene::new(config, &self.scene)?;
-        let design = match &self.design {
-            Some(path) => stored_design(path, &scene)?,
-            None => stored_design(&scene.output().join("state.json"), &scene).context(
-                "no design to cut: run `kirigami design` first, or name one with --design",
-            )?,
-        };
+        let (scene, design) = self.designed.read_run()?;
         let deployment = scene.problem()?.deploy(&design)?;
         let (pattern, sheet) = (&deployment.pattern, &deployment.sheet);
         let cuts = CutLines::new(pattern, sheet, scene.config.cutting);

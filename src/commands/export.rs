@@ -3,7 +3,7 @@
 #[cfg(feature = "pipeline")]
 mod parquet;
 
-use crate::commands::inspect::scene_args::Inspected;
+use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
 use crate::ui::run_folder;
 use anyhow::{Context, Result};
 use clap::Args;
@@ -18,9 +18,7 @@ use support::vtk;
 /// one row a load step. Lengths in mm, forces in N, angles in rad unless the name says deg.
 /// Example: kirigami export configs/scenes/pet-3x3.toml
 #[derive(Args)]
-#[command(mut_arg("design", |arg| arg.help(
-    "Design (JSON): the state.json of a run, or a design alone [default: the state.json of the scene's run folder]"
-)))]
+#[command(mut_arg("design", |arg| arg.help(DESIGN_OF_RUN)))]
 pub struct ExportCommand {
     #[command(flatten)]
     designed: Inspected,

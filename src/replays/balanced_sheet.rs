@@ -36,10 +36,8 @@ pub struct Round {
 
 /// A sheet in equilibrium with the forces of finite elements.
 pub struct Balanced {
-    /// By the hinge law alone.
-    pub by_law: Deployment,
-    /// With the corrected law of the last round.
-    pub by_elements: Deployment,
+    /// By the hinge law alone, followed by the deployment with the corrected law of each round.
+    deployments: Vec<Deployment>,
     /// The last state of each hinge by finite elements.
     pub hinges: Vec<HingeSample>,
     /// All rounds in their order.
@@ -71,37 +69,46 @@ pub fn balanced(
         Model::Equilibrium(mechanics) => mechanics.law.clone(),
         Model::Ideal { .. } => bail!("pin hinges have no forces to be balanced"),
     };
-    let by_law = problem.deploy(design)?;
-    by_law.at_full_load()?;
-    let (mut by_elements, mut hinges) = (problem.deploy(design)?, Vec::new());
-    let mut done: Vec<Round> = Vec::new();
+    let mut deployed = problem.deploy(design)?;
+    deployed.at_full_load()?;
+    let (mut deployments, mut hinges, mut done) = (Vec::new(), Vec::new(), Vec::new());
     let mut converged = false;
     while done.len() < rounds && !converged {
-        hinges = solved(scene, &by_elements, windows)?;
-        let force_error = force_error(&problem.model, &by_elements, &hinges);
-        let corrected = corrected(&law, &by_elements, &hinges);
+        hinges = solved(scene, &deployed, windows)?;
+        let force_error = force_error(&problem.model, &deployed, &hinges);
+        let corrected = corrected(&law, &deployed, &hinges);
         if let Model::Equilibrium(mechanics) = &mut problem.model {
             mechanics.law = Arc::new(corrected);
         }
         let next = problem.deploy(design)?;
         next.at_full_load()?;
-        let movement = movements(&by_elements, &next)
-            .into_iter()
-            .fold(0.0, f64::max);
+        let movement = movements(&deployed, &next).into_iter().fold(0.0, f64::max);
         converged = movement <= BALANCED * size(&next);
-        by_elements = next;
+        deployments.push(std::mem::replace(&mut deployed, next));
         done.push(Round {
             force_error,
             movement,
         });
     }
+    deployments.push(deployed);
     Ok(Balanced {
-        by_law,
-        by_elements,
+        deployments,
         hinges,
         rounds: done,
         converged,
     })
+}
+
+impl Balanced {
+    /// The deployment by the hinge law alone.
+    pub fn by_law(&self) -> &Deployment {
+        &self.deployments[0]
+    }
+
+    /// The deployment with the corrected law of the last round.
+    pub fn by_elements(&self) -> &Deployment {
+        &self.deployments[self.deployments.len() - 1]
+    }
 }
 
 /// The last state of each hinge by finite elements, along its path in the sheet.

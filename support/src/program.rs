@@ -2,7 +2,7 @@
 //!
 //! A program runs in its own process group. Its output goes to a log file, because a pipe that is not
 //! read would block it. It is terminated by SIGTERM, then SIGKILL, sent to the whole group: at its time
-//! limit and when the caller sets the stop flag. When the caller dies, the program itself is killed. Whatever it
+//! limit and when the caller sets the stop flag. When the caller dies, the program itself is killed. All that it
 //! started is killed when it has ended, and what a killed caller left is killed before the next program runs in the
 //! same folder.
 

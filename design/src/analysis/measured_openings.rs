@@ -1,7 +1,7 @@
 //! Motions of the panels and openings of the hinges of a measured sheet.
 //!
 //! A panel with at least two measured marks has a measured rigid motion. The residuals of these motions, with
-//! 2 n - 3 degrees of freedom for n marks, give the standard deviation of one coordinate whatever the prediction: the
+//! 2 n - 3 degrees of freedom for n marks, give the standard deviation of one coordinate for any prediction: the
 //! errors of the measurement, and the bending of the panels.
 
 use crate::analysis::robust_pose::Fit;

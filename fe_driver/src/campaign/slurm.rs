@@ -109,7 +109,7 @@ fn record_path(campaign_folder: &Path) -> PathBuf {
 }
 
 /// Writes the script to the folder of the campaign and submits it twice: as an array of `tasks` tasks, and as the job
-/// that collects the database when all tasks have ended, in whatever state.
+/// that collects the database when all tasks have ended, in any state.
 ///
 /// It is an error if the last submission has not ended.
 pub fn submit_array(

@@ -10,6 +10,9 @@ use std::fmt::Display;
 use std::path::PathBuf;
 use support::toml_file;
 
+/// Help of `--design` for commands that use [`Inspected::read_run`].
+pub(crate) const DESIGN_OF_RUN: &str = "Design (JSON): the state.json of a run, or a design alone [default: the state.json of the scene's run folder]";
+
 /// A scene and a design of its sheet.
 #[derive(Args)]
 pub struct Inspected {
@@ -62,9 +65,9 @@ impl Inspected {
         };
         ensure!(
             self.design.is_some() || path.exists(),
-            "the scene has no run: there is no {}. Run `kirigami design {}`, or name a design (--design)",
-            path.display(),
-            self.scene.display()
+            "the scene {} has no run, there is no {}: run `kirigami design` first, or name a design (--design)",
+            self.scene.display(),
+            path.display()
         );
         let design = stored_design(&path, &scene)?;
         Ok((scene, design))

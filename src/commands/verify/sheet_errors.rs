@@ -52,19 +52,16 @@ pub(super) fn run(
     let found = balanced(scene, design, windows, rounds)?;
     let errors = SheetErrors::new(&found, windows.tier);
     run_folder::write(windows.folder, "equilibrium.md", &errors.to_string())?;
-    let end = &found.by_elements.final_step().configuration;
-    let picture = drawing::deployed(scene, &found.by_elements.sheet, end);
+    let by_elements = found.by_elements();
+    let end = &by_elements.final_step().configuration;
+    let picture = drawing::deployed(scene, &by_elements.sheet, end);
     run_folder::write(windows.folder, "deployed.svg", &picture)?;
     Ok(errors)
 }
 
 impl SheetErrors {
     fn new(found: &Balanced, tier: Tier) -> Self {
-        let Balanced {
-            by_law,
-            by_elements,
-            ..
-        } = found;
+        let (by_law, by_elements) = (found.by_law(), found.by_elements());
         let ends = [by_law, by_elements].map(Deployment::final_step);
         let peak_by_law = |hinge: usize| {
             let mut damages = by_law.path.iter().map(|step| {
