@@ -52,6 +52,11 @@ fn slips_of_units_and_signs_are_named() {
             "size = [2.8, 2.8]",
             "did you mean 2800 mm",
         ),
+        (
+            "size = [2800.0, 2800.0]",
+            "size = [57708.8, 57708.8]",
+            "did you mean 57.7088 mm",
+        ),
         ("start = 18.0", "start = 0.018", "ligament.start"),
         (
             "range = [10.0, 26.0]",

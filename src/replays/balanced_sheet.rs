@@ -13,7 +13,7 @@ use design::objective::design_problem::{Deployment, Model};
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
 use design::sheet::kinematics::deployed_corners;
-use fe_driver::KeptSolve;
+use fe_driver::{KeptSolution, KeptSolve};
 use hinge::HingeSample;
 use mesher::Tier;
 use serde::Serialize;
@@ -42,6 +42,8 @@ pub struct Balanced {
     pub hinges: Vec<HingeSample>,
     /// All rounds in their order.
     pub rounds: Vec<Round>,
+    /// CPU time of all window solves (s), if the operating system reports it.
+    pub cpu_seconds: Option<f64>,
     /// Whether the last round moved the panels by less than [`BALANCED`].
     pub converged: bool,
 }
@@ -72,9 +74,15 @@ pub fn balanced(
     let mut deployed = problem.deploy(design)?;
     deployed.at_full_load()?;
     let (mut deployments, mut hinges, mut done) = (Vec::new(), Vec::new(), Vec::new());
+    let mut cpu_seconds = Some(0.0);
     let mut converged = false;
     while done.len() < rounds && !converged {
-        hinges = solved(scene, &deployed, windows)?;
+        let solutions = solved(scene, &deployed, windows)?;
+        let spent: Option<f64> = (solutions.iter())
+            .map(|(solution, _)| solution.cpu_seconds)
+            .sum();
+        cpu_seconds = cpu_seconds.zip(spent).map(|(sum, spent)| sum + spent);
+        hinges = solutions.into_iter().map(|(_, end)| end).collect();
         let force_error = force_error(&problem.model, &deployed, &hinges);
         let corrected = corrected(&law, &deployed, &hinges);
         if let Model::Equilibrium(mechanics) = &mut problem.model {
@@ -95,6 +103,7 @@ pub fn balanced(
         deployments,
         hinges,
         rounds: done,
+        cpu_seconds,
         converged,
     })
 }
@@ -111,12 +120,12 @@ impl Balanced {
     }
 }
 
-/// The last state of each hinge by finite elements, along its path in the sheet.
+/// The solution of each hinge along its path in the sheet, with its last state.
 fn solved(
     scene: &Scene,
     deployment: &Deployment,
     windows: &WindowSolves,
-) -> Result<Vec<HingeSample>> {
+) -> Result<Vec<(KeptSolution, HingeSample)>> {
     let routes = routes_of(deployment);
     let solves: Vec<KeptSolve> = routes
         .iter()
@@ -128,9 +137,11 @@ fn solved(
     let mut failures = Vec::new();
     let mut ends = Vec::new();
     for (hinge, outcome) in outcomes.into_iter().enumerate() {
-        match outcome.map(|solution| solution.samples.last().copied()) {
-            Ok(Some(end)) => ends.push(end),
-            Ok(None) => failures.push(format!("hinge {hinge}: no increment")),
+        match outcome {
+            Ok(solution) => match solution.samples.last().copied() {
+                Some(end) => ends.push((solution, end)),
+                None => failures.push(format!("hinge {hinge}: no increment")),
+            },
             Err(reason) => failures.push(format!("hinge {hinge}: {reason}")),
         }
     }

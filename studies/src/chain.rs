@@ -7,6 +7,7 @@
 
 mod chain_page;
 
+use crate::condensed::{condense, own_weights};
 use crate::designed::designed;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -16,7 +17,7 @@ use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::objective::outline_error::outline_error;
 use design::pattern::design_vector::DesignVector;
-use design::scene::{CondensedConfig, HingeModel, Scene, SceneConfig};
+use design::scene::{HingeModel, Scene, SceneConfig};
 use design::sheet::cut_sheet::HingePoint;
 use design::sheet::kinematics::deployed_corners;
 use kirigami::ui::{interrupt, run_folder};
@@ -209,36 +210,17 @@ impl ChainStudy {
             let choice = steps.to_string();
             add("load steps", choice, &|config| config.load_steps = steps);
         }
-        let weights = self.own_weights(base)?;
+        let weights = own_weights(base, &self.scene)?;
         for secant_deg in [20.0, 0.0] {
             let choice = format!("linear, secant at {secant_deg} deg");
             add("hinge law", choice, &|config| {
-                config.hinge = HingeModel::Linear;
-                config.hinge_point = Some(HingePoint::CutTip);
-                config.surrogate = None;
-                config.objective.damage = 0.0;
-                // Only a learned law has a domain.
-                config.objective.domain = 0.0;
-                config.condensed = Some(CondensedConfig {
-                    weights: weights.clone(),
-                    secant_deg,
-                });
+                condense(config, &weights, secant_deg);
             });
         }
         add("hinge point", "corner".into(), &|config| {
             config.hinge_point = Some(HingePoint::Corner);
         });
         Ok(choices)
-    }
-
-    /// The weights of the scene, as a path independent of the scene's folder.
-    fn own_weights(&self, base: &SceneConfig) -> Result<PathBuf> {
-        let named = base.surrogate.as_ref();
-        let named = &named
-            .context("the scene has no weights: add surrogate.weights")?
-            .weights;
-        let folder = self.scene.parent().unwrap_or(Path::new(""));
-        Ok(std::path::absolute(folder.join(named))?)
     }
 }
 

@@ -5,12 +5,15 @@ mod approaches;
 mod capacity;
 mod chain;
 mod charts;
+mod condensed;
 mod designed;
 mod drawing;
+mod extremes;
 mod free_panels;
 mod gradient;
 mod kept_fits;
 mod keys;
+mod levels;
 mod localisation;
 mod noise;
 mod optimisers;
@@ -42,6 +45,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Study {
+    Levels(levels::LevelsStudy),
     Chain(chain::ChainStudy),
     Sheet(sheet::SheetStudy),
     Window(window::WindowStudy),
@@ -56,6 +60,7 @@ enum Study {
     Actuations(actuations::ActuationStudy),
     Capacity(capacity::CapacityStudy),
     Localisation(localisation::LocalisationStudy),
+    Extremes(extremes::ExtremesStudy),
     Surrogate(surrogate::SurrogateStudy),
     Trust(trust::TrustStudy),
     Tradeoff(tradeoff::TradeoffCommand),
@@ -66,6 +71,7 @@ enum Study {
 impl Study {
     fn run(&self) -> Result<()> {
         match self {
+            Self::Levels(study) => study.run(),
             Self::Chain(study) => study.run(),
             Self::Sheet(study) => study.run(),
             Self::Window(study) => study.run(),
@@ -80,6 +86,7 @@ impl Study {
             Self::Actuations(study) => study.run(),
             Self::Capacity(study) => study.run(),
             Self::Localisation(study) => study.run(),
+            Self::Extremes(study) => study.run(),
             Self::Surrogate(study) => study.run(),
             Self::Trust(study) => study.run(),
             Self::Tradeoff(command) => command.run(),

@@ -1,6 +1,7 @@
 //! `kirigami-studies polyester`: the sheet of section 4.3, designed with and without the objectives on
 //! the hinges' paths; its monitored hinge is solved by finite elements; Fig. 9.
 
+mod objective_front;
 mod polyester_page;
 
 use crate::designed::designed;
@@ -11,12 +12,14 @@ use design::analysis::threshold::least_passing;
 use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
 use design::objective::outline_error::outline_error;
+use design::output::run_results::write_results;
+use design::scene::design_run::Designed;
 use design::scene::{HingeModel, Scene, SceneConfig};
 use design::sheet::cut_sheet::{HingePoint, Panel};
 use hinge::HingeSample;
 use kirigami::commands::surrogate::predicted;
 use kirigami::replays::kept_solves::{Outcome, SolveArgs};
-use kirigami::replays::routes::{HingeRoute, hinge_routes, judging_tier};
+use kirigami::replays::routes::{HingeRoute, judging_tier, routes_of};
 use kirigami::ui::run_folder;
 use mesher::Tier;
 use std::cmp::Ordering;
@@ -27,7 +30,7 @@ use surrogate::Surrogate;
 ///
 /// The loads are first scaled until the hinge of the start design that opens most has the given opening angle. Both
 /// hinge points are used; for each, the hinge with the largest damage in the design for shape alone is solved by
-/// finite elements. Writes polyester.csv, polyester.md, pictures, and the designs with their cut
+/// finite elements. At the tip, further objectives and weights are tried from four random starts each. Writes polyester.csv, polyester.md, pictures, and the designs with their cut
 /// files. Example: kirigami-studies polyester configs/scenes/pet-3x3.toml --tier tiny
 #[derive(Args)]
 pub struct PolyesterStudy {
@@ -74,6 +77,8 @@ struct Row {
     share_inside: f64,
     /// Maximum D of each hinge along its path, relative to D_s; `None` if the path leaves the training domain.
     damage: Vec<Option<f64>>,
+    /// Maximum D_peak of each hinge along its path, likewise.
+    peaks: Vec<Option<f64>>,
     /// W, M_theta, D, D_peak of the monitored hinge at full load: by the surrogate, and by finite elements.
     monitored: usize,
     learned: [f64; 4],
@@ -95,7 +100,10 @@ impl PolyesterStudy {
             for (objective, config) in [("shape alone", alone), ("with the hinges' paths", config)]
             {
                 eprintln!("{point:?}, {objective}");
-                rows.push(self.design(config, point, objective, load)?);
+                let folder = format!("{point:?}-{objective}").replace([' ', '\''], "-");
+                let (scene, designed) = self.design(config, &folder)?;
+                write_results(&scene, &designed, false)?;
+                rows.push(Row::new(&scene, &designed, point, objective, load)?);
             }
         }
         // The hinge with the largest damage in the first design of a pair is evaluated in both.
@@ -106,7 +114,12 @@ impl PolyesterStudy {
         let surrogate = self.surrogate(&base)?;
         let tier = judging_tier(self.tier, &surrogate)?;
         self.replay(&mut rows, &surrogate, &base, tier)?;
-        polyester_page::write(&self.out, &rows, &surrogate, tier)
+        let mut config = base;
+        config.hinge_point = Some(HingePoint::CutTip);
+        let load = rows[0].load;
+        config.scale_loads(load);
+        let front = objective_front::table(self, &config, load)?;
+        polyester_page::write(&self.out, &rows, &surrogate, tier, &front)
     }
 
     fn base(&self) -> Result<SceneConfig> {
@@ -150,45 +163,12 @@ impl PolyesterStudy {
         })
     }
 
-    fn design(
-        &self,
-        mut config: SceneConfig,
-        point: HingePoint,
-        objective: &'static str,
-        load: f64,
-    ) -> Result<Row> {
-        let folder = format!("{point:?}-{objective}").replace([' ', '\''], "-");
+    /// The scene of a configuration, with its run in a folder of this study.
+    fn design(&self, mut config: SceneConfig, folder: &str) -> Result<(Scene, Designed)> {
         config.output = std::path::absolute(self.out.join("designs").join(folder))?;
-        let folder = config.output.clone();
         let scene = Scene::new(config, &self.scene)?;
         let designed = designed(&scene, &mut |_| ())?;
-        design::output::run_results::write_results(&scene, &designed, false)?;
-        let problem = scene.problem()?;
-        let (start, best) = (&designed.start.deployment, &designed.best.deployment);
-        let transmission = ForceTransmission::new(&problem, best)?;
-        let scale = scene.surrogate().map_or(1.0, Surrogate::damage_scale);
-        let interfaces = transmission.interfaces.iter();
-        Ok(Row {
-            point,
-            objective,
-            folder,
-            load,
-            routes: hinge_routes(&scene, &designed.design)?,
-            outline: [start, best].map(|deployment| outline_error(&problem.objective, deployment)),
-            areas: std::iter::zip(areas(best), areas(start))
-                .map(|(area, before)| area / before)
-                .collect(),
-            w_lig: best.sheet.hinges.iter().map(|hinge| hinge.w_lig).collect(),
-            shares: transmission.shares(),
-            forces: interfaces.map(|it| [it.normal, it.force()]).collect(),
-            share_inside: best.share_inside(),
-            damage: (0..best.sheet.hinges.len())
-                .map(|h| Some(best.damage_max(DamageMeasure::Mean, h)? / scale))
-                .collect(),
-            monitored: 0,
-            learned: [0.0; 4],
-            replayed: None,
-        })
+        Ok((scene, designed))
     }
 
     /// Evaluates the monitored hinge of every design by the surrogate and by finite elements.
@@ -212,6 +192,47 @@ impl PolyesterStudy {
             row.replayed = replayed(&outcome);
         }
         Ok(())
+    }
+}
+
+impl Row {
+    fn new(
+        scene: &Scene,
+        designed: &Designed,
+        point: HingePoint,
+        objective: &'static str,
+        load: f64,
+    ) -> Result<Self> {
+        let problem = &designed.problem;
+        let (start, best) = (&designed.start.deployment, &designed.best.deployment);
+        let transmission = ForceTransmission::new(problem, best)?;
+        let interfaces = transmission.interfaces.iter();
+        let scale = scene.surrogate().map_or(1.0, Surrogate::damage_scale);
+        let damages = |measure: DamageMeasure, scale: f64| {
+            let hinges = 0..best.sheet.hinges.len();
+            let relative = |hinge| Some(best.damage_max(measure, hinge)? / scale);
+            hinges.map(relative).collect()
+        };
+        Ok(Self {
+            point,
+            objective,
+            folder: scene.output(),
+            load,
+            routes: routes_of(best),
+            outline: [start, best].map(|deployment| outline_error(&problem.objective, deployment)),
+            areas: std::iter::zip(areas(best), areas(start))
+                .map(|(area, before)| area / before)
+                .collect(),
+            w_lig: best.sheet.hinges.iter().map(|hinge| hinge.w_lig).collect(),
+            shares: transmission.shares(),
+            forces: interfaces.map(|it| [it.normal, it.force()]).collect(),
+            share_inside: best.share_inside(),
+            damage: damages(DamageMeasure::Mean, scale),
+            peaks: damages(DamageMeasure::Peak, 1.0),
+            monitored: 0,
+            learned: [0.0; 4],
+            replayed: None,
+        })
     }
 }
 

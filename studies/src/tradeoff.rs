@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// Join the speed and accuracy tables of the studies into one page
 ///
 /// Each study writes a tradeoff.md to its folder: one row per choice, with its cost and its error.
-/// The folders are chain, window, tiers, path, surrogate, trust and sheet, each the --out of a study,
+/// The folders are levels, chain, window, tiers, path, surrogate, trust and sheet, each the --out of a study,
 /// for example: kirigami-studies window --out docs/results/window
 #[derive(Args)]
 pub struct TradeoffCommand {
@@ -26,7 +26,8 @@ a table.
 ";
 
 /// The folders of the studies, in the order of the page.
-const STUDIES: [&str; 7] = [
+const STUDIES: [&str; 8] = [
+    "levels",
     "chain",
     "window",
     "tiers",

@@ -334,13 +334,20 @@ pub(super) fn within(
     if range.contains(&value) {
         return Ok(());
     }
-    let slip = [1e3, 1e-3].map(|factor| factor * value);
+    let slip = [1e3, 1e-3].map(|factor| without_rounding(factor * value));
     let hint = slip
         .iter()
         .find(|meant| !unit.is_empty() && range.contains(meant))
         .map(|meant| format!("; did you mean {meant} {unit}?"))
         .unwrap_or_default();
+    let [min, max] = [min, max].map(without_rounding);
     Err(format!(
         "{key} = {value} {unit} violates {min} <= {key} <= {max} {unit}{hint}"
     ))
+}
+
+/// The number with nine significant digits, so that a product is shown without its rounding error.
+fn without_rounding(value: f64) -> f64 {
+    let digits = format!("{value:.8e}");
+    digits.parse().unwrap_or(value)
 }

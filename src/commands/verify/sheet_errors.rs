@@ -21,6 +21,8 @@ pub(super) struct SheetErrors {
     rounds: Vec<Round>,
     /// Whether the panels stay where they are within [`BALANCED`].
     converged: bool,
+    /// CPU time of all window solves (s), if the operating system reports it.
+    cpu_seconds: Option<f64>,
     /// Diagonal of the deployed sheet (mm).
     size: f64,
     /// Distance of the panel corners (mm): root mean square and maximum.
@@ -83,6 +85,7 @@ impl SheetErrors {
             tier,
             rounds: found.rounds.clone(),
             converged: found.converged,
+            cpu_seconds: found.cpu_seconds,
             size: size(by_elements),
             corners: rms_and_maximum(movements(by_law, by_elements)),
             rotations_deg: rms_and_maximum(hinges.iter().map(turned)),
@@ -112,10 +115,14 @@ impl fmt::Display for SheetErrors {
             f,
             "# The deployed sheet, by finite elements\n\n\
              Equilibrium with finite elements for all {} hinges, windows of tier {}. Every round solves the hinges along \
-             their paths, corrects the hinge law to their forces and deploys the sheet again.\n\n\
+             their paths, corrects the hinge law to their forces and deploys the sheet again{}.\n\n\
              | round | force error | movement, mm |\n|---|---|---|",
             self.hinges.len(),
-            self.tier
+            self.tier,
+            self.cpu_seconds.map_or(String::new(), |seconds| format!(
+                "; {:.0} CPU minutes in all",
+                seconds / 60.0
+            )),
         )?;
         for (
             round,

@@ -33,8 +33,14 @@ const PAPER: [(&str, &str, &str); 11] = [
     ),
 ];
 
-pub(super) fn write(out: &Path, rows: &[Row], surrogate: &Surrogate, tier: Tier) -> Result<()> {
-    let page = markdown(rows, tier)?;
+pub(super) fn write(
+    out: &Path,
+    rows: &[Row],
+    surrogate: &Surrogate,
+    tier: Tier,
+    front: &str,
+) -> Result<()> {
+    let page = markdown(rows, tier, front)?;
     run_folder::write(out, "polyester.md", &page)?;
     run_folder::write(out, "polyester.csv", &csv(rows)?)?;
     let panels: Vec<RoutePanel> = rows
@@ -136,7 +142,7 @@ fn mean_damage(damage: &[Option<f64>]) -> String {
     }
 }
 
-fn markdown(rows: &[Row], tier: Tier) -> Result<String> {
+fn markdown(rows: &[Row], tier: Tier, front: &str) -> Result<String> {
     let mut text = "# The polyester sheet with the learned hinge\n\nThe load is that at which the \
                     maximum hinge opening of the uniform sheet is the given angle. \
                     `kirigami-studies polyester`.\n\n| |"
@@ -198,6 +204,7 @@ fn markdown(rows: &[Row], tier: Tier) -> Result<String> {
             )?,
         }
     }
+    text += front;
     text += "\n## Deployed\n\n";
     for (k, row) in rows.iter().enumerate() {
         let design = format!("{}, {}", name(row.point), row.objective);

@@ -1,0 +1,312 @@
+//! Sheets at the limits of loads, ligaments, cut angles, thickness, size and solver settings.
+
+use super::{Checked, kept};
+use anyhow::{Result, anyhow};
+use design::equilibrium::load_step::{LoadStep, Status};
+use design::hinge_law::DamageMeasure;
+use design::objective::design_problem::Deployment;
+use design::objective::target::TargetShape;
+use design::scene::{Scene, SceneConfig};
+use std::f64::consts::PI;
+use std::fmt::Write;
+use std::path::Path;
+use std::time::Instant;
+
+/// A scene with one extreme input.
+pub(super) struct Extreme<'a> {
+    name: String,
+    config: SceneConfig,
+    path: &'a Path,
+    promise: Promise,
+}
+
+/// What must hold besides [`sound`].
+#[derive(Clone, Copy)]
+enum Promise {
+    /// Each state has a status that is true.
+    Stated,
+    /// The sheet stays flat.
+    Flat,
+    /// Full load is reached.
+    Reached,
+    /// The root mean square rotation of the hinges is this one (rad).
+    Opened(f64),
+    /// The scene is refused before anything is computed.
+    Refused,
+}
+
+/// Rotation (rad) below which a hinge is flat: the rounding of coordinates of metres.
+const FLAT: f64 = 1e-12;
+/// Relative difference of the rotations of two sheets that rounding and the solver's tolerance may cause.
+const SAME: f64 = 1e-6;
+
+impl Promise {
+    fn text(self) -> &'static str {
+        match self {
+            Self::Stated => "-",
+            Self::Flat => "the sheet stays flat",
+            Self::Reached => "full load is reached",
+            Self::Opened(_) => "the rotations of the sheet itself",
+            Self::Refused => "refused with a reason",
+        }
+    }
+
+    fn is_kept(self, outcome: &Result<Deployment, String>) -> bool {
+        let Ok(deployment) = outcome else {
+            return matches!(self, Self::Refused);
+        };
+        sound(deployment)
+            && match self {
+                Self::Stated => true,
+                Self::Flat => opening(deployment.final_step()) < FLAT,
+                Self::Reached => deployment.at_full_load().is_ok(),
+                Self::Opened(expected) => {
+                    (opening(deployment.final_step()) / expected - 1.0).abs() < SAME
+                }
+                Self::Refused => false,
+            }
+    }
+}
+
+/// The extremes of a learned scene, and of a linear one.
+pub(super) fn all<'a>(
+    [learned, linear]: [(&SceneConfig, &'a Path); 2],
+    panels: usize,
+) -> Result<Vec<Extreme<'a>>> {
+    use Promise::{Flat, Opened, Reached, Refused, Stated};
+    let (config, path) = learned;
+    let own = deployment(config, path).map_err(|reason| anyhow!(reason))?;
+    let own = Opened(opening(own.final_step()));
+    let mut all = Vec::new();
+    let mut add = |(base, path): (&SceneConfig, &'a Path),
+                   name: String,
+                   promise: Promise,
+                   edit: &dyn Fn(&mut SceneConfig)| {
+        let mut config = base.clone();
+        edit(&mut config);
+        all.push(Extreme {
+            name,
+            config,
+            path,
+            promise,
+        });
+    };
+    for (factor, promise) in [
+        (0.0, Flat),
+        (1e-9, Reached),
+        (1e-6, Reached),
+        (1e-3, Reached),
+        (1.0, Reached),
+        (10.0, Stated),
+        (1e3, Stated),
+        (1e6, Refused),
+        (-1.0, Stated),
+        (-1e3, Stated),
+    ] {
+        let load = |config: &mut SceneConfig| config.scale_loads(factor);
+        add(learned, format!("load x {factor:e}"), promise, &load);
+        add(linear, format!("linear, load x {factor:e}"), promise, &load);
+    }
+    for (w_lig, promise) in [
+        (0.6, Stated),
+        (2.0, Stated),
+        (36.0, Stated),
+        (100.0, Refused),
+    ] {
+        add(
+            learned,
+            format!("ligaments of {w_lig} mm"),
+            promise,
+            &|config| {
+                config.ligament.start = w_lig;
+                config.ligament.range = [0.9 * w_lig, 1.1 * w_lig];
+                config.process.kerf = config.process.kerf.min(0.02 * w_lig);
+            },
+        );
+    }
+    for angle_deg in [25.0, 150.0] {
+        add(
+            learned,
+            format!("cuts at {angle_deg} deg"),
+            Stated,
+            &|config| {
+                let [width, height] = config.sheet.size.unwrap_or_default();
+                let (sin, cos) = f64::to_radians(angle_deg).sin_cos();
+                let (x, y) = (height * cos, height * sin);
+                config.sheet.corners = Some([[0.0; 2], [width, 0.0], [width + x, y], [x, y]]);
+                config.sheet.size = None;
+            },
+        );
+    }
+    for factor in [0.05, 8.0] {
+        let name = format!("all lengths x {factor}");
+        add(learned, name, own, &|config| scaled(config, factor));
+    }
+    for steps in [1, 1000] {
+        add(learned, format!("{steps} load steps"), own, &|config| {
+            config.load_steps = steps;
+        });
+    }
+    for tolerance in [1e-14, 0.1] {
+        let name = format!("tolerance {tolerance:e}");
+        add(learned, name, Reached, &|config| {
+            config.solver.tolerance = tolerance
+        });
+    }
+    for (k_a, k_theta) in [(1e6, 1e-3), (1e-3, 1e6)] {
+        let name = format!("linear, k_a = k_s = {k_a:e}, k_theta = {k_theta:e}");
+        add(linear, name, Stated, &|config| {
+            if let Some(linear) = &mut config.linear {
+                (linear.k_a, linear.k_s, linear.k_theta) = (k_a, k_a, k_theta);
+            }
+        });
+    }
+    add(
+        learned,
+        format!("{panels} x {panels} panels"),
+        Stated,
+        &|config| enlarged(config, panels),
+    );
+    Ok(all)
+}
+
+/// All lengths of the scene multiplied by `factor`, and its forces by the square of it: the same sheet by similarity.
+fn scaled(config: &mut SceneConfig, factor: f64) {
+    config.thickness = Some(factor * 0.5);
+    for length in config.sheet.size.iter_mut().flatten() {
+        *length *= factor;
+    }
+    let ligament = &mut config.ligament;
+    ligament.start *= factor;
+    ligament.range = ligament.range.map(|width| factor * width);
+    config.process.kerf *= factor;
+    config.process.r_win *= factor;
+    config.scale_loads(factor * factor);
+    around(config);
+}
+
+/// Makes the target a circle as long as the outline of the sheet: the sheet is deployed, not designed.
+fn around(config: &mut SceneConfig) {
+    let [width, height] = config.sheet.size.unwrap_or_default();
+    config.target = TargetShape::Circle {
+        centre: [0.5 * width, 0.5 * height],
+        radius: (width + height) / PI,
+    };
+}
+
+/// Side of a panel of the large sheet (mm): windows need 280 mm, and a sheet may be 20 m long.
+const PITCH: f64 = 281.0;
+
+/// A sheet of `n` by `n` square panels, held in the middle of its left edge and pulled in that of its right.
+fn enlarged(config: &mut SceneConfig, n: usize) {
+    config.sheet.size = Some([PITCH * n as f64; 2]);
+    config.sheet.panels = [n, n];
+    around(config);
+    for support in &mut config.supports {
+        support.panel = [0, n / 2];
+    }
+    for load in &mut config.loads {
+        load.panel = [n - 1, n / 2];
+    }
+}
+
+impl Extreme<'_> {
+    fn deployment(&self) -> Result<Deployment, String> {
+        deployment(&self.config, self.path)
+    }
+}
+
+/// The start design of a scene, deployed, or why it cannot be.
+fn deployment(config: &SceneConfig, path: &Path) -> Result<Deployment, String> {
+    let scene = Scene::new(config.clone(), path).map_err(|error| error.to_string())?;
+    let problem = scene.problem().map_err(|error| error.to_string())?;
+    let deployment = problem.deploy(&scene.start());
+    deployment.map_err(|error| error.to_string())
+}
+
+/// One row for each extreme; `progress` is called with the number of finished rows and the next one.
+pub(super) fn table(extremes: &[Extreme], progress: impl Fn(usize, &str)) -> Result<Checked> {
+    let mut text = String::from(
+        "## Sheets\n\n\
+         Promised of every row: finite numbers; a state called an equilibrium is stable, has a residual below the tolerance, and \
+         is not called one if hinges are outside the training domain; no damage is known of such hinges.\n\n\
+         | extreme | further promise | outcome | |\n|---|---|---|---|\n",
+    );
+    let mut broken = 0;
+    for (done, extreme) in extremes.iter().enumerate() {
+        progress(done, &extreme.name);
+        let begun = Instant::now();
+        let outcome = extreme.deployment();
+        let promise = extreme.promise.is_kept(&outcome);
+        broken += usize::from(!promise);
+        let outcome = match outcome {
+            Ok(deployment) => shown(&deployment, begun.elapsed().as_secs_f64()),
+            Err(reason) => reason.replace('|', "/").replace('\n', " "),
+        };
+        let (name, further) = (&extreme.name, extreme.promise.text());
+        writeln!(
+            text,
+            "| {name} | {further} | {outcome} | {} |",
+            kept(promise)
+        )?;
+    }
+    Ok(Checked { text, broken })
+}
+
+/// Whether all numbers are finite, every state called an equilibrium is one, stable and to its tolerance, and no damage is
+/// known where a hinge is outside the training domain.
+fn sound(deployment: &Deployment) -> bool {
+    let hinges = 0..deployment.sheet.hinges.len();
+    let outside = |hinge: &usize| deployment.path.iter().any(|step| !step.inside[*hinge]);
+    let mut unknown = hinges.filter(outside);
+    deployment.path.iter().all(sound_step)
+        && unknown.all(|hinge| deployment.damage_max(DamageMeasure::Peak, hinge).is_none())
+}
+
+fn sound_step(step: &LoadStep) -> bool {
+    let motions = step.configuration.as_flattened().iter();
+    let finite = motions
+        .chain(&step.energies)
+        .all(|number| number.is_finite());
+    let equilibrium = matches!(
+        step.status,
+        Status::Converged | Status::LeftDomain | Status::LimitPoint
+    );
+    let outside = step.inside.iter().any(|inside| !inside);
+    finite
+        && (!equilibrium || step.negative_pivots == 0)
+        && (step.status != Status::Converged || !outside)
+}
+
+/// Root mean square rotation of the hinges (rad).
+fn opening(step: &LoadStep) -> f64 {
+    let squares = step.deformations.iter().map(|state| state.theta.powi(2));
+    (squares.sum::<f64>() / step.deformations.len() as f64).sqrt()
+}
+
+fn shown(deployment: &Deployment, seconds: f64) -> String {
+    let end = deployment.final_step();
+    let residual = deployment
+        .path
+        .iter()
+        .map(|step| step.residual)
+        .fold(0.0, f64::max);
+    let jumps: usize = deployment.path.iter().map(|step| step.jumps).sum();
+    format!(
+        "{} at load factor {:.3}, {jumps} jumps, residual {residual:.0e}, opened by {:.3} deg, {:.0} % inside, {seconds:.2} s",
+        status(end.status),
+        end.load_factor,
+        opening(end).to_degrees(),
+        100.0 * deployment.share_inside(),
+    )
+}
+
+fn status(status: Status) -> &'static str {
+    match status {
+        Status::Converged => "equilibrium",
+        Status::LeftDomain => "equilibrium outside the domain",
+        Status::Almost => "almost an equilibrium",
+        Status::LimitPoint => "equilibrium after a jump",
+        Status::Diverged => "no equilibrium",
+    }
+}
