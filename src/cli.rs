@@ -6,6 +6,7 @@ use crate::commands::{compare, completions, cut, design, export, inspect, man, m
 use crate::ui::progress;
 use anyhow::Result;
 use clap::{CommandFactory, Parser, Subcommand};
+use support::verbose;
 
 /// Design kirigami sheets whose hinges are measured by finite elements
 ///
@@ -20,6 +21,10 @@ pub struct Cli {
     /// Show no progress
     #[arg(long, short, global = true)]
     quiet: bool,
+    /// Print programs as they are run, files as they are read and written, and the status of every load step to standard
+    /// error, instead of progress bars. Example: kirigami --verbose solve --tier tiny
+    #[arg(long, short, global = true, conflicts_with = "quiet")]
+    verbose: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -44,6 +49,9 @@ impl Cli {
     pub fn run(&self) -> Result<()> {
         if self.quiet {
             progress::silence();
+        }
+        if self.verbose {
+            verbose::show();
         }
         match &self.command {
             Command::Material(command) => command.run(),

@@ -15,6 +15,8 @@ pub mod doctor;
 pub mod export;
 #[cfg(feature = "pipeline")]
 pub mod init;
+#[cfg(feature = "pipeline")]
+mod input_file;
 pub mod inspect;
 pub mod man;
 pub mod material;

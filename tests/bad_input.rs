@@ -209,19 +209,77 @@ fn output_that_cannot_be_written_is_an_error_and_no_panic() {
 }
 
 #[test]
+fn a_missing_default_file_names_the_current_folder() {
+    let work = Workplace::new();
+    std::fs::remove_dir_all(work.path("configs")).unwrap();
+    for (command, option) in [
+        ("solve --tier tiny", "--material"),
+        ("init sheet", "--material"),
+        ("train hinges.parquet", "--config"),
+    ] {
+        let message = work.error(command);
+        assert!(
+            message.contains("the current folder") && message.contains(option),
+            "{command}: {message}"
+        );
+    }
+}
+
+#[test]
+fn a_refused_thread_is_an_error_and_no_panic() {
+    let work = Workplace::new();
+    let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/medium.safetensors");
+    let scene = "configs/scenes/pet-3x3.toml";
+    let fault = "starts no further thread";
+    for command in [
+        format!(
+            "inspect equilibrium {scene} --weights {}",
+            weights.display()
+        ),
+        format!("design {scene} --weights {} --steps 1", weights.display()),
+        format!("campaign run {DEMO} --folder campaign"),
+    ] {
+        // No machine has memory for stacks of this size.
+        let message = failure(
+            work.program(&command)
+                .env("RUST_MIN_STACK", "1000000000000000"),
+        );
+        assert!(message.contains(fault), "{command}: {message}");
+    }
+}
+
+#[test]
 fn a_pipe_in_place_of_a_file_is_refused() {
     let work = Workplace::new();
-    for kind in ["toml", "json", "safetensors"] {
+    for kind in ["toml", "json", "safetensors", "csv", "svg"] {
         let pipe = work.path("pipe").with_extension(kind);
         let made = std::process::Command::new("mkfifo").arg(pipe).status();
         assert!(made.unwrap().success());
     }
+    std::fs::copy(
+        work.path("configs/scenes/pin-7x7.toml"),
+        work.path("target.toml"),
+    )
+    .unwrap();
+    work.edit(
+        "target.toml",
+        &[
+            ("../materials", "configs/materials"),
+            ("[target.circle]", "[target.svg]\nfile = \"pipe.svg\""),
+            ("radius", "height"),
+        ],
+    );
+    let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/medium.safetensors");
     for command in [
         "campaign plan pipe.toml",
         "train pipe.parquet",
         "surrogate card pipe.safetensors",
         "solve --path pipe.toml --tier tiny",
         "design pipe.toml",
+        "design target.toml",
+        "material fit pipe.csv --name film --thickness 0.1 --density-kg-m3 1000",
+        "init sheet --material pipe.toml",
+        &format!("surrogate eval {} pipe.csv", weights.display()),
     ] {
         let message = work.error(command);
         assert!(

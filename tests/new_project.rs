@@ -96,3 +96,51 @@ fn a_project_without_weights_begins_with_its_campaign() {
         };
     }
 }
+
+#[test]
+fn a_project_like_a_scene_is_similar_to_it() {
+    let work = Workplace::new();
+    let like = "configs/scenes/pet-3x3.toml";
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    work.edit(like, &[("../../data", &data.display().to_string())]);
+    let init = format!(
+        "init thin --like {like} --thickness 0.1 --weights {}",
+        weights()
+    );
+    let message = work.error(&format!("{init} --size 300x300"));
+    assert!(message.contains("another ratio"), "{message}");
+    work.output(&init);
+    let scene = keys(&work, "thin/scene.toml");
+    let close = |item: &toml_edit::Item, expected: f64, tolerance: f64| {
+        let found = item.as_float().unwrap();
+        assert!(
+            (found / expected - 1.0).abs() < tolerance,
+            "{found} {expected}"
+        );
+    };
+    // A fifth of every length.
+    for (side, expected) in [(0, 487.68), (1, 243.84)] {
+        close(
+            &scene["sheet"]["size"]
+                .as_array()
+                .unwrap()
+                .get(side)
+                .unwrap()
+                .clone()
+                .into(),
+            expected,
+            1e-9,
+        );
+    }
+    close(&scene["ligament"]["start"], 3.6, 1e-9);
+    close(&scene["process"]["r_win"], 20.0, 1e-9);
+    close(&scene["target"]["rectangle"]["rotation_deg"], -15.4, 1e-9);
+    // A similar sheet carries forces in proportion to the square of its lengths; its kerf is that of the same tool, and
+    // the factor is found to 0.6 %.
+    let force = scene["loads"].as_array_of_tables().unwrap().get(0).unwrap()["force"]
+        .as_array()
+        .unwrap();
+    close(&force.get(0).unwrap().clone().into(), 27.85 / 25.0, 0.02);
+    work.output("design thin/scene.toml --steps 1 --force");
+    assert!(work.path("thin/design/cut.dxf").exists());
+}

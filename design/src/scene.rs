@@ -15,6 +15,7 @@ mod loaded_hinge;
 pub mod placement;
 mod problem;
 mod relative_path;
+pub mod run_inputs;
 mod scene_error;
 mod sheet_config;
 
@@ -27,6 +28,6 @@ pub use cutting::CuttingConfig;
 pub use hinge_model::{
     CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
 };
-pub use keys::{ObjectiveConfig, OptimiserConfig, SceneConfig, SolverConfig};
+pub use keys::{ObjectiveConfig, OptimiserConfig, SceneConfig};
 pub use scene_error::SceneError;
 pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};

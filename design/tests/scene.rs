@@ -70,6 +70,22 @@ fn slips_of_units_and_signs_are_named() {
         ),
         ("kerf = 0.2", "kerf = -0.2", "0 < kerf"),
         ("r_win = 70.0", "r_win = 0.1", "r_win > 2.5 w_lig"),
+        ("r_win = 70.0", "r_win = 70000.0", "did you mean 70 mm"),
+        (
+            "[linear]",
+            "[solver]\nloose_tolerance = 2.0\n[linear]",
+            "solver.loose_tolerance",
+        ),
+        (
+            "[linear]",
+            "[solver]\nmax_increments = 0\n[linear]",
+            "1 <= solver.max_increments",
+        ),
+        (
+            "[objective]",
+            "[objective]\ntemperatures = { damage = 0.0, compression = 0.01, shear = 0.01 }",
+            "objective.temperatures.damage",
+        ),
         ("k_theta = 300.0", "k_theta = -300.0", "linear.k_theta"),
         ("k_a = 400.0", "k_a = 4e8", "did you mean 400000 N/mm"),
         (

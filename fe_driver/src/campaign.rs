@@ -13,6 +13,6 @@ pub(crate) mod restore;
 pub(crate) mod retry;
 pub(crate) mod run;
 pub(crate) mod sampling;
-pub(crate) mod shard;
+mod shard_history;
 pub(crate) mod slurm;
 pub(crate) mod solve_again;

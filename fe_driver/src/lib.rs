@@ -52,13 +52,13 @@ pub use campaign::restore::{Restored, restore};
 pub use campaign::retry::retry;
 pub use campaign::run::{Progress, RunOptions, run};
 pub use campaign::sampling::RayBox;
-pub use campaign::shard::{InvalidShard, Shard};
 pub use campaign::slurm::{
     ArrayStates, SlurmError, Submission, array_states, slurm_folder, submit_array,
 };
 pub use campaign::solve_again::{Difference, SolvedAgain, solve_again};
 pub use doctor::{Diagnosis, doctor};
 pub use record_file::FileError;
+pub use support::shard::Shard;
 pub use window::ccx::{CCX, Ccx, CcxRun};
 pub use window::convergence::{
     Richardson, STUDY_THETA_DEG, StudyCase, StudyState, richardson, study_cases, study_difference,

@@ -14,29 +14,21 @@
 //! ends, so that gamma is twice differentiable in w_lig.
 //! (Klosowski et al., "Efficient collision detection using bounding volume hierarchies of k-DOPs", 1998.)
 
+mod covered_states;
+mod directions;
+mod stored_domain;
+
+pub use stored_domain::InvalidDomain;
+
+use crate::domain::directions::{DIRECTION, DIRECTIONS, EXPONENT, dot, norm};
 use crate::{HingeDeformation, HingeDesign, Jet};
 use serde::{Deserialize, Serialize};
 use std::array::from_fn;
 
-/// Number of directions m.
-const DIRECTIONS: usize = 26;
-/// p of the gauge: corners where three planes meet are rounded by 5 % of their distance from the centre.
-const EXPONENT: f64 = 24.0;
-/// Maximum number of widths at which the supports are stored.
-const MOST_WIDTHS: usize = 5;
-/// Number of states per stored width: about a hundred rays.
-const STATES_A_WIDTH: usize = 4000;
-/// A state contributes to a stored width if their distance is at most this fraction of the step between widths.
-const REACH: f64 = 0.75;
-/// Minimum support and minimum half-range, so that a domain of one state has a non-zero size.
-const LEAST_SIZE: f64 = 0.01;
-/// Maximum gamma of the flat state, where W and its gradient vanish for any weights.
-const FLAT: f64 = 0.98;
-
 /// The states that a surrogate was trained on; section 2.4. The domain is computed from the data and stored with
 /// the weights.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Stored", into = "Fitted")]
+#[serde(try_from = "stored_domain::Stored", into = "stored_domain::Fitted")]
 pub struct TrainingDomain {
     /// Interval of the ligament width (mm).
     pub w_lig: [f64; 2],
@@ -48,11 +40,6 @@ pub struct TrainingDomain {
     /// s(m), one row for each stored width, from the narrowest to the widest.
     supports: Vec<[f64; DIRECTIONS]>,
 }
-
-/// A stored domain that violates a rule.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("the training domain violates the rule `{0}`")]
-pub struct InvalidDomain(&'static str);
 
 impl TrainingDomain {
     /// Whether the state of one hinge lies in the domain.
@@ -171,75 +158,6 @@ impl TrainingDomain {
         }
     }
 
-    /// The domain of the given states and the flat state; `None` if no state is given.
-    pub fn covering<'a>(
-        states: impl IntoIterator<Item = (&'a HingeDesign, &'a HingeDeformation)>,
-    ) -> Option<Self> {
-        let states: Vec<([f64; 3], &HingeDesign)> = states
-            .into_iter()
-            .map(|(design, deformation)| {
-                let [eta_a, eta_s] = deformation.eta(design.w_lig);
-                ([eta_a, eta_s, deformation.theta], design)
-            })
-            .collect();
-        if states.is_empty() {
-            return None;
-        }
-        let count = states.len() as f64;
-        let mut domain = Self {
-            w_lig: interval(states.iter().map(|(_, design)| design.w_lig)),
-            alpha: interval(states.iter().map(|(_, design)| design.alpha)),
-            centre: from_fn(|i| states.iter().map(|(x, _)| x[i]).sum::<f64>() / count),
-            half_range: from_fn(|i| {
-                let [minimum, maximum] = interval(states.iter().map(|(x, _)| x[i]));
-                (0.5 * (maximum.max(0.0) - minimum.min(0.0))).max(LEAST_SIZE)
-            }),
-            supports: Vec::new(),
-        };
-        let widths = (states.len() / STATES_A_WIDTH).clamp(1, MOST_WIDTHS);
-        let places: Vec<f64> = states
-            .iter()
-            .map(|(_, g)| domain.along(g.w_lig, widths))
-            .collect();
-        domain.supports = (0..widths)
-            .map(|width| {
-                let near = std::iter::zip(&states, &places)
-                    .filter(|(_, place)| (*place - width as f64).abs() <= REACH)
-                    .map(|((x, _), _)| domain.scaled(*x));
-                domain.support(near)
-            })
-            .collect();
-        Some(domain)
-    }
-
-    /// The domain of a box of states; an interval may have zero length.
-    pub fn of_box(state: [[f64; 2]; 3], w_lig: [f64; 2], alpha: [f64; 2]) -> Self {
-        let mut domain = Self {
-            w_lig,
-            alpha,
-            centre: state.map(|[minimum, maximum]| 0.5 * (minimum + maximum)),
-            half_range: state.map(|[minimum, maximum]| (0.5 * (maximum - minimum)).max(LEAST_SIZE)),
-            supports: Vec::new(),
-        };
-        let corners = (0..8).map(|k| from_fn(|i| state[i][(k >> i) & 1]));
-        let corners: Vec<[f64; 3]> = corners.map(|corner| domain.scaled(corner)).collect();
-        domain.supports = vec![domain.support(corners)];
-        domain
-    }
-
-    /// s(m) of scaled states and of the flat state, which must be inside the domain.
-    fn support(&self, states: impl IntoIterator<Item = [f64; 3]>) -> [f64; DIRECTIONS] {
-        let flat = self.scaled([0.0; 3]);
-        let along = |y: [f64; 3]| -> [f64; DIRECTIONS] { from_fn(|m| dot(DIRECTION[m], y)) };
-        let minimum = along(flat).map(|s| s.max(LEAST_SIZE));
-        let support = states.into_iter().fold(minimum, |support, y| {
-            let along = along(y);
-            from_fn(|m| along[m].max(support[m]))
-        });
-        let grown = norm(from_fn(|m| dot(DIRECTION[m], flat) / support[m])) / FLAT;
-        support.map(|s| grown.max(1.0) * s)
-    }
-
     fn scaled(&self, x: [f64; 3]) -> [f64; 3] {
         from_fn(|i| (x[i] - self.centre[i]) / self.half_range[i])
     }
@@ -298,154 +216,11 @@ impl TrainingDomain {
     }
 }
 
-/// The smallest interval that holds every value.
-fn interval(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold(
-        [f64::INFINITY, f64::NEG_INFINITY],
-        |[minimum, maximum], x| [x.min(minimum), x.max(maximum)],
-    )
-}
-
-/// (sum of max(0, t)^p)^(1/p).
-fn norm(ratios: [f64; DIRECTIONS]) -> f64 {
-    let largest = ratios.into_iter().fold(0.0, f64::max);
-    if largest == 0.0 || !largest.is_finite() {
-        return largest;
-    }
-    let powers = ratios.map(|t| (t.max(0.0) / largest).powi(EXPONENT as i32));
-    largest * powers.into_iter().sum::<f64>().powf(1.0 / EXPONENT)
-}
-
-fn dot(x: [f64; 3], y: [f64; 3]) -> f64 {
-    x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
-}
-
-/// The directions m.
-const DIRECTION: [[f64; 3]; DIRECTIONS] = {
-    let mut directions = [[0.0; 3]; DIRECTIONS];
-    let mut m = 0;
-    while m < DIRECTIONS {
-        // The zero vector, number 13 of 27, is not a direction.
-        let k = if m < 13 { m } else { m + 1 };
-        directions[m] = [
-            (k % 3) as f64 - 1.0,
-            (k / 3 % 3) as f64 - 1.0,
-            (k / 9) as f64 - 1.0,
-        ];
-        m += 1;
-    }
-    directions
-};
-
-/// The serialised form of a domain.
-#[derive(Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Fitted {
-    w_lig: [f64; 2],
-    alpha: [f64; 2],
-    centre: [f64; 3],
-    half_range: [f64; 3],
-    supports: Vec<Vec<f64>>,
-}
-
-/// The forms in which a domain may be stored: older files contain a box instead of supports.
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Stored {
-    Fitted(Fitted),
-    Box(Intervals),
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Intervals {
-    eta_a: [f64; 2],
-    eta_s: [f64; 2],
-    theta: [f64; 2],
-    w_lig: [f64; 2],
-    alpha: [f64; 2],
-}
-
-impl From<TrainingDomain> for Fitted {
-    fn from(domain: TrainingDomain) -> Self {
-        Self {
-            w_lig: domain.w_lig,
-            alpha: domain.alpha,
-            centre: domain.centre,
-            half_range: domain.half_range,
-            supports: domain.supports.iter().map(|row| row.to_vec()).collect(),
-        }
-    }
-}
-
-impl TryFrom<Stored> for TrainingDomain {
-    type Error = InvalidDomain;
-
-    fn try_from(stored: Stored) -> Result<Self, InvalidDomain> {
-        let check = |holds: bool, rule| {
-            if holds {
-                Ok(())
-            } else {
-                Err(InvalidDomain(rule))
-            }
-        };
-        let is_interval =
-            |[minimum, maximum]: [f64; 2]| minimum <= maximum && (maximum - minimum).is_finite();
-        let domain = match stored {
-            Stored::Box(Intervals {
-                eta_a,
-                eta_s,
-                theta,
-                w_lig,
-                alpha,
-            }) => {
-                let state = [eta_a, eta_s, theta];
-                check(
-                    state.into_iter().all(is_interval),
-                    "minimum <= maximum for eta_a, eta_s, theta",
-                )?;
-                Self::of_box(state, w_lig, alpha)
-            }
-            Stored::Fitted(fitted) => {
-                let positive = |x: &f64| *x > 0.0 && x.is_finite();
-                check(
-                    fitted.centre.iter().all(|x| x.is_finite()),
-                    "centre is finite",
-                )?;
-                check(fitted.half_range.iter().all(positive), "half_range > 0")?;
-                check(!fitted.supports.is_empty(), "supports has at least one row")?;
-                check(
-                    fitted.supports.iter().flatten().all(positive),
-                    "supports > 0",
-                )?;
-                let rows = fitted
-                    .supports
-                    .into_iter()
-                    .map(<[f64; DIRECTIONS]>::try_from);
-                Self {
-                    w_lig: fitted.w_lig,
-                    alpha: fitted.alpha,
-                    centre: fitted.centre,
-                    half_range: fitted.half_range,
-                    supports: rows
-                        .collect::<Result<_, _>>()
-                        .map_err(|_| InvalidDomain("every row of supports has 26 values"))?,
-                }
-            }
-        };
-        check(
-            is_interval(domain.w_lig) && domain.w_lig[0] > 0.0,
-            "0 < minimum <= maximum for w_lig",
-        )?;
-        check(is_interval(domain.alpha), "minimum <= maximum for alpha")?;
-        Ok(domain)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::HingeConstants;
+    use crate::domain::covered_states::MOST_WIDTHS;
 
     fn design(w_lig: f64) -> HingeDesign {
         HingeConstants::PAPER.hinge(w_lig, 1.3)

@@ -5,8 +5,8 @@ use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::output::cut_file::{
-    CutLines, OVERLAP, Paper, SheetDrawing, Split, Tiling, cut_list, cut_summary, split, write_dxf,
-    write_pdf, write_svg,
+    CutLines, OVERLAP, Paper, SheetDrawing, Split, Tiling, cut_list, cut_summary, mark_errors,
+    split, write_dxf, write_pdf, write_svg,
 };
 use design::output::report::{Severity, Warning, warnings};
 use serde_json::json;
@@ -58,14 +58,19 @@ impl CutCommand {
             errors.join("; ")
         );
 
-        let drawing = SheetDrawing::new(&cuts, sheet, &scene.material);
-        let annotated = drawing.annotated();
+        let mut drawing = SheetDrawing::new(&cuts, sheet, &scene.material);
+        let mut annotated = drawing.annotated();
+        mark_errors(&mut annotated, &errors);
+        mark_errors(&mut drawing.numbered, &errors);
         let tiling = (self.paper.as_ref())
             .map(|(paper, _)| Tiling::new(*paper, drawing.numbered.bounds()))
             .transpose()?;
-        let parts = (self.bed)
+        let mut parts = (self.bed)
             .map(|bed| split(&cuts, sheet, bed, self.lap))
             .transpose()?;
+        for part in parts.iter_mut().flat_map(|split| &mut split.parts) {
+            mark_errors(&mut part.drawing, &errors);
+        }
 
         let out = match &self.out {
             Some(out) => out.clone(),

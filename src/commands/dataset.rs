@@ -97,6 +97,9 @@ struct ExportCommand {
     /// CSV file to write
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+    /// Replace an existing file
+    #[arg(long)]
+    replace: bool,
 }
 
 /// Correct a database to a finer mesh, by those of its rays that were also solved on that mesh
@@ -231,8 +234,8 @@ impl ImportCommand {
 impl ExportCommand {
     fn run(&self) -> Result<()> {
         ensure!(
-            !self.out.exists(),
-            "{} exists: choose another name",
+            self.replace || !self.out.exists(),
+            "{} exists: choose another name, or replace it with --replace",
             self.out.display()
         );
         let csv = Database::read(&self.database)?.to_csv()?;

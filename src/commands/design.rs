@@ -1,35 +1,51 @@
-//! `kirigami design`: cut pattern and ligament widths for a scene, and the cut files.
+//! `kirigami design`: cut pattern and ligament widths for scenes, and the cut files.
 
+mod many_runs;
+
+use crate::commands::design::many_runs::{Run, compare, refuse_shared_folders};
 use crate::ui::exit::Unfinished;
-use crate::ui::progress::Progress;
+use crate::ui::progress::{Progress, announce};
 use crate::ui::{animation, interrupt, picture, run_folder};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use design::objective::scores::shown;
 use design::optimise::outer_loop::{Ended, StepRecord};
 use design::output::drawing::deployment_frames;
-use design::output::report::Warning;
+use design::output::report::{Report, Warning};
 use design::output::run_results::write_results;
 use design::scene::design_run::{forget, inverse_design};
+use design::scene::run_inputs::scene_file;
 use design::scene::{Scene, SceneConfig};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use support::shard::Shard;
 
 /// Design a sheet: cut pattern and ligament widths for a target shape
 ///
 /// Reads a scene and writes cut files (DXF and SVG, 1:1 in mm), pictures, a report and a page
-/// that shows the run in a browser (run.html) to the scene's output folder. A stopped run continues when it is started again. Example:
-/// kirigami design configs/scenes/linear-7x7.toml
+/// that shows the run in a browser (run.html) to the scene's output folder. A stopped run continues when it is started again.
+/// Several scenes or seeds are designed one after the other, each in a folder of its own, and compared in a table.
+/// Examples: kirigami design configs/scenes/linear-7x7.toml;
+/// kirigami design configs/scenes/*7x7.toml --out runs/sheets --shard 1/4
 #[derive(Args)]
 pub struct DesignCommand {
-    /// Scene (TOML); see configs/scenes
-    #[arg(value_name = "SCENE")]
-    scene: PathBuf,
+    /// Scene (TOML); see configs/scenes. Or the folder of a run, which holds its scene, material and weights
+    #[arg(value_name = "SCENE", required = true)]
+    scenes: Vec<PathBuf>,
     /// Weights of the hinge energy, instead of the scene's
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
-    /// Run folder, instead of the scene's
+    /// Run folder, instead of the scene's. Of several runs: the folder of the table, designs.md and designs.csv, and of the
+    /// runs, each in a folder with the name of its scene [default of the table: runs/designs]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
+    /// Design every scene with this many successive seeds, beginning with its own, each in the folder seed-N of its run
+    /// folder. The scene needs a random start: optimiser.start_noise
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    seeds: u64,
+    /// Part of the runs, as I/N: every N-th run from the I-th; shards may run at the same time
+    #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE)]
+    shard: Shard,
     /// Number of search steps, instead of the scene's
     #[arg(long, value_name = "N")]
     steps: Option<usize>,
@@ -39,7 +55,7 @@ pub struct DesignCommand {
     /// Write the cut files even if the report has errors
     #[arg(long)]
     force: bool,
-    /// Print the report as JSON
+    /// Print the report as JSON; of a single run
     #[arg(long)]
     json: bool,
 }
@@ -54,9 +70,11 @@ impl DesignCommand {
     /// A run of the scene without changes, from its start design.
     pub fn afresh(scene: PathBuf) -> Self {
         Self {
-            scene,
+            scenes: vec![scene],
             weights: None,
             out: None,
+            seeds: 1,
+            shard: Shard::WHOLE,
             steps: None,
             restart: true,
             force: false,
@@ -65,78 +83,170 @@ impl DesignCommand {
     }
 
     pub(crate) fn run(&self) -> Result<()> {
-        let scene = self.scene()?;
+        let out = self.out.as_deref().map(std::path::absolute).transpose()?;
+        match &self.scenes[..] {
+            [file] if self.seeds == 1 && self.shard == Shard::WHOLE => {
+                let scene = self.scene(file, |config| {
+                    config.output = out.unwrap_or_else(|| config.output.clone());
+                })?;
+                let (report, ended) = self.design(&scene)?;
+                if self.json {
+                    println!("{}", serde_json::to_string_pretty(&report)?);
+                } else {
+                    let folder = scene.output().canonicalize()?;
+                    println!("{report}\nwritten to {}", folder.display());
+                }
+                judge(&scene, &report, &ended)
+            }
+            _ => {
+                ensure!(
+                    !self.json,
+                    "--json prints the report of one run: name one scene"
+                );
+                self.run_many(self.runs(out.as_deref())?)
+            }
+        }
+    }
+
+    /// The runs of all shards; with `out` in folders there.
+    fn runs(&self, out: Option<&Path>) -> Result<Vec<Run>> {
+        let mut runs = Vec::new();
+        for file in &self.scenes {
+            for seed in 0..self.seeds {
+                let scene = self.scene(file, |config| {
+                    if let Some(out) = out {
+                        config.output = out.join(file.file_stem().unwrap_or_default());
+                    }
+                    config.optimiser.seed += seed;
+                    if self.seeds > 1 {
+                        let name = format!("seed-{}", config.optimiser.seed);
+                        config.output = config.output.join(name);
+                    }
+                })?;
+                ensure!(
+                    self.seeds == 1 || scene.config.optimiser.start_noise > 0.0,
+                    "{}: all seeds give the same run without a random start: set optimiser.start_noise",
+                    file.display()
+                );
+                let (file, failure) = (file.clone(), None);
+                runs.push(Run {
+                    file,
+                    scene,
+                    failure,
+                });
+            }
+        }
+        refuse_shared_folders(&runs)?;
+        Ok(runs)
+    }
+
+    /// Designs the runs of the shard one after the other, and compares all.
+    fn run_many(&self, mut runs: Vec<Run>) -> Result<()> {
+        let stop = interrupt::stop_flag()?;
+        let folder = self.out.clone().unwrap_or("runs/designs".into());
+        std::fs::create_dir_all(&folder)
+            .with_context(|| format!("cannot create the folder {}", folder.display()))?;
+        let (mut left, mut failed) = (0, 0);
+        for (place, run) in runs.iter_mut().enumerate() {
+            if !self.shard.holds(place) {
+                continue;
+            }
+            if stop.load(Ordering::Relaxed) {
+                left += 1;
+                continue;
+            }
+            let folder = run.scene.output();
+            announce(&format!("{} -> {}", run.file.display(), folder.display()));
+            let designed = self.design(&run.scene);
+            match designed.and_then(|(report, ended)| judge(&run.scene, &report, &ended)) {
+                Ok(()) => {}
+                Err(error) if error.is::<Unfinished>() => left += 1,
+                Err(error) => {
+                    failed += 1;
+                    run.failure = Some(format!("{error:#}"));
+                }
+            }
+        }
+        let listed = compare(&runs, &folder)?;
+        println!("{listed}\nwritten to {}", folder.display());
+        match left {
+            0 => ensure!(failed == 0, "{failed} of {} runs failed", runs.len()),
+            _ => bail!(Unfinished::new(left, "runs")),
+        }
+        Ok(())
+    }
+
+    /// One run: its search and its results.
+    fn design(&self, scene: &Scene) -> Result<(Report, Ended)> {
         let _held = run_folder::hold(&scene.output())?;
         if self.restart {
-            forget(&scene)?;
+            forget(scene)?;
         }
         let stop = interrupt::stop_flag()?;
         let bar = Progress::new(scene.config.optimiser.steps, "design steps");
-        let designed = inverse_design(&scene, stop, &mut |step: &StepRecord| {
-            bar.show(step.step, None, &progress_line(step));
+        let learned = scene.surrogate().is_some();
+        let designed = inverse_design(scene, stop, &mut |step: &StepRecord| {
+            bar.show(step.step, None, &progress_line(step, learned));
         })?;
         bar.finish();
-        let report = write_results(&scene, &designed, self.force)?;
+        let report = write_results(scene, &designed, self.force)?;
         rasterise(&scene.output())?;
-        let frames = deployment_frames(&scene, &designed, MOST_FRAMES);
+        let frames = deployment_frames(scene, &designed, MOST_FRAMES);
         animation::save(&frames, &scene.output().join("deployment.png"), FRAME_WIDTH)?;
-        if self.json {
-            println!("{}", serde_json::to_string_pretty(&report)?);
-        } else {
-            let folder = scene.output().canonicalize()?;
-            println!("{report}\nwritten to {}", folder.display());
-        }
-        match designed.ended {
-            Ended::Completed | Ended::Settled => {}
-            Ended::Stopped => bail!(Unfinished::new(
-                scene.config.optimiser.steps - report.steps,
-                "design steps"
-            )),
-            Ended::Stuck { reason } => bail!("the search is stuck: {reason}"),
-        }
-        ensure!(
-            report.cut_file,
-            "no cut file: {}; --force writes one where the geometry allows it",
-            report
-                .errors()
-                .map(Warning::to_string)
-                .collect::<Vec<_>>()
-                .join("; ")
-        );
-        Ok(())
+        Ok((report, designed.ended))
     }
-}
 
-impl DesignCommand {
-    /// The scene with the changes of the command line.
-    fn scene(&self) -> Result<Scene> {
-        let mut config: SceneConfig = support::toml_file::read(&self.scene)?;
+    /// A scene with the changes of the command line, and those of `change`.
+    fn scene(&self, file: &Path, change: impl FnOnce(&mut SceneConfig)) -> Result<Scene> {
+        let path = scene_file(file)?;
+        let mut config: SceneConfig = support::toml_file::read(&path)?;
         if let Some(weights) = &self.weights {
             config.name_weights(weights)?;
-        }
-        if let Some(out) = &self.out {
-            config.output = std::path::absolute(out)?;
         }
         if let Some(steps) = self.steps {
             config.optimiser.steps = steps;
         }
-        Ok(Scene::new(config, &self.scene)?)
+        change(&mut config);
+        Ok(Scene::new(config, &path)?)
     }
 }
 
-/// A step in one line: the loss and its non-zero terms, outline error, fraction inside the training domain.
-fn progress_line(step: &StepRecord) -> String {
+/// An error if a run is not at its end, or has no cut file.
+fn judge(scene: &Scene, report: &Report, ended: &Ended) -> Result<()> {
+    match ended {
+        Ended::Completed | Ended::Settled => {}
+        Ended::Stopped => bail!(Unfinished::new(
+            scene.config.optimiser.steps - report.steps,
+            "design steps"
+        )),
+        Ended::Stuck { reason } => bail!("the search is stuck: {reason}"),
+    }
+    let errors: Vec<String> = report.errors().map(Warning::to_string).collect();
+    ensure!(
+        report.cut_file,
+        "no cut file: {}; --force writes one where the geometry allows it",
+        errors.join("; ")
+    );
+    Ok(())
+}
+
+/// A step in one line: the loss and its non-zero terms, outline error, for a learned law the fraction inside its training
+/// domain.
+fn progress_line(step: &StepRecord, learned: bool) -> String {
     let scores = &step.scores;
     let terms: Vec<String> = (scores.terms().iter())
         .filter(|(_, value)| *value != 0.0)
         .map(|(name, value)| format!("{name} {}", shown(*value)))
         .collect();
+    let inside = match learned {
+        true => format!(", {:.0} % inside the domain", 100.0 * scores.share_inside),
+        false => String::new(),
+    };
     format!(
-        "loss {:.4} ({}), outline {:.2} mm, {:.0} % inside the domain",
+        "loss {:.4} ({}), outline {:.2} mm{inside}",
         scores.loss,
         terms.join(", "),
         scores.outline_error,
-        100.0 * scores.share_inside
     )
 }
 

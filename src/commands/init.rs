@@ -2,15 +2,18 @@
 
 mod edited;
 mod first_scene;
+mod similar_scene;
 
 use crate::commands::init::edited::{heading, scale, set};
 use crate::commands::init::first_scene::FirstScene;
+use crate::commands::init::similar_scene::SimilarScene;
+use crate::commands::input_file;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use hinge::SheetMaterial;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use support::whole_file;
+use support::{regular_file, whole_file};
 use surrogate::Surrogate;
 use toml_edit::DocumentMut;
 
@@ -19,7 +22,8 @@ use toml_edit::DocumentMut;
 /// Ligament widths, windows, number of panels, stroke and target are scaled to the thickness and the size of the
 /// sheet. The files run as they are: with a material that has weights, `design` at once; with another, after its
 /// campaign and training. README.md in the folder lists the commands.
-/// Example: kirigami init my-sheet --thickness 0.1 --size 210x297
+/// Examples: kirigami init my-sheet --thickness 0.1 --size 210x297;
+/// kirigami init thin --like configs/scenes/pet-3x3.toml --thickness 0.1
 #[derive(Args)]
 pub struct InitCommand {
     /// Folder to create
@@ -35,9 +39,13 @@ pub struct InitCommand {
     /// Thickness of the sheet (mm) [default: that of the material file]
     #[arg(long, value_name = "MM")]
     thickness: Option<f64>,
-    /// Width and height of the sheet (mm)
-    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "210x297")]
-    size: Size,
+    /// Width and height of the sheet (mm) [default: 210x297; with --like those of its sheet, in proportion to the thickness]
+    #[arg(long, value_name = "WIDTHxHEIGHT")]
+    size: Option<Size>,
+    /// Scene whose pattern, panels, supports, loads and target are taken, scaled to thickness and size. With weights the
+    /// loads open the new sheet as far as that of the scene
+    #[arg(long, value_name = "SCENE")]
+    like: Option<PathBuf>,
     /// Weights that the scene uses if they are for this material
     #[arg(
         long,
@@ -72,6 +80,8 @@ impl FromStr for Size {
 /// The shipped files that are scaled.
 const CAMPAIGN: &str = include_str!("../../configs/campaigns/pet-0.5mm.toml");
 const TRAINING: &str = include_str!("../../configs/training/medium.toml");
+/// Width and height of a sheet unless others are given (mm).
+const A4: [f64; 2] = [210.0, 297.0];
 /// Thickness of the shipped campaign's sheet (mm).
 const CAMPAIGN_THICKNESS: f64 = 0.5;
 
@@ -82,8 +92,9 @@ impl InitCommand {
             "{} exists already: name a new folder",
             self.folder.display()
         );
+        input_file::require(&self.material, "--material")?;
         let measured = SheetMaterial::load(&self.material)?;
-        let text = std::fs::read_to_string(&self.material)
+        let text = regular_file::read_to_string(&self.material)
             .with_context(|| format!("cannot read {}", self.material.display()))?;
         let sheet = SheetMaterial {
             thickness: self.thickness.unwrap_or(measured.thickness),
@@ -92,9 +103,15 @@ impl InitCommand {
         sheet.validate()?;
         let weights = self.weights_of(&measured)?;
         let trained = weights.is_some();
-        let scene = FirstScene::new(self.size.0, sheet.thickness)?;
         let weights = weights.unwrap_or_else(|| "weights.safetensors".into());
-        let scene = scene.text(&weights)?;
+        let size = self.size.map(|size| size.0);
+        let scene = match &self.like {
+            Some(like) => {
+                let material = trained.then_some(&*self.material);
+                SimilarScene::new(like, &sheet, size)?.text(&weights, material)?
+            }
+            None => FirstScene::new(size.unwrap_or(A4), sheet.thickness)?.text(&weights)?,
+        };
         let name = self
             .folder
             .file_name()

@@ -1,5 +1,6 @@
 //! `kirigami solve`: one window solved along one ray or recorded path, printed as a table.
 
+use crate::commands::input_file;
 use crate::commands::window_args::WindowArgs;
 use crate::ui::progress::Progress;
 use crate::ui::table::table;
@@ -75,6 +76,7 @@ impl SolveCommand {
                 w_lig,
             )),
         };
+        input_file::require(&self.material, "--material")?;
         let material = SheetMaterial::load(&self.material)?;
         let _held = run_folder::hold(&self.out)?;
         let limit = Duration::from_secs(self.time_limit_s);
@@ -149,14 +151,16 @@ fn watched<T>(folder: &Path, solve: impl FnOnce() -> T) -> T {
     const PARTS: f64 = 1000.0;
     let done = AtomicBool::new(false);
     std::thread::scope(|scope| {
-        scope.spawn(|| {
+        let show = || {
             let bar = Progress::new(PARTS as usize, "1000 lambda");
             while !done.load(Ordering::Relaxed) {
                 bar.show((PARTS * reached(folder)) as usize, None, "");
                 std::thread::sleep(Duration::from_millis(100));
             }
             bar.finish();
-        });
+        };
+        // Without a further thread there is no progress, but a result.
+        let _ = std::thread::Builder::new().spawn_scoped(scope, show);
         let result = solve();
         done.store(true, Ordering::Relaxed);
         result

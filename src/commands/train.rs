@@ -2,6 +2,7 @@
 
 mod slices;
 
+use crate::commands::input_file;
 use crate::ui::charts;
 use crate::ui::charts::ParityChart;
 use crate::ui::exit::Unfinished;
@@ -88,6 +89,7 @@ impl TrainCommand {
     }
 
     pub(crate) fn run(&self) -> Result<()> {
+        input_file::require(&self.config, "--config")?;
         let config: TrainingConfig = support::toml_file::read(&self.config)?;
         let database = Database::read(&self.database)?;
         self.refuse_existing(config.seed)?;

@@ -135,10 +135,21 @@ impl Replayed {
         let computed =
             (1..=count).map(|k| HingeSample::at(&solved.samples, k as f64 / count as f64));
         let predicted = predicted(surrogate, &route);
-        let states: Vec<_> = predicted
-            .iter()
+        let domain = surrogate.domain();
+        let inside = |state: &HingeDeformation| domain.contains(&route.design, state);
+        // Damage grows along the path: it is not known once a state was outside the training domain.
+        let left = route.states.iter().position(|state| !inside(state));
+        let known = |(k, value): (usize, &HingeSample)| match left {
+            Some(left) if k >= left => HingeSample {
+                d: f64::NAN,
+                d_peak: None,
+                ..*value
+            },
+            _ => *value,
+        };
+        let states: Vec<_> = (predicted.iter().enumerate().map(known))
             .zip(computed)
-            .filter_map(|(value, reference)| Some(ComparedState::new(value, &reference?)))
+            .filter_map(|(value, reference)| Some(ComparedState::new(&value, &reference?)))
             .collect();
         let others: Vec<_> = networks
             .iter()
@@ -150,10 +161,8 @@ impl Replayed {
                 .map(|k| deviation(&predicted, &others, k))
                 .collect(),
         };
-        let domain = surrogate.domain();
-        let inside = |state: &&HingeDeformation| domain.contains(&route.design, state);
         Ok(Self {
-            inside: route.states.iter().filter(inside).count() as f64 / count as f64,
+            inside: route.states.iter().filter(|state| inside(state)).count() as f64 / count as f64,
             route,
             states,
             spread,
@@ -196,7 +205,8 @@ fn page(replayed: &[Replayed], tier: Tier, failures: &str) -> Result<String> {
         "# The hinges of a designed sheet, replayed\n\n\
          {states} states of {} hinges on their paths in the sheet, windows of tier {tier}; {:.0} % of the \
          states inside the training domain. Differences of the surrogate from the finite elements are root mean \
-         squares, relative to the root mean square of the finite elements: {SCALE}.\n\n{}\n\
+         squares, relative to the root mean square of the finite elements: {SCALE}. D and D_peak of a hinge are known, \
+         and compared, until it leaves the domain.\n\n{}\n\
          Energy of these hinges at full load: {learned:.1} N mm by the surrogate, {solved:.1} N mm by finite \
          elements ({:+.2} %).\n",
         replayed.len(),
@@ -223,7 +233,7 @@ fn page(replayed: &[Replayed], tier: Tier, failures: &str) -> Result<String> {
         let [eta_a, eta_s] = end.eta(route.design.w_lig);
         writeln!(
             text,
-            "| {} | {:.1} | {:.0} | {eta_a:.3} | {eta_s:.3} | {:.1} | {:.0} % | {:.2} | {:.2} | {:.1} | {:.1} | {:.5} | {:.5} |",
+            "| {} | {:.1} | {:.0} | {eta_a:.3} | {eta_s:.3} | {:.1} | {:.0} % | {:.2} | {:.2} | {:.1} | {:.1} | {} | {:.5} |",
             route.hinge,
             route.design.w_lig,
             route.design.alpha.to_degrees(),
@@ -233,7 +243,10 @@ fn page(replayed: &[Replayed], tier: Tier, failures: &str) -> Result<String> {
             reference[0],
             value[3],
             reference[3],
-            value[4],
+            match value[4].is_nan() {
+                true => "-".to_owned(),
+                false => format!("{:.5}", value[4]),
+            },
             reference[4],
         )?;
     }
@@ -258,11 +271,16 @@ fn estimate(replayed: &[Replayed]) -> Result<String> {
             writeln!(text, "| {name} | not predicted by all | | |")?;
             continue;
         }
+        let known = || pairs().filter(|(state, _)| state.is_known(i));
+        if known().next().is_none() {
+            writeln!(text, "| {name} | not known | | |")?;
+            continue;
+        }
         let within = |count: f64| {
-            let met = pairs().filter(|(state, spread)| {
+            let met = known().filter(|(state, spread)| {
                 (state.value[i] - state.reference[i]).abs() <= count * spread[i]
             });
-            100.0 * met.count() as f64 / pairs().count() as f64
+            100.0 * met.count() as f64 / known().count() as f64
         };
         let [one, two, three] = [1.0, 2.0, 3.0].map(within);
         writeln!(text, "| {name} | {one:.0} % | {two:.0} % | {three:.0} % |")?;
@@ -270,7 +288,7 @@ fn estimate(replayed: &[Replayed]) -> Result<String> {
     Ok(text)
 }
 
-/// One row per state.
+/// One row per state; a cell is empty if its value is not known.
 fn csv(replayed: &[Replayed]) -> Result<String> {
     let columns = |prefix: &str| COMPARED.map(|name| format!("{prefix}_{name}")).join(",");
     let mut text = format!(
@@ -293,7 +311,10 @@ fn csv(replayed: &[Replayed]) -> Result<String> {
                 state.theta.to_degrees(),
             )?;
             for number in value.iter().chain(reference) {
-                write!(text, ",{number:.6}")?;
+                match number.is_nan() {
+                    true => text.push(','),
+                    false => write!(text, ",{number:.6}")?,
+                }
             }
             writeln!(text)?;
         }

@@ -34,7 +34,13 @@ pub fn spread_table(groups: &[&[ComparedState]], group: &str) -> Result<String> 
     let all = relative_rms(&groups.concat(), [0.0; 6]);
     let each = each_relative(groups);
     for (i, name) in COMPARED.iter().enumerate() {
-        let mut sorted: Vec<_> = each.iter().map(|rms| rms[i]).collect();
+        let known = std::iter::zip(groups, &each)
+            .filter(|(states, _)| states.iter().any(|state| state.is_known(i)));
+        let mut sorted: Vec<_> = known.map(|(_, rms)| rms[i]).collect();
+        if sorted.is_empty() {
+            writeln!(text, "| {name} | not known | | | |")?;
+            continue;
+        }
         sorted.sort_by(f64::total_cmp);
         let quantile =
             |fraction: f64| sorted[(fraction * (sorted.len() - 1) as f64).round() as usize];

@@ -9,9 +9,9 @@ use clap::Args;
 use fe_driver::{FailureKind, KeptSolution, KeptSolve, KeptSolveError, Tools};
 use std::num::NonZeroUsize;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::atomic::Ordering;
 use std::time::Duration;
+use support::worker_pool::{Reports, work_through};
 
 /// Options of window solves.
 #[derive(Args)]
@@ -53,47 +53,20 @@ impl SolveArgs {
         let tools = Tools::find()?;
         let stop = interrupt::stop_flag()?;
         let limit = Duration::from_secs(self.time_limit_s);
-        let workers = self
-            .jobs
-            .map_or_else(processors, NonZeroUsize::get)
-            .clamp(1, solves.len().max(1));
-        let (next, halt) = (AtomicUsize::new(0), AtomicBool::new(false));
-        let (sender, receiver) = mpsc::channel();
+        let workers = self.jobs.map_or_else(processors, NonZeroUsize::get);
         let bar = Progress::new(solves.len(), "solves");
         let mut outcomes: Vec<Option<Outcome>> = vec![None; solves.len()];
-        let ended = std::thread::scope(|scope| {
-            for _ in 0..workers {
-                let (sender, next, halt, tools) = (sender.clone(), &next, &halt, &tools);
-                scope.spawn(move || {
-                    while let Some((i, solve)) = following(next, halt, solves) {
-                        let solution =
-                            in_scratch(kept, |work| solve.solution(kept, work, tools, limit, halt));
-                        // The receiver is gone once a solve has failed.
-                        let _ = sender.send((i, solution));
-                    }
-                });
-            }
-            drop(sender);
-            let mut done = 0;
-            loop {
-                match receiver.recv_timeout(Duration::from_millis(100)) {
-                    Ok((i, solution)) => match outcome(solution) {
-                        Ok(outcome) => {
-                            outcomes[i] = Some(outcome);
-                            done += 1;
-                            bar.show(done, None, "");
-                        }
-                        Err(error) => {
-                            halt.store(true, Ordering::Relaxed);
-                            return Err(error);
-                        }
-                    },
-                    Err(RecvTimeoutError::Timeout) => {
-                        halt.fetch_or(stop.load(Ordering::Relaxed), Ordering::Relaxed);
-                    }
-                    Err(RecvTimeoutError::Disconnected) => return Ok(()),
-                }
-            }
+        let mut done = 0;
+        let work = |i: usize, reports: &Reports<_>| {
+            let halt = reports.halt();
+            let solve = |work: &Path| solves[i].solution(kept, work, &tools, limit, halt);
+            reports.send((i, in_scratch(kept, solve)));
+        };
+        let ended = work_through(solves.len(), workers, stop, &work, &mut |(i, solution)| {
+            outcomes[i] = Some(outcome(solution)?);
+            done += 1;
+            bar.show(done, None, "");
+            Ok::<_, anyhow::Error>(())
         });
         bar.finish();
         let left = outcomes.iter().filter(|outcome| outcome.is_none()).count();
@@ -122,19 +95,6 @@ fn outcome(solution: Result<KeptSolution>) -> Result<Outcome> {
         }
         _ => Err(error),
     }
-}
-
-/// The next solve that no worker has taken yet.
-fn following<'a>(
-    next: &AtomicUsize,
-    halt: &AtomicBool,
-    solves: &[&'a KeptSolve],
-) -> Option<(usize, &'a KeptSolve)> {
-    if halt.load(Ordering::Relaxed) {
-        return None;
-    }
-    let i = next.fetch_add(1, Ordering::Relaxed);
-    solves.get(i).map(|solve| (i, *solve))
 }
 
 /// Prefix of the names of scratch folders.

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::process::{ExitCode, Termination};
+use support::worker_pool::NoThread;
 
 /// The exit codes of every command; besides, 2 stands for a wrong command line and 130 for a second Ctrl-C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,20 +51,38 @@ impl Exit {
     }
 }
 
-/// Ends the program with an error, not a panic, when its output cannot be written: a full disk, a closed terminal.
+/// Ends the program with an error, not a panic, when its output cannot be written (a full disk, a closed terminal), and
+/// when the operating system starts no further thread.
 ///
-/// `println!` panics then. The panic is recognised by its message, so that not every printed line needs an error path.
-pub fn report_unwritable_output() {
+/// `println!` and the thread pools of libraries panic then. The panics are recognised by their messages, so that not
+/// every printed line needs an error path.
+pub fn report_failures_of_the_system() {
     let usual = std::panic::take_hook();
-    std::panic::set_hook(Box::new(move |panic| match panic.payload_as_str() {
-        Some(message) if message.starts_with("failed printing to ") => {
-            let reason = message.replacen("failed printing", "cannot write", 1);
-            // Standard error may be what cannot be written.
-            let _ = writeln!(std::io::stderr(), "error: {reason}");
-            std::process::exit(1);
+    std::panic::set_hook(Box::new(move |panic| {
+        match panic.payload_as_str().and_then(failure_of_the_system) {
+            Some(reason) => {
+                // Standard error may be what cannot be written.
+                let _ = writeln!(std::io::stderr(), "error: {reason}");
+                std::process::exit(1);
+            }
+            None => usual(panic),
         }
-        _ => usual(panic),
     }));
+}
+
+/// The reason of a panic that the operating system caused.
+fn failure_of_the_system(panic: &str) -> Option<String> {
+    /// The beginnings of the messages of Rayon, Polars and the standard library.
+    const NO_THREAD: [&str; 3] = [
+        "The global thread pool has not been initialized",
+        "could not spawn threads",
+        "failed to spawn thread",
+    ];
+    if let Some(stream) = panic.strip_prefix("failed printing to ") {
+        return Some(format!("cannot write to {stream}"));
+    }
+    let refused = NO_THREAD.iter().any(|begin| panic.starts_with(begin));
+    refused.then(|| NoThread(std::io::Error::other(panic)).to_string())
 }
 
 impl Termination for Exit {

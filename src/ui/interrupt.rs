@@ -3,6 +3,7 @@
 use anyhow::{Context, Result};
 use nix::sys::signal::{SigHandler, Signal, signal};
 use std::sync::atomic::{AtomicBool, Ordering};
+use support::worker_pool::NoThread;
 
 static LISTENING: AtomicBool = AtomicBool::new(false);
 static STOP: AtomicBool = AtomicBool::new(false);
@@ -22,6 +23,10 @@ pub fn stop_flag() -> Result<&'static AtomicBool> {
                 std::process::exit(130);
             }
             eprintln!("stopping; finished work is kept (press Ctrl-C again to quit at once)");
+        })
+        .map_err(|error| match error {
+            ctrlc::Error::System(source) => anyhow::Error::from(NoThread(source)),
+            other => other.into(),
         })
         .context("cannot listen for Ctrl-C")?;
     }

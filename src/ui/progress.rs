@@ -1,9 +1,10 @@
-//! Progress with the time left: a bar on a terminal, otherwise one line per minute.
+//! Progress with the time left: a bar on a terminal, otherwise one line per minute, and with notes one line per step.
 
-use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+use support::verbose;
 
 /// Interval between progress lines when the output is no terminal.
 const LINE_EVERY: Duration = Duration::from_secs(60);
@@ -13,6 +14,13 @@ static SILENT: AtomicBool = AtomicBool::new(false);
 /// Shows no progress from now on.
 pub fn silence() {
     SILENT.store(true, Ordering::Relaxed);
+}
+
+/// Prints which of several tasks begins.
+pub fn announce(task: &str) {
+    if !SILENT.load(Ordering::Relaxed) {
+        eprintln!("{task}");
+    }
 }
 
 /// Progress of a task of known length.
@@ -25,9 +33,15 @@ pub struct Progress {
 impl Progress {
     /// A task of `total` units of `what`.
     pub fn new(total: usize, what: &'static str) -> Self {
-        let style = ProgressStyle::with_template("{prefix:>14} [{bar:30}] {pos}/{len}  {wide_msg}")
+        let style = ProgressStyle::with_template("{prefix:>14} [{bar:30}] {pos}/{len}  {msg}")
             .expect("the template is a constant");
-        let bar = ProgressBar::new(total as u64)
+        let target = match verbose::is_shown() {
+            // A bar would overwrite the notes.
+            true => ProgressDrawTarget::hidden(),
+            false => ProgressDrawTarget::stderr(),
+        };
+        // A message wider than the terminal is continued on the next line: a number that was cut would be another one.
+        let bar = ProgressBar::with_draw_target(Some(total as u64), target)
             .with_style(style.progress_chars("=> "))
             .with_prefix(what);
         Self {
@@ -48,12 +62,15 @@ impl Progress {
             return;
         }
         self.bar.set_position(done as u64);
+        // A note for every percent of a bar without messages would hide the others.
+        let noted = verbose::is_shown() && !message.is_empty();
         let left = seconds_left.map_or_else(|| self.bar.eta(), Duration::from_secs_f64);
         let message = match left.as_secs() {
             0 => message.to_owned(),
             _ => format!("{} left  {message}", HumanDuration(left)),
         };
-        if self.bar.is_hidden() && self.last_line.get().elapsed() > LINE_EVERY {
+        let due = self.bar.is_hidden() && self.last_line.get().elapsed() > LINE_EVERY;
+        if due || noted {
             self.last_line.set(Instant::now());
             let total = self.bar.length().unwrap_or_default();
             eprintln!("{} {done}/{total}  {message}", self.what);

@@ -98,6 +98,6 @@ impl Study {
 
 fn main() -> Exit {
     interrupt::end_quietly_when_nobody_reads();
-    exit::report_unwritable_output();
+    exit::report_failures_of_the_system();
     Exit::of(Cli::parse().study.run())
 }

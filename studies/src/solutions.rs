@@ -11,8 +11,8 @@ use kirigami::ui::progress::Progress;
 use kirigami::ui::{interrupt, picture, run_folder};
 use std::fmt::Write;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc;
+use std::sync::atomic::Ordering;
+use support::worker_pool::{Reports, work_through};
 
 /// Run one scene from many random starts: families of solutions, and the curvature of the objective
 ///
@@ -138,18 +138,12 @@ impl SolutionStudy {
 
     fn solve(&self, config: &SceneConfig, side: f64) -> Result<Vec<Solution>> {
         let stop = interrupt::stop_flag()?;
-        let workers = self.jobs.unwrap_or_else(processors).clamp(1, self.runs);
-        let next = AtomicUsize::new(0);
-        let (sender, receiver) = mpsc::channel();
+        let workers = self.jobs.unwrap_or_else(processors);
         let bar = Progress::new(self.runs, "runs");
         let one = |run: usize| -> Result<Solution> {
             let seed = config.optimiser.seed + run as u64;
             let scene = self.scene_of(config, seed)?;
             let designed = inverse_design(&scene, stop, &mut |_| {})?;
-            ensure!(
-                !stop.load(Ordering::Relaxed),
-                "stopped; run the same command again to continue"
-            );
             let opening = designed
                 .design
                 .opening
@@ -163,28 +157,19 @@ impl SolutionStudy {
                 designed,
             })
         };
-        std::thread::scope(|scope| {
-            for _ in 0..workers {
-                let (sender, next, one) = (sender.clone(), &next, &one);
-                scope.spawn(move || {
-                    loop {
-                        let run = next.fetch_add(1, Ordering::Relaxed);
-                        // The receiver is gone once a run has failed.
-                        if run >= self.runs || sender.send(one(run)).is_err() {
-                            break;
-                        }
-                    }
-                });
-            }
-            drop(sender);
-            let mut solutions = Vec::new();
-            for solution in receiver {
-                solutions.push(solution?);
-                bar.show(solutions.len(), None, "");
-            }
-            bar.finish();
-            Ok(solutions)
-        })
+        let mut solutions = Vec::new();
+        let work = |run: usize, reports: &Reports<_>| reports.send(one(run));
+        work_through(self.runs, workers, stop, &work, &mut |solution| {
+            solutions.push(solution?);
+            bar.show(solutions.len(), None, "");
+            Ok::<_, anyhow::Error>(())
+        })?;
+        bar.finish();
+        ensure!(
+            !stop.load(Ordering::Relaxed),
+            "stopped; run the same command again to continue"
+        );
+        Ok(solutions)
     }
 }
 

@@ -1,5 +1,5 @@
 //! Domain-independent utilities: configuration files, misspelt names, input files, VTK files, atomic file writes, external
-//! programs.
+//! programs, notes of what a command does, a pool of threads, shards of a list of jobs.
 
 #![warn(missing_docs)]
 
@@ -8,6 +8,9 @@ mod processes;
 pub mod program;
 pub mod regular_file;
 pub mod sealed_json;
+pub mod shard;
 pub mod toml_file;
+pub mod verbose;
 pub mod vtk;
 pub mod whole_file;
+pub mod worker_pool;

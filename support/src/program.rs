@@ -6,16 +6,20 @@
 //! started is killed when it has ended, and what a killed caller left is killed before the next program runs in the
 //! same folder.
 
-use crate::processes::{FOLDER, cpu_seconds, kill_all_of, memory_mib};
-use nix::sys::resource::{Resource, setrlimit};
-use nix::sys::signal::{Signal, killpg};
-use nix::sys::wait::{Id, WaitPidFlag, WaitStatus, waitid};
-use nix::unistd::Pid;
-use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
-use std::os::unix::process::{CommandExt, ExitStatusExt};
+mod output_files;
+mod process_group;
+mod tool_error;
+
+pub use output_files::{remove_stale, tail};
+pub use tool_error::ToolError;
+
+use crate::processes::memory_mib;
+use crate::program::process_group::{Group, POLL};
+use crate::verbose;
+use nix::sys::signal::Signal;
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::ExitStatus;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -56,87 +60,10 @@ pub struct Run {
     pub peak_memory_mib: Option<f64>,
 }
 
-/// Why an external program gave no result.
-#[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
-pub enum ToolError {
-    #[error(
-        "{name} was not found{at}; install it ({install}) or set {variable} to its path",
-        name = .kind.name,
-        at = .program.as_ref().map(|p| format!(" at {}", p.display())).unwrap_or(" on PATH".into()),
-        install = .kind.install,
-        variable = .kind.variable
-    )]
-    NotFound {
-        kind: &'static ToolKind,
-        /// The path that was given, `None` if PATH was searched.
-        program: Option<PathBuf>,
-    },
-    #[error("cannot run {program}: {source}", program = .program.display())]
-    Start {
-        program: PathBuf,
-        source: std::io::Error,
-    },
-    #[error("{name} was terminated at its time limit of {limit} s", limit = .limit.as_secs_f64())]
-    TimedOut {
-        name: &'static str,
-        limit: Duration,
-        /// See [`Run::cpu_seconds`].
-        cpu_seconds: Option<f64>,
-    },
-    #[error("{name} was killed by signal {signal} (out of memory, or killed by hand)")]
-    Killed {
-        name: &'static str,
-        signal: i32,
-        /// See [`Run::cpu_seconds`].
-        cpu_seconds: Option<f64>,
-    },
-    #[error(
-        "{name} wrote a file of over {MAX_FILE_MIB} MiB and was terminated: no window needs as much, so it would fill \
-         the disk"
-    )]
-    TooMuchOutput {
-        name: &'static str,
-        /// See [`Run::cpu_seconds`].
-        cpu_seconds: Option<f64>,
-    },
-    #[error("{name} was stopped on request")]
-    Stopped { name: &'static str },
-    #[error("{name} failed with {status}; the end of its log:\n{tail}")]
-    Failed {
-        name: &'static str,
-        status: ExitStatus,
-        tail: String,
-    },
-}
-
-impl ToolError {
-    /// CPU time used until the program was terminated (s), if the operating system reports it.
-    pub fn cpu_seconds(&self) -> Option<f64> {
-        match self {
-            Self::TimedOut { cpu_seconds, .. }
-            | Self::Killed { cpu_seconds, .. }
-            | Self::TooMuchOutput { cpu_seconds, .. } => *cpu_seconds,
-            _ => None,
-        }
-    }
-}
-
-/// Maximum size of a file that a program writes (MiB). Results are read into memory as a whole.
-const MAX_FILE_MIB: u64 = 1024;
-/// Time between SIGTERM and SIGKILL.
-const GRACE: Duration = Duration::from_secs(2);
 /// Time limit of the version query.
 const VERSION_LIMIT: Duration = Duration::from_secs(30);
 /// Maximum delay between the death of a program by a signal and the stop request that the same signal causes.
 const SAME_SIGNAL: Duration = Duration::from_millis(500);
-/// Maximum polling interval of a running program.
-const POLL: Duration = Duration::from_millis(20);
-/// Number of bytes at the end of a log that an error quotes.
-const TAIL: i64 = 600;
 
 impl Tool {
     /// Finds the program by its environment variable or on PATH.
@@ -204,14 +131,40 @@ impl Tool {
         limit: Duration,
         stop: &AtomicBool,
     ) -> Result<Run, ToolError> {
+        let line = || {
+            let (program, folder) = (self.program.display(), folder.display());
+            format!("{program} {} in {folder}", arguments.join(" "))
+        };
+        verbose::note(|| format!("running {}", line()));
         let start = Instant::now();
-        let mut group = self
-            .spawn(arguments, folder, log)
+        let outcome = self.watch(arguments, folder, log, limit, stop);
+        verbose::note(|| {
+            let seconds = start.elapsed().as_secs_f64();
+            let how = match &outcome {
+                Ok(run) => run.status.to_string(),
+                Err(error) => error.to_string(),
+            };
+            format!("ended after {seconds:.2} s ({how}): {}", line())
+        });
+        outcome
+    }
+
+    /// Runs the program to its end, its time limit or a stop, whichever comes first.
+    fn watch(
+        &self,
+        arguments: &[&str],
+        folder: &Path,
+        log: &Path,
+        limit: Duration,
+        stop: &AtomicBool,
+    ) -> Result<Run, ToolError> {
+        let start = Instant::now();
+        let mut group = Group::spawn(&self.program, arguments, folder, log)
             .map_err(|source| self.cannot_start(source))?;
         let name = self.kind.name;
         let mut peak_memory_mib = None;
         while !group.has_ended() {
-            peak_memory_mib = memory_mib(group.child.id()).or(peak_memory_mib);
+            peak_memory_mib = memory_mib(group.id()).or(peak_memory_mib);
             if stop.load(Ordering::Relaxed) {
                 group.end();
                 return Err(ToolError::Stopped { name });
@@ -228,10 +181,7 @@ impl Tool {
             std::thread::sleep(POLL.min(Duration::from_millis(1) + start.elapsed() / 10));
         }
         let cpu_seconds = group.cpu_seconds();
-        let status = group
-            .child
-            .wait()
-            .map_err(|source| self.cannot_start(source))?;
+        let status = group.wait().map_err(|source| self.cannot_start(source))?;
         if status.signal() == Some(Signal::SIGXFSZ as i32) {
             return Err(ToolError::TooMuchOutput { name, cpu_seconds });
         }
@@ -271,108 +221,11 @@ impl Tool {
         })
     }
 
-    fn spawn(&self, arguments: &[&str], folder: &Path, log: &Path) -> std::io::Result<Group> {
-        let folder = std::path::absolute(folder)?;
-        kill_all_of(&folder);
-        let output = File::create(log)?;
-        let mut command = Command::new(&self.program);
-        command
-            .args(arguments)
-            .current_dir(&folder)
-            .stdin(Stdio::null())
-            .stdout(output.try_clone()?)
-            .stderr(output)
-            .process_group(0);
-        // The user's environment and home must not decide a result: ccx reads CCX_NPROC_*, gmsh reads ~/.gmshrc.
-        command.env_clear().env("HOME", &folder).env("LC_ALL", "C");
-        command.env(FOLDER, &folder);
-        for variable in ["PATH", "LD_LIBRARY_PATH", "TMPDIR"] {
-            if let Some(value) = std::env::var_os(variable) {
-                command.env(variable, value);
-            }
-        }
-        // One process runs per core: a second thread gives no speed-up at these problem sizes.
-        for variable in [
-            "OMP_NUM_THREADS",
-            "OPENBLAS_NUM_THREADS",
-            "CCX_NPROC_EQUATION_SOLVER",
-            "CCX_NPROC_RESULTS",
-            "CCX_NPROC_STIFFNESS",
-        ] {
-            command.env(variable, "1");
-        }
-        #[cfg(target_os = "linux")]
-        // SAFETY: between fork and exec the closure makes only two system calls, prctl and setrlimit, which are
-        // async-signal-safe, and does not allocate.
-        unsafe {
-            command.pre_exec(|| {
-                let bytes = MAX_FILE_MIB << 20;
-                setrlimit(Resource::RLIMIT_FSIZE, bytes, bytes)?;
-                Ok(nix::sys::prctl::set_pdeathsig(Signal::SIGKILL)?)
-            });
-        }
-        let child = command.spawn()?;
-        Ok(Group { child, folder })
-    }
-
     fn cannot_start(&self, source: std::io::Error) -> ToolError {
         ToolError::Start {
             program: self.program.clone(),
             source,
         }
-    }
-}
-
-/// A child process that leads its own process group; dropping this value kills the group and every other process that
-/// the child started.
-struct Group {
-    child: Child,
-    /// The folder that it runs in.
-    folder: PathBuf,
-}
-
-impl Group {
-    fn pid(&self) -> Pid {
-        Pid::from_raw(self.child.id() as i32)
-    }
-
-    /// Whether the leader has exited; it stays a zombie, so its CPU time can still be read.
-    fn has_ended(&self) -> bool {
-        !matches!(self.look(WaitPidFlag::WNOHANG), Ok(WaitStatus::StillAlive))
-    }
-
-    /// Waits for the leader, or polls it with WNOHANG, without reaping it.
-    fn look(&self, how: WaitPidFlag) -> nix::Result<WaitStatus> {
-        let flags = WaitPidFlag::WEXITED | WaitPidFlag::WNOWAIT | how;
-        waitid(Id::Pid(self.pid()), flags)
-    }
-
-    /// User and system seconds of the leader, which has exited or is about to exit.
-    fn cpu_seconds(&self) -> Option<f64> {
-        self.look(WaitPidFlag::empty()).ok()?;
-        cpu_seconds(self.child.id())
-    }
-
-    /// Sends SIGTERM, waits up to the grace period, then sends SIGKILL.
-    fn end(&self) {
-        let deadline = Instant::now() + GRACE;
-        // An error means that the group no longer exists, which is the desired state.
-        let _ = killpg(self.pid(), Signal::SIGTERM);
-        while !self.has_ended() && Instant::now() < deadline {
-            std::thread::sleep(POLL);
-        }
-        let _ = killpg(self.pid(), Signal::SIGKILL);
-    }
-}
-
-impl Drop for Group {
-    /// Kills the group and reaps its leader, if the leader is still running, and kills what it left running.
-    fn drop(&mut self) {
-        if let Ok(None) = self.child.try_wait() {
-            let _ = killpg(self.pid(), Signal::SIGKILL);
-            let _ = self.child.wait();
-        }
-        kill_all_of(&self.folder);
     }
 }
 
@@ -387,33 +240,12 @@ fn search_path(name: &str) -> Option<PathBuf> {
         })
 }
 
-/// Removes the output of an earlier run, so that it is not mistaken for the result of the next.
-pub fn remove_stale(path: &Path) -> std::io::Result<()> {
-    match std::fs::remove_file(path) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(error),
-        _ => Ok(()),
-    }
-}
-
-/// The last bytes of a log, or a note that the log cannot be read.
-pub fn tail(log: &Path) -> String {
-    let read = || -> std::io::Result<Vec<u8>> {
-        let mut file = File::open(log)?;
-        let length = file.metadata()?.len() as i64;
-        file.seek(SeekFrom::End(-length.min(TAIL)))?;
-        let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes)?;
-        Ok(bytes)
-    };
-    match read() {
-        Ok(bytes) => String::from_utf8_lossy(&bytes).trim().to_owned(),
-        Err(error) => format!("(the log {} cannot be read: {error})", log.display()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::processes::FOLDER;
+    use crate::program::process_group::GRACE;
+    use std::process::Command;
 
     static SHELL: ToolKind = ToolKind {
         name: "sh",

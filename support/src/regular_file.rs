@@ -1,19 +1,32 @@
-//! Reading of input files. A pipe or a device is refused: a read of it could wait forever or never end.
+//! Reading of input files. A pipe or a device is refused: a read of it could wait forever or never end. So is a file that
+//! is larger than any input, which could fill the memory.
 
+use crate::verbose;
 use std::fs::FileType;
 use std::io::{self, ErrorKind};
 use std::path::Path;
 
-/// The bytes of a file; an error if it is not a regular file.
+/// Maximum size of an input file (bytes): over ten times the database of 100 000 rays.
+const MOST_BYTES: u64 = 4 << 30;
+
+/// The bytes of a file; an error if it is not a regular file, or larger than 4 GiB.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
-    let kind = std::fs::metadata(path)?.file_type();
-    match is_endless(kind) {
-        false => std::fs::read(path),
-        true => Err(io::Error::new(
+    let metadata = std::fs::metadata(path)?;
+    if metadata.len() > MOST_BYTES {
+        return Err(io::Error::new(
+            ErrorKind::InvalidInput,
+            "it is larger than 4 GiB, the maximum of an input file",
+        ));
+    }
+    if is_endless(metadata.file_type()) {
+        return Err(io::Error::new(
             ErrorKind::InvalidInput,
             "it is a pipe, a socket or a device, not a regular file: copy its contents to a file first",
-        )),
+        ));
     }
+    let bytes = std::fs::read(path)?;
+    verbose::note(|| format!("read {} ({} bytes)", path.display(), bytes.len()));
+    Ok(bytes)
 }
 
 /// The text of a file in UTF-8; an error if it is not a regular file.
@@ -48,5 +61,14 @@ mod tests {
         let file = folder.path().join("file");
         std::fs::write(&file, "text").unwrap();
         assert_eq!(read_to_string(&file).unwrap(), "text");
+    }
+
+    #[test]
+    fn a_file_that_would_fill_the_memory_is_refused() {
+        // Sparse: it takes no space on the disk.
+        let file = tempfile::NamedTempFile::new().unwrap();
+        file.as_file().set_len(MOST_BYTES + 1).unwrap();
+        let message = read(file.path()).unwrap_err().to_string();
+        assert!(message.contains("4 GiB"), "{message}");
     }
 }

@@ -1,5 +1,6 @@
 //! Atomic file writes: a file is either complete or absent.
 
+use crate::verbose;
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
@@ -21,7 +22,9 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     beside.write_all(bytes)?;
     beside.as_file().sync_all()?;
     beside.persist(path)?;
-    File::open(folder)?.sync_all()
+    File::open(folder)?.sync_all()?;
+    verbose::note(|| format!("wrote {} ({} bytes)", path.display(), bytes.len()));
+    Ok(())
 }
 
 /// Creates a folder and its missing parents, and syncs their entries to the disk: a synced file is not lost with its

@@ -10,6 +10,7 @@ use crate::sheet::kinematics::{Configuration, hinge_deformations};
 use crate::sheet::panel_vectors::gather;
 use hinge::HingeDeformation;
 use serde::Serialize;
+use std::fmt;
 
 /// How a load step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -88,6 +89,18 @@ pub(crate) struct StepTangent {
     pub values: Vec<f64>,
     /// `None` if it is singular.
     pub factor: Option<HeldFactor>,
+}
+
+/// One line: load factor, status, residual and iterations.
+impl fmt::Display for LoadStep {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let (factor, status, residual) = (self.load_factor, self.status, self.residual);
+        write!(
+            f,
+            "load factor {factor:.4}: {status:?}, relative residual {residual:.1e}, {} iterations",
+            self.iterations
+        )
+    }
 }
 
 impl LoadStep {

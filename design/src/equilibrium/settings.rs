@@ -17,27 +17,27 @@ pub enum Method {
     },
 }
 
-/// Tolerances and limits of the solver.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The equilibrium solver.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
 pub struct SolverSettings {
-    /// The method of minimisation; Newton's method by default.
-    pub method: Method,
-    /// Residual of a converged state, relative to the maximum force, unless rounding causes a larger one;
-    /// 1e-10 by default.
+    /// Residual of a converged state, relative to the largest force, 1e-14 to 0.1, unless rounding causes a larger one.
     pub tolerance: f64,
-    /// Residual of an almost converged state, relative to the maximum force, `tolerance` to 1; 1e-6 by default.
+    /// `"newton"`, or `{ lbfgs = { max_iterations = 20000 } }` as in the paper.
+    pub method: Method,
+    /// Residual of an almost converged state, relative to the largest force, 1e-14 to 0.5; at least `tolerance`.
     pub loose_tolerance: f64,
-    /// Maximum number of Newton iterations per load increment, at least 1; 60 by default.
+    /// Maximum number of Newton iterations of a minimisation, as after a jump, 1 to 10 000.
     pub max_iterations: usize,
-    /// Maximum number of increments of a path, at least 1; 100 000 by default.
+    /// Maximum number of increments that are tried along a path, 1 to 10 000 000; a path that needs more ends there.
     pub max_increments: usize,
 }
 
 impl Default for SolverSettings {
     fn default() -> Self {
         Self {
-            method: Method::default(),
             tolerance: 1e-10,
+            method: Method::default(),
             loose_tolerance: 1e-6,
             max_iterations: 60,
             max_increments: 100_000,

@@ -20,6 +20,7 @@ use crate::sheet::topology::PanelCorner;
 use hinge::TrainingDomain;
 use serde::Serialize;
 use std::sync::Arc;
+use support::verbose;
 
 /// Why a design has no objective value.
 #[derive(Debug, thiserror::Error)]
@@ -220,6 +221,8 @@ impl DesignProblem {
                 let path = mechanics
                     .solver
                     .path(mechanics.hinged(&sheet, &*law, gradient));
+                path.iter()
+                    .for_each(|step| verbose::note(|| step.to_string()));
                 (path, Some(law))
             }
         };

@@ -11,10 +11,12 @@
 use crate::geometry::smooth_extrema::{smooth_max, smooth_min};
 use crate::hinge_law::{DamageMeasure, HingeDamage};
 use hinge::HingeDeformation;
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// One number per functional: a value, a weight or a temperature.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct PerFunctional {
     /// Of the damage functional (17).
     pub damage: f64,

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
+use support::regular_file;
 
 /// A target as written in a scene; lengths in mm, in the coordinates of the flat sheet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -47,6 +48,17 @@ pub enum TargetShape {
         /// Height of the bounding box (mm), positive; the width follows from the drawing.
         height: f64,
     },
+}
+
+impl TargetShape {
+    /// The file that the target is read from and its usual extension, if there is one.
+    pub(crate) fn file_mut(&mut self) -> Option<(&mut PathBuf, &'static str)> {
+        match self {
+            Self::Csv { file } => Some((file, "csv")),
+            Self::Svg { file, .. } => Some((file, "svg")),
+            Self::Circle { .. } | Self::Rectangle { .. } | Self::Polygon { .. } => None,
+        }
+    }
 }
 
 /// Why a target is not an outline.
@@ -244,7 +256,7 @@ fn placed(
 }
 
 fn read(path: &Path) -> Result<String, TargetError> {
-    std::fs::read_to_string(path).map_err(|source| TargetError::Read {
+    regular_file::read_to_string(path).map_err(|source| TargetError::Read {
         path: path.to_owned(),
         source,
     })

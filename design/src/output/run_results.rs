@@ -2,11 +2,11 @@
 
 use crate::objective::design_problem::Deployment;
 use crate::output::cut_file::{
-    CutLines, FabricationError, SheetDrawing, cut_list, cut_summary, deployed_panels, write_dxf,
-    write_svg,
+    CutLines, FabricationError, SheetDrawing, cut_list, cut_summary, deployed_panels, mark_errors,
+    write_dxf, write_svg,
 };
 use crate::output::drawing;
-use crate::output::report::Report;
+use crate::output::report::{Report, Warning};
 use crate::output::run_page::run_page;
 use crate::scene::Scene;
 use crate::scene::design_run::{CUT_FILES, Designed};
@@ -64,7 +64,9 @@ pub fn write_results(
     match &cuts {
         Ok(cuts) if report.cut_file => {
             let drawing = SheetDrawing::new(cuts, &best.sheet, &scene.material);
-            let annotated = drawing.annotated();
+            let mut annotated = drawing.annotated();
+            let errors: Vec<String> = report.errors().map(Warning::to_string).collect();
+            mark_errors(&mut annotated, &errors);
             write_dxf(&folder.join("cut.dxf"), &annotated)?;
             write_svg(&folder.join("cut.svg"), &annotated)?;
             write("cut-list.csv", cut_list(&best.sheet, cuts).as_bytes())?;

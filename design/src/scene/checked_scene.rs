@@ -27,7 +27,7 @@ pub struct Scene {
     /// The material of the sheet, in its thickness.
     pub material: SheetMaterial,
     /// The material in the thickness of its file, which is that of the training of learned laws.
-    measured: SheetMaterial,
+    pub(super) measured: SheetMaterial,
     /// The target outline.
     pub target: Target,
     pub(super) hinge: LoadedHinge,
@@ -113,12 +113,12 @@ impl Scene {
         }
     }
 
-    /// BLAKE3 hash of the keys of the scene without title and run folder, which change no design.
+    /// BLAKE3 hash of the keys of the scene without title and paths: neither the title nor the place of a file changes a
+    /// design.
     pub fn hash(&self) -> String {
         let keys = SceneConfig {
             title: String::new(),
-            output: PathBuf::new(),
-            ..self.config.clone()
+            ..self.config.without_paths()
         };
         let keys = serde_json::to_vec(&keys).expect("a run writes the same keys to its state");
         blake3::hash(&keys).to_hex().to_string()

@@ -106,6 +106,11 @@ fn ligament(scene: &SceneConfig) -> Result<(), String> {
             format!("ligament.range and process, at w_lig = {w_lig} mm: {error}")
         })?;
     }
+    let largest = scene.sheet.outline().size();
+    let r_win = process.r_win;
+    within("process.r_win", r_win, [0.0, 10.0 * largest], "mm").map_err(|error| {
+        format!("{error} (a window is a part of the sheet, which is {largest:.0} mm large)")
+    })?;
     if min >= max {
         return Err(format!(
             "ligament.range = [{min}, {max}] mm violates minimum < maximum"
@@ -285,8 +290,21 @@ fn search(scene: &SceneConfig) -> Result<(), String> {
             "objective.domain needs hinge = \"surrogate\": no other law has a domain".into(),
         );
     }
-    within("solver.tolerance", scene.solver.tolerance, [1e-14, 0.1], "")?;
-    if let Method::Lbfgs { max_iterations } = scene.solver.method {
+    let tau = objective.temperatures;
+    for (key, tau) in [
+        ("objective.temperatures.damage", tau.damage),
+        ("objective.temperatures.compression", tau.compression),
+        ("objective.temperatures.shear", tau.shear),
+    ] {
+        within(key, tau, [1e-6, 10.0], "")?;
+    }
+    let solver = &scene.solver;
+    within("solver.tolerance", solver.tolerance, [1e-14, 0.1], "")?;
+    let key = "solver.loose_tolerance";
+    within(key, solver.loose_tolerance, [1e-14, 0.5], "")?;
+    counted("solver.max_iterations", solver.max_iterations, 10_000)?;
+    counted("solver.max_increments", solver.max_increments, 10_000_000)?;
+    if let Method::Lbfgs { max_iterations } = solver.method {
         let key = "solver.method.lbfgs.max_iterations";
         counted(key, max_iterations, 10_000_000)?;
     }

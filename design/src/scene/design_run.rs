@@ -1,4 +1,4 @@
-//! A design run: the search of a scene, with its state stored in the run folder.
+//! A design run: the search of a scene, with its state and its inputs stored in the run folder.
 //!
 //! The state is saved about once per second and at the end; the next run of the scene continues
 //! from it.
@@ -8,16 +8,16 @@ use crate::optimise::outer_loop::{Ended, SearchState, StepRecord, optimise};
 use crate::pattern::design_vector::DesignVector;
 use crate::scene::checked_scene::Scene;
 use crate::scene::keys::SceneConfig;
+use crate::scene::run_inputs::{self, InputHashes, RunInputsError, STATE_FILE};
 use crate::scene::scene_error::SceneError;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use support::sealed_json::{self, SealError};
-use support::whole_file;
+use support::{regular_file, whole_file};
 
 const SAVE_EVERY: Duration = Duration::from_secs(1);
-const STATE_FILE: &str = "state.json";
 /// The files of a run that are written only for a design that can be cut.
 pub const CUT_FILES: [&str; 5] = [
     "cut.dxf",
@@ -54,6 +54,8 @@ pub struct Designed {
 pub enum InverseDesignError {
     #[error(transparent)]
     Scene(#[from] SceneError),
+    #[error(transparent)]
+    Inputs(#[from] RunInputsError),
     #[error("the start of the search cannot be evaluated: {0}")]
     Start(DesignError),
     #[error("the best design of the run cannot be evaluated again: {0}")]
@@ -103,6 +105,8 @@ struct State {
     scene: SceneConfig,
     /// [`Scene::model_hash`]; absent in states of older versions.
     model: Option<String>,
+    /// The copies in the run folder of what the run depends on; absent in states of older versions.
+    inputs: Option<InputHashes>,
     #[serde(flatten)]
     search: SearchState,
 }
@@ -115,15 +119,14 @@ pub fn stored_design(path: &Path, scene: &Scene) -> Result<DesignVector, Inverse
         Run { best: DesignVector },
         Alone(DesignVector),
     }
-    let text = std::fs::read_to_string(path).map_err(|source| InverseDesignError::Folder {
+    let text = regular_file::read(path).map_err(|source| InverseDesignError::Folder {
         path: path.to_owned(),
         source,
     })?;
-    let stored =
-        sealed_json::from_slice(text.as_bytes()).map_err(|source| InverseDesignError::State {
-            path: path.to_owned(),
-            source,
-        })?;
+    let stored = sealed_json::from_slice(&text).map_err(|source| InverseDesignError::State {
+        path: path.to_owned(),
+        source,
+    })?;
     let (Stored::Run { best: design } | Stored::Alone(design)) = stored;
     if design.same_shape(&scene.start()) {
         return Ok(design);
@@ -162,6 +165,16 @@ pub fn inverse_design(
             search
         }
     };
+    let inputs = run_inputs::keep(scene)?;
+    let save = |search: &SearchState| {
+        let state = State {
+            scene: scene.config.clone(),
+            model: Some(model.clone()),
+            inputs: Some(inputs.clone()),
+            search: search.clone(),
+        };
+        state.write(&path)
+    };
     let mut saved = Instant::now();
     let ended = optimise(
         &problem,
@@ -171,13 +184,13 @@ pub fn inverse_design(
         &mut |search| {
             progress(search.last());
             if saved.elapsed() > SAVE_EVERY {
-                State::write(scene, &model, search, &path)?;
+                save(search)?;
                 saved = Instant::now();
             }
             Ok::<_, InverseDesignError>(())
         },
     )?;
-    State::write(scene, &model, &search, &path)?;
+    save(&search)?;
     let best = problem
         .evaluate(&search.best)
         .map_err(InverseDesignError::Best)?;
@@ -223,7 +236,7 @@ impl State {
         model: &str,
         start: &Evaluation,
     ) -> Result<Option<Self>, InverseDesignError> {
-        let text = match std::fs::read_to_string(path) {
+        let text = match regular_file::read(path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(source) => {
@@ -231,19 +244,17 @@ impl State {
                 return Err(InverseDesignError::Folder { path, source });
             }
         };
-        let mut state: Self = sealed_json::from_slice(text.as_bytes()).map_err(|source| {
-            InverseDesignError::State {
+        let mut state: Self =
+            sealed_json::from_slice(&text).map_err(|source| InverseDesignError::State {
                 path: path.to_owned(),
                 source,
-            }
-        })?;
+            })?;
         let path = path.to_owned();
         state.scene.optimiser.steps = scene.config.optimiser.steps;
-        // Neither the folder's name nor the title nor the cutting changes a design.
-        state.scene.output.clone_from(&scene.config.output);
+        // Neither the title nor the cutting changes a design, and what a path names is compared by `model`.
         state.scene.title.clone_from(&scene.config.title);
         state.scene.cutting = scene.config.cutting;
-        if state.scene != scene.config {
+        if state.scene.without_paths() != scene.config.without_paths() {
             return Err(InverseDesignError::OtherScene { path });
         }
         if !state.search.fits(&scene.start()) {
@@ -260,18 +271,8 @@ impl State {
         Ok(Some(state))
     }
 
-    fn write(
-        scene: &Scene,
-        model: &str,
-        search: &SearchState,
-        path: &Path,
-    ) -> Result<(), InverseDesignError> {
-        let state = Self {
-            scene: scene.config.clone(),
-            model: Some(model.to_owned()),
-            search: search.clone(),
-        };
-        sealed_json::to_vec(&state)
+    fn write(&self, path: &Path) -> Result<(), InverseDesignError> {
+        sealed_json::to_vec(self)
             .map_err(std::io::Error::from)
             .and_then(|text| whole_file::write(path, &text))
             .map_err(|source| InverseDesignError::Folder {

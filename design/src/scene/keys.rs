@@ -1,9 +1,10 @@
 //! The keys of a scene file.
 
-use crate::equilibrium::settings::{Method, SolverSettings};
+use crate::equilibrium::settings::SolverSettings;
 use crate::geometry::chamfer::Precision;
 use crate::hinge_law::DamageMeasure;
 use crate::objective::loss::OutlinePoints;
+use crate::objective::path_functionals::PerFunctional;
 use crate::objective::target::TargetShape;
 use crate::optimise::search::SearchMethod;
 use crate::scene::actuation::{
@@ -83,7 +84,7 @@ pub struct SceneConfig {
     pub drive: Option<DriveConfig>,
     /// The equilibrium solver.
     #[serde(default)]
-    pub solver: SolverConfig,
+    pub solver: SolverSettings,
     /// The target outline; its length must be 0.2 to 3 times the perimeter of the flat sheet.
     pub target: TargetShape,
     /// The objective (16) and its weights.
@@ -112,6 +113,10 @@ pub struct ObjectiveConfig {
     /// Weight of (19).
     #[serde(default)]
     pub shear: f64,
+    /// Temperatures tau of the smooth extrema along the path in (17)-(19), 1e-6 to 10, in the units of D / D_s, eta_a and
+    /// eta_s: a tenth of typical values by default. A smaller one is closer to the extremum and less smooth.
+    #[serde(default = "default_temperatures")]
+    pub temperatures: PerFunctional,
     /// Weight of the panel shape penalty: on panels stretched more than eight to one or with angles below 14 degrees,
     /// which the outline alone does not prevent, and, with learned hinges, on corners of a panel closer than three
     /// radii of their windows. Never relative to a gradient.
@@ -159,22 +164,11 @@ pub struct OptimiserConfig {
     pub seed: u64,
 }
 
-/// The equilibrium solver.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct SolverConfig {
-    /// Residual of a converged state, relative to the largest force, 1e-14 to 0.1.
-    pub tolerance: f64,
-    /// `"newton"`, or `{ lbfgs = { max_iterations = 20000 } }` as in the paper.
-    pub method: Method,
-}
-
-impl Default for SolverConfig {
-    fn default() -> Self {
-        let SolverSettings {
-            tolerance, method, ..
-        } = SolverSettings::default();
-        Self { tolerance, method }
+fn default_temperatures() -> PerFunctional {
+    PerFunctional {
+        damage: 0.1,
+        compression: 0.01,
+        shear: 0.01,
     }
 }
 
@@ -203,6 +197,11 @@ impl SceneConfig {
             }
         }
         Ok(())
+    }
+
+    /// The scene as a TOML file, without comments.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        toml::to_string(self)
     }
 
     /// Thickness of the sheet over that of the material file `material`.

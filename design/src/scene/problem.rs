@@ -11,20 +11,12 @@ use crate::objective::path_functionals::PerFunctional;
 use crate::pattern::design_vector::{DesignVector, WidthChart};
 use crate::pattern::grid::Grid;
 use crate::scene::checked_scene::Scene;
-use crate::scene::keys::SolverConfig;
 use crate::scene::loaded_hinge::LoadedHinge;
 use crate::scene::scene_error::SceneError;
 use hinge::TrainingDomain;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
-
-/// Temperatures of the path extrema: a tenth of typical values of D / D_s, eta_a and eta_s.
-const TEMPERATURES: PerFunctional = PerFunctional {
-    damage: 0.1,
-    compression: 0.01,
-    shear: 0.01,
-};
 
 impl Scene {
     /// Numbers of panels.
@@ -118,7 +110,7 @@ impl Scene {
                 shear: config.shear * unit,
             },
             damage_measure: config.damage_measure,
-            temperatures: TEMPERATURES,
+            temperatures: config.temperatures,
             panel_shape: config.panel_shape * self.mean_panel_area(),
             // Only a learned hinge has a window. Two window radii and a gap: the windows do not lie on one line.
             least_distance: domain.map_or(0.0, |_| 3.0 * self.config.process.r_win),
@@ -148,12 +140,10 @@ impl Scene {
     }
 
     fn solver(&self) -> Result<EquilibriumSolver, EquilibriumError> {
-        let SolverConfig { tolerance, method } = self.config.solver;
+        let solver = self.config.solver;
         let settings = SolverSettings {
-            method,
-            tolerance,
-            loose_tolerance: tolerance.max(SolverSettings::default().loose_tolerance),
-            ..SolverSettings::default()
+            loose_tolerance: solver.tolerance.max(solver.loose_tolerance),
+            ..solver
         };
         let (supports, loads) = (self.supports(), self.loads());
         let steps = self.config.load_steps;

@@ -1,6 +1,7 @@
 //! The files of a run, and the warnings of its report.
 
 use super::{SCENE, read, run, with};
+use design::output::cut_file::FORCED;
 use design::output::report::{Concern, Report};
 use design::output::run_results::write_results;
 use design::scene::design_run::CUT_FILES;
@@ -55,9 +56,11 @@ fn a_sound_design_writes_all_files_and_no_warning() {
             "deployed.dxf",
             "deployed.svg",
             "flat.svg",
+            "inputs",
             "report.json",
             "report.txt",
             "run.html",
+            "scene.toml",
             "state.json"
         ]
     );
@@ -166,7 +169,11 @@ fn a_load_far_too_large_leaves_no_cut_file_unless_it_is_forced() {
     let designed = run(&scene, None).unwrap();
     let report = write_results(&scene, &designed, true).unwrap();
     assert!(hinges(&report, Concern::Overstrained).is_some(), "{report}");
-    assert!(report.cut_file && folder.path().join("run/cut.dxf").exists());
+    assert!(report.cut_file);
+    for name in ["run/cut.dxf", "run/cut.svg"] {
+        let text = std::fs::read_to_string(folder.path().join(name)).unwrap();
+        assert!(text.contains(FORCED) && text.contains("ERRORS"), "{name}");
+    }
     let report = write_results(&scene, &designed, false).unwrap();
     assert!(!report.cut_file && report.errors().count() > 0);
     for name in CUT_FILES {

@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use support::program::ToolError;
 use support::toml_file::{self, ConfigError};
+use support::worker_pool::NoThread;
 
 /// A campaign as configured, with its material.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,6 +60,8 @@ pub enum CampaignError {
     Tool(#[from] ToolError),
     #[error(transparent)]
     File(#[from] FileError),
+    #[error(transparent)]
+    Thread(#[from] NoThread),
     #[error(
         "{folder} contains the campaign `{found}`, not `{asked}`: choose another folder",
         folder = .folder.display()

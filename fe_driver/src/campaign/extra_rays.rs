@@ -105,7 +105,7 @@ pub fn add_extra_rays(path: &Path, rays: &[Ray]) -> Result<Added, ExtraRaysError
         source,
     };
     let mut bytes = match rows.len() > count.added {
-        true => std::fs::read(path).map_err(unwritable)?,
+        true => support::regular_file::read(path).map_err(unwritable)?,
         false => Vec::new(),
     };
     if bytes.last().is_some_and(|last| *last != b'\n') {

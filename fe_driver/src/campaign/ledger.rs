@@ -11,7 +11,7 @@ use crate::campaign::definition::{Campaign, CampaignError};
 use crate::campaign::history::History;
 use crate::campaign::host::{host, lock};
 use crate::campaign::job::{JobFolder, JobRecord, JobSpec, JobState};
-use crate::campaign::shard::Shard;
+use crate::campaign::shard_history::{history_name, overlaps};
 use crate::record_file::{FileError, read_json, write_json};
 use crate::window::failure::FailureKind;
 use crate::window::versions::ToolVersions;
@@ -19,6 +19,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{DirEntry, File};
 use std::path::{Path, PathBuf};
+use support::shard::Shard;
 use support::whole_file;
 
 /// The folder of a campaign.
@@ -90,12 +91,12 @@ impl CampaignFolder {
             self.refuse_other_versions(index)?;
         }
         for entry in entries(&home)? {
-            if shard.overlaps(&entry.file_name().to_string_lossy()) {
+            if overlaps(shard, &entry.file_name().to_string_lossy()) {
                 History::open(&entry.path())?;
             }
         }
         write_json(&self.index_path(), index)?;
-        History::open(&home.join(shard.history()))
+        History::open(&home.join(history_name(shard)))
     }
 
     /// Rejects versions of gmsh and ccx other than those with which the campaign was last run. Only the rows of one

@@ -3,12 +3,12 @@
 use crate::campaign::definition::{Campaign, CampaignError};
 use crate::campaign::job::{JobRecord, JobSpec, JobState};
 use crate::campaign::ledger::{CampaignFolder, Index, Tally};
-use crate::campaign::shard::Shard;
 use crate::record_file::or_damage;
 use crate::window::versions::ToolVersions;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
+use support::shard::Shard;
 
 /// The work that a run would do.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -5,10 +5,10 @@ use crate::campaign::finished::FinishedJob;
 use crate::campaign::history::{Event, now};
 use crate::campaign::job::{JobRecord, JobState};
 use crate::campaign::ledger::{CampaignFolder, Index};
-use crate::campaign::shard::Shard;
 use crate::window::versions::ToolVersions;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
+use support::shard::Shard;
 
 /// Numbers of jobs that were restored, already present, and foreign.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

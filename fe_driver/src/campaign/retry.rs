@@ -4,9 +4,9 @@ use crate::campaign::definition::CampaignError;
 use crate::campaign::history::Event;
 use crate::campaign::job::JobState;
 use crate::campaign::ledger::CampaignFolder;
-use crate::campaign::shard::Shard;
 use crate::window::failure::{FailureKind, RetryStep};
 use std::path::Path;
+use support::shard::Shard;
 
 /// Reopens the closed jobs in `folder` that failed, or only those with one kind of failure, and returns their number.
 ///

@@ -1,4 +1,4 @@
-//! Running a campaign: workers solve jobs, and one dispatcher records their state.
+//! Running a campaign: workers solve jobs, and one thread records their state.
 //!
 //! A job is done when its `result.json` exists. A run can therefore be killed at any time; at most the jobs in
 //! flight are lost. A missing tool or a full disk stops the run immediately, because every other job would
@@ -8,17 +8,17 @@ use crate::campaign::definition::{Campaign, CampaignError};
 use crate::campaign::history::{Event, History, now};
 use crate::campaign::job::{JobFolder, JobRecord, JobSpec};
 use crate::campaign::ledger::{CampaignFolder, Index, Tally};
-use crate::campaign::shard::Shard;
 use crate::record_file::FileError;
 use crate::window::failure::{FailureKind, RetryStep};
 use crate::window::solve::{SolveError, Tools, solve_window};
 use crate::window::versions::ToolVersions;
 use mesher::MeshError;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use support::program::ToolError;
+use support::shard::Shard;
+use support::worker_pool::{Reports, work_through};
 
 /// Which jobs a run works on, and how.
 #[derive(Clone, Copy, Debug)]
@@ -61,7 +61,7 @@ impl Job {
     }
 }
 
-/// A message from a worker to the dispatcher.
+/// A message from a worker.
 enum Message {
     /// The record of a job when a worker takes it up; another host may have changed it since the run began.
     Found {
@@ -80,9 +80,6 @@ enum Message {
     /// The run cannot continue.
     Halted(CampaignError),
 }
-
-/// Interval at which the dispatcher checks the stop flag.
-const GLANCE: Duration = Duration::from_millis(100);
 
 /// Runs the open jobs of `campaign` in `folder`, and the failed jobs that have a retry left.
 /// `progress` is called at the start and after each message of a worker.
@@ -112,62 +109,24 @@ pub fn run(
         .collect::<Result<Vec<_>, _>>()?;
 
     let mut books = Books::new(history, &jobs);
-    let (next, halt) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let (sender, receiver) = mpsc::channel();
-    std::thread::scope(|scope| {
-        for _ in 0..options.workers.max(1) {
-            let (sender, jobs, next, halt) = (sender.clone(), &jobs, &next, &halt);
-            let send = move |message| {
-                if sender.send(message).is_err() {
-                    // The dispatcher has exited.
-                    halt.store(true, Ordering::Relaxed);
-                }
-            };
-            let worker = Worker {
-                tools,
-                limit: campaign.time_limit,
-                deadline,
-                halt,
-            };
-            scope.spawn(move || {
-                while worker.may_start() {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(job) = jobs.get(index) else { break };
-                    if let Err(error) = worker.climb(job, index, &send) {
-                        send(Message::Halted(error));
-                    }
-                }
-            });
+    progress(&books.progress());
+    let work = |index: usize, reports: &Reports<Message>| {
+        let worker = Worker {
+            tools,
+            limit: campaign.time_limit,
+            deadline,
+            halt: reports.halt(),
+        };
+        if let Err(error) = worker.climb(&jobs[index], index, reports) {
+            reports.send(Message::Halted(error));
         }
-        drop(sender);
-        dispatch(receiver, &mut books, stop, &halt, progress)
+    };
+    work_through(jobs.len(), options.workers, stop, &work, &mut |message| {
+        let noted = books.note(message);
+        progress(&books.progress());
+        noted
     })?;
     Ok(books.progress())
-}
-
-/// Records the messages until every worker has exited; halts the workers on an error or on request.
-fn dispatch(
-    receiver: Receiver<Message>,
-    books: &mut Books,
-    stop: &AtomicBool,
-    halt: &AtomicBool,
-    progress: &mut dyn FnMut(&Progress),
-) -> Result<(), CampaignError> {
-    progress(&books.progress());
-    let mut outcome = Ok(());
-    loop {
-        match receiver.recv_timeout(GLANCE) {
-            Ok(message) => {
-                outcome = outcome.and(books.note(message));
-                progress(&books.progress());
-            }
-            Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => return outcome,
-        }
-        if outcome.is_err() || stop.load(Ordering::Relaxed) {
-            halt.store(true, Ordering::Relaxed);
-        }
-    }
 }
 
 /// A worker, which solves jobs.
@@ -191,20 +150,28 @@ impl Worker<'_> {
     }
 
     /// Makes the attempts of the retry ladder of one job until the job is closed or the run ends.
-    fn climb(&self, job: &Job, index: usize, send: &dyn Fn(Message)) -> Result<(), CampaignError> {
+    fn climb(
+        &self,
+        job: &Job,
+        index: usize,
+        reports: &Reports<Message>,
+    ) -> Result<(), CampaignError> {
+        if !self.may_start() {
+            return Ok(());
+        }
         let mut record = job.folder.ended()?;
-        send(Message::Found {
+        reports.send(Message::Found {
             job: index,
             record: record.clone(),
         });
         while self.may_start()
             && let Some(rung) = record.as_ref().map_or(Some(RetryStep::AsAsked), |r| r.next)
         {
-            send(Message::Started { job: index, rung });
+            reports.send(Message::Started { job: index, rung });
             let Some(ended) = self.attempt(job, rung, record)? else {
                 return Ok(());
             };
-            send(Message::Ended {
+            reports.send(Message::Ended {
                 job: index,
                 rung,
                 record: ended.clone(),

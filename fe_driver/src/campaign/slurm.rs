@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use support::whole_file;
+use support::{verbose, whole_file};
 
 /// Why an array was not submitted.
 #[derive(Debug, thiserror::Error)]
@@ -217,6 +217,7 @@ fn state(line: &str) -> Option<(String, String)> {
 
 /// What a program of Slurm prints.
 fn output(program: &'static str, command: &mut Command) -> Result<String, SlurmError> {
+    verbose::note(|| format!("running {command:?}"));
     let output = command
         .output()
         .map_err(|source| SlurmError::NotFound { program, source })?;

@@ -41,7 +41,7 @@ pub(super) struct TextRow {
 
 impl NumberTable {
     pub fn read(path: &Path) -> Result<Self, TensileError> {
-        let bytes = std::fs::read(path).map_err(|source| TensileError::Read {
+        let bytes = support::regular_file::read(path).map_err(|source| TensileError::Read {
             path: path.to_owned(),
             source,
         })?;

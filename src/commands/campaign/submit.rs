@@ -7,6 +7,7 @@ use clap::Args;
 use fe_driver::{ArrayScript, SLURM, ToolVersions, Tools, slurm_folder, submit_array};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf, absolute};
+use support::regular_file;
 
 /// Solve a campaign on a cluster: submit it to Slurm as an array of jobs
 ///
@@ -76,7 +77,7 @@ impl SubmitCommand {
     fn script(&self, folder: &Path) -> Result<String> {
         let template = match &self.template {
             None => SLURM.to_owned(),
-            Some(path) => std::fs::read_to_string(path)
+            Some(path) => regular_file::read_to_string(path)
                 .with_context(|| format!("cannot read {}", path.display()))?,
         };
         let script = ArrayScript {

@@ -4,6 +4,7 @@ use anyhow::{Result, ensure};
 use clap::Args;
 use design::pattern::design_vector::DesignVector;
 use design::scene::design_run::stored_design;
+use design::scene::run_inputs::{STATE_FILE, scene_file};
 use design::scene::{Scene, SceneConfig};
 use serde::Serialize;
 use std::fmt::Display;
@@ -16,10 +17,11 @@ pub(crate) const DESIGN_OF_RUN: &str = "Design (JSON): the state.json of a run, 
 /// A scene and a design of its sheet.
 #[derive(Args)]
 pub struct Inspected {
-    /// Scene (TOML); see configs/scenes
+    /// Scene (TOML); see configs/scenes. Or the folder of a run, which holds its scene, material and weights
     #[arg(value_name = "SCENE")]
     scene: PathBuf,
-    /// Design (JSON): the state.json of a run, or a design alone [default: the start design of the scene]
+    /// Design (JSON): the state.json of a run, or a design alone [default: the start design of the scene, or
+    /// the design of the run]
     #[arg(long, value_name = "FILE")]
     design: Option<PathBuf>,
     /// Weights of the hinge energy, instead of the scene's
@@ -51,6 +53,7 @@ impl Inspected {
         let scene = self.scene()?;
         let design = match &self.design {
             Some(path) => stored_design(path, &scene)?,
+            None if self.scene.is_dir() => stored_design(&self.scene.join(STATE_FILE), &scene)?,
             None => scene.start(),
         };
         Ok((scene, design))
@@ -61,7 +64,7 @@ impl Inspected {
         let scene = self.scene()?;
         let path = match &self.design {
             Some(path) => path.clone(),
-            None => scene.output().join("state.json"),
+            None => scene.output().join(STATE_FILE),
         };
         ensure!(
             self.design.is_some() || path.exists(),
@@ -74,11 +77,12 @@ impl Inspected {
     }
 
     fn scene(&self) -> Result<Scene> {
-        let mut config: SceneConfig = toml_file::read(&self.scene)?;
+        let path = scene_file(&self.scene)?;
+        let mut config: SceneConfig = toml_file::read(&path)?;
         if let Some(weights) = &self.weights {
             config.name_weights(weights)?;
         }
-        Ok(Scene::new(config, &self.scene)?)
+        Ok(Scene::new(config, &path)?)
     }
 }
 

@@ -5,6 +5,7 @@ use clap::Args;
 use hinge::{HingeDeformation, HingeDesign};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
+use support::regular_file;
 use surrogate::{Order, Surrogate};
 
 /// Evaluate energy, forces, tangent and damage at the hinge states of a CSV file
@@ -131,8 +132,9 @@ fn answers(surrogate: &Surrogate, states: &[State]) -> Vec<Answer> {
 }
 
 fn read_states(path: &Path) -> Result<Vec<State>> {
-    let mut reader =
-        csv::Reader::from_path(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let bytes =
+        regular_file::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let mut reader = csv::Reader::from_reader(bytes.as_slice());
     let rows: Result<Vec<StateRow>, _> = reader.deserialize().collect();
     let rows = rows.with_context(|| format!("{} contains no hinge states", path.display()))?;
     let states: Result<Vec<State>> = rows.iter().map(StateRow::state).collect();

@@ -4,6 +4,7 @@
 //! direction with the density of uniform states. With R the distance to the boundary along it and u uniform in
 //! (0, 1), the state at the distance R u^(1/3) is again uniform. Several states can therefore lie on one ray.
 
+use crate::commands::input_file;
 use crate::commands::inspect::scene_args::Inspected;
 use crate::commands::surrogate::errors::StateErrors;
 use crate::replays::kept_solves::{Outcome, SolveArgs};
@@ -86,6 +87,7 @@ impl SpotCheckCommand {
     pub fn run(&self) -> Result<()> {
         ensure!(self.count > 0, "--count must be at least 1");
         let surrogate = Surrogate::load(&self.weights)?;
+        input_file::require(&self.material, "--material")?;
         let material = SheetMaterial::load(&self.material)?;
         let card = surrogate.card();
         ensure!(

@@ -29,7 +29,7 @@ fn parity_chart(
     [computed, judged]: [&str; 2],
 ) -> ChartResult {
     // Quantities that the finite elements did not evaluate are NaN and get no mark.
-    let known = || points.iter().filter(|p| !p.target.is_nan());
+    let known = || points.iter().filter(|p| !(p.target - p.predicted).is_nan());
     let range = padded(known().flat_map(|p| [p.target, p.predicted]));
     let mut chart = ChartBuilder::on(area)
         .caption(title, (FONT, 15))

@@ -17,11 +17,13 @@ pub enum Layer {
     Registration,
     /// Numbers, scale and cutting instructions.
     Annotation,
+    /// The errors of a design whose files were forced.
+    Errors,
 }
 
 impl Layer {
     /// All layers in the order of cutting.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Holes,
         Self::Cut,
         Self::Joint,
@@ -29,6 +31,7 @@ impl Layer {
         Self::Panels,
         Self::Registration,
         Self::Annotation,
+        Self::Errors,
     ];
 
     /// The name of the layer in DXF and SVG.
@@ -41,6 +44,7 @@ impl Layer {
             Self::Panels => "PANELS",
             Self::Registration => "REGISTRATION",
             Self::Annotation => "ANNOTATION",
+            Self::Errors => "ERRORS",
         }
     }
 
@@ -58,6 +62,7 @@ impl Layer {
             Self::Outline | Self::Panels => [0, 0, 0],
             Self::Registration => [0, 128, 0],
             Self::Annotation => [128, 128, 128],
+            Self::Errors => [255, 128, 0],
         }
     }
 }

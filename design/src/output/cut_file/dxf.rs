@@ -274,6 +274,7 @@ fn colour_index(layer: Layer) -> u8 {
         Layer::Joint => 6,
         Layer::Outline | Layer::Panels => 7,
         Layer::Annotation => 8,
+        Layer::Errors => 30,
     }
 }
 

@@ -94,23 +94,33 @@ fn registration_marks(drawing: &mut CutDrawing, over_run: f64) {
     }
 }
 
+/// The height of lines of text of which the longest is at most as wide as the cuts of a drawing (mm).
+pub(super) fn text_height(drawing: &CutDrawing, lines: &[String]) -> f64 {
+    let [left, right] = CutDrawing::extent(drawing.cuts()).map(|corner| corner[0]);
+    let width = right - left;
+    let widths = lines
+        .iter()
+        .map(|line| text_line([0.0; 2], 1.0, line).size()[0]);
+    let longest = widths.fold(0.0, f64::max);
+    f64::min(NOTE_HEIGHT * width, width / longest).max(MIN_NOTE_HEIGHT)
+}
+
+/// A text that begins at the point `at`.
+pub(super) fn text_line(at: [f64; 2], height: f64, text: &str) -> Text {
+    Text {
+        at,
+        centred: false,
+        height,
+        text: text.to_owned(),
+    }
+}
+
 /// A scale bar and lines of text below the drawing.
 pub(super) fn note(drawing: &mut CutDrawing, lines: &[String]) {
-    let [left, right] = CutDrawing::extent(drawing.cuts()).map(|corner| corner[0]);
+    let left = CutDrawing::extent(drawing.cuts())[0][0];
     let [[_, bottom], _] = drawing.bounds();
-    let width = right - left;
-    let text = |at, height, text: &str| {
-        Shape::Text(Text {
-            at,
-            centred: false,
-            height,
-            text: text.to_owned(),
-        })
-    };
-    // The longest line is at most as wide as the sheet.
-    let longest = lines.iter().map(|line| text([0.0; 2], 1.0, line));
-    let [_, [longest, _]] = CutDrawing::extent(longest.collect::<Vec<_>>().iter());
-    let height = f64::min(NOTE_HEIGHT * width, width / longest).max(MIN_NOTE_HEIGHT);
+    let text = |at, height, text: &str| Shape::Text(text_line(at, height, text));
+    let height = text_height(drawing, lines);
 
     let mut y = bottom - 2.5 * height;
     let tick = 0.4 * height;

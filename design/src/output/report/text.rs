@@ -3,6 +3,7 @@
 use crate::objective::scores::{Scores, shown};
 use crate::output::report::columns::{columns, fixed};
 use crate::output::report::{HingeRow, Report, Severity};
+use crate::scene::HingeModel;
 use std::cmp::Ordering;
 use std::fmt;
 
@@ -79,7 +80,9 @@ impl Report {
             let mut rows = vec![("outline error (mm)", of.outline_error)];
             rows.extend(of.terms());
             rows.push(("loss (mm^2)", of.loss));
-            rows.push(("inside domain (%)", 100.0 * of.share_inside));
+            if self.facts.hinge == HingeModel::Surrogate {
+                rows.push(("inside domain (%)", 100.0 * of.share_inside));
+            }
             rows
         };
         let mut table = vec![["", "start", "best"].map(str::to_owned).to_vec()];

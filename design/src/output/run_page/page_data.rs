@@ -108,7 +108,10 @@ impl<'a> PageData<'a> {
 
 /// The keys of the scene as TOML.
 fn scene_text(scene: &Scene) -> String {
-    let mut text = toml::to_string(&scene.config).unwrap_or_else(|error| error.to_string());
+    let mut text = scene
+        .config
+        .to_toml()
+        .unwrap_or_else(|error| error.to_string());
     if text.len() > MOST_TEXT {
         text.truncate(text.floor_char_boundary(MOST_TEXT));
         text += "\n# ... the scene file contains the rest\n";

@@ -1,0 +1,212 @@
+//! The inputs of a run, copied to its folder: the design can be replayed where scene, material and weights are missing.
+//!
+//! | file | contents |
+//! |---|---|
+//! | `scene.toml` | the keys of the run; its paths name the files below |
+//! | `inputs/material.toml` | the material, with its measured curve as `plastic` |
+//! | `inputs/target.csv`, `.svg` | the target, if the scene names a file |
+//! | `inputs/weights.safetensors`, `.json` | weights and card, if the hinge law reads them |
+//! | `inputs/ensemble-N.safetensors`, `.json` | the further networks, from 1 |
+//!
+//! The state of the run holds the BLAKE3 hash of each of them.
+
+use crate::scene::checked_scene::Scene;
+use crate::scene::hinge_model::HingeModel;
+use crate::scene::keys::SceneConfig;
+use crate::scene::relative_path::beside;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+use support::sealed_json::{self, SealError};
+use support::{regular_file, whole_file};
+
+/// The state of a run, in its folder.
+pub const STATE_FILE: &str = "state.json";
+/// The scene of a run, in its folder.
+const SCENE_FILE: &str = "scene.toml";
+const FOLDER: &str = "inputs";
+
+/// The BLAKE3 hash of every input of a run, by its path relative to the run folder.
+pub(super) type InputHashes = BTreeMap<String, String>;
+
+/// Why the inputs of a run cannot be written or read.
+#[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
+pub enum RunInputsError {
+    #[error("cannot use {path}: {source}", path = .path.display())]
+    File { path: PathBuf, source: io::Error },
+    #[error("{path} is a folder without the state of a run: name a scene, or the folder of a run", path = .path.display())]
+    NoRun { path: PathBuf },
+    #[error("{path} is not the state of a run: {source}", path = .path.display())]
+    State { path: PathBuf, source: SealError },
+    #[error(
+        "{path} names no copies of its inputs, because the run was made by an earlier version of kirigami: name its \
+         scene, and the state with --design; or run its scene again",
+        path = .path.display()
+    )]
+    Earlier { path: PathBuf },
+    #[error(
+        "{path} is not the file that the run was made with (BLAKE3 {found}, not {expected}): copy the whole run folder \
+         again, or run `kirigami design` with the scene again",
+        path = .path.display()
+    )]
+    Changed {
+        path: PathBuf,
+        expected: String,
+        found: String,
+    },
+}
+
+/// The scene file that `path` names: itself, or if it is the folder of a run, the scene of the run, after a check that
+/// none of the copied inputs has changed.
+pub fn scene_file(path: &Path) -> Result<PathBuf, RunInputsError> {
+    /// The part of a run's state that names its inputs.
+    #[derive(Deserialize)]
+    struct Named {
+        inputs: Option<InputHashes>,
+    }
+    if !path.is_dir() {
+        return Ok(path.to_owned());
+    }
+    let state = path.join(STATE_FILE);
+    if !state.exists() {
+        let path = path.to_owned();
+        return Err(RunInputsError::NoRun { path });
+    }
+    let text = read(&state)?;
+    let named: Named = match sealed_json::from_slice(&text) {
+        Ok(named) => named,
+        Err(source) => {
+            let path = state;
+            return Err(RunInputsError::State { path, source });
+        }
+    };
+    let Some(hashes) = named.inputs else {
+        return Err(RunInputsError::Earlier { path: state });
+    };
+    for (name, expected) in hashes {
+        let path = path.join(name);
+        let found = blake3::hash(&read(&path)?).to_hex().to_string();
+        if found != expected {
+            return Err(RunInputsError::Changed {
+                path,
+                expected,
+                found,
+            });
+        }
+    }
+    Ok(path.join(SCENE_FILE))
+}
+
+/// Copies the files that a scene reads to its run folder, and writes the scene that names the copies.
+pub(super) fn keep(scene: &Scene) -> Result<InputHashes, RunInputsError> {
+    let mut kept = Kept {
+        scene,
+        hashes: InputHashes::new(),
+    };
+    let folder = scene.output().join(FOLDER);
+    whole_file::create_folder(&folder).map_err(at(&folder))?;
+    let mut config = scene.config.without_unread_weights();
+    config.output = ".".into();
+    config.material = kept.write(
+        &format!("{FOLDER}/material.toml"),
+        &toml(&scene.measured, &folder)?,
+    )?;
+    if let Some((file, kind)) = config.target.file_mut() {
+        let name = format!("{FOLDER}/target.{kind}");
+        *file = kept.copy(&beside(&scene.path, file), &name)?;
+    }
+    for (i, weights) in config.weights_mut().into_iter().enumerate() {
+        let stem = match i {
+            0 => format!("{FOLDER}/weights"),
+            _ => format!("{FOLDER}/ensemble-{i}"),
+        };
+        let original = beside(&scene.path, weights);
+        kept.copy(&original.with_extension("json"), &format!("{stem}.json"))?;
+        *weights = kept.copy(&original, &format!("{stem}.safetensors"))?;
+    }
+    kept.write(SCENE_FILE, &toml(&config, &folder)?)?;
+    Ok(kept.hashes)
+}
+
+/// The files that were written to a run folder.
+struct Kept<'a> {
+    scene: &'a Scene,
+    hashes: InputHashes,
+}
+
+impl Kept<'_> {
+    /// Writes a file unless it has these contents already; returns its path relative to the run folder.
+    fn write(&mut self, name: &str, contents: &[u8]) -> Result<PathBuf, RunInputsError> {
+        let path = self.scene.output().join(name);
+        if !path.exists() || read(&path)? != contents {
+            whole_file::write(&path, contents).map_err(at(&path))?;
+        }
+        let hash = blake3::hash(contents).to_hex().to_string();
+        self.hashes.insert(name.to_owned(), hash);
+        Ok(name.into())
+    }
+
+    fn copy(&mut self, from: &Path, name: &str) -> Result<PathBuf, RunInputsError> {
+        let contents = read(from)?;
+        self.write(name, &contents)
+    }
+}
+
+impl SceneConfig {
+    /// The same scene without paths: two scenes that differ in paths alone describe one design problem if the files agree.
+    pub(super) fn without_paths(&self) -> Self {
+        let mut config = self.without_unread_weights();
+        if let Some(learned) = &mut config.surrogate {
+            learned.ensemble.clear();
+        }
+        for path in config.weights_mut() {
+            *path = PathBuf::new();
+        }
+        if let Some((file, _)) = config.target.file_mut() {
+            *file = PathBuf::new();
+        }
+        config.material = PathBuf::new();
+        config.output = PathBuf::new();
+        config
+    }
+
+    /// The same scene without the sections of weights that its hinge law does not read.
+    fn without_unread_weights(&self) -> Self {
+        let mut config = self.clone();
+        if config.hinge != HingeModel::Surrogate {
+            config.surrogate = None;
+        }
+        if config.hinge != HingeModel::Linear {
+            config.condensed = None;
+        }
+        config
+    }
+
+    /// The paths of all weights, those of the hinge law first.
+    fn weights_mut(&mut self) -> Vec<&mut PathBuf> {
+        let learned = self.surrogate.iter_mut();
+        let learned =
+            learned.flat_map(|file| std::iter::once(&mut file.weights).chain(&mut file.ensemble));
+        let condensed = self.condensed.iter_mut().map(|file| &mut file.weights);
+        learned.chain(condensed).collect()
+    }
+}
+
+fn toml(value: &impl Serialize, folder: &Path) -> Result<Vec<u8>, RunInputsError> {
+    let text = toml::to_string(value).map_err(io::Error::other);
+    Ok(text.map_err(at(folder))?.into_bytes())
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, RunInputsError> {
+    regular_file::read(path).map_err(at(path))
+}
+
+fn at(path: &Path) -> impl FnOnce(io::Error) -> RunInputsError {
+    let path = path.to_owned();
+    |source| RunInputsError::File { path, source }
+}

@@ -1,0 +1,96 @@
+//! The training domain of given states.
+
+use crate::domain::TrainingDomain;
+use crate::domain::directions::{DIRECTION, DIRECTIONS, dot, norm};
+use crate::{HingeDeformation, HingeDesign};
+use std::array::from_fn;
+
+/// Maximum number of widths at which the supports are stored.
+pub(super) const MOST_WIDTHS: usize = 5;
+/// Number of states per stored width: about a hundred rays.
+const STATES_A_WIDTH: usize = 4000;
+/// A state contributes to a stored width if their distance is at most this fraction of the step between widths.
+const REACH: f64 = 0.75;
+/// Minimum support and minimum half-range, so that a domain of one state has a non-zero size.
+const LEAST_SIZE: f64 = 0.01;
+/// Maximum gamma of the flat state, where W and its gradient vanish for any weights.
+const FLAT: f64 = 0.98;
+
+impl TrainingDomain {
+    /// The domain of the given states and the flat state; `None` if no state is given.
+    pub fn covering<'a>(
+        states: impl IntoIterator<Item = (&'a HingeDesign, &'a HingeDeformation)>,
+    ) -> Option<Self> {
+        let states: Vec<([f64; 3], &HingeDesign)> = states
+            .into_iter()
+            .map(|(design, deformation)| {
+                let [eta_a, eta_s] = deformation.eta(design.w_lig);
+                ([eta_a, eta_s, deformation.theta], design)
+            })
+            .collect();
+        if states.is_empty() {
+            return None;
+        }
+        let count = states.len() as f64;
+        let mut domain = Self {
+            w_lig: interval(states.iter().map(|(_, design)| design.w_lig)),
+            alpha: interval(states.iter().map(|(_, design)| design.alpha)),
+            centre: from_fn(|i| states.iter().map(|(x, _)| x[i]).sum::<f64>() / count),
+            half_range: from_fn(|i| {
+                let [minimum, maximum] = interval(states.iter().map(|(x, _)| x[i]));
+                (0.5 * (maximum.max(0.0) - minimum.min(0.0))).max(LEAST_SIZE)
+            }),
+            supports: Vec::new(),
+        };
+        let widths = (states.len() / STATES_A_WIDTH).clamp(1, MOST_WIDTHS);
+        let places: Vec<f64> = states
+            .iter()
+            .map(|(_, g)| domain.along(g.w_lig, widths))
+            .collect();
+        domain.supports = (0..widths)
+            .map(|width| {
+                let near = std::iter::zip(&states, &places)
+                    .filter(|(_, place)| (*place - width as f64).abs() <= REACH)
+                    .map(|((x, _), _)| domain.scaled(*x));
+                domain.support(near)
+            })
+            .collect();
+        Some(domain)
+    }
+
+    /// The domain of a box of states; an interval may have zero length.
+    pub fn of_box(state: [[f64; 2]; 3], w_lig: [f64; 2], alpha: [f64; 2]) -> Self {
+        let mut domain = Self {
+            w_lig,
+            alpha,
+            centre: state.map(|[minimum, maximum]| 0.5 * (minimum + maximum)),
+            half_range: state.map(|[minimum, maximum]| (0.5 * (maximum - minimum)).max(LEAST_SIZE)),
+            supports: Vec::new(),
+        };
+        let corners = (0..8).map(|k| from_fn(|i| state[i][(k >> i) & 1]));
+        let corners: Vec<[f64; 3]> = corners.map(|corner| domain.scaled(corner)).collect();
+        domain.supports = vec![domain.support(corners)];
+        domain
+    }
+
+    /// s(m) of scaled states and of the flat state, which must be inside the domain.
+    fn support(&self, states: impl IntoIterator<Item = [f64; 3]>) -> [f64; DIRECTIONS] {
+        let flat = self.scaled([0.0; 3]);
+        let along = |y: [f64; 3]| -> [f64; DIRECTIONS] { from_fn(|m| dot(DIRECTION[m], y)) };
+        let minimum = along(flat).map(|s| s.max(LEAST_SIZE));
+        let support = states.into_iter().fold(minimum, |support, y| {
+            let along = along(y);
+            from_fn(|m| along[m].max(support[m]))
+        });
+        let grown = norm(from_fn(|m| dot(DIRECTION[m], flat) / support[m])) / FLAT;
+        support.map(|s| grown.max(1.0) * s)
+    }
+}
+
+/// The smallest interval that holds every value.
+fn interval(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold(
+        [f64::INFINITY, f64::NEG_INFINITY],
+        |[minimum, maximum], x| [x.min(minimum), x.max(maximum)],
+    )
+}

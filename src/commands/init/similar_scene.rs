@@ -1,0 +1,243 @@
+//! A scene like another one, for a sheet of another thickness, size or material.
+//!
+//! With lambda the ratio of the thicknesses, mu that of the sizes and e that of Young's moduli, ligaments and windows grow
+//! with lambda, the sheet and its displacements with mu. The energy of a hinge at an equal rotation grows with
+//! e lambda^3, so couples do too, forces with e lambda^3 / mu, and the stiffnesses k_a and k_s with e lambda.
+
+use crate::commands::init::edited::rounded;
+use crate::ui::progress::Progress;
+use anyhow::{Context, Result, bail, ensure};
+use design::objective::target::TargetShape;
+use design::scene::run_inputs::scene_file;
+use design::scene::{HingeModel, Scene, SceneConfig};
+use hinge::SheetMaterial;
+use std::path::{Path, absolute};
+
+/// Maximum relative difference of the ratios of widths and of heights.
+const SAME_SHAPE: f64 = 0.01;
+/// Powers of two between which the factor of the loads is looked for, and the number of times that they are halved.
+const POWERS: [f64; 2] = [-6.0, 6.0];
+const HALVINGS: usize = 10;
+
+/// Ratios of the new sheet to the original one.
+#[derive(Clone, Copy, Debug)]
+struct Ratios {
+    /// lambda.
+    thickness: f64,
+    /// mu.
+    size: f64,
+    /// e.
+    young: f64,
+}
+
+/// A scene for a new sheet, and the scene that it is like.
+pub(super) struct SimilarScene {
+    original: Scene,
+    config: SceneConfig,
+}
+
+impl SimilarScene {
+    /// The scene at `path` for a sheet of `material`, in its thickness. The width and height (mm) are by default those of
+    /// the original in proportion to the thickness.
+    pub(super) fn new(
+        path: &Path,
+        material: &SheetMaterial,
+        size: Option<[f64; 2]>,
+    ) -> Result<Self> {
+        let path = scene_file(path)?;
+        let original = Scene::read(&path)?;
+        let mut config = original.config.clone();
+        let thickness = material.thickness / original.material.thickness;
+        let ratios = Ratios {
+            thickness,
+            size: match size {
+                Some(size) => proportion(&config, size)?,
+                None => thickness,
+            },
+            young: material.young / original.material.young,
+        };
+        ratios.apply(&mut config);
+        match &mut config.target {
+            TargetShape::Csv { .. } if ratios.size != 1.0 => bail!(
+                "the target of {} is a table of points, which is not scaled: scale its file and name it in the new scene, \
+                 or use a target.svg",
+                path.display()
+            ),
+            TargetShape::Csv { file } | TargetShape::Svg { file, .. } => {
+                *file = absolute(path.parent().unwrap_or(Path::new("")).join(&*file))?;
+            }
+            _ => {}
+        }
+        config.title = format!("Like: {}", config.title);
+        config.thickness = Some(material.thickness);
+        config.output = "design".into();
+        Ok(Self { original, config })
+    }
+
+    /// The scene file, in a folder with `material.toml`. With weights for `material`, the loads are those at which the
+    /// hinges of the new start rotate as those of the original one.
+    pub(super) fn text(mut self, weights: &Path, material: Option<&Path>) -> Result<String> {
+        if let Some(learned) = &mut self.config.surrogate {
+            learned.weights = weights.to_owned();
+            learned.ensemble.clear();
+        }
+        if let Some(condensed) = &mut self.config.condensed {
+            condensed.weights = weights.to_owned();
+        }
+        if let Some(material) = material {
+            self.config.material = absolute(material)?;
+            self.fit_loads()?;
+        }
+        self.config.material = "material.toml".into();
+        let text = self
+            .config
+            .to_toml()
+            .context("cannot write the scene as TOML")?;
+        Ok(format!(
+            "# A scene like another one, written by `kirigami init`.\n\
+             # Lengths in mm, forces in N, couples in N mm; paths are relative to this file.\n\n{text}"
+        ))
+    }
+
+    /// Multiplies the loads by the factor at which the root mean square of the rotations at full load is that of the
+    /// original scene. Loads of which only the stroke counts are left as they are.
+    fn fit_loads(&mut self) -> Result<()> {
+        let free = self.config.loads.is_empty()
+            && self.config.edge_loads.is_empty()
+            && self.config.opening_couples.is_empty();
+        if free || self.config.drive.is_some() || self.config.hinge == HingeModel::Pin {
+            return Ok(());
+        }
+        let Some(meant) = rotation(&self.original)? else {
+            return Ok(());
+        };
+        let bar = Progress::new(HALVINGS, "equilibria");
+        let [mut low, mut high] = POWERS;
+        for done in 0..HALVINGS {
+            bar.show(done, None, "first load");
+            let middle = 0.5 * (low + high);
+            match self.rotation_at(middle.exp2())? {
+                Some(found) if found < meant => low = middle,
+                _ => high = middle,
+            }
+        }
+        bar.finish();
+        self.config.scale_loads((0.5 * (low + high)).exp2());
+        for load in &mut self.config.loads {
+            load.force = load.force.map(rounded);
+            load.couple = rounded(load.couple);
+        }
+        Ok(())
+    }
+
+    /// The rotation under the loads times `factor`.
+    fn rotation_at(&self, factor: f64) -> Result<Option<f64>> {
+        let mut config = self.config.clone();
+        config.scale_loads(factor);
+        rotation(&Scene::new(config, &absolute("scene.toml")?)?)
+    }
+}
+
+/// Root mean square of the rotations of the start at full load (rad); `None` if that is not reached.
+fn rotation(scene: &Scene) -> Result<Option<f64>> {
+    let deployment = scene.problem()?.deploy(&scene.start())?;
+    let Ok(last) = deployment.at_full_load() else {
+        return Ok(None);
+    };
+    let squares = last.deformations.iter().map(|state| state.theta.powi(2));
+    Ok(Some(
+        (squares.sum::<f64>() / last.deformations.len() as f64).sqrt(),
+    ))
+}
+
+/// Ratio of the sizes of two rectangles of one shape.
+fn proportion(config: &SceneConfig, size: [f64; 2]) -> Result<f64> {
+    let sides = config.sheet.size.context(
+        "the sheet of --like is no rectangle: leave out --size, and it is in proportion to the thickness",
+    )?;
+    let [across, along] = [size[0] / sides[0], size[1] / sides[1]];
+    ensure!(
+        (across / along - 1.0).abs() <= SAME_SHAPE,
+        "--size {}x{} has another ratio of width to height than the sheet of --like, which is {} x {} mm: use {}x{:.1}",
+        size[0],
+        size[1],
+        sides[0],
+        sides[1],
+        size[0],
+        across * sides[1]
+    );
+    Ok(across)
+}
+
+impl Ratios {
+    fn apply(self, config: &mut SceneConfig) {
+        let Self {
+            thickness,
+            size,
+            young,
+        } = self;
+        let energy = young * thickness.powi(3);
+        let by = |factor: f64| move |x: f64| rounded(factor * x);
+        let sheet = &mut config.sheet;
+        sheet.size = sheet.size.map(|sides| sides.map(by(size)));
+        sheet.corners = (sheet.corners).map(|corners| corners.map(|corner| corner.map(by(size))));
+        let ligament = &mut config.ligament;
+        ligament.start = by(thickness)(ligament.start);
+        ligament.range = ligament.range.map(by(thickness));
+        for width in config.start.w_lig.iter_mut().flatten() {
+            *width = by(thickness)(*width);
+        }
+        // Not rounded: it must agree with the windows of the weights.
+        config.process.r_win *= thickness;
+        for support in &mut config.supports {
+            support.displacement = support.displacement.map(by(size));
+        }
+        for load in &mut config.loads {
+            load.force = load.force.map(by(energy / size));
+            load.couple = by(energy)(load.couple);
+        }
+        for load in &mut config.edge_loads {
+            load.traction = load.traction.map(by(energy / size.powi(2)));
+        }
+        for load in &mut config.opening_couples {
+            load.couple = by(energy)(load.couple);
+        }
+        if let Some(drive) = &mut config.drive {
+            drive.stroke = by(size)(drive.stroke);
+        }
+        if let Some(linear) = &mut config.linear {
+            linear.k_a = by(young * thickness)(linear.k_a);
+            linear.k_s = by(young * thickness)(linear.k_s);
+            linear.k_theta = by(energy)(linear.k_theta);
+        }
+        if let Some(contact) = &mut config.contact {
+            contact.stiffness = by(energy)(contact.stiffness);
+        }
+        config.objective.smoothing = by(size.powi(2))(config.objective.smoothing);
+        scale_target(&mut config.target, size);
+    }
+}
+
+fn scale_target(target: &mut TargetShape, factor: f64) {
+    let by = |x: f64| rounded(factor * x);
+    match target {
+        TargetShape::Circle { centre, radius } => {
+            *centre = centre.map(by);
+            *radius = by(*radius);
+        }
+        TargetShape::Rectangle { centre, size, .. } => {
+            *centre = centre.map(by);
+            *size = size.map(by);
+        }
+        TargetShape::Polygon { vertices } => {
+            for vertex in vertices {
+                *vertex = vertex.map(by);
+            }
+        }
+        TargetShape::Svg { centre, height, .. } => {
+            *centre = centre.map(by);
+            *height = by(*height);
+        }
+        TargetShape::Csv { .. } => {}
+    }
+}
