@@ -4,3 +4,4 @@ pub mod balanced_sheet;
 pub mod comparison;
 pub mod kept_solves;
 pub mod routes;
+pub mod spot_states;

@@ -12,8 +12,8 @@ mod run;
 mod status;
 mod submit;
 
-pub use collect::CollectCommand;
-pub use run::RunCommand;
+pub use collect::{CollectCommand, collected};
+pub use run::{RunCommand, refuse_unfinished, solve_rays};
 
 use anyhow::Result;
 use clap::{Args, Subcommand};

@@ -11,6 +11,7 @@ use crate::commands::input_file;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use hinge::SheetMaterial;
+use mesher::Tier;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use support::{regular_file, whole_file};
@@ -117,7 +118,7 @@ impl InitCommand {
             .file_name()
             .unwrap_or_default()
             .to_string_lossy();
-        let campaign = campaign(&name, measured.thickness / CAMPAIGN_THICKNESS)?;
+        let campaign = campaign(&name, measured.thickness, Tier::Default)?;
 
         std::fs::create_dir_all(&self.folder)
             .with_context(|| format!("cannot create {}", self.folder.display()))?;
@@ -150,9 +151,11 @@ impl InitCommand {
     }
 }
 
-/// The shipped campaign with all lengths multiplied by `factor`.
-fn campaign(name: &str, factor: f64) -> Result<String> {
+/// The shipped campaign, scaled to a sheet of `thickness` (mm); its material is `material.toml` in the same folder.
+pub(crate) fn campaign(name: &str, thickness: f64, tier: Tier) -> Result<String> {
+    let factor = thickness / CAMPAIGN_THICKNESS;
     let mut campaign: DocumentMut = CAMPAIGN.parse()?;
+    set(&mut campaign["tier"], tier.to_string());
     set(&mut campaign["name"], name);
     set(&mut campaign["material"], "material.toml");
     heading(
@@ -211,9 +214,10 @@ mod tests {
 
     #[test]
     fn a_campaign_is_scaled_and_keeps_its_comments() {
-        let text = campaign("thin", 0.2).unwrap();
+        let text = campaign("thin", 0.1, Tier::Small).unwrap();
         for line in [
             "name = \"thin\"",
+            "tier = \"small\"",
             "r_win = 20.0        # mm; radius of the window",
             "w_lig = [1.0, 5.0]       # mm",
             "full_range_w_lig = 1.6    # mm, 16 thicknesses",

@@ -2,11 +2,13 @@
 
 mod check;
 mod fit;
+#[cfg(feature = "pipeline")]
+mod learn;
 
 use anyhow::Result;
 use clap::{Args, Subcommand};
 
-/// Fit a material file to tensile tests, and check a material
+/// Fit a material file to tensile tests, check a material, and learn its hinge energy
 #[derive(Args)]
 pub struct MaterialCommand {
     #[command(subcommand)]
@@ -17,6 +19,8 @@ pub struct MaterialCommand {
 enum Action {
     Fit(fit::FitCommand),
     Check(check::CheckCommand),
+    #[cfg(feature = "pipeline")]
+    Learn(learn::LearnCommand),
 }
 
 impl MaterialCommand {
@@ -24,6 +28,8 @@ impl MaterialCommand {
         match &self.action {
             Action::Fit(command) => command.run(),
             Action::Check(command) => command.run(),
+            #[cfg(feature = "pipeline")]
+            Action::Learn(command) => command.run(),
         }
     }
 }

@@ -1,6 +1,9 @@
 //! `kirigami train`: trains the weights of the hinge energy on a hinge database.
 
+mod kept_fits;
 mod slices;
+
+pub use kept_fits::kept_fit;
 
 use crate::commands::input_file;
 use crate::ui::charts;
@@ -35,13 +38,10 @@ pub struct TrainCommand {
     /// Database as written by `kirigami campaign collect` (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
-    /// Network sizes, loss and optimiser of the training (TOML)
-    #[arg(
-        long,
-        value_name = "FILE",
-        default_value = "configs/training/medium.toml"
-    )]
-    config: PathBuf,
+    /// Network sizes, loss and optimiser of the training (TOML) [default: configs/training/medium.toml, with --from
+    /// configs/training/fine-tuning.toml]
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
     /// Weights to write; the card, the curve and the plots are written next to them
     #[arg(
         long,
@@ -52,8 +52,9 @@ pub struct TrainCommand {
     /// Tensor backend: flex or ndarray
     #[arg(long, value_name = "NAME", default_value_t = Backend::default())]
     backend: Backend,
-    /// Fine-tune these weights, which must have the same network sizes
-    #[arg(long, value_name = "WEIGHTS", conflicts_with = "resume")]
+    /// Fine-tune these weights of another material or thickness, which must have the network sizes of the configuration.
+    /// docs/MATERIALS.md lists the errors over the number of rays
+    #[arg(long, value_name = "WEIGHTS")]
     from: Option<PathBuf>,
     /// Continue a training that was stopped
     #[arg(long, conflicts_with = "seeds")]
@@ -78,7 +79,7 @@ impl TrainCommand {
     pub fn new(database: PathBuf, config: PathBuf, out: PathBuf) -> Self {
         Self {
             database,
-            config,
+            config: Some(config),
             out,
             backend: Backend::default(),
             from: None,
@@ -89,8 +90,8 @@ impl TrainCommand {
     }
 
     pub(crate) fn run(&self) -> Result<()> {
-        input_file::require(&self.config, "--config")?;
-        let config: TrainingConfig = support::toml_file::read(&self.config)?;
+        input_file::require(self.config(), "--config")?;
+        let config: TrainingConfig = support::toml_file::read(self.config())?;
         let database = Database::read(&self.database)?;
         self.refuse_existing(config.seed)?;
         if let Some(folder) = self.out.parent() {
@@ -123,6 +124,14 @@ impl TrainCommand {
         self.write(&best, &database)?;
         std::fs::remove_file(&state).ok();
         Ok(())
+    }
+
+    fn config(&self) -> &Path {
+        let default = match self.from {
+            Some(_) => "configs/training/fine-tuning.toml",
+            None => "configs/training/medium.toml",
+        };
+        self.config.as_deref().unwrap_or(Path::new(default))
     }
 
     /// Locks the weights' files against a second training until the returned file is dropped.

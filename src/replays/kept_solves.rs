@@ -28,6 +28,19 @@ pub struct SolveArgs {
 pub type Outcome = Result<KeptSolution, String>;
 
 impl SolveArgs {
+    /// With one processor for each of `jobs` solves, each limited to `time_limit`.
+    pub fn new(jobs: Option<NonZeroUsize>, time_limit: Duration) -> Self {
+        Self {
+            jobs,
+            time_limit_s: time_limit.as_secs(),
+        }
+    }
+
+    /// Number of solves in parallel.
+    pub fn workers(&self) -> usize {
+        self.jobs.map_or_else(processors, NonZeroUsize::get)
+    }
+
     /// The outcomes of `solves`, in the same order. Solutions are stored in `folder` and read from there
     /// when the same solve is needed again.
     pub fn solve(&self, solves: &[&KeptSolve], folder: &Path) -> Result<Vec<Outcome>> {
@@ -53,7 +66,7 @@ impl SolveArgs {
         let tools = Tools::find()?;
         let stop = interrupt::stop_flag()?;
         let limit = Duration::from_secs(self.time_limit_s);
-        let workers = self.jobs.map_or_else(processors, NonZeroUsize::get);
+        let workers = self.workers();
         let bar = Progress::new(solves.len(), "solves");
         let mut outcomes: Vec<Option<Outcome>> = vec![None; solves.len()];
         let mut done = 0;

@@ -9,9 +9,9 @@ mod condensed;
 mod designed;
 mod drawing;
 mod extremes;
+mod fine_tuning;
 mod free_panels;
 mod gradient;
-mod kept_fits;
 mod keys;
 mod levels;
 mod localisation;
@@ -62,6 +62,7 @@ enum Study {
     Localisation(localisation::LocalisationStudy),
     Extremes(extremes::ExtremesStudy),
     Surrogate(surrogate::SurrogateStudy),
+    FineTuning(fine_tuning::FineTuningStudy),
     Trust(trust::TrustStudy),
     Tradeoff(tradeoff::TradeoffCommand),
     Pages(pages::PagesCommand),
@@ -88,6 +89,7 @@ impl Study {
             Self::Localisation(study) => study.run(),
             Self::Extremes(study) => study.run(),
             Self::Surrogate(study) => study.run(),
+            Self::FineTuning(study) => study.run(),
             Self::Trust(study) => study.run(),
             Self::Tradeoff(command) => command.run(),
             Self::Pages(command) => command.run(),

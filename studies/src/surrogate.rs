@@ -1,12 +1,12 @@
 //! `kirigami-studies surrogate`: the influence of rays, network size, epochs and precision on the error.
 
 use crate::charts::{self, Curve};
-use crate::kept_fits::kept_fit;
 use ::train::{Precision, TrainingConfig};
 use anyhow::{Result, ensure};
 use clap::Args;
 use dataset::{Database, Part};
 use hinge::{HingeDeformation, HingeDesign};
+use kirigami::commands::train::kept_fit;
 use kirigami::ui::{picture, run_folder};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -144,7 +144,7 @@ impl Case {
 
     fn fit(self, folder: &Path, database: &Database) -> Result<Fit> {
         let thinned = database.thinned(self.rays);
-        let surrogate = kept_fit(folder, &self.name(), &thinned, &self.config)?;
+        let surrogate = kept_fit(folder, &self.name(), &thinned, &self.config, None)?;
         Ok(Fit {
             errors: surrogate.card().test_errors,
             training_s: surrogate.card().training_s.unwrap_or_default(),
@@ -185,12 +185,6 @@ fn kernel_us(surrogate: &Surrogate) -> Result<f64> {
         );
     }
     Ok(1e6 * fastest.as_secs_f64() / HINGES as f64)
-}
-
-/// Root mean square of the errors of the three forces (%).
-fn forces(errors: &TestErrors) -> f64 {
-    let [_, f_a, f_s, m_theta, ..] = errors.percents();
-    ((f_a * f_a + f_s * f_s + m_theta * m_theta) / 3.0).sqrt()
 }
 
 fn csv(fits: &[Fit]) -> Result<String> {
@@ -284,7 +278,7 @@ fn tradeoff(fits: &[Fit]) -> Result<String> {
             case.precision(),
             case.rays,
             case.config.epochs,
-            forces(errors),
+            errors.forces_percent(),
             match case.size.as_str() {
                 "small" => "first designs, many seeds",
                 "medium" => "everyday design",
@@ -315,7 +309,7 @@ fn curves(fits: &[Fit]) -> Vec<Curve> {
         if let Some(curve) = curves.last_mut() {
             let rays = case.rays as f64;
             curve.energy.push((rays, errors.percents()[0]));
-            curve.forces.push((rays, forces(errors)));
+            curve.forces.push((rays, errors.forces_percent()));
         }
     }
     curves

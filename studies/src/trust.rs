@@ -1,12 +1,12 @@
 //! `kirigami-studies trust`: the error of a surrogate's forces, and the ensemble as an estimate of it.
 
 use crate::charts::{self, Calibration};
-use crate::kept_fits::kept_fit;
 use ::train::{Disagreement, EnsembleCheck, Parity, TrainingConfig, disagreements};
 use anyhow::{Result, ensure};
 use clap::Args;
 use dataset::{Database, Part, Row};
 use hinge::TrainingDomain;
+use kirigami::commands::train::kept_fit;
 use kirigami::ui::{picture, run_folder};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -82,7 +82,7 @@ impl TrustStudy {
                 ..config.clone()
             };
             let name = format!("{name}-{seed}");
-            kept_fit(&self.out.join("fits"), &name, database, &config)
+            kept_fit(&self.out.join("fits"), &name, database, &config, None)
         };
         let members: Vec<Surrogate> = (0..self.seeds).map(member).collect::<Result<_>>()?;
         ensure!(!rows.is_empty(), "the database has no rows to test with");

@@ -58,7 +58,9 @@ pub struct Card {
     pub tier: String,
     /// Hash of the database file.
     pub dataset_hash: String,
-    /// For fine-tuned weights: hash of the database of the initial weights.
+    /// For fine-tuned weights: [`Surrogate::hash`] of the initial weights; in older cards, the hash of their database.
+    ///
+    /// [`Surrogate::hash`]: crate::Surrogate::hash
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fine_tuned_from: Option<String>,
     /// Hash of the split into training, validation and test.
@@ -135,6 +137,12 @@ impl TestErrors {
             ..
         } = *self;
         [energy, f_a, f_s, m_theta, damage, damage_peak].map(|error| 100.0 * error.relative_rmse)
+    }
+
+    /// Root mean square of the errors of the three forces (%).
+    pub fn forces_percent(&self) -> f64 {
+        let [_, f_a, f_s, m_theta, ..] = self.percents();
+        ((f_a * f_a + f_s * f_s + m_theta * m_theta) / 3.0).sqrt()
     }
 }
 

@@ -36,6 +36,7 @@ fn ten_steps(bencher: divan::Bencher, backend: Backend, embedding: &[usize], dam
         damage_weight: 0.1,
         damage_sharpness: 8.0,
         patience: None,
+        frozen_layers: 0,
     };
     bencher.bench(|| train(&database, &config, backend, &mut |_| {}));
 }

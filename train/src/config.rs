@@ -42,6 +42,18 @@ pub struct TrainingConfig {
     pub damage_weight: f64,
     /// beta of the damage heads, D = D_s softplus(beta y) / beta; from 1 to 1000.
     pub damage_sharpness: f64,
+    /// Number of first layers of each network that are not trained, for fine-tuning; at most the number of hidden layers
+    /// of each network.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub frozen_layers: usize,
+}
+
+#[allow(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde passes a reference"
+)]
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// Number type of a training.
@@ -150,6 +162,13 @@ impl TrainingConfig {
                 "1 <= damage_sharpness <= 1000",
                 (1.0..=1000.0).contains(&self.damage_sharpness),
             ),
+            (
+                "frozen_layers",
+                self.frozen_layers.to_string(),
+                "frozen_layers <= number of hidden layers of the embedding and of the damage heads",
+                self.frozen_layers < self.embedding.len().max(1)
+                    && self.frozen_layers <= self.damage.len(),
+            ),
         ];
         match checks.into_iter().find(|(.., holds)| !holds) {
             Some((key, value, rule, _)) => Err(InvalidConfig { key, value, rule }),
@@ -172,7 +191,7 @@ mod tests {
             config.validate().unwrap();
             count += 1;
         }
-        assert_eq!(count, 4);
+        assert_eq!(count, 5);
     }
 
     #[test]
@@ -180,7 +199,7 @@ mod tests {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/training");
         let demo: TrainingConfig = support::toml_file::read(&folder.join("demo.toml")).unwrap();
         type Change = fn(&mut TrainingConfig);
-        let changes: [(Change, &str); 13] = [
+        let changes: [(Change, &str); 14] = [
             (|c| c.embedding.clear(), "embedding"),
             (|c| c.damage[0] = 0, "damage"),
             (|c| c.embedding[1] = 7, "mirror"),
@@ -194,6 +213,7 @@ mod tests {
             (|c| c.energy_weight = 1.5, "energy_weight"),
             (|c| c.damage_weight = f64::INFINITY, "damage_weight"),
             (|c| c.damage_sharpness = 0.5, "damage_sharpness"),
+            (|c| c.frozen_layers = 3, "frozen_layers"),
         ];
         for (change, key) in changes {
             let mut config = demo.clone();

@@ -16,6 +16,7 @@
 //! | `force_tangents` | chi and its derivatives in (eta_a, eta_s, theta) |
 //! | `loss` | the loss (15) |
 //! | `optimiser` | Muon and Adam, learning rate |
+//! | `parent` | given weights, scaled to the rows, as the start of a training |
 //! | `epoch` | the record of one epoch |
 //! | `training` | the training loop: steps, best epoch |
 //! | `state` | the state of a training on disk, for resuming |
@@ -40,6 +41,7 @@ mod loss;
 mod mirror;
 mod networks;
 mod optimiser;
+mod parent;
 mod samples;
 mod state;
 mod stiffness;
@@ -51,6 +53,7 @@ pub use config::{InvalidConfig, Precision, TrainingConfig};
 pub use ensemble::{Disagreement, EnsembleCheck, disagreements};
 pub use epoch::Epoch;
 pub use error::TrainError;
+pub use parent::check_parent;
 pub use state::StateError;
 pub use stiffness::StiffnessCheck;
 pub use training::{Start, Trained, Training, train};

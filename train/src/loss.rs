@@ -85,6 +85,7 @@ mod tests {
             damage_weight: 0.7,
             damage_sharpness: 8.0,
             patience: None,
+            frozen_layers: 0,
         }
     }
 

@@ -87,6 +87,23 @@ impl Networks {
         }
     }
 
+    /// The same networks, the first `layers` layers of each of which no optimiser step changes.
+    pub fn frozen(self, layers: usize) -> Self {
+        let freeze = |mut network: Mlp| {
+            let freeze = |(index, layer): (usize, Dense)| match index < layers {
+                true => layer.no_grad(),
+                false => layer,
+            };
+            network.layers = network.layers.into_iter().enumerate().map(freeze).collect();
+            network
+        };
+        Self {
+            chi: freeze(self.chi),
+            chi_d: freeze(self.chi_d),
+            chi_p: self.chi_p.map(freeze),
+        }
+    }
+
     /// The damage heads.
     pub fn heads(&self) -> impl Iterator<Item = &Mlp> {
         std::iter::once(&self.chi_d).chain(&self.chi_p)

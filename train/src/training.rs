@@ -8,9 +8,9 @@ use crate::epoch::Epoch;
 use crate::error::TrainError;
 use crate::export::layers;
 use crate::loss::loss;
-use crate::mirror;
-use crate::networks::{Networks, widths};
+use crate::networks::Networks;
 use crate::optimiser::{learning_rate, optimiser};
+use crate::parent::{Initial, check_parent};
 use crate::samples::{Batch, Sample, Scales};
 use crate::state::{self, Progress, State};
 use crate::stiffness::StiffnessCheck;
@@ -49,7 +49,8 @@ pub struct Trained {
 pub enum Start<'a> {
     /// Random weights.
     Fresh,
-    /// The weights of another training, with its scales: fine-tuning.
+    /// The weights of another material, thickness or database: fine-tuning. They are scaled to the rows; apart from one
+    /// factor for each of W, D and D_peak, the initial networks have the function of the weights.
     Weights(&'a Surrogate),
     /// A state written by [`Training::save`]; the training continues bit-exactly as if it had not been stopped.
     State(&'a Path),
@@ -106,35 +107,42 @@ impl Training {
         config.validate()?;
         let began = Instant::now();
         let parts = Parts::of(database)?;
-        let state = match start {
-            Start::State(path) => Some(State::read(path)?),
-            Start::Fresh | Start::Weights(_) => None,
-        };
-        let base = match start {
-            Start::Fresh => None,
-            Start::Weights(weights) => Some(weights.card()),
-            Start::State(_) => state.as_ref().map(|state| &state.progress.card),
-        };
-        let described = match config.mirror {
-            true => with_mirrored(&parts.training),
-            false => parts.training.clone(),
-        };
-        let scales = match base {
-            Some(card) => Scales::of_card(card, &described, config.mirror)?,
-            None => Scales::of(&described, config.mirror)?,
-        };
-        let mut card = card(database.manifest(), &described, &scales, config)?;
         let dtype = match config.precision {
             Precision::F32 => DType::F32,
             Precision::F64 => DType::F64,
         };
         let options = TensorCreationOptions::new(backend.device()).with_dtype(dtype);
-        let networks = match start {
-            Start::Weights(weights) => {
-                card.fine_tuned_from = Some(weights.card().dataset_hash.clone());
-                given(weights, config, &options)?
+        let state = match start {
+            Start::State(path) => Some(State::read(path)?),
+            Start::Fresh | Start::Weights(_) => None,
+        };
+        let described = match config.mirror {
+            true => with_mirrored(&parts.training),
+            false => parts.training.clone(),
+        };
+        let manifest = database.manifest();
+        let initial = match start {
+            Start::Weights(parent) => {
+                check_parent(parent, config, backend)?;
+                let initial = Initial::new(parent, &described, &manifest.hinge, config.mirror)?;
+                Some(initial)
             }
-            Start::Fresh | Start::State(_) => Networks::new(
+            Start::Fresh | Start::State(_) => None,
+        };
+        let scales = match (&initial, &state) {
+            (Some(initial), _) => initial.scales,
+            (None, Some(state)) => {
+                Scales::of_card(&state.progress.card, &described, config.mirror)?
+            }
+            (None, None) => Scales::of(&described, config.mirror)?,
+        };
+        let mut card = card(manifest, &described, &scales, config)?;
+        if let Start::Weights(parent) = start {
+            card.fine_tuned_from = Some(parent.hash());
+        }
+        let networks = match &initial {
+            Some(initial) => Networks::of_layers(&initial.layers, config.mirror, &options),
+            None => Networks::new(
                 &config.embedding,
                 &config.damage,
                 scales.peak.is_some(),
@@ -164,6 +172,7 @@ impl Training {
         if let Some(state) = state {
             training.go_on(state)?;
         }
+        training.networks = training.networks.frozen(config.frozen_layers);
         Ok(training)
     }
 
@@ -309,36 +318,6 @@ impl Parts {
             validation: part(Part::Validation, "validation")?,
             test: part(Part::Test, "test")?,
         })
-    }
-}
-
-/// The networks of the initial weights, whose sizes, sharpness and symmetry must be those of the configuration.
-fn given(
-    weights: &Surrogate,
-    config: &TrainingConfig,
-    options: &TensorCreationOptions,
-) -> Result<Networks, TrainError> {
-    let given = weights.layers();
-    let heads = 1 + usize::from(given.chi_p.is_some());
-    let damage = std::iter::repeat_n(config.damage.clone(), heads);
-    let expected: Vec<_> = std::iter::once(config.embedding.clone())
-        .chain(damage)
-        .collect();
-    let found = widths(&given);
-    if found != expected {
-        return Err(TrainError::OtherSizes { expected, found });
-    }
-    let found = weights.card().damage_sharpness;
-    if found != config.damage_sharpness {
-        return Err(TrainError::OtherSharpness { found });
-    }
-    let exact = options.clone().with_dtype(DType::F64);
-    let folded = Networks::of_layers(&given, config.mirror, &exact);
-    let unchanged = layers(&folded)? == given;
-    let centred = !config.mirror || mirror::is_centred(&weights.card().standardisation);
-    match unchanged && centred {
-        true => Ok(Networks::of_layers(&given, config.mirror, options)),
-        false => Err(TrainError::NotSymmetric),
     }
 }
 

@@ -7,13 +7,13 @@
 //!
 //! The energy is positive and has the mirror symmetry.
 
-use dataset::{Database, Gates, Row, SplitPlan};
+use dataset::{Database, Gates, Part, Row, SplitPlan};
 use hinge::{HingeDeformation, HingeDesign, HingeSample};
 use std::path::Path;
 use surrogate::{Order, Surrogate};
 use train::{
-    Backend, EnsembleCheck, Epoch, Precision, Start, StateError, TrainError, Trained, Training,
-    TrainingConfig, disagreements, train,
+    Backend, EnsembleCheck, Epoch, Parity, ParityPoint, Precision, Start, StateError, TrainError,
+    Trained, Training, TrainingConfig, disagreements, train,
 };
 
 fn sample(design: &HingeDesign, eps: HingeDeformation, lambda: f64) -> HingeSample {
@@ -98,6 +98,7 @@ fn config(epochs: usize) -> TrainingConfig {
         damage_weight: 0.5,
         damage_sharpness: 8.0,
         patience: None,
+        frozen_layers: 0,
     }
 }
 
@@ -360,55 +361,153 @@ fn a_damaged_or_foreign_state_is_an_error() {
     );
 }
 
+/// The rows in a sheet of `factor` times the thickness, whose material is `stiffness` times as stiff.
+fn similar(rows: Vec<Row>, factor: f64, stiffness: f64) -> Vec<Row> {
+    let (areas, volumes) = (factor.powi(2) * stiffness, factor.powi(3) * stiffness);
+    let row = |row: Row| Row {
+        design: row.design.scaled(factor),
+        sample: HingeSample {
+            a: factor * row.sample.a,
+            s: factor * row.sample.s,
+            w: volumes * row.sample.w,
+            f_a: areas * row.sample.f_a,
+            f_s: areas * row.sample.f_s,
+            m_theta: volumes * row.sample.m_theta,
+            ..row.sample
+        },
+        ..row
+    };
+    rows.into_iter().map(row).collect()
+}
+
+/// The training of `epochs` epochs in float64 on the rows of a sheet of another thickness and stiffness, which starts from
+/// `parent`.
+fn tuned(parent: &Surrogate, epochs: usize) -> (Database, Training) {
+    let database = database(similar(rows(30), 0.4, 3.0));
+    let config = TrainingConfig {
+        precision: Precision::F64,
+        learning_rate: 1e-3,
+        ..config(epochs)
+    };
+    let start = Start::Weights(parent);
+    let training = Training::new(&database, &config, Backend::default(), start).unwrap();
+    (database, training)
+}
+
 #[test]
-fn fine_tuning_starts_from_the_given_weights() {
-    let base = trained(40, Backend::default());
-    let mut stiffer = rows(40);
-    for row in &mut stiffer {
-        let sample = &mut row.sample;
-        for value in [
-            &mut sample.w,
-            &mut sample.f_a,
-            &mut sample.f_s,
-            &mut sample.m_theta,
-        ] {
-            *value *= 1.02;
+fn fine_tuning_starts_with_the_function_of_the_given_weights() {
+    let parent = trained(40, Backend::default()).surrogate;
+    let (database, training) = tuned(&parent, 1);
+    let start = training.finish().unwrap().surrogate;
+    let scaled = parent.clone().scaled(0.4);
+    assert_ne!(start.card().standardisation, scaled.card().standardisation);
+    let hash = start.card().fine_tuned_from.clone();
+    assert_eq!(hash, Some(parent.hash()));
+
+    let predicted = |surrogate: &Surrogate| {
+        let parity = Parity::of(surrogate, &database.part(Part::Training));
+        [
+            parity.energy,
+            parity.f_a,
+            parity.f_s,
+            parity.m_theta,
+            parity.damage,
+            parity.damage_peak,
+        ]
+    };
+    let (expected, found) = (predicted(&scaled), predicted(&start));
+    let factor = |points: &[ParityPoint]| {
+        let product: f64 = points.iter().map(|it| it.target * it.predicted).sum();
+        product / points.iter().map(|it| it.predicted.powi(2)).sum::<f64>()
+    };
+    let [energy, d, d_peak] = [0, 4, 5].map(|k| factor(&expected[k]));
+    assert!((energy / 3.0 - 1.0).abs() < 0.1, "{energy}");
+    let factors = [energy, energy, energy, energy, d, d_peak];
+    for ((expected, found), factor) in expected.iter().zip(&found).zip(factors) {
+        let size = expected
+            .iter()
+            .map(|it| it.predicted.abs())
+            .fold(0.0, f64::max);
+        for (expected, found) in expected.iter().zip(found) {
+            let difference = (factor * expected.predicted - found.predicted).abs();
+            assert!(difference < 1e-10 * factor * size, "{difference}");
         }
     }
-    let stiffer = database(stiffer);
-    let first_loss = |start| {
-        let mut training = Training::new(&stiffer, &config(40), Backend::default(), start).unwrap();
-        training.epoch().unwrap().training_loss
+}
+
+#[test]
+fn a_fine_tuned_network_is_closer_than_one_from_scratch() {
+    let parent = trained(40, Backend::default()).surrogate;
+    let (database, training) = tuned(&parent, 10);
+    let scratch = train(&database, &config(10), Backend::default(), &mut |_| {}).unwrap();
+    let tuned = finished(training);
+    for k in 0..4 {
+        let [tuned, scratch] = [&tuned, &scratch].map(|it| it.test_errors.percents()[k]);
+        assert!(tuned < 0.5 * scratch, "{k}: {tuned} and {scratch}");
+    }
+}
+
+#[test]
+fn frozen_layers_are_not_trained() {
+    let parent = trained(2, Backend::default()).surrogate;
+    let database = database(rows(20));
+    let config = TrainingConfig {
+        frozen_layers: 1,
+        ..config(2)
     };
-    let tuned = first_loss(Start::Weights(&base.surrogate));
-    assert!(tuned < 0.2 * first_loss(Start::Fresh), "{tuned}");
+    let folder = tempfile::tempdir().unwrap();
+    let state = folder.path().join("chi.state");
+    let begun = |start| Training::new(&database, &config, Backend::default(), start).unwrap();
+    let start = Start::Weights(&parent);
+    let initial = begun(start).finish().unwrap().last.layers();
+    let mut training = begun(start);
+    training.epoch().unwrap();
+    training.save(&state).unwrap();
+    // Also of a training that is resumed.
+    let last = finished(begun(Start::State(&state))).last.layers();
+    for (initial, last) in [
+        (&initial.chi, &last.chi),
+        (&initial.chi_d, &last.chi_d),
+        (
+            initial.chi_p.as_ref().unwrap(),
+            last.chi_p.as_ref().unwrap(),
+        ),
+    ] {
+        assert_eq!(initial[0], last[0]);
+        assert_ne!(initial[1], last[1]);
+    }
+}
 
-    let start = Start::Weights(&base.surrogate);
-    let training = Training::new(&stiffer, &config(1), Backend::default(), start).unwrap();
-    let card = finished(training).surrogate.card().clone();
-    let hash = &base.surrogate.card().dataset_hash;
-    assert_eq!(card.fine_tuned_from.as_ref(), Some(hash));
-    assert_eq!(card.standardisation, base.surrogate.card().standardisation);
-    assert_ne!(&card.dataset_hash, hash);
-
+#[test]
+fn unsuitable_initial_weights_are_errors() {
+    let base = trained(1, Backend::default()).surrogate;
+    let database = database(rows(20));
+    let refusal = |parent: &Surrogate, config: &TrainingConfig| {
+        let start = Start::Weights(parent);
+        let training = Training::new(&database, config, Backend::default(), start);
+        training.err().unwrap()
+    };
     let wider = TrainingConfig {
         embedding: vec![32, 32, 32],
         ..config(1)
     };
-    let error = Training::new(&stiffer, &wider, Backend::default(), start)
-        .err()
-        .unwrap();
+    let error = refusal(&base, &wider);
     assert!(matches!(error, TrainError::OtherSizes { .. }), "{error}");
-
+    let sharper = TrainingConfig {
+        damage_sharpness: 9.0,
+        ..config(1)
+    };
+    let error = refusal(&base, &sharper);
+    assert!(
+        matches!(error, TrainError::OtherSharpness { .. }),
+        "{error}"
+    );
     let plain = TrainingConfig {
         mirror: false,
         ..config(1)
     };
-    let plain = train(&stiffer, &plain, Backend::default(), &mut |_| {}).unwrap();
-    let start = Start::Weights(&plain.surrogate);
-    let error = Training::new(&stiffer, &config(1), Backend::default(), start)
-        .err()
-        .unwrap();
+    let plain = train(&database, &plain, Backend::default(), &mut |_| {}).unwrap();
+    let error = refusal(&plain.surrogate, &config(1));
     assert!(matches!(error, TrainError::NotSymmetric), "{error}");
 }
 

@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use dataset::{Database, Gates, SplitPlan};
 use fe_driver::{Tally, finished_jobs};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Collect the samples of all finished jobs in a Parquet file with its manifest
 #[derive(Args)]
@@ -49,11 +49,7 @@ impl CollectCommand {
                 folder.display()
             );
         }
-        let mut rows = Vec::new();
-        for job in finished_jobs(&folder)? {
-            rows.extend(rows_of(&job?));
-        }
-        let database = Database::collect(rows, &Gates::default(), &SplitPlan::default())?;
+        let database = collected(&folder)?;
         let out = self
             .out
             .clone()
@@ -66,6 +62,19 @@ impl CollectCommand {
         println!("{database}\n{missing}\nwritten to {}", out.display());
         Ok(())
     }
+}
+
+/// The samples of the finished rays of the campaign that was last run in a folder.
+pub fn collected(folder: &Path) -> Result<Database> {
+    let mut rows = Vec::new();
+    for job in finished_jobs(folder)? {
+        rows.extend(rows_of(&job?));
+    }
+    Ok(Database::collect(
+        rows,
+        &Gates::default(),
+        &SplitPlan::default(),
+    )?)
 }
 
 /// The counts of rays that the collected database lacks.

@@ -7,9 +7,9 @@ use crate::ui::processors;
 use crate::ui::progress::Progress;
 use anyhow::{Result, bail, ensure};
 use clap::Args;
-use fe_driver::{RunOptions, Shard, Tools};
+use fe_driver::{Campaign, RunOptions, Shard, Tally, Tools};
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Solve all rays that are not solved yet
@@ -46,34 +46,45 @@ impl RunCommand {
     }
 
     pub(crate) fn run(&self) -> Result<()> {
-        let (campaign, folder) = (self.campaign.load()?, self.campaign.folder());
-        let tools = Tools::find()?;
-        let stop = interrupt::stop_flag()?;
+        let folder = self.campaign.folder();
         let options = RunOptions {
             shard: self.shard,
             workers: self.jobs.map_or_else(processors, NonZeroUsize::get),
             time_limit: self.time_limit,
         };
-        let bar = Progress::new(campaign.size(), "rays");
-        let end = fe_driver::run(&campaign, &folder, &tools, &options, stop, &mut |now| {
-            let tally = &now.tally;
-            let message = format!("{} samples, {} failed", tally.rows, tally.failed);
-            bar.set_total(tally.closed() + tally.to_run());
-            bar.show(tally.closed(), now.seconds_left, &message);
-        })?;
-        bar.finish();
-        print_tally(&end.tally);
-        if end.tally.to_run() > 0 {
-            let (left, what) = (end.tally.to_run(), "rays");
-            bail!(Unfinished::new(left, what));
-        }
-        ensure!(
-            end.tally.failed == 0 || end.tally.complete + end.tally.partial > 0,
-            "every ray failed: read a job's log in {}, fix the cause, then run `kirigami campaign retry`",
-            folder.join("jobs").display()
-        );
-        Ok(())
+        let tally = solve_rays(&self.campaign.load()?, &folder, &options)?;
+        print_tally(&tally);
+        refuse_unfinished(&tally, &folder)
     }
+}
+
+/// Solves the open rays of a campaign, with progress.
+pub fn solve_rays(campaign: &Campaign, folder: &Path, options: &RunOptions) -> Result<Tally> {
+    let tools = Tools::find()?;
+    let stop = interrupt::stop_flag()?;
+    let bar = Progress::new(campaign.size(), "rays");
+    let end = fe_driver::run(campaign, folder, &tools, options, stop, &mut |now| {
+        let tally = &now.tally;
+        let message = format!("{} samples, {} failed", tally.rows, tally.failed);
+        bar.set_total(tally.closed() + tally.to_run());
+        bar.show(tally.closed(), now.seconds_left, &message);
+    })?;
+    bar.finish();
+    Ok(end.tally)
+}
+
+/// An error if rays are left to solve, or if every ray failed.
+pub fn refuse_unfinished(tally: &Tally, folder: &Path) -> Result<()> {
+    if tally.to_run() > 0 {
+        let (left, what) = (tally.to_run(), "rays");
+        bail!(Unfinished::new(left, what));
+    }
+    ensure!(
+        tally.failed == 0 || tally.complete + tally.partial > 0,
+        "every ray failed: read a job's log in {}, fix the cause, then run `kirigami campaign retry`",
+        folder.join("jobs").display()
+    );
+    Ok(())
 }
 
 fn minutes(text: &str) -> Result<Duration, String> {

@@ -32,7 +32,7 @@ impl CardCommand {
         println!("database {}", card.dataset_hash);
         println!("split    {}", card.split_hash);
         if let Some(base) = &card.fine_tuned_from {
-            println!("fine-tuned from weights of the database {base}");
+            println!("fine-tuned from weights {base}");
         }
         let hinge = card.hinge;
         println!(

@@ -1,23 +1,18 @@
 //! `kirigami surrogate spot-check`: errors of weights against finite elements inside their training domain.
-//!
-//! The training domain is convex and contains the flat state. Draw a state x uniformly inside it; x fixes a
-//! direction with the density of uniform states. With R the distance to the boundary along it and u uniform in
-//! (0, 1), the state at the distance R u^(1/3) is again uniform. Several states can therefore lie on one ray.
 
 use crate::commands::input_file;
 use crate::commands::inspect::scene_args::Inspected;
 use crate::commands::surrogate::errors::StateErrors;
-use crate::replays::kept_solves::{Outcome, SolveArgs};
-use crate::replays::routes::{hinge_routes, judging_tier, window};
+use crate::replays::kept_solves::SolveArgs;
+use crate::replays::routes::{hinge_routes, judging_tier};
+use crate::replays::spot_states::{self, Probe, Solved};
 use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use dataset::{Database, Gates, Row, SplitPlan};
-use fe_driver::{DeformationPath, KeptSolve, ToolVersions, Tools};
-use hinge::{HingeDeformation, HingeDesign, HingeSample, SheetMaterial, TrainingDomain};
+use dataset::{Database, Gates, SplitPlan};
+use fe_driver::DeformationPath;
+use hinge::SheetMaterial;
 use mesher::Tier;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use std::path::PathBuf;
 use surrogate::Surrogate;
 
@@ -76,13 +71,6 @@ struct PathArgs {
     design: Option<PathBuf>,
 }
 
-/// One window to solve, and the fractions of its path at which the weights are evaluated.
-struct Probe {
-    design: HingeDesign,
-    path: DeformationPath,
-    fractions: Vec<f64>,
-}
-
 impl SpotCheckCommand {
     pub fn run(&self) -> Result<()> {
         ensure!(self.count > 0, "--count must be at least 1");
@@ -110,21 +98,8 @@ impl SpotCheckCommand {
             probes.len()
         );
         let _held = run_folder::hold(&self.out)?;
-        let solves: Vec<KeptSolve> = probes
-            .iter()
-            .map(|probe| window(probe.design, probe.path.clone(), &material, tier))
-            .collect();
-        let outcomes = self
-            .solve
-            .solve(&solves.iter().collect::<Vec<_>>(), &self.out)?;
-        let tools = ToolVersions::of(&Tools::find()?);
-        let mut rows = Vec::new();
-        let mut failed = 0;
-        for (ray, (probe, outcome)) in probes.iter().zip(&outcomes).enumerate() {
-            let found = probe.rows(outcome, ray, &material, tier, &tools);
-            failed += probe.fractions.len() - found.len();
-            rows.extend(found);
-        }
+        let Solved { rows, failed, .. } =
+            spot_states::solve(&probes, &material, tier, &self.solve, &self.out)?;
         ensure!(
             !rows.is_empty(),
             "no state was solved; see {}",
@@ -144,17 +119,9 @@ impl SpotCheckCommand {
     }
 
     fn drawn(&self, surrogate: &Surrogate) -> Vec<Probe> {
-        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+        let (domain, hinge) = (surrogate.domain(), &surrogate.card().hinge);
         let each = usize::from(self.states_per_ray);
-        let mut probes = Vec::new();
-        let mut left = self.count;
-        while left > 0 {
-            let states = each.min(left);
-            let hinge = &surrogate.card().hinge;
-            probes.push(draw(surrogate.domain(), hinge, states, &mut random));
-            left -= states;
-        }
-        probes
+        spot_states::drawn(domain, hinge, self.count, each, self.seed)
     }
 
     fn on_paths(&self) -> Result<Vec<Probe>> {
@@ -177,124 +144,5 @@ impl SpotCheckCommand {
                 })
             })
             .collect()
-    }
-}
-
-/// A random ray inside the training domain with `states` uniformly distributed states on it.
-fn draw(
-    domain: &TrainingDomain,
-    constants: &hinge::HingeConstants,
-    states: usize,
-    random: &mut ChaCha8Rng,
-) -> Probe {
-    let mut between = |[from, to]: [f64; 2]| from + (to - from) * random.random::<f64>();
-    let design = constants.hinge(
-        between(domain.w_lig.map(f64::ln)).exp(),
-        between(domain.alpha),
-    );
-    let bounds = domain.bounds();
-    let direction = loop {
-        let [eta_a, eta_s, theta] = bounds.map(&mut between);
-        let state = HingeDeformation::from_eta(eta_a, eta_s, theta, design.w_lig);
-        if domain.contains(&design, &state) {
-            break state;
-        }
-    };
-    let edge = edge(domain, &design, &direction);
-    let mut radii: Vec<f64> = (0..states).map(|_| between([0.0, 1.0]).cbrt()).collect();
-    radii.sort_by(f64::total_cmp);
-    let outermost = radii[states - 1];
-    Probe {
-        design,
-        path: DeformationPath::straight(direction.at(edge * outermost)),
-        fractions: radii.iter().map(|radius| radius / outermost).collect(),
-    }
-}
-
-/// The largest factor by which a state can be scaled without leaving the domain.
-fn edge(domain: &TrainingDomain, design: &HingeDesign, state: &HingeDeformation) -> f64 {
-    let inside = |factor: f64| domain.contains(design, &state.at(factor));
-    let mut outside = 2.0;
-    while inside(outside) {
-        outside *= 2.0;
-    }
-    let mut edge = 0.5 * outside;
-    for _ in 0..40 {
-        let middle = 0.5 * (edge + outside);
-        *(if inside(middle) {
-            &mut edge
-        } else {
-            &mut outside
-        }) = middle;
-    }
-    edge
-}
-
-impl Probe {
-    /// The states that the solver reached.
-    fn rows(
-        &self,
-        outcome: &Outcome,
-        ray: usize,
-        material: &SheetMaterial,
-        tier: Tier,
-        tools: &ToolVersions,
-    ) -> Vec<Row> {
-        let Ok(solution) = outcome else {
-            return Vec::new();
-        };
-        let reached = |fraction: &f64| HingeSample::at(&solution.samples, *fraction);
-        let samples = self.fractions.iter().filter_map(reached);
-        samples
-            .map(|sample| Row {
-                job: format!("spot-{ray:04}"),
-                design: self.design,
-                sample,
-                failure: String::new(),
-                material: material.name.clone(),
-                material_hash: material.law_hash(),
-                settings_hash: String::new(),
-                tier: tier.to_string(),
-                solved_tier: tier.to_string(),
-                gmsh: tools.gmsh.clone(),
-                ccx: tools.ccx.clone(),
-                cpu_s: solution.cpu_seconds.unwrap_or(0.0),
-            })
-            .collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use hinge::HingeConstants;
-
-    #[test]
-    fn states_are_uniform_inside_the_domain() {
-        let state = [[-0.8, 0.2], [-0.4, 0.4], [-0.1, 1.3]];
-        let domain = TrainingDomain::of_box(state, [5.0, 25.0], [0.8, 2.3]);
-        let mut random = ChaCha8Rng::seed_from_u64(1);
-        let mut counts = [0; 4];
-        let mut all = 0;
-        for _ in 0..500 {
-            let probe = draw(&domain, &HingeConstants::PAPER, 4, &mut random);
-            assert_eq!(probe.fractions.last(), Some(&1.0));
-            for fraction in &probe.fractions {
-                let state = probe.path.at(*fraction);
-                assert!(domain.contains(&probe.design, &state));
-                let [eta_a, eta_s] = state.eta(probe.design.w_lig);
-                // Counts in halves of the domain.
-                counts[0] += usize::from(eta_a > -0.3);
-                counts[1] += usize::from(eta_s > 0.0);
-                counts[2] += usize::from(state.theta > 0.6);
-                counts[3] += usize::from(probe.design.w_lig > 125f64.sqrt());
-                all += 1;
-            }
-        }
-        for count in counts {
-            let fraction = f64::from(u32::try_from(count).unwrap()) / f64::from(all);
-            // Four standard deviations of 500 independent rays.
-            assert!((fraction - 0.5).abs() < 0.09, "{fraction}");
-        }
     }
 }

@@ -1,14 +1,15 @@
-//! Networks stored in the folder of a study, so that each is trained once.
+//! Networks stored in a folder, so that each is trained once.
 
+use crate::commands::train::fit;
+use crate::ui::exit::Unfinished;
 use ::train::{Backend, Start, TrainError, TrainingConfig};
 use anyhow::{Context, Result};
 use dataset::Database;
-use kirigami::commands::train;
 use std::path::Path;
 use surrogate::{Card, Surrogate};
 
-/// The network of a configuration and a database: the file `name` of the folder, if it was
-/// trained on this database with this configuration, otherwise a new one.
+/// The network of a configuration, a database and its initial weights (random if there is no `parent`): the file `name` of
+/// the folder, if it was trained so, otherwise a new one.
 ///
 /// A training that was stopped is continued.
 pub fn kept_fit(
@@ -16,16 +17,19 @@ pub fn kept_fit(
     name: &str,
     database: &Database,
     config: &TrainingConfig,
+    parent: Option<&Surrogate>,
 ) -> Result<Surrogate> {
     std::fs::create_dir_all(folder)
         .with_context(|| format!("cannot create the folder {}", folder.display()))?;
     let path = folder.join(name).with_added_extension("safetensors");
     let training = serde_json::to_value(config)?;
     let manifest = database.manifest();
+    let from = parent.map(Surrogate::hash);
     let same = |card: &Card| {
         card.training == training
             && card.dataset_hash == manifest.hash
             && card.split_hash == manifest.split_hash
+            && card.fine_tuned_from == from
     };
     let kept = match Surrogate::load(&path) {
         Ok(kept) => Some(kept),
@@ -40,12 +44,20 @@ pub fn kept_fit(
         return Ok(kept);
     }
     let state = path.with_extension("state");
-    let fit = |start| train::fit(database, config, Backend::default(), start, &state);
+    let fit = |start| {
+        let trained = fit(database, config, Backend::default(), start, &state);
+        trained.map_err(|error| match error.downcast::<Unfinished>() {
+            // Here the same command continues without --resume.
+            Ok(Unfinished { left, what, .. }) => Unfinished::new(left, what).into(),
+            Err(error) => error,
+        })
+    };
+    let first = parent.map_or(Start::Fresh, Start::Weights);
     let trained = match state.exists().then(|| fit(Start::State(&state))) {
         // The state of another training, or a damaged one, is discarded.
-        Some(Err(error)) if error.is::<TrainError>() => fit(Start::Fresh)?,
+        Some(Err(error)) if error.is::<TrainError>() => fit(first)?,
         Some(trained) => trained?,
-        None => fit(Start::Fresh)?,
+        None => fit(first)?,
     };
     trained.surrogate.save(&path)?;
     std::fs::remove_file(&state).ok();

@@ -1,0 +1,254 @@
+//! `kirigami material learn`: from a material file to weights of its hinge energy, with a known error.
+//!
+//! Rays of the campaign are solved in rounds, each with twice the rays of the one before. After each round the weights of
+//! another material are fine-tuned on all rays, and tested at random states that no training contains.
+
+mod options;
+mod round;
+
+use crate::commands::campaign::{collected, refuse_unfinished, solve_rays};
+use crate::commands::init;
+use crate::commands::material::learn::options::{percent, time};
+use crate::commands::material::learn::round::{HEADING, Round, csv};
+use crate::commands::train::kept_fit;
+use crate::replays::kept_solves::SolveArgs;
+use crate::replays::spot_states::{self, Solved};
+use crate::ui::exit::Unfinished;
+use crate::ui::progress::duration;
+use crate::ui::run_folder;
+use ::train::{Backend, TrainingConfig, check_parent};
+use anyhow::{Context, Result, bail, ensure};
+use clap::Args;
+use dataset::{Database, Gates, SplitPlan};
+use fe_driver::{Campaign, RunOptions, Shard};
+use hinge::{HingeDeformation, HingeDesign, SheetMaterial, TrainingDomain};
+use mesher::Tier;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+use surrogate::Surrogate;
+
+/// Solve hinge windows of a material and train its weights until they are accurate enough
+///
+/// Starts from the weights of another material and solves rays in rounds: 25, 50, 100, ... After each round the weights
+/// are fine-tuned and compared with a spot check: windows at random states of the campaign's region, never trained on.
+/// Stops when the root mean square errors of W and of the forces there are small enough, or at the time limit (exit code
+/// 75: the same command continues). The folder holds weights.safetensors, the database, the spot check, learn.csv, and the
+/// campaign and training that can be edited. Example:
+/// kirigami material learn configs/materials/polypropylene-0.8mm.toml --accuracy 1% --time 1h --out runs/polypropylene
+#[derive(Args)]
+pub struct LearnCommand {
+    /// Material (TOML), as written by `material fit`
+    #[arg(value_name = "MATERIAL")]
+    material: PathBuf,
+    /// Weights of another material, with which fine-tuning starts
+    #[arg(
+        long,
+        value_name = "WEIGHTS",
+        default_value = "data/pet-0.5mm/medium.safetensors"
+    )]
+    from: PathBuf,
+    /// Error of W at which the weights are accurate enough, relative to its root mean square
+    #[arg(long, value_name = "PERCENT", default_value = "1%", value_parser = percent)]
+    accuracy: f64,
+    /// The same of the forces: root mean square of the errors of F_a, F_s and M
+    #[arg(long, value_name = "PERCENT", default_value = "5%", value_parser = percent)]
+    forces: f64,
+    /// Start no solve after this time, with its unit: h, min or s; running solves and trainings are finished
+    #[arg(long, value_name = "TIME", default_value = "1h", value_parser = time)]
+    time: Duration,
+    /// Mesh tier of the windows
+    #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
+    tier: Tier,
+    /// Number of rays of the first round
+    #[arg(long, value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u16).range(3..))]
+    rays: u16,
+    /// Number of rays of the spot check, each with 4 states
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u16).range(3..))]
+    spot_rays: u16,
+    /// Number of solves in parallel [default: one per processor]
+    #[arg(long, value_name = "N")]
+    jobs: Option<NonZeroUsize>,
+    /// Folder for the results; a folder of a stopped run is continued
+    #[arg(long, value_name = "FOLDER")]
+    out: PathBuf,
+}
+
+/// States on a ray of the spot check.
+const STATES_PER_RAY: usize = 4;
+/// Seed of the spot check's states.
+const SPOT_SEED: u64 = 1;
+/// The shipped training, which the folder gets a copy of.
+const TRAINING: &str = include_str!("../../../configs/training/fine-tuning.toml");
+
+impl LearnCommand {
+    pub(crate) fn run(&self) -> Result<()> {
+        let began = Instant::now();
+        let material = SheetMaterial::load(&self.material)?;
+        let parent = Surrogate::load(&self.from)?;
+        let _held = run_folder::hold(&self.out)?;
+        self.write_inputs(&material)?;
+        let config: TrainingConfig = support::toml_file::read(&self.out.join("training.toml"))?;
+        check_parent(&parent, &config, Backend::default())
+            .with_context(|| format!("{}", self.from.display()))?;
+        let campaign = self.campaign(&material)?;
+        let spot = self.spot_check(&campaign)?;
+        println!("{HEADING}");
+        let mut rounds: Vec<Round> = Vec::new();
+        for rays in counts(usize::from(self.rays), campaign.count) {
+            let left = self.time.saturating_sub(began.elapsed());
+            let round = self.round(rays, &campaign, &config, &parent, &spot, left)?;
+            println!("{round}");
+            rounds.push(round);
+            run_folder::write(&self.out, "learn.csv", &csv(&rounds)?)?;
+            if round.is_within(self.accuracy, self.forces) {
+                println!(
+                    "accurate enough after {}; weights written to {}",
+                    duration(began.elapsed().as_secs_f64()),
+                    self.weights().display()
+                );
+                return Ok(());
+            }
+            if began.elapsed() >= self.time && rays < campaign.count {
+                bail!(Unfinished::new(campaign.count - rays, "rays"));
+            }
+        }
+        bail!(
+            "all {} rays of {} are solved, and the errors are above --accuracy or --forces: increase `count` there, \
+             or choose a finer tier",
+            campaign.count,
+            self.out.join("campaign.toml").display()
+        )
+    }
+
+    fn weights(&self) -> PathBuf {
+        self.out.join("weights.safetensors")
+    }
+
+    /// Writes material, campaign and training to a new folder. Those of a folder that is continued are kept.
+    fn write_inputs(&self, material: &SheetMaterial) -> Result<()> {
+        if self.out.join("campaign.toml").exists() {
+            return Ok(());
+        }
+        let name = self.out.file_name().unwrap_or_default().to_string_lossy();
+        let text = std::fs::read_to_string(&self.material)
+            .with_context(|| format!("cannot read {}", self.material.display()))?;
+        run_folder::write(&self.out, "material.toml", &text)?;
+        run_folder::write(&self.out, "training.toml", TRAINING)?;
+        let campaign = init::campaign(&name, material.thickness, self.tier)?;
+        run_folder::write(&self.out, "campaign.toml", &campaign)
+    }
+
+    /// The campaign of the folder, which must be that of the material and the tier.
+    fn campaign(&self, material: &SheetMaterial) -> Result<Campaign> {
+        let campaign = Campaign::load(&self.out.join("campaign.toml"))?;
+        let (out, given) = (self.out.display(), self.material.display());
+        ensure!(
+            campaign.material.law_hash() == material.law_hash(),
+            "{out} is of another material law than {given}: choose another folder with --out"
+        );
+        ensure!(
+            campaign.tier == self.tier,
+            "{out} is solved on tier {}: pass --tier {}, or choose another folder with --out",
+            campaign.tier,
+            campaign.tier
+        );
+        Ok(campaign)
+    }
+
+    /// The states on which weights are tested, drawn uniformly inside the region of the campaign.
+    fn spot_check(&self, campaign: &Campaign) -> Result<Solved> {
+        let domain = region(campaign).context("the campaign has no region of rays")?;
+        let count = STATES_PER_RAY * usize::from(self.spot_rays);
+        let probes =
+            spot_states::drawn(&domain, &campaign.design, count, STATES_PER_RAY, SPOT_SEED);
+        let solve = SolveArgs::new(self.jobs, campaign.time_limit);
+        let folder = self.out.join("spot-check");
+        let solved =
+            spot_states::solve(&probes, &campaign.material, campaign.tier, &solve, &folder)?;
+        let states = solved.rows.len();
+        let plan = SplitPlan::default();
+        let database = Database::collect(solved.rows.clone(), &Gates::default(), &plan)
+            .context("the solver followed too few rays of the spot check: increase --spot-rays")?;
+        database.write(&self.out.join("spot-check.parquet"), true)?;
+        println!(
+            "spot check: {} rays, {states} of {count} states reached by the solver, {:.0} s of CPU time",
+            probes.len(),
+            solved.cpu_seconds
+        );
+        Ok(solved)
+    }
+
+    /// Solves the first `rays` rays of the campaign, fine-tunes and tests.
+    fn round(
+        &self,
+        rays: usize,
+        campaign: &Campaign,
+        config: &TrainingConfig,
+        parent: &Surrogate,
+        spot: &Solved,
+        time_limit: Duration,
+    ) -> Result<Round> {
+        let jobs = self.out.join("campaign");
+        let options = RunOptions {
+            shard: Shard::WHOLE,
+            workers: SolveArgs::new(self.jobs, campaign.time_limit).workers(),
+            time_limit: Some(time_limit),
+        };
+        let first = Campaign {
+            count: rays,
+            ..campaign.clone()
+        };
+        let tally = solve_rays(&first, &jobs, &options)?;
+        refuse_unfinished(&tally, &jobs)?;
+        let database = collected(&jobs)?;
+        database.write(&self.out.join("hinges.parquet"), true)?;
+        let fits = self.out.join("fits");
+        let weights = kept_fit(
+            &fits,
+            &format!("{rays}-rays"),
+            &database,
+            config,
+            Some(parent),
+        )?;
+        weights.save(&self.weights())?;
+        Ok(Round::new(&tally, &weights, spot))
+    }
+}
+
+/// Numbers of rays of the rounds: each twice the one before, the last with all.
+fn counts(first: usize, all: usize) -> impl Iterator<Item = usize> {
+    let doubled = std::iter::successors(Some(first), |count| Some(2 * count));
+    doubled
+        .take_while(move |count| *count < all)
+        .chain(std::iter::once(all))
+}
+
+/// The states that the campaign's rays pass through if they are solved to their ends. It does not depend on the number of
+/// rays, so that the spot check remains the same when the campaign is enlarged.
+fn region(campaign: &Campaign) -> Option<TrainingDomain> {
+    const RAYS: usize = 1500;
+    const STATES: u32 = 10;
+    let rays = (campaign.rays).rays(&campaign.design, RAYS, campaign.seed);
+    let rays = rays.into_iter().flat_map(|ray| [ray, ray.mirrored()]);
+    let states: Vec<(HingeDesign, HingeDeformation)> = rays
+        .flat_map(|ray| {
+            let lambdas = (1..=STATES).map(|k| f64::from(k) / f64::from(STATES));
+            lambdas.map(move |lambda| (ray.design, ray.end.at(lambda)))
+        })
+        .collect();
+    TrainingDomain::covering(states.iter().map(|(design, state)| (design, state)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounds_double_and_end_with_all_rays() {
+        let all = |first, all| counts(first, all).collect::<Vec<_>>();
+        assert_eq!(all(25, 160), [25, 50, 100, 160]);
+        assert_eq!(all(25, 50), [25, 50]);
+        assert_eq!(all(25, 6), [6]);
+    }
+}

@@ -1,0 +1,44 @@
+//! Values of options with their units.
+
+use std::time::Duration;
+
+/// A percentage such as `1%`, as a percentage.
+pub(super) fn percent(text: &str) -> Result<f64, String> {
+    let number = text.strip_suffix('%').map(|it| it.trim().parse::<f64>());
+    match number {
+        Some(Ok(value)) if value > 0.0 && value <= 100.0 => Ok(value),
+        _ => Err("expected a percentage above 0 and at most 100, for example 1%".into()),
+    }
+}
+
+/// A time such as `1h`, `30min` or `90s`.
+pub(super) fn time(text: &str) -> Result<Duration, String> {
+    let units = [("min", 60.0), ("h", 3600.0), ("s", 1.0)];
+    units
+        .into_iter()
+        .find_map(|(unit, seconds)| {
+            let number = text.strip_suffix(unit)?.trim().parse::<f64>().ok()?;
+            Duration::try_from_secs_f64(number * seconds).ok()
+        })
+        .ok_or_else(|| "expected a time with its unit, for example 1h, 30min or 90s".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_need_their_units() {
+        assert_eq!(percent("1%"), Ok(1.0));
+        assert_eq!(percent("0.5 %"), Ok(0.5));
+        for wrong in ["1", "0.01", "0%", "101%", "%", "nan%"] {
+            assert!(percent(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(time("1h"), Ok(Duration::from_secs(3600)));
+        assert_eq!(time("1.5 min"), Ok(Duration::from_secs(90)));
+        assert_eq!(time("0s"), Ok(Duration::ZERO));
+        for wrong in ["1", "h", "-1s", "nan h", "1 day", "1e99h"] {
+            assert!(time(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! `kirigami material learn`: rounds of rays, stopped and continued, and what its folder refuses.
+
+mod common;
+
+use common::{Workplace, failure};
+use std::path::Path;
+
+const POLYPROPYLENE: &str = "configs/materials/polypropylene-0.8mm.toml";
+const OPTIONS: &str = "--tier tiny --rays 6 --spot-rays 3 --out learned";
+
+fn learn(material: &str, options: &str) -> String {
+    let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/medium.safetensors");
+    format!(
+        "material learn {material} --from {} {options}",
+        weights.display()
+    )
+}
+
+/// Short rays, and a short training.
+fn shorten(work: &Workplace) {
+    work.edit(
+        "learned/campaign.toml",
+        &[
+            ("count = 1500", "count = 12"),
+            ("eta_a = [-0.95, 0.25]", "eta_a = [-0.1, 0.05]"),
+            ("eta_s = 0.4", "eta_s = 0.05"),
+            ("theta_deg = [-5.0, 75.0]", "theta_deg = [10.0, 20.0]"),
+            ("median_deg = 25.0", "median_deg = 15.0"),
+        ],
+    );
+    work.edit("learned/training.toml", &[("epochs = 80", "epochs = 3")]);
+}
+
+#[test]
+fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
+    let work = Workplace::new();
+    let stopped = work
+        .program(&learn(POLYPROPYLENE, &format!("{OPTIONS} --time 0s")))
+        .output()
+        .unwrap();
+    assert_eq!(stopped.status.code(), Some(75), "{stopped:?}");
+    assert!(!work.path("learned/weights.safetensors").exists());
+    shorten(&work);
+
+    // No round reaches an error of zero, so that all twelve rays are solved.
+    let options = format!("{OPTIONS} --accuracy 0.0001%");
+    let message = work.error(&learn(POLYPROPYLENE, &options));
+    assert!(message.contains("all 12 rays"), "{message}");
+    let table = std::fs::read_to_string(work.path("learned/learn.csv")).unwrap();
+    let rows: Vec<Vec<f64>> = table
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    let rays: Vec<f64> = rows.iter().map(|row| row[0]).collect();
+    assert_eq!(rays, [6.0, 12.0]);
+    assert!(
+        rows.iter().all(|row| row[1] == 100.0 && row[6] > 0.0),
+        "{table}"
+    );
+
+    // The finished rounds are read again, not solved or trained.
+    let fits = work.path("learned/fits/6-rays.safetensors");
+    let before = std::fs::metadata(&fits).unwrap().modified().unwrap();
+    let printed = work.output(&learn(
+        POLYPROPYLENE,
+        &format!("{OPTIONS} --accuracy 100% --forces 100%"),
+    ));
+    assert!(printed.contains("accurate enough"), "{printed}");
+    assert_eq!(
+        std::fs::metadata(&fits).unwrap().modified().unwrap(),
+        before
+    );
+    let card = work.output("surrogate card learned/weights.safetensors");
+    assert!(
+        card.contains("polypropylene-0.8mm") && card.contains("fine-tuned from"),
+        "{card}"
+    );
+
+    for (material, options, expected) in [
+        (
+            "configs/materials/s235-1.5mm.toml",
+            OPTIONS,
+            "another material law",
+        ),
+        (POLYPROPYLENE, "--out learned", "pass --tier tiny"),
+    ] {
+        let message = failure(&mut work.program(&learn(material, options)));
+        assert!(message.contains(expected), "{message}");
+    }
+}
+
+#[test]
+fn unsuitable_weights_are_refused_before_a_window_is_solved() {
+    let work = Workplace::new();
+    let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/small.safetensors");
+    let command = learn(POLYPROPYLENE, OPTIONS);
+    let (before, _) = command.split_once("--from").unwrap();
+    let command = format!("{before} --from {} {OPTIONS}", weights.display());
+    let message = work.error(&command);
+    assert!(
+        message.contains("small.safetensors") && message.contains("layers"),
+        "{message}"
+    );
+    assert!(!work.path("learned/campaign").exists());
+}

@@ -1,0 +1,124 @@
+//! Given weights, the parent, as the initial networks of a training on another material or thickness.
+//!
+//! The parent is scaled to the size of the database's windows ([`Surrogate::scaled`]), its first layers to the
+//! standardisation of the rows, and the last layer of chi to their root mean square of W. One factor for each of W, D
+//! and D_peak is fitted to the rows by least squares:
+//!
+//! ```text
+//! W = c_W W_parent,   c_W = sum W* W_parent / sum W_parent^2,   and the same for D and D_peak
+//! ```
+//!
+//! Apart from these factors and from rounding, the function of the networks is that of the parent.
+
+use crate::backend::Backend;
+use crate::config::TrainingConfig;
+use crate::error::TrainError;
+use crate::export::layers;
+use crate::mirror;
+use crate::networks::{Networks, widths};
+use crate::samples::Scales;
+use crate::validation::{Parity, ParityPoint};
+use burn::tensor::{DType, TensorCreationOptions};
+use dataset::Row;
+use hinge::HingeConstants;
+use surrogate::{Layer, Layers, Standardisation, Surrogate};
+
+/// The initial networks and their scales.
+pub(crate) struct Initial {
+    pub layers: Layers,
+    pub scales: Scales,
+}
+
+impl Initial {
+    /// The parent for the windows `hinge`, fitted to the training rows, which include their mirror images if
+    /// `symmetric`.
+    pub fn new(
+        parent: &Surrogate,
+        rows: &[Row],
+        hinge: &HingeConstants,
+        symmetric: bool,
+    ) -> Result<Self, TrainError> {
+        // Campaigns choose the radius of the windows in proportion to the thickness.
+        let parent = (parent.clone()).scaled(hinge.r_win / parent.card().hinge.r_win);
+        let parity = Parity::of(&parent, rows);
+        let own = Scales::of(rows, symmetric)?;
+        let card = parent.card();
+        let mut layers = parent.layers();
+        let (from, to) = (&card.standardisation, &own.standardisation);
+        let heads = [Some(&mut layers.chi_d), layers.chi_p.as_mut()];
+        for network in heads.into_iter().flatten().chain([&mut layers.chi]) {
+            restandardise(&mut network[0], from, to);
+        }
+        let energy = factor(&parity.energy) * card.energy_scale / own.energy;
+        if let Some(last) = layers.chi.last_mut() {
+            multiply(last, energy.sqrt());
+        }
+        let peak = own.peak.and(card.peak_scale);
+        layers.chi_p = layers.chi_p.filter(|_| peak.is_some());
+        Ok(Self {
+            layers,
+            scales: Scales {
+                damage: factor(&parity.damage) * card.damage_scale,
+                peak: peak.map(|scale| factor(&parity.damage_peak) * scale),
+                ..own
+            },
+        })
+    }
+}
+
+/// Rejects initial weights whose sizes, sharpness or symmetry are not those of the configuration.
+pub fn check_parent(
+    parent: &Surrogate,
+    config: &TrainingConfig,
+    backend: Backend,
+) -> Result<(), TrainError> {
+    let given = parent.layers();
+    let heads = 1 + usize::from(given.chi_p.is_some());
+    let damage = std::iter::repeat_n(config.damage.clone(), heads);
+    let expected: Vec<_> = std::iter::once(config.embedding.clone())
+        .chain(damage)
+        .collect();
+    let found = widths(&given);
+    if found != expected {
+        return Err(TrainError::OtherSizes { expected, found });
+    }
+    let found = parent.card().damage_sharpness;
+    if found != config.damage_sharpness {
+        return Err(TrainError::OtherSharpness { found });
+    }
+    let exact = TensorCreationOptions::new(backend.device()).with_dtype(DType::F64);
+    let folded = Networks::of_layers(&given, config.mirror, &exact);
+    let unchanged = layers(&folded)? == given;
+    let centred = !config.mirror || mirror::is_centred(&parent.card().standardisation);
+    match unchanged && centred {
+        true => Ok(()),
+        false => Err(TrainError::NotSymmetric),
+    }
+}
+
+/// The factor of the predictions that is closest to the targets.
+fn factor(points: &[ParityPoint]) -> f64 {
+    let known = || points.iter().filter(|point| !point.target.is_nan());
+    let product: f64 = known().map(|it| it.target * it.predicted).sum();
+    let square: f64 = known().map(|it| it.predicted.powi(2)).sum();
+    product / square
+}
+
+/// Changes a first layer such that its outputs for inputs standardised by `to` are those for inputs standardised by
+/// `from` before.
+fn restandardise(first: &mut Layer, from: &Standardisation, to: &Standardisation) {
+    let features = from.mean.len();
+    let rows = first.weight.values.chunks_exact_mut(features);
+    for (weights, bias) in rows.zip(&mut first.bias.values) {
+        for (k, weight) in weights.iter_mut().enumerate() {
+            *bias += *weight * (to.mean[k] - from.mean[k]) / from.std[k];
+            *weight *= to.std[k] / from.std[k];
+        }
+    }
+}
+
+fn multiply(layer: &mut Layer, factor: f64) {
+    for values in [&mut layer.weight.values, &mut layer.bias.values] {
+        values.iter_mut().for_each(|value| *value *= factor);
+    }
+}
