@@ -66,6 +66,19 @@ fn wrong_units_are_suspected() {
 }
 
 #[test]
+fn a_target_far_from_the_sheet_is_refused_by_every_command() {
+    let (work, centre) = (Workplace::new(), "centre = [1400.0, 1400.0]");
+    work.edit(SCENE, &[(centre, "centre = [1e300, 1400.0]")]);
+    for command in ["design", "inspect gradient", "inspect equilibrium"] {
+        let message = work.error(&format!("{command} {SCENE}"));
+        assert!(
+            message.contains("distance of the target from the sheet"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
 fn missing_files_are_named() {
     let work = Workplace::new();
     for command in [

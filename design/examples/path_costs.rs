@@ -1,5 +1,6 @@
-//! Prints what equilibrium paths cost, for linear sheets of growing size: corrections, factorisations, increments, jumps,
-//! CPU seconds of one thread, and the exponent with which the time grows from one sheet to the next.
+//! Prints what equilibrium paths cost, for linear sheets of growing size and for the scenes of learned hinges:
+//! corrections, factorisations, increments, jumps, CPU seconds of one thread; of linear sheets the exponent with which the
+//! time grows from one to the next; of learned ones the number of evaluations of all hinges.
 //!
 //! ```sh
 //! cargo run --release -p design --example path_costs -- 10000      # up to 10 000 panels
@@ -7,19 +8,27 @@
 //!
 //! Uniform sheets of m x n panels of 1 mm, r = 0.45, k_a = k_s = 1000 N/mm, k_theta = 0.1 N mm/rad, hinge point at the
 //! corner; a pin at the middle of the west edge, a roller at the middle of the east edge, which is pulled in ten load
-//! steps.
+//! steps. The learned sheets are those of `configs/scenes`, each with three random designs; a path is followed and the
+//! gradient of the objective computed.
 
 use design::equilibrium::hinged_sheet::HingedSheet;
 use design::equilibrium::load_step::LoadStep;
 use design::equilibrium::settings::SolverSettings;
 use design::equilibrium::solver::EquilibriumSolver;
 use design::equilibrium::supports::{Dof, Load, Support};
-use design::hinge_law::{HingeLaw, LinearLaw};
+use design::hinge_law::{
+    DamageMeasure, HingeDamage, HingeEnergy, HingeLaw, LinearLaw, Order, PreparedLaw,
+};
+use design::objective::design_problem::Model;
 use design::pattern::coordinates::{PatternCoordinates, logit};
 use design::pattern::cut_pattern::{CutPattern, Outline};
 use design::pattern::grid::Grid;
+use design::scene::{Scene, SceneConfig};
 use design::sheet::cut_sheet::{Centroid, HingePoint, Sheet, SheetOptions};
-use hinge::HingeConstants;
+use hinge::{HingeConstants, HingeDeformation, HingeDesign, TrainingDomain};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 /// Columns, rows and load (N).
 const SHEETS: [(usize, usize, f64); 6] = [
@@ -76,14 +85,104 @@ fn path(grid: Grid, load: f64) -> (Vec<LoadStep>, f64) {
     (path, cpu_seconds() - begin)
 }
 
-/// CPU time of this process (s), which other processes of the machine do not lengthen.
+/// CPU time of the threads of this process (s), which other processes of the machine do not lengthen.
 fn cpu_seconds() -> f64 {
-    let text = std::fs::read_to_string("/proc/self/schedstat").unwrap_or_default();
-    let first = text
-        .split_whitespace()
-        .next()
-        .and_then(|ns| ns.parse().ok());
-    first.unwrap_or(f64::NAN) * 1e-9
+    let threads = std::fs::read_dir("/proc/self/task").into_iter().flatten();
+    let times = threads.flatten().filter_map(|thread| {
+        let text = std::fs::read_to_string(thread.path().join("schedstat")).ok()?;
+        text.split_whitespace().next()?.parse::<f64>().ok()
+    });
+    1e-9 * times.sum::<f64>()
+}
+
+/// The scenes with learned hinges, their designs and the standard deviation of their coordinates.
+const SCENES: [&str; 4] = ["pet-3x3", "a4-polyester", "pet-7x7", "pet-bell-16x22"];
+const SEEDS: [u64; 3] = [1, 2, 3];
+const NOISE: f64 = 0.5;
+
+/// A hinge law that counts the evaluations of all hinges, by their order.
+struct Counted {
+    law: Arc<dyn HingeLaw>,
+    counts: Arc<[AtomicUsize; 4]>,
+}
+
+struct CountedHinges<'a> {
+    law: Box<dyn PreparedLaw + 'a>,
+    counts: &'a [AtomicUsize; 4],
+}
+
+impl HingeLaw for Counted {
+    fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a> {
+        let (law, counts) = (self.law.prepare(designs), &*self.counts);
+        Box::new(CountedHinges { law, counts })
+    }
+
+    fn damage_scale(&self, measure: DamageMeasure) -> Option<f64> {
+        self.law.damage_scale(measure)
+    }
+
+    fn domain(&self) -> Option<&TrainingDomain> {
+        self.law.domain()
+    }
+}
+
+impl PreparedLaw for CountedHinges<'_> {
+    fn energies(&self, deformations: &[HingeDeformation], order: Order) -> Vec<HingeEnergy> {
+        self.counts[order as usize].fetch_add(1, Relaxed);
+        self.law.energies(deformations, order)
+    }
+
+    fn damage(&self, deformations: &[HingeDeformation], with_gradient: bool) -> Vec<HingeDamage> {
+        self.law.damage(deformations, with_gradient)
+    }
+
+    fn resolution(&self) -> f64 {
+        self.law.resolution()
+    }
+
+    fn inside(&self, deformations: &[HingeDeformation]) -> Vec<bool> {
+        self.law.inside(deformations)
+    }
+}
+
+/// One row of the table of learned sheets.
+fn learned(name: &str, seed: u64) -> String {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
+    let path = scenes.join(name).with_extension("toml");
+    let mut config: SceneConfig = support::toml_file::read(&path).expect("the scene is readable");
+    config.optimiser.seed = seed;
+    config.optimiser.start_noise = NOISE;
+    let scene = Scene::new(config, &path).expect("the scene is valid");
+    let mut problem = scene.problem().expect("the scene has equilibria");
+    let counts = Arc::new([0; 4].map(AtomicUsize::new));
+    if let Model::Equilibrium(mechanics) = &mut problem.model {
+        mechanics.law = Arc::new(Counted {
+            law: mechanics.law.clone(),
+            counts: counts.clone(),
+        });
+    }
+    let begin = cpu_seconds();
+    let evaluation = problem.evaluate(&scene.start());
+    let seconds = cpu_seconds() - begin;
+    let Ok(evaluation) = evaluation else {
+        return format!("| {name} | {seed} | no equilibrium |");
+    };
+    let path = &evaluation.deployment.path;
+    let total = |of: fn(&LoadStep) -> usize| path.iter().map(of).sum::<usize>();
+    let [_, forces, tangents, designs] = &*counts;
+    format!(
+        "| {name} | {seed} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {seconds:.4} | {:.10e} |",
+        path.len(),
+        total(|step| step.effort.iterations),
+        total(|step| step.effort.factorisations),
+        total(|step| step.effort.increments),
+        total(|step| step.effort.rejected),
+        total(|step| step.jumps),
+        forces.load(Relaxed),
+        tangents.load(Relaxed),
+        designs.load(Relaxed),
+        evaluation.loss,
+    )
 }
 
 fn main() {
@@ -111,5 +210,14 @@ fn main() {
             path.last().map_or(f64::NAN, |step| step.potential),
         );
         before = Some((panels, seconds));
+    }
+    println!(
+        "\n| scene | design | load steps | corrections | factorisations | increments | rejected | jumps | forces | tangents | design gradients | CPU s | loss, mm^2 |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
+    for name in SCENES {
+        for seed in SEEDS {
+            println!("{}", learned(name, seed));
+        }
     }
 }

@@ -18,6 +18,7 @@ use crate::hinge_law::Order;
 use crate::sheet::cut_sheet::SheetGradient;
 use crate::sheet::kinematics::{HingeGeometryGradient, HingeMotion};
 use crate::sheet::panel_vectors::{add_at_hinge, at_hinge, gather, spread};
+use std::borrow::Cow;
 
 /// Backward error of an adjoint solve above which the tangent is considered singular.
 const SINGULAR: f64 = 1e-6;
@@ -92,7 +93,10 @@ pub(crate) fn adjoint(
                 (0..3).for_each(|d| sum[d] -= solution.mu * by_load[d]);
             }
         }
-        let energies = sheet.energies(&step.deformations, Order::Design);
+        let energies = match &step.derivatives {
+            Some(energies) => Cow::Borrowed(energies),
+            None => Cow::Owned(sheet.energies(&step.deformations, Order::Design)),
+        };
         for (h, hinge) in hinges() {
             let virtual_motion = at_hinge(hinge, &lambda);
             let (energy, rates) = (&energies[h], motions[h].rates(virtual_motion));

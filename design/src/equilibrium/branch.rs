@@ -14,9 +14,11 @@
 use crate::equilibrium::displacement_control::HeldFactor;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::Effort;
+use crate::equilibrium::newton::Minimum;
 use crate::equilibrium::place::Place;
 use crate::equilibrium::potential::{Control, Potential, State, moved};
 use crate::equilibrium::solver::EquilibriumSolver;
+use crate::hinge_law::Order;
 use crate::sheet::cut_sheet::Panel;
 use crate::sheet::panel_vectors::{gather, spread};
 
@@ -29,7 +31,10 @@ const DIVERGENCE: f64 = 0.5;
 /// Expected length of the next correction (rad, or panel sizes) from which it is not needed to follow the path. Stiff
 /// hinges amplify the error of the hinge forces.
 const CLOSE: f64 = 1e-8;
-/// Length of the first correction (rad, or panel sizes) up to which the factors of the predicted tangent are kept.
+/// Expected length of the next correction below which a balanced state is as smooth in the design as rounding allows.
+const EXACT: f64 = 1e-13;
+/// Length of the first correction of a load step (rad, or panel sizes) up to which the factors of the predicted tangent
+/// are kept.
 const NEAR: f64 = 1e-4;
 /// Relative change of a rate below which it is not refined further, and the maximum number of refinements.
 const RATE: (f64, usize) = (1e-3, 3);
@@ -43,43 +48,46 @@ pub(crate) struct Branch<'a> {
     pub panel_size: f64,
     /// Counts what the branch costs.
     pub effort: Effort,
+    /// Memory of factors that are not needed any more.
+    pub spare: Vec<f64>,
 }
 
-/// Where the corrections end.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Until {
-    /// Close enough to follow the path.
-    Close,
-    /// Residual within the tolerance.
-    Balanced,
-}
-
-/// A corrected place.
+/// An equilibrium close enough to the path to follow it.
 pub(crate) struct Corrected {
-    pub at: f64,
+    pub place: Place,
+    /// The state at the place, the factors of a tangent near it, and the rate with the load parameter by them.
     pub state: State,
-    /// A tangent near the state, and its factors; of a balanced state its own.
-    pub values: Vec<f64>,
     pub factor: HeldFactor,
+    pub rate: Vec<[f64; 3]>,
     /// Length of the first correction: the error of the prediction (rad, or panel sizes).
     pub error: f64,
 }
 
-/// A tangent, its factors, and the rate of the configuration with the load parameter by them.
-struct Held {
+/// A state, its tangent, the factors of the tangent, and the rate with the load parameter by them.
+struct Linearised {
+    state: State,
     values: Vec<f64>,
     factor: HeldFactor,
-    rate: Option<Vec<[f64; 3]>>,
+    rate: Vec<[f64; 3]>,
+}
+
+/// A correction of a place.
+struct Correction {
+    at: f64,
+    motion: Vec<[f64; 3]>,
+    /// rad, or panel sizes
+    length: f64,
 }
 
 /// A point of the branch.
-#[derive(Clone)]
 pub(crate) struct Point {
     pub place: Place,
     /// The rate along the path; the fastest hinge moves by one (rad, or panel sizes).
     pub rate: Place,
     /// Maximum rate of rotation (rad).
     pub turning: f64,
+    /// Factors of a tangent near the place.
+    pub factor: Option<HeldFactor>,
 }
 
 impl Point {
@@ -94,6 +102,7 @@ impl Point {
             place,
             rate,
             turning: 0.0,
+            factor: None,
         }
     }
 
@@ -115,6 +124,7 @@ impl<'a> Branch<'a> {
             force: 0.0,
             panel_size: (area / sheet.sheet.panels.len() as f64).sqrt(),
             effort: Effort::default(),
+            spare: Vec::new(),
         };
         if solver.drive.is_none() {
             let loads = solver.loads.iter().copied();
@@ -156,119 +166,177 @@ impl<'a> Branch<'a> {
         }
     }
 
-    /// The equilibrium near a predicted place: in the plane normal to the rate `normal`, or at the place's load.
-    /// `None` if the corrections do not converge, or if the first is longer than `limit`.
-    pub fn corrected(
+    /// The equilibrium near a predicted place: in the plane normal to the rate `normal`, or at the load of the place.
+    /// Otherwise the error of the prediction if that is larger than `limit`, infinite if the corrections do not
+    /// converge.
+    pub fn close(
         &mut self,
         mut place: Place,
         normal: Option<&Place>,
-        until: Until,
         limit: f64,
-    ) -> Option<Corrected> {
-        let mut held: Option<Held> = None;
-        let (mut error, mut last) = (0.0, f64::INFINITY);
-        let mut polished = false;
-        for round in 0..CORRECTIONS {
-            let potential = self.potential(place.at);
-            let mut state = potential.state(std::mem::take(&mut place.configuration))?;
-            let balanced =
-                until == Until::Balanced && state.is_balanced(self.solver.settings.tolerance);
-            if balanced && (polished || held.is_none()) {
-                // Factors of a tangent this close serve as its own, after refinement.
-                let (values, factor) = match held {
-                    Some(held) if error <= NEAR => (potential.tangent(&state), Some(held.factor)),
-                    held => self.factor(&potential, &state, held.map(|held| held.factor)),
-                };
-                return Some(Corrected {
-                    at: place.at,
+    ) -> Result<Corrected, f64> {
+        const DIVERGED: f64 = f64::INFINITY;
+        let (mut error, mut before) = (None, DIVERGED);
+        for _ in 0..CORRECTIONS {
+            let near = self.state(&place, Order::Tangent).and_then(|state| {
+                let expected = Some(place.forces.clone());
+                self.linearised(place.at, State { expected, ..state })
+            });
+            let mut near = near.ok_or(DIVERGED)?;
+            let mut last = self.correction(&near.state, &near.factor, &near.rate, normal);
+            if last.length.is_nan() || last.length > DIVERGENCE * before {
+                return Err(DIVERGED);
+            }
+            let error = *error.get_or_insert(last.length);
+            if error > limit {
+                return Err(error);
+            }
+            before = last.length;
+            place = self.corrected(place.at, &near.state, &last);
+            // The other corrections need only the forces of the hinges.
+            let mut next = before;
+            while next > CLOSE {
+                let state = self.state(&place, Order::Forces).ok_or(DIVERGED)?;
+                near.state = state.with_stiffness_of(&near.state);
+                let again = self.correction(&near.state, &near.factor, &near.rate, normal);
+                if again.length.is_nan() || again.length > CONTRACTION * last.length {
+                    break;
+                }
+                place = self.corrected(place.at, &near.state, &again);
+                next = again.length * again.length / last.length;
+                last = again;
+            }
+            if next <= CLOSE {
+                let state = self.state(&place, Order::Tangent).ok_or(DIVERGED)?;
+                return Ok(Corrected {
+                    place: Place {
+                        forces: state.forces(),
+                        ..place
+                    },
                     state,
-                    values,
-                    factor: factor?,
+                    factor: near.factor,
+                    rate: near.rate,
                     error,
                 });
             }
-            // One more correction by the same factors makes the state as smooth in the design as rounding allows.
-            polished = balanced;
-            let again =
-                (held.as_ref()).map(|held| self.correction(&potential, &state, held, normal));
-            let enough = |length: f64| balanced || length <= CONTRACTION * last;
-            let contracted = again.filter(|(length, ..)| enough(*length));
-            let (length, motion, dt) = match contracted {
-                Some(step) => step,
-                None => {
-                    state.expected = Some(std::mem::take(&mut place.forces));
-                    let memory = held.take().map(|held| held.factor);
-                    let (values, factor) = self.factor(&potential, &state, memory);
-                    let factor = factor?;
-                    let rate = normal.map(|_| self.rate(&potential, &state, &factor));
-                    let new = held.insert(Held {
-                        values,
-                        factor,
-                        rate,
-                    });
-                    self.correction(&potential, &state, new, normal)
-                }
-            };
-            if length.is_nan() || (!balanced && length > DIVERGENCE * last) {
+        }
+        Err(DIVERGED)
+    }
+
+    /// The equilibrium near a predicted place, at its load, with a residual within the tolerance.
+    pub fn balanced(&mut self, mut place: Place) -> Option<Minimum> {
+        let tolerance = self.solver.settings.tolerance;
+        let mut before = f64::INFINITY;
+        for _ in 0..CORRECTIONS {
+            let mut state = self.state(&place, Order::Tangent)?;
+            if state.is_balanced(tolerance) {
+                return self.linearised(place.at, state).map(Minimum::from);
+            }
+            state.expected = Some(place.forces.clone());
+            let mut near = self.linearised(place.at, state)?;
+            let first = self.correction(&near.state, &near.factor, &near.rate, None);
+            if first.length.is_nan() || first.length > DIVERGENCE * before {
                 return None;
             }
-            if round == 0 {
-                error = length;
-                if error > limit {
-                    return None;
+            before = first.length;
+            let mut next = before * before;
+            let mut last = first;
+            let mut polished = false;
+            place = self.corrected(place.at, &near.state, &last);
+            for _ in 0..CORRECTIONS {
+                // One more correction makes a balanced state as smooth in the design as rounding allows.
+                let ready = polished || next <= EXACT;
+                let order = match ready {
+                    true if self.sheet.damage_gradient => Order::Design,
+                    true => Order::Tangent,
+                    false => Order::Forces,
+                };
+                let mut state = self.state(&place, order)?;
+                state.rounding = state.rounding.max(near.state.rounding);
+                let balanced = state.is_balanced(tolerance);
+                if balanced && ready {
+                    // Factors of a tangent this close serve as its own, after refinement.
+                    if before > NEAR {
+                        return self.linearised(place.at, state).map(Minimum::from);
+                    }
+                    return Some(Minimum {
+                        tangent: self.potential(place.at).tangent(&state),
+                        factor: Some(near.factor),
+                        state,
+                    });
                 }
-            }
-            self.effort.iterations += usize::from(length > 0.0);
-            let next = length * length / if round == 0 { 1.0 } else { last };
-            last = length;
-            place.at += dt;
-            place.configuration = moved(&state.configuration, &motion, 1.0);
-            let rates = potential.force_rates(&state, &motion);
-            place.forces = moved(&state.forces(), &rates, 1.0);
-            if until == Until::Close && next <= CLOSE {
-                let potential = self.potential(place.at);
-                let state = potential.state(place.configuration)?;
-                let held = held?;
-                return Some(Corrected {
-                    at: place.at,
-                    state,
-                    values: held.values,
-                    factor: held.factor,
-                    error,
-                });
+                polished = balanced;
+                let again = self.correction(&state, &near.factor, &near.rate, None);
+                if again.length.is_nan() || (!balanced && again.length > CONTRACTION * last.length)
+                {
+                    break;
+                }
+                near.state = state.with_stiffness_of(&near.state);
+                place = self.corrected(place.at, &near.state, &again);
+                next = again.length * again.length / last.length;
+                last = again;
             }
         }
         None
     }
 
-    /// The tangent of a state and its factors, stored in the memory of earlier ones.
+    fn state(&self, place: &Place, order: Order) -> Option<State> {
+        let configuration = place.configuration.clone();
+        self.potential(place.at).state_up_to(configuration, order)
+    }
+
+    /// The tangent of a state, its factors and the rate by them.
+    fn linearised(&mut self, at: f64, state: State) -> Option<Linearised> {
+        let potential = self.potential(at);
+        let (values, factor) = self.factor(&potential, &state);
+        let factor = factor?;
+        Some(Linearised {
+            rate: self.rate(&potential, &state, &factor),
+            state,
+            values,
+            factor,
+        })
+    }
+
+    /// The tangent of a state and its factors.
     pub fn factor(
         &mut self,
         potential: &Potential,
         state: &State,
-        memory: Option<HeldFactor>,
     ) -> (Vec<f64>, Option<HeldFactor>) {
         self.effort.factorisations += 1;
-        let memory = memory.map_or(Vec::new(), |held| held.factor.values);
         let values = potential.tangent(state);
-        let factor = potential.factorise(&values, memory);
+        let factor = potential.factorise(&values, std::mem::take(&mut self.spare));
         (values, factor)
     }
 
-    /// The length of a correction, and the correction of the configuration and of the load parameter.
+    /// The correction of a state by factors and a rate with the load parameter: in the plane normal to `normal`, or at
+    /// constant load.
     fn correction(
-        &self,
-        potential: &Potential,
+        &mut self,
         state: &State,
-        held: &Held,
+        factor: &HeldFactor,
+        rate: &[[f64; 3]],
         normal: Option<&Place>,
-    ) -> (f64, Vec<[f64; 3]>, f64) {
-        let direct = self.direct(state, &held.factor);
-        let (motion, dt) = match (normal, &held.rate) {
-            (Some(normal), Some(rate)) => self.in_plane(&direct, rate, normal),
-            _ => (direct, 0.0),
+    ) -> Correction {
+        let direct = self.direct(state, factor);
+        let (motion, at) = match normal {
+            Some(normal) => self.in_plane(&direct, rate, normal),
+            None => (direct, 0.0),
         };
-        (potential.length(state, &motion), motion, dt)
+        let length = self.potential(0.0).length(state, &motion);
+        self.effort.iterations += usize::from(length > 0.0);
+        Correction { at, motion, length }
+    }
+
+    /// The place after the correction of a state.
+    fn corrected(&self, at: f64, state: &State, by: &Correction) -> Place {
+        let rates = self.potential(at).force_rates(state, &by.motion);
+        Place {
+            at: at + by.at,
+            configuration: moved(&state.configuration, &by.motion, 1.0),
+            forces: moved(&state.forces(), &rates, 1.0),
+        }
     }
 
     /// The correction d_0 of a state at constant load.
@@ -300,13 +368,17 @@ impl<'a> Branch<'a> {
             .sum()
     }
 
-    /// The point of the branch at a corrected place, seen along the rate `before`, and the factors used.
-    pub fn point(&self, corrected: Corrected, before: Option<&Place>) -> (Point, HeldFactor) {
+    /// The point of the branch at a corrected place, seen along the rate `before`.
+    pub fn point(&self, corrected: Corrected, before: Option<&Place>) -> Point {
         let Corrected {
-            at, state, factor, ..
+            place,
+            state,
+            factor,
+            rate,
+            ..
         } = corrected;
-        let potential = self.potential(at);
-        let rate = self.refined_rate(&potential, &state, &factor);
+        let potential = self.potential(place.at);
+        let rate = self.refined_rate(&potential, &state, &factor, rate);
         let size = potential.length(&state, &rate);
         // Without any motion the path is followed by its load parameter.
         let size = if size > 0.0 { size } else { 1.0 };
@@ -321,27 +393,23 @@ impl<'a> Branch<'a> {
         };
         let rate = Place::sum([(scale, &rate)]);
         let turning = |most: f64, rate: &[f64; 3]| rate[2].abs().max(most);
-        let point = Point {
+        Point {
             turning: rate.configuration.iter().fold(0.0, turning),
             rate,
-            place: Place {
-                at,
-                forces: state.forces(),
-                configuration: state.configuration,
-            },
-        };
-        (point, factor)
+            place,
+            factor: Some(factor),
+        }
     }
 
-    /// The rate with the load parameter, by factors of a tangent near the state and products with its own.
+    /// A rate with the load parameter, refined by products with the tangent of the state.
     fn refined_rate(
         &self,
         potential: &Potential,
         state: &State,
         factor: &HeldFactor,
+        mut rate: Vec<[f64; 3]>,
     ) -> Vec<[f64; 3]> {
         let free = &self.solver.free;
-        let mut rate = self.rate(potential, state, factor);
         for _ in 0..RATE.1 {
             let resisted = potential.resistance(state, &rate);
             let missing: Vec<[f64; 3]> = match &self.solver.drive {
@@ -362,7 +430,7 @@ impl<'a> Branch<'a> {
     }
 
     /// The rate of the configuration with the load parameter.
-    fn rate(&self, potential: &Potential, state: &State, factor: &HeldFactor) -> Vec<[f64; 3]> {
+    pub fn rate(&self, potential: &Potential, state: &State, factor: &HeldFactor) -> Vec<[f64; 3]> {
         let solver = self.solver;
         let mut supports = vec![[0.0; 3]; solver.grid.panel_count()];
         for support in &solver.supports {
@@ -381,5 +449,15 @@ impl<'a> Branch<'a> {
         let b = gather(&solver.free, &b);
         let (free, _) = factor.solve_bordered(&solver.pattern, &b, stroke);
         moved(&supports, &spread(&solver.free, &free), 1.0)
+    }
+}
+
+impl From<Linearised> for Minimum {
+    fn from(near: Linearised) -> Self {
+        Self {
+            state: near.state,
+            tangent: near.values,
+            factor: Some(near.factor),
+        }
     }
 }

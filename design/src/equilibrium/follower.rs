@@ -11,12 +11,12 @@
 //!
 //! The increments do not depend on the load steps, which are read off the path between them.
 
-use crate::equilibrium::branch::{Branch, Corrected, Point, Until};
+use crate::equilibrium::branch::{Branch, Corrected, Point};
 use crate::equilibrium::displacement_control::HeldFactor;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::newton::{Failure, Minimum};
 use crate::equilibrium::place::{Arc, Place, bisected};
-use crate::equilibrium::potential::State;
+use crate::equilibrium::potential::{State, moved};
 use crate::equilibrium::settings::Method;
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::Order;
@@ -37,6 +37,8 @@ const CUT: [f64; 2] = [0.1, 0.5];
 const RESOLVED: [f64; 2] = [1e-3, 1e-5];
 /// Length below which increments are given up.
 const SHORTEST: f64 = 1e-9;
+/// Part of the load that is skipped where the path cannot be followed.
+const SKIPPED: f64 = 0.1;
 /// Length from which the motion at a bifurcation is a jump.
 pub(crate) const LEAP: f64 = 0.03;
 
@@ -74,7 +76,7 @@ impl<'a> Follower<'a> {
             configuration: start,
             forces: state.forces(),
         };
-        let (values, factor) = branch.factor(&potential, &state, None);
+        let (_, factor) = branch.factor(&potential, &state);
         let stable = factor.filter(|factor| factor.unstable_directions() == 0);
         let mut follower = Self {
             branch,
@@ -87,17 +89,11 @@ impl<'a> Follower<'a> {
             jumps: 0,
         };
         let begin = match stable {
-            Some(factor) => Some(Corrected {
-                at: 0.0,
-                state,
-                values,
-                factor,
-                error: 0.0,
-            }),
+            Some(factor) => Some(follower.branch.exact(0.0, state, factor)),
             None => follower.branch.settled(place.clone()),
         };
         if let Some(begin) = begin {
-            let moved = follower.branch.distance(&begin.state, &place);
+            let moved = follower.branch.distance(&begin.state, &begin.place, &place);
             follower.jumps = usize::from(moved > LEAP);
             follower.restart(begin);
         }
@@ -126,9 +122,13 @@ impl<'a> Follower<'a> {
 
     /// One increment, or a jump from the end of the branch to another; `None` if the path ends.
     pub fn advance(&mut self) -> Option<()> {
+        self.increment().or_else(|| self.skip())
+    }
+
+    fn increment(&mut self) -> Option<()> {
         loop {
             self.tried += 1;
-            if self.tried > self.branch.solver.settings.max_increments {
+            if self.is_exhausted() {
                 return None;
             }
             let mut length = self.length.min(TURN / self.last.turning);
@@ -145,21 +145,21 @@ impl<'a> Follower<'a> {
             let limit = AGREEMENT[1] * length.max(1.0);
             let start = self.ahead(length);
             let normal = (!full && !self.last.is_still()).then_some(&self.last.rate);
-            // An error above the limit is measured, so that the increment is cut by the right factor.
-            let found = self
-                .branch
-                .corrected(start, normal, Until::Close, 30.0 * limit);
-            let Some(mut corrected) = found else {
-                self.reject(length, CUT[0].max(0.25))?;
-                continue;
+            let found = self.branch.close(start, normal, limit);
+            let mut corrected = match found {
+                Ok(corrected) => corrected,
+                Err(f64::INFINITY) => {
+                    self.reject(length, CUT[0].max(0.25))?;
+                    continue;
+                }
+                Err(error) => {
+                    self.reject(length, ratio(error).clamp(CUT[0], CUT[1]))?;
+                    continue;
+                }
             };
             let error = corrected.error;
-            if error > limit {
-                self.reject(length, ratio(error).clamp(CUT[0], CUT[1]))?;
-                continue;
-            }
             let stable = self.branch.is_stable(&mut corrected);
-            let (point, factor) = self.branch.point(corrected, Some(&self.last.rate));
+            let point = self.branch.point(corrected, Some(&self.last.rate));
             if !stable {
                 let fold = point.rate.at <= 0.0;
                 let resolution = RESOLVED[usize::from(!fold)];
@@ -172,7 +172,7 @@ impl<'a> Follower<'a> {
             }
             let next = length * ratio(error).clamp(GROWTH[0], GROWTH[1]);
             let (arc, stretch) = self.arc_to(&point);
-            let doubt = self.branch.doubt(&arc, &factor);
+            let doubt = self.branch.doubt(&arc, &point);
             if doubt > DOUBT {
                 self.reject(length, 0.5)?;
                 continue;
@@ -180,6 +180,35 @@ impl<'a> Follower<'a> {
             self.accept(point, (arc, stretch), next);
             return Some(());
         }
+    }
+
+    fn is_exhausted(&self) -> bool {
+        self.tried > self.branch.solver.settings.max_increments
+    }
+
+    /// Goes on from a minimum at a higher load where the path cannot be followed.
+    fn skip(&mut self) -> Option<()> {
+        let from = self.last.place.clone();
+        let mut ahead = SKIPPED;
+        while !self.is_exhausted() && from.at < 1.0 {
+            let mut start = Place {
+                at: (from.at + ahead).min(1.0),
+                ..from.clone()
+            };
+            self.branch.hold(&mut start, &from);
+            let full = start.at >= 1.0;
+            if let Some(landed) = self.branch.settled(start) {
+                let moved = self.branch.distance(&landed.state, &landed.place, &from);
+                self.jumps += usize::from(moved > LEAP);
+                self.restart(landed);
+                return Some(());
+            }
+            if full {
+                return None;
+            }
+            ahead += SKIPPED;
+        }
+        None
     }
 
     fn reject(&mut self, length: f64, factor: f64) -> Option<()> {
@@ -219,7 +248,11 @@ impl<'a> Follower<'a> {
             .unstable
             .map(left)
             .filter(|(distance, _)| *distance > 0.0);
-        (self.last, self.arc) = (point, Some(arc));
+        let before = std::mem::replace(&mut self.last, point);
+        if let Some(held) = before.factor {
+            self.branch.spare = held.factor.values;
+        }
+        self.arc = Some(arc);
         (self.stretch, self.length) = (stretch, next);
         self.branch.effort.increments += 1;
     }
@@ -237,7 +270,7 @@ impl<'a> Follower<'a> {
             self.branch.hold(&mut start, &from);
         }
         let landed = self.branch.settled(start)?;
-        let moved = self.branch.distance(&landed.state, &from);
+        let moved = self.branch.distance(&landed.state, &landed.place, &from);
         self.jumps += usize::from(fold || moved > LEAP);
         self.restart(landed);
         Some(())
@@ -245,7 +278,7 @@ impl<'a> Follower<'a> {
 
     /// Continues the path on the branch of a stable equilibrium.
     fn restart(&mut self, landed: Corrected) {
-        self.last = self.branch.point(landed, None).0;
+        self.last = self.branch.point(landed, None);
         self.begin();
     }
 
@@ -263,14 +296,16 @@ impl<'a> Follower<'a> {
 
 impl Branch<'_> {
     /// The distance of the path from the middle of an arc, by factors of a tangent near its end.
-    fn doubt(&self, arc: &Arc, factor: &HeldFactor) -> f64 {
+    fn doubt(&self, arc: &Arc, point: &Point) -> f64 {
         let middle = arc.place(0.5 * arc.length);
         let potential = self.potential(middle.at);
         potential
             .state_up_to(middle.configuration, Order::Forces)
-            .map_or(f64::INFINITY, |state| {
+            .zip(point.factor.as_ref())
+            .map_or(f64::INFINITY, |(state, factor)| {
                 let direct = self.direct(&state, factor);
-                let (motion, _) = self.in_plane(&direct, &arc.to_rate.configuration, &arc.to_rate);
+                let rate = &arc.to_rate.configuration;
+                let (motion, _) = self.in_plane(&direct, rate, &arc.to_rate);
                 potential.length(&state, &motion)
             })
     }
@@ -278,9 +313,17 @@ impl Branch<'_> {
     /// Whether a corrected place is stable. If the tangent near it is not, its own decides.
     fn is_stable(&mut self, corrected: &mut Corrected) -> bool {
         if corrected.factor.unstable_directions() > 0 {
-            let potential = self.potential(corrected.at);
-            if let (values, Some(factor)) = self.factor(&potential, &corrected.state, None) {
-                (corrected.values, corrected.factor) = (values, factor);
+            let Place {
+                at, configuration, ..
+            } = corrected.place.clone();
+            let potential = self.potential(at);
+            if let Some(state) = potential.state(configuration)
+                && let (_, Some(factor)) = self.factor(&potential, &state)
+            {
+                *corrected = Corrected {
+                    error: corrected.error,
+                    ..self.exact(at, state, factor)
+                };
             }
         }
         corrected.factor.unstable_directions() == 0
@@ -290,13 +333,22 @@ impl Branch<'_> {
     pub fn settled(&mut self, start: Place) -> Option<Corrected> {
         let minimum = self.minimum(&start).ok()?;
         let factor = (minimum.factor).filter(|factor| factor.unstable_directions() == 0)?;
-        Some(Corrected {
-            at: start.at,
-            state: minimum.state,
-            values: minimum.tangent,
+        Some(self.exact(start.at, minimum.state, factor))
+    }
+
+    /// An equilibrium with the factors of its own tangent.
+    fn exact(&self, at: f64, state: State, factor: HeldFactor) -> Corrected {
+        Corrected {
+            place: Place {
+                at,
+                configuration: state.configuration.clone(),
+                forces: state.forces(),
+            },
+            rate: self.rate(&self.potential(at), &state, &factor),
+            state,
             factor,
             error: 0.0,
-        })
+        }
     }
 
     /// The minimum of the potential that is reached downhill from a place at constant load.
@@ -312,11 +364,9 @@ impl Branch<'_> {
         }
     }
 
-    /// The maximum rotation or hinge translation between a state and a place.
-    pub fn distance(&self, state: &State, from: &Place) -> f64 {
-        let motion: Vec<[f64; 3]> = std::iter::zip(&state.configuration, &from.configuration)
-            .map(|(to, from)| std::array::from_fn(|d| to[d] - from[d]))
-            .collect();
-        self.potential(from.at).length(state, &motion)
+    /// The maximum rotation or hinge translation between two places, in the frames of a state near them.
+    pub fn distance(&self, near: &State, to: &Place, from: &Place) -> f64 {
+        let motion = moved(&to.configuration, &from.configuration, -1.0);
+        self.potential(from.at).length(near, &motion)
     }
 }

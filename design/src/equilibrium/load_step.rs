@@ -4,7 +4,7 @@ use crate::equilibrium::displacement_control::{HeldFactor, Stroke, dot};
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::potential::State;
 use crate::equilibrium::solver::EquilibriumSolver;
-use crate::hinge_law::HingeDamage;
+use crate::hinge_law::{HingeDamage, HingeEnergy, Order};
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::kinematics::{Configuration, hinge_deformations};
 use crate::sheet::panel_vectors::gather;
@@ -81,6 +81,8 @@ pub struct LoadStep {
     pub inside: Vec<bool>,
     /// H at the configuration, with its factors, for the adjoint.
     pub(crate) tangent: Option<StepTangent>,
+    /// Energies of the hinges with the derivatives that the adjoint needs, if the solver computed them.
+    pub(crate) derivatives: Option<Vec<HingeEnergy>>,
 }
 
 /// H at an equilibrium.
@@ -148,6 +150,7 @@ impl LoadStep {
             pivot_ratio: 1.0,
             inside: vec![true; hinges],
             tangent: None,
+            derivatives: None,
         }
     }
 
@@ -180,6 +183,7 @@ impl LoadStep {
             pivot_ratio: factor.map_or(0.0, |factor| factor.pivot_ratio),
             configuration: state.configuration,
             tangent,
+            derivatives: (state.order == Order::Design).then_some(state.energies),
         }
     }
 }

@@ -4,12 +4,13 @@
 //! points of the path is the start of a correction at the load of the step. L-BFGS, the baseline, minimises from
 //! one load step to the next and looks for no limit points.
 
-use crate::equilibrium::branch::Until;
+use crate::equilibrium::displacement_control::HeldFactor;
 use crate::equilibrium::follower::{Follower, LEAP};
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{LoadStep, Status, StepTangent};
 use crate::equilibrium::newton::{Failure, Minimum};
 use crate::equilibrium::place::Place;
+use crate::equilibrium::potential::moved;
 use crate::equilibrium::settings::{Method, SolverSettings};
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
 use crate::equilibrium::supports::{Load, Support};
@@ -144,20 +145,15 @@ impl Follower<'_> {
         };
         self.branch.hold(&mut place, &self.last.place);
         let start = place.clone();
-        let found = self
-            .branch
-            .corrected(place, None, Until::Balanced, f64::INFINITY);
-        let stable = found.filter(|found| found.factor.unstable_directions() == 0);
-        let minimum = match stable {
-            Some(found) => Minimum {
-                state: found.state,
-                tangent: found.values,
-                factor: Some(found.factor),
-            },
+        let found = self.branch.balanced(place);
+        let stable = |held: &HeldFactor| held.unstable_directions() == 0;
+        let minimum = match found.filter(|found| found.factor.as_ref().is_some_and(stable)) {
+            Some(found) => found,
             None => self.branch.minimum(&start)?,
         };
-        let moved = self.branch.distance(&minimum.state, &start);
-        self.jumps += usize::from(moved > LEAP);
+        let moved = self.moved(&minimum, &start);
+        // Without an arc the start is a place at a higher load.
+        self.jumps += usize::from(self.arc.is_some() && moved > LEAP);
         self.branch.force = minimum.state.force;
         Ok(minimum)
     }
@@ -170,7 +166,7 @@ impl Follower<'_> {
         };
         self.branch.hold(&mut start, &self.last.place);
         let minimum = self.branch.minimum(&start)?;
-        let moved = self.branch.distance(&minimum.state, &start);
+        let moved = self.moved(&minimum, &start);
         self.branch.force = minimum.state.force;
         self.continue_from(Place {
             at: to,
@@ -178,6 +174,13 @@ impl Follower<'_> {
             forces: minimum.state.forces(),
         });
         Ok((minimum, moved))
+    }
+
+    /// The maximum rotation or hinge translation from a place to a minimum.
+    fn moved(&self, minimum: &Minimum, start: &Place) -> f64 {
+        let motion = moved(&minimum.state.configuration, &start.configuration, -1.0);
+        let potential = self.branch.potential(start.at);
+        potential.length(&minimum.state, &motion)
     }
 
     fn status(&self, minimum: &Minimum, jumped: bool) -> Status {

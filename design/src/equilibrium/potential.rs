@@ -53,6 +53,8 @@ pub(crate) struct State {
     pub configuration: Configuration,
     pub motions: Vec<HingeMotion>,
     pub energies: Vec<HingeEnergy>,
+    /// The derivatives that `energies` contain.
+    pub order: Order,
     /// zeta
     pub load_factor: f64,
     /// Energy of the hinges.
@@ -83,6 +85,20 @@ impl State {
     /// (F_a, F_s, M_theta) per hinge.
     pub fn forces(&self) -> Vec<[f64; 3]> {
         self.energies.iter().map(|energy| energy.forces).collect()
+    }
+
+    /// The state with the stiffness of the hinges in a state near it.
+    pub fn with_stiffness_of(mut self, near: &Self) -> Self {
+        for (energy, near) in std::iter::zip(&mut self.energies, &near.energies) {
+            energy.tangent = near.tangent;
+        }
+        self
+    }
+
+    /// The forces of a hinge in the part f . d2(eps) of the tangent.
+    fn expected_forces(&self, hinge: usize) -> [f64; 3] {
+        let expected = self.expected.as_ref();
+        expected.map_or(self.energies[hinge].forces, |expected| expected[hinge])
     }
 
     pub fn deformations(&self) -> Vec<HingeDeformation> {
@@ -158,6 +174,7 @@ impl Potential<'_> {
             configuration,
             motions,
             energies,
+            order,
         };
         let finite = state.potential.is_finite() && state.gradient.iter().all(|g| g.is_finite());
         finite.then_some(state)
@@ -199,8 +216,7 @@ impl Potential<'_> {
     pub fn tangent(&self, state: &State) -> Vec<f64> {
         let hinges = state.motions.iter().zip(&state.energies).enumerate();
         self.pattern.assemble(hinges.map(|(h, (motion, energy))| {
-            let forces = (state.expected.as_ref()).map_or(energy.forces, |expected| expected[h]);
-            motion.stiffness(&energy.tangent, forces)
+            motion.stiffness(&energy.tangent, state.expected_forces(h))
         }))
     }
 
@@ -219,11 +235,11 @@ impl Potential<'_> {
     /// H times a motion of all panels, including the supported ones.
     pub fn resistance(&self, state: &State, motion: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut forces = vec![[0.0; 3]; motion.len()];
-        let hinges = std::iter::zip(&state.motions, &state.energies);
-        for (hinge, (hinge_motion, energy)) in std::iter::zip(&self.sheet.sheet.hinges, hinges) {
-            let motions = at_hinge(hinge, motion);
+        for (h, hinge) in self.sheet.sheet.hinges.iter().enumerate() {
+            let (hinge_motion, energy) = (&state.motions[h], &state.energies[h]);
+            let (motions, forces_of_hinge) = (at_hinge(hinge, motion), state.expected_forces(h));
             let force = hinge_motion
-                .stiffness(&energy.tangent, energy.forces)
+                .stiffness(&energy.tangent, forces_of_hinge)
                 .map(|row| std::iter::zip(row, motions).map(|(k, q)| k * q).sum());
             add_at_hinge(&mut forces, hinge, force);
         }

@@ -8,9 +8,10 @@
 
 use crate::equilibrium::displacement_control::Stroke;
 use crate::equilibrium::settings::SolverSettings;
-use crate::equilibrium::supports::{Dof, Load, Support};
+use crate::equilibrium::supports::{Dof, Load, Support, hold_rigid_body};
 use crate::equilibrium::tangent::{TangentPattern, elimination_order};
 use crate::pattern::grid::Grid;
+use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::panel_vectors::gather;
 
 /// Supports, loads or settings that do not define an equilibrium problem.
@@ -120,9 +121,6 @@ impl EquilibriumSolver {
             }
             total[panel][dof.index()] += value;
         }
-        if !holds_rigid_body(grid, supports) {
-            return Err(EquilibriumError::Unsupported);
-        }
         let free = elimination_order(grid, supported.as_flattened());
         Ok(Self {
             grid,
@@ -148,29 +146,12 @@ impl EquilibriumSolver {
         self.drive = Some((Box::new(direction), stroke));
         Ok(self)
     }
-}
 
-/// Whether the supports prevent the three rigid motions of the sheet, tested on the panel grid.
-fn holds_rigid_body(grid: Grid, supports: &[Support]) -> bool {
-    let rows = supports.iter().map(|support| {
-        let (x, y) = (support.panel % grid.m, support.panel / grid.m);
-        match support.dof {
-            Dof::UX => [1.0, 0.0, -(y as f64)],
-            Dof::UY => [0.0, 1.0, x as f64],
-            Dof::Phi => [0.0, 0.0, 1.0],
-        }
-    });
-    let mut gram = [[0.0; 3]; 3];
-    for row in rows {
-        for i in 0..3 {
-            for j in 0..3 {
-                gram[i][j] += row[i] * row[j];
-            }
+    /// An error if the supports leave a sheet free to move as a rigid body.
+    pub fn check_supports(&self, sheet: &Sheet) -> Result<(), EquilibriumError> {
+        match hold_rigid_body(&self.supports, sheet) {
+            true => Ok(()),
+            false => Err(EquilibriumError::Unsupported),
         }
     }
-    let minor = |i: usize, j: usize| gram[1][i] * gram[2][j] - gram[1][j] * gram[2][i];
-    let determinant =
-        gram[0][0] * minor(1, 2) - gram[0][1] * minor(0, 2) + gram[0][2] * minor(0, 1);
-    // The entries are integers: a regular matrix has a determinant of magnitude one or more.
-    determinant > 0.5
 }

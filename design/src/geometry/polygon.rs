@@ -1,4 +1,4 @@
-//! Convex polygons, counter-clockwise: clipping, distances, intersections.
+//! Polygons: clipping, distances and intersections of convex ones, counter-clockwise; self-crossings of any.
 
 /// The intersection of two convex polygons.
 pub fn common(polygon: &[[f64; 2]], other: &[[f64; 2]]) -> Vec<[f64; 2]> {
@@ -100,6 +100,49 @@ pub fn nearest_on_outline(point: [f64; 2], polygon: &[[f64; 2]]) -> [f64; 2] {
 /// The edges of a closed polygon.
 pub fn edges(polygon: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
     (0..polygon.len()).map(|i| (polygon[i], polygon[(i + 1) % polygon.len()]))
+}
+
+/// A common point of two edges of a closed polygon, other than the vertices between neighbours.
+///
+/// The edges are sorted by their left end, and each is compared only with those that begin before its
+/// right end.
+pub(crate) fn self_crossing(points: &[[f64; 2]]) -> Option<[f64; 2]> {
+    let edges: Vec<_> = edges(points).collect();
+    let left = |i: usize| edges[i].0[0].min(edges[i].1[0]);
+    let right = |i: usize| edges[i].0[0].max(edges[i].1[0]);
+    let next = |i: usize| (i + 1) % edges.len();
+    let mut order: Vec<usize> = (0..edges.len()).collect();
+    order.sort_by(|i, j| left(*i).total_cmp(&left(*j)));
+    order.iter().enumerate().find_map(|(k, &i)| {
+        let later = order[k + 1..].iter().copied();
+        later
+            .take_while(|j| left(*j) <= right(i))
+            .filter(|j| next(i) != *j && next(*j) != i)
+            .find_map(|j| shared_point(edges[i], edges[j]))
+    })
+}
+
+type Edge = ([f64; 2], [f64; 2]);
+
+/// A common point of two segments, if their boxes overlap and neither is on one side of the other.
+fn shared_point((p, q): Edge, (r, s): Edge) -> Option<[f64; 2]> {
+    let overlap = |c: usize| p[c].max(q[c]) >= r[c].min(s[c]) && r[c].max(s[c]) >= p[c].min(q[c]);
+    if !(overlap(0) && overlap(1)) {
+        return None;
+    }
+    let side = |(a, b): Edge, point: [f64; 2]| {
+        (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])
+    };
+    let (side_p, side_q) = (side((r, s), p), side((r, s), q));
+    if side_p * side_q > 0.0 || side((p, q), r) * side((p, q), s) > 0.0 {
+        return None;
+    }
+    let along = if side_p == side_q {
+        0.0
+    } else {
+        side_p / (side_p - side_q)
+    };
+    Some([0, 1].map(|c| p[c] + along * (q[c] - p[c])))
 }
 
 #[cfg(test)]

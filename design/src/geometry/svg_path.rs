@@ -83,7 +83,7 @@ pub(crate) fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
         let found = points.len();
         return Err(SvgPathError::TooFewPoints { found });
     }
-    if let Some([x, y]) = self_crossing(&points).map(single) {
+    if let Some([x, y]) = polygon::self_crossing(&points).map(single) {
         return Err(SvgPathError::SelfCrossing { x, y });
     }
     let transform = path.abs_transform();
@@ -186,49 +186,6 @@ fn transformed(transform: Transform, [x, y]: [f64; 2]) -> [f64; 2] {
     let t = transform;
     let [sx, kx, ky, sy, tx, ty] = [t.sx, t.kx, t.ky, t.sy, t.tx, t.ty].map(f64::from);
     [sx * x + kx * y + tx, ky * x + sy * y + ty]
-}
-
-/// A common point of two edges of a closed polygon, other than the vertices between neighbours.
-///
-/// The edges are sorted by their left end, and each is compared only with those that begin before its
-/// right end.
-fn self_crossing(points: &[[f64; 2]]) -> Option<[f64; 2]> {
-    let edges: Vec<_> = polygon::edges(points).collect();
-    let left = |i: usize| edges[i].0[0].min(edges[i].1[0]);
-    let right = |i: usize| edges[i].0[0].max(edges[i].1[0]);
-    let next = |i: usize| (i + 1) % edges.len();
-    let mut order: Vec<usize> = (0..edges.len()).collect();
-    order.sort_by(|i, j| left(*i).total_cmp(&left(*j)));
-    order.iter().enumerate().find_map(|(k, &i)| {
-        let later = order[k + 1..].iter().copied();
-        later
-            .take_while(|j| left(*j) <= right(i))
-            .filter(|j| next(i) != *j && next(*j) != i)
-            .find_map(|j| shared_point(edges[i], edges[j]))
-    })
-}
-
-type Edge = ([f64; 2], [f64; 2]);
-
-/// A common point of two segments, if their boxes overlap and neither is on one side of the other.
-fn shared_point((p, q): Edge, (r, s): Edge) -> Option<[f64; 2]> {
-    let overlap = |c: usize| p[c].max(q[c]) >= r[c].min(s[c]) && r[c].max(s[c]) >= p[c].min(q[c]);
-    if !(overlap(0) && overlap(1)) {
-        return None;
-    }
-    let side = |(a, b): Edge, point: [f64; 2]| {
-        (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])
-    };
-    let (side_p, side_q) = (side((r, s), p), side((r, s), q));
-    if side_p * side_q > 0.0 || side((p, q), r) * side((p, q), s) > 0.0 {
-        return None;
-    }
-    let along = if side_p == side_q {
-        0.0
-    } else {
-        side_p / (side_p - side_q)
-    };
-    Some([0, 1].map(|c| p[c] + along * (q[c] - p[c])))
 }
 
 #[cfg(test)]

@@ -217,6 +217,7 @@ impl DesignProblem {
                 (vec![ideal], None)
             }
             Model::Equilibrium(mechanics) => {
+                mechanics.solver.check_supports(&sheet)?;
                 let law = mechanics.law.prepare(&sheet.designs());
                 let path = mechanics
                     .solver

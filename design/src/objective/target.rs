@@ -94,6 +94,7 @@ pub enum TargetError {
 pub struct Target {
     points: Vec<[f64; 2]>,
     length: f64,
+    crossing: Option<[f64; 2]>,
 }
 
 impl Target {
@@ -109,8 +110,11 @@ impl Target {
                         [centre[0] + radius * cos, centre[1] + radius * sin]
                     })
                     .collect();
-                let length = TAU * radius;
-                Ok(Self { points, length })
+                Ok(Self {
+                    points,
+                    length: TAU * radius,
+                    crossing: None,
+                })
             }
             TargetShape::Rectangle {
                 centre,
@@ -188,6 +192,11 @@ impl Target {
     pub fn length(&self) -> f64 {
         self.length
     }
+
+    /// A point at which the outline crosses or touches itself, so that its inside is not defined (mm).
+    pub fn crossing(&self) -> Option<[f64; 2]> {
+        self.crossing
+    }
 }
 
 fn finite(key: &'static str, values: &[f64]) -> Result<(), TargetError> {
@@ -231,7 +240,13 @@ fn along_polygon(vertices: &[[f64; 2]], count: usize) -> Result<Target, TargetEr
         }
         start += edge;
     }
-    Ok(Target { points, length })
+    // A file may repeat a vertex, such as the first at its end: an edge without length crosses nothing.
+    let distinct: Vec<[f64; 2]> = (edges().filter(|(p, q)| p != q).map(|(p, _)| p)).collect();
+    Ok(Target {
+        points,
+        length,
+        crossing: polygon::self_crossing(&distinct),
+    })
 }
 
 /// The vertices, scaled and translated so that their bounding box has the given height and centre (mm).
@@ -397,6 +412,28 @@ mod tests {
         let error = error.to_string();
         assert!(error.contains("star.svg: "), "{error}");
         assert!(error.contains("crosses or touches itself"), "{error}");
+    }
+
+    #[test]
+    fn the_crossing_of_an_outline_is_found() {
+        let crossing = |vertices: &[[f64; 2]]| {
+            let vertices = vertices.to_vec();
+            sample(TargetShape::Polygon { vertices }, 100)
+                .unwrap()
+                .crossing()
+        };
+        let square = [[0.0, 0.0], [40.0, 0.0], [40.0, 40.0], [0.0, 40.0]];
+        assert_eq!(crossing(&square), None);
+        let closed = [&square[..], &square[..1]].concat();
+        assert_eq!(
+            crossing(&closed),
+            None,
+            "the first vertex repeated at the end"
+        );
+        // The edges from (40, 0) to (0, 40) and from (30, 40) to (0, 0) cross where x + y = 40 and y = 4/3 x.
+        let bow = [[0.0, 0.0], [40.0, 0.0], [0.0, 40.0], [30.0, 40.0]];
+        let [x, y] = crossing(&bow).unwrap();
+        assert!((x - 120.0 / 7.0).abs() < 1e-9 && (y - 160.0 / 7.0).abs() < 1e-9);
     }
 
     #[test]

@@ -35,7 +35,10 @@ pub(super) fn config(scene: &SceneConfig) -> Result<(), String> {
 /// opens to twice its width; a sheet of slender panels opens further, but along one axis only.
 const OPENS_TO: f64 = 3.0;
 
-/// A target of a very different size than the sheet is assumed to be in the wrong unit.
+/// Maximum distance between the middles of target and flat sheet (mm): supports move a sheet by 100 m at most.
+const AWAY: f64 = 1e6;
+
+/// A target of a very different size than the sheet, or far away from it, is assumed to be in the wrong unit.
 pub(super) fn target(target: &Target, outline: &Outline) -> Result<(), String> {
     let perimeter: f64 = edges(&outline.corners)
         .map(|(p, q)| f64::hypot(q[0] - p[0], q[1] - p[1]))
@@ -46,7 +49,24 @@ pub(super) fn target(target: &Target, outline: &Outline) -> Result<(), String> {
         [0.2 * perimeter, OPENS_TO * perimeter],
         "mm",
     )
-    .map_err(|error| format!("{error} (the outline of the flat sheet is {perimeter:.0} mm long)"))
+    .map_err(|error| {
+        format!("{error} (the outline of the flat sheet is {perimeter:.0} mm long)")
+    })?;
+    let middle = |axis: usize| {
+        outline
+            .corners
+            .iter()
+            .map(|corner| 0.25 * corner[axis])
+            .sum::<f64>()
+    };
+    let [x, y] = target.mean();
+    let away = f64::hypot(x - middle(0), y - middle(1));
+    within(
+        "distance of the target from the sheet",
+        away,
+        [0.0, AWAY],
+        "mm",
+    )
 }
 
 /// The title is written to SVG pictures, which must not contain control characters.

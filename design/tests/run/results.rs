@@ -28,7 +28,7 @@ fn hinges(report: &Report, concern: Concern) -> Option<usize> {
 #[test]
 fn a_sound_design_writes_all_files_and_no_warning() {
     // The design of this seed opens without a jump.
-    let (folder, report) = report(&[("seed = 3", "seed = 6")]);
+    let (folder, report) = report(&[("seed = 3", "seed = 9")]);
     assert_eq!(report.warnings, []);
     assert_eq!((report.steps, report.hinges.len()), (25, 12));
     assert!(report.after.loss < report.before.loss);
@@ -111,6 +111,25 @@ fn panels_too_small_for_their_windows_are_named() {
             .to_string()
             .contains("windows of 100 mm radius overlap"),
         "{report}"
+    );
+}
+
+#[test]
+fn a_target_that_crosses_itself_is_named() {
+    let bow =
+        "[target.polygon]\nvertices = [[0.0, 0.0], [1400.0, 0.0], [0.0, 1200.0], [1300.0, 1200.0]]";
+    let (_, report) = report(&[
+        (
+            "[target.circle]\ncentre = [700.0, 550.0]\nradius = 750.0",
+            bow,
+        ),
+        ("steps = 25", "steps = 1"),
+    ]);
+    assert_eq!(hinges(&report, Concern::TargetCrosses), Some(0));
+    let text = report.to_string();
+    assert!(
+        text.contains("the target outline crosses or touches itself near (6"),
+        "{text}"
     );
 }
 

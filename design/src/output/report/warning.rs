@@ -3,6 +3,7 @@
 use crate::analysis::localisation::critical_edge;
 use crate::equilibrium::load_step::Status;
 use crate::objective::design_problem::Deployment;
+use crate::objective::target::Target;
 use crate::output::cut_file::{CutLines, FabricationError};
 use crate::output::report::hinge_row::HingeRow;
 use crate::scene::Scene;
@@ -59,6 +60,8 @@ pub enum Concern {
     CannotBeCut,
     /// The equilibrium path is not converged and stable throughout.
     Path,
+    /// The target outline crosses or touches itself.
+    TargetCrosses,
 }
 
 impl Concern {
@@ -70,7 +73,8 @@ impl Concern {
             | Self::PanelsTilt
             | Self::LigamentsOutsideDomain
             | Self::StatesOutsideDomain
-            | Self::Path => Severity::Warning,
+            | Self::Path
+            | Self::TargetCrosses => Severity::Warning,
             Self::Tearing | Self::Overstrained | Self::CutsTooClose | Self::CannotBeCut => {
                 Severity::Error
             }
@@ -131,6 +135,7 @@ pub(super) fn all(
     warnings.extend(tearing(hinges));
     warnings.extend(overstrained(hinges));
     warnings.extend(path(deployment));
+    warnings.extend(target(&scene.target));
     warnings.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
     warnings
 }
@@ -291,5 +296,14 @@ fn path(deployment: &Deployment) -> Option<Warning> {
             },
             _ => Concern::Path.of_sheet(message),
         }
+    })
+}
+
+fn target(target: &Target) -> Option<Warning> {
+    target.crossing().map(|[x, y]| {
+        Concern::TargetCrosses.of_sheet(format!(
+            "the target outline crosses or touches itself near ({x:.1}, {y:.1}) mm: its inside is not defined; order \
+             its vertices around the outline"
+        ))
     })
 }
