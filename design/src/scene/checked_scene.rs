@@ -16,8 +16,9 @@ use surrogate::Surrogate;
 /// a run of an earlier version is not continued.
 ///
 /// 1: O stands half a kerf further from the line of the secondary cut. 2: the path is followed in increments of its own, so
-/// that a sheet that jumps may end on another branch.
-const MODEL_VERSION: u32 = 2;
+/// that a sheet that jumps may end on another branch. 3: where it cannot be followed, it goes on from a minimum that does not
+/// depend on the load steps.
+const MODEL_VERSION: u32 = 3;
 
 /// A scene with checked values, its material and its sampled target.
 #[derive(Clone, Debug)]

@@ -46,7 +46,8 @@ fn rays_chart(area: &Area, title: &str, lines: &[(&str, &[(f64, f64)])]) -> Char
         .x_label_area_size(38)
         .y_label_area_size(56)
         .build_cartesian_2d(
-            margin(all().map(|point| point.0).collect()),
+            // Whole decades: an axis without a power of ten has no labels.
+            decades(all().map(|point| point.0)).log_scale(),
             margin(all().map(|point| point.1).collect()),
         )?;
     chart
