@@ -28,7 +28,7 @@ fn shorten(work: &Workplace) {
             ("median_deg = 25.0", "median_deg = 15.0"),
         ],
     );
-    work.edit("learned/training.toml", &[("epochs = 80", "epochs = 3")]);
+    work.edit("learned/fine-tuning.toml", &[("epochs = 80", "epochs = 3")]);
 }
 
 #[test]

@@ -115,7 +115,11 @@ impl DesignCommand {
             for seed in 0..self.seeds {
                 let scene = self.scene(file, |config| {
                     if let Some(out) = out {
-                        config.output = out.join(file.file_stem().unwrap_or_default());
+                        let name = match file.is_dir() {
+                            true => file.file_name(),
+                            false => file.file_stem(),
+                        };
+                        config.output = out.join(name.unwrap_or_default());
                     }
                     config.optimiser.seed += seed;
                     if self.seeds > 1 {

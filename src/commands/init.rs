@@ -95,8 +95,7 @@ impl InitCommand {
         );
         input_file::require(&self.material, "--material")?;
         let measured = SheetMaterial::load(&self.material)?;
-        let text = regular_file::read_to_string(&self.material)
-            .with_context(|| format!("cannot read {}", self.material.display()))?;
+        let text = material_text(&self.material)?;
         let sheet = SheetMaterial {
             thickness: self.thickness.unwrap_or(measured.thickness),
             ..measured.clone()
@@ -199,9 +198,36 @@ fn readme(folder: &Path, trained: bool) -> String {
     format!("# A sheet of your own\n\n{first}\n\n```sh\n{then}```\n")
 }
 
+/// The text of a material file for another folder: the path of its measured curve becomes absolute.
+pub(crate) fn material_text(path: &Path) -> Result<String> {
+    let text = regular_file::read_to_string(path)
+        .with_context(|| format!("cannot read {}", path.display()))?;
+    let mut material: DocumentMut = text.parse()?;
+    let curve = material.get("tensile_csv").and_then(|curve| curve.as_str());
+    if let Some(curve) = curve.map(|curve| path.with_file_name(curve)) {
+        let curve = std::path::absolute(curve)?;
+        set(&mut material["tensile_csv"], &*curve.to_string_lossy());
+    }
+    Ok(material.to_string())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_copied_material_names_the_curve_of_the_original() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("film.toml");
+        std::fs::write(
+            &path,
+            "name = \"film\"\ntensile_csv = \"curve.csv\" # measured\n",
+        )
+        .unwrap();
+        let curve = folder.path().join("curve.csv");
+        let expected = format!("name = \"film\"\ntensile_csv = {curve:?} # measured\n");
+        assert_eq!(material_text(&path).unwrap(), expected);
+    }
 
     #[test]
     fn sizes_are_two_lengths() {

@@ -175,6 +175,8 @@ pub fn inverse_design(
         };
         state.write(&path)
     };
+    // The state names the hashes of the inputs that have just been written.
+    save(&search)?;
     let mut saved = Instant::now();
     let ended = optimise(
         &problem,

@@ -108,7 +108,7 @@ impl SimilarScene {
         if free || self.config.drive.is_some() || self.config.hinge == HingeModel::Pin {
             return Ok(());
         }
-        let Some(meant) = rotation(&self.original)? else {
+        let Some(meant) = rotation(&self.original)?.filter(|meant| *meant > 0.0) else {
             return Ok(());
         };
         let bar = Progress::new(HALVINGS, "equilibria");
@@ -122,6 +122,11 @@ impl SimilarScene {
             }
         }
         bar.finish();
+        ensure!(
+            low > POWERS[0] && high < POWERS[1],
+            "no load between 1/64 and 64 times the scaled one opens the new sheet as far as that of --like: choose another \
+             --size, or another scene"
+        );
         self.config.scale_loads((0.5 * (low + high)).exp2());
         for load in &mut self.config.loads {
             load.force = load.force.map(rounded);

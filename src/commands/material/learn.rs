@@ -54,7 +54,7 @@ pub struct LearnCommand {
     /// The same of the forces: root mean square of the errors of F_a, F_s and M
     #[arg(long, value_name = "PERCENT", default_value = "5%", value_parser = percent)]
     forces: f64,
-    /// Start no solve after this time, with its unit: h, min or s; running solves and trainings are finished
+    /// Start no ray after this time, with its unit: h, min or s; the spot check, running solves and trainings are finished
     #[arg(long, value_name = "TIME", default_value = "1h", value_parser = time)]
     time: Duration,
     /// Mesh tier of the windows
@@ -69,7 +69,7 @@ pub struct LearnCommand {
     /// Number of solves in parallel [default: one per processor]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZeroUsize>,
-    /// Folder for the results; a folder of a stopped run is continued
+    /// Folder for the results; a folder of a stopped run is continued. Its weights are those of the last round of this command
     #[arg(long, value_name = "FOLDER")]
     out: PathBuf,
 }
@@ -78,7 +78,8 @@ pub struct LearnCommand {
 const STATES_PER_RAY: usize = 4;
 /// Seed of the spot check's states.
 const SPOT_SEED: u64 = 1;
-/// The shipped training, which the folder gets a copy of.
+/// The shipped training, and its copy in the folder. `kirigami init` writes another training to the same folder.
+const TRAINING_FILE: &str = "fine-tuning.toml";
 const TRAINING: &str = include_str!("../../../configs/training/fine-tuning.toml");
 
 impl LearnCommand {
@@ -88,7 +89,7 @@ impl LearnCommand {
         let parent = Surrogate::load(&self.from)?;
         let _held = run_folder::hold(&self.out)?;
         self.write_inputs(&material)?;
-        let config: TrainingConfig = support::toml_file::read(&self.out.join("training.toml"))?;
+        let config: TrainingConfig = support::toml_file::read(&self.out.join(TRAINING_FILE))?;
         check_parent(&parent, &config, Backend::default())
             .with_context(|| format!("{}", self.from.display()))?;
         let campaign = self.campaign(&material)?;
@@ -127,14 +128,15 @@ impl LearnCommand {
 
     /// Writes material, campaign and training to a new folder. Those of a folder that is continued are kept.
     fn write_inputs(&self, material: &SheetMaterial) -> Result<()> {
+        if !self.out.join(TRAINING_FILE).exists() {
+            run_folder::write(&self.out, TRAINING_FILE, TRAINING)?;
+        }
         if self.out.join("campaign.toml").exists() {
             return Ok(());
         }
         let name = self.out.file_name().unwrap_or_default().to_string_lossy();
-        let text = std::fs::read_to_string(&self.material)
-            .with_context(|| format!("cannot read {}", self.material.display()))?;
+        let text = init::material_text(&self.material)?;
         run_folder::write(&self.out, "material.toml", &text)?;
-        run_folder::write(&self.out, "training.toml", TRAINING)?;
         let campaign = init::campaign(&name, material.thickness, self.tier)?;
         run_folder::write(&self.out, "campaign.toml", &campaign)
     }

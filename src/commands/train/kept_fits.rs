@@ -56,6 +56,7 @@ pub fn kept_fit(
     let trained = match state.exists().then(|| fit(Start::State(&state))) {
         // The state of another training, or a damaged one, is discarded.
         Some(Err(error)) if error.is::<TrainError>() => fit(first)?,
+        Some(Ok(trained)) if trained.surrogate.card().fine_tuned_from != from => fit(first)?,
         Some(trained) => trained?,
         None => fit(first)?,
     };
