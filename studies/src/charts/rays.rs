@@ -74,7 +74,7 @@ fn rays_chart(area: &Area, title: &str, lines: &[(&str, &[(f64, f64)])]) -> Char
     }
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::LowerLeft)
+        .position(SeriesLabelPosition::UpperRight)
         .label_font((FONT, 13))
         .border_style(GUIDE)
         .background_style(WHITE)

@@ -34,14 +34,14 @@ pub enum ToolError {
     TimedOut {
         name: &'static str,
         limit: Duration,
-        /// See [`Run::cpu_seconds`].
+        /// See [`Run::cpu_seconds`](crate::program::Run::cpu_seconds).
         cpu_seconds: Option<f64>,
     },
     #[error("{name} was killed by signal {signal} (out of memory, or killed by hand)")]
     Killed {
         name: &'static str,
         signal: i32,
-        /// See [`Run::cpu_seconds`].
+        /// See [`Run::cpu_seconds`](crate::program::Run::cpu_seconds).
         cpu_seconds: Option<f64>,
     },
     #[error(
@@ -50,7 +50,7 @@ pub enum ToolError {
     )]
     TooMuchOutput {
         name: &'static str,
-        /// See [`Run::cpu_seconds`].
+        /// See [`Run::cpu_seconds`](crate::program::Run::cpu_seconds).
         cpu_seconds: Option<f64>,
     },
     #[error("{name} was stopped on request")]
