@@ -279,7 +279,8 @@ fn known_damage(deployment: &Deployment) -> Option<Vec<f64>> {
         .collect()
 }
 
-fn rms(values: &[f64]) -> f64 {
+/// Root mean square.
+pub(crate) fn rms(values: &[f64]) -> f64 {
     let squares: f64 = values.iter().map(|x| x * x).sum();
     (squares / values.len().max(1) as f64).sqrt()
 }

@@ -4,6 +4,7 @@
 //! choice. *Effect* is the movement of the panel corners from the scene as it is, *error* that from the finite elements:
 //! a choice whose effect is far below the error costs no accuracy.
 
+use crate::chain::rms;
 use crate::condensed::{condense, own_weights};
 use crate::designed::designed;
 use anyhow::{Context, Result, ensure};
@@ -163,14 +164,13 @@ impl Row {
         design: &DesignVector,
         truth: &Balanced,
     ) -> Result<Self> {
+        let deployed = problem.evaluate(design)?.deployment;
         let mut step_s = f64::INFINITY;
         for _ in 0..REPEATS {
             let begun = Instant::now();
             problem.evaluate(design)?;
             step_s = step_s.min(begun.elapsed().as_secs_f64());
         }
-        let deployed = problem.deploy(design)?;
-        deployed.at_full_load()?;
         let (own, by_elements) = (truth.by_law(), truth.by_elements());
         let error = rms(&movements(by_elements, &deployed));
         let rotations = |of: &Deployment| -> Vec<f64> {
@@ -189,11 +189,6 @@ impl Row {
             rotation_deg: rms(&turned),
         })
     }
-}
-
-fn rms(values: &[f64]) -> f64 {
-    let squares: f64 = values.iter().map(|x| x * x).sum();
-    (squares / values.len().max(1) as f64).sqrt()
 }
 
 fn table(title: &str, truth: &Balanced, rows: &[Row]) -> Result<String> {

@@ -128,7 +128,7 @@ impl<'a> Branch<'a> {
         };
         if solver.drive.is_none() {
             let loads = solver.loads.iter().copied();
-            branch.force = branch.potential(0.0).greatest(loads);
+            branch.force = branch.potential(0.0).largest(loads);
         }
         branch
     }

@@ -106,6 +106,12 @@ impl fmt::Display for LoadStep {
 }
 
 impl LoadStep {
+    /// Root mean square of the rotations of the hinges (rad).
+    pub fn opening(&self) -> f64 {
+        let squares = self.deformations.iter().map(|state| state.theta.powi(2));
+        (squares.sum::<f64>() / self.deformations.len() as f64).sqrt()
+    }
+
     /// Estimate of the condition number of the tangent in the 1-norm, scaled to a unit diagonal so
     /// that it does not depend on units; infinite if the tangent could not be factorised.
     pub fn condition(&self, solver: &EquilibriumSolver) -> f64 {

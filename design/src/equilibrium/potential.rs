@@ -152,10 +152,10 @@ impl Potential<'_> {
             .map(|((load, held), u)| -(worked * load + held) * u);
         let terms = energies.iter().map(|energy| energy.w).chain(works);
         let gradient = gather(self.free, &unbalanced);
-        let left = self.greatest(spread(self.free, &gradient).into_iter());
-        let held = self.greatest(self.held.iter().copied());
-        let loads = held + load_factor.abs() * self.greatest(self.loads.iter().copied());
-        let hinges = self.greatest(energies.iter().map(|energy| energy.forces));
+        let left = self.largest(spread(self.free, &gradient).into_iter());
+        let held = self.largest(self.held.iter().copied());
+        let loads = held + load_factor.abs() * self.largest(self.loads.iter().copied());
+        let hinges = self.largest(energies.iter().map(|energy| energy.forces));
         let force = self.force.max(loads).max(hinges);
         let over_force = |unbalanced: f64| match unbalanced {
             0.0 => 0.0,
@@ -185,7 +185,7 @@ impl Potential<'_> {
         let resolution = self.sheet.law.resolution();
         let hinges = self.sheet.sheet.hinges.iter().zip(motions).zip(energies);
         HINGES_OF_A_PANEL
-            * self.greatest(hinges.map(|((hinge, motion), energy)| {
+            * self.largest(hinges.map(|((hinge, motion), energy)| {
                 let [length, angle] = motion.rounding();
                 let length = length + resolution * hinge.w_lig;
                 let deformation = [length, length, angle + resolution];
@@ -206,7 +206,7 @@ impl Potential<'_> {
     }
 
     /// Maximum of forces and moments, as a force (N).
-    pub fn greatest(&self, forces: impl Iterator<Item = [f64; 3]>) -> f64 {
+    pub fn largest(&self, forces: impl Iterator<Item = [f64; 3]>) -> f64 {
         forces
             .map(|[x, y, moment]| (x * x + y * y).sqrt().max(moment.abs() / self.panel_size))
             .fold(0.0, f64::max)

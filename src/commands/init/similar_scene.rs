@@ -7,6 +7,7 @@
 use crate::commands::init::edited::rounded;
 use crate::ui::progress::Progress;
 use anyhow::{Context, Result, bail, ensure};
+use design::equilibrium::load_step::LoadStep;
 use design::objective::target::TargetShape;
 use design::scene::run_inputs::scene_file;
 use design::scene::{HingeModel, Scene, SceneConfig};
@@ -143,16 +144,10 @@ impl SimilarScene {
     }
 }
 
-/// Root mean square of the rotations of the start at full load (rad); `None` if that is not reached.
+/// The opening of the start at full load (rad); `None` if that is not reached.
 fn rotation(scene: &Scene) -> Result<Option<f64>> {
     let deployment = scene.problem()?.deploy(&scene.start())?;
-    let Ok(last) = deployment.at_full_load() else {
-        return Ok(None);
-    };
-    let squares = last.deformations.iter().map(|state| state.theta.powi(2));
-    Ok(Some(
-        (squares.sum::<f64>() / last.deformations.len() as f64).sqrt(),
-    ))
+    Ok(deployment.at_full_load().ok().map(LoadStep::opening))
 }
 
 /// Ratio of the sizes of two rectangles of one shape.

@@ -58,10 +58,10 @@ impl Promise {
         sound(deployment, tolerance)
             && match self {
                 Self::Stated => true,
-                Self::Flat => opening(deployment.final_step()) < FLAT,
+                Self::Flat => deployment.final_step().opening() < FLAT,
                 Self::Reached => deployment.at_full_load().is_ok(),
                 Self::Opened(expected) => {
-                    (opening(deployment.final_step()) / expected - 1.0).abs() < SAME
+                    (deployment.final_step().opening() / expected - 1.0).abs() < SAME
                 }
                 Self::Refused => false,
             }
@@ -76,7 +76,7 @@ pub(super) fn all<'a>(
     use Promise::{Flat, Opened, Reached, Refused, Stated};
     let (config, path) = learned;
     let own = deployment(config, path).map_err(|reason| anyhow!(reason))?;
-    let own = Opened(opening(own.final_step()));
+    let own = Opened(own.final_step().opening());
     let mut all = Vec::new();
     let mut add = |(base, path): (&SceneConfig, &'a Path),
                    name: String,
@@ -285,12 +285,6 @@ fn sound_step(step: &LoadStep, tolerance: f64) -> bool {
         && (step.status != Status::Converged || !outside)
 }
 
-/// Root mean square rotation of the hinges (rad).
-fn opening(step: &LoadStep) -> f64 {
-    let squares = step.deformations.iter().map(|state| state.theta.powi(2));
-    (squares.sum::<f64>() / step.deformations.len() as f64).sqrt()
-}
-
 fn shown(deployment: &Deployment, seconds: f64) -> String {
     let end = deployment.final_step();
     let residual = deployment
@@ -303,7 +297,7 @@ fn shown(deployment: &Deployment, seconds: f64) -> String {
         "{} at load factor {:.3}, {jumps} jumps, residual {residual:.0e}, opened by {:.3} deg, {:.0} % inside, {seconds:.2} s",
         status(end.status),
         end.load_factor,
-        opening(end).to_degrees(),
+        end.opening().to_degrees(),
         100.0 * deployment.share_inside(),
     )
 }
