@@ -20,6 +20,7 @@ mod optimisers;
 mod pages;
 mod panel_penalties;
 mod path;
+mod peak;
 mod polyester;
 mod sheet;
 mod silhouettes;
@@ -51,6 +52,7 @@ enum Study {
     Window(window::WindowStudy),
     Noise(noise::NoiseStudy),
     Path(path::PathStudy),
+    Peak(peak::PeakStudy),
     Polyester(polyester::PolyesterStudy),
     Gradient(gradient::GradientStudy),
     Solutions(solutions::SolutionStudy),
@@ -78,6 +80,7 @@ impl Study {
             Self::Window(study) => study.run(),
             Self::Noise(study) => study.run(),
             Self::Path(study) => study.run(),
+            Self::Peak(study) => study.run(),
             Self::Polyester(study) => study.run(),
             Self::Gradient(study) => study.run(),
             Self::Solutions(study) => study.run(),

@@ -13,15 +13,14 @@ use fe_driver::{DeformationPath, KeptSolve, StepControl};
 use hinge::{HingeConstants, HingeDeformation, HingeSample, SheetMaterial};
 use kirigami::replays::kept_solves::{Outcome, SolveArgs};
 use kirigami::ui::run_folder;
-use mesher::Tier;
+use mesher::{Imperfection, MeshRecipe, Tier};
 use std::f64::consts::PI;
-use std::fmt::Write;
 use std::path::PathBuf;
 
 /// Measure the noise of the window meshes on neighbouring hinges and mirrored pairs
 ///
-/// Three rays are solved with five close ligament widths, with five close cut angles, and
-/// with the mirror image. Writes noise.csv and noise.md. Example: kirigami-studies noise --tier tiny
+/// Four rays are solved with five close ligament widths, with five close cut angles, and
+/// with the mirror image; the ray in tension also with other imperfections. Writes noise.csv and noise.md. Example: kirigami-studies noise --tier tiny
 #[derive(Args)]
 pub struct NoiseStudy {
     /// Sheet material (TOML)
@@ -42,11 +41,29 @@ pub struct NoiseStudy {
 }
 
 /// w_lig (mm), alpha (deg), and the end of the ray: eta_a, eta_s, theta (deg).
-const RAYS: [[f64; 5]; 3] = [
+const RAYS: [[f64; 5]; 4] = [
     [5.5, 85.0, -0.12, 0.08, 60.0],
     [11.0, 60.0, 0.04, -0.15, 45.0],
     [20.0, 75.0, -0.2, 0.05, 50.0],
+    TENSION,
 ];
+
+/// A wide ligament that is stretched while it rotates. It buckles a second time, earlier or later.
+const TENSION: [f64; 5] = [24.0, 80.0, 0.22, 0.0, 60.0];
+
+/// Imperfections of the ray in tension: amplitude over t, and half-widths over w_lig.
+const IMPERFECTIONS: [Imperfection; 6] = [
+    imperfection(0.25, [1.0, 1.0]),
+    imperfection(0.5, [1.0, 1.0]),
+    imperfection(1.0, [1.0, 1.0]),
+    imperfection(2.0, [1.0, 1.0]),
+    imperfection(1.0, [0.5, 0.5]),
+    imperfection(1.0, [2.0, 1.4]),
+];
+
+const fn imperfection(amplitude: f64, widths: [f64; 2]) -> Imperfection {
+    Imperfection { amplitude, widths }
+}
 
 /// Steps between neighbours: of the logarithm of w_lig, and of alpha (rad).
 const STEPS: [f64; 2] = [0.005, 0.005];
@@ -69,51 +86,96 @@ impl NoiseStudy {
         let material = SheetMaterial::load(&self.material)?;
         let _held = run_folder::hold(&self.out)?;
         let beside = neighbours();
-        let solves = RAYS.iter().flat_map(|ray| {
-            let window = |neighbour: &Neighbour| neighbour.window(ray, &material, self.tier);
-            beside.iter().map(window).collect::<Vec<_>>()
+        let window = |ray: &[f64; 5], neighbour: &Neighbour, imperfection| {
+            neighbour.window(ray, &material, self.tier, imperfection)
+        };
+        let usual = RAYS.iter().flat_map(|ray| {
+            let usual = Imperfection::default();
+            beside
+                .iter()
+                .map(move |neighbour| window(ray, neighbour, usual))
         });
-        let solves: Vec<KeptSolve> = solves.collect();
+        let wider = &beside[..5];
+        let imperfect = IMPERFECTIONS.iter().flat_map(|imperfection| {
+            wider
+                .iter()
+                .map(move |neighbour| window(&TENSION, neighbour, *imperfection))
+        });
+        let solves: Vec<KeptSolve> = usual.chain(imperfect).collect();
         let outcomes = self
             .solve
             .solve(&solves.iter().collect::<Vec<_>>(), &self.out)?;
-        let mut csv = "w_lig_mm,alpha_deg,line,quantity,noise_percent\n".to_owned();
-        let mut page = format!(
+        let (usual, imperfect) = outcomes.split_at(RAYS.len() * beside.len());
+        let mut table = NoiseTable::new();
+        for (ray, outcomes) in RAYS.iter().zip(usual.chunks(beside.len())) {
+            let [w_lig, alpha_deg, ..] = *ray;
+            let rays = solved(outcomes)?;
+            let angles = [&rays[5..7], &rays[2..3], &rays[7..9]].concat();
+            for (line, noise) in [
+                ("width", scatter(&rays[..5])),
+                ("angle", scatter(&angles)),
+                ("mirror", difference(&rays[2], &rays[9])),
+            ] {
+                table.row(&format!("{w_lig} mm, {alpha_deg} deg"), line, noise);
+            }
+        }
+        let usual = std::mem::replace(&mut table.markdown, NoiseTable::heading());
+        for (imperfection, outcomes) in IMPERFECTIONS.iter().zip(imperfect.chunks(wider.len())) {
+            let Imperfection {
+                amplitude,
+                widths: [x, y],
+            } = imperfection;
+            let name = format!("{amplitude} t, {x} x {y}");
+            table.row(&name, "width", scatter(&solved(outcomes)?));
+        }
+        let [w_lig, alpha_deg, eta_a, ..] = TENSION;
+        let page = format!(
             "# Noise of the meshes\n\nTier {}. Five hinges, each with a ligament {} % wider than the one before; five \
              hinges whose cut angles are {} rad apart; and a mirrored pair. The noise is the residual of a parabola \
              (for the pair: the difference divided by the square root of two), as a root mean square over the ray, \
-             relative to that of the quantity.\n\n| ray | line | {} |\n|---|---|{}\n",
+             relative to that of the quantity.\n\n{usual}\n## Imperfection of a ligament in tension\n\nThe ray of \
+             {w_lig} mm and {alpha_deg} deg is stretched to eta_a = {eta_a} while it rotates. The imperfection is named \
+             by its amplitude over the thickness, and its half-widths over w_lig; the usual one is 1 t, 1 x 1.\n\n{}",
             self.tier,
             100.0 * STEPS[0],
             STEPS[1],
-            QUANTITIES.join(" | "),
-            "---|".repeat(QUANTITIES.len())
+            table.markdown
         );
-        for (ray, outcomes) in RAYS.iter().zip(outcomes.chunks(beside.len())) {
-            let [w_lig, alpha_deg, ..] = *ray;
-            let rays = solved(outcomes)?;
-            let lines = [
-                ("width", scatter(&rays[..5])),
-                (
-                    "angle",
-                    scatter(&[&rays[5..7], &rays[2..3], &rays[7..9]].concat()),
-                ),
-                ("mirror", difference(&rays[2], &rays[9])),
-            ];
-            for (line, noise) in lines {
-                write!(page, "| {w_lig} mm, {alpha_deg} deg | {line} |")?;
-                for (quantity, noise) in QUANTITIES.iter().zip(noise) {
-                    let percent = 100.0 * noise;
-                    write!(page, " {percent:.3} % |")?;
-                    writeln!(csv, "{w_lig},{alpha_deg},{line},{quantity},{percent:.5}")?;
-                }
-                page += "\n";
-            }
-        }
+        let csv = table.csv;
         run_folder::write(&self.out, "noise.csv", &csv)?;
         run_folder::write(&self.out, "noise.md", &page)?;
         println!("{page}\nwritten to {}", self.out.display());
         Ok(())
+    }
+}
+
+/// The noise of lines of neighbours, as CSV and as a table of a page.
+struct NoiseTable {
+    csv: String,
+    markdown: String,
+}
+
+impl NoiseTable {
+    fn new() -> Self {
+        Self {
+            csv: "ray,line,quantity,noise_percent\n".to_owned(),
+            markdown: Self::heading(),
+        }
+    }
+
+    fn heading() -> String {
+        let names = QUANTITIES.join(" | ");
+        let rule = "---|".repeat(QUANTITIES.len());
+        format!("| ray | line | {names} |\n|---|---|{rule}\n")
+    }
+
+    fn row(&mut self, ray: &str, line: &str, noise: [f64; 6]) {
+        let percent = noise.map(|noise| 100.0 * noise);
+        let cells = percent.map(|percent| format!("{percent:.3} %")).join(" | ");
+        self.markdown += &format!("| {ray} | {line} | {cells} |\n");
+        for (quantity, percent) in QUANTITIES.iter().zip(percent) {
+            self.csv += &format!("\"{ray}\",{line},{quantity},{percent:.5}\n");
+        }
     }
 }
 
@@ -125,7 +187,13 @@ fn neighbours() -> Vec<Neighbour> {
 }
 
 impl Neighbour {
-    fn window(self, ray: &[f64; 5], material: &SheetMaterial, tier: Tier) -> KeptSolve {
+    fn window(
+        self,
+        ray: &[f64; 5],
+        material: &SheetMaterial,
+        tier: Tier,
+        imperfection: Imperfection,
+    ) -> KeptSolve {
         let [w_lig, alpha_deg, eta_a, eta_s, theta_deg] = *ray;
         let alpha = alpha_deg.to_radians();
         let (w_lig, alpha, eta_s) = match self {
@@ -138,7 +206,10 @@ impl Neighbour {
             design: HingeConstants::PAPER.hinge(w_lig, alpha),
             path: DeformationPath::straight(end),
             material: material.clone(),
-            recipe: tier.recipe(),
+            recipe: MeshRecipe {
+                imperfection,
+                ..tier.recipe()
+            },
             step: StepControl::default(),
         }
     }

@@ -75,7 +75,7 @@ impl WindowStudy {
             "tradeoff.md",
             &(tradeoff(&rows)? + &at_equal_error(&rows)?),
         )?;
-        let chart = charts::studies(&panels(&rows))?;
+        let chart = charts::studies(&panels(&rows), "difference in W(45 deg), %")?;
         let pictures = picture::save(&chart, &self.out.join("window"), 1600)?;
         println!("{} solves; {}", rows.len(), pictures[1].display());
         match failures.lines().count() {

@@ -15,18 +15,18 @@ pub struct StudyPanel {
 }
 
 /// The panels of a study, three in a row.
-pub fn studies(panels: &[StudyPanel]) -> Result<String> {
+pub fn studies(panels: &[StudyPanel], y_label: &str) -> Result<String> {
     let rows = panels.len().div_ceil(3).max(1);
     let size = (1260, 340 * rows as u32);
     drawn(size, |root| {
         for (area, panel) in root.split_evenly((rows, 3)).iter().zip(panels) {
-            study_chart(area, panel)?;
+            study_chart(area, panel, y_label)?;
         }
         Ok(())
     })
 }
 
-fn study_chart(area: &Area, panel: &StudyPanel) -> ChartResult {
+fn study_chart(area: &Area, panel: &StudyPanel, y_label: &str) -> ChartResult {
     let percents = panel.lines.values().flatten().map(|(_, percent)| *percent);
     let last = panel.values.len().max(2) as f64 - 1.0;
     let mut chart = ChartBuilder::on(area)
@@ -47,7 +47,7 @@ fn study_chart(area: &Area, panel: &StudyPanel) -> ChartResult {
                 .unwrap_or_default()
         })
         .label_style((FONT, 12))
-        .y_desc("difference in W(45 deg), %")
+        .y_desc(y_label)
         .draw()?;
     for (i, (hinge, line)) in panel.lines.iter().enumerate() {
         let colour = Palette99::pick(i).stroke_width(2);
