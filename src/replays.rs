@@ -3,5 +3,6 @@
 pub mod balanced_sheet;
 pub mod comparison;
 pub mod kept_solves;
+pub mod polish;
 pub mod routes;
 pub mod spot_states;

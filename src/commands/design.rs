@@ -13,7 +13,7 @@ use design::optimise::outer_loop::{Ended, StepRecord};
 use design::output::drawing::deployment_frames;
 use design::output::report::{Report, Warning};
 use design::output::run_results::write_results;
-use design::scene::design_run::{forget, inverse_design};
+use design::scene::design_run::{Designed, forget, inverse_design};
 use design::scene::run_inputs::scene_file;
 use design::scene::{Scene, SceneConfig};
 use std::path::{Path, PathBuf};
@@ -193,10 +193,7 @@ impl DesignCommand {
             bar.show(step.step, None, &progress_line(step, learned));
         })?;
         bar.finish();
-        let report = write_results(scene, &designed, self.force)?;
-        rasterise(&scene.output())?;
-        let frames = deployment_frames(scene, &designed, MOST_FRAMES);
-        animation::save(&frames, &scene.output().join("deployment.png"), FRAME_WIDTH)?;
+        let report = write_run(scene, &designed, self.force)?;
         Ok((report, designed.ended))
     }
 
@@ -213,6 +210,15 @@ impl DesignCommand {
         change(&mut config);
         Ok(Scene::new(config, &path)?)
     }
+}
+
+/// Writes the results of a run to its folder, with pictures and animation.
+pub(crate) fn write_run(scene: &Scene, designed: &Designed, force: bool) -> Result<Report> {
+    let report = write_results(scene, designed, force)?;
+    rasterise(&scene.output())?;
+    let frames = deployment_frames(scene, designed, MOST_FRAMES);
+    animation::save(&frames, &scene.output().join("deployment.png"), FRAME_WIDTH)?;
+    Ok(report)
 }
 
 /// An error if a run is not at its end, or has no cut file.

@@ -1,9 +1,10 @@
 //! `kirigami verify`: the hinges of a designed sheet solved by finite elements, compared with the surrogate.
 
+mod polished;
 mod sheet_errors;
 
 use crate::commands::inspect::scene_args::Inspected;
-use crate::replays::balanced_sheet::WindowSolves;
+use crate::replays::balanced_sheet::{WindowSolves, balanced};
 use crate::replays::comparison;
 use crate::replays::comparison::{SCALE, spread_table};
 use crate::replays::kept_solves::{Outcome, SolveArgs};
@@ -12,11 +13,15 @@ use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use dataset::{COMPARED, ComparedState};
+use design::output::drawing;
+use design::pattern::design_vector::DesignVector;
+use design::scene::Scene;
 use fe_driver::KeptSolve;
 use hinge::{HingeDeformation, HingeSample};
 use mesher::Tier;
+use serde::Serialize;
 use std::collections::BTreeSet;
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use surrogate::Surrogate;
@@ -25,7 +30,9 @@ use surrogate::Surrogate;
 ///
 /// Compares energy, forces and damage of the surrogate with CalculiX on the same paths, hinge by hinge: the
 /// error of the whole chain on one design. Writes replay.md, replay.csv and a chart. With --equilibrium the sheet is
-/// balanced with the forces of the finite elements: the error of its deployed shape. Writes equilibrium.md.
+/// balanced with the forces of the finite elements: the error of its deployed shape. Writes equilibrium.md. With
+/// --polish N the design is searched for N more steps with these forces. Writes polish.md, design.json and the files of
+/// a run.
 /// Example: kirigami verify configs/scenes/demo.toml --design runs/demo/design/state.json --equilibrium
 #[derive(Args)]
 pub struct VerifyCommand {
@@ -47,6 +54,13 @@ pub struct VerifyCommand {
     /// Maximum number of times that all hinges are solved
     #[arg(long, value_name = "N", default_value_t = 6, requires = "equilibrium")]
     rounds: usize,
+    /// Search for N more steps with the hinge law corrected to the finite elements, from the design on; judge the design that
+    /// is found by finite elements again, and write it with its cut files
+    #[arg(long, value_name = "N", requires = "equilibrium")]
+    polish: Option<NonZeroUsize>,
+    /// Write the cut files of a polished design even if its report has errors
+    #[arg(long, requires = "polish")]
+    force: bool,
     /// Print JSON instead of text
     #[arg(long, requires = "equilibrium")]
     json: bool,
@@ -73,23 +87,56 @@ impl VerifyCommand {
         let surrogate = scene
             .surrogate()
             .context("only a surrogate can be verified: set hinge = \"surrogate\" in the scene")?;
-        let networks = ensemble(&scene, surrogate, &self.ensemble)?;
         let tier = judging_tier(self.tier, surrogate)?;
-        if self.equilibrium {
-            let _held = run_folder::hold(&self.out)?;
-            let windows = WindowSolves {
-                tier,
-                args: &self.solve,
-                folder: &self.out,
-            };
-            let errors = sheet_errors::run(&scene, &design, &windows, self.rounds)?;
-            match self.json {
-                true => println!("{}", serde_json::to_string_pretty(&errors)?),
-                false => println!("{errors}\nwritten to {}", self.out.display()),
-            }
-            return Ok(());
+        match self.equilibrium {
+            true => self.balance(scene, &design, tier),
+            false => self.replay(&scene, &design, surrogate, tier),
         }
-        let mut routes = hinge_routes(&scene, &design)?;
+    }
+
+    /// The equilibrium with finite elements, and the polish from there.
+    fn balance(&self, mut scene: Scene, design: &DesignVector, tier: Tier) -> Result<()> {
+        let _held = run_folder::hold(&self.out)?;
+        let windows = WindowSolves {
+            tier,
+            args: &self.solve,
+            folder: &self.out,
+        };
+        match self.polish {
+            None => {
+                let found = balanced(&scene, design, &windows, self.rounds)?;
+                let end = found.by_elements();
+                let configuration = &end.final_step().configuration;
+                let picture = drawing::deployed(&scene, &end.sheet, configuration);
+                run_folder::write(&self.out, "deployed.svg", &picture)?;
+                self.print(&sheet_errors::write(&found, &windows)?)
+            }
+            Some(steps) => {
+                scene.config.output = std::path::absolute(&self.out)?;
+                let gain = polished::run(&scene, design, &windows, self.rounds, steps, self.force)?;
+                self.print(&gain)
+            }
+        }
+    }
+
+    fn print(&self, found: &(impl Serialize + Display)) -> Result<()> {
+        match self.json {
+            true => println!("{}", serde_json::to_string_pretty(found)?),
+            false => println!("{found}\nwritten to {}", self.out.display()),
+        }
+        Ok(())
+    }
+
+    /// Finite elements along the paths that the hinges have in the sheet by the hinge law.
+    fn replay(
+        &self,
+        scene: &Scene,
+        design: &DesignVector,
+        surrogate: &Surrogate,
+        tier: Tier,
+    ) -> Result<()> {
+        let networks = ensemble(scene, surrogate, &self.ensemble)?;
+        let mut routes = hinge_routes(scene, design)?;
         if let Some(sample) = self.sample {
             let (all, sample) = (routes.len(), sample.get());
             let chosen: BTreeSet<usize> = (0..sample).map(|i| i * all / sample).collect();

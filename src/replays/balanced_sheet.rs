@@ -9,7 +9,7 @@ use crate::replays::kept_solves::SolveArgs;
 use crate::replays::routes::routes_of;
 use anyhow::{Result, bail, ensure};
 use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, Order};
-use design::objective::design_problem::{Deployment, Model};
+use design::objective::design_problem::{Deployment, DesignProblem, Model};
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
 use design::sheet::kinematics::deployed_corners;
@@ -36,6 +36,8 @@ pub struct Round {
 
 /// A sheet in equilibrium with the forces of finite elements.
 pub struct Balanced {
+    /// The problem of the scene, with the hinge law corrected to the finite elements of the last round.
+    pub problem: DesignProblem,
     /// By the hinge law alone, followed by the deployment with the corrected law of each round.
     deployments: Vec<Deployment>,
     /// The last state of each hinge by finite elements.
@@ -100,6 +102,7 @@ pub fn balanced(
     }
     deployments.push(deployed);
     Ok(Balanced {
+        problem,
         deployments,
         hinges,
         rounds: done,

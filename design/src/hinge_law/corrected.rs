@@ -6,7 +6,9 @@
 //!
 //! x = (eta_a, eta_s, theta), e is the state at which the forces were measured, and d the measured forces, conjugate to
 //! x, minus those of the law. Of all symmetric A that satisfy A e = d, this is the one with the smallest norm: the
-//! symmetric secant update of Powell. Energy and forces of the flat hinge remain zero.
+//! symmetric secant update of Powell. Energy and forces of the flat hinge remain zero. As a function of (a, s, theta)
+//! the correction is that of the design at which the forces were measured, also for a design close to it: derivatives in
+//! the design are those of the law alone.
 //! (Powell, "A new algorithm for unconstrained optimization", 1970.)
 
 use crate::hinge_law::law::{
@@ -25,7 +27,7 @@ pub struct CorrectedLaw {
 /// The correction of one hinge.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Correction {
-    /// The symmetric matrix A (N mm).
+    /// The symmetric matrix of the correction in (a, s, theta) (N / mm, N, N mm).
     matrix: [[f64; 3]; 3],
 }
 
@@ -38,42 +40,35 @@ impl Correction {
         measured: [f64; 3],
         law: [f64; 3],
     ) -> Self {
-        let e = scaled(design, state);
-        let arms = arms(design);
+        let arms = [design.w_lig, design.w_lig, 1.0];
+        let state = state.to_array();
+        let e: [f64; 3] = from_fn(|i| state[i] / arms[i]);
         let d: [f64; 3] = from_fn(|i| arms[i] * (measured[i] - law[i]));
         let square = dot(e, e);
         if square == 0.0 {
             return Self::default();
         }
         let along = dot(d, e) / (square * square);
+        let scaled = |i, j| (d[i] * e[j] + e[i] * d[j]) / square - along * e[i] * e[j];
         Self {
-            matrix: from_fn(|i| {
-                from_fn(|j| (d[i] * e[j] + e[i] * d[j]) / square - along * e[i] * e[j])
-            }),
+            matrix: from_fn(|i| from_fn(|j| scaled(i, j) / (arms[i] * arms[j]))),
         }
     }
 
     /// Adds the correction to the energy of a hinge and its derivatives in (a, s, theta).
-    fn add(
-        &self,
-        energy: &mut HingeEnergy,
-        design: &HingeDesign,
-        state: &HingeDeformation,
-        order: Order,
-    ) {
-        let x = scaled(design, state);
-        let arms = arms(design);
+    fn add(&self, energy: &mut HingeEnergy, state: &HingeDeformation, order: Order) {
+        let x = state.to_array();
         let forces: [f64; 3] = from_fn(|i| dot(self.matrix[i], x));
         energy.w += 0.5 * dot(forces, x);
         if order >= Order::Forces {
             for i in 0..3 {
-                energy.forces[i] += forces[i] / arms[i];
+                energy.forces[i] += forces[i];
             }
         }
         if order >= Order::Tangent {
             for i in 0..3 {
                 for j in 0..3 {
-                    energy.tangent[i][j] += self.matrix[i][j] / (arms[i] * arms[j]);
+                    energy.tangent[i][j] += self.matrix[i][j];
                 }
             }
         }
@@ -98,7 +93,6 @@ impl HingeLaw for CorrectedLaw {
         );
         Box::new(PreparedCorrected {
             law: self.law.prepare(designs),
-            designs: designs.to_vec(),
             corrections: &self.corrections,
         })
     }
@@ -114,21 +108,15 @@ impl HingeLaw for CorrectedLaw {
 
 struct PreparedCorrected<'a> {
     law: Box<dyn PreparedLaw + 'a>,
-    designs: Vec<HingeDesign>,
     corrections: &'a [Correction],
 }
 
 impl PreparedLaw for PreparedCorrected<'_> {
-    /// # Panics
-    /// For derivatives in the design: a correction belongs to a design.
     fn energies(&self, deformations: &[HingeDeformation], order: Order) -> Vec<HingeEnergy> {
-        assert!(
-            order < Order::Design,
-            "a corrected law has no derivatives in the design"
-        );
         let mut energies = self.law.energies(deformations, order);
-        for (h, energy) in energies.iter_mut().enumerate() {
-            self.corrections[h].add(energy, &self.designs[h], &deformations[h], order);
+        let hinges = energies.iter_mut().zip(self.corrections);
+        for ((energy, correction), deformation) in hinges.zip(deformations) {
+            correction.add(energy, deformation, order);
         }
         energies
     }
@@ -146,17 +134,6 @@ impl PreparedLaw for PreparedCorrected<'_> {
     }
 }
 
-/// (eta_a, eta_s, theta)
-fn scaled(design: &HingeDesign, state: &HingeDeformation) -> [f64; 3] {
-    let [eta_a, eta_s] = state.eta(design.w_lig);
-    [eta_a, eta_s, state.theta]
-}
-
-/// Derivatives of (a, s, theta) in (eta_a, eta_s, theta).
-fn arms(design: &HingeDesign) -> [f64; 3] {
-    [design.w_lig, design.w_lig, 1.0]
-}
-
 fn dot(x: [f64; 3], y: [f64; 3]) -> f64 {
     std::iter::zip(x, y).map(|(x, y)| x * y).sum()
 }
@@ -165,7 +142,8 @@ fn dot(x: [f64; 3], y: [f64; 3]) -> f64 {
 mod tests {
     use super::*;
     use crate::analysis::taylor::central_slope;
-    use crate::hinge_law::LinearLaw;
+    use crate::hinge_law::{LinearLaw, SurrogateLaw};
+    use ::surrogate::Surrogate;
     use hinge::HingeConstants;
 
     const MEASURED: [f64; 3] = [-1.5, 0.7, 40.0];
@@ -215,6 +193,36 @@ mod tests {
             for j in 0..3 {
                 let expected = slope(&|energy| energy.forces[j]);
                 assert!((found.tangent[i][j] - expected).abs() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_in_the_design_are_those_of_energy_and_forces() {
+        let weights = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../data/pet-0.5mm/small.safetensors"
+        );
+        let law = Surrogate::load(std::path::Path::new(weights)).unwrap();
+        let law: Arc<dyn HingeLaw> = Arc::new(SurrogateLaw::new(law));
+        let correction = Correction::new(&design(), &state(), MEASURED, [0.0; 3]);
+        let law = CorrectedLaw::new(law, vec![correction]);
+        let of = |design: &HingeDesign| {
+            let prepared = law.prepare(std::slice::from_ref(design));
+            prepared.energies(&[state()], Order::Design)[0]
+        };
+        let found = of(&design());
+        for i in 0..2 {
+            let unit: Vec<f64> = (0..2).map(|j| f64::from(i == j)).collect();
+            let slope = |part: &dyn Fn(&HingeEnergy) -> f64| {
+                let at = |x: &[f64]| part(&of(&HingeConstants::PAPER.hinge(x[0], x[1])));
+                central_slope(at, &[10.0, 1.3], &unit, 1e-4)
+            };
+            let expected = slope(&|energy| energy.w);
+            assert!((found.design[i] - expected).abs() < 1e-5 * expected.abs());
+            for j in 0..3 {
+                let expected = slope(&|energy| energy.forces[j]);
+                assert!((found.mixed[j][i] - expected).abs() < 1e-5 * expected.abs());
             }
         }
     }

@@ -1,14 +1,9 @@
 //! `kirigami verify --equilibrium`: the error of a deployed sheet, judged by finite elements for its hinges.
 
-use crate::replays::balanced_sheet::{
-    BALANCED, Balanced, Round, WindowSolves, balanced, movements, size,
-};
+use crate::replays::balanced_sheet::{BALANCED, Balanced, Round, WindowSolves, movements, size};
 use crate::ui::run_folder;
 use anyhow::Result;
 use design::objective::design_problem::Deployment;
-use design::output::drawing;
-use design::pattern::design_vector::DesignVector;
-use design::scene::Scene;
 use mesher::Tier;
 use serde::Serialize;
 use std::fmt;
@@ -44,20 +39,10 @@ struct HingeErrors {
     damage_peak: [Option<f64>; 2],
 }
 
-/// Balances the sheet and writes `equilibrium.md` and a picture of the deployed sheet.
-pub(super) fn run(
-    scene: &Scene,
-    design: &DesignVector,
-    windows: &WindowSolves,
-    rounds: usize,
-) -> Result<SheetErrors> {
-    let found = balanced(scene, design, windows, rounds)?;
-    let errors = SheetErrors::new(&found, windows.tier);
+/// Writes `equilibrium.md` of a balanced sheet.
+pub(super) fn write(found: &Balanced, windows: &WindowSolves) -> Result<SheetErrors> {
+    let errors = SheetErrors::new(found, windows.tier);
     run_folder::write(windows.folder, "equilibrium.md", &errors.to_string())?;
-    let by_elements = found.by_elements();
-    let end = &by_elements.final_step().configuration;
-    let picture = drawing::deployed(scene, &by_elements.sheet, end);
-    run_folder::write(windows.folder, "deployed.svg", &picture)?;
     Ok(errors)
 }
 

@@ -1,0 +1,169 @@
+//! A design searched once more with the hinge law corrected to finite elements.
+//!
+//! The sheet is balanced with finite elements for its hinges, the search continues from the design with the corrected
+//! law, and the sheet that it finds is balanced again: both designs are judged by finite elements at their own hinges.
+
+use crate::replays::balanced_sheet::{Balanced, WindowSolves, balanced};
+use crate::ui::exit::Unfinished;
+use anyhow::{Result, bail};
+use design::objective::design_problem::{DesignProblem, Evaluation};
+use design::objective::scores::Scores;
+use design::optimise::outer_loop::{Ended, SearchState, StepRecord, optimise};
+use design::pattern::design_vector::DesignVector;
+use design::scene::Scene;
+use design::scene::design_run::Designed;
+use serde::Serialize;
+use std::convert::Infallible;
+use std::fmt;
+use std::sync::atomic::AtomicBool;
+
+/// A polished design.
+pub struct Polished {
+    /// The search with the corrected law. Start and best are evaluated with the law corrected at their own hinges.
+    pub designed: Designed,
+    /// The equilibrium of the design that it found, by finite elements.
+    pub after: Balanced,
+    /// What the polish changed.
+    pub gain: PolishGain,
+}
+
+/// The objective of a design before and after its polish, and what is known of the numbers.
+#[derive(Debug, Serialize)]
+pub struct PolishGain {
+    /// By the hinge law of the scene: the given design, and the one that was found.
+    by_law: [Scores; 2],
+    /// By finite elements for all hinges.
+    by_elements: [Scores; 2],
+    /// Search steps with the corrected law, and why they ended.
+    steps: usize,
+    ended: Ended,
+    /// Whether the panels of both sheets stay where they are; see [`Balanced::converged`].
+    balanced: [bool; 2],
+    /// CPU time of all window solves (s), if the operating system reports it.
+    cpu_seconds: Option<f64>,
+}
+
+/// Balances `design` in at most `rounds` rounds, searches for `steps` steps, and balances the design that was found.
+///
+/// # Errors
+/// [`Unfinished`] if `stop` becomes true during the search; windows that were solved are kept.
+pub fn polish(
+    scene: &Scene,
+    design: &DesignVector,
+    windows: &WindowSolves,
+    rounds: usize,
+    steps: usize,
+    stop: &AtomicBool,
+    progress: &mut dyn FnMut(&StepRecord),
+) -> Result<Polished> {
+    let law = scene.problem()?;
+    let before = balanced(scene, design, windows, rounds)?;
+    let start = before.problem.evaluate(design)?;
+    let optimiser = &scene.config.optimiser;
+    let mut search = SearchState::new(
+        &before.problem,
+        design.clone(),
+        &start,
+        optimiser.method,
+        optimiser.learning_rate,
+    );
+    let show = &mut |search: &SearchState| {
+        progress(search.last());
+        Ok::<_, Infallible>(())
+    };
+    let ended = match optimise(&before.problem, &mut search, steps, stop, show) {
+        Ok(Ended::Stopped) => bail!(Unfinished::new(steps + 1 - search.history.len(), "steps")),
+        Ok(ended) => ended,
+        Err(never) => match never {},
+    };
+    let found = search.best;
+    let after = balanced(scene, &found, windows, rounds)?;
+    let best = after.problem.evaluate(&found)?;
+    let scores = |problem: &DesignProblem, evaluation: &Evaluation| {
+        Scores::of(&problem.objective, evaluation)
+    };
+    let gain = PolishGain {
+        by_law: [
+            scores(&law, &law.evaluate(design)?),
+            scores(&law, &law.evaluate(&found)?),
+        ],
+        by_elements: [
+            scores(&before.problem, &start),
+            scores(&after.problem, &best),
+        ],
+        steps: search.history.len() - 1,
+        ended: ended.clone(),
+        balanced: [before.converged, after.converged],
+        cpu_seconds: before
+            .cpu_seconds
+            .zip(after.cpu_seconds)
+            .map(|(x, y)| x + y),
+    };
+    let designed = Designed {
+        problem: scene.problem()?,
+        ended,
+        history: search.history,
+        design: found,
+        start,
+        best,
+    };
+    Ok(Polished {
+        designed,
+        after,
+        gain,
+    })
+}
+
+impl PolishGain {
+    /// Whether finite elements confirm that the loss decreased.
+    pub fn improved(&self) -> bool {
+        let [before, after] = &self.by_elements;
+        after.loss < before.loss
+    }
+}
+
+impl fmt::Display for PolishGain {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let minutes = self.cpu_seconds.map_or(String::new(), |seconds| {
+            format!(", {:.0} CPU minutes of windows", seconds / 60.0)
+        });
+        writeln!(
+            f,
+            "# The design, polished\n\n\
+             Searched for {} steps with the hinge law corrected to finite elements at the hinges of the given \
+             design{minutes}. \"By finite elements\" is the equilibrium with finite elements for all hinges of the design \
+             of that column.\n\n\
+             | | given design | polished design |\n|---|---|---|",
+            self.steps,
+        )?;
+        for (name, [before, after]) in [
+            ("by the hinge law", &self.by_law),
+            ("by finite elements", &self.by_elements),
+        ] {
+            let mut row = |quantity: &str, of: fn(&Scores) -> f64| {
+                let [before, after] = [before, after].map(of);
+                writeln!(f, "| {quantity}, {name} | {before:.4} | {after:.4} |")
+            };
+            row("outline error (mm)", |scores| scores.outline_error)?;
+            row("loss", |scores| scores.loss)?;
+            row("damage functional", |scores| scores.damage)?;
+            row("fraction inside the domain", |scores| scores.share_inside)?;
+        }
+        if let Ended::Stuck { reason } = &self.ended {
+            writeln!(f, "\nThe search is stuck: {reason}")?;
+        }
+        if !self.improved() {
+            writeln!(
+                f,
+                "\nNOT IMPROVED: by finite elements the given design has the lower loss. Use that one."
+            )?;
+        }
+        if self.balanced != [true; 2] {
+            writeln!(
+                f,
+                "\nNOT BALANCED: the panels still moved in the last round; use more --rounds."
+            )?;
+        }
+        Ok(())
+    }
+}
