@@ -1,5 +1,5 @@
 //! Analyses of a deployed sheet beyond its shape: forces, capacity, voids, tilting panels (section 3.2), comparison with
-//! measured points (section 4.4).
+//! measured points (section 4.4), paths of the hinges (section 5.2).
 
 pub mod actuation_curve;
 pub mod degeneration;
@@ -10,6 +10,7 @@ pub mod marks;
 pub mod measured_openings;
 pub mod measured_sheet;
 pub mod misread;
+pub mod path_separation;
 pub mod robust_pose;
 pub mod shape_path;
 pub mod solution_set;

@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use dataset::Fidelity;
+use design::analysis::path_separation::PathSeparation;
 use design::objective::design_problem::{Deployment, Model};
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
@@ -129,55 +130,15 @@ impl HingeRoute {
         )
     }
 
-    /// Maximum distance between the path and the straight ray to its end, compared at equal fractions
-    /// of their arc length, in ligament widths.
-    ///
-    /// The distance is Euclidean in (eta_a, eta_s, theta): a rotation by one radian moves a point at the distance
-    /// of one ligament width from O by one ligament width.
-    pub fn separation(&self) -> f64 {
-        let w_lig = self.design.w_lig;
-        let place = |state: &HingeDeformation| {
-            let [eta_a, eta_s] = state.eta(w_lig);
-            [eta_a, eta_s, state.theta]
-        };
-        let mut places = vec![[0.0; 3]];
-        places.extend(self.states.iter().map(place));
-        let mut journey = vec![0.0];
-        for pair in places.windows(2) {
-            journey.push(journey[journey.len() - 1] + distance(pair[0], pair[1]));
-        }
-        let whole = journey[journey.len() - 1].max(f64::MIN_POSITIVE);
-        let end = places[places.len() - 1];
-        let gaps = places.iter().zip(&journey).map(|(place, gone)| {
-            let on_the_ray = end.map(|x| gone / whole * x);
-            distance(*place, on_the_ray)
-        });
-        gaps.fold(0.0, f64::max)
+    /// How far the path departs from the straight ray to its end.
+    pub fn separation(&self) -> PathSeparation {
+        PathSeparation::of(self.design.w_lig, &self.states)
     }
-}
-
-fn distance(x: [f64; 3], y: [f64; 3]) -> f64 {
-    let squares = std::iter::zip(x, y).map(|(x, y)| (x - y).powi(2));
-    squares.sum::<f64>().sqrt()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn route(states: &[[f64; 3]]) -> HingeRoute {
-        HingeRoute {
-            hinge: 0,
-            design: HingeDesign {
-                w_lig: 10.0,
-                alpha: 1.5,
-                fillet_ratio: 0.16,
-                kerf: 0.2,
-                r_win: 100.0,
-            },
-            states: states.iter().map(|state| (*state).into()).collect(),
-        }
-    }
 
     #[test]
     fn weights_are_judged_by_the_mesh_they_were_trained_on() {
@@ -188,21 +149,5 @@ mod tests {
             let message = tier_of(unclear).unwrap_err().to_string();
             assert!(message.contains("--tier"), "{message}");
         }
-    }
-
-    #[test]
-    fn a_straight_route_is_its_ray_whatever_its_pace() {
-        let route = route(&[[0.1, 0.2, 0.05], [0.2, 0.4, 0.1], [2.0, 4.0, 1.0]]);
-        assert!(route.separation() < 1e-15);
-    }
-
-    #[test]
-    fn a_right_angle_is_separated_at_its_corner() {
-        // Turn by 0.3, then 0.4 ligament widths: the corner is 3/7 along, 0.24 from the ray there.
-        let route = route(&[[0.0, 0.0, 0.3], [4.0, 0.0, 0.3]]);
-        let share = 3.0 / 7.0;
-        let gap = distance([0.0, 0.0, 0.3], [share * 0.4, 0.0, share * 0.3]);
-        assert!((route.separation() - gap).abs() < 1e-15);
-        assert_eq!(route.end().to_array(), [4.0, 0.0, 0.3]);
     }
 }

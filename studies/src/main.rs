@@ -7,6 +7,7 @@ mod chain;
 mod charts;
 mod condensed;
 mod designed;
+mod detours;
 mod drawing;
 mod extremes;
 mod fine_tuning;
@@ -22,6 +23,7 @@ mod panel_penalties;
 mod path;
 mod peak;
 mod polyester;
+mod power_law;
 mod sheet;
 mod silhouettes;
 mod solutions;
@@ -53,6 +55,7 @@ enum Study {
     Noise(noise::NoiseStudy),
     Path(path::PathStudy),
     Peak(peak::PeakStudy),
+    Detours(detours::DetourStudy),
     Polyester(polyester::PolyesterStudy),
     Gradient(gradient::GradientStudy),
     Solutions(solutions::SolutionStudy),
@@ -81,6 +84,7 @@ impl Study {
             Self::Noise(study) => study.run(),
             Self::Path(study) => study.run(),
             Self::Peak(study) => study.run(),
+            Self::Detours(study) => study.run(),
             Self::Polyester(study) => study.run(),
             Self::Gradient(study) => study.run(),
             Self::Solutions(study) => study.run(),

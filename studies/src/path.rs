@@ -1,6 +1,7 @@
 //! `kirigami-studies path`: the error of reading energy and damage from the state alone; section 5.2.
 
 use crate::charts::{self, SeparationChart};
+use crate::power_law::PowerLaw;
 use anyhow::{Result, ensure};
 use clap::Args;
 use design::scene::Scene;
@@ -59,7 +60,7 @@ impl PathStudy {
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
             for route in deployed(&scene)? {
                 routes.push((
-                    route.separation(),
+                    route.separation().whole,
                     name.to_string(),
                     scene.material.clone(),
                     route,
@@ -110,7 +111,7 @@ impl PathStudy {
             pairs.iter().map(of).collect()
         };
         let (energy, damage) = (differences(0), differences(1));
-        let fits = [&energy, &damage].map(|points| power_law(points));
+        let fits = [&energy, &damage].map(|points| PowerLaw::fit(resolved(points)));
         let mut page = format!(
             "# Path dependence\n\n{}",
             summary(pairs, all, fits, self.tier)?
@@ -198,23 +199,13 @@ fn spread_over(count: usize, wanted: usize) -> Vec<usize> {
         .collect()
 }
 
-/// Exponent and factor of the least-squares line through the logarithms of the points that the solver
-/// resolves; `None` for fewer than three such points.
-fn power_law(points: &[(f64, f64)]) -> Option<[f64; 2]> {
-    let resolved = points.iter().filter(|(x, y)| *x > RESOLUTION && *y > 0.0);
-    let logs: Vec<_> = resolved.map(|(x, y)| (x.ln(), y.ln())).collect();
-    let n = logs.len() as f64;
-    let mean = |of: fn(&(f64, f64)) -> f64| logs.iter().map(of).sum::<f64>() / n;
-    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
-    let across: f64 = logs.iter().map(|p| (p.0 - x).powi(2)).sum();
-    let along: f64 = logs.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
-    (logs.len() >= 3 && across > 0.0).then(|| {
-        let exponent = along / across;
-        [exponent, (y - exponent * x).exp()]
-    })
+/// The pairs that the solver resolves.
+fn resolved(points: &[(f64, f64)]) -> impl Iterator<Item = (f64, f64)> {
+    let points = points.iter().copied();
+    points.filter(|(separation, _)| *separation > RESOLUTION)
 }
 
-fn summary(pairs: &[Pair], all: &[f64], fits: [Option<[f64; 2]>; 2], tier: Tier) -> Result<String> {
+fn summary(pairs: &[Pair], all: &[f64], fits: [Option<PowerLaw>; 2], tier: Tier) -> Result<String> {
     let mut sorted = all.to_vec();
     sorted.sort_by(f64::total_cmp);
     let quantile = |fraction: f64| sorted[(fraction * (sorted.len() - 1) as f64).round() as usize];
@@ -239,9 +230,9 @@ fn summary(pairs: &[Pair], all: &[f64], fits: [Option<[f64; 2]>; 2], tier: Tier)
         let mut differences: Vec<_> = pairs.iter().map(|pair| pair.difference(i)).collect();
         differences.sort_by(f64::total_cmp);
         let (exponent, usual) = match fits[i] {
-            Some([exponent, factor]) => (
-                format!("{exponent:.1}"),
-                format!("{:.4} %", 100.0 * factor * quantile(0.5).powf(exponent)),
+            Some(law) => (
+                law.to_string(),
+                format!("{:.4} %", 100.0 * law.at(quantile(0.5))),
             ),
             None => ("too few pairs".to_owned(), "-".to_owned()),
         };
@@ -258,17 +249,6 @@ fn summary(pairs: &[Pair], all: &[f64], fits: [Option<[f64; 2]>; 2], tier: Tier)
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_power_law_is_fitted_to_resolved_points_only() {
-        let points: Vec<_> = [0.001, 0.01, 0.1, 0.5]
-            .map(|x: f64| (x, 3.0 * x.powf(2.3)))
-            .to_vec();
-        let [exponent, factor] = power_law(&points).unwrap();
-        assert!((exponent - 2.3).abs() < 1e-12 && (factor - 3.0).abs() < 1e-12);
-        assert_eq!(power_law(&points[..3]), None);
-        assert_eq!(power_law(&[]), None);
-    }
 
     #[test]
     fn chosen_routes_are_spread_from_the_first_to_the_last() {

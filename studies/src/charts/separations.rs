@@ -1,5 +1,6 @@
 //! Charts of path dependence: differences against the separation of path and ray.
 
+use crate::power_law::PowerLaw;
 use anyhow::Result;
 use kirigami::ui::charts::*;
 use plotters::prelude::*;
@@ -8,8 +9,8 @@ use plotters::prelude::*;
 pub struct SeparationChart<'a> {
     /// Pairs of solves along path and ray: (separation, relative difference).
     pub pairs: &'a [(f64, f64)],
-    /// Exponent and factor of the power law fitted to the pairs, if there is one.
-    pub fit: Option<[f64; 2]>,
+    /// The power law fitted to the pairs, if there is one.
+    pub fit: Option<PowerLaw>,
     /// Separations of all recorded paths, for the histogram in the background.
     pub all: &'a [f64],
     pub quantity: &'a str,
@@ -17,9 +18,11 @@ pub struct SeparationChart<'a> {
 
 /// Difference against separation on logarithmic axes, one chart per quantity.
 pub fn separations(charts: &[SeparationChart]) -> Result<String> {
-    let size = (480 * charts.len() as u32, 420);
+    let columns = charts.len().min(3);
+    let rows = charts.len().div_ceil(3);
+    let size = (480 * columns as u32, 420 * rows as u32);
     drawn(size, |root| {
-        for (area, chart) in root.split_evenly((1, charts.len())).iter().zip(charts) {
+        for (area, chart) in root.split_evenly((rows, columns)).iter().zip(charts) {
             separation_chart(area, chart)?;
         }
         Ok(())
@@ -71,8 +74,8 @@ fn separation_chart(area: &Area, chart: &SeparationChart) -> ChartResult {
         .x_desc("separation of path and ray, ligament widths")
         .y_desc("relative difference at the end")
         .draw()?;
-    if let Some([exponent, factor]) = chart.fit {
-        let line = [across.start, across.end].map(|x| (x, factor * x.powf(exponent)));
+    if let Some(law) = chart.fit {
+        let line = [across.start, across.end].map(|x| (x, law.at(x)));
         context.draw_series(LineSeries::new(line, VALIDATION))?;
     }
     context.draw_series(marks.iter().map(|p| Circle::new(*p, 4, POINT.filled())))?;
@@ -88,7 +91,7 @@ mod tests {
         let pairs = [(0.0, 0.0), (1e-3, 1e-4), (0.2, 0.05)];
         let chart = SeparationChart {
             pairs: &pairs,
-            fit: Some([2.0, 1.0]),
+            fit: PowerLaw::fit([(0.1, 0.01), (0.2, 0.04), (0.3, 0.09)]),
             all: &[1e-9, 0.01, 0.02, 0.3],
             quantity: "W",
         };

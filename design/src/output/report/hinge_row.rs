@@ -1,6 +1,7 @@
 //! One hinge in the report.
 
 use crate::analysis::localisation::gamma;
+use crate::analysis::path_separation::PathSeparation;
 use crate::geometry::polygon::edges;
 use crate::hinge_law::DamageMeasure;
 use crate::objective::design_problem::Deployment;
@@ -32,6 +33,9 @@ pub struct HingeRow {
     pub damage_peak: Option<f64>,
     /// Whether every state of the path is inside the training domain of the hinge law.
     pub inside: bool,
+    /// Maximum distance of the path from the straight ray to its end, in ligament widths; see
+    /// [`PathSeparation::whole`].
+    pub path_separation: f64,
     /// (21), with the shortest edge of the two panels.
     pub gamma: f64,
 }
@@ -42,6 +46,9 @@ impl HingeRow {
         let hinge = &sheet.hinges[h];
         let last = deployment.final_step().deformations[h];
         let [eta_a, eta_s] = last.eta(hinge.w_lig);
+        let states: Vec<_> = (deployment.path.iter())
+            .map(|step| step.deformations[h])
+            .collect();
         Self {
             hinge: h,
             panels: [hinge.panel_a(), hinge.panel_b()],
@@ -53,6 +60,7 @@ impl HingeRow {
             damage: deployment.damage_max(DamageMeasure::Mean, h),
             damage_peak: deployment.damage_max(DamageMeasure::Peak, h),
             inside: deployment.path.iter().all(|step| step.inside[h]),
+            path_separation: PathSeparation::of(hinge.w_lig, &states).whole,
             gamma: gamma(&scene.material, hinge.w_lig, shortest_edge(sheet, hinge)),
         }
     }
