@@ -1,7 +1,8 @@
-//! The user interface of the commands: progress, tables, pictures, charts, exit codes.
+//! The user interface of the commands: progress, tables, comparisons, pictures, charts, exit codes.
 
 pub mod animation;
 pub mod charts;
+pub mod comparison;
 pub mod exit;
 pub mod interrupt;
 pub mod picture;

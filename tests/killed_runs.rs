@@ -35,7 +35,7 @@ impl Replay {
         );
         let replay = Self { work };
         std::fs::create_dir(replay.work.path("recorded")).unwrap();
-        // The programs run in jobs/<id>/work-<host>.
+        // The programs run in jobs/<2 digits>/<id>/work-<host>.
         let id = "id=${PWD%/work-*}; id=${id##*/}";
         let recorded = replay.work.path("recorded").display().to_string();
         let script = |program: &str, body: &str| {

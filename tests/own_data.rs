@@ -7,7 +7,11 @@
 mod common;
 
 use common::Workplace;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 use std::fmt::Write;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
 
 const DATABASE: &str = "own.parquet";
 const WEIGHTS: &str = "runs/own.safetensors";
@@ -259,4 +263,85 @@ fn a_database_is_corrected_by_some_rays_of_a_finer_mesh() {
         work.error(&restore)
             .contains("default corrected to reference")
     );
+}
+
+/// The rows of the comparison of the seeds, without the last column, the names of the weights.
+fn compared(work: &Workplace, name: &str) -> Vec<String> {
+    let text = std::fs::read_to_string(work.path(&format!("runs/{name}-seeds.csv"))).unwrap();
+    let rows = text.lines().map(|line| line.rsplit_once(',').unwrap().0);
+    rows.map(str::to_owned).collect()
+}
+
+#[test]
+fn shards_train_all_seeds_and_the_last_one_chooses() {
+    let work = workplace();
+    work.edit(
+        "configs/training/demo.toml",
+        &[("epochs = 150", "epochs = 40")],
+    );
+    let train = format!("train {DATABASE} --config configs/training/demo.toml");
+    let alone = work.error(&format!("{train} --shard 1/2 --out runs/alone.safetensors"));
+    assert!(alone.contains("--seeds"), "{alone}");
+    work.output(&format!("{train} --seeds 3 --out runs/whole.safetensors"));
+
+    let seeds = format!("{train} --seeds 3 --out runs/array.safetensors");
+    // The first shard is stopped in its first training: it continues later, at the same time as the other shard.
+    let first = || work.program(&format!("{seeds} --shard 1/2"));
+    let mut stopped = first().stdout(Stdio::null()).spawn().unwrap();
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while !work.path("runs/array-seed-0.lock").exists() {
+        assert!(Instant::now() < deadline, "no training begins");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    kill(Pid::from_raw(stopped.id() as i32), Signal::SIGTERM).unwrap();
+    assert_eq!(stopped.wait().unwrap().code(), Some(75));
+    assert!(work.path("runs/array-seed-0.state").exists());
+    assert!(!work.path("runs/array-seed-0.safetensors").exists());
+    let mut shards = ["1/2", "2/2"].map(|shard| {
+        let mut command = work.program(&format!("{seeds} --shard {shard}"));
+        command.stdout(Stdio::null()).spawn().unwrap()
+    });
+    for shard in &mut shards {
+        assert!(shard.wait().unwrap().success());
+    }
+    let table = compared(&work, "array");
+    assert_eq!(table, compared(&work, "whole"));
+    let chosen: Vec<&String> = table.iter().filter(|row| row.contains(",yes,")).collect();
+    assert!(table.len() == 4 && chosen.len() == 1, "{table:?}");
+    let seed = chosen[0].split(',').next().unwrap();
+    let read = |name: &str| std::fs::read(work.path(&format!("runs/{name}"))).unwrap();
+    let best = read(&format!("array-seed-{seed}.safetensors"));
+    assert!(best == read("array.safetensors"));
+    for name in [
+        "array-seeds.md",
+        "array-parity.png",
+        "array-last.safetensors",
+    ] {
+        assert!(work.path("runs").join(name).exists(), "{name}");
+    }
+
+    // The same command trains nothing again; a seed whose files are lost is trained again by its shard.
+    let files = [
+        "array-seed-0.state",
+        "array-seed-2.safetensors",
+        "array.safetensors",
+    ];
+    let before = files.map(read);
+    work.output(&seeds);
+    assert!(files.map(read) == before);
+    std::fs::remove_file(work.path("runs/array-seed-1.safetensors")).unwrap();
+    std::fs::remove_file(work.path("runs/array-seed-1.state")).unwrap();
+    let others = work.output(&format!("{seeds} --shard 1/2"));
+    assert!(others.contains("2 of 3 seeds are trained"), "{others}");
+    work.output(&format!("{seeds} --shard 2/2"));
+    assert_eq!(compared(&work, "array"), table);
+
+    // Weights of another training are replaced on request only.
+    work.edit(
+        "configs/training/demo.toml",
+        &[("epochs = 40", "epochs = 20")],
+    );
+    assert!(work.error(&seeds).contains("exists"));
+    work.output(&format!("{seeds} --replace"));
+    assert_ne!(compared(&work, "array"), table);
 }

@@ -57,9 +57,9 @@ impl Disk {
     }
 }
 
-/// Whether a file is read again; the files of an attempt, and its deck and log that are kept, are not.
+/// Whether a file is read again; the files of an attempt are not.
 fn is_data(path: &str) -> bool {
-    !path.contains("/work-") && !path.ends_with("/window.inp") && !path.ends_with("/window.log")
+    !path.contains("/work-")
 }
 
 fn folder(path: &str) -> &str {

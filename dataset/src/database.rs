@@ -1,8 +1,10 @@
 //! A database: consistent rows, their Parquet file and its manifest.
 
+use crate::digest::{Digest, by_job_and_lambda};
 use crate::error::DatasetError;
 use crate::gates::{Gates, Rejection};
 use crate::manifest::Manifest;
+use crate::mixing::Mixing;
 use crate::parquet;
 use crate::rows::Row;
 use crate::split::{Part, SplitPlan};
@@ -111,26 +113,14 @@ impl Database {
         plan: &SplitPlan,
         mixing: Mixing,
     ) -> Result<Self, DatasetError> {
-        let mut rejected: BTreeMap<Rejection, usize> = BTreeMap::new();
-        let mut rows: Vec<Row> = rows
-            .into_iter()
-            .filter(|row| match gates.rejection(row) {
-                Some(reason) => {
-                    *rejected.entry(reason).or_default() += 1;
-                    false
-                }
-                None => true,
-            })
-            .collect();
-        rows.sort_by(|left, right| {
-            let by_lambda = || left.sample.lambda.total_cmp(&right.sample.lambda);
-            left.job.cmp(&right.job).then_with(by_lambda)
-        });
-        refuse_mixed(&rows, mixing)?;
-        refuse_duplicates(&rows)?;
+        let mut digest = Digest::new(gates, mixing);
+        let mut rows = digest.accepted(rows);
+        rows.sort_by(by_job_and_lambda);
+        for ray in rows.chunk_by(|left, right| left.job == right.job) {
+            digest.add(ray)?;
+        }
         let parquet = parquet::encode(&rows)?;
-        let hash = parquet::hash(&parquet);
-        let manifest = Manifest::new(&rows, hash, gates, rejected, plan)?;
+        let manifest = digest.manifest(parquet::hash(&parquet), plan)?;
         Ok(Self {
             rows,
             parquet,
@@ -153,61 +143,5 @@ impl Database {
         let jobs = self.manifest.split.jobs(part);
         let rows = self.rows.iter().filter(|row| jobs.contains(&row.job));
         rows.cloned().collect()
-    }
-}
-
-/// Whether the rows of a database may be of different materials or mesh tiers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mixing {
-    /// Rows of different materials or tiers are an error.
-    Refused,
-    /// Rows of different materials and tiers are accepted.
-    Allowed,
-}
-
-/// Rejects rows that differ in a quantity that is not a feature of the surrogate.
-fn refuse_mixed(rows: &[Row], mixing: Mixing) -> Result<(), DatasetError> {
-    let shared = |row: &Row| {
-        let constants = [
-            ("fillet_ratio", row.design.fillet_ratio.to_string()),
-            ("kerf", format!("{} mm", row.design.kerf)),
-            ("r_win", format!("{} mm", row.design.r_win)),
-        ];
-        let mixable = [
-            ("material", row.material.clone()),
-            ("material_hash", row.material_hash.clone()),
-            ("settings_hash", row.settings_hash.clone()),
-            ("tier", row.tier.clone()),
-        ];
-        let mixable = mixable.into_iter().filter(|_| mixing == Mixing::Refused);
-        mixable.chain(constants).collect::<Vec<_>>()
-    };
-    let Some(first) = rows.first().map(shared) else {
-        return Ok(());
-    };
-    for row in rows {
-        for ((column, expected), (_, found)) in first.iter().zip(shared(row)) {
-            if *expected != found {
-                return Err(DatasetError::Mixed {
-                    job: row.job.clone(),
-                    column,
-                    expected: expected.clone(),
-                    found,
-                });
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Rejects rows with the same job and lambda; `rows` must be in the order of job and lambda.
-fn refuse_duplicates(rows: &[Row]) -> Result<(), DatasetError> {
-    let key = |row: &Row| (row.job.clone(), row.sample.lambda);
-    match rows.windows(2).find(|pair| key(&pair[0]) == key(&pair[1])) {
-        Some(pair) => Err(DatasetError::Duplicate {
-            job: pair[0].job.clone(),
-            lambda: pair[0].sample.lambda,
-        }),
-        None => Ok(()),
     }
 }

@@ -45,26 +45,31 @@ impl Database {
     ///
     /// An existing file is an error unless `replace` is true.
     pub fn write(&self, path: &Path, replace: bool) -> Result<(), DatasetError> {
-        let manifest = manifest_path(path);
-        for path in [path, &manifest] {
-            if !replace && path.exists() {
-                return Err(DatasetError::Exists {
-                    path: path.to_owned(),
-                });
-            }
-        }
-        let mut json =
-            sealed_json::to_vec(&self.manifest).map_err(|source| DatasetError::Manifest {
-                path: manifest.clone(),
-                source: source.into(),
-            })?;
-        json.push(b'\n');
-        write_bytes(path, &self.parquet)?;
-        write_bytes(&manifest, &json)
+        refuse_existing(path, replace)?;
+        whole_file::write(path, &self.parquet).map_err(unwritable(path))?;
+        write_manifest(&self.manifest, &manifest_path(path))
     }
 }
 
-fn manifest_path(path: &Path) -> PathBuf {
+/// An error if `X.parquet` or its manifest exists, unless `replace` is true.
+pub(crate) fn refuse_existing(path: &Path, replace: bool) -> Result<(), DatasetError> {
+    let files = [path.to_owned(), manifest_path(path)];
+    match files.into_iter().find(|path| !replace && path.exists()) {
+        Some(path) => Err(DatasetError::Exists { path }),
+        None => Ok(()),
+    }
+}
+
+pub(crate) fn write_manifest(manifest: &Manifest, path: &Path) -> Result<(), DatasetError> {
+    let mut json = sealed_json::to_vec(manifest).map_err(|source| DatasetError::Manifest {
+        path: path.to_owned(),
+        source: source.into(),
+    })?;
+    json.push(b'\n');
+    whole_file::write(path, &json).map_err(unwritable(path))
+}
+
+pub(crate) fn manifest_path(path: &Path) -> PathBuf {
     path.with_extension("json")
 }
 
@@ -99,9 +104,8 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, DatasetError> {
     })
 }
 
-fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), DatasetError> {
-    whole_file::write(path, bytes).map_err(|source| DatasetError::Write {
-        path: path.to_owned(),
-        source,
-    })
+/// Maps the error of writing `path`, for use in `map_err`.
+pub(crate) fn unwritable(path: &Path) -> impl FnOnce(std::io::Error) -> DatasetError {
+    let path = path.to_owned();
+    move |source| DatasetError::Write { path, source }
 }

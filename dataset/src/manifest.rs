@@ -1,10 +1,8 @@
 //! The manifest `X.json` of a database `X.parquet`.
 
-use crate::error::DatasetError;
 use crate::gates::{Gates, Rejection};
 use crate::rows::Row;
-use crate::schema;
-use crate::split::{Split, SplitPlan, geometry};
+use crate::split::{Split, SplitPlan};
 use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -67,54 +65,6 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// The manifest of accepted rows, whose Parquet file has the given hash.
-    pub(crate) fn new(
-        rows: &[Row],
-        hash: String,
-        gates: &Gates,
-        rejected: BTreeMap<Rejection, usize>,
-        plan: &SplitPlan,
-    ) -> Result<Self, DatasetError> {
-        let no_rows = DatasetError::NoRows {
-            rejected: rejected.values().sum(),
-        };
-        let states: Vec<_> = rows
-            .iter()
-            .map(|row| (row.design, row.sample.deformation()))
-            .collect();
-        let domain = TrainingDomain::covering(states.iter().map(|(g, eps)| (g, eps)));
-        let (Some(first), Some(domain)) = (rows.first(), domain) else {
-            return Err(no_rows);
-        };
-        let rays: BTreeMap<&str, &Row> = rows.iter().map(|row| (row.job.as_str(), row)).collect();
-        let split = Split::deal(rows, plan)?;
-        Ok(Self {
-            format_version: FORMAT_VERSION,
-            hash,
-            units: schema::units()
-                .map(|(name, unit)| (name.to_owned(), unit.to_owned()))
-                .collect(),
-            rows: rows.len(),
-            rays: rays.len(),
-            partial_rays: rays.values().filter(|row| row.is_partial()).count(),
-            geometries: rows.iter().map(geometry).collect::<BTreeSet<_>>().len(),
-            cpu_s: rays.values().map(|row| row.cpu_s).sum(),
-            gates: *gates,
-            rejected,
-            material: every(rows, |row| &row.material),
-            tier: every(rows, |row| &row.tier),
-            hinge: first.design.constants(),
-            material_hashes: rows.iter().map(|row| row.material_hash.clone()).collect(),
-            settings_hashes: rows.iter().map(|row| row.settings_hash.clone()).collect(),
-            gmsh: rows.iter().map(|row| row.gmsh.clone()).collect(),
-            ccx: rows.iter().map(|row| row.ccx.clone()).collect(),
-            domain,
-            split_plan: *plan,
-            split_hash: split.hash(),
-            split,
-        })
-    }
-
     /// What of the manifest is not true of the rows; `None` if all that is checked holds.
     pub(crate) fn disagrees(&self, rows: &[Row]) -> Option<&'static str> {
         let jobs: BTreeSet<&str> = rows.iter().map(|row| row.job.as_str()).collect();
@@ -135,10 +85,4 @@ impl Manifest {
             None
         }
     }
-}
-
-/// The distinct texts of the rows, joined by " + ".
-fn every(rows: &[Row], text: fn(&Row) -> &String) -> String {
-    let different: BTreeSet<&str> = rows.iter().map(|row| text(row).as_str()).collect();
-    different.into_iter().collect::<Vec<_>>().join(" + ")
 }

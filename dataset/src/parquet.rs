@@ -1,15 +1,58 @@
-//! Encoding and decoding of Parquet files, and their hash.
+//! Encoding and decoding of Parquet files, and their hash. A file is written in groups of rows, so that its table need
+//! not be in memory.
 
 use crate::error::DatasetError;
 use crate::rows::Row;
 use crate::schema;
+use polars::io::parquet::write::BatchedWriter;
 use polars::prelude::{ParquetReader, ParquetWriter, SerReader};
-use std::io::Cursor;
+use std::io::{Cursor, Write};
+
+/// Number of rows of a group. The rows of one group are in memory at a time.
+const GROUP: usize = 1 << 16;
+
+/// A Parquet file that is written while its rows arrive.
+pub(crate) struct Table<W: Write> {
+    writer: BatchedWriter<W>,
+    /// The rows of the next group.
+    waiting: Vec<Row>,
+}
+
+impl<W: Write> Table<W> {
+    pub fn new(to: W) -> Result<Self, DatasetError> {
+        Ok(Self {
+            writer: ParquetWriter::new(to).batched(schema::to_frame(&[])?.schema())?,
+            waiting: Vec::new(),
+        })
+    }
+
+    /// Appends rows.
+    pub fn add(&mut self, rows: impl IntoIterator<Item = Row>) -> Result<(), DatasetError> {
+        self.waiting.extend(rows);
+        while self.waiting.len() >= GROUP {
+            let rest = self.waiting.split_off(GROUP);
+            let group = std::mem::replace(&mut self.waiting, rest);
+            self.writer.write_batch(&schema::to_frame(&group)?)?;
+        }
+        Ok(())
+    }
+
+    /// Writes what is left, and the end of the file.
+    pub fn finish(mut self) -> Result<(), DatasetError> {
+        self.writer.write_batch(&schema::to_frame(&self.waiting)?)?;
+        self.writer.finish()?;
+        Ok(())
+    }
+}
 
 /// The bytes of the Parquet file of `rows`.
 pub(crate) fn encode(rows: &[Row]) -> Result<Vec<u8>, DatasetError> {
     let mut bytes = Vec::new();
-    ParquetWriter::new(&mut bytes).finish(&mut schema::to_frame(rows)?)?;
+    let mut table = Table::new(&mut bytes)?;
+    for group in rows.chunks(GROUP) {
+        table.add(group.iter().cloned())?;
+    }
+    table.finish()?;
     Ok(bytes)
 }
 
@@ -52,11 +95,62 @@ pub(crate) fn hash(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
 }
 
+/// A writer that hashes what it writes.
+pub(crate) struct Hashing<W> {
+    to: W,
+    hasher: blake3::Hasher,
+}
+
+impl<W> Hashing<W> {
+    pub fn new(to: W) -> Self {
+        let hasher = blake3::Hasher::new();
+        Self { to, hasher }
+    }
+
+    /// [`hash`] of all that was written.
+    pub fn hash(&self) -> String {
+        self.hasher.finalize().to_hex().to_string()
+    }
+}
+
+impl<W: Write> Write for Hashing<W> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.to.write(bytes)?;
+        self.hasher.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.to.flush()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::rows::tests::rows;
     use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
+
+    /// Files that earlier versions wrote at once have the same hash.
+    #[test]
+    fn rows_that_arrive_in_parts_give_the_file_that_is_written_at_once() {
+        let rows = rows(7000);
+        assert!(rows.len() > GROUP);
+        let mut bytes = Hashing::new(Vec::new());
+        let mut table = Table::new(&mut bytes).unwrap();
+        for ray in rows.chunks(10) {
+            table.add(ray.to_vec()).unwrap();
+        }
+        table.finish().unwrap();
+        assert_eq!(bytes.hash(), hash(&bytes.to));
+        assert_eq!(bytes.to, encode(&rows).unwrap());
+        assert_eq!(decode(&bytes.to, 4).unwrap(), rows);
+
+        let (mut at_once, group) = (Vec::new(), &rows[..GROUP]);
+        let mut frame = schema::to_frame(group).unwrap();
+        ParquetWriter::new(&mut at_once).finish(&mut frame).unwrap();
+        assert_eq!(encode(group).unwrap(), at_once);
+    }
 
     #[test]
     fn a_small_file_of_very_many_values_is_refused_before_it_is_read() {

@@ -58,8 +58,8 @@ pub struct Split {
 }
 
 impl Split {
-    /// Assigns the geometries of `rows` at random; every part has at least one geometry.
-    pub(crate) fn deal(rows: &[Row], plan: &SplitPlan) -> Result<Self, DatasetError> {
+    /// Assigns geometries at random; every part has at least one of them.
+    pub(crate) fn deal(geometries: &Geometries, plan: &SplitPlan) -> Result<Self, DatasetError> {
         let SplitPlan {
             validation, test, ..
         } = *plan;
@@ -69,13 +69,7 @@ impl Split {
         {
             return Err(DatasetError::Shares { validation, test });
         }
-        let mut jobs: BTreeMap<[i64; 2], BTreeSet<String>> = BTreeMap::new();
-        for row in rows {
-            jobs.entry(geometry(row))
-                .or_default()
-                .insert(row.job.clone());
-        }
-        let mut geometries: Vec<BTreeSet<String>> = jobs.into_values().collect();
+        let mut geometries: Vec<&Vec<String>> = geometries.0.values().collect();
         let count = geometries.len();
         if count < 3 {
             return Err(DatasetError::TooFewGeometries { found: count });
@@ -84,11 +78,11 @@ impl Split {
         // Rounding leaves every part at least one geometry.
         let share =
             |share: f64| ((share * count as f64).round() as usize).clamp(1, (count - 1) / 2);
-        let mut take = |count: usize| geometries.drain(..count).flatten().collect();
+        let mut take = |count: usize| geometries.drain(..count).flatten().cloned().collect();
         Ok(Self {
             validation: take(share(validation)),
             test: take(share(test)),
-            training: geometries.into_iter().flatten().collect(),
+            training: geometries.into_iter().flatten().cloned().collect(),
         })
     }
 
@@ -113,6 +107,25 @@ impl Split {
             Part::Validation => &self.validation,
             Part::Test => &self.test,
         }
+    }
+}
+
+/// The ids of the jobs of each geometry.
+#[derive(Default)]
+pub(crate) struct Geometries(BTreeMap<[i64; 2], Vec<String>>);
+
+impl Geometries {
+    /// Adds the geometry and the job of a row. The rows of a job must come one after the other.
+    pub fn add(&mut self, row: &Row) {
+        let jobs = self.0.entry(geometry(row)).or_default();
+        if jobs.last() != Some(&row.job) {
+            jobs.push(row.job.clone());
+        }
+    }
+
+    /// Number of distinct (w_lig, alpha), up to mirroring.
+    pub fn len(&self) -> usize {
+        self.0.len()
     }
 }
 
@@ -141,13 +154,19 @@ mod tests {
     use crate::mirror::with_mirrored;
     use crate::rows::tests::rows;
 
+    fn geometries(rows: &[Row]) -> Geometries {
+        let mut geometries = Geometries::default();
+        rows.iter().for_each(|row| geometries.add(row));
+        geometries
+    }
+
     fn deal(rows: &[Row], seed: u64) -> Split {
         let plan = SplitPlan {
             seed,
             validation: 0.2,
             test: 0.3,
         };
-        Split::deal(rows, &plan).unwrap()
+        Split::deal(&geometries(rows), &plan).unwrap()
     }
 
     #[test]
@@ -193,9 +212,9 @@ mod tests {
     #[test]
     fn too_few_geometries_and_impossible_fractions_are_rejected() {
         let plan = SplitPlan::default();
-        let error = Split::deal(&rows(2), &plan).unwrap_err();
+        let error = Split::deal(&geometries(&rows(2)), &plan).unwrap_err();
         assert!(matches!(error, DatasetError::TooFewGeometries { found: 2 }));
-        let three = Split::deal(&rows(3), &plan).unwrap();
+        let three = Split::deal(&geometries(&rows(3)), &plan).unwrap();
         assert_eq!(three.training.len(), 1);
         for (validation, test) in [(0.0, 0.1), (0.1, 0.5), (0.1, f64::NAN)] {
             let plan = SplitPlan {
@@ -203,7 +222,7 @@ mod tests {
                 test,
                 ..plan
             };
-            let error = Split::deal(&rows(9), &plan).unwrap_err();
+            let error = Split::deal(&geometries(&rows(9)), &plan).unwrap_err();
             assert!(matches!(error, DatasetError::Shares { .. }));
         }
     }

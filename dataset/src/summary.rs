@@ -1,6 +1,7 @@
 //! The summary of a database as text.
 
 use crate::database::Database;
+use crate::manifest::Manifest;
 use crate::noise::noise;
 use crate::rows::Row;
 use crate::schema;
@@ -8,10 +9,51 @@ use crate::split::{Part, state};
 use std::collections::BTreeSet;
 use std::fmt;
 
-/// Prints counts, rejected rows, the split, and the range of every column of numbers.
+/// The minimum and the maximum of every column of numbers.
+#[derive(Clone, Debug)]
+pub(crate) struct Ranges([[f64; 2]; schema::NUMBERS.len()]);
+
+impl Default for Ranges {
+    /// Of no rows.
+    fn default() -> Self {
+        Self([[f64::INFINITY, f64::NEG_INFINITY]; schema::NUMBERS.len()])
+    }
+}
+
+impl Ranges {
+    /// Adds rows.
+    pub fn add(&mut self, rows: &[Row]) {
+        for row in rows {
+            for ([minimum, maximum], column) in self.0.iter_mut().zip(&schema::NUMBERS) {
+                let value = (column.get)(row);
+                *minimum = minimum.min(value);
+                *maximum = maximum.max(value);
+            }
+        }
+    }
+}
+
 impl fmt::Display for Database {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let manifest = self.manifest();
+        let mut ranges = Ranges::default();
+        ranges.add(self.rows());
+        Summary {
+            manifest: self.manifest(),
+            ranges: &ranges,
+        }
+        .fmt(f)
+    }
+}
+
+/// Prints counts, rejected rows, the split, and the range of every column of numbers.
+pub(crate) struct Summary<'a> {
+    pub manifest: &'a Manifest,
+    pub ranges: &'a Ranges,
+}
+
+impl fmt::Display for Summary<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let manifest = self.manifest;
         writeln!(
             f,
             "{} rows of {} rays ({} partial) over {} geometries; {}, tier {}; {:.0} CPU s",
@@ -45,16 +87,9 @@ impl fmt::Display for Database {
             "{:18} {:>14} {:>14}  unit",
             "column", "minimum", "maximum"
         )?;
-        for column in &schema::NUMBERS {
-            let values = || self.rows().iter().map(column.get);
-            writeln!(
-                f,
-                "{:18} {:14.6} {:14.6}  {}",
-                column.name,
-                values().fold(f64::INFINITY, f64::min),
-                values().fold(f64::NEG_INFINITY, f64::max),
-                column.unit,
-            )?;
+        for (column, [minimum, maximum]) in schema::NUMBERS.iter().zip(self.ranges.0) {
+            let (name, unit) = (column.name, column.unit);
+            writeln!(f, "{name:18} {minimum:14.6} {maximum:14.6}  {unit}")?;
         }
         Ok(())
     }

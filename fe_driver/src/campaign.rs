@@ -7,6 +7,7 @@ pub(crate) mod finished;
 pub(crate) mod history;
 pub(crate) mod host;
 pub(crate) mod job;
+mod job_folders;
 pub(crate) mod ledger;
 pub(crate) mod plan;
 pub(crate) mod restore;

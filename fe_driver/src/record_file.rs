@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use std::fs::DirEntry;
 use std::io;
 use std::path::{Path, PathBuf};
 use support::{regular_file, sealed_json, whole_file};
@@ -49,6 +50,13 @@ pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, F
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(FileError::at(path)(error)),
     }
+}
+
+/// The entries of a folder, in no order.
+pub(crate) fn entries(folder: &Path) -> Result<Vec<DirEntry>, FileError> {
+    std::fs::read_dir(folder)
+        .and_then(Iterator::collect)
+        .map_err(FileError::at(folder))
 }
 
 /// Writes a JSON file atomically.

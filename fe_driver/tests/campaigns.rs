@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{TWO_WORKERS, campaign, fake_ccx, history, jobs, run_with};
+use common::{TWO_WORKERS, campaign, fake_ccx, history, job_folder, jobs, run_with};
 use fe_driver::{
     Campaign, CampaignError, Ccx, FailureKind, ToolVersions, Tools, plan, run, status,
 };
@@ -57,24 +57,15 @@ fn an_interrupted_campaign_is_resumed_to_the_same_rows() {
         status.tally.rows,
         resumed.iter().map(|job| job.samples.len()).sum::<usize>()
     );
-    // A successful job keeps its input deck and log, but no bulky output.
-    let folder = parts.path().join("jobs").join(&resumed[0].id);
+    // A successful job keeps no deck, no log and no output.
+    let folder = job_folder(parts.path(), &resumed[0].id);
     let mut names: Vec<_> = folder
         .read_dir()
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
     names.sort_unstable();
-    assert_eq!(
-        names,
-        [
-            "job.json",
-            "result.json",
-            "rows.csv",
-            "window.inp",
-            "window.log"
-        ]
-    );
+    assert_eq!(names, ["job.json", "result.json", "rows.csv"]);
 
     // A changed setting makes jobs stale; the plan names the setting.
     let mut changed = campaign.clone();
@@ -132,7 +123,7 @@ fn edited_rows_are_rejected_and_solved_again() {
     run_to_end(&campaign, folder.path(), &tools);
     let before = jobs(folder.path());
     let id = &before[0].id;
-    let rows = folder.path().join("jobs").join(id).join("rows.csv");
+    let rows = job_folder(folder.path(), id).join("rows.csv");
     let text = std::fs::read_to_string(&rows).unwrap();
     std::fs::write(&rows, text.replacen('3', "4", 1)).unwrap();
     assert_eq!(jobs(folder.path()), []);

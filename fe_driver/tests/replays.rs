@@ -4,7 +4,7 @@
 mod common;
 
 use common::processes::left_running;
-use common::{TWO_WORKERS, campaign, fake_ccx, history, jobs, run_with};
+use common::{TWO_WORKERS, campaign, fake_ccx, history, job_folder, jobs, run_with};
 use fe_driver::{
     Campaign, CampaignError, Ccx, FailureKind, FinishedJob, Restored, RunOptions, Shard, Tally,
     ToolVersions, Tools, plan, restore, retry, status,
@@ -47,7 +47,7 @@ static RECORDING: LazyLock<Recording> = LazyLock::new(|| {
     }
 });
 
-/// Sets $id to the job's id; ccx runs in jobs/<id>/work-<host>.
+/// Sets $id to the job's id; ccx runs in jobs/<2 digits>/<id>/work-<host>.
 const JOB_ID: &str = "id=${PWD%/work-*}; id=${id##*/}";
 
 /// gmsh, and a fake ccx that runs `fault` before it replays the recorded output.
@@ -334,7 +334,7 @@ fn a_damaged_job_is_open_and_is_solved_again() {
     let folder = folder.path();
     assert_eq!(run_whole(&campaign(RAYS), folder, &tools).complete, RAYS);
     let whole = timeless(&jobs(folder));
-    let home = folder.join("jobs").join(&whole[1].id);
+    let home = job_folder(folder, &whole[1].id);
     let edit = |name: &str, from: &str, to: &str| {
         let text = std::fs::read_to_string(home.join(name)).unwrap();
         assert!(text.contains(from), "{name} has no {from}");
@@ -361,5 +361,30 @@ fn a_damaged_job_is_open_and_is_solved_again() {
         assert_eq!(jobs(folder).len(), RAYS - 1, "damage {i}");
         assert_eq!(run_whole(&campaign(RAYS), folder, &tools).complete, RAYS);
         assert_eq!(timeless(&jobs(folder)), whole, "damage {i}");
+    }
+}
+
+/// Earlier versions wrote `jobs/<id>/`. A kill in the middle of their move leaves jobs in both places.
+#[test]
+fn jobs_in_the_folder_of_an_earlier_version_are_read_and_moved() {
+    let replay = tempfile::tempdir().unwrap();
+    let tools = replaying(replay.path(), "");
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    assert_eq!(run_whole(&campaign(RAYS), folder, &tools).complete, RAYS);
+    let whole = jobs(folder);
+    let broken = replaying(replay.path(), "exit 1");
+    for flat in 1..=RAYS {
+        for job in &whole[..flat] {
+            let home = job_folder(folder, &job.id);
+            std::fs::rename(home, folder.join("jobs").join(&job.id)).unwrap();
+        }
+        assert_eq!(jobs(folder), whole);
+        let planned = plan(&campaign(RAYS), folder, &ToolVersions::of(&tools)).unwrap();
+        assert_eq!((planned.tally.complete, planned.stale), (RAYS, 0));
+        // Nothing is solved again: the solver is broken.
+        assert_eq!(run_whole(&campaign(RAYS), folder, &broken).complete, RAYS);
+        assert!(whole.iter().all(|job| job_folder(folder, &job.id).exists()));
+        assert_eq!(jobs(folder), whole);
     }
 }

@@ -245,7 +245,7 @@ mod tests {
     }
 
     fn domain(states: &[(HingeDesign, HingeDeformation)]) -> TrainingDomain {
-        TrainingDomain::covering(states.iter().map(|(g, x)| (g, x))).unwrap()
+        TrainingDomain::covering(states.iter().copied()).unwrap()
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! `kirigami train`: trains the weights of the hinge energy on a hinge database.
 
 mod kept_fits;
+mod seeds;
 mod slices;
 
 pub use kept_fits::kept_fit;
@@ -12,27 +13,26 @@ use crate::ui::exit::Unfinished;
 use crate::ui::progress::Progress;
 use crate::ui::table::table;
 use crate::ui::{interrupt, picture, run_folder};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use comfy_table::Table;
-use dataset::{Database, Part};
+use dataset::Database;
 use std::fmt::Write;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
+use support::shard::Shard;
 use surrogate::{ErrorBin, FitError, Surrogate, TestErrors};
-use train::{
-    Backend, EnsembleCheck, Epoch, Parity, Start, StiffnessCheck, Trained, Training,
-    TrainingConfig, disagreements,
-};
+use train::{Backend, Epoch, Parity, Start, StiffnessCheck, Trained, Training, TrainingConfig};
 
 /// Train the surrogate hinge energy on a database
 ///
 /// Writes the weights (of the best epoch and of the last), their card, the learning curve, a parity
 /// plot and slices of the energy, and prints the errors on hinge geometries that were not used for
-/// training. A stopped training continues with --resume. Example:
-/// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml
+/// training. A stopped training continues with --resume; of several seeds, with the same command. Examples:
+/// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml;
+/// kirigami train runs/demo/hinges.parquet --config configs/training/demo.toml --seeds 8 --shard 1/4
 #[derive(Args)]
 pub struct TrainCommand {
     /// Database as written by `kirigami campaign collect` (Parquet with its manifest)
@@ -60,10 +60,15 @@ pub struct TrainCommand {
     #[arg(long, conflicts_with = "seeds")]
     resume: bool,
     /// Number of trainings, with successive seeds. The one with the smallest product of the validation errors of W and
-    /// of D is kept as the weights; the spread of their forces estimates the error
+    /// of D is kept as the weights; the spread of their forces estimates the error. Seeds that are trained already are
+    /// not trained again
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=64))]
     seeds: u64,
-    /// Replace existing weights
+    /// Part of the seeds, as I/N: every N-th seed from the I-th; shards may run at the same time. The weights are written
+    /// by the shard that ends last, or by the same command without --shard
+    #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE)]
+    shard: Shard,
+    /// Replace existing weights; of several seeds, those of another training
     #[arg(long)]
     replace: bool,
 }
@@ -85,6 +90,7 @@ impl TrainCommand {
             from: None,
             resume: false,
             seeds: 1,
+            shard: Shard::WHOLE,
             replace: true,
         }
     }
@@ -93,35 +99,33 @@ impl TrainCommand {
         input_file::require(self.config(), "--config")?;
         let config: TrainingConfig = support::toml_file::read(self.config())?;
         let database = Database::read(&self.database)?;
-        self.refuse_existing(config.seed)?;
+        if let Some(leak) = database.leak() {
+            let database = self.database.display();
+            bail!("{database}: {leak}: split it again with `kirigami dataset split`");
+        }
+        self.refuse_card_of_database()?;
         if let Some(folder) = self.out.parent() {
             std::fs::create_dir_all(folder)
                 .with_context(|| format!("cannot create the folder {}", folder.display()))?;
         }
-        let _held = self.hold()?;
         let base = self.from.as_deref().map(Surrogate::load).transpose()?;
+        if self.seeds > 1 {
+            return self.train_seeds(&database, &config, base.as_ref());
+        }
+        ensure!(
+            self.shard == Shard::WHOLE,
+            "--shard divides the trainings of several seeds: pass --seeds N"
+        );
+        self.refuse_existing()?;
+        let _held = hold(&self.out)?;
         let state = self.state();
         let start = match &base {
             _ if self.resume => Start::State(&state),
             Some(weights) => Start::Weights(weights),
             None => Start::Fresh,
         };
-        let mut members = Vec::new();
-        for seed in config.seed..config.seed + self.seeds {
-            let config = TrainingConfig {
-                seed,
-                ..config.clone()
-            };
-            members.push(fit(&database, &config, self.backend, start, &state)?);
-        }
-        if members.len() > 1 {
-            self.write_members(&members, &database, config.seed)?;
-        }
-        let best = members
-            .into_iter()
-            .min_by(|left, right| validation_error(left).total_cmp(&validation_error(right)))
-            .context("`--seeds` must be at least 1")?;
-        self.write(&best, &database)?;
+        let trained = fit(&database, &config, self.backend, start, &state)?;
+        self.write(&trained, &database)?;
         std::fs::remove_file(&state).ok();
         Ok(())
     }
@@ -134,15 +138,7 @@ impl TrainCommand {
         self.config.as_deref().unwrap_or(Path::new(default))
     }
 
-    /// Locks the weights' files against a second training until the returned file is dropped.
-    fn hold(&self) -> Result<File> {
-        run_folder::lock(&self.out.with_extension("lock"), || {
-            let out = self.out.display();
-            format!("another training writes {out}: wait for it, or choose another name with --out")
-        })
-    }
-
-    fn refuse_existing(&self, first: u64) -> Result<()> {
+    fn refuse_card_of_database(&self) -> Result<()> {
         // Card and manifest are both `<stem>.json`.
         if card_path(&self.out) == card_path(&self.database) {
             bail!(
@@ -150,18 +146,15 @@ impl TrainCommand {
                 self.out.display()
             );
         }
+        Ok(())
+    }
+
+    fn refuse_existing(&self) -> Result<()> {
         if self.replace || self.resume {
             return Ok(());
         }
-        let seeds = (first..first + self.seeds).filter(|_| self.seeds > 1);
-        let members = seeds.map(|seed| self.member(seed));
-        for path in members.chain([self.out.clone(), card_path(&self.out)]) {
-            if path.exists() {
-                bail!(
-                    "{} exists: choose another name or pass --replace",
-                    path.display()
-                );
-            }
+        for path in [self.out.clone(), card_path(&self.out)] {
+            ensure!(!path.exists(), exists(&path));
         }
         if self.state().exists() {
             bail!(
@@ -197,36 +190,6 @@ impl TrainCommand {
             );
         }
         Ok(())
-    }
-
-    /// Writes the weights of every seed; prints the spread of their errors and what it implies for the error.
-    fn write_members(&self, members: &[Trained], database: &Database, first: u64) -> Result<()> {
-        for (seed, member) in (first..).zip(members) {
-            member.surrogate.save(&self.member(seed))?;
-        }
-        let errors: Vec<TestErrors> = members.iter().map(|member| member.test_errors).collect();
-        println!("{}\n", spread_table(&errors));
-        let surrogates: Vec<Surrogate> = members
-            .iter()
-            .map(|member| member.surrogate.clone())
-            .collect();
-        let check = EnsembleCheck::of(&disagreements(&surrogates, &database.part(Part::Test)));
-        println!(
-            "forces of {} networks, in units of their root mean square: standard deviation {:.3}, error of the mean {:.3};\n\
-             the tenth of the states with the largest deviation has {:.0} % of the squared error; \
-             correlation of the logarithms of deviation and error {:.2}\n",
-            members.len(),
-            check.deviation,
-            check.error,
-            100.0 * check.error_in_top_tenth,
-            check.correlation
-        );
-        Ok(())
-    }
-
-    /// The path of the weights of one of several seeds.
-    fn member(&self, seed: u64) -> PathBuf {
-        self.beside(&format!("seed-{seed}.safetensors"))
     }
 
     /// The path of the file written by [`Training::save`].
@@ -272,7 +235,7 @@ impl TrainCommand {
     }
 }
 
-/// One training; its state is saved in the file `state` from time to time and when it is stopped.
+/// One training; its state is saved in the file `state` from time to time, when it is stopped and at its end.
 pub fn fit(
     database: &Database,
     config: &TrainingConfig,
@@ -292,7 +255,7 @@ pub fn fit(
         );
         bar.show(epoch.epoch, None, &message);
         let stopping = stop.load(Ordering::Relaxed);
-        if stopping || saved.elapsed() > SAVE_EVERY {
+        if stopping || saved.elapsed() > SAVE_EVERY || training.is_finished() {
             training.save(state)?;
             saved = Instant::now();
         }
@@ -306,6 +269,20 @@ pub fn fit(
     }
     bar.finish();
     Ok(training.finish()?)
+}
+
+/// Locks the files of weights against a second training until the returned file is dropped.
+fn hold(out: &Path) -> Result<File> {
+    run_folder::lock(&out.with_extension("lock"), || {
+        let out = out.display();
+        format!("another training writes {out}: wait for it, or choose another name with --out")
+    })
+}
+
+/// The error message of weights that are there already.
+fn exists(path: &Path) -> String {
+    let path = path.display();
+    format!("{path} exists: choose another name or pass --replace")
 }
 
 fn write(path: &Path, text: &str) -> Result<()> {
@@ -333,18 +310,6 @@ fn parity_chart(parity: &Parity) -> Result<String> {
     ];
     charts.retain(|chart| !chart.points.is_empty());
     charts::parity(&charts, ["finite elements", "surrogate"])
-}
-
-/// The product of the minimum validation errors of the networks of W and of D.
-fn validation_error(trained: &Trained) -> f64 {
-    let minimum = |network: usize| {
-        let errors = trained
-            .history
-            .iter()
-            .map(|it| it.validation_errors[network]);
-        errors.fold(f64::INFINITY, f64::min)
-    };
-    minimum(0) * minimum(1)
 }
 
 /// The errors of each quantity on `what`.
@@ -401,27 +366,6 @@ pub fn bin_table(bins: &[ErrorBin]) -> Table {
         let percent = |error: FitError| format!("{:.2}", 100.0 * error.relative_rmse);
         row.extend(quantities(errors).map(|(_, error)| percent(error)));
         table.add_row(row);
-    }
-    table
-}
-
-/// Minimum, mean and maximum relative root mean square error over the trainings.
-fn spread_table(errors: &[TestErrors]) -> Table {
-    let header = format!("relative RMSE (%) of {} seeds", errors.len());
-    let mut table = table([header.as_str(), "minimum", "mean", "maximum"]);
-    let all: Vec<_> = errors.iter().map(quantities).collect();
-    for quantity in 0..quantities(&TestErrors::default()).len() {
-        let values: Vec<f64> = all
-            .iter()
-            .map(|errors| 100.0 * errors[quantity].1.relative_rmse)
-            .collect();
-        let fold = |pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick).unwrap_or(0.0);
-        table.add_row([
-            all[0][quantity].0.to_owned(),
-            format!("{:.2}", fold(f64::min)),
-            format!("{:.2}", values.iter().sum::<f64>() / values.len() as f64),
-            format!("{:.2}", fold(f64::max)),
-        ]);
     }
     table
 }

@@ -1,7 +1,7 @@
 //! The output folder of a command: created if missing, and locked against a second run.
 
 use anyhow::{Context, Result, bail};
-use std::fs::{File, TryLockError};
+use std::fs::{File, OpenOptions, TryLockError};
 use std::path::Path;
 
 /// Creates the folder and locks it until the returned file is dropped.
@@ -18,7 +18,9 @@ pub fn hold(folder: &Path) -> Result<File> {
 
 /// Locks a file, created if missing, until the returned file is dropped; `taken` says what to do if it is locked.
 pub fn lock(path: &Path, taken: impl FnOnce() -> String) -> Result<File> {
-    let file = File::create(path).with_context(|| format!("cannot write {}", path.display()))?;
+    // Not truncated: a link in its place would destroy the file that it names.
+    let file = OpenOptions::new().create(true).append(true).open(path);
+    let file = file.with_context(|| format!("cannot write {}", path.display()))?;
     match file.try_lock() {
         Ok(()) => Ok(file),
         Err(TryLockError::WouldBlock) => bail!(taken()),

@@ -4,27 +4,55 @@ use crate::verbose;
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
+use tempfile::NamedTempFile;
 
-/// Writes `bytes` to a temporary file with a unique name in the folder of `path`, which must exist, and renames it
-/// to `path`. The path holds either the old bytes or the new ones, never a part of them, even after a loss of
-/// power. File and folder are synced to the disk before this function returns.
+/// Writes `bytes` to `path`, whose folder must exist, as described at [`Unnamed`].
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let folder = match path.parent() {
+    let mut file = Unnamed::beside(path)?;
+    file.file().write_all(bytes)?;
+    file.name(path)
+}
+
+/// A file on its way to its name. It is written to a temporary file with a unique name in the folder of its path, and
+/// renamed at the end: the path holds either the old bytes or the new ones, never a part of them, even after a loss of
+/// power. The temporary file is removed when this value is dropped before.
+#[derive(Debug)]
+pub struct Unnamed(NamedTempFile);
+
+impl Unnamed {
+    /// An empty temporary file in the folder of `path`, which must exist.
+    pub fn beside(path: &Path) -> io::Result<Self> {
+        let name = path.file_name().unwrap_or_default();
+        tempfile::Builder::new()
+            .prefix(name)
+            .suffix(".partial")
+            .permissions(permissions())
+            .tempfile_in(folder(path))
+            .map(Self)
+    }
+
+    /// The file, to be written.
+    pub fn file(&mut self) -> &mut File {
+        self.0.as_file_mut()
+    }
+
+    /// Renames the file to `path`. File and folder are synced to the disk before this function returns.
+    pub fn name(self, path: &Path) -> io::Result<()> {
+        self.0.as_file().sync_all()?;
+        let bytes = self.0.as_file().metadata()?.len();
+        self.0.persist(path)?;
+        File::open(folder(path))?.sync_all()?;
+        verbose::note(|| format!("wrote {} ({bytes} bytes)", path.display()));
+        Ok(())
+    }
+}
+
+/// The folder of a path.
+fn folder(path: &Path) -> &Path {
+    match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
-    };
-    let name = path.file_name().unwrap_or_default();
-    let mut beside = tempfile::Builder::new()
-        .prefix(name)
-        .suffix(".partial")
-        .permissions(permissions())
-        .tempfile_in(folder)?;
-    beside.write_all(bytes)?;
-    beside.as_file().sync_all()?;
-    beside.persist(path)?;
-    File::open(folder)?.sync_all()?;
-    verbose::note(|| format!("wrote {} ({} bytes)", path.display(), bytes.len()));
-    Ok(())
+    }
 }
 
 /// Creates a folder and its missing parents, and syncs their entries to the disk: a synced file is not lost with its

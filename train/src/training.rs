@@ -328,11 +328,9 @@ fn card(
     scales: &Scales,
     config: &TrainingConfig,
 ) -> Result<Card, TrainError> {
-    let states: Vec<_> = training
-        .iter()
-        .map(|row| (row.design, row.sample.deformation()))
-        .collect();
-    let domain = TrainingDomain::covering(states.iter().map(|(g, eps)| (g, eps)));
+    let states = training.iter();
+    let states = states.map(|row| (row.design, row.sample.deformation()));
+    let domain = TrainingDomain::covering(states);
     Ok(Card {
         format_version: FORMAT_VERSION,
         weights_hash: None,

@@ -213,21 +213,22 @@ impl Campaign {
 
     /// The jobs in the order in which they are run. Any prefix of them gives a usable database.
     pub fn jobs(&self, tools: &ToolVersions) -> Vec<JobSpec> {
+        self.specs(tools).collect()
+    }
+
+    /// The jobs of [`Self::jobs`], one at a time.
+    pub(crate) fn specs(&self, tools: &ToolVersions) -> impl Iterator<Item = JobSpec> {
         let boxed = self.rays.rays(&self.design, self.count, self.seed);
         let further = self.further.iter().copied();
-        boxed
-            .into_iter()
-            .chain(further)
-            .map(|ray| {
-                let problem = WindowProblem {
-                    ray,
-                    material: self.material.clone(),
-                    tier: self.tier,
-                    step: StepControl::default(),
-                };
-                JobSpec::new(problem, tools)
-            })
-            .collect()
+        boxed.into_iter().chain(further).map(move |ray| {
+            let problem = WindowProblem {
+                ray,
+                material: self.material.clone(),
+                tier: self.tier,
+                step: StepControl::default(),
+            };
+            JobSpec::new(problem, tools)
+        })
     }
 }
 

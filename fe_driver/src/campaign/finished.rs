@@ -38,14 +38,16 @@ pub struct FinishedJob {
     pub failure: Option<FailureKind>,
 }
 
-/// The jobs of the campaign in `folder` that are closed and have samples, in the campaign's order.
+/// The jobs of the campaign in `folder` that are closed and have samples, in the order of their ids, as in a
+/// database.
 ///
 /// Stale jobs are omitted. Neither gmsh nor ccx needs to be installed.
 pub fn finished_jobs(
     folder: &Path,
 ) -> Result<impl Iterator<Item = Result<FinishedJob, CampaignError>>, CampaignError> {
     let folder = CampaignFolder(folder.to_owned());
-    let jobs = folder.index()?.jobs;
+    let mut jobs = folder.index()?.jobs;
+    jobs.sort_unstable();
     Ok(jobs
         .into_iter()
         .filter_map(move |id| finished(&folder, id).transpose()))

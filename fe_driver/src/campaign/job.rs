@@ -1,17 +1,18 @@
 //! One job of a campaign: its identity and its folder.
 //!
 //! The id is a hash of all inputs of the result. The folder contains `job.json` (the inputs), `rows.csv` (the
-//! samples), the input deck and log of a successful attempt, and `result.json`. `result.json` is written last: a job
-//! without it is not done. These files are written atomically.
+//! samples) and `result.json`. `result.json` is written last: a job without it is not done. These files are written
+//! atomically. Deck and log of an attempt remain only if it failed: the deck follows from `job.json`.
 
 use crate::campaign::host::host;
-use crate::record_file::{FileError, or_damage, read_json, short_hash, write_json};
+use crate::record_file::{FileError, entries, or_damage, read_json, short_hash, write_json};
 use crate::window::failure::{FailureKind, RetryStep};
 use crate::window::solve::WindowProblem;
 use crate::window::versions::{RECIPE_VERSION, ToolVersions};
 use hinge::HingeSample;
 use mesher::{MeshRecipe, Tier};
 use serde::{Deserialize, Serialize};
+use std::fs::DirEntry;
 use std::io;
 use std::path::PathBuf;
 use support::{regular_file, whole_file};
@@ -107,6 +108,9 @@ pub(crate) enum JobState {
     /// solves it again.
     Damaged(String),
 }
+
+/// File name prefix of the work folders.
+const WORK: &str = "work-";
 
 /// The folder of one job.
 #[derive(Clone, Debug)]
@@ -211,7 +215,17 @@ impl JobFolder {
 
     /// The work folder of attempts on this host; another host may try the same job at the same time.
     fn work(&self) -> PathBuf {
-        self.0.join(format!("work-{}", host()))
+        self.0.join(format!("{WORK}{}", host()))
+    }
+
+    /// Whether the folder has a work folder of another host, which may be solving the job.
+    pub(crate) fn is_used_elsewhere(&self) -> Result<bool, FileError> {
+        let own = self.work();
+        let elsewhere = |entry: &DirEntry| {
+            let name = entry.file_name();
+            name.to_string_lossy().starts_with(WORK) && entry.path() != own
+        };
+        Ok(entries(&self.0)?.iter().any(elsewhere))
     }
 
     /// Creates an empty work folder for an attempt.
@@ -231,15 +245,6 @@ impl JobFolder {
             }
             _ => Ok(()),
         }
-    }
-
-    /// Keeps the input deck and the log of a successful attempt and deletes its other files.
-    pub(crate) fn tidy(&self) -> Result<(), FileError> {
-        let work = self.work();
-        for name in ["window.inp", "window.log"] {
-            std::fs::rename(work.join(name), self.0.join(name)).map_err(FileError::at(&work))?;
-        }
-        self.remove_work()
     }
 }
 

@@ -1,7 +1,7 @@
 //! The folder of a campaign, and the state of its jobs.
 //!
 //! `campaign.json` contains the name of the campaign, the versions of gmsh and ccx, and the ids of its jobs as last
-//! run. `jobs/<id>/` contains one job. `hosts/<host>/` contains what only the runs on one host write: the append-only
+//! run. `jobs/<2 digits>/<id>/` contains one job. `hosts/<host>/` contains what only the runs on one host write: the append-only
 //! history `events-<i>-of-<n>.jsonl` of each shard, which is also its lock file.
 //!
 //! Hosts may share the folder, also on a file system whose locks do not work across hosts: locks only prevent that
@@ -11,13 +11,14 @@ use crate::campaign::definition::{Campaign, CampaignError};
 use crate::campaign::history::History;
 use crate::campaign::host::{host, lock};
 use crate::campaign::job::{JobFolder, JobRecord, JobSpec, JobState};
+use crate::campaign::job_folders::{gather, ids, job_folder};
 use crate::campaign::shard_history::{history_name, overlaps};
-use crate::record_file::{FileError, read_json, write_json};
+use crate::record_file::{FileError, entries, read_json, write_json};
 use crate::window::failure::FailureKind;
 use crate::window::versions::ToolVersions;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
-use std::fs::{DirEntry, File};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
 use support::shard::Shard;
 use support::whole_file;
@@ -49,7 +50,11 @@ impl Index {
 
 impl CampaignFolder {
     pub fn job(&self, id: &str) -> JobFolder {
-        JobFolder(self.0.join("jobs").join(id))
+        job_folder(&self.jobs(), id)
+    }
+
+    fn jobs(&self) -> PathBuf {
+        self.0.join("jobs")
     }
 
     fn index_path(&self) -> PathBuf {
@@ -83,7 +88,8 @@ impl CampaignFolder {
         // Shards that start at the same time enter one after the other. Otherwise each would find the lock of the
         // other.
         let door = home.join("lock");
-        let _held = File::create(&door)
+        // Not truncated: a link in its place would destroy the file that it names.
+        let _held = (OpenOptions::new().create(true).append(true).open(&door))
             .and_then(|file| lock(&file, File::lock).map(|()| file))
             .map_err(FileError::at(&door))?;
         self.belongs_to(&index.name)?;
@@ -95,6 +101,7 @@ impl CampaignFolder {
                 History::open(&entry.path())?;
             }
         }
+        gather(&self.jobs())?;
         write_json(&self.index_path(), index)?;
         History::open(&home.join(history_name(shard)))
     }
@@ -114,34 +121,10 @@ impl CampaignFolder {
         }
     }
 
-    /// Counts the states of the jobs with these ids.
-    pub fn tally<'a>(&self, ids: impl IntoIterator<Item = &'a String>) -> Result<Tally, FileError> {
-        let mut tally = Tally::default();
-        for id in ids {
-            match self.job(id).state()? {
-                JobState::Open { .. } => tally.open += 1,
-                JobState::Ended(ended) => tally.add(&ended.1),
-                JobState::Damaged(_) => tally.add_damaged(),
-            }
-        }
-        Ok(tally)
-    }
-
     /// Ids of all jobs that were ever started here.
-    pub fn ids(&self) -> Result<Vec<String>, FileError> {
-        let path = self.0.join("jobs");
-        if !path.exists() {
-            return Ok(Vec::new());
-        }
-        let name = |entry: DirEntry| entry.file_name().to_string_lossy().into_owned();
-        Ok(entries(&path)?.into_iter().map(name).collect())
+    pub fn ids(&self) -> Result<BTreeSet<String>, FileError> {
+        ids(&self.jobs())
     }
-}
-
-fn entries(folder: &Path) -> Result<Vec<DirEntry>, FileError> {
-    std::fs::read_dir(folder)
-        .and_then(Iterator::collect)
-        .map_err(FileError::at(folder))
 }
 
 /// Numbers of jobs in each state, with their total cost.
@@ -188,9 +171,16 @@ impl Tally {
         tally
     }
 
-    fn add_damaged(&mut self) {
-        self.open += 1;
-        self.damaged += 1;
+    /// Counts a job in this state.
+    pub(crate) fn add_state(&mut self, state: &JobState) {
+        match state {
+            JobState::Open { .. } => self.open += 1,
+            JobState::Ended(ended) => self.add(&ended.1),
+            JobState::Damaged(_) => {
+                self.open += 1;
+                self.damaged += 1;
+            }
+        }
     }
 
     fn add(&mut self, record: &JobRecord) {
@@ -280,12 +270,12 @@ pub fn refuse_changed(campaign: &Campaign, folder: &Path) -> Result<(), Campaign
     let Some(solved) = specs.find_map(Result::transpose).transpose()? else {
         return Ok(());
     };
-    let asked = campaign.jobs(&solved.tools);
-    if Index::of(&campaign.name, &asked).jobs == ids {
+    let asked = || campaign.specs(&solved.tools);
+    if asked().map(|spec| spec.id()).eq(ids) {
         return Ok(());
     }
-    let changes = asked
-        .first()
+    let changes = asked()
+        .next()
         .map_or(Vec::new(), |first| first.differences(&solved));
     Err(CampaignError::Changed {
         folder: folder.0,
@@ -300,7 +290,10 @@ pub fn refuse_changed(campaign: &Campaign, folder: &Path) -> Result<(), Campaign
 pub fn status(folder: &Path) -> Result<Status, CampaignError> {
     let folder = CampaignFolder(folder.to_owned());
     let Index { name, jobs, .. } = folder.index()?;
-    let tally = folder.tally(&jobs)?;
+    let mut tally = Tally::default();
+    for id in jobs {
+        tally.add_state(&folder.job(&id).state()?);
+    }
     Ok(Status {
         name,
         throughput: tally.throughput(),

@@ -3,10 +3,10 @@
 use crate::campaign::definition::{Campaign, CampaignError};
 use crate::campaign::job::{JobRecord, JobSpec, JobState};
 use crate::campaign::ledger::{CampaignFolder, Index, Tally};
-use crate::record_file::or_damage;
+use crate::record_file::{or_damage, short_hash};
 use crate::window::versions::ToolVersions;
 use serde::Serialize;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 use support::shard::Shard;
 
@@ -31,17 +31,17 @@ pub fn plan(
 ) -> Result<Plan, CampaignError> {
     let folder = CampaignFolder(folder.to_owned());
     folder.belongs_to(&campaign.name)?;
-    let specs = campaign.jobs(versions);
-    let ids = Index::of(&campaign.name, &specs).jobs;
-    let tally = folder.tally(&ids)?;
-    let stale = stale(&folder, &ids)?;
-    let mut reasons = BTreeMap::new();
-    for (id, spec) in ids.iter().zip(&specs) {
-        let job = folder.job(id);
-        let reason = match job.state()? {
+    let specs = || campaign.specs(versions);
+    let stale = stale(&folder, &specs().map(|spec| spec.id()).collect())?;
+    let (mut tally, mut reasons) = (Tally::default(), BTreeMap::new());
+    for spec in specs() {
+        let id = spec.id();
+        let state = folder.job(&id).state()?;
+        tally.add_state(&state);
+        let reason = match state {
             JobState::Ended(ended) => retry_reason(&ended.1),
             JobState::Open { started: true } => Some("interrupted".to_owned()),
-            JobState::Open { started: false } => Some(new_reason(spec, &stale)),
+            JobState::Open { started: false } => Some(new_reason(&spec, &stale)),
             JobState::Damaged(reason) => Some(format!("damaged: {reason} (job {id})")),
         };
         if let Some(reason) = reason {
@@ -54,7 +54,7 @@ pub fn plan(
         seconds: seconds_a_job * tally.to_run() as f64,
         tally,
         reasons,
-        stale: stale.len(),
+        stale: stale.count,
     })
 }
 
@@ -70,18 +70,25 @@ pub fn prepare(
     Ok(())
 }
 
-/// The inputs of the jobs in the folder whose ids are not in `ids`.
-fn stale(folder: &CampaignFolder, ids: &[String]) -> Result<Vec<JobSpec>, CampaignError> {
-    let asked: HashSet<_> = ids.iter().collect();
-    let others = folder.ids()?.into_iter().filter(|id| !asked.contains(id));
-    let mut specs = Vec::new();
-    for id in others {
+/// The inputs of the jobs in the folder whose ids are not in `asked`.
+fn stale(folder: &CampaignFolder, asked: &HashSet<String>) -> Result<Stale, CampaignError> {
+    let mut stale = Stale::default();
+    for id in folder.ids()?.into_iter().filter(|id| !asked.contains(id)) {
         // A damaged job of another campaign is ignored.
         if let Ok(Some(spec)) = or_damage(folder.job(&id).spec())? {
-            specs.push(spec);
+            stale.count += 1;
+            stale.rays.insert(short_hash(&spec.problem.ray), spec);
         }
     }
-    Ok(specs)
+    Ok(stale)
+}
+
+/// Jobs in the folder that do not belong to the campaign.
+#[derive(Default)]
+struct Stale {
+    count: usize,
+    /// One job of each ray, by the hash of the ray.
+    rays: HashMap<String, JobSpec>,
 }
 
 /// Why a job with a completed attempt is retried; `None` if it is not.
@@ -91,9 +98,8 @@ fn retry_reason(record: &JobRecord) -> Option<String> {
 }
 
 /// Why a job is solved for the first time; its ray may have been solved with other settings.
-fn new_reason(spec: &JobSpec, stale: &[JobSpec]) -> String {
-    let same_ray = |old: &&JobSpec| old.problem.ray == spec.problem.ray;
-    match stale.iter().find(same_ray) {
+fn new_reason(spec: &JobSpec, stale: &Stale) -> String {
+    match stale.rays.get(&short_hash(&spec.problem.ray)) {
         Some(old) => format!("stale: {} changed", spec.differences(old).join(", ")),
         None => "new".to_owned(),
     }

@@ -240,7 +240,7 @@ impl Worker<'_> {
         record.wall_seconds += start.elapsed().as_secs_f64();
         record.ended = now();
         if record.failure.is_none() {
-            job.folder.tidy()?;
+            job.folder.remove_work()?;
         }
         job.folder.write_record(&record)?;
         Ok(Some(record))

@@ -63,6 +63,11 @@ pub fn jobs(folder: &Path) -> Vec<FinishedJob> {
         .unwrap()
 }
 
+/// The folder of a job.
+pub fn job_folder(folder: &Path, id: &str) -> PathBuf {
+    folder.join("jobs").join(&id[..2]).join(id)
+}
+
 /// The history of a shard that ran on this host; the path does not exist before that.
 pub fn history(folder: &Path, name: &str) -> PathBuf {
     let hosts = std::fs::read_dir(folder.join("hosts"))

@@ -18,40 +18,36 @@ const FLAT: f64 = 0.98;
 
 impl TrainingDomain {
     /// The domain of the given states and the flat state; `None` if no state is given.
-    pub fn covering<'a>(
-        states: impl IntoIterator<Item = (&'a HingeDesign, &'a HingeDeformation)>,
+    ///
+    /// The states are passed through several times, and none is kept.
+    pub fn covering(
+        states: impl IntoIterator<Item = (HingeDesign, HingeDeformation), IntoIter: Clone>,
     ) -> Option<Self> {
-        let states: Vec<([f64; 3], &HingeDesign)> = states
-            .into_iter()
-            .map(|(design, deformation)| {
-                let [eta_a, eta_s] = deformation.eta(design.w_lig);
-                ([eta_a, eta_s, deformation.theta], design)
-            })
-            .collect();
-        if states.is_empty() {
+        let states = states.into_iter().map(|(design, deformation)| {
+            let [eta_a, eta_s] = deformation.eta(design.w_lig);
+            ([eta_a, eta_s, deformation.theta], design)
+        });
+        let states = || states.clone();
+        let count = states().count();
+        if count == 0 {
             return None;
         }
-        let count = states.len() as f64;
         let mut domain = Self {
-            w_lig: interval(states.iter().map(|(_, design)| design.w_lig)),
-            alpha: interval(states.iter().map(|(_, design)| design.alpha)),
-            centre: from_fn(|i| states.iter().map(|(x, _)| x[i]).sum::<f64>() / count),
+            w_lig: interval(states().map(|(_, design)| design.w_lig)),
+            alpha: interval(states().map(|(_, design)| design.alpha)),
+            centre: from_fn(|i| states().map(|(x, _)| x[i]).sum::<f64>() / count as f64),
             half_range: from_fn(|i| {
-                let [minimum, maximum] = interval(states.iter().map(|(x, _)| x[i]));
+                let [minimum, maximum] = interval(states().map(|(x, _)| x[i]));
                 (0.5 * (maximum.max(0.0) - minimum.min(0.0))).max(LEAST_SIZE)
             }),
             supports: Vec::new(),
         };
-        let widths = (states.len() / STATES_A_WIDTH).clamp(1, MOST_WIDTHS);
-        let places: Vec<f64> = states
-            .iter()
-            .map(|(_, g)| domain.along(g.w_lig, widths))
-            .collect();
+        let widths = (count / STATES_A_WIDTH).clamp(1, MOST_WIDTHS);
         domain.supports = (0..widths)
             .map(|width| {
-                let near = std::iter::zip(&states, &places)
-                    .filter(|(_, place)| (*place - width as f64).abs() <= REACH)
-                    .map(|((x, _), _)| domain.scaled(*x));
+                let near = states()
+                    .filter(|(_, g)| (domain.along(g.w_lig, widths) - width as f64).abs() <= REACH)
+                    .map(|(x, _)| domain.scaled(x));
                 domain.support(near)
             })
             .collect();

@@ -4,7 +4,7 @@ use crate::commands::campaign::campaign_args::CampaignArgs;
 use crate::commands::campaign::rows::rows_of;
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use dataset::{Database, Gates, SplitPlan};
+use dataset::{Collected, Database, Gates, SplitPlan};
 use fe_driver::{Tally, finished_jobs};
 use std::path::{Path, PathBuf};
 
@@ -49,7 +49,6 @@ impl CollectCommand {
                 folder.display()
             );
         }
-        let database = collected(&folder)?;
         let out = self
             .out
             .clone()
@@ -58,8 +57,10 @@ impl CollectCommand {
             std::fs::create_dir_all(parent)
                 .with_context(|| format!("cannot create the folder {}", parent.display()))?;
         }
-        database.write(&out, self.replace)?;
-        println!("{database}\n{missing}\nwritten to {}", out.display());
+        let rays = finished_jobs(&folder)?.map(|job| anyhow::Ok(rows_of(&job?).collect()));
+        let (gates, plan) = (Gates::default(), SplitPlan::default());
+        let collected = Collected::write(rays, &gates, &plan, &out, self.replace)?;
+        println!("{collected}\n{missing}\nwritten to {}", out.display());
         Ok(())
     }
 }

@@ -1,8 +1,7 @@
 //! Several design runs in one command: every scene with every seed, each in a run folder of its own, and one table that
 //! compares them.
 
-use crate::ui::run_folder;
-use crate::ui::table::table;
+use crate::ui::comparison;
 use anyhow::{Context, Result, ensure};
 use comfy_table::Table;
 use design::scene::Scene;
@@ -38,21 +37,8 @@ pub(super) fn refuse_shared_folders(runs: &[Run]) -> Result<()> {
 /// Writes `designs.csv` and `designs.md` to `folder`, and returns the table. Runs of other shards are listed as far as
 /// they are.
 pub(super) fn compare(runs: &[Run], folder: &Path) -> Result<Table> {
-    let mut csv = csv::Writer::from_writer(Vec::new());
-    csv.write_record(COLUMNS)?;
-    let rule = "---|".repeat(COLUMNS.len());
-    let mut page = format!("| {} |\n|{rule}\n", COLUMNS.join(" | "));
-    let mut listed = table(COLUMNS);
-    for run in runs {
-        let cells = cells(run)?;
-        csv.write_record(&cells)?;
-        page += &format!("| {} |\n", cells.join(" | "));
-        listed.add_row(cells);
-    }
-    let csv = String::from_utf8(csv.into_inner()?)?;
-    run_folder::write(folder, "designs.csv", &csv)?;
-    run_folder::write(folder, "designs.md", &page)?;
-    Ok(listed)
+    let rows: Result<Vec<_>> = runs.iter().map(cells).collect();
+    comparison::write(folder, "designs", COLUMNS, rows?)
 }
 
 const COLUMNS: [&str; 11] = [

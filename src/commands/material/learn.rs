@@ -239,7 +239,7 @@ fn region(campaign: &Campaign) -> Option<TrainingDomain> {
             lambdas.map(move |lambda| (ray.design, ray.end.at(lambda)))
         })
         .collect();
-    TrainingDomain::covering(states.iter().map(|(design, state)| (design, state)))
+    TrainingDomain::covering(states)
 }
 
 #[cfg(test)]

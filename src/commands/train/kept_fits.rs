@@ -2,8 +2,8 @@
 
 use crate::commands::train::fit;
 use crate::ui::exit::Unfinished;
-use ::train::{Backend, Start, TrainError, TrainingConfig};
-use anyhow::{Context, Result};
+use ::train::{Backend, Start, TrainError, Trained, TrainingConfig};
+use anyhow::{Context, Result, bail};
 use dataset::Database;
 use std::path::Path;
 use surrogate::{Card, Surrogate};
@@ -22,15 +22,6 @@ pub fn kept_fit(
     std::fs::create_dir_all(folder)
         .with_context(|| format!("cannot create the folder {}", folder.display()))?;
     let path = folder.join(name).with_added_extension("safetensors");
-    let training = serde_json::to_value(config)?;
-    let manifest = database.manifest();
-    let from = parent.map(Surrogate::hash);
-    let same = |card: &Card| {
-        card.training == training
-            && card.dataset_hash == manifest.hash
-            && card.split_hash == manifest.split_hash
-            && card.fine_tuned_from == from
-    };
     let kept = match Surrogate::load(&path) {
         Ok(kept) => Some(kept),
         Err(error) => {
@@ -40,27 +31,59 @@ pub fn kept_fit(
             None
         }
     };
-    if let Some(kept) = kept.filter(|kept| same(kept.card())) {
+    if let Some(kept) = kept.filter(|kept| is_of(kept.card(), database, config, parent)) {
         return Ok(kept);
     }
     let state = path.with_extension("state");
-    let fit = |start| {
-        let trained = fit(database, config, Backend::default(), start, &state);
-        trained.map_err(|error| match error.downcast::<Unfinished>() {
-            // Here the same command continues without --resume.
-            Ok(Unfinished { left, what, .. }) => Unfinished::new(left, what).into(),
-            Err(error) => error,
-        })
-    };
-    let first = parent.map_or(Start::Fresh, Start::Weights);
-    let trained = match state.exists().then(|| fit(Start::State(&state))) {
-        // The state of another training, or a damaged one, is discarded.
-        Some(Err(error)) if error.is::<TrainError>() => fit(first)?,
-        Some(Ok(trained)) if trained.surrogate.card().fine_tuned_from != from => fit(first)?,
-        Some(trained) => trained?,
-        None => fit(first)?,
-    };
+    let backend = Backend::default();
+    let trained = continued_fit(database, config, backend, parent, &state, true);
+    let trained = trained.map_err(|error| match error.downcast::<Unfinished>() {
+        // Here the same command continues without --resume.
+        Ok(Unfinished { left, what, .. }) => Unfinished::new(left, what).into(),
+        Err(error) => error,
+    })?;
     trained.surrogate.save(&path)?;
     std::fs::remove_file(&state).ok();
     Ok(trained.surrogate)
+}
+
+/// Whether a card is that of the network of a configuration, a database and its initial weights.
+pub(super) fn is_of(
+    card: &Card,
+    database: &Database,
+    config: &TrainingConfig,
+    parent: Option<&Surrogate>,
+) -> bool {
+    let manifest = database.manifest();
+    serde_json::to_value(config).is_ok_and(|training| card.training == training)
+        && card.dataset_hash == manifest.hash
+        && card.split_hash == manifest.split_hash
+        && card.fine_tuned_from == parent.map(Surrogate::hash)
+}
+
+/// A training that continues from the file `state`, if it exists. The state of another training, or a damaged one, is an
+/// error, or with `discard` is discarded.
+pub(super) fn continued_fit(
+    database: &Database,
+    config: &TrainingConfig,
+    backend: Backend,
+    parent: Option<&Surrogate>,
+    state: &Path,
+    discard: bool,
+) -> Result<Trained> {
+    let fit = |start| fit(database, config, backend, start, state);
+    let first = parent.map_or(Start::Fresh, Start::Weights);
+    if !state.exists() {
+        return fit(first);
+    }
+    match fit(Start::State(state)) {
+        Err(error) if discard && error.is::<TrainError>() => fit(first),
+        Ok(trained) if is_of(trained.surrogate.card(), database, config, parent) => Ok(trained),
+        Ok(_) if discard => fit(first),
+        Ok(_) => bail!(
+            "{} is the state of a training from other weights: name those with --from, or start again with --replace",
+            state.display()
+        ),
+        Err(error) => Err(error),
+    }
 }

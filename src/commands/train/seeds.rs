@@ -1,0 +1,259 @@
+//! Trainings that differ only in their seed, also as the tasks of an array on a cluster, and the choice among them.
+//!
+//! Every seed has its own files beside the weights `X`: `X-seed-S.safetensors`, and `X-seed-S.state`, from which a stopped
+//! training continues. The states remain: from them the command that finds all seeds trained writes the weights, the curves
+//! and the comparison. Two commands that do so at the same time write the same contents.
+
+use crate::commands::train::kept_fits::{continued_fit, is_of};
+use crate::commands::train::{TrainCommand, exists, hold, quantities};
+use crate::ui::exit::Unfinished;
+use crate::ui::progress::announce;
+use crate::ui::table::table;
+use crate::ui::{comparison, interrupt};
+use ::train::{EnsembleCheck, Trained, TrainingConfig, disagreements};
+use anyhow::{Context, Result, bail, ensure};
+use comfy_table::Table;
+use dataset::{Database, Part};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use surrogate::{Surrogate, TestErrors};
+
+/// What all seeds of one command have in common.
+#[derive(Clone, Copy)]
+struct Shared<'a> {
+    database: &'a Database,
+    /// Initial weights of every training; random ones if `None`.
+    base: Option<&'a Surrogate>,
+}
+
+impl Shared<'_> {
+    /// Whether a file holds weights of the training with this configuration.
+    fn holds(self, weights: &Path, config: &TrainingConfig) -> bool {
+        let loaded = Surrogate::load(weights);
+        loaded.is_ok_and(|weights| is_of(weights.card(), self.database, config, self.base))
+    }
+}
+
+impl TrainCommand {
+    /// Trains the seeds of the shard that are not trained yet, and chooses among all seeds if all are trained.
+    pub(super) fn train_seeds(
+        &self,
+        database: &Database,
+        config: &TrainingConfig,
+        base: Option<&Surrogate>,
+    ) -> Result<()> {
+        let seeds = config.seed..config.seed + self.seeds;
+        let with = |seed| TrainingConfig {
+            seed,
+            ..config.clone()
+        };
+        let configs: Vec<TrainingConfig> = seeds.map(with).collect();
+        let shared = Shared { database, base };
+        self.refuse_other_weights(&configs, shared)?;
+        self.train_shard(&configs, shared)?;
+        let trained = (configs.iter()).filter(|config| self.is_trained(config, shared));
+        let (trained, all) = (trained.count(), configs.len());
+        if trained < all {
+            println!(
+                "{trained} of {all} seeds are trained; the shard that ends last, or the same command without --shard, \
+                 writes {}",
+                self.out.display()
+            );
+            return Ok(());
+        }
+        self.choose(&configs, shared)
+    }
+
+    /// An error if files of other trainings would be replaced.
+    fn refuse_other_weights(&self, configs: &[TrainingConfig], shared: Shared) -> Result<()> {
+        if self.replace {
+            return Ok(());
+        }
+        for config in configs {
+            let member = self.member(config.seed);
+            ensure!(
+                !member.exists() || shared.holds(&member, config),
+                exists(&member)
+            );
+        }
+        let ours = || configs.iter().any(|it| shared.holds(&self.out, it));
+        ensure!(!self.out.exists() || ours(), exists(&self.out));
+        Ok(())
+    }
+
+    /// Trains the seeds of the shard. A seed that fails does not end the others.
+    fn train_shard(&self, configs: &[TrainingConfig], shared: Shared) -> Result<()> {
+        let stop = interrupt::stop_flag()?;
+        let (mut left, mut failed) = (0, 0);
+        for (place, config) in configs.iter().enumerate() {
+            if !self.shard.holds(place) {
+                continue;
+            }
+            if stop.load(Ordering::Relaxed) {
+                left += 1;
+                continue;
+            }
+            match self.train_seed(config, shared) {
+                Ok(()) => {}
+                Err(error) if error.is::<Unfinished>() => left += 1,
+                Err(error) => {
+                    failed += 1;
+                    eprintln!("seed {}: {error:#}", config.seed);
+                }
+            }
+        }
+        match left {
+            0 => ensure!(
+                failed == 0,
+                "{failed} of {} trainings failed",
+                configs.len()
+            ),
+            _ => bail!(Unfinished::new(left, "trainings")),
+        }
+        Ok(())
+    }
+
+    fn train_seed(&self, config: &TrainingConfig, shared: Shared) -> Result<()> {
+        let member = self.member(config.seed);
+        let _held = hold(&member)?;
+        if !self.is_trained(config, shared) {
+            announce(&format!("seed {} -> {}", config.seed, member.display()));
+            let trained = self.continued(config, shared, self.replace)?;
+            trained.surrogate.save(&member)?;
+        }
+        Ok(())
+    }
+
+    /// Whether the training of a seed has ended, and its state is there.
+    fn is_trained(&self, config: &TrainingConfig, shared: Shared) -> bool {
+        let member = self.member(config.seed);
+        state(&member).exists() && shared.holds(&member, config)
+    }
+
+    fn continued(&self, config: &TrainingConfig, shared: Shared, discard: bool) -> Result<Trained> {
+        let state = state(&self.member(config.seed));
+        let Shared { database, base } = shared;
+        continued_fit(database, config, self.backend, base, &state, discard)
+    }
+
+    /// Writes the weights of the best seed with their curves and plots, and the comparison of the seeds.
+    fn choose(&self, configs: &[TrainingConfig], shared: Shared) -> Result<()> {
+        let members = configs.iter();
+        let members = members.map(|config| self.continued(config, shared, false));
+        let members: Vec<Trained> = members.collect::<Result<_>>()?;
+        let errors = members.iter().map(validation_error).enumerate();
+        let best = errors.min_by(|(_, left), (_, right)| left.total_cmp(right));
+        let (best, _) = best.context("`--seeds` must be at least 1")?;
+        let rows = (configs.iter().zip(&members).enumerate())
+            .map(|(place, (config, member))| self.cells(config, member, place == best));
+        let name = self.beside("seeds");
+        let folder = name.parent().unwrap_or(Path::new(""));
+        let name = name.file_name().unwrap_or_default().to_string_lossy();
+        println!("{}\n", comparison::write(folder, &name, COLUMNS, rows)?);
+        print_spread(&members, shared.database);
+        self.write(&members[best], shared.database)
+    }
+
+    /// The cells of one seed in the comparison.
+    fn cells(&self, config: &TrainingConfig, member: &Trained, chosen: bool) -> [String; 13] {
+        let percent = |value: f64| format!("{:.2}", 100.0 * value);
+        let [w, d, d_peak] = validation_errors(member).map(percent);
+        let tested = quantities(&member.test_errors).map(|(_, error)| percent(error.relative_rmse));
+        let [test_w, f_a, f_s, m, test_d, test_d_peak] = tested;
+        [
+            config.seed.to_string(),
+            if chosen { "yes" } else { "no" }.to_owned(),
+            member.history.len().to_string(),
+            w,
+            d,
+            d_peak,
+            test_w,
+            f_a,
+            f_s,
+            m,
+            test_d,
+            test_d_peak,
+            self.member(config.seed).display().to_string(),
+        ]
+    }
+
+    /// The path of the weights of one of several seeds.
+    fn member(&self, seed: u64) -> PathBuf {
+        self.beside(&format!("seed-{seed}.safetensors"))
+    }
+}
+
+/// The path of the state of the training of one seed.
+fn state(member: &Path) -> PathBuf {
+    member.with_extension("state")
+}
+
+const COLUMNS: [&str; 13] = [
+    "seed",
+    "chosen",
+    "epochs",
+    "validation W and forces (%)",
+    "validation D (%)",
+    "validation D_peak (%)",
+    "test W (%)",
+    "test F_a (%)",
+    "test F_s (%)",
+    "test M (%)",
+    "test D (%)",
+    "test D_peak (%)",
+    "weights",
+];
+
+/// The minimum validation error of each network over the epochs.
+fn validation_errors(trained: &Trained) -> [f64; 3] {
+    [0, 1, 2].map(|network| {
+        let errors = (trained.history.iter()).map(|it| it.validation_errors[network]);
+        errors.fold(f64::INFINITY, f64::min)
+    })
+}
+
+/// The product of the minimum validation errors of the networks of W and of D.
+fn validation_error(trained: &Trained) -> f64 {
+    let [w, d, _] = validation_errors(trained);
+    w * d
+}
+
+/// Prints the spread of the errors of the seeds, and what it implies for the error.
+fn print_spread(members: &[Trained], database: &Database) {
+    let errors: Vec<TestErrors> = members.iter().map(|member| member.test_errors).collect();
+    println!("{}\n", spread_table(&errors));
+    let surrogates = members.iter().map(|member| member.surrogate.clone());
+    let surrogates: Vec<Surrogate> = surrogates.collect();
+    let check = EnsembleCheck::of(&disagreements(&surrogates, &database.part(Part::Test)));
+    println!(
+        "forces of {} networks, in units of their root mean square: standard deviation {:.3}, error of the mean {:.3};\n\
+         the tenth of the states with the largest deviation has {:.0} % of the squared error; \
+         correlation of the logarithms of deviation and error {:.2}\n",
+        members.len(),
+        check.deviation,
+        check.error,
+        100.0 * check.error_in_top_tenth,
+        check.correlation
+    );
+}
+
+/// Minimum, mean and maximum relative root mean square error over the trainings.
+fn spread_table(errors: &[TestErrors]) -> Table {
+    let header = format!("relative RMSE (%) of {} seeds", errors.len());
+    let mut table = table([header.as_str(), "minimum", "mean", "maximum"]);
+    let all: Vec<_> = errors.iter().map(quantities).collect();
+    for quantity in 0..quantities(&TestErrors::default()).len() {
+        let values: Vec<f64> = all
+            .iter()
+            .map(|errors| 100.0 * errors[quantity].1.relative_rmse)
+            .collect();
+        let fold = |pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick).unwrap_or(0.0);
+        table.add_row([
+            all[0][quantity].0.to_owned(),
+            format!("{:.2}", fold(f64::min)),
+            format!("{:.2}", values.iter().sum::<f64>() / values.len() as f64),
+            format!("{:.2}", fold(f64::max)),
+        ]);
+    }
+    table
+}
