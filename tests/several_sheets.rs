@@ -89,3 +89,14 @@ fn a_stopped_command_continues_with_the_runs_that_are_left() {
     assert_eq!(column(&work, "state"), ["completed", "completed"]);
     assert_eq!(column(&work, "steps")[0], (steps + 1).to_string());
 }
+
+#[test]
+fn a_link_in_place_of_a_lock_destroys_nothing() {
+    let work = Workplace::new();
+    let victim = work.path("victim");
+    std::fs::write(&victim, "kept").unwrap();
+    std::fs::create_dir(work.path("run")).unwrap();
+    std::os::unix::fs::symlink(&victim, work.path("run/lock")).unwrap();
+    work.output("design configs/scenes/pin-7x7.toml --steps 1 --out run");
+    assert_eq!(std::fs::read_to_string(victim).unwrap(), "kept");
+}

@@ -218,14 +218,10 @@ impl JobFolder {
         self.0.join(format!("{WORK}{}", host()))
     }
 
-    /// Whether the folder has a work folder of another host, which may be solving the job.
-    pub(crate) fn is_used_elsewhere(&self) -> Result<bool, FileError> {
-        let own = self.work();
-        let elsewhere = |entry: &DirEntry| {
-            let name = entry.file_name();
-            name.to_string_lossy().starts_with(WORK) && entry.path() != own
-        };
-        Ok(entries(&self.0)?.iter().any(elsewhere))
+    /// Whether the folder has a work folder of any host: an attempt may be running, or was the last to fail.
+    pub(crate) fn has_work(&self) -> Result<bool, FileError> {
+        let is_work = |entry: &DirEntry| entry.file_name().to_string_lossy().starts_with(WORK);
+        Ok(entries(&self.0)?.iter().any(is_work))
     }
 
     /// Creates an empty work folder for an attempt.

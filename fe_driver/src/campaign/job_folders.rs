@@ -1,9 +1,9 @@
 //! Where the folders of jobs are: `jobs/<first two digits of the id>/<id>/`, so that no folder has 10^5 entries.
 //!
 //! Earlier versions wrote `jobs/<id>/`. [`gather`] moves such folders, one rename each: a kill between two of them leaves
-//! jobs in both places, and both are read. A job that has a work folder of another host is not moved, because a run there,
-//! perhaps of an earlier version, may be solving it. If such a run solves a job that was moved before, in a folder of the
-//! old place, the one in the new place counts.
+//! jobs in both places, and both are read. A job that has a work folder is not moved, because a run of another shard or on
+//! another host, perhaps of an earlier version, may be solving it. If such a run solves a job that was moved before, in a
+//! folder of the old place, the one in the new place counts.
 
 use crate::campaign::job::JobFolder;
 use crate::record_file::{FileError, entries};
@@ -50,7 +50,7 @@ pub(crate) fn gather(jobs: &Path) -> Result<(), FileError> {
     let mut moved = BTreeSet::new();
     for id in names(jobs)?.into_iter().filter(|name| name.len() > DIGITS) {
         let (flat, place) = (jobs.join(&id), place(jobs, &id));
-        match JobFolder(flat.clone()).is_used_elsewhere() {
+        match JobFolder(flat.clone()).has_work() {
             Ok(false) => {}
             Ok(true) => continue,
             // Another host has moved it.
@@ -138,10 +138,9 @@ mod tests {
     }
 
     #[test]
-    fn a_job_that_another_host_may_be_solving_is_not_moved() {
+    fn a_job_that_another_run_may_be_solving_is_not_moved() {
         let folder = jobs(&["0a11/work-elsewhere", "0a11", "0a22"]);
         let jobs = folder.path();
-        JobFolder(jobs.join("0a22")).fresh_work().unwrap();
         gather(jobs).unwrap();
         assert!(jobs.join("0a11").exists() && jobs.join("0a/0a22").exists());
         assert_eq!(read(jobs, "0a11"), "0a11");
