@@ -106,8 +106,7 @@ impl VerifyCommand {
             None => {
                 let found = balanced(&scene, design, &windows, self.rounds)?;
                 let end = found.by_elements();
-                let configuration = &end.final_step().configuration;
-                let picture = drawing::deployed(&scene, &end.sheet, configuration);
+                let picture = drawing::deployed(&scene, &end.sheet, end.final_step());
                 run_folder::write(&self.out, "deployed.svg", &picture)?;
                 self.print(&sheet_errors::write(&found, &windows)?)
             }

@@ -149,8 +149,7 @@ impl CapacityStudy {
             let limit = self.limit(&config, &design, &points)?;
             if let Some((_, above)) = &limit {
                 let (scene, deployment) = self.deploy(&config, &design, above.rho)?;
-                let configuration = &deployment.final_step().configuration;
-                let svg = drawing::deployed(&scene, &deployment.sheet, configuration);
+                let svg = drawing::deployed(&scene, &deployment.sheet, deployment.final_step());
                 picture::save(&svg, &self.out.join(format!("above-{}", i + 1)), 1600)?;
             }
             capacities.push(Capacity {

@@ -58,12 +58,23 @@ impl Canvas {
 
     /// A closed polygon.
     pub fn polygon(&mut self, points: &[[f64; 2]], attributes: &str) {
+        self.points("polygon", points, attributes);
+    }
+
+    /// An open line through points.
+    pub fn polyline(&mut self, points: &[[f64; 2]], attributes: &str) {
+        self.points("polyline", points, attributes);
+    }
+
+    fn points(&mut self, element: &str, points: &[[f64; 2]], attributes: &str) {
         let points: Vec<String> = points
             .iter()
             .map(|[x, y]| format!("{},{}", number(*x), number(-y)))
             .collect();
         let points = points.join(" ");
-        self.push(format_args!("<polygon points=\"{points}\" {attributes}/>"));
+        self.push(format_args!(
+            "<{element} points=\"{points}\" {attributes}/>"
+        ));
     }
 
     /// Text of the given height (mm).

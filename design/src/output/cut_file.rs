@@ -14,7 +14,7 @@ mod error_mark;
 mod fabrication_error;
 mod numbers;
 mod parts;
-mod pdf_tiles;
+pub(super) mod pdf_tiles;
 mod seam;
 mod sheet_drawing;
 mod svg;

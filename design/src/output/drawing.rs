@@ -3,6 +3,7 @@
 mod chart;
 mod deployed;
 mod flat;
+pub(crate) mod load_marks;
 mod measured;
 mod numbering;
 pub mod page;

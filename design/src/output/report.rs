@@ -7,6 +7,7 @@ mod hinge_row;
 mod text;
 mod warning;
 
+pub(crate) use columns::rounded;
 pub(crate) use estimate::force_spreads;
 pub(crate) use text::worst_first;
 

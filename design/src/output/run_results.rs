@@ -7,6 +7,7 @@ use crate::output::cut_file::{
 };
 use crate::output::drawing;
 use crate::output::report::{Report, Warning};
+use crate::output::report_pdf::report_pdf;
 use crate::output::run_page::run_page;
 use crate::scene::Scene;
 use crate::scene::design_run::{CUT_FILES, Designed};
@@ -31,7 +32,7 @@ pub enum ResultsError {
     },
 }
 
-/// Writes `report.json`, `report.txt`, `run.html`, `deployed-start.svg` and `deployed.svg`; for a design with cut lines also
+/// Writes `report.json`, `report.txt`, `report.pdf`, `run.html`, `deployed-start.svg` and `deployed.svg`; for a design with cut lines also
 /// `flat.svg`; for a design without errors, or if `force`, also the [`CUT_FILES`].
 ///
 /// If no cut file is written, the report states why, and the cut files of an earlier design are removed.
@@ -61,6 +62,8 @@ pub fn write_results(
     write("report.txt", report.to_string().as_bytes())?;
     let page = run_page(scene, designed, &report).map_err(not_json("run.html"))?;
     write("run.html", page.as_bytes())?;
+    let paper = report_pdf(scene, designed, &report, cuts.as_ref().ok());
+    write("report.pdf", &paper)?;
     match &cuts {
         Ok(cuts) if report.cut_file => {
             let drawing = SheetDrawing::new(cuts, &best.sheet, &scene.material);
@@ -114,6 +117,5 @@ fn remove(path: PathBuf) -> Result<(), ResultsError> {
 }
 
 fn picture(scene: &Scene, deployment: &Deployment) -> String {
-    let configuration = &deployment.final_step().configuration;
-    drawing::deployed(scene, &deployment.sheet, configuration)
+    drawing::deployed(scene, &deployment.sheet, deployment.final_step())
 }

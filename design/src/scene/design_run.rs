@@ -214,6 +214,7 @@ pub fn forget(scene: &Scene) -> Result<(), InverseDesignError> {
     let results = [
         "report.txt",
         "report.json",
+        "report.pdf",
         "run.html",
         "deployment.png",
         STATE_FILE,

@@ -6,11 +6,10 @@
 use crate::output::cut_file::cut_drawing::{CutDrawing, Layer, Shape, Text};
 use crate::output::cut_file::fabrication_error::FabricationError;
 use crate::output::cut_file::tiling::{BORDER, FOOTER, OVERLAP, Tiling, cell_name};
-use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
+use crate::output::pdf::{self, Font, Form, circle, clip, colour, line, page, polygon};
+use pdf_writer::{Content, Name};
 use std::path::Path;
 
-/// Points per mm.
-const POINTS: f64 = 72.0 / 25.4;
 /// Height of the capitals of Helvetica relative to the size of the font, and widths of digits and of other characters.
 const CAPITALS: f64 = 0.718;
 const DIGIT: f64 = 0.556;
@@ -26,7 +25,6 @@ const RULER: u32 = 100;
 const TITLE: f64 = 3.0;
 const SMALL: f64 = 2.0;
 
-const FONT: Name = Name(b"F");
 const DRAWING: Name = Name(b"D");
 const GREY: [u8; 3] = [128; 3];
 const BLACK: [u8; 3] = [0; 3];
@@ -52,59 +50,30 @@ fn pdf(drawing: &CutDrawing, tiling: &Tiling, title: &str, notes: &[String]) -> 
     for row in 0..rows {
         pages.extend((0..columns).map(|column| tile(tiling, row, column, title)));
     }
-    let reference = |id: usize| Ref::new(id as i32 + 1);
-    let [catalog, tree, font, shared] = [0, 1, 2, 3].map(reference);
-    let mut file = Pdf::new();
-    file.catalog(catalog).pages(tree);
-    file.type1_font(font)
-        .base_font(Name(b"Helvetica"))
-        .encoding_predefined(Name(b"WinAnsiEncoding"));
-    // Written once: every page shows its part of it.
-    let content = shapes(drawing);
-    let mut form = file.form_xobject(shared, &content);
-    let [low, high] = drawing.bounds().map(|corner| corner.map(|x| x as f32));
-    form.bbox(Rect::new(
-        low[0] - 1.0,
-        low[1] - 1.0,
-        high[0] + 1.0,
-        high[1] + 1.0,
-    ));
-    form.resources().fonts().pair(FONT, font);
-    form.finish();
-    let [width, height] = tiling.page.map(|x| (x * POINTS) as f32);
-    let ids = |i: usize| [4 + 2 * i, 5 + 2 * i].map(reference);
-    let kids = (0..pages.len()).map(|i| ids(i)[0]);
-    file.pages(tree).count(pages.len() as i32).kids(kids);
-    for (i, content) in pages.into_iter().enumerate() {
-        let [id, stream] = ids(i);
-        let mut page = file.page(id);
-        page.media_box(Rect::new(0.0, 0.0, width, height));
-        page.parent(tree).contents(stream);
-        let mut resources = page.resources();
-        resources.fonts().pair(FONT, font);
-        resources.x_objects().pair(DRAWING, shared);
-        resources.finish();
-        page.finish();
-        file.stream(stream, &content.finish());
-    }
-    file.finish()
+    let [low, high] = drawing.bounds();
+    let mut shapes = Content::new();
+    draw(&mut shapes, drawing);
+    let form = Form {
+        name: DRAWING,
+        content: shapes.finish().to_vec(),
+        bounds: [low.map(|x| x - 1.0), high.map(|x| x + 1.0)],
+    };
+    pdf::file(tiling.page, &[Font::Sans], Some(&form), pages)
 }
 
-/// The shapes in the coordinates of the drawing (mm).
-fn shapes(drawing: &CutDrawing) -> Vec<u8> {
-    let mut content = Content::new();
+/// Draws all shapes, in the coordinates of the drawing (mm).
+pub(in crate::output) fn draw(content: &mut Content, drawing: &CutDrawing) {
     for layer in Layer::ALL {
-        colour(&mut content, layer.rgb());
+        colour(content, layer.rgb());
         for shape in drawing.on(layer) {
             match shape {
-                Shape::Line(ends) => line(&mut content, *ends),
-                Shape::Circle { centre, radius } => circle(&mut content, *centre, *radius),
-                Shape::Polygon(corners) => polygon(&mut content, corners),
-                Shape::Text(text) => write(&mut content, text),
+                Shape::Line(ends) => line(content, *ends),
+                Shape::Circle { centre, radius } => circle(content, *centre, *radius),
+                Shape::Polygon(corners) => polygon(content, corners),
+                Shape::Text(text) => write(content, text),
             }
         }
     }
-    content.finish().to_vec()
 }
 
 /// The page of a tile: its part of the drawing, trim lines with crosses, its name and a ruler.
@@ -254,54 +223,6 @@ fn footer(content: &mut Content, tiling: &Tiling, name: &str, title: &str) {
     write(content, &text([left, y - 7.5], SMALL, title));
 }
 
-fn page() -> Content {
-    let mut content = Content::new();
-    let scale = POINTS as f32;
-    content.transform([scale, 0.0, 0.0, scale, 0.0, 0.0]);
-    content
-}
-
-fn clip(content: &mut Content, [low, high]: [[f64; 2]; 2]) {
-    let size = [high[0] - low[0], high[1] - low[1]].map(|x| x as f32);
-    content.rect(low[0] as f32, low[1] as f32, size[0], size[1]);
-    content.clip_nonzero().end_path();
-}
-
-fn colour(content: &mut Content, rgb: [u8; 3]) {
-    let [r, g, b] = rgb.map(|x| f32::from(x) / 255.0);
-    content.set_stroke_rgb(r, g, b).set_fill_rgb(r, g, b);
-}
-
-fn line(content: &mut Content, [from, to]: [[f64; 2]; 2]) {
-    content.move_to(from[0] as f32, from[1] as f32);
-    content.line_to(to[0] as f32, to[1] as f32).stroke();
-}
-
-fn polygon(content: &mut Content, corners: &[[f64; 2]]) {
-    for (i, [x, y]) in corners.iter().enumerate() {
-        match i {
-            0 => content.move_to(*x as f32, *y as f32),
-            _ => content.line_to(*x as f32, *y as f32),
-        };
-    }
-    content.close_path().stroke();
-}
-
-/// A circle of four cubic curves, whose error is below 0.03 % of the radius.
-fn circle(content: &mut Content, [x, y]: [f64; 2], radius: f64) {
-    const HANDLE: f64 = 0.552_284_75;
-    let at = |u: f64, v: f64| [(x + radius * u) as f32, (y + radius * v) as f32];
-    let [begin_x, begin_y] = at(1.0, 0.0);
-    content.move_to(begin_x, begin_y);
-    for (c, s) in [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)] {
-        let [a, b] = at(c - HANDLE * s, s + HANDLE * c);
-        let [d, e] = at(-s + HANDLE * c, c + HANDLE * s);
-        let [f, g] = at(-s, c);
-        content.cubic_to(a, b, d, e, f, g);
-    }
-    content.close_path().stroke();
-}
-
 /// A text that begins at a point.
 fn text(at: [f64; 2], height: f64, text: &str) -> Text {
     Text {
@@ -312,7 +233,7 @@ fn text(at: [f64; 2], height: f64, text: &str) -> Text {
     }
 }
 
-fn write(content: &mut Content, text: &Text) {
+pub(in crate::output) fn write(content: &mut Content, text: &Text) {
     let size = text.height / CAPITALS;
     let widths = text.text.chars().map(|c| match c.is_ascii_digit() {
         true => DIGIT,
@@ -323,10 +244,5 @@ fn write(content: &mut Content, text: &Text) {
         x -= 0.5 * size * widths.sum::<f64>();
         y -= 0.5 * text.height;
     }
-    // The code page of the font has the characters of Latin-1 at their code points.
-    let latin = |c: char| u8::try_from(u32::from(c)).unwrap_or(b'?');
-    let bytes: Vec<u8> = text.text.chars().map(latin).collect();
-    content.begin_text().set_font(FONT, size as f32);
-    content.set_text_matrix([1.0, 0.0, 0.0, 1.0, x as f32, y as f32]);
-    content.show(Str(&bytes)).end_text();
+    pdf::write(content, Font::Sans, size, [x, y], &text.text);
 }

@@ -226,7 +226,7 @@ impl ColourScale {
 }
 
 /// The largest of 1, 2, 5 times a power of ten that is not above `value`.
-pub(super) fn round_below(value: f64) -> f64 {
+pub(crate) fn round_below(value: f64) -> f64 {
     let decade = 10f64.powf(value.log10().floor());
     [5.0, 2.0, 1.0]
         .map(|digit| digit * decade)
