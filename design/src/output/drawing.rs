@@ -2,7 +2,7 @@
 
 mod chart;
 mod deployed;
-mod flat;
+pub(crate) mod flat;
 pub(crate) mod load_marks;
 mod measured;
 mod numbering;

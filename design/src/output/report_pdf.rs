@@ -2,7 +2,8 @@
 
 use crate::equilibrium::load_step::LoadStep;
 use crate::output::cut_file::pdf_tiles::{draw, write};
-use crate::output::cut_file::{CutLines, Paper, SheetDrawing, Text};
+use crate::output::cut_file::{CutDrawing, CutLines, Paper, Text};
+use crate::output::drawing::flat::number_place;
 use crate::output::drawing::load_marks::{Mark, extent, marks};
 use crate::output::drawing::page::{bounds, round_below};
 use crate::output::pdf::{self, Font, colour, filled, line, page, polygon, polyline};
@@ -11,9 +12,11 @@ use crate::scene::design_run::Designed;
 use crate::scene::placement::placed;
 use crate::scene::{HingeModel, Scene};
 use crate::sheet::cut_sheet::Sheet;
+use crate::sheet::hinge_window::Window;
 use crate::sheet::kinematics::deployed_corners;
 use crate::sheet::topology::is_even;
 use pdf_writer::Content;
+use std::collections::BTreeSet;
 
 /// White border of a page (mm).
 const BORDER: f64 = 15.0;
@@ -26,7 +29,7 @@ const COLUMNS: usize = 114;
 const COURIER: f64 = 0.6;
 const LINE: f64 = 1.2;
 /// Height of the drawings and the distance between them (mm).
-const HEIGHT: f64 = 112.0;
+const HEIGHT: f64 = 128.0;
 const GAP: f64 = 10.0;
 /// Height of the capitals of captions and of labels (mm).
 const CAPTION: f64 = 2.0;
@@ -37,6 +40,7 @@ const UNIT: f64 = 0.18;
 const INK: [u8; 3] = [31, 41, 51];
 const MUTED: [u8; 3] = [102, 114, 127];
 const ACCENT: [u8; 3] = [194, 65, 12];
+const TEAL: [u8; 3] = [15, 118, 110];
 const PANELS: [[u8; 3]; 2] = [[234, 240, 246], [246, 240, 228]];
 
 /// The pages of a run. Without `cuts` the flat sheet is not drawn.
@@ -61,7 +65,7 @@ pub(super) fn report_pdf(
         top -= 0.3 * TITLE;
     }
     let drawn = Deployed { scene, sheet, last };
-    let flat = cuts.map(|cuts| SheetDrawing::new(cuts, sheet, &scene.material));
+    let flat = cuts.map(CutLines::drawing);
     top = drawings(&mut first, top - 3.0, &drawn, flat.as_ref());
 
     let pages = text_pages(first, top - 4.0, size, rest);
@@ -83,10 +87,10 @@ fn drawings(
     content: &mut Content,
     top: f64,
     deployed: &Deployed,
-    flat: Option<&SheetDrawing>,
+    flat: Option<&CutDrawing>,
 ) -> f64 {
     let mut boxes = vec![deployed.bounds()];
-    boxes.extend(flat.map(|flat| flat.numbered.bounds()));
+    boxes.extend(flat.map(CutDrawing::bounds));
     let side = |[low, high]: &[[f64; 2]; 2], axis: usize| high[axis] - low[axis];
     let sum = |axis: usize| boxes.iter().map(|it| side(it, axis)).sum::<f64>();
     let most = |axis: usize| boxes.iter().map(|it| side(it, axis)).fold(0.0, f64::max);
@@ -105,7 +109,7 @@ fn drawings(
     for (place, outline) in boxes.iter().enumerate() {
         let caption = match place {
             0 => deployed.caption(),
-            _ => "Flat: cuts, numbers of panels (P) and of hinges".to_owned(),
+            _ => "Flat: cuts, panels (P) and hinges by number".to_owned(),
         };
         colour(content, MUTED);
         let below = [corner[0], corner[1] - CAPTION];
@@ -121,7 +125,8 @@ fn drawings(
         match (place, flat) {
             (1.., Some(flat)) => {
                 content.set_line_width((0.2 / scale) as f32);
-                draw(content, &flat.numbered);
+                draw(content, flat);
+                flat_numbers(content, deployed.sheet, scale);
             }
             _ => deployed.draw(content, scale),
         }
@@ -147,6 +152,27 @@ fn scale_bar(content: &mut Content, [x, y]: [f64; 2], scale: f64) {
     }
     let label = format!("{length} mm");
     write(content, &text([end + 2.0, y - 0.9], CAPTION, false, &label));
+}
+
+/// The numbers of panels and hinges on the flat sheet.
+fn flat_numbers(content: &mut Content, sheet: &Sheet, scale: f64) {
+    for (k, panel) in sheet.panels.iter().enumerate() {
+        panel_number(content, sheet, k, &panel.corners, scale);
+    }
+    colour(content, TEAL);
+    for (number, (hinge, window)) in sheet.hinges.iter().zip(Window::of_sheet(sheet)).enumerate() {
+        let height = f64::min(LABEL / scale, 0.4 * window.radius);
+        let at = number_place(hinge, &window);
+        write(content, &text(at, height, true, &number.to_string()));
+    }
+}
+
+/// The number of a panel in its middle.
+fn panel_number(content: &mut Content, sheet: &Sheet, k: usize, at: &[[f64; 2]; 4], scale: f64) {
+    let middle = [0, 1].map(|axis| 0.25 * at.iter().map(|corner| corner[axis]).sum::<f64>());
+    let height = f64::min(LABEL / scale, 0.12 * sheet.panels[k].area().sqrt());
+    colour(content, MUTED);
+    write(content, &text(middle, height, true, &format!("P{k}")));
 }
 
 /// The deployed sheet in the last state of its path.
@@ -179,20 +205,23 @@ impl Deployed<'_> {
         }
     }
 
-    /// Panels with their numbers, target, supports and loads, on a page that shows 1 mm as `scale`.
+    /// Panels, with the numbers of those that have no symbol, target, supports and loads, on a page that shows 1 mm as `scale`.
     fn draw(&self, content: &mut Content, scale: f64) {
         let on_paper = |length: f64| (length / scale) as f32;
         content.set_line_width(on_paper(0.15));
         content.set_line_join(pdf_writer::types::LineJoinStyle::RoundJoin);
+        let supported = (self.scene.config.supports.iter())
+            .map(|support| self.sheet.grid.panel(support.panel[0], support.panel[1]));
+        let loaded = self.scene.loads().into_iter().map(|load| load.panel);
+        let marked: BTreeSet<usize> = supported.chain(loaded).collect();
         for (k, corners) in self.corners().iter().enumerate() {
             colour(content, PANELS[usize::from(!is_even(self.sheet.grid, k))]);
             filled(content, corners);
             colour(content, INK);
             polygon(content, corners);
-            let middle = [0, 1].map(|axis| 0.25 * corners.iter().map(|it| it[axis]).sum::<f64>());
-            let height = f64::min(LABEL / scale, 0.12 * self.sheet.panels[k].area().sqrt());
-            colour(content, MUTED);
-            write(content, &text(middle, height, true, &format!("P{k}")));
+            if !marked.contains(&k) {
+                panel_number(content, self.sheet, k, corners, scale);
+            }
         }
         colour(content, ACCENT);
         content.set_line_width(on_paper(0.35));

@@ -2,7 +2,7 @@
 
 use crate::equilibrium::supports::{Dof, Load, Support};
 use crate::pattern::grid::EDGES;
-use crate::scene::actuation::EdgeLoadConfig;
+use crate::scene::actuation::{EdgeLoadConfig, OpeningCoupleConfig};
 use crate::scene::checked_scene::Scene;
 use crate::sheet::topology::{HingeSite, hinge_sites};
 
@@ -40,14 +40,8 @@ impl Scene {
             }
         }
         for load in &self.config.opening_couples {
-            let pair = load
-                .panels
-                .map(|panels| panels.map(|panel| self.panel(panel)));
-            for HingeSite { a, b, .. } in hinge_sites(self.grid()) {
-                if pair.is_none_or(|pair| pair.contains(&a.0) && pair.contains(&b.0)) {
-                    total[a.0][2] -= load.couple;
-                    total[b.0][2] += load.couple;
-                }
+            for (panel, couple) in self.couples_on_panels(load).into_iter().enumerate() {
+                total[panel][2] += couple;
             }
         }
         for support in self.supports() {
@@ -58,6 +52,21 @@ impl Scene {
             Dof::ALL.into_iter().zip(values).map(load)
         });
         loads.filter(|load| load.value != 0.0).collect()
+    }
+
+    /// The couple (N mm) on every panel at full load, the sum over the hinges that the couples open.
+    pub(crate) fn couples_on_panels(&self, load: &OpeningCoupleConfig) -> Vec<f64> {
+        let mut couples = vec![0.0; self.grid().panel_count()];
+        let pair = load
+            .panels
+            .map(|panels| panels.map(|panel| self.panel(panel)));
+        for HingeSite { a, b, .. } in hinge_sites(self.grid()) {
+            if pair.is_none_or(|pair| pair.contains(&a.0) && pair.contains(&b.0)) {
+                couples[a.0] -= load.couple;
+                couples[b.0] += load.couple;
+            }
+        }
+        couples
     }
 
     /// The resultant (N) of a traction at full load.

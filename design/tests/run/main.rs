@@ -3,6 +3,7 @@
 mod actuation_curve;
 mod learned;
 mod outer_loop;
+mod paper;
 mod results;
 mod run_page;
 mod sections;

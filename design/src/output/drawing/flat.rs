@@ -3,7 +3,7 @@
 use crate::output::canvas::Anchor;
 use crate::output::cut_file::CutLines;
 use crate::output::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, TEAL};
-use crate::sheet::cut_sheet::Sheet;
+use crate::sheet::cut_sheet::{Hinge, Sheet};
 use crate::sheet::hinge_window::Window;
 use crate::sheet::topology::is_even;
 
@@ -76,15 +76,16 @@ fn ligaments(page: &mut Page, sheet: &Sheet) {
     let ink = format!("{} font-weight=\"bold\"", page.haloed(TEAL));
     for (number, (hinge, window)) in sheet.hinges.iter().zip(Window::of_sheet(sheet)).enumerate() {
         page.canvas.line(hinge.tip, window.foot, &stroke);
-        // In the half of the window on panel B, beside the main cut.
         let height = f64::min(15.0 * page.unit, 0.3 * window.radius);
-        let reach = 0.55 * window.radius;
-        let [x, y] = window.point(
-            reach * (hinge.alpha / 2.0).cos(),
-            -reach * (hinge.alpha / 2.0).sin(),
-        );
+        let [x, y] = number_place(hinge, &window);
         let at = [x, y - 0.35 * height];
         page.canvas
             .text(at, height, Anchor::Middle, &ink, &number.to_string());
     }
+}
+
+/// The middle of the number of a hinge: in the half of its window on panel B, beside the main cut (mm).
+pub(crate) fn number_place(hinge: &Hinge, window: &Window) -> [f64; 2] {
+    let (reach, along) = (0.55 * window.radius, hinge.alpha / 2.0);
+    window.point(reach * along.cos(), -reach * along.sin())
 }

@@ -26,7 +26,8 @@ pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String 
     let area: f64 = sheet.panels.iter().map(|panel| panel.area()).sum();
     let panel_size = (area / sheet.panels.len() as f64).sqrt();
     let factor = magnification(fit, panel_size);
-    let [low, high] = bounds(corners.iter().flatten().copied());
+    let residuals_drawn = fit.kept().map(|point| residual(point, factor)[1]);
+    let [low, high] = bounds(corners.iter().flatten().copied().chain(residuals_drawn));
     let (width, height) = (high[0] - low[0], high[1] - low[1]);
     // Both charts stand at the right of the sheet, one above the other.
     let side = f64::max(0.36 * width, 0.34 * height);
@@ -103,11 +104,16 @@ fn residuals(page: &mut Page, fit: &Fit, factor: f64, panel_size: f64) {
     let (stroke, dot) = (page.stroke(ACCENT, 1.6), format!("fill=\"{ACCENT}\""));
     let size = f64::min(2.2 * page.unit, 0.03 * panel_size);
     for point in fit.kept() {
-        let ([x, y], [dx, dy]) = (point.predicted, point.residual());
-        page.canvas
-            .line([x, y], [x + factor * dx, y + factor * dy], &stroke);
-        page.canvas.circle([x, y], size, &dot);
+        let [from, to] = residual(point, factor);
+        page.canvas.line(from, to, &stroke);
+        page.canvas.circle(from, size, &dot);
     }
+}
+
+/// The line along the magnified residual of a point, from its prediction.
+fn residual(point: &FittedPoint, factor: f64) -> [[f64; 2]; 2] {
+    let ([x, y], [dx, dy]) = (point.predicted, point.residual());
+    [[x, y], [x + factor * dx, y + factor * dy]]
 }
 
 /// Draws a cross at every outlier between `low` and `high`, and the number of its panel once.
@@ -213,8 +219,11 @@ fn centres(page: &mut Page, corners: [[f64; 2]; 2], report: &MeasurementReport) 
             let [x, y] = chart.at([place as f64 + 0.5, 0.0]);
             let below = [x, y - 16.0 * page.unit];
             let number = format!("P{}", panel.panel);
+            // A number of three characters is about as wide as its font is high times two.
+            let pitch = chart.at([1.0, 0.0])[0] - chart.at([0.0, 0.0])[0];
+            let height = f64::min(11.0 * page.unit, 0.45 * pitch);
             page.canvas
-                .text(below, 11.0 * page.unit, Anchor::Middle, &muted, &number);
+                .text(below, height, Anchor::Middle, &muted, &number);
         }
     }
     if let Some(floor) = floor {

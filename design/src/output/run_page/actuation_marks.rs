@@ -9,8 +9,7 @@ pub(super) struct ActuationMarks {
     supports: Vec<SupportMark>,
     loads: Vec<LoadMark>,
     edges: Vec<EdgeMark>,
-    /// Loads that are not drawn, in words.
-    notes: Vec<String>,
+    openings: Vec<OpeningMark>,
 }
 
 /// A supported panel.
@@ -40,6 +39,15 @@ struct EdgeMark {
     force: [f64; 2],
 }
 
+/// Opening couples: of a hinge, and their sums on the panels (N mm). Supported rotations have none.
+#[derive(Serialize)]
+struct OpeningMark {
+    /// Two neighbours [column, row]; without them every hinge.
+    places: Option<[[usize; 2]; 2]>,
+    couple: f64,
+    on_panels: Vec<(usize, f64)>,
+}
+
 impl ActuationMarks {
     pub fn of(scene: &Scene) -> Self {
         let (config, grid) = (&scene.config, scene.grid());
@@ -66,21 +74,22 @@ impl ActuationMarks {
                 force,
             }
         });
-        let notes = config.opening_couples.iter().map(|load| match load.panels {
-            None => format!(
-                "opening couple of {} N mm on every hinge at full load",
-                load.couple
-            ),
-            Some([[a, b], [c, d]]) => format!(
-                "opening couple of {} N mm between panels [{a}, {b}] and [{c}, {d}] at full load",
-                load.couple
-            ),
+        let held = |k: usize| {
+            let mut supports = config.supports.iter();
+            supports.any(|it| panel(it.panel) == k && it.kind.holds()[2])
+        };
+        let openings = config.opening_couples.iter().map(|load| OpeningMark {
+            places: load.panels,
+            couple: load.couple,
+            on_panels: (scene.couples_on_panels(load).into_iter().enumerate())
+                .filter(|(k, couple)| *couple != 0.0 && !held(*k))
+                .collect(),
         });
         Self {
             supports: supports.collect(),
             loads: loads.collect(),
             edges: edges.collect(),
-            notes: notes.collect(),
+            openings: openings.collect(),
         }
     }
 }

@@ -1,7 +1,6 @@
 // Line charts.
 
-/** Whether the page is laid out for a sheet of paper, and the width of a chart on it (px). */
-let onPaper = false;
+/** The width of a chart on a sheet of paper (px). */
 const PAPER_CHART = 345;
 
 /** Widths of the charts on the screen (px); forgotten when the window changes. */
@@ -39,26 +38,26 @@ function chart(svg, height, axes, series, marks, below = []) {
   const py = (y) => height - bottom - ((height - top - bottom) * (toY(y) - y0)) / (y1 - y0);
   for (const [value, text] of yTicks) {
     const y = height - bottom - ((height - top - bottom) * (value - y0)) / (y1 - y0);
-    draw(svg, "line", { x1: left, x2: width - right, y1: y, y2: y, stroke: "#e6eaee" });
+    draw(svg, "line", { x1: left, x2: width - right, y1: y, y2: y, stroke: GRID });
     draw(svg, "text", { x: left - 6, y: y + 4, "font-size": 11.5, "text-anchor": "end", class: "muted" }, text);
   }
   for (const value of roomyTicks(x0, x1, width - left - right)) {
-    draw(svg, "line", { x1: px(value), x2: px(value), y1: height - bottom, y2: height - bottom + 4, stroke: "#8a949e" });
+    draw(svg, "line", { x1: px(value), x2: px(value), y1: height - bottom, y2: height - bottom + 4, stroke: TICK });
     draw(svg, "text", { x: px(value), y: height - bottom + 17, "font-size": 11.5, "text-anchor": "middle", class: "muted" }, shown(value));
   }
-  draw(svg, "rect", { x: left, y: top, width: width - left - right, height: height - top - bottom, fill: "none", stroke: "#b8c2cc" });
+  draw(svg, "rect", { x: left, y: top, width: width - left - right, height: height - top - bottom, fill: "none", stroke: "var(--frame)" });
   draw(svg, "text", { x: (left + width - right) / 2, y: height - 6, "font-size": 12, "text-anchor": "middle" }, axes.x);
   const middle = (top + height - bottom) / 2;
   draw(svg, "text", { x: 12, y: middle, "font-size": 12, "text-anchor": "middle", transform: `rotate(-90 12 ${middle})` }, axes.y);
   for (const area of below)
-    draw(svg, "path", { d: path(area, px, py) + "Z", fill: "#0f766e", "fill-opacity": 0.12, stroke: TEAL, "stroke-width": 1 });
+    draw(svg, "path", { d: path(area, px, py) + "Z", fill: TEAL, "fill-opacity": 0.12, stroke: TEAL, "stroke-width": 1 });
   for (const { points, colour, width: w } of series) {
     const finite = points.filter(([, y]) => Number.isFinite(toY(y)));
     draw(svg, "path", { d: path(finite, px, py), fill: "none", stroke: colour, "stroke-width": w || 1.6, "stroke-linejoin": "round" });
   }
   for (const mark of marks)
     if (Number.isFinite(toY(mark.y)))
-      draw(svg, "circle", { cx: px(mark.x), cy: py(mark.y), r: mark.r || 4, fill: mark.hollow ? "#fff" : mark.colour, stroke: mark.colour, "stroke-width": 1.6 });
+      draw(svg, "circle", { cx: px(mark.x), cy: py(mark.y), r: mark.r || 4, fill: mark.hollow ? PAPER : mark.colour, stroke: mark.colour, "stroke-width": 1.6 });
   if (named.length > 1) nameLines(svg, named.map((s) => ({ name: s.name, colour: s.colour, y: py(s.points[s.points.length - 1][1]) })), width - right + 6, top, height - bottom);
 }
 
@@ -112,10 +111,10 @@ function drawCurve(state) {
   chart(byId("curve"), 250, named, [{ points: states.curve, colour: TEAL }], marks);
   byId("curve-note").textContent =
     `Displacement: ${what}. Load: ${run.actuation.loads.length + run.actuation.edges.length > 0 ? "sum of the magnitudes of all loads" : "its work-conjugate"}. ` +
-    `Points: load steps; black: the state shown.` + (jumps.length ? " Hollow: the sheet jumped to this state past a limit point." : "");
+    `Points: load steps; large: the state shown.` + (jumps.length ? " Hollow: the sheet jumped to this state past a limit point." : "");
 }
 
-const TERM_COLOURS = ["#0f766e", "#c2410c", "#6d4aa8", "#2f6db5", "#a16207", "#9d174d"];
+const TERM_COLOURS = ["teal", "accent", "violet", "blue", "ochre", "rose"].map((name) => `var(--${name})`);
 
 function drawHistory() {
   const history = run.history;

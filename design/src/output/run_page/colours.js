@@ -64,15 +64,31 @@ if (states.spread)
 if (run.domain)
   quantities.gauge = { short: "place in the training domain", name: "Place in the training domain: 0 centre, 1 edge", unit: "", of: gaugeOf };
 
-const UNKNOWN = "#9aa3ad";
+/** Colours of the page's style, in SVG. */
+const [INK, PAPER, ACCENT, TEAL, ERROR, GRID, TICK, UNKNOWN] =
+  ["ink", "paper", "accent", "teal", "error", "grid", "tick", "not-known"].map((name) => `var(--${name})`);
+
+/** Whether the page is laid out for a sheet of paper, which is always light. */
+let onPaper = false;
+const darkScreen = matchMedia("(prefers-color-scheme: dark)");
+
+/** The colours of the panels on the canvas: of the ground, of edges, and where nothing is known. */
+const LIGHT = { ground: [255, 255, 255], ink: "#1f2933", unknownPanel: "#e3e6e9", unknownHinge: "#9aa3ad" };
+const DARK = { ground: [26, 32, 39], ink: "#c4cdd6", unknownPanel: "#343d46", unknownHinge: "#7d8894" };
+const canvasColours = () => (darkScreen.matches && !onPaper ? DARK : LIGHT);
+
+const rgb = (channels) => `rgb(${channels.map(Math.round).join(",")})`;
+
 const VIRIDIS = [[68, 1, 84], [65, 68, 135], [42, 120, 142], [34, 168, 132], [122, 209, 81], [253, 231, 37]];
 
-function viridis(fraction, whiteness) {
+/** The colour of a fraction of a scale, mixed with a share of the ground. */
+function viridis(fraction, share) {
   const position = Math.min(Math.max(fraction, 0), 1) * (VIRIDIS.length - 1);
   const stop = Math.min(Math.floor(position), VIRIDIS.length - 2);
   const f = position - stop;
   const c = [0, 1, 2].map((i) => VIRIDIS[stop][i] + f * (VIRIDIS[stop + 1][i] - VIRIDIS[stop][i]));
-  return `rgb(${c.map((x) => Math.round(x + whiteness * (255 - x))).join(",")})`;
+  const { ground } = canvasColours();
+  return rgb(c.map((x, i) => x + share * (ground[i] - x)));
 }
 
 /** The interval of a quantity over all states, which its colours cover. */
@@ -90,8 +106,8 @@ function range(quantity) {
   return quantity.range;
 }
 
-/** How much lighter panels are than their hinges. */
-const PANEL_WHITENESS = 0.62;
+/** The share of the ground in the colours of panels. */
+const PANEL_SHARE = 0.62;
 
 /** The colours of all hinges and panels; a panel has that of its hinge with the largest value. */
 function colours(quantity, state) {
@@ -106,10 +122,11 @@ function colours(quantity, state) {
       else if (most[k] === -Infinity || Math.abs(values[h]) > Math.abs(most[k])) most[k] = values[h];
     }
   }
-  const colour = (value, whiteness) => viridis((value - low) / (high - low), whiteness);
+  const colour = (value, share) => viridis((value - low) / (high - low), share);
+  const { ground, unknownPanel, unknownHinge } = canvasColours();
   return {
-    hinges: Array.from(values, (value) => (Number.isNaN(value) ? UNKNOWN : colour(value, 0))),
-    panels: Array.from(most, (value, k) => (unknown[k] ? "#e3e6e9" : value === -Infinity ? "#ffffff" : colour(value, PANEL_WHITENESS))),
+    hinges: Array.from(values, (value) => (Number.isNaN(value) ? unknownHinge : colour(value, 0))),
+    panels: Array.from(most, (value, k) => (unknown[k] ? unknownPanel : value === -Infinity ? rgb(ground) : colour(value, PANEL_SHARE))),
   };
 }
 
@@ -127,7 +144,7 @@ function drawScale(quantity) {
   }
   for (const value of ticks(low, high, 5)) {
     const x = x0 + ((x1 - x0) * (value - low)) / (high - low);
-    draw(svg, "line", { x1: x, x2: x, y1: 28, y2: 32, stroke: "#5d6975" });
+    draw(svg, "line", { x1: x, x2: x, y1: 28, y2: 32, stroke: TICK });
     draw(svg, "text", { x, y: 43, "font-size": 11.5, "text-anchor": "middle", class: "muted" }, shown(value));
   }
   let partly = false;

@@ -97,8 +97,8 @@ function drawDomain(state, h) {
       return [low - room, high + room];
     };
     const outside = (i) => of(states.inside, i, h) === 0;
-    const dots = points.map(([x, y], i) => ({ x, y, r: 2.2, colour: outside(i) ? "#b42318" : INK }));
-    const now = { x: points[state][0], y: points[state][1], r: 5, colour: outside(state) ? "#b42318" : ACCENT };
+    const dots = points.map(([x, y], i) => ({ x, y, r: 2.2, colour: outside(i) ? ERROR : INK }));
+    const now = { x: points[state][0], y: points[state][1], r: 5, colour: outside(state) ? ERROR : ACCENT };
     const axes = { x: axis === 0 ? "\u03b7_a = a / w_lig" : "\u03b7_s = s / w_lig", y: "\u03b8 (deg)", box: [span(0), span(1)] };
     chart(byId(axis === 0 ? "plot-a" : "plot-s"), 230, axes, [{ points, colour: INK, width: 1.2 }], dots.concat(now), region.length ? [region] : []);
   }

@@ -43,7 +43,7 @@ function writeTexts() {
   writeWarnings();
   byId("scene").textContent = run.scene;
   byId("legend").textContent = legend();
-  byId("forces-card").hidden = run.actuation.supports.length + run.actuation.loads.length + run.actuation.edges.length === 0;
+  byId("forces-card").hidden = Object.values(run.actuation).every((list) => list.length === 0);
   byId("curve-card").hidden = !states.curve;
 }
 
@@ -69,8 +69,9 @@ function legend() {
   const parts = ["Dashed orange: target."];
   if (run.model === "pin") parts.push("Pins carry no load; the sheet is centred on its target.");
   else parts.push("Fine dashes: flat sheet. Arrows: loads (orange) and reactions (teal). Square: clamp; triangle: pin; disc: roller, free along its line.");
-  parts.push("A panel has the lighter colour of its hinge with the largest value.");
-  return parts.concat(run.actuation.notes.map((note) => `${note}.`)).join(" ");
+  if (run.actuation.openings.length) parts.push("Curved orange arrows on panels: sums of the opening couples of their hinges.");
+  parts.push("A panel has the fainter colour of its hinge with the largest value.");
+  return parts.join(" ");
 }
 
 function writeForces(state) {
@@ -83,6 +84,10 @@ function writeForces(state) {
   const rows = run.actuation.edges.map((edge) => ({
     name: `load, ${edge.edge} edge`, force: edge.force.map((f) => f * zeta * edge.panels.length), couple: 0,
   }));
+  for (const { places, couple } of run.actuation.openings) {
+    const where = places ? `panels [${places[0]}] and [${places[1]}]` : "every hinge";
+    rows.push({ name: `opening couple, ${where}`, force: [0, 0], couple: couple * zeta });
+  }
   rows.push(...forcesOnPanels(state));
   for (const { name, force, couple } of rows.slice(0, MOST)) {
     const tr = write(table, "tr");
@@ -259,6 +264,7 @@ Object.assign(shownNow, fromAddress());
 fitView();
 layOut(false);
 window.addEventListener("resize", () => layOut(false));
+darkScreen.addEventListener("change", () => layOut(false));
 // The final state is printed; then the page returns to the state that it showed.
 let beforePaper = shownNow.state;
 window.addEventListener("beforeprint", () => {

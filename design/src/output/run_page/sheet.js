@@ -3,9 +3,6 @@
 const stage = byId("stage");
 const canvas = byId("panels");
 const marks = byId("marks");
-const INK = "#1f2933";
-const ACCENT = "#c2410c";
-const TEAL = "#0f766e";
 
 /** Position of a point of a panel in a state (mm). */
 function moved(state, k, x, y) {
@@ -47,8 +44,8 @@ const view = { width: 0, height: 0, scale: 1, x: 0, y: 0, zoom: 1 };
 
 /** Room around the sheet for arrows and labels (px). */
 function margin() {
-  const { loads, supports, edges } = run.actuation;
-  const widest = edges.length ? 150 : loads.length + supports.length ? 80 : 25;
+  const { loads, supports, edges, openings } = run.actuation;
+  const widest = edges.length ? 150 : loads.length + supports.length + openings.length ? 80 : 25;
   return Math.min(widest, 0.14 * view.width);
 }
 
@@ -99,13 +96,14 @@ function hingeAt(x, y) {
 function drawSheet(state, quantity, selected) {
   updateScale();
   const pen = canvas.getContext("2d");
-  pen.fillStyle = "#ffffff";
+  const { ground, ink } = canvasColours();
+  pen.fillStyle = rgb(ground);
   pen.fillRect(0, 0, view.width, view.height);
   cornersDrawn = Array.from({ length: panelCount }, (_, k) => [0, 1, 2, 3].map((c) => toPixels(corner(state, k, c))));
   const colour = colours(quantity, state);
   const edge = Math.sqrt(((extent.x1 - extent.x0) * (extent.y1 - extent.y0)) / panelCount) * view.scale;
   pen.lineJoin = "round";
-  pen.strokeStyle = INK;
+  pen.strokeStyle = ink;
   pen.lineWidth = Math.min(1.2, edge / 25);
   cornersDrawn.forEach((corners, k) => {
     pen.beginPath();
@@ -143,7 +141,7 @@ function outlinePath(points) {
 function drawMarks(state, selected) {
   marks.textContent = "";
   if (run.model !== "pin")
-    draw(marks, "path", { d: outlinePath(run.outline), fill: "none", stroke: "#8a949e", "stroke-dasharray": "3 3" });
+    draw(marks, "path", { d: outlinePath(run.outline), fill: "none", stroke: TICK, "stroke-dasharray": "3 3" });
   const target = Array.from({ length: run.target.length / 2 }, (_, i) => [run.target[2 * i], run.target[2 * i + 1]]);
   draw(marks, "path", { d: outlinePath(target), fill: "none", stroke: ACCENT, "stroke-width": 1.8, "stroke-dasharray": "9 6" });
   const labels = [];
@@ -152,7 +150,7 @@ function drawMarks(state, selected) {
   drawLoads(state, labels, obstacles);
   if (selected >= 0) {
     const [x, y] = hingePixel(selected);
-    draw(marks, "circle", { cx: x, cy: y, r: 12, fill: "none", stroke: "#fff", "stroke-width": 5, "stroke-opacity": 0.8 });
+    draw(marks, "circle", { cx: x, cy: y, r: 12, fill: "none", stroke: PAPER, "stroke-width": 5, "stroke-opacity": 0.8 });
     draw(marks, "circle", { cx: x, cy: y, r: 12, fill: "none", stroke: INK, "stroke-width": 2 });
     obstacles.push({ x0: x - 12, x1: x + 12, y0: y - 12, y1: y + 12 });
     labels.push({ text: `hinge ${selected}`, x, y: y - 12, dx: 0.3, dy: -1, colour: INK });
@@ -165,7 +163,7 @@ function drawMarks(state, selected) {
 function drawSupports(state, obstacles) {
   for (const support of run.actuation.supports) {
     const [x, y] = toPixels(centroid(state, support.panel));
-    const style = { fill: INK, stroke: "#fff", "stroke-width": 1.5 };
+    const style = { fill: INK, stroke: PAPER, "stroke-width": 1.5 };
     if (support.kind === "clamp") draw(marks, "rect", { x: x - 7, y: y - 7, width: 14, height: 14, ...style });
     else if (support.kind === "pin") draw(marks, "path", { d: `M${x} ${y - 8}l8 14h-16Z`, ...style });
     else {
@@ -205,6 +203,8 @@ const largest = (() => {
       force = Math.max(force, Math.hypot(...item.force));
       couple = Math.max(couple, Math.abs(item.couple));
     }
+    for (const { on_panels: panels } of run.actuation.openings)
+      for (const [, full] of panels) couple = Math.max(couple, Math.abs(states.load_factor[i] * full));
     for (const edge of run.actuation.edges) force = Math.max(force, Math.abs(states.load_factor[i]) * Math.hypot(...edge.force));
   }
   return { force, couple };
@@ -225,12 +225,32 @@ function drawLoads(state, labels, obstacles) {
     }
   }
   const zeta = states.load_factor[state];
+  drawOpenings(state, labels, obstacles);
   for (const edge of run.actuation.edges) {
     const force = edge.force.map((f) => f * zeta);
     const total = Math.hypot(...force) * edge.panels.length;
     if (!(total > NEGLIGIBLE * largest.force)) continue;
     const ends = edge.panels.map((k) => drawArrow(toPixels(centroid(state, k)), force, ACCENT, obstacles, 26));
     labels.push({ text: `${edge.edge} edge ${shown(total)} N`, colour: ACCENT, ...ends[Math.floor(ends.length / 2)] });
+  }
+}
+
+/** Draws the sums of the opening couples on panels; of equal couples the first has a label. */
+function drawOpenings(state, labels, obstacles) {
+  const zeta = states.load_factor[state];
+  for (const opening of run.actuation.openings) {
+    const labelled = new Set();
+    for (const [panel, full] of opening.on_panels) {
+      const [couple, corners] = [zeta * full, cornersDrawn[panel]];
+      if (!(Math.abs(couple) > NEGLIGIBLE * largest.couple)) continue;
+      const [x, y] = toPixels(centroid(state, panel));
+      const edge = Math.hypot(corners[2][0] - corners[0][0], corners[2][1] - corners[0][1]) / Math.SQRT2;
+      const r = Math.max(5, Math.min(16, 0.25 * edge));
+      drawCouple([x, y], couple, ACCENT, r);
+      obstacles.push({ x0: x - r - 3, x1: x + r + 3, y0: y - r - 3, y1: y + r + 3 });
+      if (!labelled.has(full)) labels.push({ text: `${shown(Math.abs(couple))} N mm`, colour: ACCENT, x, y: y + r, dx: 0, dy: 1 });
+      labelled.add(full);
+    }
   }
 }
 
@@ -242,7 +262,7 @@ function drawArrow([x, y], force, colour, obstacles, longest = 62) {
   const tip = [x + length * dx, y + length * dy];
   const neck = [tip[0] - 9 * dx, tip[1] - 9 * dy];
   const halo = { x1: x, y1: y, x2: neck[0], y2: neck[1], "stroke-linecap": "round" };
-  draw(marks, "line", { ...halo, stroke: "#fff", "stroke-width": 5, "stroke-opacity": 0.7 });
+  draw(marks, "line", { ...halo, stroke: PAPER, "stroke-width": 5, "stroke-opacity": 0.7 });
   draw(marks, "line", { ...halo, stroke: colour, "stroke-width": 2.5 });
   draw(marks, "path", { d: `M${tip}L${neck[0] - 5 * dy} ${neck[1] + 5 * dx}L${neck[0] + 5 * dy} ${neck[1] - 5 * dx}Z`, fill: colour });
   // The shaft in pieces, as a slanted one covers little of its bounding box.
@@ -257,10 +277,11 @@ function drawCouple([x, y], couple, colour, r) {
   const point = (angle) => [x + r * Math.cos(angle), y + sense * r * Math.sin(angle)];
   const [from, to] = [point(-0.6), point(Math.PI + 0.6)];
   const sweep = sense > 0 ? 1 : 0;
-  draw(marks, "path", { d: `M${from}A${r} ${r} 0 1 ${sweep} ${to}`, fill: "none", stroke: colour, "stroke-width": 2.5 });
+  draw(marks, "path", { d: `M${from}A${r} ${r} 0 1 ${sweep} ${to}`, fill: "none", stroke: colour, "stroke-width": r < 10 ? 1.6 : 2.5 });
   const along = [-Math.sin(Math.PI + 0.6), sense * Math.cos(Math.PI + 0.6)];
   const side = [-along[1], along[0]];
-  const p = (f, g) => [to[0] + f * along[0] + g * side[0], to[1] + f * along[1] + g * side[1]];
+  const size = Math.min(1, r / 14);
+  const p = (f, g) => [to[0] + size * (f * along[0] + g * side[0]), to[1] + size * (f * along[1] + g * side[1])];
   draw(marks, "path", { d: `M${p(8, 0)}L${p(-3, 5)}L${p(-3, -5)}Z`, fill: colour });
 }
 
