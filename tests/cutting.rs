@@ -45,7 +45,7 @@ fn a_designed_sheet_is_cut_on_paper_and_in_parts() {
 
     let small = work.error(&format!("{cut} --bed 300x300"));
     assert!(
-        small.contains("does not fit on the bed") || small.contains("reduce --lap"),
+        small.contains("does not fit on the bed") || small.contains("use a larger bed"),
         "{small}"
     );
     work.edit(SCENE, &[("over_run = 3.0", "over_run = 300.0")]);

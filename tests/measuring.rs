@@ -119,6 +119,7 @@ fn mistakes_in_a_measurement_name_their_line_and_column() {
     );
     assert!(message("unit", "colour").contains("unknown column `colour`; the columns are"));
     assert!(message(",y,", ",flat_y_mm,").contains("the column `y` is missing"));
+    assert!(message("panel", "panel;corner").contains("must be separated by commas"));
     assert!(message("P0,2", "0.5,2").contains("bad.csv:4: column `panel`: `0.5` is not"));
     assert!(message("P0,2", "P0,-1").contains("bad.csv:4: column `corner`: `-1` is not"));
     assert!(

@@ -5,8 +5,8 @@ use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::output::cut_file::{
-    CutLines, OVERLAP, Paper, SheetDrawing, Split, Tiling, cut_list, cut_summary, mark_errors,
-    split, write_dxf, write_pdf, write_svg,
+    CutDrawing, CutLines, OVERLAP, Paper, SheetDrawing, Split, Tiling, cut_list, cut_summary,
+    mark_errors, split, write_dxf, write_pdf, write_svg,
 };
 use design::output::report::{Severity, Warning, warnings};
 use serde_json::json;
@@ -123,14 +123,21 @@ impl CutCommand {
             );
         }
         if let Some(split) = &parts {
-            print_parts(split);
+            print_parts(split, CutDrawing::extent(drawing.numbered.cuts()));
         }
         println!("written to {}", out.display());
         Ok(())
     }
 }
 
-fn print_parts(split: &Split) {
+fn print_parts(split: &Split, [low, high]: [[f64; 2]; 2]) {
+    if split.parts.len() > 1 {
+        println!(
+            "the whole sheet takes {:.1} x {:.1} mm, with the kerf and the over-run beyond its edges",
+            high[0] - low[0],
+            high[1] - low[1]
+        );
+    }
     for (i, part) in split.parts.iter().enumerate() {
         let ([x, y], [width, height]) = (part.origin, part.size);
         println!(

@@ -161,16 +161,21 @@ fn flat_numbers(content: &mut Content, sheet: &Sheet, scale: f64) {
     }
     colour(content, TEAL);
     for (number, (hinge, window)) in sheet.hinges.iter().zip(Window::of_sheet(sheet)).enumerate() {
-        let height = f64::min(LABEL / scale, 0.4 * window.radius);
-        let at = number_place(hinge, &window);
+        let height = number_height(sheet.panels[hinge.panel_b()].area(), scale);
+        let at = number_place(hinge, &window, f64::max(0.55 * window.radius, 1.3 * height));
         write(content, &text(at, height, true, &number.to_string()));
     }
+}
+
+/// The height of a number on a panel of the given area: that of labels, less on small panels.
+fn number_height(area: f64, scale: f64) -> f64 {
+    f64::min(LABEL / scale, 0.14 * area.sqrt())
 }
 
 /// The number of a panel in its middle.
 fn panel_number(content: &mut Content, sheet: &Sheet, k: usize, at: &[[f64; 2]; 4], scale: f64) {
     let middle = [0, 1].map(|axis| 0.25 * at.iter().map(|corner| corner[axis]).sum::<f64>());
-    let height = f64::min(LABEL / scale, 0.12 * sheet.panels[k].area().sqrt());
+    let height = number_height(sheet.panels[k].area(), scale);
     colour(content, MUTED);
     write(content, &text(middle, height, true, &format!("P{k}")));
 }

@@ -17,10 +17,12 @@ fn results(folder: &Path, scene: &str) -> [String; 3] {
 
 /// The texts of a PDF that are set in a font, in their order. Every text follows the choice of its font.
 fn texts(pdf: &str, font: &str) -> Vec<String> {
-    let set = pdf.split(&format!("/{font} ")).skip(1);
+    let choice = format!("/{font} ");
+    let set = pdf.split(&choice).skip(1);
     set.filter_map(|after| {
+        let (size, after) = after.split_once('\n')?;
         let (_, text) = after.split_once("Tm\n")?;
-        let text = text.split(" Tj").next()?;
+        let text = text.split(" Tj").next().filter(|_| size.ends_with(" Tf"))?;
         let text = text.strip_prefix('(')?.strip_suffix(')')?;
         Some(
             text.replace("\\(", "(")
@@ -102,7 +104,7 @@ fn all_loads_of_a_state_are_drawn() {
              [[edge_loads]]\nedge = \"top\"\ntraction = [0.0, 0.0025]\n\n\
              [[opening_couples]]\npanels = [[1, 0], [2, 0]]\ncouple = 37.0",
         ),
-        ("steps = 25", "steps = 0"),
+        ("steps = 25", "steps = 1"),
     ];
     let [pdf, _, svg] = results(folder.path(), &with(&changes));
     // 0.0025 N/mm on 1200 mm, over three panels.
@@ -117,8 +119,9 @@ fn all_loads_of_a_state_are_drawn() {
             "[target.circle]",
             "[drive]\nstroke = 20.0\n\n[target.circle]",
         ),
-        ("steps = 25", "steps = 0"),
+        ("steps = 25", "steps = 1"),
     ]);
+    let folder = tempfile::tempdir().unwrap();
     let scene = read(folder.path(), &driven);
     let designed = run(&scene, None).unwrap();
     let reached = designed.best.deployment.final_step().load_factor * 2.0;

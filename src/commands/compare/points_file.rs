@@ -137,6 +137,11 @@ struct Columns {
 
 impl Columns {
     fn new(header: &csv::StringRecord) -> Result<Self> {
+        // Spreadsheets of countries with a decimal comma.
+        ensure!(
+            !header.iter().any(|name| name.contains([';', '\t'])),
+            "the columns must be separated by commas, and decimals have a point"
+        );
         for name in header {
             if !COLUMNS.contains(&name) {
                 let hint = match nearest(name, COLUMNS) {
@@ -174,7 +179,12 @@ impl Columns {
         let length = |axis: usize| -> Result<f64> {
             let value = text(self.position[axis]);
             value.parse().ok().with_context(|| {
-                format!("column `{}`: `{value}` is not a number", ["x", "y"][axis])
+                let decimals = match value.contains(',') {
+                    true => "; decimals have a point",
+                    false => "",
+                };
+                let name = ["x", "y"][axis];
+                format!("column `{name}`: `{value}` is not a number{decimals}")
             })
         };
         let corner = self.corner.filter(|&column| !text(column).is_empty());

@@ -70,7 +70,8 @@ pub enum FabricationError {
         simulated: f64,
     },
     #[error(
-        "panel {panel} with its joints is {} x {} mm large and does not fit on the bed of {} x {} mm",
+        "panel {panel} with its joints is {} x {} mm large and does not fit on the bed of {} x {} mm: use a bed \
+         of at least this size",
         size[0].ceil(), size[1].ceil(), bed[0], bed[1]
     )]
     PartTooLarge {
@@ -79,14 +80,15 @@ pub enum FabricationError {
         bed: [f64; 2],
     },
     #[error(
-        "the joint at hinge {hinge} needs {needed:.1} mm along the edges of panel {panel}, which have room for \
-         {room:.1} mm: reduce --lap, or use a larger bed"
+        "the joint at hinge {hinge} crosses panel {panel}, which is too small for tape of {lap} mm to either side: {}",
+        with_less_tape(*widest)
     )]
     NoRoomForSeam {
         hinge: usize,
         panel: usize,
-        needed: f64,
-        room: f64,
+        lap: f64,
+        /// The widest tape for which there is room; not positive if there is none without tape either.
+        widest: f64,
     },
     #[error("the drawing takes {pages} pages, more than {limit}: choose a larger paper")]
     TooManyPages { pages: usize, limit: usize },
@@ -95,4 +97,14 @@ pub enum FabricationError {
         path: PathBuf,
         source: std::io::Error,
     },
+}
+
+/// What to do where a panel is too small for a joint.
+fn with_less_tape(widest: f64) -> String {
+    // Rounded down, so that the width stated fits.
+    let tenths = (10.0 * widest).floor() / 10.0;
+    match tenths > 0.0 {
+        true => format!("use --lap {tenths}, or a larger bed"),
+        false => "use a larger bed, or design larger panels".to_owned(),
+    }
 }

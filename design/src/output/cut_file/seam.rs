@@ -34,25 +34,37 @@ pub struct Seam {
     pub ends: [[f64; 2]; 2],
 }
 
+/// A seam across a corner of a panel.
+struct Across {
+    /// Its ends (mm).
+    ends: [[f64; 2]; 2],
+    /// The length that it needs of both edges, and the length that they have for it (mm).
+    needed: f64,
+    room: f64,
+    /// Cosine of half the angle between the edges: the width of the tape over the length that it needs.
+    cos: f64,
+}
+
 impl Seam {
     /// The seam at a hinge, in the panel that has more room for it. Tape reaches `lap` (mm) to either side of a seam.
     pub(super) fn new(sheet: &Sheet, number: usize, lap: f64) -> Result<Self, FabricationError> {
         let hinge = &sheet.hinges[number];
         let [a, b] = [hinge.site.a, hinge.site.b].map(|at| Self::across(sheet, hinge, at, lap));
-        let fill = |(_, needed, room): &([[f64; 2]; 2], f64, f64)| needed / room;
-        let (at, (ends, needed, room)) = match fill(&a) < fill(&b) {
+        let fill = |seam: &Across| seam.needed / seam.room;
+        let (at, seam) = match fill(&a) < fill(&b) {
             true => (hinge.site.a, a),
             false => (hinge.site.b, b),
         };
         let (hinge, (panel, corner)) = (number, at);
-        if needed > room {
+        if seam.needed > seam.room {
             return Err(FabricationError::NoRoomForSeam {
                 hinge,
                 panel,
-                needed,
-                room,
+                lap,
+                widest: lap - (seam.needed - seam.room) * seam.cos,
             });
         }
+        let ends = seam.ends;
         Ok(Self {
             hinge,
             panel,
@@ -61,13 +73,8 @@ impl Seam {
         })
     }
 
-    /// Ends of the seam across a corner, the length that it needs of both edges, and their room (mm).
-    fn across(
-        sheet: &Sheet,
-        hinge: &Hinge,
-        (panel, corner): PanelCorner,
-        lap: f64,
-    ) -> ([[f64; 2]; 2], f64, f64) {
+    /// The seam across a corner.
+    fn across(sheet: &Sheet, hinge: &Hinge, (panel, corner): PanelCorner, lap: f64) -> Across {
         let corners = &sheet.panels[panel].corners;
         let from = corners[corner];
         let neighbours = [corners[(corner + 1) % 4], corners[(corner + 3) % 4]];
@@ -80,6 +87,11 @@ impl Seam {
         let cos = 0.5 * f64::hypot(u[0] + v[0], u[1] + v[1]);
         let needed = distance(from, hinge.tip) + (CLEAR_OF_TIP * hinge.w_lig + lap) / cos;
         let ends = [u, v].map(|[x, y]| [from[0] + needed * x, from[1] + needed * y]);
-        (ends, needed, OF_EDGE * lengths[0].min(lengths[1]))
+        Across {
+            ends,
+            needed,
+            room: OF_EDGE * lengths[0].min(lengths[1]),
+            cos,
+        }
     }
 }

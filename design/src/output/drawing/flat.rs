@@ -77,15 +77,15 @@ fn ligaments(page: &mut Page, sheet: &Sheet) {
     for (number, (hinge, window)) in sheet.hinges.iter().zip(Window::of_sheet(sheet)).enumerate() {
         page.canvas.line(hinge.tip, window.foot, &stroke);
         let height = f64::min(15.0 * page.unit, 0.3 * window.radius);
-        let [x, y] = number_place(hinge, &window);
+        let [x, y] = number_place(hinge, &window, 0.55 * window.radius);
         let at = [x, y - 0.35 * height];
         page.canvas
             .text(at, height, Anchor::Middle, &ink, &number.to_string());
     }
 }
 
-/// The middle of the number of a hinge: in the half of its window on panel B, beside the main cut (mm).
-pub(crate) fn number_place(hinge: &Hinge, window: &Window) -> [f64; 2] {
-    let (reach, along) = (0.55 * window.radius, hinge.alpha / 2.0);
+/// The middle of the number of a hinge, on panel B beside the main cut, at the distance `reach` from the hinge (mm).
+pub(crate) fn number_place(hinge: &Hinge, window: &Window, reach: f64) -> [f64; 2] {
+    let along = hinge.alpha / 2.0;
     window.point(reach * along.cos(), -reach * along.sin())
 }

@@ -113,12 +113,10 @@ pub(crate) fn marks(scene: &Scene, sheet: &Sheet, step: &LoadStep, unit: f64) ->
             let text = format!("{} N", rounded(size, 4));
             let [x, y] = load.force.map(|component| rounded(component, 4));
             let key = format!("{x} {y}");
-            label(
-                &mut marks,
-                key,
-                at([tip + 16.0 + 26.0 * c.abs(), 0.0]),
-                text,
-            );
+            // The half width of a character and the half height of a text are 4.1 and 8 units.
+            let width = 4.1 * text.chars().count() as f64;
+            let beyond = tip + 8.0 + width * c.abs() + 8.0 * s.abs();
+            label(&mut marks, key, at([beyond, 0.0]), text);
         }
         if load.couple != 0.0 {
             marks.extend(curved_arrow(load.at, load.couple.signum(), unit));

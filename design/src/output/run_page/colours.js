@@ -72,9 +72,12 @@ const [INK, PAPER, ACCENT, TEAL, ERROR, GRID, TICK, UNKNOWN] =
 let onPaper = false;
 const darkScreen = matchMedia("(prefers-color-scheme: dark)");
 
-/** The colours of the panels on the canvas: of the ground, of edges, and where nothing is known. */
-const LIGHT = { ground: [255, 255, 255], ink: "#1f2933", unknownPanel: "#e3e6e9", unknownHinge: "#9aa3ad" };
-const DARK = { ground: [26, 32, 39], ink: "#c4cdd6", unknownPanel: "#343d46", unknownHinge: "#7d8894" };
+/**
+ * The colours of the panels on the canvas: of the ground, of edges, and where nothing is known; `lift` is the share of
+ * white in the colours of a scale, whose dark end would not be seen on a dark ground.
+ */
+const LIGHT = { lift: 0, ground: [255, 255, 255], ink: "#1f2933", unknownPanel: "#e3e6e9", unknownHinge: "#9aa3ad" };
+const DARK = { lift: 0.22, ground: [26, 32, 39], ink: "#c4cdd6", unknownPanel: "#343d46", unknownHinge: "#7d8894" };
 const canvasColours = () => (darkScreen.matches && !onPaper ? DARK : LIGHT);
 
 const rgb = (channels) => `rgb(${channels.map(Math.round).join(",")})`;
@@ -87,8 +90,8 @@ function viridis(fraction, share) {
   const stop = Math.min(Math.floor(position), VIRIDIS.length - 2);
   const f = position - stop;
   const c = [0, 1, 2].map((i) => VIRIDIS[stop][i] + f * (VIRIDIS[stop + 1][i] - VIRIDIS[stop][i]));
-  const { ground } = canvasColours();
-  return rgb(c.map((x, i) => x + share * (ground[i] - x)));
+  const { ground, lift } = canvasColours();
+  return rgb(c.map((x) => x + lift * (255 - x)).map((x, i) => x + share * (ground[i] - x)));
 }
 
 /** The interval of a quantity over all states, which its colours cover. */

@@ -32,13 +32,15 @@ function shown(x, digits = 4) {
   if (!Number.isFinite(x)) return "not known";
   if (x === 0) return "0";
   const size = Math.abs(x);
-  if (size < 1e-3 || size >= 1e6) return x.toExponential(2).replace("e+", "e").replace("-", "\u2212");
+  if (size < 1e-3 || size >= 1e6) return x.toExponential(2).replace("e+", "e").replaceAll("-", "\u2212");
   return String(Number(x.toPrecision(Math.max(digits, Math.floor(Math.log10(size)) + 1)))).replace("-", "\u2212");
 }
 
 function fixed(x, decimals) {
   if (!Number.isFinite(x)) return "not known";
-  return Math.abs(x) >= 1e6 ? shown(x) : x.toFixed(decimals).replace("-", "\u2212");
+  if (Math.abs(x) >= 1e6) return shown(x);
+  const text = x.toFixed(decimals);
+  return Number(text) === 0 ? (0).toFixed(decimals) : text.replace("-", "\u2212");
 }
 
 /** The deformation of a hinge in a state: a (mm), s (mm), theta (rad). */

@@ -93,7 +93,8 @@ function drawDomain(state, h) {
     const span = (c) => {
       const values = known.map((p) => p[c]);
       const [low, high] = [Math.min(...values), Math.max(...values)];
-      const room = 0.06 * (high - low || 0.1);
+      // What is below a millionth is rounding.
+      const room = high - low > 1e-6 ? 0.06 * (high - low) : 0.01;
       return [low - room, high + room];
     };
     const outside = (i) => of(states.inside, i, h) === 0;

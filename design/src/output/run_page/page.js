@@ -92,9 +92,9 @@ function writeForces(state) {
   for (const { name, force, couple } of rows.slice(0, MOST)) {
     const tr = write(table, "tr");
     write(tr, "td", name);
-    const clean = (x, most) => (Math.abs(x) > NEGLIGIBLE * most ? shown(x) : "0");
-    force.forEach((f) => write(tr, "td", clean(f, largest.force)));
-    write(tr, "td", clean(couple, Math.max(largest.couple, largest.force)));
+    const clean = (x, least) => (Math.abs(x) > least ? shown(x) : "0");
+    force.forEach((f) => write(tr, "td", clean(f, noticeable.force)));
+    write(tr, "td", clean(couple, noticeable.couple));
   }
   if (rows.length > MOST) write(write(table, "tr"), "td", `and ${rows.length - MOST} more`).colSpan = 4;
   byId("forces-state").textContent = `${stateName(state)}, on the sheet, at the panels' centroids`;

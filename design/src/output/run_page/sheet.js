@@ -210,15 +210,24 @@ const largest = (() => {
   return { force, couple };
 })();
 
+/** The force and the couple that no larger one makes rounding: each of the two acts with the size of the sheet as lever. */
+const noticeable = (() => {
+  const size = Math.hypot(run.outline[2][0] - run.outline[0][0], run.outline[2][1] - run.outline[0][1]);
+  return {
+    force: NEGLIGIBLE * Math.max(largest.force, largest.couple / size),
+    couple: NEGLIGIBLE * Math.max(largest.couple, largest.force * size),
+  };
+})();
+
 function drawLoads(state, labels, obstacles) {
   for (const item of forcesOnPanels(state)) {
     const at = toPixels(centroid(state, item.panel));
     const force = Math.hypot(...item.force);
-    if (force > NEGLIGIBLE * largest.force) {
+    if (force > noticeable.force) {
       const end = drawArrow(at, item.force, item.colour, obstacles);
       labels.push({ text: `${shown(force)} N`, colour: item.colour, ...end });
     }
-    if (Math.abs(item.couple) > NEGLIGIBLE * largest.couple) {
+    if (Math.abs(item.couple) > noticeable.couple) {
       drawCouple(at, item.couple, item.colour, item.reaction ? 20 : 26);
       labels.push({ text: `${shown(Math.abs(item.couple))} N mm`, colour: item.colour, x: at[0], y: at[1] + 26, dx: 0, dy: 1 });
       obstacles.push({ x0: at[0] - 26, x1: at[0] + 26, y0: at[1] - 26, y1: at[1] + 26 });
@@ -229,7 +238,7 @@ function drawLoads(state, labels, obstacles) {
   for (const edge of run.actuation.edges) {
     const force = edge.force.map((f) => f * zeta);
     const total = Math.hypot(...force) * edge.panels.length;
-    if (!(total > NEGLIGIBLE * largest.force)) continue;
+    if (!(total > noticeable.force)) continue;
     const ends = edge.panels.map((k) => drawArrow(toPixels(centroid(state, k)), force, ACCENT, obstacles, 26));
     labels.push({ text: `${edge.edge} edge ${shown(total)} N`, colour: ACCENT, ...ends[Math.floor(ends.length / 2)] });
   }
@@ -242,7 +251,7 @@ function drawOpenings(state, labels, obstacles) {
     const labelled = new Set();
     for (const [panel, full] of opening.on_panels) {
       const [couple, corners] = [zeta * full, cornersDrawn[panel]];
-      if (!(Math.abs(couple) > NEGLIGIBLE * largest.couple)) continue;
+      if (!(Math.abs(couple) > noticeable.couple)) continue;
       const [x, y] = toPixels(centroid(state, panel));
       const edge = Math.hypot(corners[2][0] - corners[0][0], corners[2][1] - corners[0][1]) / Math.SQRT2;
       const r = Math.max(5, Math.min(16, 0.25 * edge));
