@@ -48,6 +48,23 @@ fn opened(work: &Workplace, run: &str, address: &str) -> (String, Value) {
     (document, serde_json::from_str(&report).unwrap())
 }
 
+/// The number of pages on which the page of a run is printed, from a dark screen.
+fn printed_pages(work: &Workplace) -> usize {
+    let pdf = work.path("run.pdf");
+    let page = format!("file://{}", work.path("run/run.html").display());
+    browse(
+        &page,
+        &[
+            "--no-pdf-header-footer",
+            "--blink-settings=preferredColorScheme=0",
+            &format!("--print-to-pdf={}", pdf.display()),
+        ],
+    );
+    let bytes = std::fs::read(&pdf).unwrap();
+    let text = String::from_utf8_lossy(&bytes);
+    text.matches("/Type /Page\n").count()
+}
+
 /// The value beside a name in the table of a hinge.
 fn cell<'a>(document: &'a str, name: &str) -> &'a str {
     let (_, row) = document.split_once(&format!("<td>{name}</td><td")).unwrap();
@@ -63,10 +80,18 @@ fn number(text: &str) -> f64 {
 #[test]
 fn a_sheet_of_springs_shows_its_loads_and_the_numbers_of_a_hinge() {
     let work = Workplace::new();
+    let opened_hinge =
+        "[[opening_couples]]\npanels = [[1, 1], [2, 1]]\ncouple = 5.0\n\n[target.circle]";
+    work.edit(
+        "configs/scenes/linear-7x7.toml",
+        &[("[target.circle]", opened_hinge)],
+    );
     work.output("design configs/scenes/linear-7x7.toml --steps 2 --out run");
     let (document, report) = opened(&work, "run", "hinge=17&quantity=moment");
-    // One label for each of the four forces.
+    // One label for each of the four forces, and for the two couples that open a hinge.
     assert_eq!(document.matches(">40 N</text>").count(), 4);
+    assert_eq!(document.matches(">5 N mm</text>").count(), 2);
+    assert!(document.contains("<td>opening couple, panels [1,1] and [2,1]</td>"));
     assert!(document.contains("Load step 10 of 10 \u{b7} load factor 1 \u{b7} load 160 N"));
     let row = &report["hinges"][17];
     for (name, key, unit) in [
@@ -89,11 +114,39 @@ fn a_sheet_of_springs_shows_its_loads_and_the_numbers_of_a_hinge() {
         document.contains("The flat sheet \u{b7} load factor 0") && !document.contains(" N</text>")
     );
     assert_eq!(number(cell(&document, "\u{3b8}")), 0.0);
+    assert_eq!(printed_pages(&work), 2);
     // The animation has a frame for every state.
     let animation = std::fs::read(work.path("run/deployment.png")).unwrap();
     let frames = animation.windows(4).filter(|name| name == b"fcTL").count();
     assert_eq!(frames, 11);
     assert!(animation.len() < 1_000_000, "{}", animation.len());
+}
+
+/// The colour of a pixel beside the title, on a screen with the given preference of Blink (0: dark, 1: light).
+fn ground(work: &Workplace, preference: u8) -> [u8; 3] {
+    let picture = work.path("screen.png");
+    let page = format!("file://{}", work.path("run/run.html").display());
+    browse(
+        &page,
+        &[
+            "--window-size=900,600",
+            &format!("--blink-settings=preferredColorScheme={preference}"),
+            &format!("--screenshot={}", picture.display()),
+        ],
+    );
+    let file = std::io::BufReader::new(std::fs::File::open(picture).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut pixels).unwrap();
+    [pixels[0], pixels[1], pixels[2]]
+}
+
+#[test]
+fn the_page_is_dark_on_a_dark_screen() {
+    let work = Workplace::new();
+    work.output("design configs/scenes/pin-7x7.toml --steps 1 --out run");
+    assert_eq!(ground(&work, 0), [0x10, 0x15, 0x1a]);
+    assert_eq!(ground(&work, 1), [0xf3, 0xf5, 0xf7]);
 }
 
 #[test]
@@ -153,16 +206,5 @@ fn a_hostile_title_is_only_text_and_the_page_prints_on_two_sheets() {
         "shown as text"
     );
     assert!(!document.contains("<title>taken"));
-    let pdf = work.path("run.pdf");
-    let page = format!("file://{}", work.path("run/run.html").display());
-    browse(
-        &page,
-        &[
-            "--no-pdf-header-footer",
-            &format!("--print-to-pdf={}", pdf.display()),
-        ],
-    );
-    let bytes = std::fs::read(&pdf).unwrap();
-    let text = String::from_utf8_lossy(&bytes);
-    assert_eq!(text.matches("/Type /Page\n").count(), 2);
+    assert_eq!(printed_pages(&work), 2);
 }

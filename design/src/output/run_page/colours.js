@@ -143,7 +143,7 @@ function drawScale(quantity) {
   draw(svg, "text", { x: x0, y: 12, "font-size": 12.5 }, title);
   for (let i = 0; i < 64; i++) {
     const x = x0 + ((x1 - x0) * i) / 64;
-    draw(svg, "rect", { x, y: 18, width: (x1 - x0) / 64 + 0.5, height: 10, fill: viridis((i + 0.5) / 64, 0) });
+    draw(svg, "rect", { x, y: 18, width: (x1 - x0) / 64 + 0.5, height: 10, fill: viridis((i + 0.5) / 64, 0), "shape-rendering": "crispEdges" });
   }
   for (const value of ticks(low, high, 5)) {
     const x = x0 + ((x1 - x0) * (value - low)) / (high - low);

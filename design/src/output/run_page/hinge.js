@@ -5,7 +5,11 @@ function hingeLines(state, h) {
   const w = run.hinges.w_lig[h];
   const [a, s, theta] = deformation(state, h);
   const [panelA, , panelB] = run.hinges.sites[h];
-  const value = (list, unit, digits) => (list ? `${shown(of(list, state, h), digits)}${unit}` : null);
+  const value = (list, unit, digits) => {
+    if (!list) return null;
+    const number = of(list, state, h);
+    return Number.isFinite(number) ? shown(number, digits) + unit : shown(number);
+  };
   const most = (list, known) => (known ? shown(list[h], 3) : null);
   const [fa, fs, m] = states.forces ? forces(state, h) : [];
   const law = (x, unit) => (states.forces ? `${shown(x)} ${unit}` : null);

@@ -56,7 +56,7 @@ function writeWarnings() {
     write(li, "span", warning.severity, `tag ${warning.severity}`);
     write(li, "span", warning.message);
     warning.hinges.slice(0, MOST).forEach((h, i) => {
-      write(li, "span", i ? ", " : " (hinges ");
+      write(li, "span", i ? ", " : warning.hinges.length > 1 ? " (hinges " : " (hinge ");
       const link = write(li, "a", String(h), "hinge");
       link.addEventListener("click", () => show({ hinge: h }));
     });
@@ -238,7 +238,7 @@ function layOut(paper) {
   widths.clear();
   const width = paper ? 700 : stage.clientWidth;
   const aspect = (extent.y1 - extent.y0) / (extent.x1 - extent.x0);
-  const most = paper ? 520 : Math.max(window.innerHeight - 290, 380);
+  const most = paper ? 430 : Math.max(window.innerHeight - 290, 380);
   resizeStage(width, Math.round(Math.min(most, Math.max(0.8 * width * aspect + 110, 320))), paper ? 3 : window.devicePixelRatio || 1);
   show({ quantity: shownNow.quantity });
   drawHistory();
@@ -264,7 +264,8 @@ Object.assign(shownNow, fromAddress());
 fitView();
 layOut(false);
 window.addEventListener("resize", () => layOut(false));
-darkScreen.addEventListener("change", () => layOut(false));
+// Printing is a change to light.
+darkScreen.addEventListener("change", () => layOut(onPaper));
 // The final state is printed; then the page returns to the state that it showed.
 let beforePaper = shownNow.state;
 window.addEventListener("beforeprint", () => {
