@@ -4,7 +4,7 @@ use crate::equilibrium::load_step::LoadStep;
 use crate::output::cut_file::pdf_tiles::{draw, write};
 use crate::output::cut_file::{CutDrawing, CutLines, Paper, Text};
 use crate::output::drawing::flat::number_place;
-use crate::output::drawing::load_marks::{Mark, extent, marks};
+use crate::output::drawing::load_marks::{Mark, marks};
 use crate::output::drawing::page::{bounds, round_below};
 use crate::output::pdf::{self, Font, colour, filled, line, page, polygon, polyline};
 use crate::output::report::Report;
@@ -33,9 +33,9 @@ const HEIGHT: f64 = 128.0;
 const GAP: f64 = 10.0;
 /// Height of the capitals of captions and of labels (mm).
 const CAPTION: f64 = 2.0;
-const LABEL: f64 = 1.9;
+const LABEL: f64 = 1.7;
 /// The unit of symbols of supports and loads (mm).
-const UNIT: f64 = 0.18;
+const UNIT: f64 = 0.17;
 
 const INK: [u8; 3] = [31, 41, 51];
 const MUTED: [u8; 3] = [102, 114, 127];
@@ -81,30 +81,61 @@ pub(super) fn report_pdf(
     pdf::file(size, &fonts, None, numbered.collect())
 }
 
-/// Draws the deployed and the flat sheet at the same scale, beside each other or, if they are then larger, one above the
-/// other, with their captions and a scale bar. Returns the lower end.
+/// Places of drawings of the same scale on a page.
+struct Layout {
+    scale: f64,
+    /// Whether they stand beside each other, not one above the other.
+    beside: bool,
+    /// Their height (mm).
+    height: f64,
+}
+
+impl Layout {
+    /// The arrangement in which drawings of the given bounding boxes are larger.
+    fn of(boxes: &[[[f64; 2]; 2]]) -> Self {
+        let sum = |axis: usize| boxes.iter().map(|it| side(it, axis)).sum::<f64>();
+        let most = |axis: usize| boxes.iter().map(|it| side(it, axis)).fold(0.0, f64::max);
+        let gaps = GAP * (boxes.len() - 1) as f64;
+        let width = Paper::A4.size()[0] - 2.0 * BORDER;
+        let beside = f64::min((width - gaps) / sum(0), HEIGHT / most(1));
+        let stacked = f64::min(width / most(0), (HEIGHT - gaps) / sum(1));
+        match beside >= stacked {
+            true => Self {
+                scale: beside,
+                beside: true,
+                height: beside * most(1),
+            },
+            false => Self {
+                scale: stacked,
+                beside: false,
+                height: stacked * sum(1) + gaps,
+            },
+        }
+    }
+}
+
+fn side([low, high]: &[[f64; 2]; 2], axis: usize) -> f64 {
+    high[axis] - low[axis]
+}
+
+/// Draws the deployed and the flat sheet at the same scale with their captions and a scale bar. Returns the lower end.
 fn drawings(
     content: &mut Content,
     top: f64,
     deployed: &Deployed,
     flat: Option<&CutDrawing>,
 ) -> f64 {
-    let mut boxes = vec![deployed.bounds()];
-    boxes.extend(flat.map(CutDrawing::bounds));
-    let side = |[low, high]: &[[f64; 2]; 2], axis: usize| high[axis] - low[axis];
-    let sum = |axis: usize| boxes.iter().map(|it| side(it, axis)).sum::<f64>();
-    let most = |axis: usize| boxes.iter().map(|it| side(it, axis)).fold(0.0, f64::max);
-    let gaps = GAP * (boxes.len() - 1) as f64;
-    let width = Paper::A4.size()[0] - 2.0 * BORDER;
-    let [beside, stacked] = [
-        f64::min((width - gaps) / sum(0), HEIGHT / most(1)),
-        f64::min(width / most(0), (HEIGHT - gaps) / sum(1)),
-    ];
-    let scale = beside.max(stacked);
-    let height = match beside >= stacked {
-        true => scale * most(1),
-        false => scale * sum(1) + gaps,
+    let boxes = |deployed| {
+        let flat = flat.map(CutDrawing::bounds);
+        [deployed].into_iter().chain(flat).collect::<Vec<_>>()
     };
+    // Arrows have a length on the page: in the sheet they are the longer the smaller the drawing is.
+    let mut layout = Layout::of(&boxes(bounds(deployed.points())));
+    for _ in 0..8 {
+        layout = Layout::of(&boxes(deployed.bounds(layout.scale)));
+    }
+    let scale = layout.scale;
+    let boxes = boxes(deployed.bounds(scale));
     let mut corner = [BORDER, top];
     for (place, outline) in boxes.iter().enumerate() {
         let caption = match place {
@@ -131,12 +162,12 @@ fn drawings(
             _ => deployed.draw(content, scale),
         }
         content.restore_state();
-        match beside >= stacked {
+        match layout.beside {
             true => corner[0] += scale * side(outline, 0) + GAP,
             false => corner[1] -= scale * side(outline, 1) + GAP,
         }
     }
-    let bottom = top - 2.5 * CAPTION - height - 4.0;
+    let bottom = top - 2.5 * CAPTION - layout.height - 4.0;
     scale_bar(content, [BORDER, bottom], scale);
     bottom
 }
@@ -193,10 +224,26 @@ impl Deployed<'_> {
         deployed_corners(self.sheet, &configuration)
     }
 
-    fn bounds(&self) -> [[f64; 2]; 2] {
+    /// Corners of the panels, and points of the target.
+    fn points(&self) -> Vec<[f64; 2]> {
         let mut points = self.corners().concat();
         points.extend(self.scene.target.points());
-        points.extend(extent(self.scene, self.sheet, self.last));
+        points
+    }
+
+    /// The bounding box of the drawing with its arrows and labels, on a page that shows 1 mm as `scale`.
+    fn bounds(&self, scale: f64) -> [[f64; 2]; 2] {
+        let mut points = self.points();
+        for mark in marks(self.scene, self.sheet, self.last, UNIT / scale) {
+            match mark {
+                Mark::Support(corners) | Mark::Shaft(corners) | Mark::Head(corners) => {
+                    points.extend(corners);
+                }
+                Mark::Label(at, label) => {
+                    points.extend(text(at, LABEL / scale, true, &label).corners());
+                }
+            }
+        }
         bounds(points)
     }
 

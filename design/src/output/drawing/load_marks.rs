@@ -74,7 +74,7 @@ impl PanelLoad {
 }
 
 /// Points that enclose arrows and labels (mm).
-pub(crate) fn extent(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> Vec<[f64; 2]> {
+pub(super) fn extent(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> Vec<[f64; 2]> {
     let reach = REACH * sheet.outline.size();
     (PanelLoad::of(scene, sheet, step).iter())
         .map(|load| {
