@@ -32,8 +32,8 @@ pub enum ResultsError {
     },
 }
 
-/// Writes `report.json`, `report.txt`, `report.pdf`, `run.html`, `deployed-start.svg` and `deployed.svg`; for a design with cut lines also
-/// `flat.svg`; for a design without errors, or if `force`, also the [`CUT_FILES`].
+/// Writes `report.json`, `report.txt`, `report.pdf`, `run.html`, `deployed-start.svg` and `deployed.svg`; for a design with
+/// cut lines also `flat.svg`; for a design without errors, or if `force`, also the [`CUT_FILES`].
 ///
 /// If no cut file is written, the report states why, and the cut files of an earlier design are removed.
 pub fn write_results(
