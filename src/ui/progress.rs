@@ -9,6 +9,9 @@ use support::verbose;
 /// Interval between progress lines when the output is no terminal.
 const LINE_EVERY: Duration = Duration::from_secs(60);
 
+/// Time left that is not shown (s): the estimate of a task that was resumed and has not yet finished a unit.
+const LONGEST: u64 = 365 * 24 * 3600;
+
 static SILENT: AtomicBool = AtomicBool::new(false);
 
 /// Shows no progress from now on.
@@ -66,7 +69,7 @@ impl Progress {
         let noted = verbose::is_shown() && !message.is_empty();
         let left = seconds_left.map_or_else(|| self.bar.eta(), Duration::from_secs_f64);
         let message = match left.as_secs() {
-            0 => message.to_owned(),
+            0 | LONGEST.. => message.to_owned(),
             _ => format!("{} left  {message}", HumanDuration(left)),
         };
         let due = self.bar.is_hidden() && self.last_line.get().elapsed() > LINE_EVERY;
