@@ -67,6 +67,9 @@ const STATES: usize = 40;
 /// Differences at the end: of W, of the forces, of D and of D_peak, and those above which they are called path-dependent.
 const QUANTITIES: [(&str, f64); 4] = [("W", 0.01), ("forces", 0.05), ("D", 0.05), ("D_peak", 0.05)];
 
+/// Separations between which the differences are summarised.
+const BANDS: [f64; 5] = [0.0, 0.03, 0.08, 0.15, 0.5];
+
 /// A detour with its differences from the ray.
 struct Detour {
     ray: usize,
@@ -99,6 +102,8 @@ impl DetourStudy {
                     _ => writeln!(failures, "* {}: stopped before its end", route.name())?,
                 },
                 (Err(reason), _) | (_, Err(reason)) => {
+                    // Only the first line: the rest quotes the end of the solver's log.
+                    let reason = reason.lines().next().unwrap_or_default();
                     writeln!(failures, "* {}: {reason}", route.name())?;
                 }
             }
@@ -108,12 +113,11 @@ impl DetourStudy {
         run_folder::write(&self.out, "detours.md", &page)?;
         run_folder::write(&self.out, "detours.csv", &csv(&detours))?;
         let points: [Vec<_>; 4] = std::array::from_fn(|i| points(&detours, None, i));
-        let separations: Vec<f64> = detours.iter().map(|it| it.separation.whole).collect();
         let charts: Vec<_> = std::iter::zip(QUANTITIES, &points)
             .map(|((quantity, _), pairs)| SeparationChart {
                 pairs,
                 fit: PowerLaw::fit(pairs.iter().copied()),
-                all: &separations,
+                all: &[],
                 quantity,
             })
             .collect();
@@ -216,10 +220,11 @@ fn page(detours: &[Detour], tier: Tier, failures: &str) -> Result<String> {
          Separation: maximum distance from the straight ray at equal fractions of the lengths, in ligament widths, of (eta_a, \
          eta_s, theta) and, as in the paper, of (eta_a, eta_s) alone. Differences at the end from the straight ray; forces: \
          Euclidean norm of (F_a, F_s, M_theta / w_lig). Exponent: of the power law through the pairs, with its standard \
-         error.\n\n| detour | quantity | exponent | separation at which the law reaches a limit | largest difference |\n\
+         error.\n\n{}| detour | quantity | exponent | separation at which the law reaches a limit | largest difference |\n\
          |---|---|---|---|---|\n",
         detours.len(),
-        RAYS.len()
+        RAYS.len(),
+        by_separation(detours)
     );
     let kinds = KINDS.iter().enumerate();
     let kinds = kinds.map(|(kind, (name, _))| (Some(kind), *name));
@@ -230,7 +235,12 @@ fn page(detours: &[Detour], tier: Tier, failures: &str) -> Result<String> {
             let (exponent, reached) = match PowerLaw::fit(points) {
                 Some(law) => {
                     let reached = law.reaches(limit);
-                    (law.to_string(), format!("{reached:.2}"))
+                    let solved = BANDS[BANDS.len() - 1];
+                    let reached = match reached <= solved {
+                        true => format!("{reached:.2}"),
+                        false => format!("over {solved}"),
+                    };
+                    (law.to_string(), reached)
                 }
                 None => ("-".to_owned(), "-".to_owned()),
             };
@@ -259,6 +269,41 @@ fn page(detours: &[Detour], tier: Tier, failures: &str) -> Result<String> {
         write!(page, "\nNot solved:\n\n{failures}")?;
     }
     Ok(page)
+}
+
+/// Median and maximum difference of each quantity between two separations.
+fn by_separation(detours: &[Detour]) -> String {
+    let names = QUANTITIES.map(|(name, _)| format!("{name}, median | maximum"));
+    let mut text = format!(
+        "| separation | detours | {} |\n|---|---|{}\n",
+        names.join(" | "),
+        "---|---|".repeat(QUANTITIES.len())
+    );
+    for band in BANDS.windows(2) {
+        let within = |it: &&Detour| band[0] < it.separation.whole && it.separation.whole <= band[1];
+        let chosen: Vec<_> = detours.iter().filter(within).collect();
+        let cells = (0..QUANTITIES.len()).map(|i| {
+            let mut values: Vec<f64> = chosen.iter().map(|it| it.differences[i]).collect();
+            values.sort_by(f64::total_cmp);
+            match values.last() {
+                Some(last) => format!(
+                    "{:.2} % | {:.2} %",
+                    100.0 * values[values.len() / 2],
+                    100.0 * last
+                ),
+                None => "- | -".to_owned(),
+            }
+        });
+        let cells: Vec<String> = cells.collect();
+        let count = chosen.len();
+        text += &format!(
+            "| {} to {} | {count} | {} |\n",
+            band[0],
+            band[1],
+            cells.join(" | ")
+        );
+    }
+    text + "\n"
 }
 
 fn csv(detours: &[Detour]) -> String {

@@ -3,7 +3,7 @@
 
 use super::{FILM, read, run, with};
 use design::objective::target::TargetShape;
-use design::output::report::{Concern, Report};
+use design::output::report::{Concern, HingeRow, Report};
 use design::output::run_results::write_results;
 use design::scene::Scene;
 use design::scene::design_run::forget;
@@ -140,13 +140,15 @@ fn every_term_counts_and_the_report_names_hinges_outside_the_domain() {
         .map(|row| row.hinge);
     assert!(wide.clone().count() > 0);
     assert!(wide.into_iter().all(|hinge| ligaments.contains(&hinge)));
-    let left: Vec<usize> = report
-        .hinges
-        .iter()
-        .filter(|row| !row.inside)
-        .map(|row| row.hinge)
-        .collect();
+    let those = |concerned: fn(&HingeRow) -> bool| -> Vec<usize> {
+        let rows = report.hinges.iter().filter(|row| concerned(row));
+        rows.map(|row| row.hinge).collect()
+    };
+    let left = those(|row| !row.inside);
     assert_eq!(left, warned(&report, Concern::StatesOutsideDomain));
+    let bent = those(|row| row.path_separation > 0.15);
+    assert_eq!(bent, warned(&report, Concern::PathDependence));
+    assert!(!bent.is_empty() && bent.len() < report.hinges.len());
 }
 
 /// Weights that predict ten times the peak strain at fracture.

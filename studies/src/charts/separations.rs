@@ -18,8 +18,8 @@ pub struct SeparationChart<'a> {
 
 /// Difference against separation on logarithmic axes, one chart per quantity.
 pub fn separations(charts: &[SeparationChart]) -> Result<String> {
-    let columns = charts.len().min(3);
-    let rows = charts.len().div_ceil(3);
+    let columns = charts.len().min(2);
+    let rows = charts.len().div_ceil(2);
     let size = (480 * columns as u32, 420 * rows as u32);
     drawn(size, |root| {
         for (area, chart) in root.split_evenly((rows, columns)).iter().zip(charts) {

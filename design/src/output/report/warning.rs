@@ -50,6 +50,8 @@ pub enum Concern {
     LigamentsOutsideDomain,
     /// The path leaves the training domain of the hinge law.
     StatesOutsideDomain,
+    /// The path departs so far from the straight ray to its end that energy and forces depend on it.
+    PathDependence,
     /// D_peak of 1 or more: ligaments tear.
     Tearing,
     /// |eta| > 1 at full load: a ligament translates by more than its width.
@@ -64,11 +66,14 @@ pub enum Concern {
     TargetCrosses,
 }
 
+/// Separation of a path from its ray, in ligament widths, up to which W differs by less than 1 % (docs/results/detours).
+const SAFE_SEPARATION: f64 = 0.15;
+
 impl Concern {
     /// The severity of the concern.
     fn severity(self) -> Severity {
         match self {
-            Self::WindowsLeavePanels => Severity::Note,
+            Self::WindowsLeavePanels | Self::PathDependence => Severity::Note,
             Self::WindowsOverlap
             | Self::PanelsTilt
             | Self::LigamentsOutsideDomain
@@ -132,6 +137,7 @@ pub(super) fn all(
     warnings.extend(cutting(deployment, cuts));
     warnings.extend(tilting(scene, hinges));
     warnings.extend(domain(scene, hinges));
+    warnings.extend(path_dependence(scene, hinges));
     warnings.extend(tearing(hinges));
     warnings.extend(overstrained(hinges));
     warnings.extend(path(deployment));
@@ -248,6 +254,17 @@ fn domain(scene: &Scene, hinges: &[HingeRow]) -> Vec<Warning> {
     .into_iter()
     .flatten()
     .collect()
+}
+
+/// A learned law was measured along straight rays.
+fn path_dependence(scene: &Scene, hinges: &[HingeRow]) -> Option<Warning> {
+    scene.surrogate()?;
+    let bent = those(hinges, |row| row.path_separation > SAFE_SEPARATION);
+    let message = format!(
+        "paths depart by more than {SAFE_SEPARATION} ligament widths from the straight rays of the hinge law: energy, forces \
+         and damage depend on the path there (docs/results/detours); check by `kirigami verify`"
+    );
+    about(Concern::PathDependence, bent, message)
 }
 
 fn tearing(hinges: &[HingeRow]) -> Option<Warning> {
