@@ -273,7 +273,7 @@ fn page(detours: &[Detour], tier: Tier, failures: &str) -> Result<String> {
 
 /// Median and maximum difference of each quantity between two separations.
 fn by_separation(detours: &[Detour]) -> String {
-    let names = QUANTITIES.map(|(name, _)| format!("{name}, median | maximum"));
+    let names = QUANTITIES.map(|(name, _)| format!("{name}, median | {name}, maximum"));
     let mut text = format!(
         "| separation | detours | {} |\n|---|---|{}\n",
         names.join(" | "),

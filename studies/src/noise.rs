@@ -109,14 +109,21 @@ impl NoiseStudy {
         let mut table = NoiseTable::new();
         for (ray, outcomes) in RAYS.iter().zip(usual.chunks(beside.len())) {
             let [w_lig, alpha_deg, ..] = *ray;
-            let rays = solved(outcomes)?;
+            let name = format!("{w_lig} mm, {alpha_deg} deg");
+            let rays = match solved(outcomes) {
+                Ok(rays) => rays,
+                Err(reason) => {
+                    table.gap(&name, &reason);
+                    continue;
+                }
+            };
             let angles = [&rays[5..7], &rays[2..3], &rays[7..9]].concat();
             for (line, noise) in [
                 ("width", scatter(&rays[..5])),
                 ("angle", scatter(&angles)),
                 ("mirror", difference(&rays[2], &rays[9])),
             ] {
-                table.row(&format!("{w_lig} mm, {alpha_deg} deg"), line, noise);
+                table.row(&name, line, noise);
             }
         }
         let usual = std::mem::replace(&mut table.markdown, NoiseTable::heading());
@@ -126,7 +133,10 @@ impl NoiseStudy {
                 widths: [x, y],
             } = imperfection;
             let name = format!("{amplitude} t, {x} x {y}");
-            table.row(&name, "width", scatter(&solved(outcomes)?));
+            match solved(outcomes) {
+                Ok(rays) => table.row(&name, "width", scatter(&rays)),
+                Err(reason) => table.gap(&name, &reason),
+            }
         }
         let [w_lig, alpha_deg, eta_a, ..] = TENSION;
         let page = format!(
@@ -167,6 +177,14 @@ impl NoiseTable {
         let names = QUANTITIES.join(" | ");
         let rule = "---|".repeat(QUANTITIES.len());
         format!("| ray | line | {names} |\n|---|---|{rule}\n")
+    }
+
+    /// A ray whose neighbours were not all solved.
+    fn gap(&mut self, ray: &str, reason: &anyhow::Error) {
+        // Only the first line: the rest quotes the end of the solver's log.
+        let reason = reason.to_string();
+        let reason = reason.lines().next().unwrap_or_default();
+        self.markdown += &format!("| {ray} | {reason} |{}\n", " - |".repeat(QUANTITIES.len()));
     }
 
     fn row(&mut self, ray: &str, line: &str, noise: [f64; 6]) {
