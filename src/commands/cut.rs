@@ -125,7 +125,7 @@ impl CutCommand {
         if let Some(split) = &parts {
             print_parts(split, CutDrawing::extent(drawing.numbered.cuts()));
         }
-        println!("written to {}", out.display());
+        println!("written to {}", out.canonicalize()?.display());
         Ok(())
     }
 }

@@ -37,6 +37,7 @@ const LABEL: f64 = 1.7;
 /// The unit of symbols of supports and loads (mm).
 const UNIT: f64 = 0.17;
 
+const WHITE: [u8; 3] = [255; 3];
 const INK: [u8; 3] = [31, 41, 51];
 const MUTED: [u8; 3] = [102, 114, 127];
 const ACCENT: [u8; 3] = [194, 65, 12];
@@ -257,7 +258,8 @@ impl Deployed<'_> {
         }
     }
 
-    /// Panels, with the numbers of those that have no symbol, target, supports and loads, on a page that shows 1 mm as `scale`.
+    /// Panels, with the numbers of those that have no symbol, target, supports and loads, on a page that shows 1 mm as
+    /// `scale`.
     fn draw(&self, content: &mut Content, scale: f64) {
         let on_paper = |length: f64| (length / scale) as f32;
         content.set_line_width(on_paper(0.15));
@@ -287,7 +289,15 @@ impl Deployed<'_> {
             match mark {
                 Mark::Support(corners) | Mark::Head(corners) => filled(content, &corners),
                 Mark::Shaft(points) => polyline(content, &points),
-                Mark::Label(at, label) => write(content, &text(at, LABEL / scale, true, &label)),
+                Mark::Label(at, label) => {
+                    let label = text(at, LABEL / scale, true, &label);
+                    // Readable over lines.
+                    let [[x0, y0], [x1, y1]] = label.corners();
+                    colour(content, WHITE);
+                    filled(content, &[[x0, y0], [x1, y0], [x1, y1], [x0, y1]]);
+                    colour(content, ACCENT);
+                    write(content, &label);
+                }
             }
         }
     }

@@ -58,6 +58,7 @@ fn a_sound_design_writes_all_files_and_no_warning() {
             "flat.svg",
             "inputs",
             "report.json",
+            "report.pdf",
             "report.txt",
             "run.html",
             "scene.toml",
