@@ -357,7 +357,7 @@ fn wrapped(line: &str, columns: usize) -> Vec<String> {
         Some(begin) => (begin..characters.len()).find(|&i| characters[i] != ' '),
         None => line.starts_with("- ").then_some(2),
     };
-    let indent = indent.filter(|&indent| indent < columns / 2).unwrap_or(0);
+    let indent = indent.filter(|&indent| indent <= columns / 2).unwrap_or(0);
     let mut pieces = Vec::new();
     let mut rest = &characters[..];
     loop {
