@@ -2,8 +2,10 @@
 //! the objective counts, and the report shows the training domain.
 
 use super::{FILM, read, run, with};
+use design::objective::design_problem::Deployment;
 use design::objective::target::TargetShape;
-use design::output::report::{Concern, HingeRow, Report};
+use design::output::cut_file::CutLines;
+use design::output::report::{Concern, Report, Severity, warnings};
 use design::output::run_results::write_results;
 use design::scene::Scene;
 use design::scene::design_run::forget;
@@ -140,15 +142,35 @@ fn every_term_counts_and_the_report_names_hinges_outside_the_domain() {
         .map(|row| row.hinge);
     assert!(wide.clone().count() > 0);
     assert!(wide.into_iter().all(|hinge| ligaments.contains(&hinge)));
-    let those = |concerned: fn(&HingeRow) -> bool| -> Vec<usize> {
-        let rows = report.hinges.iter().filter(|row| concerned(row));
-        rows.map(|row| row.hinge).collect()
-    };
-    let left = those(|row| !row.inside);
+    let left: Vec<usize> = report
+        .hinges
+        .iter()
+        .filter(|row| !row.inside)
+        .map(|row| row.hinge)
+        .collect();
     assert_eq!(left, warned(&report, Concern::StatesOutsideDomain));
-    let bent = those(|row| row.path_separation > 0.15);
-    assert_eq!(bent, warned(&report, Concern::PathDependence));
-    assert!(!bent.is_empty() && bent.len() < report.hinges.len());
+    assert!(warned(&report, Concern::PathDependence).is_empty());
+}
+
+#[test]
+fn a_path_that_departs_from_its_ray_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    weights(folder.path(), &[]);
+    let scene = read(folder.path(), &learned(&[]));
+    let mut deployment = scene.problem().unwrap().deploy(&scene.start()).unwrap();
+    let w_lig = deployment.sheet.hinges[3].w_lig;
+    let middle = deployment.path.len() / 2;
+    let named = |deployment: &Deployment| {
+        let cuts = CutLines::new(&deployment.pattern, &deployment.sheet, scene.config.cutting);
+        let warnings = warnings(&scene, deployment, &cuts);
+        let bent = warnings
+            .iter()
+            .find(|it| it.concern == Concern::PathDependence);
+        bent.map(|it| (it.severity, it.hinges.clone()))
+    };
+    assert_eq!(named(&deployment), None);
+    deployment.path[middle].deformations[3].s += 0.5 * w_lig;
+    assert_eq!(named(&deployment), Some((Severity::Note, vec![3])));
 }
 
 /// Weights that predict ten times the peak strain at fracture.
