@@ -61,15 +61,14 @@ impl Correction {
         let forces: [f64; 3] = from_fn(|i| dot(self.matrix[i], x));
         energy.w += 0.5 * dot(forces, x);
         if order >= Order::Forces {
-            for i in 0..3 {
-                energy.forces[i] += forces[i];
+            for (sum, force) in energy.forces.iter_mut().zip(forces) {
+                *sum += force;
             }
         }
         if order >= Order::Tangent {
-            for i in 0..3 {
-                for j in 0..3 {
-                    energy.tangent[i][j] += self.matrix[i][j];
-                }
+            let tangent = energy.tangent.as_flattened_mut().iter_mut();
+            for (sum, entry) in tangent.zip(self.matrix.as_flattened()) {
+                *sum += entry;
             }
         }
     }
