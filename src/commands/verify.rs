@@ -104,7 +104,7 @@ impl VerifyCommand {
         };
         match self.polish {
             None => {
-                let found = balanced(&scene, design, &windows, self.rounds)?;
+                let (found, _) = balanced(&scene, design, &windows, self.rounds)?;
                 let end = found.by_elements();
                 let picture = drawing::deployed(&scene, &end.sheet, end.final_step());
                 run_folder::write(&self.out, "deployed.svg", &picture)?;

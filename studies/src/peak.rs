@@ -8,9 +8,10 @@
 use crate::charts::{self, StudyPanel};
 use anyhow::{Result, bail};
 use clap::Args;
-use fe_driver::{DeformationPath, KeptSolution, KeptSolve, StepControl};
+use fe_driver::{DeformationPath, KeptSolution, KeptSolve};
 use hinge::{HingeConstants, HingeDeformation, HingeSample, SheetMaterial};
 use kirigami::replays::kept_solves::{Outcome, SolveArgs};
+use kirigami::replays::routes::window;
 use kirigami::ui::{picture, run_folder};
 use mesher::Tier;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -124,30 +125,21 @@ impl PeakStudy {
             theta: THETA_DEG.to_radians(),
             ..HingeDeformation::default()
         };
-        let window = |(w_lig, tier): &(f64, Tier)| KeptSolve {
-            design: HingeConstants::PAPER.hinge(*w_lig, FRAC_PI_2),
-            path: DeformationPath::straight(end),
-            material: material.clone(),
-            recipe: tier.recipe(),
-            step: StepControl::default(),
+        let window = |(w_lig, tier): &(f64, Tier)| {
+            let design = HingeConstants::PAPER.hinge(*w_lig, FRAC_PI_2);
+            window(design, DeformationPath::straight(end), material, *tier)
         };
         let solves: Vec<KeptSolve> = cases.iter().map(window).collect();
         let outcomes = self
             .solve
             .solve(&solves.iter().collect::<Vec<_>>(), &self.out)?;
-        let rung = |((w_lig, tier), outcome): ((f64, Tier), Outcome)| {
-            let whole = outcome.and_then(|solution| match &solution.stopped {
-                None => Ok(solution),
-                Some(reason) => Err(reason.clone()),
-            });
-            match whole {
-                Ok(solution) => Ok(Rung {
-                    w_lig,
-                    tier,
-                    solution,
-                }),
-                Err(reason) => bail!("the hinge of {w_lig} mm on {tier} was not solved: {reason}"),
-            }
+        let rung = |((w_lig, tier), outcome): ((f64, Tier), Outcome)| match outcome {
+            Ok(solution) => Ok(Rung {
+                w_lig,
+                tier,
+                solution,
+            }),
+            Err(reason) => bail!("the hinge of {w_lig} mm on {tier} was not solved: {reason}"),
         };
         cases.into_iter().zip(outcomes).map(rung).collect()
     }
