@@ -1,5 +1,5 @@
 //! Domain-independent utilities: configuration files, misspelt names, input files, VTK files, atomic file writes, external
-//! programs, notes of what a command does, a pool of threads, shards of a list of jobs.
+//! programs, temporary folders, notes of what a command does, a pool of threads, shards of a list of jobs.
 
 #![warn(missing_docs)]
 
@@ -7,6 +7,7 @@ pub mod nearest;
 mod processes;
 pub mod program;
 pub mod regular_file;
+pub mod scratch;
 pub mod sealed_json;
 pub mod shard;
 pub mod toml_file;

@@ -15,6 +15,7 @@ pub use tool_error::ToolError;
 
 use crate::processes::memory_mib;
 use crate::program::process_group::{Group, POLL};
+use crate::scratch::Scratch;
 use crate::verbose;
 use nix::sys::signal::Signal;
 use std::os::unix::process::ExitStatusExt;
@@ -98,7 +99,7 @@ impl Tool {
     }
 
     fn ask_version(&self) -> Result<String, ToolError> {
-        let folder = tempfile::tempdir().map_err(|source| self.cannot_start(source))?;
+        let folder = Scratch::new().map_err(|source| self.cannot_start(source))?;
         let log = folder.path().join("version.log");
         let arguments = [self.kind.version_flag];
         self.run(

@@ -11,6 +11,7 @@ use hinge::HingeSample;
 use serde::Serialize;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
+use support::scratch::Scratch;
 
 /// A job that was solved again.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -81,7 +82,7 @@ pub fn solve_again(
             let folder = folder.0;
             return Err(CampaignError::Changed { folder, changes });
         }
-        let scratch = tempfile::tempdir().map_err(FileError::at(&std::env::temp_dir()))?;
+        let scratch = Scratch::new().map_err(FileError::at(&std::env::temp_dir()))?;
         let work = scratch.path().join(job);
         std::fs::create_dir(&work).map_err(FileError::at(&work))?;
         let again = solve_window(&spec.problem, tools, &work, campaign.time_limit, stop);
