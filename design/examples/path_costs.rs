@@ -8,11 +8,12 @@
 //!
 //! Uniform sheets of m x n panels of 1 mm, r = 0.45, k_a = k_s = 1000 N/mm, k_theta = 0.1 N mm/rad, hinge point at the
 //! corner; a pin at the middle of the west edge, a roller at the middle of the east edge, which is pulled in ten load
-//! steps. The learned sheets are those of `configs/scenes`, each with three random designs; a path is followed and the
-//! gradient of the objective computed.
+//! steps. The learned sheets are those of `configs/scenes`, each with three random designs and one near each; a path is
+//! followed or corrected from that of the design near it, and the gradient of the objective computed.
 
 use design::equilibrium::hinged_sheet::HingedSheet;
 use design::equilibrium::load_step::LoadStep;
+use design::equilibrium::nearby_path::KnownPath;
 use design::equilibrium::settings::SolverSettings;
 use design::equilibrium::solver::EquilibriumSolver;
 use design::equilibrium::supports::{Dof, Load, Support};
@@ -22,6 +23,7 @@ use design::hinge_law::{
 use design::objective::design_problem::Model;
 use design::pattern::coordinates::{PatternCoordinates, logit};
 use design::pattern::cut_pattern::{CutPattern, Outline};
+use design::pattern::design_vector::DesignVector;
 use design::pattern::grid::Grid;
 use design::scene::{Scene, SceneConfig};
 use design::sheet::cut_sheet::{Centroid, HingePoint, Sheet, SheetOptions};
@@ -99,6 +101,8 @@ fn cpu_seconds() -> f64 {
 const SCENES: [&str; 4] = ["pet-3x3", "a4-polyester", "pet-7x7", "pet-bell-16x22"];
 const SEEDS: [u64; 3] = [1, 2, 3];
 const NOISE: f64 = 0.5;
+/// Maximum change of a coordinate to the design near it.
+const NEAR: f64 = 0.02;
 
 /// A hinge law that counts the evaluations of all hinges, by their order.
 struct Counted {
@@ -145,7 +149,8 @@ impl PreparedLaw for CountedHinges<'_> {
     }
 }
 
-/// One row of the table of learned sheets.
+/// Three rows of the table of learned sheets: a random design, and a design near it whose path is followed and corrected
+/// from that of the first.
 fn learned(name: &str, seed: u64) -> String {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
     let path = scenes.join(name).with_extension("toml");
@@ -161,28 +166,43 @@ fn learned(name: &str, seed: u64) -> String {
             counts: counts.clone(),
         });
     }
-    let begin = cpu_seconds();
-    let evaluation = problem.evaluate(&scene.start());
-    let seconds = cpu_seconds() - begin;
-    let Ok(evaluation) = evaluation else {
-        return format!("| {name} | {seed} | no equilibrium |");
+    let row = |text: &str, design: &DesignVector, known: Option<&KnownPath>| {
+        counts.iter().for_each(|count| count.store(0, Relaxed));
+        let begin = cpu_seconds();
+        let evaluation = problem.evaluate_near(design, known);
+        let seconds = cpu_seconds() - begin;
+        let evaluation = evaluation.expect("the design has an equilibrium");
+        let path = &evaluation.deployment.path;
+        let total = |of: fn(&LoadStep) -> usize| path.iter().map(of).sum::<usize>();
+        let [_, forces, tangents, designs] = &*counts;
+        let how = match evaluation.deployment.followed {
+            true => "followed",
+            false => "corrected",
+        };
+        let row = format!(
+            "| {name} | {seed}{text} | {how} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {seconds:.4} | {:.10e} |",
+            path.len(),
+            total(|step| step.effort.iterations),
+            total(|step| step.effort.factorisations),
+            total(|step| step.effort.increments),
+            total(|step| step.effort.rejected),
+            total(|step| step.jumps),
+            forces.load(Relaxed),
+            tangents.load(Relaxed),
+            designs.load(Relaxed),
+            evaluation.loss,
+        );
+        (row, evaluation.deployment.known_path())
     };
-    let path = &evaluation.deployment.path;
-    let total = |of: fn(&LoadStep) -> usize| path.iter().map(of).sum::<usize>();
-    let [_, forces, tangents, designs] = &*counts;
-    format!(
-        "| {name} | {seed} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {seconds:.4} | {:.10e} |",
-        path.len(),
-        total(|step| step.effort.iterations),
-        total(|step| step.effort.factorisations),
-        total(|step| step.effort.increments),
-        total(|step| step.effort.rejected),
-        total(|step| step.jumps),
-        forces.load(Relaxed),
-        tangents.load(Relaxed),
-        designs.load(Relaxed),
-        evaluation.loss,
-    )
+    let start = scene.start();
+    let (first, known) = row("", &start, None);
+    let beside: Vec<f64> = std::iter::zip(start.to_flat(), 0..)
+        .map(|(coordinate, i)| coordinate + NEAR * f64::from(i).sin())
+        .collect();
+    let near = start.with_flat(&beside);
+    let (followed, _) = row(", near", &near, None);
+    let (corrected, _) = row(", near", &near, Some(&known));
+    [first, followed, corrected].join("\n")
 }
 
 fn main() {
@@ -212,9 +232,9 @@ fn main() {
         before = Some((panels, seconds));
     }
     println!(
-        "\n| scene | design | load steps | corrections | factorisations | increments | rejected | jumps | forces | tangents | design gradients | CPU s | loss, mm^2 |"
+        "\n| scene | design | path | load steps | corrections | factorisations | increments | rejected | jumps | forces | tangents | design gradients | CPU s | loss, mm^2 |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     for name in SCENES {
         for seed in SEEDS {
             println!("{}", learned(name, seed));

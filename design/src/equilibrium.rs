@@ -8,6 +8,7 @@ pub mod hinged_sheet;
 pub mod lbfgs;
 pub mod lbfgs_memory;
 pub mod load_step;
+pub mod nearby_path;
 pub mod newton;
 pub mod path_following;
 pub mod place;

@@ -102,6 +102,7 @@ pub fn polish(
         design: found,
         start,
         best,
+        searched: None,
     };
     Ok(Polished {
         designed,

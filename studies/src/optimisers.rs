@@ -172,6 +172,7 @@ mod tests {
         let step = |halvings| StepRecord {
             step: 0,
             scores: Scores::default(),
+            followed: true,
             halvings,
             setback: None,
         };

@@ -93,9 +93,9 @@ pub(crate) fn adjoint(
                 (0..3).for_each(|d| sum[d] -= solution.mu * by_load[d]);
             }
         }
-        let energies = match &step.derivatives {
-            Some(energies) => Cow::Borrowed(energies),
-            None => Cow::Owned(sheet.energies(&step.deformations, Order::Design)),
+        let energies = match step.order {
+            Order::Design => Cow::Borrowed(&step.hinges),
+            _ => Cow::Owned(sheet.energies(&step.deformations, Order::Design)),
         };
         for (h, hinge) in hinges() {
             let virtual_motion = at_hinge(hinge, &lambda);

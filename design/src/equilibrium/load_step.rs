@@ -81,8 +81,9 @@ pub struct LoadStep {
     pub inside: Vec<bool>,
     /// H at the configuration, with its factors, for the adjoint.
     pub(crate) tangent: Option<StepTangent>,
-    /// Energies of the hinges with the derivatives that the adjoint needs, if the solver computed them.
-    pub(crate) derivatives: Option<Vec<HingeEnergy>>,
+    /// Energies of the hinges, of law and contact, with their derivatives up to `order`.
+    pub(crate) hinges: Vec<HingeEnergy>,
+    pub(crate) order: Order,
 }
 
 /// H at an equilibrium.
@@ -156,7 +157,8 @@ impl LoadStep {
             pivot_ratio: 1.0,
             inside: vec![true; hinges],
             tangent: None,
-            derivatives: None,
+            hinges: Vec::new(),
+            order: Order::Value,
         }
     }
 
@@ -189,7 +191,8 @@ impl LoadStep {
             pivot_ratio: factor.map_or(0.0, |factor| factor.pivot_ratio),
             configuration: state.configuration,
             tangent,
-            derivatives: (state.order == Order::Design).then_some(state.energies),
+            hinges: state.energies,
+            order: state.order,
         }
     }
 }

@@ -4,6 +4,7 @@
 //! points of the path is the start of a correction at the load of the step. L-BFGS, the baseline, minimises from
 //! one load step to the next and looks for no limit points.
 
+use crate::equilibrium::branch::Branch;
 use crate::equilibrium::displacement_control::HeldFactor;
 use crate::equilibrium::follower::{Follower, LEAP};
 use crate::equilibrium::hinged_sheet::HingedSheet;
@@ -97,26 +98,16 @@ impl Follower<'_> {
             Method::Newton => self.followed(to),
             Method::Lbfgs { .. } => self.minimised(to).map(|(minimum, _)| minimum),
         };
-        let effort = std::mem::take(&mut self.branch.effort);
         let jumps = std::mem::take(&mut self.jumps);
-        let solver = self.branch.solver;
         match found {
-            Ok(minimum) => {
-                let status = self.status(&minimum, jumps > 0);
-                let works = solver.works(&minimum.state.configuration);
-                let tangent = StepTangent {
-                    values: minimum.tangent,
-                    factor: minimum.factor,
-                };
-                let (sheet, state) = (self.branch.sheet, minimum.state);
-                LoadStep::new(sheet, state, works, Some(tangent), status, effort, jumps)
-            }
+            Ok(minimum) => self.branch.load_step(minimum, jumps),
             // The last state that was found.
             Err(Failure(residual)) => {
                 let Place {
                     at, configuration, ..
                 } = self.last.place.clone();
-                let works = solver.works(&configuration);
+                let effort = std::mem::take(&mut self.branch.effort);
+                let works = self.branch.solver.works(&configuration);
                 let state = self.branch.potential(at).state(configuration);
                 let state = state.expect("this state was computed before");
                 let (sheet, status) = (self.branch.sheet, Status::Diverged);
@@ -154,7 +145,6 @@ impl Follower<'_> {
         let moved = self.moved(&minimum, &start);
         // Without an arc the start is a place at a higher load.
         self.jumps += usize::from(self.arc.is_some() && moved > LEAP);
-        self.branch.force = minimum.state.force;
         Ok(minimum)
     }
 
@@ -167,7 +157,6 @@ impl Follower<'_> {
         self.branch.hold(&mut start, &self.last.place);
         let minimum = self.branch.minimum(&start)?;
         let moved = self.moved(&minimum, &start);
-        self.branch.force = minimum.state.force;
         self.continue_from(Place {
             at: to,
             configuration: minimum.state.configuration.clone(),
@@ -182,6 +171,22 @@ impl Follower<'_> {
         let potential = self.branch.potential(start.at);
         potential.length(&minimum.state, &motion)
     }
+}
+
+impl Branch<'_> {
+    /// The load step at a minimum, `jumps` jumps after the last.
+    pub fn load_step(&mut self, minimum: Minimum, jumps: usize) -> LoadStep {
+        let effort = std::mem::take(&mut self.effort);
+        let status = self.status(&minimum, jumps > 0);
+        let works = self.solver.works(&minimum.state.configuration);
+        let tangent = StepTangent {
+            values: minimum.tangent,
+            factor: minimum.factor,
+        };
+        self.force = minimum.state.force;
+        let (sheet, state) = (self.sheet, minimum.state);
+        LoadStep::new(sheet, state, works, Some(tangent), status, effort, jumps)
+    }
 
     fn status(&self, minimum: &Minimum, jumped: bool) -> Status {
         let stable = (minimum.factor.as_ref()).is_some_and(|held| held.unstable_directions() == 0);
@@ -189,11 +194,11 @@ impl Follower<'_> {
             tolerance,
             loose_tolerance,
             ..
-        } = self.branch.solver.settings;
+        } = self.solver.settings;
         // Rounding may explain a residual above the loose tolerance; it is no converged state nevertheless.
         let balanced =
             minimum.state.is_balanced(tolerance) && minimum.state.residual <= loose_tolerance;
-        let law = self.branch.sheet.law;
+        let law = self.sheet.law;
         if !balanced || !stable {
             Status::Almost
         } else if jumped {

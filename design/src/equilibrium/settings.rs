@@ -31,6 +31,9 @@ pub struct SolverSettings {
     pub max_iterations: usize,
     /// Maximum number of increments that are tried along a path, 1 to 10 000 000; a path that needs more ends there.
     pub max_increments: usize,
+    /// Every how many steps of a design the path is followed from the flat sheet, 1 to 10 000; the load steps of the
+    /// designs between are corrected from those of the last followed path.
+    pub follow_every: usize,
 }
 
 impl Default for SolverSettings {
@@ -41,6 +44,7 @@ impl Default for SolverSettings {
             loose_tolerance: 1e-6,
             max_iterations: 60,
             max_increments: 100_000,
+            follow_every: 10,
         }
     }
 }
@@ -52,5 +56,6 @@ impl SolverSettings {
             && self.loose_tolerance < 1.0
             && self.max_iterations >= 1
             && self.max_increments >= 1
+            && self.follow_every >= 1
     }
 }

@@ -52,7 +52,7 @@ pub enum EquilibriumError {
     NoSteps(usize),
     #[error(
         "solver settings {0:?} violate 0 < tolerance <= loose_tolerance < 1, max_iterations >= 1, \
-         max_increments >= 1"
+         max_increments >= 1, follow_every >= 1"
     )]
     Settings(SolverSettings),
 }

@@ -4,6 +4,7 @@
 use crate::equilibrium::adjoint::{SingularTangent, adjoint};
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{LoadStep, Status};
+use crate::equilibrium::nearby_path::KnownPath;
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
 use crate::geometry::plane::add;
 use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, PreparedLaw};
@@ -107,6 +108,8 @@ pub struct Deployment {
     pub sheet: Sheet,
     /// One entry per load step; a single entry for the ideal deployment.
     pub path: Vec<LoadStep>,
+    /// Whether the path was followed from the flat sheet; `false` if it was corrected from that of a design near it.
+    pub followed: bool,
 }
 
 /// The gradient of L with respect to quantities that are constant during the design.
@@ -137,6 +140,14 @@ pub struct Evaluation {
 }
 
 impl Deployment {
+    /// The path, from which those of designs near this one can be corrected.
+    pub fn known_path(&self) -> KnownPath {
+        KnownPath {
+            designs: self.sheet.designs(),
+            steps: self.path.clone(),
+        }
+    }
+
     /// The state at full load.
     pub fn final_step(&self) -> &LoadStep {
         self.path.last().expect("a path has at least one step")
@@ -197,48 +208,62 @@ impl DesignProblem {
 
     /// Lines 2-5 of Algorithm 1. A path that diverges ends early; see [`LoadStep::status`].
     pub fn deploy(&self, design: &DesignVector) -> Result<Deployment, DesignError> {
-        Ok(self.deploy_prepared(design, false)?.0)
+        Ok(self.deploy_prepared(design, false, None)?.0)
     }
 
-    /// The deployment, its damage with or without `gradient`, and the hinge law prepared for its sheet.
+    /// The deployment, its damage with or without `gradient`, and the hinge law prepared for its sheet. The path is
+    /// corrected from the `known` one of another design if that is near enough.
     fn deploy_prepared(
         &self,
         design: &DesignVector,
         gradient: bool,
+        known: Option<&KnownPath>,
     ) -> Result<(Deployment, Option<Box<dyn PreparedLaw + '_>>), DesignError> {
         let (pattern, sheet) = self.cut(design)?;
-        let (path, law) = match &self.model {
+        let (path, followed, law) = match &self.model {
             Model::Ideal { opening } => {
                 let theta = design.opening.unwrap_or(*opening);
                 if !theta.is_finite() {
                     return Err(DesignError::Opening(theta));
                 }
                 let ideal = LoadStep::ideal(&sheet, ideal_deployment(&sheet, theta));
-                (vec![ideal], None)
+                (vec![ideal], true, None)
             }
             Model::Equilibrium(mechanics) => {
                 mechanics.solver.check_supports(&sheet)?;
                 let law = mechanics.law.prepare(&sheet.designs());
-                let path = mechanics
-                    .solver
-                    .path(mechanics.hinged(&sheet, &*law, gradient));
+                let hinged = mechanics.hinged(&sheet, &*law, gradient);
+                let near = known.and_then(|known| mechanics.solver.path_near(hinged, known));
+                let followed = near.is_none();
+                let path = near.unwrap_or_else(|| mechanics.solver.path(hinged));
                 path.iter()
                     .for_each(|step| verbose::note(|| step.to_string()));
-                (path, Some(law))
+                (path, followed, Some(law))
             }
         };
         let deployment = Deployment {
             pattern,
             sheet,
             path,
+            followed,
         };
         Ok((deployment, law))
     }
 
     /// L(theta) and its gradient.
     pub fn evaluate(&self, design: &DesignVector) -> Result<Evaluation, DesignError> {
+        self.evaluate_near(design, None)
+    }
+
+    /// L(theta) and its gradient, with the path corrected from the `known` path of another design if that is near
+    /// enough; otherwise it is followed from the flat sheet, as in [`evaluate`](Self::evaluate).
+    pub fn evaluate_near(
+        &self,
+        design: &DesignVector,
+        known: Option<&KnownPath>,
+    ) -> Result<Evaluation, DesignError> {
         let by_damage = self.objective.weights.damage != 0.0;
-        let (deployment, law) = self.deploy_prepared(design, by_damage)?;
+        let (deployment, law) = self.deploy_prepared(design, by_damage, known)?;
         let outline = self.objective.outline.of(&deployment.sheet);
         let judgement = self.judge(&deployment, &outline)?;
         let (sheet, last) = (&deployment.sheet, deployment.final_step());

@@ -1,6 +1,7 @@
 //! Step halving: a step of the outer loop that leads to a design without objective value, or to one that
 //! the search does not accept, is halved until it leads to an acceptable design.
 
+use crate::equilibrium::nearby_path::KnownPath;
 use crate::objective::design_problem::{DesignProblem, Evaluation};
 use crate::optimise::search::Search;
 use crate::pattern::design_vector::DesignVector;
@@ -16,17 +17,18 @@ pub(crate) struct Setback {
 }
 
 /// Evaluates the proposal, or else the first point of repeated halving towards `good` that has a finite
-/// loss and that the search accepts. The error states why the last point had no value, if it had none.
+/// loss and that the search accepts; `known` is the path of a design near them. The error states why the last point had no value, if it had none.
 pub(crate) fn evaluate_or_back_off(
     problem: &DesignProblem,
     search: &Search,
     good: &DesignVector,
     mut proposal: DesignVector,
+    known: Option<&KnownPath>,
 ) -> Result<(DesignVector, Evaluation, Setback), Option<String>> {
     let mut setback = Setback::default();
     loop {
         let fraction = 0.5f64.powi(setback.halvings as i32);
-        let reason = match problem.evaluate(&proposal) {
+        let reason = match problem.evaluate_near(&proposal, known) {
             Ok(evaluation) if !is_finite(&evaluation) => {
                 Some("the loss or its gradient is not finite".to_owned())
             }
@@ -94,7 +96,7 @@ mod tests {
             let mut proposal = good.clone();
             proposal.pattern.z.fill(z);
             let adam = Search::Adam(Adam::new(0, 0.1));
-            evaluate_or_back_off(&problem(grid), &adam, &good, proposal)
+            evaluate_or_back_off(&problem(grid), &adam, &good, proposal, None)
         };
         let (design, _, setback) = proposed(1.0).unwrap();
         assert_eq!((design.pattern.z[0], setback.halvings), (1.0, 0));

@@ -1,10 +1,13 @@
 //! The outer loop, Algorithm 1: Adam or L-BFGS on theta = (z, ell, omega).
 //!
+//! Every few steps the path of the design is followed from the flat sheet; those between are corrected from that path.
+//!
 //! If the sheet of a design has no equilibrium, the step from the last design that had one is halved until
 //! an equilibrium exists. Steps depend only on the problem and the search state, so a search continued from
 //! a saved state follows the trajectory of an uninterrupted one.
 
-use crate::objective::design_problem::{DesignProblem, Evaluation};
+use crate::equilibrium::nearby_path::KnownPath;
+use crate::objective::design_problem::{DesignProblem, Evaluation, Model};
 use crate::objective::scores::Scores;
 use crate::optimise::backing_off::{MAX_HALVINGS, Setback, evaluate_or_back_off};
 use crate::optimise::search::{Search, SearchMethod};
@@ -20,6 +23,9 @@ pub struct StepRecord {
     /// The objective and its terms.
     #[serde(flatten)]
     pub scores: Scores,
+    /// Whether the path was followed from the flat sheet; `false` if it was corrected from that of an earlier design.
+    #[serde(default)]
+    pub followed: bool,
     /// Number of halvings, including those of a step that was given up.
     pub halvings: u32,
     /// Why the first design of the step without objective value had none; `None` if all had one.
@@ -53,6 +59,12 @@ pub struct SearchState {
     pub(crate) search: Search,
     /// The design with the minimum loss.
     pub best: DesignVector,
+    /// The last design whose path was followed from the flat sheet; absent in states of older versions.
+    #[serde(default)]
+    anchor: Option<DesignVector>,
+    /// The path of the anchor, if it is needed.
+    #[serde(skip)]
+    known: Option<KnownPath>,
     /// One record per step, beginning with that of the start.
     pub history: Vec<StepRecord>,
 }
@@ -99,6 +111,8 @@ impl SearchState {
             proposal: start.clone(),
             best: start.clone(),
             design: start.clone(),
+            anchor: None,
+            known: None,
             history: Vec::new(),
         };
         state.accept(problem, start, evaluation, Setback::default());
@@ -108,6 +122,12 @@ impl SearchState {
     /// The record of the last step.
     pub fn last(&self) -> &StepRecord {
         &self.history[self.history.len() - 1]
+    }
+
+    /// The minimum loss of all steps; infinite before the first.
+    pub(crate) fn minimum(&self) -> f64 {
+        let losses = self.history.iter().map(|record| record.scores.loss);
+        losses.fold(f64::INFINITY, f64::min)
     }
 
     /// Whether the designs of the state have the same dimensions as `start`.
@@ -123,10 +143,12 @@ impl SearchState {
         &mut self,
         problem: &DesignProblem,
     ) -> Result<(DesignVector, Evaluation, Setback), Ended> {
+        self.know_a_path(problem);
         let mut rejected = 0;
         loop {
             let proposal = self.proposal.clone();
-            match evaluate_or_back_off(problem, &self.search, &self.design, proposal) {
+            let (search, good) = (&self.search, &self.design);
+            match evaluate_or_back_off(problem, search, good, proposal, self.known.as_ref()) {
                 Ok((design, evaluation, mut setback)) => {
                     setback.halvings += rejected;
                     return Ok((design, evaluation, setback));
@@ -143,6 +165,25 @@ impl SearchState {
         }
     }
 
+    /// Computes the path of the anchor after a pause of the search; forgets it if the next path must be followed.
+    fn know_a_path(&mut self, problem: &DesignProblem) {
+        let every = match &problem.model {
+            Model::Ideal { .. } => 1,
+            Model::Equilibrium(mechanics) => mechanics.solver.settings.follow_every,
+        };
+        let recent = self.history.iter().rev().take(every - 1);
+        match &self.anchor {
+            Some(anchor) if recent.clone().any(|record| record.followed) => {
+                if self.known.is_none()
+                    && let Ok(evaluation) = problem.evaluate(anchor)
+                {
+                    self.known = Some(evaluation.deployment.known_path());
+                }
+            }
+            _ => self.known = None,
+        }
+    }
+
     /// Makes an evaluated design the current one and computes the next proposal.
     fn accept(
         &mut self,
@@ -151,13 +192,13 @@ impl SearchState {
         evaluation: &Evaluation,
         setback: Setback,
     ) {
-        let minimum = self
-            .history
-            .iter()
-            .map(|record| record.scores.loss)
-            .fold(f64::INFINITY, f64::min);
-        if evaluation.loss < minimum {
+        if evaluation.loss < self.minimum() {
             self.best = design.clone();
+        }
+        let followed = evaluation.deployment.followed;
+        if followed {
+            self.anchor = Some(design.clone());
+            self.known = Some(evaluation.deployment.known_path());
         }
         let gradient = evaluation.gradient.to_flat();
         let x = design.to_flat();
@@ -167,6 +208,7 @@ impl SearchState {
         self.history.push(StepRecord {
             step: self.history.len(),
             scores: Scores::of(&problem.objective, evaluation),
+            followed,
             halvings: setback.halvings,
             setback: setback.reason,
         });

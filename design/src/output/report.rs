@@ -119,7 +119,7 @@ impl Report {
             after: Scores::of(&designed.problem.objective, &designed.best),
             estimate: Estimate::of(&scene.networks(), deployment),
             facts: FactSheet::new(scene, &designed.problem, deployment, &hinges),
-            warnings: warning::all(scene, deployment, cuts, &hinges),
+            warnings: warning::of_run(scene, designed, cuts, &hinges),
             hinges,
         };
         report.cut_file = cuts.is_ok() && (force || report.errors().next().is_none());

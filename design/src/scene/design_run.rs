@@ -41,8 +41,10 @@ pub struct Designed {
     pub design: DesignVector,
     /// The evaluation of the start.
     pub start: Evaluation,
-    /// The evaluation of `design`.
+    /// The evaluation of `design`, whose path is followed from the flat sheet.
     pub best: Evaluation,
+    /// The loss of `design` as the search found it; `None` if `best` is the evaluation by another hinge law.
+    pub searched: Option<f64>,
 }
 
 /// Why a run failed.
@@ -199,6 +201,7 @@ pub fn inverse_design(
     Ok(Designed {
         problem,
         ended,
+        searched: Some(search.minimum()),
         history: search.history,
         design: search.best,
         start,

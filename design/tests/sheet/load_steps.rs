@@ -20,7 +20,7 @@ use hinge::{HingeDeformation, HingeDesign};
 use std::path::Path;
 
 /// A scene of the repository, changed.
-fn scene(name: &str, change: impl FnOnce(&mut SceneConfig)) -> Scene {
+pub fn scene(name: &str, change: impl FnOnce(&mut SceneConfig)) -> Scene {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
     let path = scenes.join(name);
     let mut config: SceneConfig = support::toml_file::read(&path).unwrap();

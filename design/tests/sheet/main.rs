@@ -12,6 +12,7 @@ mod invariance;
 mod kinematics;
 mod limits;
 mod load_steps;
+mod nearby_paths;
 mod pattern;
 mod pullbacks;
 mod random;

@@ -7,6 +7,7 @@ use crate::objective::target::Target;
 use crate::output::cut_file::{CutLines, FabricationError};
 use crate::output::report::hinge_row::HingeRow;
 use crate::scene::Scene;
+use crate::scene::design_run::Designed;
 use crate::sheet::hinge_window::Window;
 use serde::Serialize;
 use std::fmt;
@@ -142,6 +143,19 @@ pub(super) fn all(
     warnings.extend(overstrained(hinges));
     warnings.extend(path(deployment));
     warnings.extend(target(&scene.target));
+    warnings.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
+    warnings
+}
+
+/// All warnings about the best design of a run.
+pub(super) fn of_run(
+    scene: &Scene,
+    designed: &Designed,
+    cuts: &Result<CutLines, FabricationError>,
+    hinges: &[HingeRow],
+) -> Vec<Warning> {
+    let mut warnings = all(scene, &designed.best.deployment, cuts, hinges);
+    warnings.extend(other_branch(designed));
     warnings.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
     warnings
 }
@@ -313,6 +327,19 @@ fn path(deployment: &Deployment) -> Option<Warning> {
             },
             _ => Concern::Path.of_sheet(message),
         }
+    })
+}
+
+/// A warning if the followed path of the best design has another loss than the search found by corrected paths.
+fn other_branch(designed: &Designed) -> Option<Warning> {
+    const SAME_BRANCH: f64 = 1e-6;
+    let (searched, followed) = (designed.searched?, designed.best.loss);
+    let differs = (searched - followed).abs() > SAME_BRANCH * followed.abs();
+    differs.then(|| {
+        Concern::Path.of_sheet(format!(
+            "the search found a loss of {searched:.6e} at this design, but its path, followed from the flat sheet, ends \
+             on another branch with {followed:.6e}: set follow_every = 1 in [solver] and restart"
+        ))
     })
 }
 

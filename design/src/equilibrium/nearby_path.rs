@@ -1,0 +1,138 @@
+//! The load steps of a sheet that differs little from another whose path is known, as in successive designs: each state
+//! is corrected from that of the known path, without increments between the load steps.
+//!
+//! The known state is first carried over by the hinge law linearised about it,
+//!
+//! ```text
+//! f = f_0 + K_0 (eps - eps_0) + C_0 (g - g_0),     g = (w_lig, alpha)
+//! ```
+//!
+//! whose equilibrium in the new sheet requires no evaluation of the hinges. Newton's method then corrects it. The states are
+//! those of a followed path as long as the path has no jump. A jump that appears between two load steps is not noticed:
+//! paths must be followed from the flat sheet now and then.
+
+use crate::equilibrium::branch::Branch;
+use crate::equilibrium::displacement_control::{HeldFactor, dot};
+use crate::equilibrium::hinged_sheet::HingedSheet;
+use crate::equilibrium::load_step::{LoadStep, Status};
+use crate::equilibrium::place::Place;
+use crate::equilibrium::settings::Method;
+use crate::equilibrium::solver::EquilibriumSolver;
+use crate::hinge_law::{HingeEnergy, Order, PreparedLaw};
+use hinge::{HingeDeformation, HingeDesign};
+
+/// Maximum distance of an equilibrium from that of the linearised law (rad, or panel sizes for hinge translations).
+const NEARBY: f64 = 0.02;
+
+/// The equilibrium path of a sheet.
+#[derive(Clone, Debug)]
+pub struct KnownPath {
+    /// The designs of the hinges.
+    pub designs: Vec<HingeDesign>,
+    /// All load steps. Without the mixed derivatives of the hinges C_0 is zero.
+    pub steps: Vec<LoadStep>,
+}
+
+/// A hinge law linearised about one state of every hinge.
+struct LinearisedLaw<'a> {
+    deformations: &'a [HingeDeformation],
+    energies: &'a [HingeEnergy],
+    /// Changes of w_lig (mm) and alpha (rad).
+    changes: &'a [[f64; 2]],
+}
+
+impl PreparedLaw for LinearisedLaw<'_> {
+    fn energies(&self, deformations: &[HingeDeformation], _order: Order) -> Vec<HingeEnergy> {
+        let hinges = deformations.iter().enumerate();
+        hinges.map(|(h, to)| self.energy(h, *to)).collect()
+    }
+}
+
+impl LinearisedLaw<'_> {
+    fn energy(&self, hinge: usize, to: HingeDeformation) -> HingeEnergy {
+        let (from, known) = (self.deformations[hinge], self.energies[hinge]);
+        let strain = [to.a - from.a, to.s - from.s, to.theta - from.theta];
+        let by_strain = known.tangent.map(|row| dot(&row, &strain));
+        let by_design = known.mixed.map(|row| dot(&row, &self.changes[hinge]));
+        let start: [f64; 3] = std::array::from_fn(|c| known.forces[c] + by_design[c]);
+        HingeEnergy {
+            w: known.w + dot(&start, &strain) + 0.5 * dot(&by_strain, &strain),
+            forces: std::array::from_fn(|c| start[c] + by_strain[c]),
+            ..known
+        }
+    }
+}
+
+impl EquilibriumSolver {
+    /// The load steps of a sheet near that of the path `known`. `None` if that is not complete or jumps, or
+    /// if a state is not a stable equilibrium close to the known one: then the path must be followed.
+    pub fn path_near(&self, sheet: HingedSheet, known: &KnownPath) -> Option<Vec<LoadStep>> {
+        let smooth = |step: &LoadStep| {
+            matches!(step.status, Status::Converged | Status::LeftDomain) && step.jumps == 0
+        };
+        if known.steps.len() != self.steps
+            || !known.steps.iter().all(smooth)
+            || self.settings.method != Method::Newton
+        {
+            return None;
+        }
+        let changes: Vec<[f64; 2]> = std::iter::zip(sheet.sheet.designs(), &known.designs)
+            .map(|(to, from)| [to.w_lig - from.w_lig, to.alpha - from.alpha])
+            .collect();
+        let mut branch = Branch::new(self, sheet);
+        let ends = (1..=self.steps).map(|i| i as f64 / self.steps as f64);
+        std::iter::zip(ends, &known.steps)
+            .map(|(at, known)| branch.load_step_near(at, known, &changes))
+            .collect()
+    }
+}
+
+impl Branch<'_> {
+    fn load_step_near(
+        &mut self,
+        at: f64,
+        known: &LoadStep,
+        changes: &[[f64; 2]],
+    ) -> Option<LoadStep> {
+        let start = self.carried_over(at, known, changes)?;
+        let from = start.clone();
+        let found = self.balanced(start)?;
+        let stable = |held: &HeldFactor| held.unstable_directions() == 0;
+        found.factor.as_ref().filter(|held| stable(held))?;
+        let to = Place {
+            at,
+            configuration: found.state.configuration.clone(),
+            forces: Vec::new(),
+        };
+        if self.distance(&found.state, &to, &from) > NEARBY {
+            return None;
+        }
+        let step = self.load_step(found, 0);
+        (step.status != Status::Almost).then_some(step)
+    }
+
+    /// The equilibrium of this sheet with the hinge law linearised about the states of a known load step.
+    fn carried_over(&mut self, at: f64, known: &LoadStep, changes: &[[f64; 2]]) -> Option<Place> {
+        let law = LinearisedLaw {
+            deformations: &known.deformations,
+            energies: &known.hinges,
+            changes,
+        };
+        let linearised = HingedSheet {
+            law: &law,
+            contact: None,
+            damage_gradient: false,
+            ..self.sheet
+        };
+        let mut branch = Branch::new(self.solver, linearised);
+        let start = Place {
+            at,
+            configuration: known.configuration.clone(),
+            forces: known.hinges.iter().map(|hinge| hinge.forces).collect(),
+        };
+        let found = branch.close(start, None, f64::INFINITY).ok();
+        self.effort.iterations += branch.effort.iterations;
+        self.effort.factorisations += branch.effort.factorisations;
+        Some(found?.place)
+    }
+}
