@@ -1,4 +1,4 @@
-//! The user interface of the commands: progress, tables, comparisons, pictures, charts, exit codes.
+//! The user interface of the commands: progress, tables, comparisons, pictures, charts, sizes, exit codes.
 
 pub mod animation;
 pub mod charts;
@@ -9,6 +9,7 @@ pub mod picture;
 pub mod progress;
 pub mod run_folder;
 pub mod table;
+pub mod width_by_height;
 
 /// Number of processors of this machine.
 pub fn processors() -> usize {

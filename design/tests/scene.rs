@@ -89,6 +89,16 @@ fn slips_of_units_and_signs_are_named() {
         ("k_theta = 300.0", "k_theta = -300.0", "linear.k_theta"),
         ("k_a = 400.0", "k_a = 4e8", "did you mean 400000 N/mm"),
         (
+            "k_a = 400.0                # N/mm\nk_s = 250.0                # N/mm\nk_theta = 300.0",
+            "k_a = 1e6\nk_s = 1e6\nk_theta = 1e-3",
+            "lost in the rounding",
+        ),
+        (
+            "[linear]",
+            "[solver]\nfollow_every = 0\n[linear]",
+            "1 <= solver.follow_every",
+        ),
+        (
             "force = [40.0, 0.0]",
             "force = [nan, 0.0]",
             "loads[0].force",

@@ -2,6 +2,7 @@
 
 use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
 use crate::ui::run_folder;
+use crate::ui::width_by_height::width_by_height;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::output::cut_file::{
@@ -189,10 +190,8 @@ fn paper(name: &str) -> Result<(Paper, String), String> {
 }
 
 fn bed(text: &str) -> Result<[f64; 2], String> {
-    let sides = text.trim_end_matches("mm").split_once('x');
-    let side = |text: &str| text.parse().ok().filter(|side: &f64| *side > 0.0);
-    let sides = sides.and_then(|(width, height)| Some([side(width)?, side(height)?]));
-    sides.ok_or_else(|| "must be WIDTHxHEIGHT in mm, like 1000x600 or 1300xinf".into())
+    width_by_height(text)
+        .ok_or_else(|| "must be WIDTHxHEIGHT in mm, like 1000x600 or 1300xinf".into())
 }
 
 fn lap(text: &str) -> Result<f64, String> {

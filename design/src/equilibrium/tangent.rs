@@ -24,7 +24,7 @@ const SUPERNODAL_FROM: usize = 400;
 const HAGER_ROUNDS: usize = 5;
 
 /// A pivot smaller than this, relative to its diagonal entry, is a rounding error.
-const MIN_PIVOT_RATIO: f64 = 1e-13;
+pub(crate) const MIN_PIVOT_RATIO: f64 = 1e-13;
 
 /// Sparsity of the tangent in the free degrees of freedom, lower triangle by columns.
 #[derive(Debug)]

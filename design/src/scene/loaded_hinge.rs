@@ -1,5 +1,6 @@
 //! The hinge law of a scene, loaded with the files it needs.
 
+use crate::equilibrium::tangent::MIN_PIVOT_RATIO;
 use crate::hinge_law::{CondensedLaw, Contact, DamageMeasure, LinearLaw, SurrogateLaw};
 use crate::scene::checks::within;
 use crate::scene::hinge_model::{HingeModel, LinearConstants, PinConfig, SurrogateFile};
@@ -241,7 +242,17 @@ fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHing
     within("linear.k_a", k_a, [1e-3, 1e6], "N/mm")?;
     within("linear.k_s", k_s, [1e-3, 1e6], "N/mm")?;
     within("linear.k_theta", k_theta, [1e-3, 1e9], "N mm/rad")?;
-    let law = LinearLaw::uniform([k_a, k_s, k_theta], config.sheet.grid().hinge_count())
+    let grid = config.sheet.grid();
+    let panel = config.sheet.outline().area().abs() / grid.panel_count() as f64;
+    let ratio = k_theta / (k_a.max(k_s) * panel);
+    if ratio < MIN_PIVOT_RATIO {
+        return Err(format!(
+            "linear.k_theta is {ratio:.0e} times the greater of linear.k_a and linear.k_s times the area of a panel: below \
+             {MIN_PIVOT_RATIO:.0e} rotations are lost in the rounding of the translations. Raise k_theta, or lower k_a \
+             and k_s"
+        ));
+    }
+    let law = LinearLaw::uniform([k_a, k_s, k_theta], grid.hinge_count())
         .map_err(|error| error.to_string())?;
     let contact = contact(config, k_theta, CONTACT_WALL)?;
     Ok(LoadedHinge::Linear {

@@ -67,7 +67,7 @@ impl Report {
         };
         let [errors, warnings, notes] =
             [Severity::Error, Severity::Warning, Severity::Note].map(count);
-        let text = format!("{errors} errors, {warnings} warnings, {notes} notes");
+        let text = format!("errors {errors}, warnings {warnings}, notes {notes}");
         further.push(("findings", text));
         let at = hashes.unwrap_or(rows.len());
         rows.splice(at..at, further);
