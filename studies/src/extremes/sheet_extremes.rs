@@ -153,9 +153,13 @@ pub(super) fn all<'a>(
             config.solver.tolerance = tolerance
         });
     }
-    for (k_a, k_theta) in [(1e6, 1e-3), (1e-3, 1e6)] {
+    for (k_a, k_theta, promise) in [
+        (1e6, 1e-3, Refused),
+        (1e6, 1.0, Reached),
+        (1e-3, 1e6, Reached),
+    ] {
         let name = format!("linear, k_a = k_s = {k_a:e}, k_theta = {k_theta:e}");
-        add(linear, name, Stated, &|config| {
+        add(linear, name, promise, &|config| {
             if let Some(linear) = &mut config.linear {
                 (linear.k_a, linear.k_s, linear.k_theta) = (k_a, k_a, k_theta);
             }
