@@ -31,6 +31,7 @@ mod surrogate;
 mod tessellation;
 mod tradeoff;
 mod trust;
+mod universal;
 mod window;
 
 use anyhow::Result;
@@ -69,6 +70,7 @@ enum Study {
     Surrogate(surrogate::SurrogateStudy),
     FineTuning(fine_tuning::FineTuningStudy),
     Trust(trust::TrustStudy),
+    Universal(universal::UniversalStudy),
     Tradeoff(tradeoff::TradeoffCommand),
     Pages(pages::PagesCommand),
     Keys(keys::KeysCommand),
@@ -98,6 +100,7 @@ impl Study {
             Self::Surrogate(study) => study.run(),
             Self::FineTuning(study) => study.run(),
             Self::Trust(study) => study.run(),
+            Self::Universal(study) => study.run(),
             Self::Tradeoff(command) => command.run(),
             Self::Pages(command) => command.run(),
             Self::Keys(command) => command.run(),

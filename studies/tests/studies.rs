@@ -99,6 +99,51 @@ fn optimisers_and_approaches_on_pins() {
     );
 }
 
+/// Three rays of the family, solved on the coarsest mesh; networks after one epoch on them.
+#[test]
+fn the_family_of_laws_is_solved_once_and_judged_on_three_materials() {
+    let work = Workplace::new();
+    shipped_weights(&work);
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
+    for (folder, name) in [
+        ("pet-0.5mm", "unseen"),
+        ("s235-1.5mm", "hinges"),
+        ("polypropylene-0.8mm", "hinges"),
+    ] {
+        std::fs::create_dir_all(work.path("data").join(folder)).unwrap();
+        let target = if name == "unseen" { "region" } else { name };
+        for kind in ["parquet", "json"] {
+            let from = data.join(folder).join(name).with_extension(kind);
+            let to = work.path("data").join(folder).join(target);
+            std::fs::copy(from, to.with_extension(kind)).unwrap();
+        }
+    }
+    let config = "configs/training/fine-tuning.toml";
+    work.edit(config, &[("epochs = 80", "epochs = 1")]);
+    assert!(work.error("universal").contains("rays.parquet"));
+    let solve = "universal --solve 3 --tier tiny --causes 0 --out solved";
+    assert!(work.output(solve).starts_with("3 of 3 rays"));
+    let first = std::fs::read(work.path("data/universal/rays.parquet")).unwrap();
+    // Stored solutions are read.
+    work.output(solve);
+    let again = std::fs::read(work.path("data/universal/rays.parquet")).unwrap();
+    assert!(first == again);
+    let judged = page(&work, "universal --splits 1 --epochs 1", "universal.md");
+    for row in [
+        "laws held out | network",
+        "s235-1.5mm | film",
+        "pet-0.5mm | network",
+    ] {
+        let errors = numbers(&judged, row);
+        assert!(
+            errors.len() > 5 && errors.iter().all(|it| it.is_finite()),
+            "{judged}"
+        );
+    }
+    assert!(judged.contains("| polypropylene-0.8mm | film, fine-tuned | 50 |"));
+    assert!(work.path("out/universal.png").exists());
+}
+
 #[test]
 fn the_five_actuations_and_a_missing_one() {
     let work = Workplace::new();
