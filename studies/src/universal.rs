@@ -143,7 +143,17 @@ enum Network {
     Works,
     /// The same, trained also on rays of the other materials.
     WorksOfAll,
+    /// The film's energy times ratios of works, with such weights.
+    WorksTimesFilm,
 }
+
+/// The networks that are trained on the family alone.
+const NETWORKS: [Network; 4] = [
+    Network::Numbers,
+    Network::TimesFilm,
+    Network::Works,
+    Network::WorksTimesFilm,
+];
 
 /// A way to the energy of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -249,22 +259,36 @@ impl UniversalStudy {
                 epochs: self.epochs,
                 ..training.clone()
             };
-            split.run(&config, &materials, stop, &mut measured)?;
+            let of_film = split.run(&config, &materials, &film.sheet.name, stop, &mut measured)?;
             for material in &materials {
                 let plan = SplitPlan {
                     seed,
                     validation: VALIDATION,
                     test: TEST,
                 };
+                let of_all = split.with_others(&config, material, &materials, stop)?;
+                let case = Case {
+                    target: material.sheet.name.clone(),
+                    way: Way::Family(Network::WorksOfAll),
+                    laws: split.training.len(),
+                    own_rays: 0,
+                };
+                let errors = Errors::of(&material.states, &of_all.at(&inputs(&material.states))?);
+                measured.entry(case).or_default().push(errors);
+                let (network, energy) = match material.sheet.name == film.sheet.name {
+                    true => (Network::WorksOfAll, &of_all),
+                    false => (Network::WorksTimesFilm, &of_film),
+                };
                 let trial = Trial {
                     material,
                     database: material.database.split(&plan)?,
                     film,
-                    network: split.with_others(&config, material, &materials, stop)?,
+                    network,
+                    energy,
                     tuned: &tuned,
                     fits: self.out.join("fits"),
                 };
-                trial.run(seed, split.training.len(), stop, &mut measured)?;
+                trial.run(seed, stop, &mut measured)?;
             }
             self.write(&rays, &materials, &measured)?;
         }
@@ -329,22 +353,26 @@ impl<'a> SplitOfLaws<'a> {
         rays.flat_map(|ray| thinned(&ray.states))
     }
 
-    /// Trains networks on the family alone, and tests them on the laws held out and on the materials.
+    /// Trains networks on the family alone, and tests them on the laws held out and on the materials. Returns the last one
+    /// of [`NETWORKS`], trained on all laws of the split.
     fn run(
         &self,
         config: &TrainingConfig,
         materials: &[Material],
+        film: &str,
         stop: &AtomicBool,
         measured: &mut Measured,
-    ) -> Result<()> {
+    ) -> Result<LawEnergy> {
+        let mut last = None;
         for laws in counts(&LAWS, self.training.len()) {
             let data = training_data(self.states(laws));
-            for network in [Network::Numbers, Network::TimesFilm, Network::Works] {
+            for network in NETWORKS {
                 refuse_stop(stop)?;
                 eprintln!("split {}, {laws} laws, {network:?}", config.seed);
                 let energy = LawEnergy::fit(&data, network.form(), config, None)?;
                 let targets = materials.iter();
                 let targets = targets.map(|it| (it.sheet.name.as_str(), &it.states));
+                let targets = targets.filter(|(name, _)| *name != film || !network.knows_film());
                 for (target, states) in targets.chain([(HELD_OUT, &self.held_out)]) {
                     let case = Case {
                         target: target.into(),
@@ -355,9 +383,10 @@ impl<'a> SplitOfLaws<'a> {
                     let errors = Errors::of(states, &energy.at(&inputs(states))?);
                     measured.entry(case).or_default().push(errors);
                 }
+                last = Some(energy);
             }
         }
-        Ok(())
+        last.context("there is no law to train on")
     }
 
     /// The network that is trained on all laws of the split and on rays of all materials but one.
@@ -384,7 +413,13 @@ impl Network {
             Self::Numbers => LawForm::Alone,
             Self::TimesFilm => LawForm::Factor,
             Self::Works | Self::WorksOfAll => LawForm::Works,
+            Self::WorksTimesFilm => LawForm::WorksOfKnown,
         }
+    }
+
+    /// Whether the film is known to the network, so that it is no test.
+    fn knows_film(self) -> bool {
+        matches!(self, Self::TimesFilm | Self::WorksTimesFilm)
     }
 }
 
@@ -421,42 +456,35 @@ struct Trial<'a> {
     material: &'a Material,
     database: Database,
     film: &'a Film,
-    /// Trained on the family and the other materials.
-    network: LawEnergy,
+    network: Network,
+    /// The network, without a ray of the material.
+    energy: &'a LawEnergy,
     tuned: &'a TrainingConfig,
     /// Folder of the fine-tuned weights of the film.
     fits: PathBuf,
 }
 
 impl Trial<'_> {
-    fn run(
-        &self,
-        seed: u64,
-        laws: usize,
-        stop: &AtomicBool,
-        measured: &mut Measured,
-    ) -> Result<()> {
+    fn run(&self, seed: u64, stop: &AtomicBool, measured: &mut Measured) -> Result<()> {
         let name = &self.material.sheet.name;
         let is_film = *name == self.film.sheet.name;
-        let mut keep = |way, laws, own_rays, errors| {
+        let mut keep = |way, own_rays, errors| {
             let case = Case {
                 target: name.clone(),
                 way,
-                laws,
+                laws: 0,
                 own_rays,
             };
             measured.entry(case).or_default().push(errors);
         };
-        let all = &self.material.states;
-        let (network, energy) = (Network::WorksOfAll, &self.network);
-        let errors = Errors::of(all, &energy.at(&inputs(all))?);
-        keep(Way::Family(network), laws, 0, errors);
+        let (network, energy) = (self.network, self.energy);
         if !is_film {
-            keep(Way::Film, 0, 0, Errors::of(all, &films(all)));
+            let all = &self.material.states;
+            keep(Way::Film, 0, Errors::of(all, &films(all)));
         }
         let test = self.states(&self.database.part(Part::Test));
         let before = energy.at(&inputs(&test))?;
-        keep(Way::FamilyTuned(network), 0, 0, Errors::of(&test, &before));
+        keep(Way::FamilyTuned(network), 0, Errors::of(&test, &before));
         let available = self.database.manifest().split.jobs(Part::Training).len();
         for own_rays in counts(&OWN_RAYS, available.min(OWN_RAYS[OWN_RAYS.len() - 1])) {
             refuse_stop(stop)?;
@@ -465,7 +493,7 @@ impl Trial<'_> {
             let own = self.states(&thinned.part(Part::Training));
             let factor = best_factor(&own, &energy.at(&inputs(&own))?);
             let errors = Errors::of(&test, &scaled(&before, factor));
-            keep(Way::FamilyTimes(network), 0, own_rays, errors);
+            keep(Way::FamilyTimes(network), own_rays, errors);
             let config = TrainingConfig {
                 mirror: false,
                 frozen_layers: 0,
@@ -474,18 +502,18 @@ impl Trial<'_> {
             let data = training_data(&own);
             let tuned = LawEnergy::fit(&data, network.form(), &config, Some(energy))?;
             let errors = Errors::of(&test, &tuned.at(&inputs(&test))?);
-            keep(Way::FamilyTuned(network), 0, own_rays, errors);
+            keep(Way::FamilyTuned(network), own_rays, errors);
             if is_film {
                 continue;
             }
             let factor = best_factor(&own, &films(&own));
             let errors = Errors::of(&test, &scaled(&films(&test), factor));
-            keep(Way::FilmTimes, 0, own_rays, errors);
+            keep(Way::FilmTimes, own_rays, errors);
             let fit = format!("{name}-{own_rays}-rays-split-{seed}");
             let start = Some(&self.film.weights);
             let weights = kept_fit(&self.fits, &fit, &thinned, self.tuned, start)?;
             let errors = Errors::of(&test, &self.by(weights, &thinned.part(Part::Test)));
-            keep(Way::FilmTuned, 0, own_rays, errors);
+            keep(Way::FilmTuned, own_rays, errors);
         }
         Ok(())
     }

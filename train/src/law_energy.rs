@@ -3,12 +3,14 @@
 //! All energies are divided by E t^3, lengths by t. The energy of the network is one of
 //!
 //! ```text
-//! W = S |chi(xi) - chi(xi0)|^2                        by itself; S: a scale of the state's law
+//! W = S |chi(xi) - chi(xi0)|^2                          by itself; S: a scale of the state's law
 //! W = sum over j of phi(e_j) (chi(xi) - chi(xi0))_j^2   phi(e): work of the law in tension to the strain e
-//! W = W_known(eps, g) exp(chi(xi))                    a known energy of another law, corrected; chi has one output
+//! W = W_known(eps, g) sum over j of exp(chi(xi)_j) / n phi(e_j) / phi_known(e_j)
+//! W = W_known(eps, g) exp(chi(xi))                      a known energy of another law, corrected; chi has one output
 //! ```
 //!
-//! and its forces are the derivatives in (eta_a, eta_s, theta), the first three features. The loss is (15) without
+//! In the last two forms of works, xi has no numbers of the law: which strains a hinge has at a state is taken as
+//! independent of the law. Forces are the derivatives in (eta_a, eta_s, theta), the first three features. The loss is (15) without
 //! damage, with errors relative to S.
 
 use crate::backend::Backend;
@@ -54,6 +56,8 @@ pub struct LawState {
     pub known: EnergySlopes,
     /// phi(e_j) of its law over E.
     pub works: [f64; LAW_STRAINS],
+    /// phi(e_j) of the law of the known energy over E.
+    pub known_works: [f64; LAW_STRAINS],
 }
 
 /// What the network computes.
@@ -65,6 +69,8 @@ pub enum LawForm {
     Factor,
     /// A sum of works of the law, with weights that depend on the hinge alone and not on the three numbers.
     Works,
+    /// The known energy times a sum of ratios of works of the law and of the known law, with such weights.
+    WorksOfKnown,
 }
 
 /// A trained energy.
@@ -94,8 +100,8 @@ struct Batch {
     known: Tensor<2>,
     /// (n, 3)
     known_slopes: Tensor<2>,
-    /// (n, 32)
-    works: Tensor<2>,
+    /// Works over S and over their sizes, or over those of the known law, (1, n, 32).
+    works: Tensor<3>,
 }
 
 impl LawEnergy {
@@ -177,7 +183,7 @@ impl LawEnergy {
         match form {
             LawForm::Alone => {}
             LawForm::Factor => *outputs = 1,
-            LawForm::Works => *outputs = LAW_STRAINS,
+            LawForm::Works | LawForm::WorksOfKnown => *outputs = LAW_STRAINS,
         }
         let options =
             TensorCreationOptions::new(Backend::default().device()).with_dtype(DType::F32);
@@ -185,7 +191,7 @@ impl LawEnergy {
             form,
             mean,
             std: from_fn(|k| match std[k] {
-                _ if form == LawForm::Works && k >= LAW_FEATURES - 3 => f64::INFINITY,
+                _ if form.has_works() && k >= LAW_FEATURES - 3 => f64::INFINITY,
                 std => {
                     if std > 0.0 {
                         std
@@ -234,10 +240,17 @@ impl LawEnergy {
             }
             LawForm::Works => {
                 let r = chi.values.clone().narrow(0, 1, 1) - chi.values.narrow(0, 0, 1);
-                let works = batch.works.clone().unsqueeze_dim::<3>(0);
+                let works = batch.works.clone();
                 let slopes = by_state(works.clone() * r.clone() * chi.tangents).mul_scalar(2.0);
                 let energy = (works * r.square()).sum_dim(2).reshape([n, 1]);
                 (energy, slopes * factors)
+            }
+            LawForm::WorksOfKnown => {
+                let parts = chi.values.narrow(0, 1, 1).exp() * batch.works.clone();
+                let factor = parts.clone().sum_dim(2).reshape([n, 1]);
+                let own = by_state(parts * chi.tangents) * factors * batch.known.clone();
+                let slopes = own + batch.known_slopes.clone() * factor.clone();
+                (batch.known.clone() * factor, slopes)
             }
             LawForm::Factor => {
                 let factor = chi.values.narrow(0, 1, 1).reshape([n, 1]).exp();
@@ -263,20 +276,33 @@ impl LawEnergy {
         Batch {
             states: Tensor::stack(vec![self.table(n, undeformed), self.table(n, deformed)], 0),
             known: self.table(n, |i| [states[i].known.energy / size / states[i].scale]),
-            works: self.table(n, |i| {
-                from_fn::<_, LAW_STRAINS, _>(|j| {
-                    states[i].works[j] / states[i].scale / self.work_sizes[j] / LAW_STRAINS as f64
-                })
-            }),
+            works: self.table(n, |i| self.works(&states[i])).unsqueeze_dim(0),
             known_slopes: self.table(n, |i| {
                 from_fn::<_, 3, _>(|k| states[i].known.slopes[k] / sizes[k] / states[i].scale)
             }),
         }
     }
 
+    fn works(&self, state: &LawState) -> [f64; LAW_STRAINS] {
+        from_fn(|j| {
+            let size = match self.form {
+                LawForm::WorksOfKnown => state.known_works[j],
+                _ => state.scale * self.work_sizes[j],
+            };
+            state.works[j] / size / LAW_STRAINS as f64
+        })
+    }
+
     fn table<const N: usize>(&self, rows: usize, row: impl Fn(usize) -> [f64; N]) -> Tensor<2> {
         let flat: Vec<f64> = (0..rows).flat_map(row).collect();
         Tensor::from_data(TensorData::new(flat, [rows, N]), self.options.clone())
+    }
+}
+
+impl LawForm {
+    /// Whether the law enters by its works alone.
+    fn has_works(self) -> bool {
+        matches!(self, Self::Works | Self::WorksOfKnown)
     }
 }
 
@@ -321,6 +347,7 @@ mod tests {
                 scale: q,
                 known: of(1.0),
                 works: [q; LAW_STRAINS],
+                known_works: [1.0; LAW_STRAINS],
             };
             (state, of(q))
         };
@@ -334,6 +361,7 @@ mod tests {
             (LawForm::Alone, 0.06),
             (LawForm::Factor, 0.02),
             (LawForm::Works, 0.06),
+            (LawForm::WorksOfKnown, 0.02),
         ] {
             let energy = LawEnergy::fit(&solved, form, &config(), None).unwrap();
             let states: Vec<LawState> = solved.iter().map(|(state, _)| *state).collect();

@@ -15,7 +15,7 @@ use crate::universal::states::{Film, SolvedState};
 use anyhow::{Context, Result, ensure};
 use dataset::{Values, numbers_of_table, parquet_table};
 use std::path::Path;
-use train::EnergySlopes;
+use train::{EnergySlopes, LAW_STRAINS};
 
 /// The states of a solved ray.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,6 +134,7 @@ fn state(row: &[f64; 14]) -> SolvedState {
     SolvedState {
         law,
         works: law.works(),
+        film_works: [0.0; LAW_STRAINS],
         ligament,
         alpha,
         at: [eta_a, eta_s, theta],

@@ -111,6 +111,7 @@ mod tests {
             },
             film: EnergySlopes::default(),
             works: [0.0; train::LAW_STRAINS],
+            film_works: [0.0; train::LAW_STRAINS],
         };
         let states = [0.2, 0.5, 1.0].map(state);
         let solved = states.map(|it| it.solved);

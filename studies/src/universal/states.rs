@@ -23,6 +23,8 @@ pub struct SolvedState {
     pub film: EnergySlopes,
     /// Work of its law in tension, over E.
     pub works: [f64; LAW_STRAINS],
+    /// That of the law of the film.
+    pub film_works: [f64; LAW_STRAINS],
 }
 
 /// The weights of the film, with its sheet.
@@ -50,6 +52,7 @@ impl SolvedState {
             solved: over_stiffness(sample.w, forces, design, sheet),
             film: EnergySlopes::default(),
             works: law.works(),
+            film_works: [0.0; LAW_STRAINS],
         };
         film.filled(state)
     }
@@ -102,6 +105,7 @@ impl SolvedState {
             scale: self.law.energy_size(),
             known: self.film,
             works: self.works,
+            known_works: self.film_works,
         }
     }
 
@@ -121,7 +125,7 @@ pub fn training_data<'a>(
 }
 
 impl Film {
-    /// The state with the energy of the film.
+    /// The state with energy and works of the film.
     pub fn filled(&self, state: SolvedState) -> SolvedState {
         let [eta_a, eta_s, theta] = state.at;
         let w_lig = state.ligament * self.sheet.thickness;
@@ -132,7 +136,11 @@ impl Film {
             .weights
             .evaluate(&prepared, &[deformation], Order::Forces);
         let film = over_stiffness(energies[0].w, energies[0].forces, &design, &self.sheet);
-        SolvedState { film, ..state }
+        SolvedState {
+            film,
+            film_works: works_of_material(&self.sheet),
+            ..state
+        }
     }
 }
 

@@ -149,6 +149,7 @@ impl Display for Network {
             Self::TimesFilm => "numbers times film",
             Self::Works => "works",
             Self::WorksOfAll => "works, other materials",
+            Self::WorksTimesFilm => "works times film",
         })
     }
 }
