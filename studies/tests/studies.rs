@@ -130,9 +130,9 @@ fn the_family_of_laws_is_solved_once_and_judged_on_three_materials() {
     assert!(first == again);
     let judged = page(&work, "universal --splits 1 --epochs 1", "universal.md");
     for row in [
-        "laws held out | network",
+        "laws held out | works",
         "s235-1.5mm | film",
-        "pet-0.5mm | network",
+        "pet-0.5mm | numbers",
     ] {
         let errors = numbers(&judged, row);
         assert!(

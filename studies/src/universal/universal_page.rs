@@ -34,11 +34,11 @@ pub fn csv(measured: &Measured) -> String {
     text
 }
 
-/// Errors on each target against the number of laws, for each form of the network.
+/// Errors on the laws held out against the number of laws, for each network.
 pub fn curves(measured: &Measured) -> Vec<Curve> {
     let mut curves: Vec<Curve> = Vec::new();
-    for (case, errors) in measured.iter().filter(|(case, _)| case.laws > 0) {
-        let title = format!("{}, {}", case.target, case.way);
+    for (case, errors) in measured.iter().filter(|(case, _)| case.target == HELD_OUT) {
+        let title = case.way.to_string();
         let errors = Errors::averaged(errors);
         if curves.last().is_none_or(|curve| curve.title != title) {
             let title = title.clone();
@@ -125,7 +125,7 @@ pub fn markdown(
         )
         .expect("writing to a string does not fail");
     }
-    text += "\n![errors against the number of laws](universal.png)\n";
+    text += "\n![errors on laws held out against the number of laws](universal.png)\n";
     text
 }
 
