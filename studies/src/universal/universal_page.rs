@@ -110,7 +110,7 @@ pub fn markdown(
     }
     text += "\n## With rays of the material\n\nOn a fifth of its geometries.\n\n| material | energy | rays | W | F_a | F_s | M | \
              forces |\n|---|---|---|---|---|---|---|---|\n";
-    let with = |case: &Case| case.laws == 0 && case.way != Way::Film && case.target != HELD_OUT;
+    let with = |case: &Case| case.laws == 0 && case.way != Way::Film;
     for (case, errors) in measured.iter().filter(|(case, _)| with(case)) {
         let errors = Errors::averaged(errors);
         let [f_a, f_s, m_theta] = errors.forces;
