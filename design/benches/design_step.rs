@@ -106,6 +106,7 @@ fn problem(
             centred: true,
             panel_shape: 0.0,
             least_distance: 0.0,
+            min_panel_width: 0.0,
             domain: None,
             weights: PerFunctional {
                 damage: 1.0,

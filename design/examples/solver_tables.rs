@@ -91,6 +91,7 @@ fn problem(grid: Grid, stiffness: f64, settings: SolverSettings) -> DesignProble
             centred: true,
             panel_shape: 0.0,
             least_distance: 0.0,
+            min_panel_width: 0.0,
             domain: None,
             weights: per(0.1, 0.1),
             damage_measure: DamageMeasure::Mean,

@@ -5,6 +5,7 @@ pub mod domain_penalty;
 pub mod loss;
 pub mod outline_error;
 pub mod panel_shape;
+pub mod panel_width;
 pub mod path_functionals;
 pub mod scores;
 pub mod target;

@@ -3,6 +3,7 @@
 use crate::designed::designed;
 use crate::drawing::{Column, side_by_side};
 use crate::free_panels::{Enforcement, FreePanels};
+use crate::outline_match::OutlineMatch;
 use crate::tessellation::{Defects, Tessellation};
 use anyhow::{Context, Result};
 use clap::Args;
@@ -18,7 +19,8 @@ use std::time::Instant;
 /// Compare free panel corners, with and without penalties on validity, with the charts
 ///
 /// Four approaches to one target from one start with the same number of steps, each at the better of two
-/// learning rates; then the charts alone until L-BFGS converges. Writes approaches.csv, approaches.md and a
+/// learning rates; then the charts alone until L-BFGS converges. The three conditions of validity are evaluated
+/// flat and at states of the deployment. Writes approaches.csv, approaches.md and a
 /// picture. Example: kirigami-studies approaches configs/scenes/pin-7x7.toml
 #[derive(Args)]
 pub struct ApproachStudy {
@@ -40,6 +42,8 @@ const CHART_RATES: [f64; 2] = [0.05, 0.1];
 const CONVERGED_STEPS: usize = 3000;
 /// Weights of the coverage for which the charts are converged.
 const COVERAGES: [f64; 3] = [0.5, 0.1, 0.02];
+/// Number of states of the deployment, between flat and deployed, at which gaps and overlaps are evaluated.
+const STATES: usize = 20;
 
 /// The result of one approach.
 struct Outcome {
@@ -50,8 +54,8 @@ struct Outcome {
     steps: usize,
     /// L (mm^2), by which the learning rate is selected.
     loss: f64,
-    /// Root mean square distance from the target (mm).
-    outline_error: f64,
+    fit: OutlineMatch,
+    /// Of the flat sheet, and the maxima over the deployment.
     defects: Defects,
     opening_deg: f64,
     tessellation: Tessellation,
@@ -128,6 +132,9 @@ impl ApproachStudy {
             .context("the scene has no opening angle: set hinge = \"pin\"")?;
         let panels = FreePanels::new(&problem, &start, opening, enforcement)?;
         let found = panels.search(self.steps, rate);
+        let tessellation = found.tessellation;
+        let states = panels.while_opening(&tessellation.flat, found.opening, STATES);
+        let (_, sheet) = problem.cut(&start)?;
         Ok(Outcome {
             name: name.to_owned(),
             paper,
@@ -135,10 +142,10 @@ impl ApproachStudy {
             rate,
             steps: self.steps,
             loss: found.losses.iter().copied().fold(f64::INFINITY, f64::min),
-            outline_error: found.outline_error,
-            defects: found.tessellation.defects(),
+            fit: OutlineMatch::of(&sheet, &tessellation.deployed, &problem.objective.target),
+            defects: tessellation.defects_in(states),
             opening_deg: found.opening.to_degrees(),
-            tessellation: found.tessellation,
+            tessellation,
             target: problem.objective.target.clone(),
             seconds: began.elapsed().as_secs_f64(),
         })
@@ -155,7 +162,10 @@ impl ApproachStudy {
         let tessellation = Tessellation::of(&scene, &designed.best.deployment);
         let pattern = &designed.design.pattern;
         let opening = designed.design.opening.unwrap_or_default();
-        let best = (designed.history.iter()).min_by(|x, y| x.scores.loss.total_cmp(&y.scores.loss));
+        let sheet = &designed.best.deployment.sheet;
+        let problem = scene.problem()?;
+        let panels = FreePanels::new(&problem, &designed.design, opening, Enforcement::Nothing)?;
+        let states = panels.while_opening(&tessellation.flat, opening, STATES);
         Ok(Outcome {
             name: name.to_owned(),
             paper,
@@ -163,8 +173,8 @@ impl ApproachStudy {
             rate,
             steps: designed.history.len() - 1,
             loss: designed.best.loss,
-            outline_error: best.map_or(f64::NAN, |step| step.scores.outline_error),
-            defects: tessellation.defects(),
+            fit: OutlineMatch::of(sheet, &tessellation.deployed, scene.target.points()),
+            defects: tessellation.defects_in(states),
             opening_deg: opening.to_degrees(),
             tessellation,
             target: scene.target.points().to_vec(),
@@ -178,16 +188,22 @@ impl Outcome {
         let Defects {
             gap, overlap, void, ..
         } = self.defects;
-        let percents = [gap[0], gap[1], overlap[0], overlap[1], void].map(percent);
-        let [gap_flat, gap_open, overlap_flat, overlap_open, void] = percents;
         let lines = vec![
             format!(
                 "boundary error {:.2} % of the radius",
-                100.0 * self.outline_error / radius
+                100.0 * self.fit.free.rms / radius
             ),
-            format!("gaps at hinges {gap_flat} %, deployed {gap_open} %"),
-            format!("overlap {overlap_flat} %, deployed {overlap_open} %"),
-            format!("uncovered {void} %"),
+            format!(
+                "gaps at hinges {} %, opening {} %",
+                percent(gap[0]),
+                percent(gap[1])
+            ),
+            format!(
+                "overlap {} %, opening {} %",
+                percent(overlap[0]),
+                percent(overlap[1])
+            ),
+            format!("uncovered {} %", percent(void)),
         ];
         Column {
             title: &self.name,
@@ -213,14 +229,15 @@ fn page(outcomes: &[Outcome], drawn: &[usize], steps: usize, radius: f64) -> Res
          One target, one start, {steps} steps of Adam, each approach at two learning rates; the rate with the smaller \
          loss is in bold and in the picture. The last rows are the charts until L-BFGS converges, with the distance \
          measured to the target's curve. Boundary: root mean square distance of the free outline corners from the \
-         circle, in % of its radius. Gaps are in % of the sheet's side, flat and deployed; overlaps (flat and \
-         deployed), voids and the area beside the sheet in % of its area. `kirigami-studies approaches`.\n\n\
-         | approach | coordinates | rate | steps | boundary | gap | deployed | overlap | deployed | void | beside | opening, deg | s | the paper |\n\
+         circle, in % of its radius. Gaps are in % of the sheet's side; overlaps, voids and the area beside the sheet \
+         in % of its area. \"Opening\" is the maximum over {STATES} states of the deployment. `kirigami-studies \
+         approaches`.\n\n\
+         | approach | coordinates | rate | steps | boundary | flat gap | opening gap | flat overlap | opening overlap | void | beside | opening, deg | s | the paper |\n\
          |---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
     );
+    let mark = |k: usize| if drawn.contains(&k) { "**" } else { "" };
     for (k, it) in outcomes.iter().enumerate() {
-        let defects = it.defects;
-        let mark = if drawn.contains(&k) { "**" } else { "" };
+        let (mark, defects) = (mark(k), it.defects);
         writeln!(
             text,
             "| {mark}{}{mark} | {} | {} | {} | {:.3} | {} | {} | {} | {} | {} | {} | {:.1} | {:.1} | {} |",
@@ -228,7 +245,7 @@ fn page(outcomes: &[Outcome], drawn: &[usize], steps: usize, radius: f64) -> Res
             it.coordinates,
             it.rate,
             it.steps,
-            100.0 * it.outline_error / radius,
+            100.0 * it.fit.free.rms / radius,
             percent(defects.gap[0]),
             percent(defects.gap[1]),
             percent(defects.overlap[0]),
@@ -240,24 +257,45 @@ fn page(outcomes: &[Outcome], drawn: &[usize], steps: usize, radius: f64) -> Res
             it.paper,
         )?;
     }
+    write!(
+        text,
+        "\nThe match in other measures: root mean square distance of corners from the circle and of the circle's points \
+         from the nearest corner, in % of the radius, and intersection over union of the polygon through the corners \
+         with the circle; for the free outline corners and for all.\n\n\
+         | approach | rate | from free corners | from all corners | to free corners | to all corners | union, free | union, all |\n\
+         |---|---|---|---|---|---|---|---|\n"
+    )?;
+    for (k, it) in outcomes.iter().enumerate() {
+        let (mark, [free, all]) = (mark(k), [it.fit.free, it.fit.all]);
+        write!(text, "| {mark}{}{mark} | {} |", it.name, it.rate)?;
+        for distance in [free.rms, all.rms, free.uncovered, all.uncovered] {
+            write!(text, " {:.3} |", 100.0 * distance / radius)?;
+        }
+        writeln!(text, " {:.4} | {:.4} |", free.shared, all.shared)?;
+    }
     Ok(text)
 }
 
 fn csv(outcomes: &[Outcome], radius: f64) -> Result<String> {
-    let mut text =
-        "approach,coordinates,rate,steps,boundary_over_radius,gap_flat,gap_deployed,overlap_flat,\
-                    overlap_deployed,void,outside,opening_deg,seconds\n"
-            .to_owned();
+    let mut text = "approach,coordinates,rate,steps,boundary_over_radius,all_corners_over_radius,\
+                    circle_to_free_over_radius,circle_to_all_over_radius,union_free,union_all,gap_flat,gap_opening,\
+                    overlap_flat,overlap_opening,void,outside,opening_deg,seconds\n"
+        .to_owned();
     for it in outcomes {
-        let defects = it.defects;
+        let (defects, [free, all]) = (it.defects, [it.fit.free, it.fit.all]);
+        write!(
+            text,
+            "\"{}\",{},{},{}",
+            it.name, it.coordinates, it.rate, it.steps
+        )?;
+        for distance in [free.rms, all.rms, free.uncovered, all.uncovered] {
+            write!(text, ",{:.6}", distance / radius)?;
+        }
         writeln!(
             text,
-            "\"{}\",{},{},{},{:.6},{:.3e},{:.3e},{:.3e},{:.3e},{:.3e},{:.3e},{:.3},{:.2}",
-            it.name,
-            it.coordinates,
-            it.rate,
-            it.steps,
-            it.outline_error / radius,
+            ",{:.5},{:.5},{:.3e},{:.3e},{:.3e},{:.3e},{:.3e},{:.3e},{:.3},{:.2}",
+            free.shared,
+            all.shared,
             defects.gap[0],
             defects.gap[1],
             defects.overlap[0],

@@ -2,6 +2,7 @@
 
 mod calibration;
 mod capacity;
+mod contours;
 mod convergence;
 mod costs;
 mod front;

@@ -12,7 +12,6 @@
 
 use crate::panel_penalties::{overlap, void};
 use crate::tessellation::Tessellation;
-use design::geometry::chamfer::{Chamfer, Precision};
 use design::geometry::plane::{I, add, complex, dot, point, turn};
 use design::geometry::polygon::contains;
 use design::objective::design_problem::{DesignError, DesignProblem};
@@ -61,8 +60,6 @@ pub struct FreePanels<'a> {
 pub struct FreeDesign {
     /// Deployed with the mean of P at the origin, where the target is centred.
     pub tessellation: Tessellation,
-    /// Root mean square distance of P from the curve through the target's samples (mm).
-    pub outline_error: f64,
     /// rad
     pub opening: f64,
     /// Loss including penalties (mm^2), at the start and after every step.
@@ -134,19 +131,9 @@ impl<'a> FreePanels<'a> {
             panels.into_iter().map(|panel| panel.map(scale)).collect()
         };
         let deployed = self.deploy(&corners, opening);
-        let outline = || self.outline_points.iter().map(|&(k, c)| deployed[k][c]);
-        let centre = outline().sum::<c64>() / self.outline_points.len() as f64;
-        let outline: Vec<_> = outline().map(|z| point((z - centre) * self.side)).collect();
-        let precision = Chamfer {
-            coverage_weight: 0.0,
-            smoothing: 0.0,
-            precision: Precision::Curve,
-        };
+        let outline = self.outline_points.iter().map(|&(k, c)| deployed[k][c]);
+        let centre = outline.sum::<c64>() / self.outline_points.len() as f64;
         FreeDesign {
-            outline_error: precision
-                .evaluate(&outline, &self.objective.target)
-                .0
-                .sqrt(),
             tessellation: Tessellation {
                 outline: self.sheet.outline,
                 grid: self.sheet.grid,
@@ -161,6 +148,19 @@ impl<'a> FreePanels<'a> {
             opening,
             losses: losses.iter().map(|loss| loss * self.side.powi(2)).collect(),
         }
+    }
+
+    /// The flat corners `flat` (mm) deployed at `states` openings up to the given one.
+    pub fn while_opening(
+        &self,
+        flat: &[[[f64; 2]; 4]],
+        opening: f64,
+        states: usize,
+    ) -> impl Iterator<Item = Vec<[[f64; 2]; 4]>> {
+        (1..=states).map(move |state| {
+            let deployed = self.deploy(flat, opening * state as f64 / states as f64);
+            deployed.iter().map(|panel| panel.map(point)).collect()
+        })
     }
 
     /// The loss and its gradient.

@@ -18,6 +18,7 @@ mod levels;
 mod localisation;
 mod noise;
 mod optimisers;
+mod outline_match;
 mod pages;
 mod panel_penalties;
 mod path;

@@ -2,13 +2,12 @@
 
 use crate::designed::designed;
 use crate::drawing::{Column, side_by_side};
+use crate::outline_match::{Match, OutlineMatch};
 use crate::tessellation::{Tessellation, WorstPanels};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
-use design::geometry::intersection_over_union::intersection_over_union;
 use design::objective::loss::OutlinePoints;
 use design::objective::target::TargetShape;
-use design::scene::placement::deployed_outline;
 use design::scene::{Scene, SceneConfig};
 use kirigami::ui::progress::Progress;
 use kirigami::ui::{picture, run_folder};
@@ -18,9 +17,9 @@ use std::path::{Path, PathBuf};
 
 /// Design one sheet for several silhouettes, and measure the match and the shape of the panels
 ///
-/// Every silhouette replaces the scene's target, with the same height and centre, once with the
-/// scene's weight of the panel shape penalty and once without. Writes
-/// silhouettes.csv, silhouettes.md and a picture. Example: kirigami-studies silhouettes
+/// Every silhouette replaces the scene's target, with the same height and centre. It is designed through the free
+/// outline corners without a minimum panel width and with the scene's, and through all outline corners with
+/// the scene's. Writes silhouettes.csv, silhouettes.md and a picture. Example: kirigami-studies silhouettes
 /// configs/scenes/shield-16x22.toml configs/targets/shield.svg configs/targets/leaf.svg
 #[derive(Args)]
 pub struct SilhouetteStudy {
@@ -35,16 +34,21 @@ pub struct SilhouetteStudy {
     out: PathBuf,
 }
 
+/// What one design of a silhouette is made for.
+#[derive(Clone, Copy)]
+struct Aim {
+    outline: OutlinePoints,
+    /// mm
+    min_panel_width: f64,
+}
+
 /// The design for one silhouette.
 struct Fitted {
     name: String,
-    /// Weight of the panel shape penalty.
-    panel_shape: f64,
-    /// Intersection over union of the outline through the free corners, and of that through all corners.
-    shared: [f64; 2],
-    /// Mean and root mean square distance of the free corners from the target, relative to its height.
-    mean: f64,
-    rms: f64,
+    aim: Aim,
+    fit: OutlineMatch,
+    /// Height of the target (mm).
+    height: f64,
     opening_deg: f64,
     worst: WorstPanels,
     seconds: f64,
@@ -66,18 +70,24 @@ impl SilhouetteStudy {
         }
         let _held = run_folder::hold(&self.out)?;
         let steps = config.optimiser.steps;
-        let weights = [config.objective.panel_shape, 0.0];
+        let width = config.objective.min_panel_width;
+        let aims = [
+            (OutlinePoints::Free, 0.0),
+            (OutlinePoints::Free, width),
+            (OutlinePoints::All, width),
+        ]
+        .map(|(outline, min_panel_width)| Aim {
+            outline,
+            min_panel_width,
+        });
         let runs = self
             .silhouettes
             .iter()
-            .flat_map(|file| weights.map(|weight| (file, weight)));
-        let bar = Progress::new(
-            weights.len() * self.silhouettes.len() * steps,
-            "design steps",
-        );
+            .flat_map(|file| aims.map(|aim| (file, aim)));
+        let bar = Progress::new(aims.len() * self.silhouettes.len() * steps, "design steps");
         let mut fitted = Vec::new();
-        for (k, (silhouette, weight)) in runs.enumerate() {
-            fitted.push(self.fit(&config, silhouette, weight, &|step, message| {
+        for (k, (silhouette, aim)) in runs.enumerate() {
+            fitted.push(self.fit(&config, silhouette, aim, &|step, message| {
                 bar.show(k * steps + step, None, message);
             })?);
         }
@@ -85,8 +95,12 @@ impl SilhouetteStudy {
         let page = page(&fitted)?;
         run_folder::write(&self.out, "silhouettes.md", &page)?;
         run_folder::write(&self.out, "silhouettes.csv", &csv(&fitted)?)?;
-        let columns: Vec<_> = fitted.iter().step_by(2).map(Fitted::column).collect();
-        picture::save(&side_by_side(&columns), &self.out.join("silhouettes"), 2400)?;
+        let limited = fitted.iter().filter(|it| it.aim.min_panel_width > 0.0);
+        let titles: Vec<String> = limited.clone().map(Fitted::title).collect();
+        let columns: Vec<_> = std::iter::zip(limited, &titles)
+            .map(|(it, title)| it.column(title))
+            .collect();
+        picture::save(&side_by_side(&columns), &self.out.join("silhouettes"), 3200)?;
         println!("{page}\nwritten to {}", self.out.display());
         Ok(())
     }
@@ -95,7 +109,7 @@ impl SilhouetteStudy {
         &self,
         config: &SceneConfig,
         silhouette: &Path,
-        panel_shape: f64,
+        aim: Aim,
         show: &dyn Fn(usize, &str),
     ) -> Result<Fitted> {
         let name = silhouette.file_stem().unwrap_or_default();
@@ -106,8 +120,9 @@ impl SilhouetteStudy {
         };
         *file = std::path::absolute(silhouette)?;
         let height = *height;
-        config.objective.panel_shape = panel_shape;
-        let folder = format!("{name}-{panel_shape}");
+        config.objective.outline = aim.outline;
+        config.objective.min_panel_width = aim.min_panel_width;
+        let folder = format!("{name}-{}-{}", corners(aim.outline), aim.min_panel_width);
         config.output = std::path::absolute(&self.out)?.join("runs").join(folder);
         let scene = Scene::new(config, &self.scene)?;
         let began = std::time::Instant::now();
@@ -119,22 +134,14 @@ impl SilhouetteStudy {
         })?;
         let seconds = began.elapsed().as_secs_f64();
         let (deployment, target) = (&designed.best.deployment, scene.target.points());
-        let outline = |points| deployed_outline(&scene, deployment, points);
-        let free = outline(OutlinePoints::Free);
-        let distances: Vec<f64> = free.iter().map(|p| scene.target.distance(*p)).collect();
-        let mean = |values: &dyn Fn(&f64) -> f64| {
-            distances.iter().map(values).sum::<f64>() / distances.len() as f64
-        };
         let tessellation = Tessellation::of(&scene, deployment);
         let opening = designed.design.opening;
         let opening = opening.context("the scene has no opening angle: set hinge = \"pin\"")?;
         Ok(Fitted {
             name,
-            panel_shape,
-            shared: [free.clone(), outline(OutlinePoints::All)]
-                .map(|outline| intersection_over_union(&outline, target)),
-            mean: mean(&|d| *d) / height,
-            rms: mean(&|d| d * d).sqrt() / height,
+            aim,
+            fit: OutlineMatch::of(&deployment.sheet, &tessellation.deployed, target),
+            height,
             opening_deg: opening.to_degrees(),
             worst: tessellation.worst_panels(),
             seconds,
@@ -145,14 +152,25 @@ impl SilhouetteStudy {
 }
 
 impl Fitted {
-    fn column(&self) -> Column<'_> {
+    fn title(&self) -> String {
+        format!("{}, {} corners", self.name, corners(self.aim.outline))
+    }
+
+    fn column<'a>(&'a self, title: &'a str) -> Column<'a> {
+        let Match { mean, shared, .. } = match self.aim.outline {
+            OutlinePoints::Free => self.fit.free,
+            OutlinePoints::All => self.fit.all,
+        };
         Column {
-            title: &self.name,
+            title,
             lines: vec![
-                format!("boundary error {:.2} % of the height", 100.0 * self.mean),
-                format!("intersection over union {:.3}", self.shared[0]),
+                format!(
+                    "boundary error {:.2} % of the height",
+                    100.0 * mean / self.height
+                ),
+                format!("intersection over union {shared:.3}"),
                 format!("opening {:.1}\u{b0}", self.opening_deg),
-                format!("sharpest panel corner {:.0}\u{b0}", self.worst.sharpest_deg),
+                format!("thinnest panel {:.1} mm", self.worst.thinnest),
             ],
             tessellation: &self.tessellation,
             target: &self.target,
@@ -160,30 +178,43 @@ impl Fitted {
     }
 }
 
+fn corners(outline: OutlinePoints) -> &'static str {
+    match outline {
+        OutlinePoints::Free => "free",
+        OutlinePoints::All => "all",
+    }
+}
+
 fn page(fitted: &[Fitted]) -> Result<String> {
     let mut text = "# Silhouettes\n\n\
-        One sheet designed for drawn targets of one height, with the scene's weight of the panel shape penalty (in \
-        the picture) and without. Distances of the free outline corners from the target are in % of its height. \
-        Intersection over union is that of the deployed outline through these corners, the paper's point set, and \
-        through all corners, for which the notches between them count as missing. The shortest edge and the minimum \
-        area are relative to a square panel of the mean area. The seconds are those of this run; steps made by an \
-        earlier run are not included. `kirigami-studies silhouettes`.\n\n\
-        | silhouette | panel_shape | mean distance, % | rms, % | intersection over union | with notches | opening, deg | sharpest corner, deg | shortest edge | minimum area | overlap | s |\n\
-        |---|---|---|---|---|---|---|---|---|---|---|---|\n"
+        One sheet designed for drawn targets of one height. The corners in the second column are those compared with the \
+        target: those that belong to no hinge (free), the paper's point set, or all outline corners. Every match is \
+        measured through both: the mean distance of the corners from the target, in % of its height, and the \
+        intersection over union of the polygon through them with the target. The thinnest panel is the minimum distance \
+        of a corner from an edge of its panel that does not end at it; the minimum area is relative to the mean. The \
+        seconds are those of this run; steps made by an earlier run are not included. `kirigami-studies \
+        silhouettes`.\n\n\
+        | silhouette | corners | minimum width, mm | mean distance free, % | mean distance all, % | union free | union all | opening, deg | sharpest corner, deg | thinnest panel, mm | minimum area | overlap | s |\n\
+        |---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
         .to_owned();
     for it in fitted {
+        let OutlineMatch { free, all } = it.fit;
+        let limit = match it.aim.min_panel_width {
+            0.0 => "none".to_owned(),
+            width => width.to_string(),
+        };
         writeln!(
             text,
-            "| {} | {} | {:.3} | {:.3} | {:.4} | {:.4} | {:.1} | {:.1} | {:.2} | {:.3} | {:.0e} | {:.0} |",
+            "| {} | {} | {limit} | {:.3} | {:.3} | {:.4} | {:.4} | {:.1} | {:.1} | {:.2} | {:.3} | {:.0e} | {:.0} |",
             it.name,
-            it.panel_shape,
-            100.0 * it.mean,
-            100.0 * it.rms,
-            it.shared[0],
-            it.shared[1],
+            corners(it.aim.outline),
+            100.0 * free.mean / it.height,
+            100.0 * all.mean / it.height,
+            free.shared,
+            all.shared,
             it.opening_deg,
             it.worst.sharpest_deg,
-            it.worst.shortest,
+            it.worst.thinnest,
             it.worst.least,
             it.tessellation.defects().overlap.iter().sum::<f64>(),
             it.seconds,
@@ -191,28 +222,36 @@ fn page(fitted: &[Fitted]) -> Result<String> {
     }
     writeln!(
         text,
-        "| the paper's seal | | 0.7 | | 0.967 | | 90 | | | | | |"
+        "| the paper's seal | not stated | not stated | 0.7 | | 0.967 | | 90 | | | | | |"
     )?;
     Ok(text)
 }
 
 fn csv(fitted: &[Fitted]) -> Result<String> {
-    let mut text = "silhouette,panel_shape,mean_over_height,rms_over_height,intersection_over_union,with_notches,opening_deg,\
-                    sharpest_corner_deg,shortest_edge,least_area,seconds\n"
-        .to_owned();
+    let mut text =
+        "silhouette,corners,min_panel_width_mm,mean_free_over_height,rms_free_over_height,mean_all_over_height,\
+         rms_all_over_height,union_free,union_all,opening_deg,sharpest_corner_deg,thinnest_panel_mm,minimum_area,seconds\n"
+            .to_owned();
     for it in fitted {
+        let OutlineMatch { free, all } = it.fit;
+        write!(
+            text,
+            "{},{},{}",
+            it.name,
+            corners(it.aim.outline),
+            it.aim.min_panel_width
+        )?;
+        for distance in [free.mean, free.rms, all.mean, all.rms] {
+            write!(text, ",{:.6}", distance / it.height)?;
+        }
         writeln!(
             text,
-            "{},{},{:.6},{:.6},{:.5},{:.5},{:.3},{:.2},{:.4},{:.4},{:.1}",
-            it.name,
-            it.panel_shape,
-            it.mean,
-            it.rms,
-            it.shared[0],
-            it.shared[1],
+            ",{:.5},{:.5},{:.3},{:.2},{:.3},{:.4},{:.1}",
+            free.shared,
+            all.shared,
             it.opening_deg,
             it.worst.sharpest_deg,
-            it.worst.shortest,
+            it.worst.thinnest,
             it.worst.least,
             it.seconds,
         )?;

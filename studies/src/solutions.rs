@@ -1,25 +1,34 @@
 //! `kirigami-studies solutions`: how many designs reach one shape; section 3.1.
 
+mod opening_profile;
+mod plane_contours;
+mod solutions_page;
+
 use crate::charts::{self, SolutionChart};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use design::analysis::solution_set::{PrincipalPlane, curvatures};
+use design::analysis::solution_set::{PrincipalPlane, curvatures, outline_rank};
+use design::objective::loss::OutlinePoints;
+use design::optimise::outer_loop::Ended;
 use design::scene::design_run::{Designed, inverse_design};
 use design::scene::{Scene, SceneConfig};
 use kirigami::ui::processors;
 use kirigami::ui::progress::Progress;
 use kirigami::ui::{interrupt, picture, run_folder};
-use std::fmt::Write;
+use opening_profile::opening_profile;
+pub use plane_contours::Losses;
+use plane_contours::losses;
+pub use solutions_page::NEGLIGIBLE;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use support::worker_pool::{Reports, work_through};
 
 /// Run one scene from many random starts: families of solutions, and the curvature of the objective
 ///
-/// Every run starts from its own random pattern. Converged runs are grouped into families by their
-/// opening; for the best of them the curvature of the shape term is computed in all coordinates of
-/// the pattern and the opening. Writes solutions.csv, solutions.md and a chart. Example:
-/// kirigami-studies solutions configs/scenes/solutions-7x7.toml
+/// Every run starts from its own random pattern, once with the free outline corners compared with the target and once
+/// with all. Converged runs are grouped into families by their opening; for the best of the largest family the curvature
+/// of the loss is computed in all coordinates of the pattern and the opening. Writes solutions.csv, solutions.md and a
+/// chart. Example: kirigami-studies solutions configs/scenes/solutions-7x7.toml
 #[derive(Args)]
 pub struct SolutionStudy {
     /// Scene (TOML) with hinge = "pin"
@@ -36,11 +45,8 @@ pub struct SolutionStudy {
     out: PathBuf,
 }
 
-/// Outline error, relative to the sheet's side, below which a run counts as converged.
+/// Outline error, relative to the sheet's side, below which a run belongs to a family.
 const CONVERGED: f64 = 0.04;
-/// Ratio to the largest eigenvalue below which eigenvalues are negligible: a tenth of a per cent of the
-/// outline's sensitivity in the stiffest direction.
-const NEGLIGIBLE: f64 = 1e-6;
 /// Minimum gap of the openings of two families (deg).
 const GAP_DEG: f64 = 3.0;
 
@@ -56,13 +62,52 @@ struct Solution {
     error: f64,
 }
 
+/// The solutions of one point set P.
+struct SolutionSet {
+    outline: OutlinePoints,
+    /// mm
+    side: f64,
+    solutions: Vec<Solution>,
+    /// Indices of the solutions of each family, the largest family first, in order of their outline errors.
+    families: Vec<Vec<usize>>,
+    plane: PrincipalPlane,
+    /// Eigenvalues of the Hessian at the best design of the largest family, relative to the largest.
+    spectrum: Vec<f64>,
+    /// Number of independent motions of P at this design.
+    rank: usize,
+    /// Opening (deg) and root of the minimum loss at this opening, relative to the sheet's side.
+    profile: Vec<[f64; 2]>,
+    losses: Losses,
+}
+
 impl SolutionStudy {
     pub fn run(&self) -> Result<()> {
         ensure!(self.runs > 0, "--runs must be at least 1");
         let config: SceneConfig = support::toml_file::read(&self.scene)?;
         let _held = run_folder::hold(&self.out)?;
-        let side = side(&config);
-        let mut solutions = self.solve(&config, side)?;
+        let mut sets = Vec::new();
+        for outline in [OutlinePoints::Free, OutlinePoints::All] {
+            let mut config = config.clone();
+            config.objective.outline = outline;
+            sets.push(self.set(&config)?);
+        }
+        let page = solutions_page::page(&sets)?;
+        run_folder::write(&self.out, "solutions.md", &page)?;
+        run_folder::write(&self.out, "solutions.csv", &solutions_page::csv(&sets)?)?;
+        let rows: Vec<_> = sets.iter().map(SolutionSet::chart).collect();
+        picture::save(
+            &charts::solutions(&rows)?,
+            &self.out.join("solutions"),
+            2600,
+        )?;
+        println!("{page}\nwritten to {}", self.out.display());
+        Ok(())
+    }
+
+    fn set(&self, config: &SceneConfig) -> Result<SolutionSet> {
+        let outline = config.objective.outline;
+        let side = side(config);
+        let mut solutions = self.solve(config, side)?;
         solutions.sort_by_key(|solution| solution.seed);
         let points: Vec<_> = solutions
             .iter()
@@ -71,68 +116,39 @@ impl SolutionStudy {
         let plane = PrincipalPlane::of(&points)
             .context("too few runs for a principal plane: increase --runs")?;
         let families = families(&solutions);
-        let best = solutions
-            .iter()
-            .min_by(|x, y| x.error.total_cmp(&y.error))
-            .context("no run has a result")?;
-        let problem = self.scene_of(&config, best.seed)?.problem()?;
-        let curvatures = curvatures(&problem, &best.designed.design)?;
-        let shares: Vec<f64> = curvatures
+        let best = families
+            .first()
+            .map(|family| &solutions[family[0]])
+            .with_context(|| format!("no run has an error below {CONVERGED} of the side"))?;
+        let (problem, design) = (&best.designed.problem, &best.designed.design);
+        let curvatures = curvatures(problem, design)?;
+        let spectrum = curvatures
             .iter()
             .map(|value| value / curvatures[0])
             .collect();
-        let page = page(&solutions, &families, &plane, &shares, best)?;
-        run_folder::write(&self.out, "solutions.md", &page)?;
-        run_folder::write(
-            &self.out,
-            "solutions.csv",
-            &csv(&solutions, &families, &plane)?,
-        )?;
-        let place = |points: &[usize]| -> Vec<_> {
-            points
-                .iter()
-                .map(|&i| plane.place(&solutions[i].end))
-                .collect()
-        };
-        let errors: Vec<Vec<f64>> = families
-            .iter()
-            .map(|family| {
-                let history = &solutions[family[family.len() / 2]].designed.history;
-                history
-                    .iter()
-                    .map(|step| 100.0 * step.scores.outline_error / side)
-                    .collect()
-            })
-            .collect();
-        let chart = SolutionChart {
-            starts: &solutions
-                .iter()
-                .map(|it| plane.place(&it.start))
-                .collect::<Vec<_>>(),
-            families: &families
-                .iter()
-                .map(|family| place(family))
-                .collect::<Vec<_>>(),
-            curvatures: &shares,
-            negligible: NEGLIGIBLE,
-            errors: &errors,
-        };
-        picture::save(
-            &charts::solutions(&chart)?,
-            &self.out.join("solutions"),
-            2000,
-        )?;
-        println!("{page}\nwritten to {}", self.out.display());
-        Ok(())
+        let places = points.iter().map(|point| plane.place(point));
+        Ok(SolutionSet {
+            outline,
+            side,
+            spectrum,
+            rank: outline_rank(problem, design)?,
+            profile: opening_profile(config, &self.scene, side)?,
+            losses: losses(problem, design, &plane, places.collect(), side),
+            families,
+            plane,
+            solutions,
+        })
     }
 
     /// The scene with the seed and the run folder of one run.
     fn scene_of(&self, config: &SceneConfig, seed: u64) -> Result<Scene> {
         let mut config = config.clone();
         config.optimiser.seed = seed;
-        config.output = std::path::absolute(&self.out)?
-            .join("runs")
-            .join(seed.to_string());
+        let folder = format!(
+            "{}-{seed}",
+            solutions_page::corners(config.objective.outline)
+        );
+        config.output = std::path::absolute(&self.out)?.join("runs").join(folder);
         Ok(Scene::new(config, &self.scene)?)
     }
 
@@ -173,6 +189,41 @@ impl SolutionStudy {
     }
 }
 
+impl Solution {
+    /// Whether no step lowers the loss.
+    fn settled(&self) -> bool {
+        self.designed.ended == Ended::Settled
+    }
+}
+
+impl SolutionSet {
+    fn chart(&self) -> SolutionChart<'_> {
+        let places = |of: &dyn Fn(&Solution) -> Vec<f64>, which: &[usize]| -> Vec<[f64; 2]> {
+            let points = which.iter().map(|&i| of(&self.solutions[i]));
+            points.map(|point| self.plane.place(&point)).collect()
+        };
+        let all: Vec<usize> = (0..self.solutions.len()).collect();
+        let errors = self.families.iter().map(|family| {
+            let run = &self.solutions[family[family.len() / 2]];
+            let history = run.designed.history.iter();
+            history
+                .map(|step| 100.0 * step.scores.outline_error / self.side)
+                .collect()
+        });
+        SolutionChart {
+            name: solutions_page::corners(self.outline),
+            starts: places(&|it| it.start.clone(), &all),
+            families: (self.families.iter())
+                .map(|family| places(&|it| it.end.clone(), family))
+                .collect(),
+            losses: &self.losses,
+            spectrum: &self.spectrum,
+            profile: &self.profile,
+            errors: errors.collect(),
+        }
+    }
+}
+
 /// Side of a square with the area of the sheet (mm).
 fn side(config: &SceneConfig) -> f64 {
     config.sheet.outline().area().sqrt()
@@ -203,101 +254,4 @@ fn families(solutions: &[Solution]) -> Vec<Vec<usize>> {
     }
     families.sort_by_key(|family| std::cmp::Reverse(family.len()));
     families
-}
-
-fn page(
-    solutions: &[Solution],
-    families: &[Vec<usize>],
-    plane: &PrincipalPlane,
-    shares: &[f64],
-    best: &Solution,
-) -> Result<String> {
-    let converged: usize = families.iter().map(Vec::len).sum();
-    let mut text = format!(
-        "# The solution set\n\n\
-         {} runs from random patterns, {converged} of them with an outline error below {:.0} % of the side. The \
-         smallest error is {:.3} %. The plane of the chart contains {:.0} % of the variance of starts and solutions \
-         in (r, tau). `kirigami-studies solutions`.\n\n\
-         | family | runs | opening, deg | from | to | median error, % | minimum |\n|---|---|---|---|---|---|---|\n",
-        solutions.len(),
-        100.0 * CONVERGED,
-        100.0 * best.error,
-        100.0 * (plane.shares[0] + plane.shares[1]),
-    );
-    for (k, family) in families.iter().enumerate() {
-        let openings = || family.iter().map(|&i| solutions[i].opening_deg);
-        let percent = |i: usize| 100.0 * solutions[family[i]].error;
-        writeln!(
-            text,
-            "| {} | {} | {:.1} | {:.1} | {:.1} | {:.3} | {:.3} |",
-            k + 1,
-            family.len(),
-            openings().sum::<f64>() / family.len() as f64,
-            openings().fold(f64::INFINITY, f64::min),
-            openings().fold(f64::NEG_INFINITY, f64::max),
-            percent(family.len() / 2),
-            percent(0),
-        )?;
-    }
-    if let [first, second, ..] = families {
-        let [within, between] = distances(solutions, first, second);
-        write!(
-            text,
-            "\nThe mean distance of two designs from different ones of the two largest families is {:.2} times that \
-             of two designs of the same family, in (r, tau) (paper: 9.40).\n",
-            between / within
-        )?;
-    }
-    let flat = |limit: f64| shares.iter().filter(|share| share.abs() < limit).count();
-    write!(
-        text,
-        "\nOf the {} eigenvalues of the Hessian of the loss at the best design, in the chart coordinates of the \
-         pattern and the opening, {} are below 1e-4 of the largest, {} below {NEGLIGIBLE:.0e} and {} below 1e-8.\n",
-        shares.len(),
-        flat(1e-4),
-        flat(NEGLIGIBLE),
-        flat(1e-8),
-    )?;
-    Ok(text)
-}
-
-/// Mean distance of two designs of the same family, and of two designs of different families.
-fn distances(solutions: &[Solution], first: &[usize], second: &[usize]) -> [f64; 2] {
-    let apart = |i: usize, j: usize| -> f64 {
-        let squares =
-            std::iter::zip(&solutions[i].end, &solutions[j].end).map(|(x, y)| (x - y).powi(2));
-        squares.sum::<f64>().sqrt()
-    };
-    let mean = |pairs: Vec<f64>| pairs.iter().sum::<f64>() / pairs.len().max(1) as f64;
-    let mut within = Vec::new();
-    for family in [first, second] {
-        for (k, &i) in family.iter().enumerate() {
-            within.extend(family[k + 1..].iter().map(|&j| apart(i, j)));
-        }
-    }
-    let between = first
-        .iter()
-        .flat_map(|&i| second.iter().map(move |&j| (i, j)));
-    [
-        mean(within),
-        mean(between.map(|(i, j)| apart(i, j)).collect()),
-    ]
-}
-
-/// One row per run.
-fn csv(solutions: &[Solution], families: &[Vec<usize>], plane: &PrincipalPlane) -> Result<String> {
-    let mut text = "seed,error_over_side,opening_deg,family,component_1,component_2\n".to_owned();
-    for (i, solution) in solutions.iter().enumerate() {
-        let family = families.iter().position(|family| family.contains(&i));
-        let [x, y] = plane.place(&solution.end);
-        writeln!(
-            text,
-            "{},{:.6},{:.4},{},{x:.6},{y:.6}",
-            solution.seed,
-            solution.error,
-            solution.opening_deg,
-            family.map_or(0, |family| family + 1),
-        )?;
-    }
-    Ok(text)
 }

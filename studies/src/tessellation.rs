@@ -7,6 +7,7 @@ use design::geometry::intersection_over_union::{LINES, crossings, length};
 use design::geometry::plane::{complex, cross, dot};
 use design::geometry::polygon::area;
 use design::objective::design_problem::Deployment;
+use design::objective::panel_width::thinnest_panel;
 use design::pattern::cut_pattern::Outline;
 use design::pattern::grid::Grid;
 use design::scene::Scene;
@@ -41,8 +42,8 @@ pub struct Defects {
 pub struct WorstPanels {
     /// Minimum angle at a corner (deg).
     pub sharpest_deg: f64,
-    /// Shortest edge, relative to the side of a square panel of the mean area.
-    pub shortest: f64,
+    /// Minimum distance of a corner from an edge of its panel that does not end at it (mm).
+    pub thinnest: f64,
     /// Minimum area, relative to the mean.
     pub least: f64,
 }
@@ -72,11 +73,22 @@ impl Tessellation {
         }
     }
 
+    /// The defects with the maxima over further deployed states in the place of those of the deployed state.
+    pub fn defects_in(&self, states: impl Iterator<Item = Vec<[[f64; 2]; 4]>>) -> Defects {
+        let (mut worst, sheet) = (self.defects(), self.outline.area());
+        for panels in states {
+            let [overlap, ..] = self.areas(&panels);
+            worst.gap[1] = f64::max(worst.gap[1], self.gap(&panels) / sheet.sqrt());
+            worst.overlap[1] = f64::max(worst.overlap[1], overlap / sheet);
+        }
+        worst
+    }
+
     pub fn worst_panels(&self) -> WorstPanels {
         let mean = self.outline.area() / self.flat.len() as f64;
         let mut worst = WorstPanels {
             sharpest_deg: f64::INFINITY,
-            shortest: f64::INFINITY,
+            thinnest: thinnest_panel(&self.flat),
             least: f64::INFINITY,
         };
         for panel in &self.flat {
@@ -85,7 +97,6 @@ impl Tessellation {
                 let (back, ahead) = (before - corner, after - corner);
                 let angle = cross(ahead, back).atan2(dot(ahead, back));
                 worst.sharpest_deg = worst.sharpest_deg.min(angle.to_degrees());
-                worst.shortest = worst.shortest.min(back.norm() / mean.sqrt());
             }
             worst.least = worst.least.min(area(panel) / mean);
         }
@@ -177,7 +188,7 @@ mod tests {
         let whole = tessellation.defects();
         let squares = WorstPanels {
             sharpest_deg: 90.0,
-            shortest: 1.0,
+            thinnest: 1.0,
             least: 1.0,
         };
         assert_eq!(tessellation.worst_panels(), squares);

@@ -1,10 +1,13 @@
 //! The set of designs that reach one shape, section 3.1: the curvature of the objective at one of
-//! them, and the distribution of many of them.
+//! them, the directions in which the outline does not move, and the distribution of many solutions.
 
 use crate::objective::design_problem::{DesignError, DesignProblem};
 use crate::pattern::design_vector::DesignVector;
 use faer::{Mat, Side};
 
+/// Singular values of the outline's derivative below this fraction of the largest are rounding errors of its
+/// central differences.
+const ROUNDING: f64 = 1e-6;
 /// Step of the central differences of the gradient, in the chart coordinates: small enough to
 /// stay on one smooth piece of the Chamfer distance, large enough that rounding stays at 1e-8 of a slope.
 const STEP: f64 = 1e-6;
@@ -14,28 +17,66 @@ const STEP: f64 = 1e-6;
 ///
 /// Computed by central differences of the exact gradient.
 pub fn curvatures(problem: &DesignProblem, design: &DesignVector) -> Result<Vec<f64>, DesignError> {
-    let x = design.to_flat();
-    let widths = x.len() - design.omega.len() - usize::from(design.opening.is_some());
-    let coordinates: Vec<_> = (0..x.len())
-        .filter(|i| !(widths..widths + design.omega.len()).contains(i))
-        .collect();
-    let mut columns = Vec::new();
-    for &i in &coordinates {
-        let gradient = |step: f64| {
-            let mut beside = x.clone();
-            beside[i] += step;
-            let evaluation = problem.evaluate(&design.with_flat(&beside))?;
-            Ok::<_, DesignError>(evaluation.gradient.to_flat())
-        };
-        let (ahead, behind) = (gradient(STEP)?, gradient(-STEP)?);
-        let slopes = std::iter::zip(ahead, behind).map(|(a, b)| 0.5 * (a - b) / STEP);
-        columns.push(slopes.collect::<Vec<_>>());
-    }
+    let coordinates = coordinates(design);
+    let columns = slopes(design, &coordinates, |beside| {
+        Ok(problem.evaluate(beside)?.gradient.to_flat())
+    })?;
     let n = coordinates.len();
     let hessian = Mat::from_fn(n, n, |i, j| {
         0.5 * (columns[j][coordinates[i]] + columns[i][coordinates[j]])
     });
     Ok(descending(&hessian).0)
+}
+
+/// The number of independent motions of the points P, in the position in which they are compared with the target, by
+/// the coordinates of [`curvatures`]. No objective of these points depends on more directions to first order, and a design
+/// moves along the others without any change of its outline.
+pub fn outline_rank(problem: &DesignProblem, design: &DesignVector) -> Result<usize, DesignError> {
+    let columns = slopes(design, &coordinates(design), |beside| {
+        let deployment = problem.deploy(beside)?;
+        let corners = problem.objective.outline.of(&deployment.sheet);
+        let outline = problem.objective.placed(&deployment.outline(&corners));
+        Ok(outline.into_flattened())
+    })?;
+    let n = columns.len();
+    let gram = Mat::from_fn(n, n, |i, j| {
+        let products = std::iter::zip(&columns[i], &columns[j]);
+        products.map(|(x, y)| x * y).sum::<f64>()
+    });
+    let (squares, _) = descending(&gram);
+    let largest = squares.first().copied().unwrap_or_default();
+    Ok(squares
+        .iter()
+        .filter(|square| **square > ROUNDING.powi(2) * largest)
+        .count())
+}
+
+/// The indices of the pattern's coordinates and of the opening in the flat vector of a design.
+fn coordinates(design: &DesignVector) -> Vec<usize> {
+    let n = design.to_flat().len();
+    let widths = n - design.omega.len() - usize::from(design.opening.is_some());
+    (0..n)
+        .filter(|i| !(widths..widths + design.omega.len()).contains(i))
+        .collect()
+}
+
+/// Central differences of a vector in the given coordinates, one column each.
+fn slopes(
+    design: &DesignVector,
+    coordinates: &[usize],
+    value: impl Fn(&DesignVector) -> Result<Vec<f64>, DesignError>,
+) -> Result<Vec<Vec<f64>>, DesignError> {
+    let x = design.to_flat();
+    let column = |&i: &usize| {
+        let at = |step: f64| {
+            let mut beside = x.clone();
+            beside[i] += step;
+            value(&design.with_flat(&beside))
+        };
+        let slopes = std::iter::zip(at(STEP)?, at(-STEP)?).map(|(a, b)| 0.5 * (a - b) / STEP);
+        Ok(slopes.collect())
+    };
+    coordinates.iter().map(column).collect()
 }
 
 /// Eigenvalues in descending order with their eigenvectors; empty if the matrix is not finite.
@@ -89,6 +130,13 @@ impl PrincipalPlane {
         })
     }
 
+    /// The point of given coordinates in the plane.
+    pub fn point(&self, [x, y]: [f64; 2]) -> Vec<f64> {
+        (0..self.mean.len())
+            .map(|i| self.mean[i] + x * self.axes[0][i] + y * self.axes[1][i])
+            .collect()
+    }
+
     /// The coordinates of a point in the plane.
     pub fn place(&self, point: &[f64]) -> [f64; 2] {
         let along = |axis: &Vec<f64>| {
@@ -119,6 +167,8 @@ mod tests {
         assert!((plane.shares[0] / plane.shares[1] - 25.0).abs() < 1e-9);
         let [along, across] = plane.place(&[7.0, 2.0, 8.0]);
         assert!((along.abs() - 5.0).abs() < 1e-12 && across.abs() < 1e-12);
+        let back = plane.point([along, across]);
+        assert!((back[1] - 2.0).abs() < 1e-9 && (back[2] - 8.0).abs() < 1e-9);
         assert_eq!(PrincipalPlane::of(&points[..1]), None);
     }
 }

@@ -326,6 +326,7 @@ impl DesignProblem {
     pub fn balanced(mut self, start: &DesignVector) -> Result<Self, DesignError> {
         let relative = self.objective.weights;
         let panel_shape = std::mem::take(&mut self.objective.panel_shape);
+        let min_panel_width = std::mem::take(&mut self.objective.min_panel_width);
         let domain = self.objective.domain.take();
         let mut gradient = |weights: PerFunctional| {
             self.objective.weights = weights;
@@ -366,6 +367,7 @@ impl DesignProblem {
         };
         self.objective.weights = weights;
         self.objective.panel_shape = panel_shape;
+        self.objective.min_panel_width = min_panel_width;
         self.objective.domain = domain;
         Ok(self)
     }

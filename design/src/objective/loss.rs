@@ -4,9 +4,11 @@
 
 use crate::equilibrium::load_step::LoadStep;
 use crate::geometry::chamfer::{Chamfer, Precision};
+use crate::geometry::plane::{add, complex};
 use crate::hinge_law::DamageMeasure;
 use crate::objective::domain_penalty::DomainPenalty;
 use crate::objective::panel_shape::panel_shape;
+use crate::objective::panel_width::panel_width;
 use crate::objective::path_functionals::{HingePath, PathFunctionals, PerFunctional};
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::topology::PanelCorner;
@@ -55,6 +57,8 @@ pub struct Objective {
     pub panel_shape: f64,
     /// Corners of a panel at a smaller distance are penalised (mm).
     pub least_distance: f64,
+    /// No panel is thinner (mm); 0 sets no limit.
+    pub min_panel_width: f64,
     /// `None` if the hinge law has no training domain, or the domain is not weighted.
     pub domain: Option<DomainPenalty>,
 }
@@ -68,6 +72,8 @@ pub struct Terms {
     pub path: PerFunctional,
     /// The panel shape penalty.
     pub panel_shape: f64,
+    /// The barrier at the minimum panel width (mm^2).
+    pub panel_width: f64,
     /// The penalty on hinge states outside the training domain.
     pub domain: f64,
 }
@@ -104,6 +110,7 @@ impl Objective {
             temperatures: PerFunctional::default(),
             panel_shape: 0.0,
             least_distance: 0.0,
+            min_panel_width: 0.0,
             domain: None,
         }
     }
@@ -138,15 +145,26 @@ impl Objective {
         entries
             .iter_mut()
             .for_each(|entry| *entry *= self.panel_shape);
+        let mut width = 0.0;
+        if self.min_panel_width > 0.0 {
+            let by_width;
+            (width, by_width) = panel_width(&sheet.panels, self.min_panel_width);
+            let sums = by_corners.as_flattened_mut().iter_mut();
+            for (sum, gradient) in sums.zip(by_width.as_flattened()) {
+                add(sum, complex(*gradient));
+            }
+        }
         Judgement {
             loss: chamfer
                 + functionals.weighted(&values)
                 + self.panel_shape * shape
+                + width
                 + weight * outside,
             terms: Terms {
                 chamfer,
                 path: values,
                 panel_shape: shape,
+                panel_width: width,
                 domain: outside,
             },
             by_outline,

@@ -22,6 +22,9 @@ pub struct Scores {
     pub shear: f64,
     /// Panel shape penalty, unweighted; 0 if its weight is zero.
     pub panel_shape: f64,
+    /// The barrier at the minimum panel width (mm^2); 0 without a minimum.
+    #[serde(default)]
+    pub panel_width: f64,
     /// Penalty on states outside the training domain, unweighted; 0 if its weight is zero.
     #[serde(default)]
     pub domain: f64,
@@ -41,19 +44,21 @@ impl Scores {
             compression: terms.path.compression,
             shear: terms.path.shear,
             panel_shape: terms.panel_shape,
+            panel_width: terms.panel_width,
             domain: terms.domain,
             share_inside: evaluation.deployment.share_inside(),
         }
     }
 
     /// The terms of the loss by name, unweighted.
-    pub fn terms(&self) -> [(&'static str, f64); 6] {
+    pub fn terms(&self) -> [(&'static str, f64); 7] {
         [
             ("Chamfer (mm^2)", self.chamfer),
             ("damage", self.damage),
             ("compression", self.compression),
             ("shear", self.shear),
             ("panel shape", self.panel_shape),
+            ("panel width (mm^2)", self.panel_width),
             ("outside domain", self.domain),
         ]
     }

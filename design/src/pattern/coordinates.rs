@@ -34,6 +34,22 @@ impl PatternCoordinates {
             .collect()
     }
 
+    /// Coordinates of the pattern with given [`values`](Self::values).
+    pub fn of_values(grid: Grid, values: &[f64]) -> Result<Self, PatternError> {
+        let (r, mut rest) = values.split_at(grid.aspect_ratio_count().min(values.len()));
+        let tau = grid.edge_cut_counts().map(|count| {
+            let (edge, others) = rest.split_at(count.min(rest.len()));
+            rest = others;
+            edge.to_vec()
+        });
+        let coordinates = Self {
+            z: Self::z_of(r)?,
+            ell: Self::ell_of(&tau)?,
+        };
+        coordinates.check(grid)?;
+        Ok(coordinates)
+    }
+
     /// The logits z of given aspect ratios.
     pub fn z_of(r: &[f64]) -> Result<Vec<f64>, PatternError> {
         let inside = |r: f64| r > 0.0 && r < 1.0;

@@ -305,6 +305,14 @@ fn search(scene: &SceneConfig) -> Result<(), String> {
     ] {
         within(key, weight, [0.0, 1e9], "")?;
     }
+    let [columns, rows] = scene.sheet.panels;
+    let square = (scene.sheet.outline().area() / (columns * rows) as f64).sqrt();
+    within(
+        "objective.min_panel_width",
+        objective.min_panel_width,
+        [0.0, square / 3.0],
+        "mm",
+    )?;
     if objective.domain > 0.0 && scene.hinge != HingeModel::Surrogate {
         return Err(
             "objective.domain needs hinge = \"surrogate\": no other law has a domain".into(),

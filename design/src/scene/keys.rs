@@ -122,6 +122,11 @@ pub struct ObjectiveConfig {
     /// radii of their windows. Never relative to a gradient.
     #[serde(default)]
     pub panel_shape: f64,
+    /// No panel is thinner anywhere (mm), 0 to a third of the side of a square panel of the mean area: the minimum that
+    /// the cutter accepts. Distances of corners from the edges of their panel are kept above it by a barrier, which
+    /// begins at twice the value. 0 sets no limit.
+    #[serde(default)]
+    pub min_panel_width: f64,
     /// Weight of the penalty on states outside the training domain of the hinge law, in squared tenths of its range,
     /// as a mean over hinges and load steps. Needs `hinge = "surrogate"`. Never relative to a gradient.
     #[serde(default)]

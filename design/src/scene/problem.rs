@@ -114,6 +114,7 @@ impl Scene {
             panel_shape: config.panel_shape * self.mean_panel_area(),
             // Only a learned hinge has a window. Two window radii and a gap: the windows do not lie on one line.
             least_distance: domain.map_or(0.0, |_| 3.0 * self.config.process.r_win),
+            min_panel_width: config.min_panel_width,
             domain: (domain.filter(|_| config.domain > 0.0)).map(|domain| DomainPenalty {
                 domain: domain.clone(),
                 weight: config.domain * self.mean_panel_area(),

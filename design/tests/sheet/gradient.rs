@@ -60,6 +60,7 @@ fn a_pulled_sheet_with_path_functionals() {
             centred: false,
             panel_shape: 0.0,
             least_distance: 0.0,
+            min_panel_width: 0.0,
             domain: None,
             weights: per_functional(&case["weights"]),
             damage_measure: DamageMeasure::Mean,

@@ -107,6 +107,7 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
             centred: true,
             panel_shape: 200.0,
             least_distance: 200.0,
+            min_panel_width: 0.0,
             domain,
             weights: PerFunctional {
                 damage: 300.0,

@@ -213,6 +213,7 @@ impl Ratios {
         if let Some(contact) = &mut config.contact {
             contact.stiffness = by(energy)(contact.stiffness);
         }
+        config.objective.min_panel_width = by(size)(config.objective.min_panel_width);
         config.objective.smoothing = by(size.powi(2))(config.objective.smoothing);
         scale_target(&mut config.target, size);
     }

@@ -1,49 +1,71 @@
 //! Charts of the set of designs that reach one shape.
 
+use super::contours::contours;
+use crate::solutions::{Losses, NEGLIGIBLE};
 use anyhow::Result;
 use kirigami::ui::charts::*;
 use plotters::prelude::*;
 
-/// The data of the charts.
+/// The data of one row of charts.
 pub struct SolutionChart<'a> {
+    /// The outline corners compared with the target.
+    pub name: &'a str,
     /// Starts, and the solutions of each family, in the plane of the principal components.
-    pub starts: &'a [[f64; 2]],
-    pub families: &'a [Vec<[f64; 2]>],
-    /// Eigenvalues of the Hessian relative to the largest, and the value below which they are negligible.
-    pub curvatures: &'a [f64],
-    pub negligible: f64,
+    pub starts: Vec<[f64; 2]>,
+    pub families: Vec<Vec<[f64; 2]>>,
+    /// Root of the loss on this plane, relative to the sheet's side.
+    pub losses: &'a Losses,
+    /// Eigenvalues of the Hessian relative to the largest, in descending order.
+    pub spectrum: &'a [f64],
+    /// Opening (deg) and root of the minimum loss, relative to the sheet's side.
+    pub profile: &'a [[f64; 2]],
     /// Outline error (%) against the step, one line per family: its median run.
-    pub errors: &'a [Vec<f64>],
+    pub errors: Vec<Vec<f64>>,
 }
 
-/// The solution set in three charts.
-pub fn solutions(chart: &SolutionChart) -> Result<String> {
-    drawn((1320, 420), |root| {
-        let areas = root.split_evenly((1, 3));
-        plane_chart(&areas[0], chart)?;
-        curvature_chart(&areas[1], chart)?;
-        error_chart(&areas[2], chart.errors)
+/// The solution sets, one row of charts each.
+pub fn solutions(rows: &[SolutionChart]) -> Result<String> {
+    drawn((1720, 420 * rows.len() as u32), |root| {
+        for (area, chart) in root.split_evenly((rows.len(), 1)).iter().zip(rows) {
+            let areas = area.split_evenly((1, 4));
+            plane_chart(&areas[0], chart)?;
+            curvature_chart(&areas[1], chart)?;
+            profile_chart(&areas[2], chart)?;
+            error_chart(&areas[3], &chart.errors)?;
+        }
+        Ok(())
     })
 }
 
 fn plane_chart(area: &Area, chart: &SolutionChart) -> ChartResult {
-    let all = || chart.starts.iter().chain(chart.families.iter().flatten());
+    /// Values of the contours, in % of the side.
+    const LEVELS: [f64; 8] = [2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0];
+    let Losses { axes, values } = chart.losses;
+    let range = |axis: &[f64]| axis[0]..axis[axis.len() - 1];
+    let caption = format!("{} corners: starts (black), families", chart.name);
     let mut context = ChartBuilder::on(area)
-        .caption("starts (grey) and solutions by family", (FONT, 15))
+        .caption(caption, (FONT, 15))
         .margin(10)
         .x_label_area_size(38)
         .y_label_area_size(56)
-        .build_cartesian_2d(padded(all().map(|p| p[0])), padded(all().map(|p| p[1])))?;
+        .build_cartesian_2d(range(&axes[0]), range(&axes[1]))?;
     context
         .configure_mesh()
-        .light_line_style(WHITE)
+        .disable_mesh()
         .label_style((FONT, 12))
         .x_desc("first principal component")
         .y_desc("second principal component")
         .draw()?;
+    for level in LEVELS {
+        let lines = contours(axes, values, 0.01 * level).into_iter();
+        context.draw_series(lines.map(|line| {
+            let points = line.map(|[x, y]| (x, y));
+            PathElement::new(points.to_vec(), GUIDE.mix(0.6))
+        }))?;
+    }
     let dot =
-        |p: &[f64; 2], colour: RGBColor| Circle::new((p[0], p[1]), 3, colour.mix(0.7).filled());
-    context.draw_series(chart.starts.iter().map(|p| dot(p, GUIDE)))?;
+        |p: &[f64; 2], colour: RGBColor| Circle::new((p[0], p[1]), 2, colour.mix(0.8).filled());
+    context.draw_series(chart.starts.iter().map(|p| dot(p, BLACK)))?;
     for (i, family) in chart.families.iter().enumerate() {
         let colour = SLICES[i % SLICES.len()];
         context.draw_series(family.iter().map(|p| dot(p, colour)))?;
@@ -54,19 +76,22 @@ fn plane_chart(area: &Area, chart: &SolutionChart) -> ChartResult {
 fn curvature_chart(area: &Area, chart: &SolutionChart) -> ChartResult {
     /// Smaller ratios are drawn at this value.
     const MIN_RATIO: f64 = 1e-14;
-    let points: Vec<_> = (chart.curvatures.iter().enumerate())
-        .map(|(k, ratio)| (k as f64 + 1.0, ratio.abs().max(MIN_RATIO)))
+    let points: Vec<_> = (chart.spectrum.iter().enumerate())
+        .map(|(k, ratio)| {
+            (
+                k as f64 + 1.0,
+                ratio.abs().max(MIN_RATIO),
+                *ratio < -NEGLIGIBLE,
+            )
+        })
         .collect();
     let across = 0.0..points.len() as f64 + 1.0;
     let mut context = ChartBuilder::on(area)
-        .caption("curvature of the shape term", (FONT, 15))
+        .caption("curvature (orange: negative)", (FONT, 15))
         .margin(10)
         .x_label_area_size(38)
         .y_label_area_size(64)
-        .build_cartesian_2d(
-            across.clone(),
-            decades(points.iter().map(|p| p.1)).log_scale(),
-        )?;
+        .build_cartesian_2d(across.clone(), (MIN_RATIO / 10.0..10.0).log_scale())?;
     context
         .configure_mesh()
         .light_line_style(WHITE)
@@ -75,9 +100,35 @@ fn curvature_chart(area: &Area, chart: &SolutionChart) -> ChartResult {
         .x_desc("direction")
         .y_desc("|eigenvalue| / largest")
         .draw()?;
-    let limit = [across.start, across.end].map(|x| (x, chart.negligible));
+    let limit = [across.start, across.end].map(|x| (x, NEGLIGIBLE));
     context.draw_series(DashedLineSeries::new(limit, 4, 4, GUIDE.into()))?;
-    context.draw_series(points.iter().map(|p| Circle::new(*p, 3, POINT.filled())))?;
+    context.draw_series(points.iter().map(|&(k, ratio, negative)| {
+        let colour = if negative { VALIDATION } else { POINT };
+        Circle::new((k, ratio), 3, colour.filled())
+    }))?;
+    Ok(())
+}
+
+fn profile_chart(area: &Area, chart: &SolutionChart) -> ChartResult {
+    let points = || chart.profile.iter().map(|[x, y]| (*x, 100.0 * y));
+    let mut context = ChartBuilder::on(area)
+        .caption("minimum at a fixed opening", (FONT, 15))
+        .margin(10)
+        .x_label_area_size(38)
+        .y_label_area_size(56)
+        .build_cartesian_2d(
+            padded(points().map(|p| p.0)),
+            0.0..padded(points().map(|p| p.1)).end,
+        )?;
+    context
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .label_style((FONT, 12))
+        .x_desc("opening, deg")
+        .y_desc("root of the loss, % of the side")
+        .draw()?;
+    context.draw_series(LineSeries::new(points(), POINT.stroke_width(2)))?;
+    context.draw_series(points().map(|p| Circle::new(p, 3, POINT.filled())))?;
     Ok(())
 }
 

@@ -139,6 +139,8 @@ impl History {
             term("panel shape", objective.panel_shape, &|it| {
                 it.scores.panel_shape
             }),
+            (objective.min_panel_width > 0.0)
+                .then(|| ("panel width", of(&|it| it.scores.panel_width))),
             term("domain", domain.map_or(0.0, |it| it.weight), &|it| {
                 it.scores.domain
             }),

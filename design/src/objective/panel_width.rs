@@ -1,0 +1,126 @@
+//! Barrier that keeps panels as wide as a cutter needs: the mean over panels of the sum over their corners and the two
+//! edges that do not end at the corner of
+//!
+//! ```text
+//! b(x) = (1 - x)^3 / x^2  for 0 < x < 1,    0 for x >= 1,    infinite for x <= 0,    x = (d - d_min)/d_min
+//! ```
+//!
+//! d is the distance of the corner from the line of the edge. The shortest edge of a panel is not shorter than its
+//! smallest d. b is C^2; a search that begins with wider panels never evaluates a design with a thinner one, because
+//! steps to an infinite loss are halved.
+
+use crate::geometry::plane::{I, add, complex, cross};
+use crate::sheet::cut_sheet::Panel;
+use faer::c64;
+
+/// Weight of the barrier relative to d_min^2, and to the area of a square of this side.
+const WEIGHT: f64 = 0.01;
+
+/// The barrier for the minimum width `min_width` (mm), in mm^2, and its gradient in the corners of every panel (mm).
+pub fn panel_width(panels: &[Panel], min_width: f64) -> (f64, Vec<[[f64; 2]; 4]>) {
+    let weight = WEIGHT * min_width.powi(2) / panels.len() as f64;
+    let (mut value, mut gradient) = (0.0, vec![[[0.0; 2]; 4]; panels.len()]);
+    for (panel, gradient) in std::iter::zip(panels, &mut gradient) {
+        for (edge, corner) in PAIRS {
+            let (distance, along, arm) = distance(&panel.corners, (edge, corner));
+            let (barrier, slope) = barrier(distance / min_width - 1.0);
+            value += weight * barrier;
+            let pull = weight * slope / (min_width * along.norm());
+            let by_arm = I * along * pull;
+            let by_along = -(I * arm + along * (distance / along.norm())) * pull;
+            add(&mut gradient[corner], by_arm);
+            add(&mut gradient[(edge + 1) % 4], by_along);
+            add(&mut gradient[edge], -by_arm - by_along);
+        }
+    }
+    (value, gradient)
+}
+
+/// The minimum distance of a corner from the line of an edge that does not end at it, over all panels (mm).
+pub fn thinnest_panel(panels: &[[[f64; 2]; 4]]) -> f64 {
+    let widths = panels
+        .iter()
+        .flat_map(|panel| PAIRS.map(|pair| distance(panel, pair).0));
+    widths.fold(f64::INFINITY, f64::min)
+}
+
+/// The distance of a corner from the line of an edge, the edge, and the vector from its start to the corner.
+fn distance(panel: &[[f64; 2]; 4], (edge, corner): (usize, usize)) -> (f64, c64, c64) {
+    let [start, end, at] = [edge, (edge + 1) % 4, corner].map(|j| complex(panel[j]));
+    let (along, arm) = (end - start, at - start);
+    (cross(along, arm) / along.norm(), along, arm)
+}
+
+/// Edges, by the corner at which they start, and the corners that they do not contain.
+const PAIRS: [(usize, usize); 8] = [
+    (0, 2),
+    (0, 3),
+    (1, 3),
+    (1, 0),
+    (2, 0),
+    (2, 1),
+    (3, 1),
+    (3, 2),
+];
+
+/// b and db/dx.
+fn barrier(x: f64) -> (f64, f64) {
+    match x {
+        x if x <= 0.0 || x.is_nan() => (f64::INFINITY, 0.0),
+        x if x >= 1.0 => (0.0, 0.0),
+        x => {
+            let ratio = (1.0 - x) / x;
+            let barrier = ratio * ratio * (1.0 - x);
+            (barrier, -ratio * ratio * (3.0 + 2.0 * ratio))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::taylor::central_slope;
+
+    fn panel(corners: [[f64; 2]; 4]) -> Panel {
+        Panel {
+            corners,
+            centroid: [0.0; 2],
+        }
+    }
+
+    fn rectangle(length: f64, width: f64) -> [[f64; 2]; 4] {
+        [[0.0, 0.0], [length, 0.0], [length, width], [0.0, width]]
+    }
+
+    #[test]
+    fn a_panel_of_twice_the_width_is_free_and_one_of_the_width_is_excluded() {
+        let value = |width| panel_width(&[panel(rectangle(50.0, width))], 10.0).0;
+        assert_eq!(value(20.0), 0.0);
+        assert_eq!(value(10.0), f64::INFINITY);
+        // Two edges with two corners each, at x = 1/2.
+        let expected = WEIGHT * 100.0 * 4.0 * 0.5;
+        assert!((value(15.0) - expected).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_thinnest_place_of_a_wedge_is_at_its_thin_end() {
+        let wedge = [[0.0, 0.0], [50.0, 0.0], [50.0, 20.0], [0.0, 5.0]];
+        let tilt = f64::hypot(50.0, 15.0);
+        let width = thinnest_panel(&[rectangle(50.0, 20.0), wedge]);
+        assert!((width - 5.0 * 50.0 / tilt).abs() < 1e-12, "{width}");
+    }
+
+    #[test]
+    fn gradients_agree_with_differences() {
+        let corners = [0.0, 0.1, 20.0, -0.2, 17.0, 8.1, 0.2, 6.9];
+        let at = |x: &[f64]| panel(std::array::from_fn(|j| [x[2 * j], x[2 * j + 1]]));
+        let all = |x: &[f64]| panel_width(&[at(x), panel(rectangle(8.0, 8.0))], 5.0);
+        let (value, gradient) = all(&corners);
+        assert!(value > 0.1, "{value}");
+        for (i, found) in gradient[0].as_flattened().iter().enumerate() {
+            let unit: Vec<f64> = (0..8).map(|j| f64::from(i == j)).collect();
+            let slope = central_slope(|x| all(x).0, &corners, &unit, 1e-6);
+            assert!((found - slope).abs() < 1e-6 * value, "{found} {slope}");
+        }
+    }
+}
