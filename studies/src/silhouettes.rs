@@ -187,15 +187,15 @@ fn corners(outline: OutlinePoints) -> &'static str {
 
 fn page(fitted: &[Fitted]) -> Result<String> {
     let mut text = "# Silhouettes\n\n\
-        One sheet designed for drawn targets of one height. The corners in the second column are those compared with the \
+        One sheet designed for drawn targets of one height. The corners are those compared with the \
         target: those that belong to no hinge (free), the paper's point set, or all outline corners. Every match is \
         measured through both: the mean distance of the corners from the target, in % of its height, and the \
         intersection over union of the polygon through them with the target. The thinnest panel is the minimum distance \
         of a corner from an edge of its panel that does not end at it; the minimum area is relative to the mean. The \
         seconds are those of this run; steps made by an earlier run are not included. `kirigami-studies \
         silhouettes`.\n\n\
-        | silhouette | corners | minimum width, mm | mean distance free, % | mean distance all, % | union free | union all | opening, deg | sharpest corner, deg | thinnest panel, mm | minimum area | overlap | s |\n\
-        |---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
+        | silhouette, corners, minimum width in mm | mean distance free, % | mean distance all, % | union free | union all | opening, deg | sharpest corner, deg | thinnest panel, mm | minimum area | overlap | s |\n\
+        |---|---|---|---|---|---|---|---|---|---|---|\n"
         .to_owned();
     for it in fitted {
         let OutlineMatch { free, all } = it.fit;
@@ -205,7 +205,7 @@ fn page(fitted: &[Fitted]) -> Result<String> {
         };
         writeln!(
             text,
-            "| {} | {} | {limit} | {:.3} | {:.3} | {:.4} | {:.4} | {:.1} | {:.1} | {:.2} | {:.3} | {:.0e} | {:.0} |",
+            "| {}, {}, {limit} | {:.3} | {:.3} | {:.4} | {:.4} | {:.1} | {:.1} | {:.2} | {:.3} | {:.0e} | {:.0} |",
             it.name,
             corners(it.aim.outline),
             100.0 * free.mean / it.height,
@@ -222,7 +222,7 @@ fn page(fitted: &[Fitted]) -> Result<String> {
     }
     writeln!(
         text,
-        "| the paper's seal | not stated | not stated | 0.7 | | 0.967 | | 90 | | | | | |"
+        "| the paper's seal, not stated | 0.7 | | 0.967 | | 90 | | | | | |"
     )?;
     Ok(text)
 }

@@ -53,15 +53,22 @@ fn silhouettes_and_their_stored_runs() {
     set_steps(&work, scene, 40);
     let study = format!("silhouettes {scene} configs/targets/leaf.svg configs/targets/bell.svg");
     let first = page(&work, &study, "silhouettes.md");
-    let [panel_shape, distance, _, iou] = numbers(&first, "leaf")[..4] else {
-        panic!("{first}");
-    };
     // Twenty-four panels match a leaf to a few per cent.
-    assert_eq!(panel_shape, 0.03);
-    assert!(distance < 5.0 && (0.8..1.0).contains(&iou), "{first}");
+    for corners in ["free", "all"] {
+        let row = numbers(&first, &format!("leaf, {corners}, 10"));
+        let [free, all, union_free, union_all, _, _, thinnest] = row[..7] else {
+            panic!("{first}");
+        };
+        let (distance, union) = match corners {
+            "free" => (free, union_free),
+            _ => (all, union_all),
+        };
+        assert!(distance < 5.0 && (0.8..1.0).contains(&union), "{first}");
+        assert!(thinnest > 10.0, "{first}");
+    }
     assert!(work.path("out/silhouettes.png").exists());
     // Finished runs are stored; a repeated study makes no further steps.
-    let kept = work.path("out/runs/leaf-0.03/state.json");
+    let kept = work.path("out/runs/leaf-free-10/state.json");
     let before = std::fs::read(&kept).unwrap();
     page(&work, &study, "silhouettes.md");
     assert!(std::fs::read(&kept).unwrap() == before);
