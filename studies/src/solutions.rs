@@ -8,6 +8,7 @@ use crate::charts::{self, SolutionChart};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::analysis::solution_set::{PrincipalPlane, curvatures, outline_rank};
+use design::objective::design_problem::Evaluation;
 use design::objective::loss::OutlinePoints;
 use design::optimise::outer_loop::Ended;
 use design::scene::design_run::{Designed, inverse_design};
@@ -193,6 +194,15 @@ impl Solution {
     /// Whether no step lowers the loss.
     fn settled(&self) -> bool {
         self.designed.ended == Ended::Settled
+    }
+
+    /// Norm of the gradient at the end relative to that at the start.
+    fn gradient(&self) -> f64 {
+        let norm = |evaluation: &Evaluation| {
+            let gradient = evaluation.gradient.to_flat();
+            gradient.iter().map(|g| g * g).sum::<f64>().sqrt()
+        };
+        norm(&self.designed.best) / norm(&self.designed.start)
     }
 }
 

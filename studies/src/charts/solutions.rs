@@ -39,10 +39,12 @@ pub fn solutions(rows: &[SolutionChart]) -> Result<String> {
 
 fn plane_chart(area: &Area, chart: &SolutionChart) -> ChartResult {
     /// Values of the contours, in % of the side.
-    const LEVELS: [f64; 8] = [2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0];
+    const LEVELS: [f64; 16] = [
+        3.6, 3.8, 4.0, 4.25, 4.5, 4.75, 5.0, 5.5, 6.0, 6.5, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0,
+    ];
     let Losses { axes, values } = chart.losses;
     let range = |axis: &[f64]| axis[0]..axis[axis.len() - 1];
-    let caption = format!("{} corners: starts (black), families", chart.name);
+    let caption = format!("{} corners: starts (black) and solutions", chart.name);
     let mut context = ChartBuilder::on(area)
         .caption(caption, (FONT, 15))
         .margin(10)
@@ -116,10 +118,7 @@ fn profile_chart(area: &Area, chart: &SolutionChart) -> ChartResult {
         .margin(10)
         .x_label_area_size(38)
         .y_label_area_size(56)
-        .build_cartesian_2d(
-            padded(points().map(|p| p.0)),
-            0.0..padded(points().map(|p| p.1)).end,
-        )?;
+        .build_cartesian_2d(padded(points().map(|p| p.0)), padded(points().map(|p| p.1)))?;
     context
         .configure_mesh()
         .light_line_style(WHITE)

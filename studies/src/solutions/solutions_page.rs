@@ -21,10 +21,11 @@ pub fn page(sets: &[SolutionSet]) -> Result<String> {
     let mut text = format!(
         "# The solution set\n\n\
          {} runs from random patterns with the free outline corners compared with the circle, and as many with all. A run \
-         has settled if no step lowers the loss. Families are the runs with an outline error below {:.0} % of the side, \
+         has settled if no step lowers the loss; the gradient is the maximum over the runs of its norm at the end, relative \
+         to that at the start. Families are the runs with an outline error below {:.0} % of the side, \
          grouped by opening; errors are in % of the side. `kirigami-studies solutions`.\n\n\
-         | family | runs | settled | opening, deg | from | to | median error, % | minimum error, % |\n\
-         |---|---|---|---|---|---|---|---|\n",
+         | family | runs | settled | gradient | opening, deg | from | to | median error, % | minimum error, % |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
         sets.first().map_or(0, |set| set.solutions.len()),
         100.0 * CONVERGED,
     );
@@ -34,11 +35,12 @@ pub fn page(sets: &[SolutionSet]) -> Result<String> {
             let openings = || runs().map(|run| run.opening_deg);
             writeln!(
                 text,
-                "| {}, {} | {} | {} | {:.1} | {:.1} | {:.1} | {:.3} | {:.3} |",
+                "| {}, {} | {} | {} | {:.0e} | {:.1} | {:.1} | {:.1} | {:.3} | {:.3} |",
                 corners(set.outline),
                 k + 1,
                 family.len(),
                 runs().filter(|run| run.settled()).count(),
+                runs().map(Solution::gradient).fold(0.0, f64::max),
                 openings().sum::<f64>() / family.len() as f64,
                 openings().fold(f64::INFINITY, f64::min),
                 openings().fold(f64::NEG_INFINITY, f64::max),
