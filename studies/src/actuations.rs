@@ -1,57 +1,53 @@
 //! `kirigami-studies actuations`: one sheet, one target, five actuations; section 3.2.
 
 mod actuations_page;
+mod drive_readings;
 
 use crate::designed::designed;
 use crate::drawing::{ActuationRow, actuations};
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::Args;
 use design::analysis::force_transmission::ForceTransmission;
 use design::analysis::tension_routes::{TensionRoute, tension_routes};
-use design::analysis::threshold::least_passing;
 use design::analysis::void_families::{VoidFamilies, disjoint_voids};
 use design::objective::loss::Objective;
 use design::objective::outline_error::outline_error;
 use design::scene::design_run::Designed;
-use design::scene::{Scene, SceneConfig};
+use design::scene::{ObjectiveConfig, Scene, SceneConfig};
+use drive_readings::READINGS;
 use kirigami::ui::progress::Progress;
 use kirigami::ui::{picture, run_folder};
 use std::path::{Path, PathBuf};
 
 /// Design one sheet for one rectangle under five actuations, and compare the forces
 ///
-/// Designs the scenes actuation-1 to actuation-5 and compares the patterns and the forces within them.
-/// Writes actuations.csv, actuations.md and a picture. A stopped run continues when it is started again.
+/// The loads of the scenes actuation-1 to actuation-5 are scaled to the minimum with which the uniform sheet matches the
+/// target, in several readings of the paper. The scenes are designed at these loads, with and without the objectives on
+/// the hinge deformation, and the patterns and the forces within them are compared. Writes actuations.csv, actuations.md and a picture. A stopped run continues when it is started again.
 /// Example: kirigami-studies actuations
 #[derive(Args)]
 pub struct ActuationStudy {
     /// Folder of the scenes
     #[arg(long, value_name = "FOLDER", default_value = "configs/scenes")]
     scenes: PathBuf,
-    /// Replace the load of each scene by the minimum load with which a design reaches the target
-    #[arg(long)]
-    tune: bool,
     /// Folder for the tables, the picture and the runs
     #[arg(long, value_name = "FOLDER", default_value = "runs/study-actuations")]
     out: PathBuf,
 }
 
 const LABELS: [&str; 5] = ["I", "II", "III", "IV", "V"];
-/// A design reaches its target if its outline error (root mean square), relative to the target's width, is at
-/// most this: the value of the paper's designs.
-const REACHED: f64 = 0.012;
-/// Relative accuracy of the minimum load.
-const RESOLUTION: f64 = 0.04;
-/// Expected number of designs of one tuning, for the estimate of the time left.
-const TRIALS: usize = 6;
 /// Number of void families.
 const FAMILIES: usize = 3;
 
 /// One actuation with its design.
 struct Case {
     label: &'static str,
+    /// Drive in each reading (N).
+    drives: Vec<f64>,
     scene: Scene,
     designed: Designed,
+    /// Outline error of the design for the shape alone, relative to the target's width.
+    shape_alone: f64,
     objective: Objective,
     transmission: ForceTransmission,
     routes: Vec<TensionRoute>,
@@ -66,26 +62,37 @@ impl ActuationStudy {
         let named: Vec<_> = std::iter::zip(LABELS, paths)
             .map(|(label, path)| Ok((label, support::toml_file::read::<SceneConfig>(&path)?, path)))
             .collect::<Result<_>>()?;
-        let trials = if self.tune { TRIALS } else { 1 };
         let steps: usize = named
             .iter()
             .map(|(_, config, _)| config.optimiser.steps)
             .sum();
         let mut search = Search {
             out: std::path::absolute(&self.out)?,
-            bar: Progress::new(trials * steps, "design steps"),
+            bar: Progress::new(2 * steps, "design steps"),
             done: 0,
         };
         let mut cases = Vec::new();
-        for (i, (label, config, path)) in named.into_iter().enumerate() {
-            let factor = if self.tune {
-                search.least_load(label, &config, &path)?
-            } else {
-                1.0
+        for (i, (label, mut config, path)) in named.into_iter().enumerate() {
+            let factors = READINGS
+                .iter()
+                .map(|reading| reading.least_factor(&config, &path))
+                .collect::<Result<Vec<f64>>>()?;
+            let drives = factors
+                .iter()
+                .map(|factor| factor * drive(&config))
+                .collect();
+            config.scale_loads(factors[0]);
+            let (scene, designed) = search.design(label, &config, &path)?;
+            config.objective = ObjectiveConfig {
+                compression: 0.0,
+                shear: 0.0,
+                balance: false,
+                ..config.objective
             };
-            let (scene, designed) = search.design(label, &config, factor, &path)?;
-            cases.push(Case::new(label, scene, designed)?);
-            search.done = (i + 1) * trials * steps / LABELS.len();
+            let (alone, of_shape) = search.design(&format!("{label}-shape"), &config, &path)?;
+            let shape_alone = boundary_error(&alone, &of_shape);
+            cases.push(Case::new(label, drives, scene, designed, shape_alone)?);
+            search.done = 2 * (i + 1) * steps / LABELS.len();
         }
         search.bar.finish();
 
@@ -120,35 +127,19 @@ struct Search {
 }
 
 impl Search {
-    /// The minimum factor on the loads of a scene for which its design reaches the target.
-    fn least_load(&mut self, label: &str, config: &SceneConfig, path: &Path) -> Result<f64> {
-        let factor = least_passing(1.0, RESOLUTION, |factor| {
-            let (scene, designed) = self.design(label, config, factor, path)?;
-            Ok::<_, anyhow::Error>(boundary_error(&scene, &designed) <= REACHED)
-        })?;
-        factor.with_context(|| {
-            format!("case {label}: no load factor found for which the design reaches its target")
-        })
-    }
-
-    /// The design under `factor` times the scene's loads.
+    /// The design of a scene.
     fn design(
         &mut self,
         label: &str,
         config: &SceneConfig,
-        factor: f64,
         path: &Path,
     ) -> Result<(Scene, Designed)> {
         let mut config = config.clone();
-        config.scale_loads(factor);
-        config.output = self.out.join(format!("runs/{label}-{factor:.4}"));
+        config.output = self.out.join("runs").join(label);
         let scene = Scene::new(config, path)?;
         let designed = designed(&scene, &mut |step| {
             self.done += 1;
-            let message = format!(
-                "case {label}, load x {factor:.3}: outline {:.1} mm",
-                step.scores.outline_error
-            );
+            let message = format!("case {label}: outline {:.1} mm", step.scores.outline_error);
             self.bar.show(self.done, None, &message);
         })?;
         Ok((scene, designed))
@@ -160,13 +151,31 @@ fn boundary_error(scene: &Scene, designed: &Designed) -> f64 {
     outline_error(&designed.problem.objective, &designed.best.deployment) / scene.target.width()
 }
 
+/// The sum of the axial forces of a scene, or of all forces if there are no axial ones (N).
+fn drive(config: &SceneConfig) -> f64 {
+    let axial: f64 = config.loads.iter().map(|load| load.force[0].abs()).sum();
+    let all = config
+        .loads
+        .iter()
+        .map(|load| load.force[0].hypot(load.force[1]));
+    if axial > 0.0 { axial } else { all.sum() }
+}
+
 impl Case {
-    fn new(label: &'static str, scene: Scene, designed: Designed) -> Result<Self> {
+    fn new(
+        label: &'static str,
+        drives: Vec<f64>,
+        scene: Scene,
+        designed: Designed,
+        shape_alone: f64,
+    ) -> Result<Self> {
         let problem = scene.problem()?;
         let deployment = &designed.best.deployment;
         let transmission = ForceTransmission::new(&problem, deployment)?;
         Ok(Self {
             label,
+            drives,
+            shape_alone,
             routes: tension_routes(&transmission),
             voids: disjoint_voids(&deployment.pattern),
             objective: problem.objective,

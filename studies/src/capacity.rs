@@ -1,6 +1,7 @@
 //! `kirigami-studies capacity`: the load that a cut pattern carries before its deployment fails; section 3.2.
 
 mod capacity_page;
+mod readings;
 
 use crate::charts::{self, CapacityCurve};
 use crate::designed::designed;
@@ -15,6 +16,7 @@ use design::pattern::design_vector::DesignVector;
 use design::scene::{HingeModel, ObjectiveConfig, PinConfig, Scene, SceneConfig};
 use kirigami::ui::progress::Progress;
 use kirigami::ui::{interrupt, picture, run_folder};
+use readings::READINGS;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
@@ -23,7 +25,8 @@ use std::sync::atomic::Ordering;
 /// The first load of the scene is constant and the second is rho times the scene's. With both loads applied
 /// together, every rho is a separate deployment from the flat sheet; the smallest rho at which the sheet is not
 /// deployed is found by bisection. With the second load applied after the first, in its own and in the opposite
-/// direction, its stroke is prescribed until the sheet reaches its first limit. Writes capacity.csv, ways.csv,
+/// direction, its stroke is prescribed until the sheet reaches its first limit. The capacity of the uniform sheet is
+/// also computed in other readings of the paper. Writes capacity.csv, ways.csv,
 /// capacity.md and pictures. Example: kirigami-studies capacity
 #[derive(Args)]
 pub struct CapacityStudy {
@@ -130,10 +133,7 @@ impl CapacityStudy {
             });
         }
         bar.finish();
-        let values: Vec<f64> = (0..)
-            .map(|i| SPACING * f64::from(i))
-            .take_while(|rho| *rho <= self.to)
-            .collect();
+        let values = self.values();
         let bar = Progress::new(strategies.len() * values.len(), "deployments");
         let mut capacities: Vec<Capacity> = Vec::new();
         for (i, (strategy, design)) in std::iter::zip(strategies, designs).enumerate() {
@@ -168,10 +168,34 @@ impl CapacityStudy {
         )?;
         run_folder::write(&self.out, "capacity.csv", &capacity_page::csv(&capacities)?)?;
         run_folder::write(&self.out, "ways.csv", &capacity_page::ways(&capacities)?)?;
-        let page = capacity_page::page(&capacities, &self.scene, self.to)?;
+        let readings = self.readings(&config)?;
+        let page = capacity_page::page(&capacities, &readings, &self.scene, self.to)?;
         run_folder::write(&self.out, "capacity.md", &page)?;
         println!("{page}\nwritten to {}", self.out.display());
         Ok(())
+    }
+
+    /// The capacity of the uniform sheet in every reading; `None` if it carries the maximum rho.
+    fn readings(&self, config: &SceneConfig) -> Result<Vec<Option<f64>>> {
+        let carried = READINGS.iter().map(|reading| {
+            let mut config = config.clone();
+            (reading.change)(&mut config);
+            let uniform = self.scene_of(&config)?.start();
+            let sweep = self.values().into_iter();
+            let points = sweep.map(|rho| self.point(&config, &uniform, rho));
+            let points = points.collect::<Result<Vec<_>>>()?;
+            let limit = self.limit(&config, &uniform, &points)?;
+            Ok(limit.map(|(carried, _)| carried))
+        });
+        carried.collect()
+    }
+
+    /// The values of rho of the sweep.
+    fn values(&self) -> Vec<f64> {
+        (0..)
+            .map(|i| SPACING * f64::from(i))
+            .take_while(|rho| *rho <= self.to)
+            .collect()
     }
 
     fn scene_of(&self, config: &SceneConfig) -> Result<Scene> {

@@ -35,11 +35,23 @@ pub struct ForceTransmission {
     pub interfaces: Vec<Interface>,
     /// Deployed centroids (mm).
     pub centroids: Vec<[f64; 2]>,
-    /// The moment transmitted through each panel (N mm): half the sum of the magnitudes of the moments that its
-    /// interfaces and the couple on it exert about its centroid. In equilibrium that couple balances the interfaces.
-    pub moments: Vec<f64>,
+    /// The moment transmitted through each panel.
+    pub moments: Vec<PanelMoment>,
     /// Areas of the panels (mm^2).
     pub areas: Vec<f64>,
+}
+
+/// The moment transmitted through a panel, read in three ways (N mm): half the sum of the magnitudes of the moments that
+/// act on it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PanelMoment {
+    /// Of the interfaces, each with its force and its rotational spring, and of the couple on the panel, which balances
+    /// them, about its centroid.
+    pub interfaces: f64,
+    /// Of the rotational springs alone.
+    pub springs: f64,
+    /// Of the forces of the interfaces alone, about the centroid.
+    pub forces: f64,
 }
 
 /// Fractions of the total, each in [0, 1].
@@ -78,14 +90,25 @@ impl ForceTransmission {
         let (sheet, last) = (&deployment.sheet, deployment.final_step());
         let law = mechanics.law.prepare(&sheet.designs());
         let energies = law.energies(&last.deformations, Order::Forces);
-        let mut moments = vec![[0.0; 2]; sheet.panels.len()];
+        let mut moments = vec![PanelMoment::default(); sheet.panels.len()];
+        let mut couples = vec![0.0; sheet.panels.len()];
         for (h, (hinge, energy)) in std::iter::zip(&sheet.hinges, &energies).enumerate() {
             let motion = HingeMotion::new(sheet, h, &last.configuration);
             let [_, _, on_a, _, _, on_b] = motion.forces(energy.forces);
-            for (panel, moment) in [(hinge.panel_a(), on_a), (hinge.panel_b(), on_b)] {
-                moments[panel][0] += f64::abs(moment);
-                moments[panel][1] += moment;
+            // The spring exerts opposite moments on panels A and B.
+            let spring = energy.forces[2];
+            for (panel, moment, spring) in [
+                (hinge.panel_a(), on_a, -spring),
+                (hinge.panel_b(), on_b, spring),
+            ] {
+                moments[panel].interfaces += 0.5 * f64::abs(moment);
+                moments[panel].springs += 0.5 * f64::abs(spring);
+                moments[panel].forces += 0.5 * f64::abs(moment - spring);
+                couples[panel] += moment;
             }
+        }
+        for (moment, couple) in std::iter::zip(&mut moments, couples) {
+            moment.interfaces += 0.5 * f64::abs(couple);
         }
         let hinges = std::iter::zip(&sheet.hinges, &last.deformations);
         let interfaces = std::iter::zip(hinges, energies).map(|((hinge, deformation), energy)| {
@@ -107,9 +130,7 @@ impl ForceTransmission {
             centroids: std::iter::zip(&sheet.panels, &last.configuration)
                 .map(centroid)
                 .collect(),
-            moments: (moments.iter())
-                .map(|[sizes, sum]| 0.5 * (sizes + f64::abs(*sum)))
-                .collect(),
+            moments,
             areas: sheet.panels.iter().map(Panel::area).collect(),
         })
     }
@@ -196,8 +217,9 @@ impl ForceTransmission {
     }
 
     /// Mean area of the tenth of panels with the largest moment, relative to the median area.
-    pub fn moment_panels(&self) -> f64 {
-        let most = upper_part(&self.moments, MOMENT_PANELS);
+    pub fn moment_panels(&self, moment: impl Fn(&PanelMoment) -> f64) -> f64 {
+        let moments: Vec<f64> = self.moments.iter().map(moment).collect();
+        let most = upper_part(&moments, MOMENT_PANELS);
         let mean = most.iter().map(|&k| self.areas[k]).sum::<f64>() / most.len() as f64;
         let mut areas = self.areas.clone();
         areas.sort_by(f64::total_cmp);
@@ -246,6 +268,13 @@ fn correlation(x: &[f64], y: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
+    fn through(interfaces: f64) -> PanelMoment {
+        PanelMoment {
+            interfaces,
+            ..PanelMoment::default()
+        }
+    }
+
     fn interface(
         panels: [usize; 2],
         normal: f64,
@@ -272,11 +301,11 @@ mod tests {
                 interface([3, 4], 0.0, 0.0, [0.0, 8.0]),
             ],
             centroids: vec![[0.0; 2]; 5],
-            moments: vec![1.0, 0.0, 7.0, 0.0, 2.0],
+            moments: [1.0, 0.0, 7.0, 0.0, 2.0].map(through).to_vec(),
             areas: vec![2.0, 1.0, 6.0, 4.0, 9.0],
         };
         // A tenth of five panels is the third alone.
-        assert_eq!(transmission.moment_panels(), 1.5);
+        assert_eq!(transmission.moment_panels(|it| it.interfaces), 1.5);
         let shares = transmission.shares();
         assert_eq!(shares.tension, 0.6);
         assert_eq!((shares.compression, shares.shear), (0.2, 0.2));
@@ -311,7 +340,7 @@ mod tests {
                     .map(|h| interface([h, h + 1], force(h), 0.0, [0.0; 2]))
                     .collect(),
                 centroids: vec![[0.0; 2]; 8],
-                moments: vec![0.0; 8],
+                moments: vec![PanelMoment::default(); 8],
                 areas: vec![1.0; 8],
             }
         };

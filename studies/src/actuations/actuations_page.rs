@@ -1,5 +1,6 @@
 //! The tables of `kirigami-studies actuations`.
 
+use super::drive_readings::READINGS;
 use super::{Case, boundary_error};
 use anyhow::{Context, Result};
 use design::analysis::void_families::VoidFamilies;
@@ -21,8 +22,6 @@ const ROUTE: usize = 4;
 
 /// The reported numbers of a case.
 struct Numbers {
-    /// The sum of the axial forces, or of all forces if there are no axial ones (N).
-    drive: f64,
     /// Fractions in %.
     rotation: f64,
     non_rotational: f64,
@@ -31,6 +30,7 @@ struct Numbers {
     shear: f64,
     boundary_start: f64,
     boundary: f64,
+    boundary_shape_alone: f64,
     /// Relative to the area of the sheet.
     overlap: f64,
     /// Mean and minimum opening (deg).
@@ -40,8 +40,9 @@ struct Numbers {
     /// Panels of the longest tension path, and the mean arc over chord of the longer paths.
     longest_route: usize,
     arc_over_chord: Option<f64>,
-    /// Mean area of the panels that carry the largest moment, relative to the median.
-    moment_panels: f64,
+    /// Mean area of the panels that carry the largest moment, relative to the median: moment of interfaces, of springs
+    /// and of forces.
+    moment_panels: [f64; 3],
     /// Work of the couples relative to that of all loads (%).
     couple: f64,
     /// Weights of (18) and (19) (mm^2).
@@ -52,8 +53,6 @@ impl Numbers {
     fn of(case: &Case) -> Self {
         let (loads, deployment) = (&case.scene.config.loads, &case.designed.best.deployment);
         let last = deployment.final_step();
-        let axial: f64 = loads.iter().map(|load| load.force[0].abs()).sum();
-        let all = loads.iter().map(|load| load.force[0].hypot(load.force[1]));
         let (mut by_forces, mut by_couples) = (0.0, 0.0);
         for load in loads {
             let [column, row] = load.panel;
@@ -79,7 +78,6 @@ impl Numbers {
             .first()
             .map_or(f64::NAN, |step| step.scores.outline_error);
         Self {
-            drive: if axial > 0.0 { axial } else { all.sum() },
             rotation: 100.0 * shares.rotation,
             non_rotational: 100.0 * shares.non_rotational,
             tension: 100.0 * shares.tension,
@@ -87,6 +85,7 @@ impl Numbers {
             shear: 100.0 * shares.shear,
             boundary_start: 100.0 * start / case.scene.target.width(),
             boundary: 100.0 * boundary_error(&case.scene, &case.designed),
+            boundary_shape_alone: 100.0 * case.shape_alone,
             overlap: total_overlap(&deployment.sheet, &last.configuration),
             opening: [
                 openings().sum::<f64>() / last.deformations.len() as f64,
@@ -97,7 +96,11 @@ impl Numbers {
             longest_route: case.routes.first().map_or(0, |route| route.panels.len()),
             arc_over_chord: (!bent.is_empty())
                 .then(|| bent.iter().sum::<f64>() / bent.len() as f64),
-            moment_panels: case.transmission.moment_panels(),
+            moment_panels: [
+                case.transmission.moment_panels(|moment| moment.interfaces),
+                case.transmission.moment_panels(|moment| moment.springs),
+                case.transmission.moment_panels(|moment| moment.forces),
+            ],
             couple: 100.0 * by_couples / (by_forces + by_couples),
             weights: [
                 case.objective.weights.compression,
@@ -117,13 +120,13 @@ pub fn page(cases: &[Case], families: &VoidFamilies, scenes: &Path) -> Result<St
     let mut text = format!(
         "# One sheet, five actuations\n\n\
         {columns} x {rows} panels of {}, {width:.0} x {height:.0} mm, designed for one target with the scenes \
-        `{}/actuation-1.toml` to `-5`, as in section 3.2 of the paper. The paper's numbers are in brackets. With \
-        `--tune` the load of a case is the minimum for which the design reaches the target to 1.2 % of its width, \
-        found by bisection to 4 %; otherwise it is the scene's. `kirigami-studies actuations --tune`.\n\n\
+        `{}/actuation-1.toml` to `-5`, as in section 3.2 of the paper. The paper's numbers are in brackets. The load of \
+        a case is the minimum with which the uniform sheet matches the target to 1.2 % of its width. \
+        `kirigami-studies actuations`.\n\n\
         ![the five designs](actuations.png)\n\n\
         | case | drive, N | rotational energy, % | non-rotational, % | compression, % | tension, % | shear, % | \
-        boundary rms, % | from | overlap | mean opening, deg | minimum \
-        |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+        boundary rms, % | from | shape alone | overlap | mean opening, deg | minimum \
+        |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
         scene.material.name,
         scenes.display()
     );
@@ -132,9 +135,9 @@ pub fn page(cases: &[Case], families: &VoidFamilies, scenes: &Path) -> Result<St
         writeln!(
             text,
             "| {} | {:.0} ({drive:.0}) | {:.1} ({rotation}) | {:.1} ({non_rotational}) | {:.0} ({compression:.0}) | \
-             {:.0} | {:.0} | {:.2} (1.2) | {:.2} | {:.1e} | {:.1} | {:.1} |",
+             {:.0} | {:.0} | {:.2} (1.2) | {:.2} | {:.2} | {:.1e} | {:.1} | {:.1} |",
             case.label,
-            n.drive,
+            case.drives[0],
             n.rotation,
             n.non_rotational,
             n.compression,
@@ -142,6 +145,7 @@ pub fn page(cases: &[Case], families: &VoidFamilies, scenes: &Path) -> Result<St
             n.shear,
             n.boundary,
             n.boundary_start,
+            n.boundary_shape_alone,
             n.overlap,
             n.opening[0],
             n.opening[1],
@@ -149,21 +153,24 @@ pub fn page(cases: &[Case], families: &VoidFamilies, scenes: &Path) -> Result<St
     }
     text.push_str(
         "\nThe boundary error is that of the free outline corners, relative to the width of the target; \"from\" is \
-         that of the uniform sheet under the same load. The overlap is the sum over all neighbouring panels, relative \
+         that of the uniform sheet under the same load, \"shape alone\" that of the design without compression and shear \
+         in its objective. The overlap is the sum over all neighbouring panels, relative \
          to the area of the sheet (paper: below 3e-6).\n\n\
          | case | longest tension path, panels | arc over chord | rank correlation | clustering | panels of moment | \
-         couple's work, % | w_comp, mm^2 | w_shear, mm^2 |\n|---|---|---|---|---|---|---|---|---|\n",
+         of springs | of forces | couple's work, % | w_comp, mm^2 | w_shear, mm^2 |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for (case, n) in cases.iter().zip(&numbers) {
         writeln!(
             text,
-            "| {} | {} | {} | {:+.3} | {:.1} | {:.2} | {:.0} | {:.2e} | {:.2e} |",
+            "| {} | {} | {} | {:+.3} | {:.1} | {:.2} | {:.2} | {:.2} | {:.0} | {:.2e} | {:.2e} |",
             case.label,
             n.longest_route,
             (n.arc_over_chord).map_or("-".into(), |ratio| format!("{ratio:.3}")),
             n.rank_correlation,
             n.clustering,
-            n.moment_panels,
+            n.moment_panels[0],
+            n.moment_panels[1],
+            n.moment_panels[2],
             n.couple,
             n.weights[0],
             n.weights[1],
@@ -182,6 +189,7 @@ pub fn page(cases: &[Case], families: &VoidFamilies, scenes: &Path) -> Result<St
         spread(0),
         spread(1)
     )?;
+    drives(&mut text, cases)?;
     distances(&mut text, cases)?;
     write!(
         text,
@@ -207,6 +215,24 @@ pub fn page(cases: &[Case], families: &VoidFamilies, scenes: &Path) -> Result<St
         text.push('\n');
     }
     Ok(text)
+}
+
+/// Writes the drives in all readings, relative to the paper's.
+fn drives(text: &mut String, cases: &[Case]) -> Result<()> {
+    writeln!(
+        text,
+        "Drive over the paper's in several readings; the first is that of the designs:\n\n\
+         | reading | I | II | III | IV | V |\n|---|---|---|---|---|---|"
+    )?;
+    for (k, reading) in READINGS.iter().enumerate() {
+        write!(text, "| {} |", reading.name)?;
+        for (case, [paper, ..]) in cases.iter().zip(PAPER) {
+            write!(text, " {:.2} |", case.drives[k] / paper)?;
+        }
+        text.push('\n');
+    }
+    text.push('\n');
+    Ok(())
 }
 
 /// Writes the distances of the designs from each other and from their common start, in the aspect ratios.
@@ -257,16 +283,16 @@ fn apart(one: &[f64], other: &[f64]) -> f64 {
 /// One row per case.
 pub fn csv(cases: &[Case]) -> Result<String> {
     let mut text = "case,drive_n,rotation_percent,non_rotational_percent,tension_percent,compression_percent,shear_percent,\
-        boundary_percent,start_percent,overlap,mean_opening_deg,least_opening_deg,longest_route,arc_over_chord,\
-        rank_correlation,clustering,panels_of_moment,couple_percent,w_comp_mm2,w_shear_mm2\n"
+        boundary_percent,start_percent,shape_alone_percent,overlap,mean_opening_deg,least_opening_deg,longest_route,arc_over_chord,\
+        rank_correlation,clustering,panels_of_moment,of_springs,of_forces,couple_percent,w_comp_mm2,w_shear_mm2\n"
         .to_owned();
     for case in cases {
         let n = Numbers::of(case);
         writeln!(
             text,
-            "{},{:.2},{:.4},{:.4},{:.4},{:.4},{:.4},{:.5},{:.5},{:.4e},{:.4},{:.4},{},{},{:.5},{:.4},{:.4},{:.3},{:.6e},{:.6e}",
+            "{},{:.2},{:.4},{:.4},{:.4},{:.4},{:.4},{:.5},{:.5},{:.5},{:.4e},{:.4},{:.4},{},{},{:.5},{:.4},{:.4},{:.4},{:.4},{:.3},{:.6e},{:.6e}",
             case.label,
-            n.drive,
+            case.drives[0],
             n.rotation,
             n.non_rotational,
             n.tension,
@@ -274,6 +300,7 @@ pub fn csv(cases: &[Case]) -> Result<String> {
             n.shear,
             n.boundary,
             n.boundary_start,
+            n.boundary_shape_alone,
             n.overlap,
             n.opening[0],
             n.opening[1],
@@ -281,7 +308,9 @@ pub fn csv(cases: &[Case]) -> Result<String> {
             (n.arc_over_chord).map_or(String::new(), |ratio| format!("{ratio:.5}")),
             n.rank_correlation,
             n.clustering,
-            n.moment_panels,
+            n.moment_panels[0],
+            n.moment_panels[1],
+            n.moment_panels[2],
             n.couple,
             n.weights[0],
             n.weights[1],

@@ -1,11 +1,17 @@
 //! The tables of `kirigami-studies capacity`.
 
+use super::readings::READINGS;
 use super::{Capacity, PAPER};
 use anyhow::{Context, Result};
 use std::fmt::Write;
 use std::path::Path;
 
-pub(super) fn page(capacities: &[Capacity], scene: &Path, to: f64) -> Result<String> {
+pub(super) fn page(
+    capacities: &[Capacity],
+    readings: &[Option<f64>],
+    scene: &Path,
+    to: f64,
+) -> Result<String> {
     let mut text = format!(
         "# Load capacity\n\n\
         The sheet of `{}`: its first load is constant, its second is rho times the scene's. With both loads applied \
@@ -49,6 +55,12 @@ pub(super) fn page(capacities: &[Capacity], scene: &Path, to: f64) -> Result<Str
     }
     if let [_, kinematic, shape, full] = capacities {
         text += &gains(kinematic, shape, full)?;
+    }
+    text += "\nThe uniform sheet in other readings of the paper (1.66), both loads together:\n\n\
+        | reading | maximum rho |\n|---|---|\n";
+    for (reading, carried) in READINGS.iter().zip(readings) {
+        let carried = carried.map_or(format!("over {to}"), |rho| format!("{rho:.2}"));
+        writeln!(text, "| {} | {carried} |", reading.name)?;
     }
     Ok(text)
 }
