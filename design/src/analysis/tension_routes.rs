@@ -109,7 +109,7 @@ fn turn(transmission: &ForceTransmission, panel: usize, links: [usize; 2]) -> f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::force_transmission::Interface;
+    use crate::analysis::force_transmission::{Interface, PanelMoment};
 
     fn transmission(
         links: &[([usize; 2], [f64; 2], f64)],
@@ -135,7 +135,7 @@ mod tests {
         ForceTransmission {
             interfaces: interfaces.chain(vec![weak; 3 * links.len()]).collect(),
             centroids: centroids.to_vec(),
-            moments: vec![0.0; centroids.len()],
+            moments: vec![PanelMoment::default(); centroids.len()],
             areas: vec![1.0; centroids.len()],
         }
     }

@@ -124,7 +124,8 @@ pub struct ObjectiveConfig {
     pub panel_shape: f64,
     /// No panel is thinner anywhere (mm), 0 to a third of the side of a square panel of the mean area: the minimum that
     /// the cutter accepts. Distances of corners from the edges of their panel are kept above it by a barrier, which
-    /// begins at twice the value; use it with `method = "lbfgs"`, since Adam can get stuck at it. 0 sets no limit.
+    /// begins at twice the value; use it with `method = "lbfgs"`, since Adam can get stuck at it. The panels of the
+    /// start must be wider. 0 sets no limit.
     #[serde(default)]
     pub min_panel_width: f64,
     /// Weight of the penalty on states outside the training domain of the hinge law, in squared tenths of its range,
