@@ -14,6 +14,7 @@ mod taylor;
 
 pub use calibration::{Calibration, calibration};
 pub use capacity::{CapacityCurve, capacity};
+pub use contours::PlaneValues;
 pub use convergence::{StudyPanel, studies};
 pub use costs::{CostPanel, costs};
 pub use front::{FrontPanel, front};

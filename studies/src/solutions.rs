@@ -4,7 +4,7 @@ mod opening_profile;
 mod plane_contours;
 mod solutions_page;
 
-use crate::charts::{self, SolutionChart};
+use crate::charts::{self, PlaneValues, SolutionChart};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::analysis::solution_set::{PrincipalPlane, curvatures, outline_rank};
@@ -17,9 +17,7 @@ use kirigami::ui::processors;
 use kirigami::ui::progress::Progress;
 use kirigami::ui::{interrupt, picture, run_folder};
 use opening_profile::opening_profile;
-pub use plane_contours::Losses;
 use plane_contours::losses;
-pub use solutions_page::NEGLIGIBLE;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use support::worker_pool::{Reports, work_through};
@@ -48,6 +46,9 @@ pub struct SolutionStudy {
 
 /// Outline error, relative to the sheet's side, below which a run belongs to a family.
 const CONVERGED: f64 = 0.04;
+/// Ratio to the largest eigenvalue below which eigenvalues are negligible: a tenth of a per cent of the
+/// outline's sensitivity in the stiffest direction.
+const NEGLIGIBLE: f64 = 1e-6;
 /// Minimum gap of the openings of two families (deg).
 const GAP_DEG: f64 = 3.0;
 
@@ -78,7 +79,7 @@ struct SolutionSet {
     rank: usize,
     /// Opening (deg) and root of the minimum loss at this opening, relative to the sheet's side.
     profile: Vec<[f64; 2]>,
-    losses: Losses,
+    losses: PlaneValues,
 }
 
 impl SolutionStudy {
@@ -228,6 +229,7 @@ impl SolutionSet {
                 .collect(),
             losses: &self.losses,
             spectrum: &self.spectrum,
+            negligible: NEGLIGIBLE,
             profile: &self.profile,
             errors: errors.collect(),
         }

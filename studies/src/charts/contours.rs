@@ -1,8 +1,17 @@
 //! Contour lines of values on a grid.
 
+/// Values on a grid of a plane.
+pub struct PlaneValues {
+    /// Coordinates along both axes.
+    pub axes: [Vec<f64>; 2],
+    /// One row for every coordinate of the second axis; NaN where there is no value.
+    pub values: Vec<Vec<f64>>,
+}
+
 /// The segments of the contour at `level`, by triangles: every cell of the grid is two. Triangles with a value that is
-/// not finite have none. `values` is by row, in the order of the second axis.
-pub fn contours(axes: &[Vec<f64>; 2], values: &[Vec<f64>], level: f64) -> Vec<[[f64; 2]; 2]> {
+/// not finite have none.
+pub fn contours(plane: &PlaneValues, level: f64) -> Vec<[[f64; 2]; 2]> {
+    let PlaneValues { axes, values } = plane;
     let [columns, rows] = [0, 1].map(|axis| axes[axis].len() - 1);
     let corner = |i: usize, j: usize| ([axes[0][i], axes[1][j]], values[j][i] - level);
     let cells = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
@@ -37,7 +46,8 @@ mod tests {
         let axis: Vec<f64> = (0..5).map(f64::from).collect();
         let value = |y: &f64| axis.iter().map(|x| x + y).collect();
         let values: Vec<Vec<f64>> = axis.iter().map(value).collect();
-        let lines = contours(&[axis.clone(), axis], &values, 2.5);
+        let axes = [axis.clone(), axis];
+        let lines = contours(&PlaneValues { axes, values }, 2.5);
         let length: f64 = (lines.iter())
             .map(|[p, q]| f64::hypot(p[0] - q[0], p[1] - q[1]))
             .sum();

@@ -1,7 +1,6 @@
 //! Charts of the set of designs that reach one shape.
 
-use super::contours::contours;
-use crate::solutions::{Losses, NEGLIGIBLE};
+use super::contours::{PlaneValues, contours};
 use anyhow::Result;
 use kirigami::ui::charts::*;
 use plotters::prelude::*;
@@ -14,9 +13,11 @@ pub struct SolutionChart<'a> {
     pub starts: Vec<[f64; 2]>,
     pub families: Vec<Vec<[f64; 2]>>,
     /// Root of the loss on this plane, relative to the sheet's side.
-    pub losses: &'a Losses,
+    pub losses: &'a PlaneValues,
     /// Eigenvalues of the Hessian relative to the largest, in descending order.
     pub spectrum: &'a [f64],
+    /// The ratio below which they are negligible.
+    pub negligible: f64,
     /// Opening (deg) and root of the minimum loss, relative to the sheet's side.
     pub profile: &'a [[f64; 2]],
     /// Outline error (%) against the step, one line per family: its median run.
@@ -42,7 +43,7 @@ fn plane_chart(area: &Area, chart: &SolutionChart) -> ChartResult {
     const LEVELS: [f64; 16] = [
         3.6, 3.8, 4.0, 4.25, 4.5, 4.75, 5.0, 5.5, 6.0, 6.5, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0,
     ];
-    let Losses { axes, values } = chart.losses;
+    let axes = &chart.losses.axes;
     let range = |axis: &[f64]| axis[0]..axis[axis.len() - 1];
     let caption = format!("{} corners: starts (black) and solutions", chart.name);
     let mut context = ChartBuilder::on(area)
@@ -59,7 +60,7 @@ fn plane_chart(area: &Area, chart: &SolutionChart) -> ChartResult {
         .y_desc("second principal component")
         .draw()?;
     for level in LEVELS {
-        let lines = contours(axes, values, 0.01 * level).into_iter();
+        let lines = contours(chart.losses, 0.01 * level).into_iter();
         context.draw_series(lines.map(|line| {
             let points = line.map(|[x, y]| (x, y));
             PathElement::new(points.to_vec(), GUIDE.mix(0.6))
@@ -83,7 +84,7 @@ fn curvature_chart(area: &Area, chart: &SolutionChart) -> ChartResult {
             (
                 k as f64 + 1.0,
                 ratio.abs().max(MIN_RATIO),
-                *ratio < -NEGLIGIBLE,
+                *ratio < -chart.negligible,
             )
         })
         .collect();
@@ -102,7 +103,7 @@ fn curvature_chart(area: &Area, chart: &SolutionChart) -> ChartResult {
         .x_desc("direction")
         .y_desc("|eigenvalue| / largest")
         .draw()?;
-    let limit = [across.start, across.end].map(|x| (x, NEGLIGIBLE));
+    let limit = [across.start, across.end].map(|x| (x, chart.negligible));
     context.draw_series(DashedLineSeries::new(limit, 4, 4, GUIDE.into()))?;
     context.draw_series(points.iter().map(|&(k, ratio, negative)| {
         let colour = if negative { VALIDATION } else { POINT };

@@ -1,5 +1,6 @@
 //! The loss on the plane of the principal components, at the opening that is best for each pattern.
 
+use crate::charts::PlaneValues;
 use design::analysis::solution_set::PrincipalPlane;
 use design::objective::design_problem::DesignProblem;
 use design::pattern::coordinates::PatternCoordinates;
@@ -13,22 +14,15 @@ const STEP_DEG: f64 = 10.0;
 /// Number of refinements of the best opening; each reduces its interval to 0.62 of it.
 const REFINEMENTS: usize = 10;
 
-/// Values on a grid of the plane.
-pub struct Losses {
-    /// Coordinates along both axes.
-    pub axes: [Vec<f64>; 2],
-    /// Root of the loss relative to the sheet's side by row and column; NaN where the plane leaves the patterns.
-    pub values: Vec<Vec<f64>>,
-}
-
-/// The losses on the rectangle around `places`; `design` has the ligament widths.
+/// The roots of the losses, relative to the sheet's side, on the rectangle around `places`; NaN where the plane leaves the
+/// patterns. `design` has the ligament widths.
 pub fn losses(
     problem: &DesignProblem,
     design: &DesignVector,
     plane: &PrincipalPlane,
     places: Vec<[f64; 2]>,
     side: f64,
-) -> Losses {
+) -> PlaneValues {
     let axes = [0, 1].map(|axis| {
         let range = kirigami::ui::charts::padded(places.iter().map(|place| place[axis]));
         let step = (range.end - range.start) / (POINTS - 1) as f64;
@@ -49,7 +43,7 @@ pub fn losses(
     };
     let row = |y: &f64| axes[0].iter().map(|x| value(*x, *y)).collect();
     let values = axes[1].iter().map(row).collect();
-    Losses { axes, values }
+    PlaneValues { axes, values }
 }
 
 /// The loss (mm^2) at the best opening, by a golden-section search around the best of [`OPENINGS`].

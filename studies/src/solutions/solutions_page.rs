@@ -1,13 +1,9 @@
 //! The tables of the solution set.
 
-use super::{CONVERGED, Solution, SolutionSet};
+use super::{CONVERGED, NEGLIGIBLE, Solution, SolutionSet};
 use anyhow::Result;
 use design::objective::loss::OutlinePoints;
 use std::fmt::Write;
-
-/// Ratio to the largest eigenvalue below which eigenvalues are negligible: a tenth of a per cent of the
-/// outline's sensitivity in the stiffest direction.
-pub const NEGLIGIBLE: f64 = 1e-6;
 
 /// The name of a point set P.
 pub fn corners(outline: OutlinePoints) -> &'static str {
