@@ -4,6 +4,7 @@
 //! from it.
 
 use crate::objective::design_problem::{DesignError, DesignProblem, Evaluation};
+use crate::objective::panel_width::thinnest_panel;
 use crate::optimise::outer_loop::{Ended, SearchState, StepRecord, optimise};
 use crate::pattern::design_vector::DesignVector;
 use crate::scene::checked_scene::Scene;
@@ -60,6 +61,11 @@ pub enum InverseDesignError {
     Inputs(#[from] RunInputsError),
     #[error("the start of the search cannot be evaluated: {0}")]
     Start(DesignError),
+    #[error(
+        "the start of the search has a panel of {thinnest:.3} mm, not wider than objective.min_panel_width = {minimum} mm: \
+         reduce that, sheet.panels or optimiser.start_noise"
+    )]
+    ThinStart { thinnest: f64, minimum: f64 },
     #[error("the best design of the run cannot be evaluated again: {0}")]
     Best(DesignError),
     #[error("cannot use {path}: {source}", path = .path.display())]
@@ -157,6 +163,7 @@ pub fn inverse_design(
     let start = problem
         .evaluate(&design)
         .map_err(InverseDesignError::Start)?;
+    wide_enough(&problem, &start)?;
     let (optimiser, model) = (&scene.config.optimiser, scene.model_hash());
     let mut search = match State::read(&path, scene, &model, &start)? {
         Some(state) => state.search,
@@ -207,6 +214,18 @@ pub fn inverse_design(
         start,
         best,
     })
+}
+
+/// An error if a panel of the start is so thin that the barrier of the minimum width is infinite.
+fn wide_enough(problem: &DesignProblem, start: &Evaluation) -> Result<(), InverseDesignError> {
+    let minimum = problem.objective.min_panel_width;
+    let panels = start.deployment.sheet.panels.iter();
+    let panels: Vec<_> = panels.map(|panel| panel.corners).collect();
+    let thinnest = thinnest_panel(&panels);
+    if minimum > 0.0 && thinnest <= minimum {
+        return Err(InverseDesignError::ThinStart { thinnest, minimum });
+    }
+    Ok(())
 }
 
 /// Deletes the state in the scene's run folder, so that the next run begins at the start, with the report, the page

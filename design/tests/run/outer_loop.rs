@@ -156,3 +156,23 @@ fn a_design_that_the_search_saw_on_another_branch_is_reported() {
     designed.searched = designed.searched.map(|loss| 0.999 * loss);
     assert_eq!(warned(&designed), 1);
 }
+
+#[test]
+fn a_start_with_panels_below_the_minimum_width_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let thin = with(&[
+        (
+            "compression = 0.01",
+            "compression = 0.01\nmin_panel_width = 130.0",
+        ),
+        ("start_noise = 0.05", "start_noise = 2.0"),
+    ]);
+    let error = run(&read(folder.path(), &thin), None)
+        .err()
+        .unwrap()
+        .to_string();
+    assert!(
+        error.contains("objective.min_panel_width = 130 mm"),
+        "{error}"
+    );
+}
