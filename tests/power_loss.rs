@@ -145,9 +145,8 @@ fn a_loss_of_power_at_any_moment_leaves_whole_files_and_whole_jobs() {
     let mut results = 0;
     for (call, paths) in system_calls(&trace, below) {
         let paths: Vec<&str> = paths.iter().map(String::as_str).collect();
-        results += usize::from(
-            call.starts_with("rename") && paths.last().unwrap().ends_with("/result.json"),
-        );
+        let named = |end: &str| paths.last().is_some_and(|path| path.ends_with(end));
+        results += usize::from(call.starts_with("rename") && named("/result.json"));
         disk.apply(&call, &paths);
     }
     assert_eq!(results, 2, "{trace}");

@@ -26,11 +26,13 @@ impl Scratch {
     fn new_in(root: &Path) -> io::Result<Self> {
         remove_abandoned(root);
         let folder = tempfile::Builder::new().prefix(PREFIX).tempdir_in(root)?;
-        // The file gets its name once it is locked: a folder whose file can be locked has lost its owner.
+        // The file gets its name once it is locked: a folder whose file can be locked has lost its owner. On a file
+        // system without locks it gets none, and the folder of a killed process stays.
         let unlocked = folder.path().join("new.lock");
         let lock = File::create_new(&unlocked)?;
-        lock.try_lock()?;
-        std::fs::rename(unlocked, folder.path().join(OWNER))?;
+        if lock.try_lock().is_ok() {
+            std::fs::rename(unlocked, folder.path().join(OWNER))?;
+        }
         Ok(Self {
             folder,
             _lock: lock,

@@ -2,6 +2,7 @@
 
 use crate::cases::{self, AT_CORNER, case};
 use crate::closed_forms::{clamp, opening_moments, path};
+use crate::load_steps::scene;
 use crate::random::Random;
 use design::equilibrium::hinged_sheet::HingedSheet;
 use design::equilibrium::load_step::{LoadStep, Status};
@@ -454,4 +455,17 @@ fn shoelace(corners: &[[f64; 2]; 4]) -> f64 {
             0.5 * (x * v - u * y)
         })
         .sum()
+}
+
+/// Springs that are soft in rotation and stiff in translation open under a thousandth of the load and lock; there the
+/// path turns by nearly a right angle.
+#[test]
+fn a_path_goes_on_where_hinges_lock() {
+    let scene = scene("linear-7x7.toml", |config| {
+        let linear = config.linear.as_mut().unwrap();
+        (linear.k_a, linear.k_s, linear.k_theta) = (1e6, 1e6, 1.0);
+    });
+    let deployment = scene.problem().unwrap().deploy(&scene.start()).unwrap();
+    let statuses: Vec<Status> = deployment.path.iter().map(|step| step.status).collect();
+    assert_eq!(statuses, [Status::Converged; 10]);
 }
