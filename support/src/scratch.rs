@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use tempfile::TempDir;
 
 /// Prefix of the names of scratch folders.
@@ -52,12 +52,15 @@ fn remove_abandoned(root: &Path) {
         let folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
         folder && entry.file_name().to_string_lossy().starts_with(PREFIX)
     });
-    for folder in scratch.map(|entry| entry.path()).filter(is_abandoned) {
+    for folder in scratch
+        .map(|entry| entry.path())
+        .filter(|folder| is_abandoned(folder))
+    {
         let _ = std::fs::remove_dir_all(folder);
     }
 }
 
-fn is_abandoned(folder: &PathBuf) -> bool {
+fn is_abandoned(folder: &Path) -> bool {
     File::open(folder.join(OWNER)).is_ok_and(|lock| lock.try_lock().is_ok())
 }
 
