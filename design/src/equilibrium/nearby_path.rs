@@ -12,7 +12,7 @@
 //! paths must be followed from the flat sheet now and then.
 
 use crate::equilibrium::branch::Branch;
-use crate::equilibrium::displacement_control::{HeldFactor, dot};
+use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{LoadStep, Status};
 use crate::equilibrium::place::Place;
@@ -95,18 +95,11 @@ impl Branch<'_> {
         changes: &[[f64; 2]],
     ) -> Option<LoadStep> {
         let start = self.carried_over(at, known, changes)?;
-        let from = start.clone();
-        let found = self.balanced(start)?;
-        let stable = |held: &HeldFactor| held.unstable_directions() == 0;
-        found.factor.as_ref().filter(|held| stable(held))?;
-        let to = Place {
-            at,
-            configuration: found.state.configuration.clone(),
-            forces: Vec::new(),
-        };
-        if self.distance(&found.state, &to, &from) > NEARBY {
+        let found = self.balanced(start.clone())?;
+        if self.moved(&found, &start) > NEARBY {
             return None;
         }
+        // An unstable state is `Almost` an equilibrium, too.
         let step = self.load_step(found, 0);
         (step.status != Status::Almost).then_some(step)
     }

@@ -142,7 +142,7 @@ impl Follower<'_> {
             Some(found) => found,
             None => self.branch.minimum(&start)?,
         };
-        let moved = self.moved(&minimum, &start);
+        let moved = self.branch.moved(&minimum, &start);
         // Without an arc the start is a place at a higher load.
         self.jumps += usize::from(self.arc.is_some() && moved > LEAP);
         Ok(minimum)
@@ -156,20 +156,13 @@ impl Follower<'_> {
         };
         self.branch.hold(&mut start, &self.last.place);
         let minimum = self.branch.minimum(&start)?;
-        let moved = self.moved(&minimum, &start);
+        let moved = self.branch.moved(&minimum, &start);
         self.continue_from(Place {
             at: to,
             configuration: minimum.state.configuration.clone(),
             forces: minimum.state.forces(),
         });
         Ok((minimum, moved))
-    }
-
-    /// The maximum rotation or hinge translation from a place to a minimum.
-    fn moved(&self, minimum: &Minimum, start: &Place) -> f64 {
-        let motion = moved(&minimum.state.configuration, &start.configuration, -1.0);
-        let potential = self.branch.potential(start.at);
-        potential.length(&minimum.state, &motion)
     }
 }
 
@@ -186,6 +179,13 @@ impl Branch<'_> {
         self.force = minimum.state.force;
         let (sheet, state) = (self.sheet, minimum.state);
         LoadStep::new(sheet, state, works, Some(tangent), status, effort, jumps)
+    }
+
+    /// The maximum rotation or hinge translation from a place to a minimum.
+    pub fn moved(&self, minimum: &Minimum, start: &Place) -> f64 {
+        let motion = moved(&minimum.state.configuration, &start.configuration, -1.0);
+        let potential = self.potential(start.at);
+        potential.length(&minimum.state, &motion)
     }
 
     fn status(&self, minimum: &Minimum, jumped: bool) -> Status {

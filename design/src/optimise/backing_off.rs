@@ -17,7 +17,8 @@ pub(crate) struct Setback {
 }
 
 /// Evaluates the proposal, or else the first point of repeated halving towards `good` that has a finite
-/// loss and that the search accepts; `known` is the path of a design near them. The error states why the last point had no value, if it had none.
+/// loss and that the search accepts; `known` is the path of a design near them. The error states why the last
+/// point had no value, if it had none.
 pub(crate) fn evaluate_or_back_off(
     problem: &DesignProblem,
     search: &Search,
