@@ -7,7 +7,7 @@ use crate::manifest::Manifest;
 use crate::mixing::Mixing;
 use crate::parquet;
 use crate::rows::Row;
-use crate::split::{Part, SplitPlan};
+use crate::split::{Part, Split, SplitPlan, geometry};
 use hinge::TrainingDomain;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -66,6 +66,23 @@ impl Database {
         Self::merge(std::slice::from_ref(self), plan, Mixing::Allowed)
     }
 
+    /// The same rows, each geometry in the part that it has in `other`. A geometry that `other` lacks is for training.
+    ///
+    /// Weights that were trained on `other` can be fine-tuned on this database: its validation and test parts have no
+    /// geometry that they were trained on.
+    pub fn split_like(&self, other: &Self) -> Self {
+        let geometries = |part| {
+            let jobs = other.manifest.split.jobs(part);
+            let rows = other.rows.iter().filter(|row| jobs.contains(&row.job));
+            rows.map(geometry).collect::<BTreeSet<_>>()
+        };
+        let parts = [Part::Validation, Part::Test].map(|part| (part, geometries(part)));
+        self.clone().with_parts(|row| {
+            let known = parts.iter().find(|(_, of)| of.contains(&geometry(row)));
+            Some(known.map_or(Part::Training, |(part, _)| *part))
+        })
+    }
+
     /// The same database with at most the first `training` rays of the training part. The validation and test parts
     /// are unchanged. Ids are hashes, so that the first rays are a random selection.
     pub fn thinned(&self, training: usize) -> Self {
@@ -78,33 +95,39 @@ impl Database {
 
     /// The same split, with only states inside the domain in the training and validation parts.
     pub fn within(&self, domain: &TrainingDomain) -> Result<Self, DatasetError> {
-        let split = &self.manifest.split;
-        let test = split.jobs(Part::Test);
+        let test = self.manifest.split.jobs(Part::Test);
         let inside = |row: &&Row| {
             test.contains(&row.job) || domain.contains(&row.design, &row.sample.deformation())
         };
-        let rows: Vec<Row> = self.rows.iter().filter(inside).cloned().collect();
-        let jobs: BTreeSet<&str> = rows.iter().map(|row| row.job.as_str()).collect();
-        let mut split = split.clone();
-        for part in [&mut split.training, &mut split.validation] {
-            part.retain(|job| jobs.contains(job.as_str()));
-        }
-        let mut within = self.with_rows(rows)?;
-        within.manifest.split_hash = split.hash();
-        within.manifest.split = split;
-        Ok(within)
+        self.with_rows(self.rows.iter().filter(inside).cloned().collect())
     }
 
-    /// A database of other rows of the same jobs, with the same gates and split plan.
+    /// A database of other rows of the same jobs, with the same gates and split.
     pub(crate) fn with_rows(&self, rows: Vec<Row>) -> Result<Self, DatasetError> {
         let Manifest {
-            gates, split_plan, ..
+            gates,
+            split_plan,
+            split,
+            ..
         } = &self.manifest;
         let mut other = Self::assemble(rows, gates, split_plan, Mixing::Allowed)?;
         for (reason, count) in &self.manifest.rejected {
             *other.manifest.rejected.entry(*reason).or_default() += count;
         }
-        Ok(other)
+        Ok(other.with_parts(|row| split.part(&row.job)))
+    }
+
+    /// The same rows, each job in the part of its first row; a job without a part is not used.
+    fn with_parts(mut self, part: impl Fn(&Row) -> Option<Part>) -> Self {
+        let mut split = Split::default();
+        for ray in self.rows.chunk_by(|left, right| left.job == right.job) {
+            if let Some(part) = part(&ray[0]) {
+                split.jobs_mut(part).insert(ray[0].job.clone());
+            }
+        }
+        self.manifest.split_hash = split.hash();
+        self.manifest.split = split;
+        self
     }
 
     fn assemble(

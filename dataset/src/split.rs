@@ -108,6 +108,21 @@ impl Split {
             Part::Test => &self.test,
         }
     }
+
+    pub(crate) fn jobs_mut(&mut self, part: Part) -> &mut BTreeSet<String> {
+        match part {
+            Part::Training => &mut self.training,
+            Part::Validation => &mut self.validation,
+            Part::Test => &mut self.test,
+        }
+    }
+
+    /// The part of a job; `None` if it is in no part.
+    pub(crate) fn part(&self, job: &str) -> Option<Part> {
+        [Part::Training, Part::Validation, Part::Test]
+            .into_iter()
+            .find(|&part| self.jobs(part).contains(job))
+    }
 }
 
 /// The ids of the jobs of each geometry.

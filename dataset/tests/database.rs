@@ -3,7 +3,7 @@
 mod common;
 
 use common::{collect, row, rows};
-use dataset::{Database, DatasetError, Part, Rejection, Row};
+use dataset::{Database, DatasetError, Part, Rejection, Row, SplitPlan, with_mirrored};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
@@ -192,6 +192,52 @@ fn a_thinned_database_keeps_its_validation_and_test_parts() {
     assert_eq!(thinned.part(Part::Validation), whole.part(Part::Validation));
     assert_ne!(thinned.manifest().split_hash, whole.manifest().split_hash);
     assert_eq!(whole.thinned(1000).manifest(), whole.manifest());
+}
+
+#[test]
+fn a_split_like_another_database_gives_each_geometry_its_part() {
+    let whole = collect(rows()).unwrap();
+    let other = whole
+        .split(&SplitPlan {
+            seed: 5,
+            ..SplitPlan::default()
+        })
+        .unwrap();
+    assert_ne!(whole.manifest().split, other.manifest().split);
+    let alike = whole.split_like(&other);
+    assert_eq!(alike.manifest().split, other.manifest().split);
+    assert_eq!(alike.manifest().split_hash, other.manifest().split_hash);
+    assert_eq!(alike.rows(), whole.rows());
+    // Mirrored hinges, of other jobs, have the same geometry.
+    let mut mirrored = with_mirrored(whole.rows()).split_off(whole.rows().len());
+    for row in &mut mirrored {
+        row.job.push_str("-image");
+    }
+    let mirrored = collect(mirrored).unwrap().split_like(&other);
+    for part in [Part::Training, Part::Validation, Part::Test] {
+        let expected = other
+            .manifest()
+            .split
+            .jobs(part)
+            .iter()
+            .map(|job| format!("{job}-image"));
+        assert!(
+            mirrored
+                .manifest()
+                .split
+                .jobs(part)
+                .iter()
+                .cloned()
+                .eq(expected)
+        );
+    }
+    // Geometries that the other database lacks are for training.
+    let elsewhere = whole.rows().iter().cloned().map(|mut row| {
+        row.design.w_lig += 0.01;
+        row
+    });
+    let elsewhere = collect(elsewhere.collect()).unwrap().split_like(&other);
+    assert_eq!(elsewhere.part(Part::Training).len(), whole.rows().len());
 }
 
 #[test]

@@ -63,11 +63,17 @@ struct MergeCommand {
 }
 
 /// Split the geometries again into training, validation and test
+///
+/// Example: kirigami dataset split runs/reference.parquet --like runs/corrected.parquet --out runs/reference-split.parquet
 #[derive(Args)]
 struct SplitCommand {
     /// Database (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
+    /// Give each geometry the part that it has in this database; geometries that it lacks are for training. Weights trained
+    /// on this database can then be fine-tuned without having seen the test geometries
+    #[arg(long, value_name = "DATABASE", conflicts_with_all = ["seed", "validation", "test"])]
+    like: Option<PathBuf>,
     #[command(flatten)]
     out: OutArgs,
 }
@@ -181,9 +187,8 @@ impl CheckCommand {
         }
         ensure!(
             findings.is_empty(),
-            "{} is not fit for training: {} findings",
-            self.database.display(),
-            findings.len()
+            "{} is not fit for training",
+            self.database.display()
         );
         if self.seal {
             database.write(&self.database, true)?;
@@ -212,7 +217,11 @@ impl MergeCommand {
 impl SplitCommand {
     fn run(&self) -> Result<()> {
         let database = Database::read(&self.database)?;
-        self.out.write(&database.split(&self.out.plan())?)
+        let split = match &self.like {
+            Some(other) => database.split_like(&Database::read(other)?),
+            None => database.split(&self.out.plan())?,
+        };
+        self.out.write(&split)
     }
 }
 

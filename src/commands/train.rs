@@ -52,7 +52,7 @@ pub struct TrainCommand {
     /// Tensor backend: flex or ndarray
     #[arg(long, value_name = "NAME", default_value_t = Backend::default())]
     backend: Backend,
-    /// Fine-tune these weights of another material or thickness, which must have the network sizes of the configuration.
+    /// Fine-tune these weights of another material, thickness or mesh; the network sizes are those of the weights.
     /// docs/MATERIALS.md lists the errors over the number of rays
     #[arg(long, value_name = "WEIGHTS")]
     from: Option<PathBuf>,
@@ -97,7 +97,12 @@ impl TrainCommand {
 
     pub(crate) fn run(&self) -> Result<()> {
         input_file::require(self.config(), "--config")?;
+        let base = self.from.as_deref().map(Surrogate::load).transpose()?;
         let config: TrainingConfig = support::toml_file::read(self.config())?;
+        let config = match &base {
+            Some(weights) => config.with_sizes_of(weights),
+            None => config,
+        };
         let database = Database::read(&self.database)?;
         if let Some(leak) = database.leak() {
             let database = self.database.display();
@@ -108,7 +113,6 @@ impl TrainCommand {
             std::fs::create_dir_all(folder)
                 .with_context(|| format!("cannot create the folder {}", folder.display()))?;
         }
-        let base = self.from.as_deref().map(Surrogate::load).transpose()?;
         if self.seeds > 1 {
             return self.train_seeds(&database, &config, base.as_ref());
         }

@@ -1,7 +1,9 @@
 //! The training configuration, read from a TOML file.
 
+use crate::networks::widths;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use surrogate::Surrogate;
 
 /// Sizes, loss weights and optimiser of one training.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -10,7 +12,8 @@ pub struct TrainingConfig {
     /// Seed of the initial weights and of the order of the rows.
     pub seed: u64,
     /// Number of units of each layer of chi after the five features; the last layer, the embedding, is linear.
-    /// At least one layer, each of 1 to 4096 units, an even number if `mirror`.
+    /// At least one layer, each of 1 to 4096 units, an even number if `mirror`. In a fine-tuning, the sizes of both networks
+    /// are those of the given weights.
     pub embedding: Vec<usize>,
     /// Number of units of each hidden layer of the damage heads of D and D_peak, each 1 to 4096. If `mirror`, at least
     /// one layer, each with an even number of units.
@@ -80,6 +83,16 @@ pub struct InvalidConfig {
 }
 
 impl TrainingConfig {
+    /// The same configuration with the network sizes of given weights.
+    pub fn with_sizes_of(self, weights: &Surrogate) -> Self {
+        let mut sizes = widths(&weights.layers()).into_iter();
+        Self {
+            embedding: sizes.next().unwrap_or_default(),
+            damage: sizes.next().unwrap_or_default(),
+            ..self
+        }
+    }
+
     /// Rejects impossible values; the error names the key and the rule.
     pub fn validate(&self) -> Result<(), InvalidConfig> {
         let sizes = |widths: &[usize]| widths.iter().all(|width| (1..=4096).contains(width));

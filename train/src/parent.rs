@@ -21,7 +21,7 @@ use crate::validation::{Parity, ParityPoint};
 use burn::tensor::{DType, TensorCreationOptions};
 use dataset::Row;
 use hinge::HingeConstants;
-use surrogate::{Layer, Layers, Standardisation, Surrogate};
+use surrogate::{Card, Layer, Layers, Standardisation, Surrogate};
 
 /// The initial networks and their scales.
 pub(crate) struct Initial {
@@ -38,8 +38,7 @@ impl Initial {
         hinge: &HingeConstants,
         symmetric: bool,
     ) -> Result<Self, TrainError> {
-        // Campaigns choose the radius of the windows in proportion to the thickness.
-        let parent = (parent.clone()).scaled(hinge.r_win / parent.card().hinge.r_win);
+        let parent = at_size_of(parent, hinge);
         let parity = Parity::of(&parent, rows);
         let own = Scales::of(rows, symmetric)?;
         let card = parent.card();
@@ -63,6 +62,22 @@ impl Initial {
                 ..own
             },
         })
+    }
+}
+
+/// The parent for windows of another size. Campaigns choose the radius of the windows in proportion to the thickness.
+fn at_size_of(parent: &Surrogate, hinge: &HingeConstants) -> Surrogate {
+    let factor = hinge.r_win / parent.card().hinge.r_win;
+    parent.clone().scaled(factor)
+}
+
+/// Completes the card of a network that starts from the parent. If both are of the same law, the rays of the parent count
+/// as well: its domain is kept.
+pub(crate) fn inherit(card: &mut Card, parent: &Surrogate) {
+    card.fine_tuned_from = Some(parent.hash());
+    let parent = at_size_of(parent, &card.hinge);
+    if card.material_hash.is_some() && card.material_hash == parent.card().material_hash {
+        card.domain = parent.card().domain.clone();
     }
 }
 

@@ -10,7 +10,7 @@ use crate::export::layers;
 use crate::loss::loss;
 use crate::networks::Networks;
 use crate::optimiser::{learning_rate, optimiser};
-use crate::parent::{Initial, check_parent};
+use crate::parent::{Initial, check_parent, inherit};
 use crate::samples::{Batch, Sample, Scales};
 use crate::state::{self, Progress, State};
 use crate::stiffness::StiffnessCheck;
@@ -138,7 +138,7 @@ impl Training {
         };
         let mut card = card(manifest, &described, &scales, config)?;
         if let Start::Weights(parent) = start {
-            card.fine_tuned_from = Some(parent.hash());
+            inherit(&mut card, parent);
         }
         let networks = match &initial {
             Some(initial) => Networks::of_layers(&initial.layers, config.mirror, &options),

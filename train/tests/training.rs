@@ -448,6 +448,43 @@ fn a_fine_tuned_network_is_closer_than_one_from_scratch() {
 }
 
 #[test]
+fn weights_of_the_same_law_keep_their_domain_and_sizes() {
+    let of_law = |rows: Vec<Row>, law: &str| {
+        let with_law = |row| Row {
+            material_hash: law.into(),
+            ..row
+        };
+        database(rows.into_iter().map(with_law).collect())
+    };
+    let whole = of_law(rows(40), "film");
+    let parent = train(&whole, &config(1), Backend::default(), &mut |_| {})
+        .unwrap()
+        .surrogate;
+    let few: Vec<Row> = rows(8);
+    let start = |rows: &Database| {
+        let other = TrainingConfig {
+            embedding: vec![4],
+            damage: vec![4],
+            ..config(1)
+        };
+        let config = other.with_sizes_of(&parent);
+        let training = Training::new(rows, &config, Backend::default(), Start::Weights(&parent));
+        training.unwrap().finish().unwrap().surrogate
+    };
+    let domain = |surrogate: &Surrogate| surrogate.card().domain.clone();
+    assert_eq!(
+        domain(&start(&of_law(few.clone(), "film"))),
+        domain(&parent)
+    );
+    let other = domain(&start(&of_law(few.clone(), "steel")));
+    assert_ne!(other, domain(&parent));
+    // The same law in another thickness: the ligaments scale with it.
+    let thin = domain(&start(&of_law(similar(few, 0.4, 1.0), "film")));
+    assert_eq!(thin, domain(&parent.clone().scaled(0.4)));
+    assert_ne!(thin, domain(&parent));
+}
+
+#[test]
 fn frozen_layers_are_not_trained() {
     let parent = trained(2, Backend::default()).surrogate;
     let database = database(rows(20));
