@@ -133,6 +133,15 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
         work.output(&on_paths)
             .contains("states inside the training domain")
     );
+    // The rays of two checks are different jobs.
+    work.output("dataset merge spot/spot-check.parquet spot-paths/spot-check.parquet --mixed --out both.parquet");
+    let rows = |file: &str| -> u64 {
+        let manifest = work.output(&format!("dataset summary {file} --json"));
+        let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
+        manifest["rows"].as_u64().unwrap()
+    };
+    let parts = ["spot", "spot-paths"].map(|folder| rows(&format!("{folder}/spot-check.parquet")));
+    assert_eq!(rows("both.parquet"), parts[0] + parts[1]);
 
     // Six rays with small rotations do not cover the hinge states of a design.
     let extend = format!("campaign extend {design} --rays configs/campaigns/further.csv");

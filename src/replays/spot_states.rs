@@ -75,8 +75,8 @@ pub fn solve(
         failed: 0,
         cpu_seconds: 0.0,
     };
-    for (ray, (probe, outcome)) in probes.iter().zip(&outcomes).enumerate() {
-        let found = probe.rows(outcome, ray, material, tier, &tools);
+    for ((probe, outcome), solve) in probes.iter().zip(&outcomes).zip(&solves) {
+        let found = probe.rows(outcome, &solve.id(), material, tier, &tools);
         solved.failed += probe.fractions.len() - found.len();
         solved.rows.extend(found);
         let known = outcome.as_ref().ok().and_then(|it| it.cpu_seconds);
@@ -140,7 +140,7 @@ impl Probe {
     fn rows(
         &self,
         outcome: &Outcome,
-        ray: usize,
+        job: &str,
         material: &SheetMaterial,
         tier: Tier,
         tools: &ToolVersions,
@@ -152,7 +152,7 @@ impl Probe {
         let samples = self.fractions.iter().filter_map(reached);
         samples
             .map(|sample| Row {
-                job: format!("spot-{ray:04}"),
+                job: job.into(),
                 design: self.design,
                 sample,
                 failure: String::new(),

@@ -62,6 +62,11 @@ pub enum KeptSolveError {
 }
 
 impl KeptSolve {
+    /// The id: 16 hexadecimal digits, the same for the same inputs.
+    pub fn id(&self) -> String {
+        short_hash(self)
+    }
+
     /// Reads the solution from the cache folder `kept`, or computes it in `work` and writes it to the cache.
     ///
     /// A path that the solver does not follow to its end is a result and is cached. A solver that was terminated or
