@@ -1,7 +1,7 @@
 //! The tables of the study of the family of laws.
 
-use super::{Case, HELD_OUT, Material, Measured, Network, Way};
 use crate::charts::Curve;
+use crate::universal::cases::{Case, HELD_OUT, Material, Measured, Network, Way};
 use crate::universal::family_table::SolvedRay;
 use crate::universal::judgement::Errors;
 use crate::universal::law::Law;
