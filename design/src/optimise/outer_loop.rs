@@ -167,11 +167,7 @@ impl SearchState {
 
     /// Computes the path of the anchor after a pause of the search; forgets it if the next path must be followed.
     fn know_a_path(&mut self, problem: &DesignProblem) {
-        let every = match &problem.model {
-            Model::Ideal { .. } => 1,
-            Model::Equilibrium(mechanics) => mechanics.solver.settings.follow_every,
-        };
-        let recent = self.history.iter().rev().take(every - 1);
+        let recent = self.history.iter().rev().take(follow_every(problem) - 1);
         match &self.anchor {
             Some(anchor) if recent.clone().any(|record| record.followed) => {
                 if self.known.is_none()
@@ -198,7 +194,7 @@ impl SearchState {
         let followed = evaluation.deployment.followed;
         if followed {
             self.anchor = Some(design.clone());
-            self.known = Some(evaluation.deployment.known_path());
+            self.known = (follow_every(problem) > 1).then(|| evaluation.deployment.known_path());
         }
         let gradient = evaluation.gradient.to_flat();
         let x = design.to_flat();
@@ -219,5 +215,13 @@ impl SearchState {
             .map(|(coordinate, increment)| coordinate + increment)
             .collect();
         self.proposal = self.design.with_flat(&proposal);
+    }
+}
+
+/// Every how many steps of a design the path is followed; ideal hinges have no path to correct.
+fn follow_every(problem: &DesignProblem) -> usize {
+    match &problem.model {
+        Model::Ideal { .. } => 1,
+        Model::Equilibrium(mechanics) => mechanics.solver.settings.follow_every,
     }
 }
