@@ -9,7 +9,8 @@ const POLYPROPYLENE: &str = "configs/materials/polypropylene-0.8mm.toml";
 const OPTIONS: &str = "--tier tiny --rays 6 --spot-rays 3 --out learned";
 
 fn learn(material: &str, options: &str) -> String {
-    let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/medium.safetensors");
+    // Of other sizes than those of the configuration.
+    let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/small.safetensors");
     format!(
         "material learn {material} --from {} {options}",
         weights.display()
@@ -93,13 +94,13 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
 #[test]
 fn unsuitable_weights_are_refused_before_a_window_is_solved() {
     let work = Workplace::new();
-    let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/small.safetensors");
-    let command = learn(POLYPROPYLENE, OPTIONS);
-    let (before, _) = command.split_once("--from").unwrap();
-    let command = format!("{before} --from {} {OPTIONS}", weights.display());
-    let message = work.error(&command);
+    let shipped = std::fs::read_to_string(work.path("configs/training/fine-tuning.toml")).unwrap();
+    let sharper = shipped.replace("damage_sharpness = 8.0", "damage_sharpness = 9.0");
+    std::fs::create_dir(work.path("learned")).unwrap();
+    std::fs::write(work.path("learned/fine-tuning.toml"), sharper).unwrap();
+    let message = work.error(&learn(POLYPROPYLENE, OPTIONS));
     assert!(
-        message.contains("small.safetensors") && message.contains("layers"),
+        message.contains("small.safetensors") && message.contains("damage_sharpness"),
         "{message}"
     );
     assert!(!work.path("learned/campaign").exists());

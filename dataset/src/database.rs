@@ -69,18 +69,24 @@ impl Database {
     /// The same rows, each geometry in the part that it has in `other`. A geometry that `other` lacks is for training.
     ///
     /// Weights that were trained on `other` can be fine-tuned on this database: its validation and test parts have no
-    /// geometry that they were trained on.
-    pub fn split_like(&self, other: &Self) -> Self {
+    /// geometry that they were trained on. It is an error if one of these parts is empty.
+    pub fn split_like(&self, other: &Self) -> Result<Self, DatasetError> {
         let geometries = |part| {
             let jobs = other.manifest.split.jobs(part);
             let rows = other.rows.iter().filter(|row| jobs.contains(&row.job));
             rows.map(geometry).collect::<BTreeSet<_>>()
         };
         let parts = [Part::Validation, Part::Test].map(|part| (part, geometries(part)));
-        self.clone().with_parts(|row| {
+        let mut alike = self.clone().with_parts(|row| {
             let known = parts.iter().find(|(_, of)| of.contains(&geometry(row)));
             Some(known.map_or(Part::Training, |(part, _)| *part))
-        })
+        });
+        alike.manifest.split_plan = other.manifest.split_plan;
+        let split = &alike.manifest.split;
+        match split.validation.is_empty() || split.test.is_empty() {
+            true => Err(DatasetError::NotAlike),
+            false => Ok(alike),
+        }
     }
 
     /// The same database with at most the first `training` rays of the training part. The validation and test parts

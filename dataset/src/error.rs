@@ -33,6 +33,11 @@ pub enum DatasetError {
          at least 3 are needed"
     )]
     TooFewGeometries { found: usize },
+    #[error(
+        "the databases have no hinge geometry of the validation part or of the test part in common: name the database \
+         that the weights were trained on"
+    )]
+    NotAlike,
     #[error("the databases have different materials, {expected} and {found}")]
     OtherMaterial { expected: String, found: String },
     #[error(

@@ -204,7 +204,7 @@ fn a_split_like_another_database_gives_each_geometry_its_part() {
         })
         .unwrap();
     assert_ne!(whole.manifest().split, other.manifest().split);
-    let alike = whole.split_like(&other);
+    let alike = whole.split_like(&other).unwrap();
     assert_eq!(alike.manifest().split, other.manifest().split);
     assert_eq!(alike.manifest().split_hash, other.manifest().split_hash);
     assert_eq!(alike.rows(), whole.rows());
@@ -213,7 +213,7 @@ fn a_split_like_another_database_gives_each_geometry_its_part() {
     for row in &mut mirrored {
         row.job.push_str("-image");
     }
-    let mirrored = collect(mirrored).unwrap().split_like(&other);
+    let mirrored = collect(mirrored).unwrap().split_like(&other).unwrap();
     for part in [Part::Training, Part::Validation, Part::Test] {
         let expected = other
             .manifest()
@@ -231,13 +231,34 @@ fn a_split_like_another_database_gives_each_geometry_its_part() {
                 .eq(expected)
         );
     }
+    let without = |part: Part| {
+        let jobs = other.manifest().split.jobs(part);
+        let rows = whole.rows().iter().filter(|row| !jobs.contains(&row.job));
+        collect(rows.cloned().collect()).unwrap()
+    };
     // Geometries that the other database lacks are for training.
-    let elsewhere = whole.rows().iter().cloned().map(|mut row| {
-        row.design.w_lig += 0.01;
-        row
-    });
-    let elsewhere = collect(elsewhere.collect()).unwrap().split_like(&other);
-    assert_eq!(elsewhere.part(Part::Training).len(), whole.rows().len());
+    let jobs = whole.split_like(&other.thinned(0)).unwrap();
+    assert_eq!(jobs.manifest().split, other.manifest().split);
+    // Without a geometry of the test part there is nothing to measure errors on.
+    let error = without(Part::Test).split_like(&other).unwrap_err();
+    assert!(matches!(error, DatasetError::NotAlike), "{error}");
+}
+
+#[test]
+fn corrected_or_restricted_rows_keep_a_split_like_another() {
+    let whole = collect(rows()).unwrap();
+    let other = whole
+        .split(&SplitPlan {
+            seed: 5,
+            ..SplitPlan::default()
+        })
+        .unwrap();
+    let alike = whole.split_like(&other).unwrap().thinned(3);
+    let wide = whole.manifest().domain.scaled_by(2.0);
+    assert_eq!(
+        alike.within(&wide).unwrap().manifest().split,
+        alike.manifest().split
+    );
 }
 
 #[test]

@@ -218,7 +218,7 @@ impl SplitCommand {
     fn run(&self) -> Result<()> {
         let database = Database::read(&self.database)?;
         let split = match &self.like {
-            Some(other) => database.split_like(&Database::read(other)?),
+            Some(other) => database.split_like(&Database::read(other)?)?,
             None => database.split(&self.out.plan())?,
         };
         self.out.write(&split)

@@ -56,7 +56,7 @@ pub struct TrainCommand {
     /// docs/MATERIALS.md lists the errors over the number of rays
     #[arg(long, value_name = "WEIGHTS")]
     from: Option<PathBuf>,
-    /// Continue a training that was stopped
+    /// Continue a training that was stopped, with the same --config and --from
     #[arg(long, conflicts_with = "seeds")]
     resume: bool,
     /// Number of trainings, with successive seeds. The one with the smallest product of the validation errors of W and

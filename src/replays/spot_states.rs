@@ -15,6 +15,7 @@ use hinge::{
 use mesher::Tier;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// One window to solve, and the fractions of its path at which weights are compared with it.
@@ -75,8 +76,14 @@ pub fn solve(
         failed: 0,
         cpu_seconds: 0.0,
     };
-    for ((probe, outcome), solve) in probes.iter().zip(&outcomes).zip(&solves) {
-        let found = probe.rows(outcome, &solve.id(), material, tier, &tools);
+    let mut jobs = BTreeSet::new();
+    for ((probe, outcome), kept) in probes.iter().zip(&outcomes).zip(&solves) {
+        let job = kept.id();
+        // Hinges of a regular sheet can have the same path.
+        if !jobs.insert(job.clone()) {
+            continue;
+        }
+        let found = probe.rows(outcome, &job, material, tier, &tools);
         solved.failed += probe.fractions.len() - found.len();
         solved.rows.extend(found);
         let known = outcome.as_ref().ok().and_then(|it| it.cpu_seconds);

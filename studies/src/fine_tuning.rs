@@ -138,7 +138,10 @@ impl FineTuningStudy {
     pub fn run(&self) -> Result<()> {
         let parent = Surrogate::load(&self.from)?;
         let read = |path| support::toml_file::read::<TrainingConfig>(path);
-        let configs = [read(&self.scratch)?, read(&self.tuned)?];
+        let configs = [
+            read(&self.scratch)?,
+            read(&self.tuned)?.with_sizes_of(&parent),
+        ];
         let _held = run_folder::hold(&self.out)?;
         let stop = interrupt::stop_flag()?;
         let mut materials: Vec<Material> = Vec::new();

@@ -1,4 +1,4 @@
-//! Given weights, the parent, as the initial networks of a training on another material or thickness.
+//! Given weights, the parent, as the initial networks of a training on another material, thickness or mesh.
 //!
 //! The parent is scaled to the size of the database's windows ([`Surrogate::scaled`]), its first layers to the
 //! standardisation of the rows, and the last layer of chi to their root mean square of W. One factor for each of W, D
@@ -71,13 +71,19 @@ fn at_size_of(parent: &Surrogate, hinge: &HingeConstants) -> Surrogate {
     parent.clone().scaled(factor)
 }
 
-/// Completes the card of a network that starts from the parent. If both are of the same law, the rays of the parent count
-/// as well: its domain is kept.
-pub(crate) fn inherit(card: &mut Card, parent: &Surrogate) {
+/// Completes the card of a network that starts from the parent and is trained on `rows`. If all of them are of the
+/// parent's law and in its domain, that domain is kept: the rays of the parent count as well.
+pub(crate) fn inherit(card: &mut Card, parent: &Surrogate, rows: &[Row]) {
     card.fine_tuned_from = Some(parent.hash());
     let parent = at_size_of(parent, &card.hinge);
-    if card.material_hash.is_some() && card.material_hash == parent.card().material_hash {
-        card.domain = parent.card().domain.clone();
+    let law = &parent.card().material_hash;
+    let inside = |row: &Row| {
+        parent
+            .domain()
+            .contains(&row.design, &row.sample.deformation())
+    };
+    if law.is_some() && *law == card.material_hash && rows.iter().all(inside) {
+        card.domain = parent.domain().clone();
     }
 }
 

@@ -138,7 +138,7 @@ impl Training {
         };
         let mut card = card(manifest, &described, &scales, config)?;
         if let Start::Weights(parent) = start {
-            inherit(&mut card, parent);
+            inherit(&mut card, parent, &described);
         }
         let networks = match &initial {
             Some(initial) => Networks::of_layers(&initial.layers, config.mirror, &options),

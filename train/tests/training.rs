@@ -460,7 +460,7 @@ fn weights_of_the_same_law_keep_their_domain_and_sizes() {
     let parent = train(&whole, &config(1), Backend::default(), &mut |_| {})
         .unwrap()
         .surrogate;
-    let few: Vec<Row> = rows(8);
+    let few: Vec<Row> = whole.part(Part::Training).into_iter().take(80).collect();
     let start = |rows: &Database| {
         let other = TrainingConfig {
             embedding: vec![4],
@@ -478,6 +478,8 @@ fn weights_of_the_same_law_keep_their_domain_and_sizes() {
     );
     let other = domain(&start(&of_law(few.clone(), "steel")));
     assert_ne!(other, domain(&parent));
+    // Rows beyond the domain enlarge it.
+    assert_ne!(domain(&start(&of_law(rows(120), "film"))), domain(&parent));
     // The same law in another thickness: the ligaments scale with it.
     let thin = domain(&start(&of_law(similar(few, 0.4, 1.0), "film")));
     assert_eq!(thin, domain(&parent.clone().scaled(0.4)));

@@ -90,6 +90,7 @@ impl LearnCommand {
         let _held = run_folder::hold(&self.out)?;
         self.write_inputs(&material)?;
         let config: TrainingConfig = support::toml_file::read(&self.out.join(TRAINING_FILE))?;
+        let config = config.with_sizes_of(&parent);
         check_parent(&parent, &config, Backend::default())
             .with_context(|| format!("{}", self.from.display()))?;
         let campaign = self.campaign(&material)?;
