@@ -194,15 +194,18 @@ fn a_thinned_database_keeps_its_validation_and_test_parts() {
     assert_eq!(whole.thinned(1000).manifest(), whole.manifest());
 }
 
+fn dealt_with_another_seed(database: &Database) -> Database {
+    let plan = SplitPlan {
+        seed: 5,
+        ..SplitPlan::default()
+    };
+    database.split(&plan).unwrap()
+}
+
 #[test]
 fn a_split_like_another_database_gives_each_geometry_its_part() {
     let whole = collect(rows()).unwrap();
-    let other = whole
-        .split(&SplitPlan {
-            seed: 5,
-            ..SplitPlan::default()
-        })
-        .unwrap();
+    let other = dealt_with_another_seed(&whole);
     assert_ne!(whole.manifest().split, other.manifest().split);
     let alike = whole.split_like(&other).unwrap();
     assert_eq!(alike.manifest().split, other.manifest().split);
@@ -231,28 +234,21 @@ fn a_split_like_another_database_gives_each_geometry_its_part() {
                 .eq(expected)
         );
     }
-    let without = |part: Part| {
-        let jobs = other.manifest().split.jobs(part);
-        let rows = whole.rows().iter().filter(|row| !jobs.contains(&row.job));
-        collect(rows.cloned().collect()).unwrap()
-    };
-    // Geometries that the other database lacks are for training.
-    let jobs = whole.split_like(&other.thinned(0)).unwrap();
-    assert_eq!(jobs.manifest().split, other.manifest().split);
+    // Geometries in no part of the other database are for training.
+    let filled = whole.split_like(&other.thinned(0)).unwrap();
+    assert_eq!(filled.manifest().split, other.manifest().split);
     // Without a geometry of the test part there is nothing to measure errors on.
-    let error = without(Part::Test).split_like(&other).unwrap_err();
+    let test = other.manifest().split.jobs(Part::Test);
+    let rows = whole.rows().iter().filter(|row| !test.contains(&row.job));
+    let untested = collect(rows.cloned().collect()).unwrap();
+    let error = untested.split_like(&other).unwrap_err();
     assert!(matches!(error, DatasetError::NotAlike), "{error}");
 }
 
 #[test]
-fn corrected_or_restricted_rows_keep_a_split_like_another() {
+fn restricted_rows_keep_a_split_like_another() {
     let whole = collect(rows()).unwrap();
-    let other = whole
-        .split(&SplitPlan {
-            seed: 5,
-            ..SplitPlan::default()
-        })
-        .unwrap();
+    let other = dealt_with_another_seed(&whole);
     let alike = whole.split_like(&other).unwrap().thinned(3);
     let wide = whole.manifest().domain.scaled_by(2.0);
     assert_eq!(
