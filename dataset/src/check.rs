@@ -2,7 +2,7 @@
 
 use crate::database::Database;
 use crate::rows::Row;
-use crate::split::{geometry, state};
+use crate::split::{Part, geometry, state};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
@@ -64,24 +64,14 @@ impl Database {
         finding((LEAK, self.leaked()))
     }
 
-    /// The rows of each ray, in the order of lambda.
-    fn rays(&self) -> Vec<&[Row]> {
-        let same = |left: &Row, right: &Row| left.job == right.job;
-        self.rows().chunk_by(same).collect()
-    }
-
     /// One row per held-out ray whose geometry is one of the training rays.
     fn leaked(&self) -> Vec<&Row> {
         let split = &self.manifest().split;
-        let (training, others): (Vec<&Row>, Vec<&Row>) = self
-            .rows()
-            .iter()
-            .partition(|row| split.training.contains(&row.job));
-        let trained: BTreeSet<_> = training.into_iter().map(geometry).collect();
+        let trained = self.geometries(Part::Training);
         let mut jobs = BTreeSet::new();
         let held_out =
-            |row: &&Row| split.test.contains(&row.job) || split.validation.contains(&row.job);
-        (others.into_iter().filter(held_out))
+            |row: &&Row| matches!(split.part(&row.job), Some(Part::Validation | Part::Test));
+        (self.rows().iter().filter(held_out))
             .filter(|row| trained.contains(&geometry(row)) && jobs.insert(&row.job))
             .collect()
     }

@@ -71,12 +71,7 @@ impl Database {
     /// Weights that were trained on `other` can be fine-tuned on this database: its validation and test parts have no
     /// geometry that they were trained on. It is an error if one of these parts is empty.
     pub fn split_like(&self, other: &Self) -> Result<Self, DatasetError> {
-        let geometries = |part| {
-            let jobs = other.manifest.split.jobs(part);
-            let rows = other.rows.iter().filter(|row| jobs.contains(&row.job));
-            rows.map(geometry).collect::<BTreeSet<_>>()
-        };
-        let parts = [Part::Validation, Part::Test].map(|part| (part, geometries(part)));
+        let parts = [Part::Validation, Part::Test].map(|part| (part, other.geometries(part)));
         let mut alike = self.clone().with_parts(|row| {
             let known = parts.iter().find(|(_, of)| of.contains(&geometry(row)));
             Some(known.map_or(Part::Training, |(part, _)| *part))
@@ -92,11 +87,9 @@ impl Database {
     /// The same database with at most the first `training` rays of the training part. The validation and test parts
     /// are unchanged. Ids are hashes, so that the first rays are a random selection.
     pub fn thinned(&self, training: usize) -> Self {
-        let mut thinned = self.clone();
-        let split = &mut thinned.manifest.split;
-        split.training = split.training.iter().take(training).cloned().collect();
-        thinned.manifest.split_hash = split.hash();
-        thinned
+        let mut split = self.manifest.split.clone();
+        split.training = split.training.into_iter().take(training).collect();
+        self.clone().with_split(split)
     }
 
     /// The same split, with only states inside the domain in the training and validation parts.
@@ -124,13 +117,17 @@ impl Database {
     }
 
     /// The same rows, each job in the part of its first row; a job without a part is not used.
-    fn with_parts(mut self, part: impl Fn(&Row) -> Option<Part>) -> Self {
+    fn with_parts(self, part: impl Fn(&Row) -> Option<Part>) -> Self {
         let mut split = Split::default();
-        for ray in self.rows.chunk_by(|left, right| left.job == right.job) {
+        for ray in self.rays() {
             if let Some(part) = part(&ray[0]) {
                 split.jobs_mut(part).insert(ray[0].job.clone());
             }
         }
+        self.with_split(split)
+    }
+
+    fn with_split(mut self, split: Split) -> Self {
         self.manifest.split_hash = split.hash();
         self.manifest.split = split;
         self
@@ -155,6 +152,19 @@ impl Database {
             parquet,
             manifest,
         })
+    }
+
+    /// The geometries of one part of the split.
+    pub(crate) fn geometries(&self, part: Part) -> BTreeSet<[i64; 2]> {
+        let jobs = self.manifest.split.jobs(part);
+        let rows = self.rows.iter().filter(|row| jobs.contains(&row.job));
+        rows.map(geometry).collect()
+    }
+
+    /// The rows of each ray, in the order of lambda.
+    pub(crate) fn rays(&self) -> Vec<&[Row]> {
+        let same = |left: &Row, right: &Row| left.job == right.job;
+        self.rows.chunk_by(same).collect()
     }
 
     /// All accepted rows.
