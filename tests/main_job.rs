@@ -1,8 +1,11 @@
 //! The main job from end to end with the real gmsh and CalculiX: campaign, database, weights, design.
 
 mod common;
+#[path = "common/failing_ccx.rs"]
+mod failing_ccx;
 
 use common::Workplace;
+use failing_ccx::failing_ccx;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -106,12 +109,18 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
         "verify {design} --weights {} --equilibrium --rounds 2 --tier tiny --out balance --json",
         shipped.display()
     );
-    let balance: serde_json::Value = serde_json::from_str(&work.output(&balance)).unwrap();
-    let movement = |round: usize| balance["rounds"][round]["movement"].as_f64().unwrap();
-    assert!(movement(1) < 0.7 * movement(0), "{balance}");
-    assert!(balance["corners"][1].as_f64().unwrap() > 0.0, "{balance}");
-    let page = std::fs::read_to_string(work.path("balance/equilibrium.md")).unwrap();
-    assert!(page.contains("by finite elements"), "{page}");
+    let balanced: serde_json::Value = serde_json::from_str(&work.output(&balance)).unwrap();
+    let movement = |round: usize| balanced["rounds"][round]["movement"].as_f64().unwrap();
+    assert!(movement(1) < 0.7 * movement(0), "{balanced}");
+    assert!(balanced["corners"][1].as_f64().unwrap() > 0.0, "{balanced}");
+    let page = || std::fs::read_to_string(work.path("balance/equilibrium.md")).unwrap();
+    assert!(page().contains("by finite elements"), "{}", page());
+    // Where a further round fails, the rounds before are reported.
+    let diverging = "echo '1 1 1U 4 0. 0. 0.005' > window.sta";
+    let mut further = work.program(&balance.replace("--rounds 2", "--rounds 3"));
+    further.env("KIRIGAMI_CCX", failing_ccx(&work.path(""), diverging));
+    assert!(further.output().unwrap().status.success());
+    assert!(page().contains("a further round failed: ") && page().contains("\n| 2 |"));
     polish_by_finite_elements(&work, design, &shipped);
 
     let check = "surrogate spot-check runs/demo/surrogate.safetensors --count 6 --states-per-ray 2 --tier tiny \

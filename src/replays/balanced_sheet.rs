@@ -44,8 +44,46 @@ pub struct Balanced {
     pub rounds: Vec<Round>,
     /// CPU time of all window solves (s), if the operating system reports it.
     pub cpu_seconds: Option<f64>,
-    /// Whether the last round moved the panels by less than [`BALANCED`].
-    pub converged: bool,
+    /// Why no further round was made.
+    pub ended: BalanceEnd,
+}
+
+/// Why the rounds ended.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BalanceEnd {
+    /// The last round moved the panels by less than [`BALANCED`].
+    Converged,
+    /// All rounds were made, and the panels still move.
+    RoundsMade,
+    /// A round after the first failed. The results are those of the rounds before.
+    Failed(String),
+}
+
+impl BalanceEnd {
+    /// What a person should know if the sheet is not balanced, with what to do.
+    pub fn warning(&self) -> Option<String> {
+        match self {
+            Self::Converged => None,
+            Self::RoundsMade => Some("the panels still move: use more --rounds".into()),
+            Self::Failed(reason) => Some(format!("a further round failed: {reason}")),
+        }
+    }
+}
+
+/// Why a round failed.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+struct RoundFailed(String);
+
+/// A round that was made.
+struct Made {
+    round: Round,
+    hinges: Vec<HingeSample>,
+    cpu_seconds: Option<f64>,
+    /// The problem with the corrected law, and the sheet by it.
+    problem: DesignProblem,
+    deployed: Deployment,
 }
 
 /// Windows and their limits.
@@ -72,42 +110,70 @@ pub fn balanced(
         Model::Equilibrium(mechanics) => mechanics.law.clone(),
         Model::Ideal { .. } => bail!("pin hinges have no forces to be balanced"),
     };
-    let mut deployed = problem.deploy(design)?;
+    let deployed = problem.deploy(design)?;
     deployed.at_full_load()?;
-    let (mut deployments, mut hinges, mut done) = (Vec::new(), Vec::new(), Vec::new());
-    let mut cpu_seconds = Some(0.0);
-    let mut converged = false;
-    while done.len() < rounds && !converged {
-        let solutions = solved(scene, &deployed, windows)?;
-        let spent: Option<f64> = (solutions.iter())
-            .map(|(solution, _)| solution.cpu_seconds)
-            .sum();
-        cpu_seconds = cpu_seconds.zip(spent).map(|(sum, spent)| sum + spent);
-        hinges = solutions.into_iter().map(|(_, end)| end).collect();
-        let force_error = force_error(&problem.model, &deployed, &hinges);
-        let corrected = corrected(&law, &deployed, &hinges);
-        if let Model::Equilibrium(mechanics) = &mut problem.model {
-            mechanics.law = Arc::new(corrected);
+    let mut found = Balanced {
+        deployments: vec![deployed],
+        hinges: Vec::new(),
+        rounds: Vec::new(),
+        cpu_seconds: Some(0.0),
+        ended: BalanceEnd::RoundsMade,
+    };
+    while found.rounds.len() < rounds && found.ended != BalanceEnd::Converged {
+        let made = match round(scene, design, windows, &law, &problem, found.by_elements()) {
+            Ok(made) => made,
+            Err(error) if error.is::<RoundFailed>() && !found.rounds.is_empty() => {
+                found.ended = BalanceEnd::Failed(error.to_string());
+                break;
+            }
+            Err(error) => return Err(error),
+        };
+        if made.round.movement <= BALANCED * size(&made.deployed) {
+            found.ended = BalanceEnd::Converged;
         }
-        let next = problem.deploy(design)?;
-        next.at_full_load()?;
-        let movement = movements(&deployed, &next).into_iter().fold(0.0, f64::max);
-        converged = movement <= BALANCED * size(&next);
-        deployments.push(std::mem::replace(&mut deployed, next));
-        done.push(Round {
+        problem = made.problem;
+        found.deployments.push(made.deployed);
+        found.hinges = made.hinges;
+        found.rounds.push(made.round);
+        let spent = found.cpu_seconds.zip(made.cpu_seconds);
+        found.cpu_seconds = spent.map(|(before, now)| before + now);
+    }
+    Ok((found, problem))
+}
+
+/// Solves the hinges along their paths in `deployed`, the sheet of `problem`, and deploys it with the law corrected to them.
+fn round(
+    scene: &Scene,
+    design: &DesignVector,
+    windows: &WindowSolves,
+    law: &Arc<dyn HingeLaw>,
+    problem: &DesignProblem,
+    deployed: &Deployment,
+) -> Result<Made> {
+    let solutions = solved(scene, deployed, windows)?;
+    let cpu_seconds = (solutions.iter())
+        .map(|(solution, _)| solution.cpu_seconds)
+        .sum();
+    let hinges: Vec<HingeSample> = solutions.into_iter().map(|(_, end)| end).collect();
+    let force_error = force_error(&problem.model, deployed, &hinges);
+    let mut problem = scene.problem()?;
+    if let Model::Equilibrium(mechanics) = &mut problem.model {
+        mechanics.law = Arc::new(corrected(law, deployed, &hinges));
+    }
+    let next = problem.deploy(design)?;
+    next.at_full_load()
+        .map_err(|error| RoundFailed(error.to_string()))?;
+    let movement = movements(deployed, &next).into_iter().fold(0.0, f64::max);
+    Ok(Made {
+        round: Round {
             force_error,
             movement,
-        });
-    }
-    deployments.push(deployed);
-    let balanced = Balanced {
-        deployments,
+        },
         hinges,
-        rounds: done,
         cpu_seconds,
-        converged,
-    };
-    Ok((balanced, problem))
+        problem,
+        deployed: next,
+    })
 }
 
 impl Balanced {
@@ -147,12 +213,13 @@ fn solved(
             Err(reason) => failures.push(format!("hinge {hinge}: {reason}")),
         }
     }
-    ensure!(
-        failures.is_empty(),
+    if failures.is_empty() {
+        return Ok(ends);
+    }
+    bail!(RoundFailed(format!(
         "the equilibrium needs the forces of every hinge; not solved: {}. Try another mesh with --tier",
         failures.join("; ")
-    );
-    Ok(ends)
+    )))
 }
 
 /// The law corrected to the forces of finite elements at the last state of the path.

@@ -42,7 +42,7 @@ impl SolveArgs {
     }
 
     /// The outcomes of `solves`, in the same order. Solutions are stored in `folder` and read from there
-    /// when the same solve is needed again.
+    /// when the same solve is needed again. A path that is not followed to its end is tried again with shorter increments.
     pub fn solve(&self, solves: &[&KeptSolve], folder: &Path) -> Result<Vec<Outcome>> {
         let kept = folder.join("solutions");
         std::fs::create_dir_all(&kept)
@@ -72,8 +72,15 @@ impl SolveArgs {
         let mut done = 0;
         let work = |i: usize, reports: &Reports<_>| {
             let halt = reports.halt();
-            let solve = |work: &Path| solves[i].solution(kept, work, &tools, limit, halt);
-            reports.send((i, in_scratch(kept, solve)));
+            let attempt = |solve: &KeptSolve| {
+                in_scratch(kept, |work| solve.solution(kept, work, &tools, limit, halt))
+            };
+            let first = attempt(solves[i]);
+            let solution = first.and_then(|first| match solves[i].second_attempt() {
+                Some(second) if first.stopped.is_some() => Ok(first.or(attempt(&second)?)),
+                _ => Ok(first),
+            });
+            reports.send((i, solution));
         };
         let ended = work_through(solves.len(), workers, stop, &work, &mut |(i, solution)| {
             outcomes[i] = Some(outcome(solution)?);

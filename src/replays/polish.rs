@@ -3,7 +3,7 @@
 //! The sheet is balanced with finite elements for its hinges, the search continues from the design with the corrected
 //! law, and the sheet that it finds is balanced again: both designs are judged by finite elements at their own hinges.
 
-use crate::replays::balanced_sheet::{Balanced, WindowSolves, balanced};
+use crate::replays::balanced_sheet::{BalanceEnd, Balanced, WindowSolves, balanced};
 use crate::ui::exit::Unfinished;
 use anyhow::{Result, bail};
 use design::objective::design_problem::Evaluation;
@@ -38,8 +38,8 @@ pub struct PolishGain {
     /// Search steps with the corrected law, and why they ended.
     steps: usize,
     ended: Ended,
-    /// Whether the panels of both sheets stay where they are; see [`Balanced::converged`].
-    balanced: [bool; 2],
+    /// Why the rounds of both sheets ended.
+    ended_rounds: [BalanceEnd; 2],
     /// CPU time of all window solves (s), if the operating system reports it.
     cpu_seconds: Option<f64>,
 }
@@ -89,7 +89,7 @@ pub fn polish(
         by_elements: [scores(&start), scores(&best)],
         steps: search.history.len() - 1,
         ended: ended.clone(),
-        balanced: [before.converged, after.converged],
+        ended_rounds: [before.ended, after.ended.clone()],
         cpu_seconds: before
             .cpu_seconds
             .zip(after.cpu_seconds)
@@ -155,11 +155,10 @@ impl fmt::Display for PolishGain {
                 "\nNOT IMPROVED: by finite elements the given design has the lower loss. Use that one."
             )?;
         }
-        if self.balanced != [true; 2] {
-            writeln!(
-                f,
-                "\nNOT BALANCED: the panels still moved in the last round; use more --rounds."
-            )?;
+        for (sheet, ended) in std::iter::zip(["given", "polished"], &self.ended_rounds) {
+            if let Some(warning) = ended.warning() {
+                writeln!(f, "\nNOT BALANCED, {sheet} design: {warning}.")?;
+            }
         }
         Ok(())
     }

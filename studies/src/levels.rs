@@ -193,14 +193,20 @@ impl Row {
 
 fn table(title: &str, truth: &Balanced, rows: &[Row]) -> Result<String> {
     let rounds = truth.rounds.len();
+    let in_rounds = match rounds {
+        1 => "one round".into(),
+        rounds => format!("{rounds} rounds"),
+    };
     let moved = truth.rounds.last().map_or(0.0, |round| round.movement);
+    let warning =
+        (truth.ended.warning()).map_or(String::new(), |it| format!(" NOT BALANCED: {it}."));
     let minutes = truth
         .cpu_seconds
         .map_or("?".into(), |seconds| format!("{:.0}", seconds / 60.0));
     let mut text = format!(
         "### {title}\n\n\
-         {} hinges by finite elements in {rounds} rounds, {minutes} CPU minutes; no corner moved by more than {moved:.2} mm in the \
-         last. Step: equilibrium and gradient. Effect: movement of the panel corners from the scene as it is; error: \
+         {} hinges by finite elements in {in_rounds}, {minutes} CPU minutes; no corner moved by more than {moved:.2} mm in the \
+         last.{warning} Step: equilibrium and gradient. Effect: movement of the panel corners from the scene as it is; error: \
          from finite elements; both root mean squares. `kirigami-studies levels`.\n\n\
          | choice | step, ms | effect, mm | error, mm | of the sheet | error of rotations, deg |\n\
          |---|---|---|---|---|---|\n",

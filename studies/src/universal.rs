@@ -4,13 +4,13 @@
 //! law, so that W / (E t^3) depends on (w_lig / t, alpha, eta_a, eta_s, theta), on the law over E, and on Poisson's ratio.
 
 mod cases;
-mod causes;
 mod family_rays;
 mod family_table;
 mod judgement;
 mod law;
 mod split_of_laws;
 mod states;
+mod three_numbers;
 mod trial;
 mod universal_page;
 
@@ -20,7 +20,7 @@ use crate::universal::family_rays::{FamilyRay, family_rays, family_sheet};
 use crate::universal::family_table::SolvedRay;
 use crate::universal::judgement::Errors;
 use crate::universal::split_of_laws::SplitOfLaws;
-use crate::universal::states::{Film, SolvedState};
+use crate::universal::states::Film;
 use crate::universal::trial::Trial;
 use ::train::TrainingConfig;
 use anyhow::{Context, Result, ensure};
@@ -28,7 +28,7 @@ use clap::Args;
 use dataset::SplitPlan;
 use fe_driver::{Campaign, KeptSolve};
 use hinge::SheetMaterial;
-use kirigami::replays::kept_solves::{Outcome, SolveArgs};
+use kirigami::replays::kept_solves::SolveArgs;
 use kirigami::ui::{interrupt, picture, run_folder};
 use mesher::Tier;
 use std::path::{Path, PathBuf};
@@ -36,27 +36,24 @@ use surrogate::Surrogate;
 
 /// Train one hinge energy over a family of hardening laws, and test it on materials that it has not seen
 ///
-/// The laws have three numbers: yield strain, plateau and hardening modulus, the latter two over yield stress and E. With
-/// --solve, the rays are solved, one law each, and stored in --rays. A stopped command continues. Without it, networks
-/// are trained on the stored rays and tested on laws that are held out, on the film, on steel and on polypropylene, with
-/// no ray and with few rays of these. Writes universal.csv, universal.md and a chart. Examples:
-/// kirigami-studies universal --solve 200
+/// The laws have Poisson's ratio and three numbers of the hardening: yield strain, plateau and hardening modulus, the latter
+/// two over yield stress and E. With --solve, the rays are solved, one law each, and stored in --folder; rays that are there
+/// already are kept, and a stopped command continues. Without it, networks are trained on the stored rays and tested on
+/// laws that are held out, on the film, on steel and on polypropylene, with no ray and with few rays of these. Writes
+/// universal.csv, universal.md and a chart. Examples:
+/// kirigami-studies universal --solve 300
 /// kirigami-studies universal --out docs/results/universal
 #[derive(Args)]
 pub struct UniversalStudy {
-    /// Solve the first N rays of the family, and the windows of causes.md, instead of training
+    /// Solve the first N rays of the family, and the windows of three-numbers.md, instead of training
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     solve: Option<u64>,
-    /// Table of the solved rays (Parquet)
-    #[arg(
-        long,
-        value_name = "FILE",
-        default_value = "data/universal/rays.parquet"
-    )]
-    rays: PathBuf,
-    /// Number of rays for causes.md, 0 for none
+    /// Folder of the tables of the solved rays, one for each tier (default.parquet)
+    #[arg(long, value_name = "FOLDER", default_value = "data/universal")]
+    folder: PathBuf,
+    /// Number of rays for three-numbers.md, 0 for none
     #[arg(long, value_name = "N", default_value_t = 4)]
-    causes: usize,
+    three_numbers: usize,
     /// Campaign whose region, E and thickness the family has
     #[arg(
         long,
@@ -65,7 +62,7 @@ pub struct UniversalStudy {
     )]
     campaign: PathBuf,
     /// Mesh tier of the windows
-    #[arg(long, value_name = "TIER", default_value_t = Tier::Small)]
+    #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
     tier: Tier,
     /// Weights of the film
     #[arg(
@@ -131,47 +128,75 @@ impl UniversalStudy {
         }
     }
 
+    /// The table of the solved rays.
+    fn table(&self) -> PathBuf {
+        self.folder.join(format!("{}.parquet", self.tier))
+    }
+
     fn solve_rays(&self, campaign: &Campaign, film: &Film, count: usize) -> Result<()> {
         let sheet = family_sheet(campaign);
         let rays = family_rays(campaign, count);
-        let windows: Vec<KeptSolve> = rays
-            .iter()
+        let mut solved = self.kept_rays(&rays, film)?;
+        let is_new = |ray: &&FamilyRay| solved.iter().all(|it| it.index != ray.index);
+        let new: Vec<&FamilyRay> = rays.iter().filter(is_new).collect();
+        let windows: Vec<KeptSolve> = (new.iter())
             .map(|ray| ray.window(&ray.law.material(&sheet), self.tier))
             .collect();
         let windows: Vec<&KeptSolve> = windows.iter().collect();
         let outcomes = self.solve_args.solve(&windows, &self.out)?;
-        let solved = solved_rays(&rays, &outcomes, &sheet, film);
+        solved.extend(new.iter().zip(&outcomes).filter_map(|(ray, outcome)| {
+            let solution = outcome.as_ref().ok()?;
+            Some(SolvedRay::new(ray, solution, &sheet, film))
+        }));
         ensure!(!solved.is_empty(), "no ray reached its end");
-        if let Some(folder) = self.rays.parent() {
-            std::fs::create_dir_all(folder)
-                .with_context(|| format!("cannot create the folder {}", folder.display()))?;
-        }
-        family_table::write(&self.rays, &solved)?;
+        solved.sort_by_key(|ray| ray.index);
+        std::fs::create_dir_all(&self.folder)
+            .with_context(|| format!("cannot create the folder {}", self.folder.display()))?;
+        family_table::write(&self.table(), &solved)?;
         let cpu_seconds: f64 = solved.iter().map(|ray| ray.cpu_seconds).sum();
         println!(
-            "{} of {count} rays reached their ends, {cpu_seconds:.0} CPU s: {}",
+            "{} rays, {cpu_seconds:.0} CPU s: {}",
             solved.len(),
-            self.rays.display()
+            self.table().display()
         );
-        if self.causes == 0 {
+        if self.three_numbers == 0 {
             return Ok(());
         }
-        let rays = &rays[..self.causes.min(rays.len())];
+        let rays = &rays[..self.three_numbers.min(rays.len())];
         let materials: Vec<SheetMaterial> = MATERIALS
             .iter()
             .map(|(file, _)| SheetMaterial::load(Path::new(file)))
             .collect::<Result<_, _>>()?;
         let args = &self.solve_args;
-        let page = causes::page(rays, &materials, &sheet, self.tier, args, &self.out)?;
-        run_folder::write(&self.out, "causes.md", &page)?;
+        let page = three_numbers::page(rays, &materials, &sheet, self.tier, args, &self.out)?;
+        run_folder::write(&self.out, "three-numbers.md", &page)?;
         print!("{page}");
         Ok(())
+    }
+
+    /// The rays of the table that is continued, none if there is no table.
+    fn kept_rays(&self, rays: &[FamilyRay], film: &Film) -> Result<Vec<SolvedRay>> {
+        let table = self.table();
+        if !table.exists() {
+            return Ok(Vec::new());
+        }
+        let kept = family_table::read(&table, film)?;
+        for solved in &kept {
+            let ray = rays.get(solved.index);
+            ensure!(
+                ray.is_none_or(|ray| solved.is_of(ray, &film.sheet)),
+                "ray {} of {} is another than that of the family: choose another --folder",
+                solved.index,
+                table.display()
+            );
+        }
+        Ok(kept)
     }
 
     fn judge(&self, film: &Film) -> Result<()> {
         let read = |path| support::toml_file::read::<TrainingConfig>(path);
         let (training, tuned) = (read(&self.training)?, read(&self.tuned)?);
-        let rays = family_table::read(&self.rays, film)?;
+        let rays = family_table::read(&self.table(), film)?;
         let materials: Vec<Material> = MATERIALS
             .iter()
             .map(|(file, rays)| Material::read(Path::new(file), Path::new(rays), film))
@@ -232,24 +257,4 @@ impl UniversalStudy {
         picture::save(&chart, &self.out.join("universal"), 1600)?;
         Ok(())
     }
-}
-
-/// The rays that reached their ends.
-fn solved_rays(
-    rays: &[FamilyRay],
-    outcomes: &[Outcome],
-    sheet: &SheetMaterial,
-    film: &Film,
-) -> Vec<SolvedRay> {
-    let solved = rays.iter().zip(outcomes).enumerate();
-    let solved = solved.filter_map(|(index, (ray, outcome))| {
-        let solution = outcome.as_ref().ok()?;
-        let state = |sample| SolvedState::new(&ray.ray.design, sample, sheet, ray.law, film);
-        Some(SolvedRay {
-            index,
-            cpu_seconds: solution.cpu_seconds.unwrap_or(0.0),
-            states: solution.samples.iter().map(state).collect(),
-        })
-    });
-    solved.collect()
 }

@@ -127,15 +127,27 @@ fn the_family_of_laws_is_solved_once_and_judged_on_three_materials() {
     }
     let config = "configs/training/fine-tuning.toml";
     work.edit(config, &[("epochs = 80", "epochs = 1")]);
-    assert!(work.error("universal").contains("rays.parquet"));
-    let solve = "universal --solve 3 --tier tiny --causes 0 --out solved";
-    assert!(work.output(solve).starts_with("3 of 3 rays"));
-    let first = std::fs::read(work.path("data/universal/rays.parquet")).unwrap();
-    // Stored solutions are read.
-    work.output(solve);
-    let again = std::fs::read(work.path("data/universal/rays.parquet")).unwrap();
-    assert!(first == again);
-    let judged = page(&work, "universal --splits 1 --epochs 1", "universal.md");
+    assert!(work.error("universal").contains("default.parquet"));
+    let solve = |count: u8, out: &str| {
+        let rays = format!("universal --solve {count} --tier tiny --three-numbers 0 --out {out}");
+        assert!(work.output(&rays).starts_with(&format!("{count} rays")));
+        std::fs::read(work.path("data/universal/tiny.parquet")).unwrap()
+    };
+    let first = solve(2, "first");
+    assert!(first == solve(2, "first"));
+    // The rays of the table are not solved again: only the third one is.
+    let all = solve(3, "third");
+    let solutions = std::fs::read_dir(work.path("third/solutions")).unwrap();
+    assert_eq!(solutions.count(), 1);
+    assert!(all != first);
+    let other = "configs/campaigns/pet-0.5mm-corner.toml";
+    let other = format!("universal --solve 4 --tier tiny --three-numbers 0 --campaign {other}");
+    assert!(work.error(&other).contains("choose another --folder"));
+    let judged = page(
+        &work,
+        "universal --tier tiny --splits 1 --epochs 1",
+        "universal.md",
+    );
     for row in [
         "laws held out | works",
         "s235-1.5mm | film",
@@ -283,4 +295,20 @@ fn recorded_paths_and_their_rays_are_solved() {
     let study = "path configs/scenes/pet-3x3.toml --routes 2 --tier tiny --out path";
     assert!(work.output(study).contains("2 of 12 paths"));
     assert!(work.path("path/path.png").exists());
+}
+
+/// Where a window diverges with the usual increments, shorter ones are tried.
+#[test]
+fn a_window_that_diverges_is_solved_by_a_second_attempt() {
+    let work = Workplace::new();
+    shipped_weights(&work);
+    let diverged = "echo '1 1 1U 4 0. 0. 0.005' > window.sta; exit 201";
+    let usual = format!("if grep -q 'INC=400' window.inp; then {diverged}; fi");
+    let ccx = failing_ccx(&work.path(""), &format!("{usual}; exec ccx \"$@\""));
+    let mut solve = work.program("universal --solve 1 --tier tiny --three-numbers 0 --out solved");
+    let outcome = solve.env("KIRIGAMI_CCX", ccx).output().unwrap();
+    assert!(outcome.status.success(), "{outcome:?}");
+    assert!(String::from_utf8_lossy(&outcome.stdout).starts_with("1 rays"));
+    let solutions = std::fs::read_dir(work.path("solved/solutions")).unwrap();
+    assert_eq!(solutions.count(), 2);
 }

@@ -6,9 +6,7 @@ use std::path::{Path, PathBuf};
 pub fn failing_ccx(folder: &Path, body: &str) -> PathBuf {
     use std::os::unix::fs::PermissionsExt;
     let path = folder.join("ccx");
-    let script = format!(
-        "#!/bin/sh\n[ \"$1\" = -v ] && echo 'This is Version 2.20' && exit 0\n{body}; exit 201\n"
-    );
+    let script = format!("#!/bin/sh\n[ \"$1\" = -v ] && {{ ccx -v; exit 0; }}\n{body}; exit 201\n");
     std::fs::write(&path, script).unwrap();
     std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
     path

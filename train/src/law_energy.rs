@@ -1,4 +1,5 @@
-//! A hinge energy over a family of sheets: the features of (13) and three numbers of the hardening law.
+//! A hinge energy over a family of sheets: the features of (13), Poisson's ratio and three numbers of
+//! the hardening law.
 //!
 //! All energies are divided by E t^3, lengths by t. The energy of the network is one of
 //!
@@ -9,8 +10,8 @@
 //! W = W_known(eps, g) exp(chi(xi))                      a known energy of another law, corrected; chi has one output
 //! ```
 //!
-//! In the last two forms of works, xi has no numbers of the law: which strains a hinge has at a state is taken as
-//! independent of the law. Forces are the derivatives in (eta_a, eta_s, theta), the first three features. The loss is (15) without
+//! Without numbers of the hardening among the features xi, the forms of works take the strains of a hinge at a state as
+//! independent of its law. Forces are the derivatives in (eta_a, eta_s, theta), the first three features. The loss is (15) without
 //! damage, with errors relative to S.
 
 use crate::backend::Backend;
@@ -27,8 +28,10 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use std::array::from_fn;
 
-/// eta_a, eta_s, theta, ln(w_lig / t), alpha and three numbers of the law.
-pub const LAW_FEATURES: usize = 8;
+/// eta_a, eta_s, theta, ln(w_lig / t), alpha, Poisson's ratio and the numbers of the hardening.
+pub const LAW_FEATURES: usize = 6 + HARDENING_FEATURES;
+/// Three numbers of the hardening.
+const HARDENING_FEATURES: usize = 3;
 
 /// Number of strains e_j.
 pub const LAW_STRAINS: usize = 32;
@@ -67,10 +70,17 @@ pub enum LawForm {
     Alone,
     /// A factor of the known energy.
     Factor,
-    /// A sum of works of the law, with weights that depend on the hinge alone and not on the three numbers.
-    Works,
+    /// A sum of works of the law. The weights of the sum depend on the hinge, on Poisson's ratio and, if asked for, on the
+    /// numbers of the hardening.
+    Works {
+        /// Whether they depend on the hardening.
+        numbers: bool,
+    },
     /// The known energy times a sum of ratios of works of the law and of the known law, with such weights.
-    WorksOfKnown,
+    WorksOfKnown {
+        /// Whether they depend on the hardening.
+        numbers: bool,
+    },
 }
 
 /// A trained energy.
@@ -94,7 +104,7 @@ struct LawNetwork {
 
 /// States as tensors; energies over S and over their sizes.
 struct Batch {
-    /// Features of the undeformed and the deformed states, (2, n, 8).
+    /// Features of the undeformed and the deformed states, (2, n, 9).
     states: Tensor<3>,
     /// (n, 1)
     known: Tensor<2>,
@@ -183,7 +193,7 @@ impl LawEnergy {
         match form {
             LawForm::Alone => {}
             LawForm::Factor => *outputs = 1,
-            LawForm::Works | LawForm::WorksOfKnown => *outputs = LAW_STRAINS,
+            LawForm::Works { .. } | LawForm::WorksOfKnown { .. } => *outputs = LAW_STRAINS,
         }
         let options =
             TensorCreationOptions::new(Backend::default().device()).with_dtype(DType::F32);
@@ -191,7 +201,7 @@ impl LawEnergy {
             form,
             mean,
             std: from_fn(|k| match std[k] {
-                _ if form.has_works() && k >= LAW_FEATURES - 3 => f64::INFINITY,
+                _ if !form.has_numbers() && k >= LAW_FEATURES - HARDENING_FEATURES => f64::INFINITY,
                 std => {
                     if std > 0.0 {
                         std
@@ -238,14 +248,14 @@ impl LawEnergy {
                 let slopes = by_state(r.clone() * chi.tangents).mul_scalar(2.0);
                 (r.square().sum_dim(2).reshape([n, 1]), slopes * factors)
             }
-            LawForm::Works => {
+            LawForm::Works { .. } => {
                 let r = chi.values.clone().narrow(0, 1, 1) - chi.values.narrow(0, 0, 1);
                 let works = batch.works.clone();
                 let slopes = by_state(works.clone() * r.clone() * chi.tangents).mul_scalar(2.0);
                 let energy = (works * r.square()).sum_dim(2).reshape([n, 1]);
                 (energy, slopes * factors)
             }
-            LawForm::WorksOfKnown => {
+            LawForm::WorksOfKnown { .. } => {
                 let parts = chi.values.narrow(0, 1, 1).exp() * batch.works.clone();
                 let factor = parts.clone().sum_dim(2).reshape([n, 1]);
                 let own = by_state(parts * chi.tangents) * factors * batch.known.clone();
@@ -286,7 +296,7 @@ impl LawEnergy {
     fn works(&self, state: &LawState) -> [f64; LAW_STRAINS] {
         from_fn(|j| {
             let size = match self.form {
-                LawForm::WorksOfKnown => state.known_works[j],
+                LawForm::WorksOfKnown { .. } => state.known_works[j],
                 _ => state.scale * self.work_sizes[j],
             };
             state.works[j] / size / LAW_STRAINS as f64
@@ -300,9 +310,12 @@ impl LawEnergy {
 }
 
 impl LawForm {
-    /// Whether the law enters by its works alone.
-    fn has_works(self) -> bool {
-        matches!(self, Self::Works | Self::WorksOfKnown)
+    /// Whether the numbers of the hardening are features.
+    fn has_numbers(self) -> bool {
+        match self {
+            Self::Alone | Self::Factor => true,
+            Self::Works { numbers } | Self::WorksOfKnown { numbers } => numbers,
+        }
     }
 }
 
@@ -336,7 +349,7 @@ mod tests {
         let wave = |row: usize, k: usize| (1.7 * row as f64 + 2.3 * k as f64).sin();
         let state = |row: usize| {
             let mut features: [f64; LAW_FEATURES] = from_fn(|k| 0.6 * wave(row, k));
-            features[7] += 1.5;
+            features[LAW_FEATURES - 1] += 1.5;
             let [a, s, theta, .., q] = features;
             let of = |q: f64| EnergySlopes {
                 energy: q * (2.0 * a * a + s * s + theta * theta),
@@ -360,8 +373,10 @@ mod tests {
         for (form, limit) in [
             (LawForm::Alone, 0.06),
             (LawForm::Factor, 0.02),
-            (LawForm::Works, 0.06),
-            (LawForm::WorksOfKnown, 0.02),
+            (LawForm::Works { numbers: false }, 0.06),
+            (LawForm::Works { numbers: true }, 0.06),
+            (LawForm::WorksOfKnown { numbers: false }, 0.02),
+            (LawForm::WorksOfKnown { numbers: true }, 0.02),
         ] {
             let energy = LawEnergy::fit(&solved, form, &config(), None).unwrap();
             let states: Vec<LawState> = solved.iter().map(|(state, _)| *state).collect();

@@ -62,6 +62,15 @@ pub enum KeptSolveError {
 }
 
 impl KeptSolve {
+    /// The second attempt at a path that was not followed to its end: with shorter increments, if this solve has the usual
+    /// ones. See [`RetryStep`](crate::RetryStep).
+    pub fn second_attempt(&self) -> Option<Self> {
+        (self.step == StepControl::default()).then(|| Self {
+            step: StepControl::patient(),
+            ..self.clone()
+        })
+    }
+
     /// The id: 16 hexadecimal digits, the same for the same inputs.
     pub fn id(&self) -> String {
         short_hash(self)
@@ -135,11 +144,58 @@ impl KeptSolve {
     }
 }
 
+impl KeptSolution {
+    /// Fraction of the path that was followed.
+    fn lambda(&self) -> f64 {
+        self.samples.last().map_or(0.0, |sample| sample.lambda)
+    }
+
+    /// The one of two attempts that followed the path further, with the cost of both.
+    #[must_use]
+    pub fn or(self, second: Self) -> Self {
+        let cpu_seconds = [self.cpu_seconds, second.cpu_seconds].into_iter().flatten();
+        let cpu_seconds = cpu_seconds.reduce(|first, second| first + second);
+        let iterations = self.iterations + second.iterations;
+        let is_further = second.stopped.is_none() || second.lambda() > self.lambda();
+        Self {
+            cpu_seconds,
+            iterations,
+            ..if is_further { second } else { self }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use hinge::HingeDeformation;
     use mesher::Tier;
+
+    #[test]
+    fn of_two_attempts_the_one_that_reached_further_is_kept_with_the_cost_of_both() {
+        let reached = |lambda: f64, stopped: Option<&str>| KeptSolution {
+            elements: 100,
+            cpu_seconds: Some(2.0),
+            overhead: 0.0,
+            peak_memory_mib: None,
+            iterations: 10,
+            samples: vec![HingeSample {
+                lambda,
+                ..HingeSample::default()
+            }],
+            stopped: stopped.map(str::to_owned),
+        };
+        let first = reached(0.6, Some("diverged"));
+        for (second, lambda, stopped) in [
+            (reached(1.0, None), 1.0, false),
+            (reached(0.7, Some("diverged")), 0.7, true),
+            (reached(0.5, Some("diverged")), 0.6, true),
+        ] {
+            let kept = first.clone().or(second);
+            assert_eq!((kept.lambda(), kept.stopped.is_some()), (lambda, stopped));
+            assert_eq!((kept.cpu_seconds, kept.iterations), (Some(4.0), 20));
+        }
+    }
 
     #[test]
     fn the_cache_file_depends_on_the_tool_versions() {

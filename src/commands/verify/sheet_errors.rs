@@ -1,6 +1,8 @@
 //! `kirigami verify --equilibrium`: the error of a deployed sheet, judged by finite elements for its hinges.
 
-use crate::replays::balanced_sheet::{BALANCED, Balanced, Round, WindowSolves, movements, size};
+use crate::replays::balanced_sheet::{
+    BALANCED, BalanceEnd, Balanced, Round, WindowSolves, movements, size,
+};
 use crate::ui::run_folder;
 use anyhow::Result;
 use design::objective::design_problem::Deployment;
@@ -14,8 +16,8 @@ pub(super) struct SheetErrors {
     /// Mesh tier of the windows.
     tier: Tier,
     rounds: Vec<Round>,
-    /// Whether the panels stay where they are within [`BALANCED`].
-    converged: bool,
+    /// Why no further round was made.
+    ended: BalanceEnd,
     /// CPU time of all window solves (s), if the operating system reports it.
     cpu_seconds: Option<f64>,
     /// Diagonal of the deployed sheet (mm).
@@ -69,7 +71,7 @@ impl SheetErrors {
         Self {
             tier,
             rounds: found.rounds.clone(),
-            converged: found.converged,
+            ended: found.ended.clone(),
             cpu_seconds: found.cpu_seconds,
             size: size(by_elements),
             corners: rms_and_maximum(movements(by_law, by_elements)),
@@ -120,9 +122,9 @@ impl fmt::Display for SheetErrors {
             let percent = 100.0 * force_error;
             writeln!(f, "| {} | {percent:.2} % | {movement:.3} |", round + 1)?;
         }
-        let ended = match self.converged {
-            true => "The panels stay where they are",
-            false => "NOT BALANCED: the panels still move; use more --rounds. The limit is",
+        let ended = match self.ended.warning() {
+            None => "The panels stay where they are within".into(),
+            Some(warning) => format!("NOT BALANCED: {warning}. The limit is"),
         };
         writeln!(
             f,

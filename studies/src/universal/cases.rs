@@ -11,7 +11,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Numbers of rays of the family in training; all that are not held out are added.
-pub const LAWS: [usize; 2] = [20, 40];
+pub const LAWS: [usize; 3] = [30, 60, 120];
 /// Number of rays of each other material in training.
 pub const OTHER_RAYS: usize = 100;
 /// Numbers of rays of a material.
@@ -34,17 +34,23 @@ pub enum Network {
     TimesFilm,
     /// The works of the law are multiplied by weights that depend on the hinge alone.
     Works,
-    /// The same, trained also on rays of the other materials.
-    WorksOfAll,
-    /// The film's energy times ratios of works, with such weights.
+    /// The same; the weights depend on the three numbers too.
+    WorksAndNumbers,
+    /// The film's energy times ratios of works, with weights that depend on the hinge alone.
     WorksTimesFilm,
+    /// The same; the weights depend on the three numbers too.
+    WorksAndNumbersTimesFilm,
+    /// [`Self::Works`], trained also on rays of the other materials.
+    WorksOfAll,
 }
 
 /// The networks that are trained on the family alone.
-pub const NETWORKS: [Network; 4] = [
+pub const NETWORKS: [Network; 6] = [
     Network::Numbers,
     Network::TimesFilm,
     Network::Works,
+    Network::WorksAndNumbers,
+    Network::WorksAndNumbersTimesFilm,
     Network::WorksTimesFilm,
 ];
 
@@ -88,14 +94,19 @@ impl Network {
         match self {
             Self::Numbers => LawForm::Alone,
             Self::TimesFilm => LawForm::Factor,
-            Self::Works | Self::WorksOfAll => LawForm::Works,
-            Self::WorksTimesFilm => LawForm::WorksOfKnown,
+            Self::Works | Self::WorksOfAll => LawForm::Works { numbers: false },
+            Self::WorksAndNumbers => LawForm::Works { numbers: true },
+            Self::WorksTimesFilm => LawForm::WorksOfKnown { numbers: false },
+            Self::WorksAndNumbersTimesFilm => LawForm::WorksOfKnown { numbers: true },
         }
     }
 
     /// Whether the film is known to the network, so that it is no test.
     pub fn knows_film(self) -> bool {
-        matches!(self, Self::TimesFilm | Self::WorksTimesFilm)
+        matches!(
+            self,
+            Self::TimesFilm | Self::WorksTimesFilm | Self::WorksAndNumbersTimesFilm
+        )
     }
 }
 

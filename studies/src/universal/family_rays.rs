@@ -7,15 +7,14 @@ use hinge::SheetMaterial;
 use kirigami::replays::routes::window;
 use mesher::Tier;
 
-/// Poisson's ratio of the family: the middle of those of the shipped materials, 0.30 to 0.42.
-const POISSON: f64 = 0.36;
-
 /// Seed of the rays: not that of the campaigns of the materials, whose ligaments therefore are unseen ones.
 const SEED: u64 = 16;
 
 /// A ray with its law.
 #[derive(Clone, Copy, Debug)]
 pub struct FamilyRay {
+    /// Index of the ray, and of its law, in the family.
+    pub index: usize,
     pub law: Law,
     pub ray: Ray,
 }
@@ -25,6 +24,7 @@ pub struct FamilyRay {
 pub fn family_rays(campaign: &Campaign, count: usize) -> Vec<FamilyRay> {
     let rays = campaign.rays.rays(&campaign.design, count, SEED);
     let with_law = |(index, ray)| FamilyRay {
+        index,
         law: Law::of_family(index),
         ray,
     };
@@ -35,7 +35,6 @@ pub fn family_rays(campaign: &Campaign, count: usize) -> Vec<FamilyRay> {
 pub fn family_sheet(campaign: &Campaign) -> SheetMaterial {
     SheetMaterial {
         name: "universal".into(),
-        poisson: POISSON,
         fracture_strain: 1.0,
         ..campaign.material.clone()
     }

@@ -1,19 +1,22 @@
-//! The table of the solved rays of the family, `rays.parquet`: one row a converged increment.
+//! The table of the solved rays of the family on one mesh tier, `default.parquet`: one row a converged increment.
 //!
 //! | column | unit | |
 //! |---|---|---|
 //! | ray | | index of the ray, and of its law, in the family |
-//! | yield_strain, plateau, hardening | | the law: y, q, h |
+//! | poisson, yield_strain, plateau, hardening | | the law: nu, y, q, h |
 //! | w_lig_over_t | | ligament width |
 //! | alpha, theta | rad | cut angle, rotation |
 //! | eta_a, eta_s | | translations over w_lig |
 //! | W, dW_deta_a, dW_deta_s, dW_dtheta | | energy and its derivatives over E t^3 |
 //! | cpu_s | s | solver CPU time of the whole ray |
 
+use crate::universal::family_rays::FamilyRay;
 use crate::universal::law::Law;
 use crate::universal::states::{Film, SolvedState};
 use anyhow::{Context, Result, ensure};
 use dataset::{Values, numbers_of_table, parquet_table};
+use fe_driver::KeptSolution;
+use hinge::SheetMaterial;
 use std::path::Path;
 use train::{EnergySlopes, LAW_STRAINS};
 
@@ -27,8 +30,41 @@ pub struct SolvedRay {
     pub states: Vec<SolvedState>,
 }
 
-const COLUMNS: [&str; 14] = [
+impl SolvedRay {
+    pub fn new(
+        ray: &FamilyRay,
+        solution: &KeptSolution,
+        sheet: &SheetMaterial,
+        film: &Film,
+    ) -> Self {
+        let state = |sample| SolvedState::new(&ray.ray.design, sample, sheet, ray.law, film);
+        Self {
+            index: ray.index,
+            cpu_seconds: solution.cpu_seconds.unwrap_or(0.0),
+            states: solution.samples.iter().map(state).collect(),
+        }
+    }
+
+    /// Whether it has the law, the hinge and the end of a ray in a sheet.
+    pub fn is_of(&self, ray: &FamilyRay, sheet: &SheetMaterial) -> bool {
+        let Some(last) = self.states.last() else {
+            return false;
+        };
+        let (design, end) = (ray.ray.design, ray.ray.end);
+        let [eta_a, eta_s] = end.eta(design.w_lig);
+        let hinge = [design.w_lig / sheet.thickness, design.alpha];
+        // The solver prints the end with seven digits.
+        let ends = last.at.into_iter().zip([eta_a, eta_s, end.theta]);
+        let reached = ends.map(|(found, end)| (found - end).abs());
+        last.law == ray.law
+            && [last.ligament, last.alpha] == hinge
+            && reached.fold(0.0, f64::max) < 1e-5
+    }
+}
+
+const COLUMNS: [&str; 15] = [
     "ray",
+    "poisson",
     "yield_strain",
     "plateau",
     "hardening",
@@ -46,7 +82,7 @@ const COLUMNS: [&str; 14] = [
 
 /// Writes the table atomically.
 pub fn write(path: &Path, rays: &[SolvedRay]) -> Result<()> {
-    let rows: Vec<[f64; 14]> = (rays.iter())
+    let rows: Vec<[f64; 15]> = (rays.iter())
         .flat_map(|ray| ray.states.iter().map(|state| row(ray, state)))
         .collect();
     let columns: Vec<(&str, Values)> = COLUMNS
@@ -76,14 +112,15 @@ pub fn read(path: &Path, film: &Film) -> Result<Vec<SolvedRay>> {
     Ok(rays
         .map(|rows| SolvedRay {
             index: rows[0][0] as usize,
-            cpu_seconds: rows[0][13],
+            cpu_seconds: rows[0][14],
             states: rows.iter().map(|row| film.filled(state(row))).collect(),
         })
         .collect())
 }
 
-fn row(ray: &SolvedRay, state: &SolvedState) -> [f64; 14] {
+fn row(ray: &SolvedRay, state: &SolvedState) -> [f64; 15] {
     let Law {
+        poisson,
         yield_strain,
         plateau,
         hardening,
@@ -95,6 +132,7 @@ fn row(ray: &SolvedRay, state: &SolvedState) -> [f64; 14] {
     } = state.solved;
     [
         ray.index as f64,
+        poisson,
         yield_strain,
         plateau,
         hardening,
@@ -111,9 +149,10 @@ fn row(ray: &SolvedRay, state: &SolvedState) -> [f64; 14] {
     ]
 }
 
-fn state(row: &[f64; 14]) -> SolvedState {
+fn state(row: &[f64; 15]) -> SolvedState {
     let [
         _,
+        poisson,
         yield_strain,
         plateau,
         hardening,
@@ -127,6 +166,7 @@ fn state(row: &[f64; 14]) -> SolvedState {
         _,
     ] = *row;
     let law = Law {
+        poisson,
         yield_strain,
         plateau,
         hardening,

@@ -98,6 +98,7 @@ mod tests {
     fn a_factor_of_all_energies_is_found_and_removed() {
         let state = |energy: f64| SolvedState {
             law: Law {
+                poisson: 0.3,
                 yield_strain: 0.01,
                 plateau: 1.0,
                 hardening: 0.0,

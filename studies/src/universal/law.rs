@@ -1,4 +1,4 @@
-//! A family of hardening laws with three numbers, divided by Young's modulus E.
+//! A family of laws: Poisson's ratio, and hardening with three numbers, divided by Young's modulus E.
 //!
 //! ```text
 //! sigma(p) / E = y (1 + (q - 1) min(1, p / p_1)) + h p,     p_1 = 0.05
@@ -18,12 +18,14 @@ const HARDENED_STRAIN: f64 = 0.2;
 /// The last row of the table of a law; no window reaches it.
 const LAST_STRAIN: f64 = 2.0;
 
-/// Limits of (y, q, h) in the family; each number is drawn uniformly in its logarithm.
-pub const LIMITS: [[f64; 2]; 3] = [[8e-4, 3e-2], [0.65, 2.0], [5e-4, 5e-2]];
+/// Limits of (nu, y, q, h) in the family; each number is drawn uniformly in its logarithm.
+pub const LIMITS: [[f64; 2]; 4] = [[0.28, 0.45], [8e-4, 3e-2], [0.65, 2.0], [5e-4, 5e-2]];
 
-/// A hardening law over E.
+/// Poisson's ratio and a hardening law over E.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law {
+    /// nu: Poisson's ratio.
+    pub poisson: f64,
     /// y: yield stress over E.
     pub yield_strain: f64,
     /// q: plateau over yield stress.
@@ -34,27 +36,30 @@ pub struct Law {
 
 impl Law {
     /// The law at an index of a low-discrepancy sequence in the box of [`LIMITS`]: any first part of it fills the box.
-    /// (Roberts' additive recurrence: the fractions of i / g, i / g^2, i / g^3 with g^4 = g + 1.)
+    /// (Roberts' additive recurrence: the fractions of i / g, ..., i / g^4 with g^5 = g + 1.)
     pub fn of_family(index: usize) -> Self {
-        const G: f64 = 1.220_744_084_605_759_5;
-        let [yield_strain, plateau, hardening] = std::array::from_fn(|k| {
+        const G: f64 = 1.167_303_978_261_418_7;
+        let [poisson, yield_strain, plateau, hardening] = std::array::from_fn(|k| {
             let share = (0.5 + index as f64 / G.powi(k as i32 + 1)).fract();
             let [from, to] = LIMITS[k].map(f64::ln);
             (from + (to - from) * share).exp()
         });
         Self {
+            poisson,
             yield_strain,
             plateau,
             hardening,
         }
     }
 
-    /// The law of the family through the stresses of a material at the plastic strains 0, 0.05 and 0.2.
+    /// The law of the family with Poisson's ratio of a material and through
+    /// its stresses at the plastic strains 0, 0.05 and 0.2.
     pub fn of_material(material: &SheetMaterial) -> Self {
         let [first, plateau, hardened] =
             [0.0, PLATEAU_STRAIN, HARDENED_STRAIN].map(|p| stress(material, p) / material.young);
         let hardening = (hardened - plateau) / (HARDENED_STRAIN - PLATEAU_STRAIN);
         Self {
+            poisson: material.poisson,
             yield_strain: first,
             plateau: (plateau - hardening * PLATEAU_STRAIN) / first,
             hardening,
@@ -77,10 +82,11 @@ impl Law {
         works(&self.rows())
     }
 
-    /// The material with the thickness, E and Poisson's ratio of `sheet` and this hardening.
+    /// The material with the thickness and E of `sheet`, and this law.
     pub fn material(&self, sheet: &SheetMaterial) -> SheetMaterial {
         let rows = self.rows().map(|[stress, p]| [sheet.young * stress, p]);
         SheetMaterial {
+            poisson: self.poisson,
             plastic: rows.to_vec(),
             ..sheet.clone()
         }
@@ -92,7 +98,7 @@ impl Law {
         self.stress(PLATEAU_STRAIN).powf(0.6)
     }
 
-    /// The features of a network: logarithms of the yield strain and of the stresses at the plastic strains 0.05
+    /// The numbers of the hardening as features of a network: logarithms of the yield strain and of the stresses at the plastic strains 0.05
     /// and 0.2 over the yield stress. Hardening that adds little to the stress changes them little.
     pub fn features(&self) -> [f64; 3] {
         [
@@ -170,6 +176,7 @@ mod tests {
     fn limits_of_the_family_are_perfectly_plastic_bilinear_and_elastic_laws() {
         let sheet = shipped("pet-0.5mm.toml");
         let perfect = Law {
+            poisson: 0.3,
             yield_strain: 0.002,
             plateau: 1.0,
             hardening: 0.0,
@@ -192,7 +199,7 @@ mod tests {
             ..perfect
         };
         elastic.material(&sheet).validate().unwrap();
-        assert!(elastic.features()[0] > LIMITS[0][1].ln());
+        assert!(elastic.features()[0] > LIMITS[1][1].ln());
     }
 
     #[test]
@@ -208,7 +215,7 @@ mod tests {
                 let error = law.stress(p) * material.young - stress(&material, p);
                 assert!(error.abs() < 1e-9, "{} {p}", material.name);
             }
-            let numbers = [law.yield_strain, law.plateau, law.hardening];
+            let numbers = [law.poisson, law.yield_strain, law.plateau, law.hardening];
             for (number, [from, to]) in numbers.into_iter().zip(LIMITS) {
                 assert!((from..=to).contains(&number), "{} {number}", material.name);
             }
@@ -237,7 +244,7 @@ mod tests {
             for (k, [from, to]) in LIMITS.into_iter().enumerate() {
                 let below = (0..count).filter(|index| {
                     let law = Law::of_family(*index);
-                    let number = [law.yield_strain, law.plateau, law.hardening][k];
+                    let number = [law.poisson, law.yield_strain, law.plateau, law.hardening][k];
                     assert!((from..=to).contains(&number));
                     number < (from * to).sqrt()
                 });

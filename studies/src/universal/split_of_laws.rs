@@ -1,13 +1,13 @@
 //! Networks of the laws of one split, tested on the laws that are held out and on the materials.
 
 use crate::universal::cases::{
-    Case, HELD_OUT, LAWS, Material, Measured, NETWORKS, OTHER_RAYS, TEST, Way, counts, inputs,
-    refuse_stop, thinned,
+    Case, HELD_OUT, LAWS, Material, Measured, NETWORKS, Network, OTHER_RAYS, TEST, Way, counts,
+    inputs, refuse_stop, thinned,
 };
 use crate::universal::family_table::SolvedRay;
 use crate::universal::judgement::Errors;
 use crate::universal::states::{SolvedState, training_data};
-use ::train::{LawEnergy, LawForm, TrainingConfig};
+use ::train::{LawEnergy, TrainingConfig};
 use anyhow::{Context, Result};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -90,6 +90,7 @@ impl<'a> SplitOfLaws<'a> {
         let others = materials.iter().filter(|it| it.sheet.name != *name);
         let others = others.flat_map(|it| it.rays().take(OTHER_RAYS).flat_map(thinned));
         let data = training_data(self.states(self.training.len()).chain(others));
-        Ok(LawEnergy::fit(&data, LawForm::Works, config, None)?)
+        let form = Network::WorksOfAll.form();
+        Ok(LawEnergy::fit(&data, form, config, None)?)
     }
 }

@@ -98,6 +98,7 @@ impl SolvedState {
                 theta,
                 self.ligament.ln(),
                 self.alpha,
+                self.law.poisson,
                 first,
                 second,
                 third,

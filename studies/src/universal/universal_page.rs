@@ -68,20 +68,21 @@ pub fn markdown(
         "# Universal hinge\n\n{} rays, one law each, {states} states, {cpu_minutes:.0} CPU minutes. Root mean squares of the \
          errors over those of the quantity, in per cent, over {splits} splits of the laws and of the geometries. Forces: root mean \
          square of the errors of F_a, F_s and M. Factor: the one factor of all energies that is best at these states, minus \
-         one; W with it.\n\n## Laws of the materials\n\n| material | yield strain | plateau | hardening | rays | states |\n\
-         |---|---|---|---|---|---|\n",
+         one; W with it.\n\n## Laws of the materials\n\n| material | nu | yield strain | plateau | hardening | rays | states |\n\
+         |---|---|---|---|---|---|---|\n",
         rays.len()
     );
     let mut line = |row: String| text += &format!("| {row} |\n");
     for material in materials {
         let Law {
+            poisson,
             yield_strain,
             plateau,
             hardening,
         } = Law::of_material(&material.sheet);
         let rays = material.database.manifest().rays;
         line(format!(
-            "{} | {yield_strain:.5} | {plateau:.3} | {hardening:.5} | {rays} | {}",
+            "{} | {poisson} | {yield_strain:.5} | {plateau:.3} | {hardening:.5} | {rays} | {}",
             material.sheet.name,
             material.states.len()
         ));
@@ -149,7 +150,9 @@ impl Display for Network {
             Self::TimesFilm => "numbers times film",
             Self::Works => "works",
             Self::WorksOfAll => "works, other materials",
+            Self::WorksAndNumbers => "works and numbers",
             Self::WorksTimesFilm => "works times film",
+            Self::WorksAndNumbersTimesFilm => "works and numbers times film",
         })
     }
 }
