@@ -56,7 +56,7 @@ pub struct TrainCommand {
     /// docs/MATERIALS.md lists the errors over the number of rays
     #[arg(long, value_name = "WEIGHTS")]
     from: Option<PathBuf>,
-    /// Continue a training that was stopped, with the same --config and --from
+    /// Continue a training that was stopped, with the same --config and --from; others are an error
     #[arg(long, conflicts_with = "seeds")]
     resume: bool,
     /// Number of trainings, with successive seeds. The one with the smallest product of the validation errors of W and
@@ -123,10 +123,14 @@ impl TrainCommand {
         self.refuse_existing()?;
         let _held = hold(&self.out)?;
         let state = self.state();
-        let start = match &base {
-            _ if self.resume => Start::State(&state),
-            Some(weights) => Start::Weights(weights),
-            None => Start::Fresh,
+        let parent = base.as_ref();
+        let start = match (self.resume, parent) {
+            (true, parent) => Start::State {
+                state: &state,
+                parent,
+            },
+            (false, Some(parent)) => Start::Weights(parent),
+            (false, None) => Start::Fresh,
         };
         let trained = fit(&database, &config, self.backend, start, &state)?;
         self.write(&trained, &database)?;

@@ -160,13 +160,17 @@ impl State {
         })
     }
 
-    /// An error if the configuration, the database or the split is not that of the state.
+    /// An error if the configuration, the database, the split or the initial weights are not those of the state.
     pub fn check(&self, card: &Card) -> Result<(), StateError> {
         let saved = &self.progress.card;
         for (what, same) in [
             ("configuration", saved.training == card.training),
             ("database", saved.dataset_hash == card.dataset_hash),
             ("split", saved.split_hash == card.split_hash),
+            (
+                "network to start from",
+                saved.fine_tuned_from == card.fine_tuned_from,
+            ),
         ] {
             if !same {
                 let path = self.path.clone();

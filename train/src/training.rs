@@ -53,7 +53,12 @@ pub enum Start<'a> {
     /// factor for each of W, D and D_peak, the initial networks have the function of the weights.
     Weights(&'a Surrogate),
     /// A state written by [`Training::save`]; the training continues bit-exactly as if it had not been stopped.
-    State(&'a Path),
+    State {
+        /// The file.
+        state: &'a Path,
+        /// The weights with which the training was started, if it is a fine-tuning.
+        parent: Option<&'a Surrogate>,
+    },
 }
 
 /// A training between two epochs.
@@ -113,7 +118,7 @@ impl Training {
         };
         let options = TensorCreationOptions::new(backend.device()).with_dtype(dtype);
         let state = match start {
-            Start::State(path) => Some(State::read(path)?),
+            Start::State { state, .. } => Some(State::read(state)?),
             Start::Fresh | Start::Weights(_) => None,
         };
         let described = match config.mirror {
@@ -127,7 +132,7 @@ impl Training {
                 let initial = Initial::new(parent, &described, &manifest.hinge, config.mirror)?;
                 Some(initial)
             }
-            Start::Fresh | Start::State(_) => None,
+            Start::Fresh | Start::State { .. } => None,
         };
         let scales = match (&initial, &state) {
             (Some(initial), _) => initial.scales,
@@ -137,8 +142,10 @@ impl Training {
             (None, None) => Scales::of(&described, config.mirror)?,
         };
         let mut card = card(manifest, &described, &scales, config)?;
-        if let Start::Weights(parent) = start {
-            inherit(&mut card, parent, &described);
+        match start {
+            Start::Fresh => {}
+            Start::Weights(parent) => inherit(&mut card, parent, &described),
+            Start::State { parent, .. } => card.fine_tuned_from = parent.map(Surrogate::hash),
         }
         let networks = match &initial {
             Some(initial) => Networks::of_layers(&initial.layers, config.mirror, &options),
@@ -254,7 +261,7 @@ impl Training {
         })
     }
 
-    /// Atomically writes the state from which [`Start::State`] continues.
+    /// Atomically writes the state from which a [`Start::State`] continues.
     pub fn save(&self, path: &Path) -> Result<(), TrainError> {
         let progress = Progress::new(&self.card, &self.history);
         state::write(path, &progress, &self.networks, &self.best, &self.optimiser)?;

@@ -298,7 +298,11 @@ fn finished(mut training: Training) -> Trained {
 
 fn resumed(state: &Path, config: &TrainingConfig) -> Result<Training, TrainError> {
     let database = database(rows(20));
-    Training::new(&database, config, Backend::default(), Start::State(state))
+    let start = Start::State {
+        state,
+        parent: None,
+    };
+    Training::new(&database, config, Backend::default(), start)
 }
 
 #[test]
@@ -309,7 +313,10 @@ fn a_resumed_training_is_bit_exact() {
         let straight = finished(begun(5, 0, backend));
         begun(5, 2, backend).save(&state).unwrap();
         let database = database(rows(20));
-        let start = Start::State(&state);
+        let start = Start::State {
+            state: &state,
+            parent: None,
+        };
         let training = Training::new(&database, &config(5), backend, start).unwrap();
         assert_eq!(training.history().len(), 2);
         let resumed = finished(training);
@@ -503,7 +510,16 @@ fn frozen_layers_are_not_trained() {
     training.epoch().unwrap();
     training.save(&state).unwrap();
     // Also of a training that is resumed.
-    let last = finished(begun(Start::State(&state))).last.layers();
+    let resumed = |parent| Start::State {
+        state: &state,
+        parent,
+    };
+    let last = finished(begun(resumed(Some(&parent)))).last.layers();
+    let without = Training::new(&database, &config, Backend::default(), resumed(None));
+    assert!(matches!(
+        without.err(),
+        Some(TrainError::State(StateError::Other { what, .. })) if what.contains("start from")
+    ));
     for (initial, last) in [
         (&initial.chi, &last.chi),
         (&initial.chi_d, &last.chi_d),

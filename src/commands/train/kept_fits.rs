@@ -3,7 +3,7 @@
 use crate::commands::train::fit;
 use crate::ui::exit::Unfinished;
 use ::train::{Backend, Start, TrainError, Trained, TrainingConfig};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use dataset::Database;
 use std::path::Path;
 use surrogate::{Card, Surrogate};
@@ -76,14 +76,8 @@ pub(super) fn continued_fit(
     if !state.exists() {
         return fit(first);
     }
-    match fit(Start::State(state)) {
+    match fit(Start::State { state, parent }) {
         Err(error) if discard && error.is::<TrainError>() => fit(first),
-        Ok(trained) if is_of(trained.surrogate.card(), database, config, parent) => Ok(trained),
-        Ok(_) if discard => fit(first),
-        Ok(_) => bail!(
-            "{} is the state of a training from other weights: name those with --from, or start again with --replace",
-            state.display()
-        ),
-        Err(error) => Err(error),
+        fitted => fitted,
     }
 }
