@@ -1,4 +1,4 @@
-//! `kirigami-studies optimisers`: Adam against L-BFGS at equal cost.
+//! `kirigami-studies optimisers`: Adam, L-BFGS and Gauss-Newton at equal cost.
 
 use crate::designed::designed;
 use anyhow::{Result, ensure};
@@ -13,7 +13,7 @@ use kirigami::ui::run_folder;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// Compare Adam and L-BFGS on scenes at an equal number of evaluations of the loss and its gradient
+/// Compare Adam, L-BFGS and Gauss-Newton on scenes at an equal number of evaluations of the loss and its gradient
 ///
 /// The distance of the outline is measured to the samples of the target, as in the paper, and to the curve
 /// through them. Writes optimisers.csv and optimisers.md. Example: kirigami-studies optimisers
@@ -31,6 +31,12 @@ pub struct OptimiserStudy {
     out: PathBuf,
 }
 
+const METHODS: [SearchMethod; 3] = [
+    SearchMethod::Adam,
+    SearchMethod::Lbfgs,
+    SearchMethod::GaussNewton,
+];
+
 /// One search of a scene.
 struct Searched {
     scene: String,
@@ -41,6 +47,10 @@ struct Searched {
     losses: [f64; 3],
     /// Outline error of the best design (mm).
     outline_error: f64,
+    /// CPU time of all threads for an evaluation, with that of the step from it (s).
+    seconds: f64,
+    /// Minimum loss after each number of evaluations.
+    progress: Vec<(usize, f64)>,
     settled: bool,
 }
 
@@ -48,11 +58,11 @@ impl OptimiserStudy {
     pub fn run(&self) -> Result<()> {
         ensure!(self.times > 0, "--times must be at least 1");
         let _held = run_folder::hold(&self.out)?;
-        let bar = Progress::new(4 * self.scenes.len(), "searches");
+        let bar = Progress::new(2 * METHODS.len() * self.scenes.len(), "searches");
         let mut searched = Vec::new();
         for path in &self.scenes {
             for precision in [Precision::Samples, Precision::Curve] {
-                for method in [SearchMethod::Adam, SearchMethod::Lbfgs] {
+                for method in METHODS {
                     searched.push(self.search(path, precision, method)?);
                     bar.show(searched.len(), None, "");
                 }
@@ -78,22 +88,28 @@ impl OptimiserStudy {
             .join("runs")
             .join(format!("{name}-{precision:?}-{method:?}").to_lowercase());
         let scene = Scene::new(config, path)?;
+        // The time is that of a whole search.
         forget(&scene)?;
+        let began = cpu_seconds()?;
         let designed = designed(&scene, &mut |_| {})?;
+        let seconds = (cpu_seconds()? - began) / cost(&designed.history) as f64;
         let within = |budget| afforded(&designed.history, budget);
-        let best = |budget: usize| {
-            let steps = within(budget).iter();
-            steps.min_by(|x, y| x.scores.loss.total_cmp(&y.scores.loss))
-        };
-        let loss = |budget| best(budget).map_or(f64::NAN, |step| step.scores.loss);
+        let loss = |budget| minimum(within(budget));
         let affordable = within(budget);
+        let mut steps = affordable.iter();
+        let best = steps.find(|step| step.scores.loss == minimum(affordable));
         Ok(Searched {
             scene: name,
             precision,
             method,
             evaluations: cost(affordable),
             losses: [budget / 4, budget / 2, budget].map(loss),
-            outline_error: best(budget).map_or(f64::NAN, |step| step.scores.outline_error),
+            outline_error: best.map_or(f64::NAN, |step| step.scores.outline_error),
+            seconds,
+            progress: (1..=affordable.len())
+                .map(|count| &affordable[..count])
+                .map(|steps| (cost(steps), minimum(steps)))
+                .collect(),
             settled: designed.ended == Ended::Settled && affordable.len() == designed.history.len(),
         })
     }
@@ -110,25 +126,58 @@ fn cost(steps: &[StepRecord]) -> usize {
     steps.iter().map(|step| 1 + step.halvings as usize).sum()
 }
 
+/// The minimum loss of some steps.
+fn minimum(steps: &[StepRecord]) -> f64 {
+    let losses = steps.iter().map(|step| step.scores.loss);
+    losses.fold(f64::NAN, f64::min)
+}
+
+/// CPU time of this process, of all threads (s).
+fn cpu_seconds() -> Result<f64> {
+    const TICKS_PER_SECOND: f64 = 100.0;
+    let text = std::fs::read_to_string("/proc/self/stat")?;
+    // After the name of the program, which may contain spaces: fields 3 and following; times are fields 14 and 15.
+    let fields = text.rsplit_once(')').map_or("", |(_, fields)| fields);
+    let ticks = fields.split_whitespace().skip(11).take(2);
+    let ticks: Vec<f64> = ticks.map(str::parse).collect::<Result<_, _>>()?;
+    Ok(ticks.iter().sum::<f64>() / TICKS_PER_SECOND)
+}
+
+/// Number of evaluations after which a search has the final loss of L-BFGS on the same problem.
+fn as_lbfgs(it: &Searched, searched: &[Searched]) -> Option<usize> {
+    let final_loss = searched.iter().find(|other| {
+        (&other.scene, other.precision) == (&it.scene, it.precision)
+            && other.method == SearchMethod::Lbfgs
+    });
+    let [.., goal] = final_loss?.losses;
+    let mut progress = it.progress.iter();
+    progress
+        .find(|(_, loss)| *loss <= goal)
+        .map(|(cost, _)| *cost)
+}
+
 fn page(searched: &[Searched]) -> Result<String> {
-    let mut text = "# Adam or L-BFGS\n\n\
+    let mut text = "# Adam, L-BFGS or Gauss-Newton\n\n\
         The minimum loss after a quarter, a half and all of an equal number of evaluations of the loss and its \
         gradient, from the scene's start; halvings of a step are counted. Losses to samples and to the curve are \
-        different functions: compare within a pair of rows. Settled: no step lowered the loss further; the attempts \
+        different functions: compare within three rows. As L-BFGS: evaluations until the loss is the final one of L-BFGS. \
+        CPU ms: of an evaluation with the step from it, all threads. Settled: no step lowered the loss further; the attempts \
         that showed this are not counted. `kirigami-studies optimisers`.\n\n\
-        | scene | distance to | method | evaluations | loss at 1/4, mm^2 | at 1/2 | at the end | outline error, mm | |\n\
-        |---|---|---|---|---|---|---|---|---|\n"
+        | scene | distance to | method | evaluations | loss at 1/4, mm^2 | at 1/2 | at the end | outline error, mm | \
+        as L-BFGS | CPU ms | |\n|---|---|---|---|---|---|---|---|---|---|---|\n"
         .to_owned();
     for it in searched {
         let [quarter, half, end] = it.losses;
         writeln!(
             text,
-            "| {} | {} | {} | {} | {quarter:.1} | {half:.1} | {end:.1} | {:.2} | {} |",
+            "| {} | {} | {} | {} | {quarter:.1} | {half:.1} | {end:.1} | {:.2} | {} | {:.1} | {} |",
             it.scene,
             format!("{:?}", it.precision).to_lowercase(),
             named(it.method),
             it.evaluations,
             it.outline_error,
+            as_lbfgs(it, searched).map_or("-".into(), |cost| cost.to_string()),
+            1e3 * it.seconds,
             if it.settled { "settled" } else { "" },
         )?;
     }
@@ -139,23 +188,27 @@ fn named(method: SearchMethod) -> &'static str {
     match method {
         SearchMethod::Adam => "Adam",
         SearchMethod::Lbfgs => "L-BFGS",
+        SearchMethod::GaussNewton => "Gauss-Newton",
     }
 }
 
 fn csv(searched: &[Searched]) -> Result<String> {
     let mut text =
-        "scene,precision,method,evaluations,loss_quarter,loss_half,loss,outline_error,settled\n"
+        "scene,precision,method,evaluations,loss_quarter,loss_half,loss,outline_error,as_lbfgs,\
+                    cpu_ms,settled\n"
             .to_owned();
     for it in searched {
         let [quarter, half, end] = it.losses;
         writeln!(
             text,
-            "{},{:?},{},{},{quarter:.4},{half:.4},{end:.4},{:.4},{}",
+            "{},{:?},{},{},{quarter:.4},{half:.4},{end:.4},{:.4},{},{:.2},{}",
             it.scene,
             it.precision,
             named(it.method),
             it.evaluations,
             it.outline_error,
+            as_lbfgs(it, searched).map_or(String::new(), |cost| cost.to_string()),
+            1e3 * it.seconds,
             it.settled,
         )?;
     }

@@ -51,6 +51,22 @@ impl Memory {
     /// Minus the approximate inverse Hessian times the gradient (two-loop recursion); a step of
     /// `first_length` along the negative gradient if the memory is empty.
     pub(crate) fn direction(&self, gradient: &[f64], first_length: f64) -> Vec<f64> {
+        let size = match self.pairs.front() {
+            Some(last) => last.product / dot(&last.change, &last.change),
+            // A zero gradient has no direction.
+            None => first_length / dot(gradient, gradient).sqrt().max(f64::MIN_POSITIVE),
+        };
+        self.direction_from(gradient, |vector| {
+            vector.iter_mut().for_each(|entry| *entry *= size);
+        })
+    }
+
+    /// The same, where `initial` multiplies a vector by the inverse Hessian to which the memory is added.
+    pub(crate) fn direction_from(
+        &self,
+        gradient: &[f64],
+        initial: impl FnOnce(&mut [f64]),
+    ) -> Vec<f64> {
         let mut direction: Vec<f64> = gradient.iter().map(|g| -g).collect();
         let mut weights = Vec::with_capacity(self.pairs.len());
         for pair in &self.pairs {
@@ -58,17 +74,17 @@ impl Memory {
             add(&mut direction, &pair.change, -weight);
             weights.push(weight);
         }
-        let size = match self.pairs.front() {
-            Some(last) => last.product / dot(&last.change, &last.change),
-            // A zero gradient has no direction.
-            None => first_length / dot(gradient, gradient).sqrt().max(f64::MIN_POSITIVE),
-        };
-        direction.iter_mut().for_each(|d| *d *= size);
+        initial(&mut direction);
         for (pair, weight) in std::iter::zip(&self.pairs, weights).rev() {
             let along = dot(&pair.change, &direction) / pair.product;
             add(&mut direction, &pair.step, weight - along);
         }
         direction
+    }
+
+    /// The last step with its change of the gradient.
+    pub(crate) fn last(&self) -> Option<(&[f64], &[f64])> {
+        self.pairs.front().map(|pair| (&*pair.step, &*pair.change))
     }
 }
 

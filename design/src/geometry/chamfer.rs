@@ -64,6 +64,38 @@ impl Chamfer {
         (value, gradient)
     }
 
+    /// The matrix of second derivatives of the distance in each point, for the neighbours that the points have: a factor
+    /// L of L L^T, by columns. Neighbours that move with a point, along the curve, do not pull it back.
+    pub fn curvature_factors(
+        &self,
+        points: &[[f64; 2]],
+        target: &[[f64; 2]],
+    ) -> Vec<[[f64; 2]; 2]> {
+        let precision = 2.0 / points.len() as f64;
+        let coverage = 2.0 * self.coverage_weight / target.len() as f64;
+        let mut covered = vec![0.0; points.len()];
+        for &t in target {
+            self.nearest(t, points, |(k, _), weight| covered[k] += coverage * weight);
+        }
+        let factors = std::iter::zip(points, covered).map(|(&p, covered)| {
+            let normal = match self.precision {
+                Precision::Samples => None,
+                Precision::Curve => direction(p, nearest_on_outline(p, target)),
+            };
+            // Along n the curvature is that of both sums, across it that of the second.
+            let (n, across) = match normal {
+                Some(n) => (n, covered),
+                None => ([1.0, 0.0], precision + covered),
+            };
+            let (along, across) = ((precision + covered).sqrt(), across.sqrt());
+            [
+                [along * n[0], along * n[1]],
+                [-across * n[1], across * n[0]],
+            ]
+        });
+        factors.collect()
+    }
+
     /// The smallest squared distance to `others`; `found` is called for each of them with non-zero weight.
     fn nearest(
         &self,
@@ -82,6 +114,12 @@ impl Chamfer {
         }
         value
     }
+}
+
+/// The unit vector from one point to another; `None` if they coincide.
+fn direction(from: [f64; 2], to: [f64; 2]) -> Option<[f64; 2]> {
+    let length = squared(from, to).sqrt();
+    (length > 0.0).then(|| [0, 1].map(|axis| (to[axis] - from[axis]) / length))
 }
 
 fn squared(p: [f64; 2], q: [f64; 2]) -> f64 {
@@ -123,6 +161,33 @@ mod tests {
         let on_curve = (0.01 + 0.5 * 0.64 + 0.5 * 0.36) / 3.0;
         let (value, _) = to_curve.evaluate(&POINTS, &TARGET);
         assert!((value - on_curve - 0.5 * coverage).abs() < 1e-15, "{value}");
+    }
+
+    #[test]
+    fn curvature_is_the_slope_of_the_gradient_while_neighbours_stay() {
+        for precision in [Precision::Samples, Precision::Curve] {
+            let chamfer = Chamfer {
+                coverage_weight: 0.5,
+                smoothing: 0.0,
+                precision,
+            };
+            // The first point is nearest to an end of the curve, which does not move with it.
+            for k in 1..3 {
+                for way in [[1.0, 0.0], [0.6, 0.8]] {
+                    let gradient = |step: f64| {
+                        let mut points = POINTS;
+                        (0..2).for_each(|axis| points[k][axis] += step * way[axis]);
+                        let (_, gradient) = chamfer.evaluate(&points, &TARGET);
+                        gradient[k][0] * way[0] + gradient[k][1] * way[1]
+                    };
+                    let slope = (gradient(1e-5) - gradient(-1e-5)) / 2e-5;
+                    let columns = chamfer.curvature_factors(&POINTS, &TARGET)[k];
+                    let along = columns.map(|[x, y]| x * way[0] + y * way[1]);
+                    let curvature = along[0] * along[0] + along[1] * along[1];
+                    assert!((curvature - slope).abs() < 1e-9, "{curvature} {slope}");
+                }
+            }
+        }
     }
 
     #[test]

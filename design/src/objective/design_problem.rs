@@ -139,6 +139,24 @@ pub struct Evaluation {
     pub adjoint_residual: f64,
 }
 
+/// The partial derivatives of a function of a deployment.
+struct Partials<'a> {
+    /// In the deployed positions of the outline points.
+    by_outline: &'a [[f64; 2]],
+    /// In (a, s, theta, w_lig, alpha) per hinge and load step.
+    by_path: &'a [Vec<[f64; 5]>],
+    /// In the flat corners of every panel; `None` if all are zero.
+    by_corners: Option<&'a [[[f64; 2]; 4]]>,
+}
+
+/// The gradient of a function of a deployment in the design and in the constants of the problem.
+struct Pulled {
+    gradient: DesignVector,
+    sensitivities: Sensitivities,
+    /// See [`Evaluation::adjoint_residual`].
+    adjoint_residual: f64,
+}
+
 impl Deployment {
     /// The path, from which those of designs near this one can be corrected.
     pub fn known_path(&self) -> KnownPath {
@@ -266,10 +284,65 @@ impl DesignProblem {
         let (deployment, law) = self.deploy_prepared(design, by_damage, known)?;
         let outline = self.objective.outline.of(&deployment.sheet);
         let judgement = self.judge(&deployment, &outline)?;
+        let partials = Partials {
+            by_outline: &judgement.by_outline,
+            by_path: &judgement.by_path,
+            by_corners: Some(&judgement.by_corners),
+        };
+        let pulled = self.pull_back(design, &deployment, law.as_deref(), &outline, &partials)?;
+        Ok(Evaluation {
+            loss: judgement.loss,
+            terms: judgement.terms,
+            gradient: pulled.gradient,
+            sensitivities: pulled.sensitivities,
+            deployment,
+            adjoint_residual: pulled.adjoint_residual,
+        })
+    }
+
+    /// Gradients in the design whose products with themselves, v v^T, add up to the second derivative of the Chamfer
+    /// distance at a deployment, but for the curvature of the deployment itself (Gauss-Newton).
+    pub fn shape_curvature(
+        &self,
+        design: &DesignVector,
+        deployment: &Deployment,
+    ) -> Result<Vec<Vec<f64>>, DesignError> {
+        let outline = self.objective.outline.of(&deployment.sheet);
+        let law = match &self.model {
+            Model::Ideal { .. } => None,
+            Model::Equilibrium(mechanics) => {
+                Some(mechanics.law.prepare(&deployment.sheet.designs()))
+            }
+        };
+        let by_path = vec![vec![[0.0; 5]; deployment.path.len()]; deployment.sheet.hinges.len()];
+        let vectors = (self.objective).shape_curvature(&deployment.outline(&outline));
+        let pulled = vectors.iter().map(|by_outline| {
+            let partials = Partials {
+                by_outline,
+                by_path: &by_path,
+                by_corners: None,
+            };
+            let pulled = self.pull_back(design, deployment, law.as_deref(), &outline, &partials)?;
+            Ok(pulled.gradient.to_flat())
+        });
+        pulled.collect()
+    }
+
+    /// The gradient in the design, and in the constants of the problem, of a function of the deployment.
+    fn pull_back(
+        &self,
+        design: &DesignVector,
+        deployment: &Deployment,
+        law: Option<&dyn PreparedLaw>,
+        outline: &[PanelCorner],
+        partials: &Partials,
+    ) -> Result<Pulled, DesignError> {
         let (sheet, last) = (&deployment.sheet, deployment.final_step());
         let mut by_sheet = SheetGradient::zeros(self.grid);
-        by_sheet.corners.clone_from(&judgement.by_corners);
-        let by_last = outline_pullback(sheet, last, &outline, &judgement.by_outline, &mut by_sheet);
+        if let Some(by_corners) = partials.by_corners {
+            by_sheet.corners.copy_from_slice(by_corners);
+        }
+        let by_last = outline_pullback(sheet, last, outline, partials.by_outline, &mut by_sheet);
         let (mut by_opening, mut adjoint_residual) = (None, 0.0);
         let mut sensitivities = Sensitivities::default();
         match &self.model {
@@ -282,9 +355,9 @@ impl DesignProblem {
                 let law = law.ok_or(DesignError::NoMechanics)?;
                 let sums = adjoint(
                     &mechanics.solver,
-                    mechanics.hinged(sheet, &*law, true),
+                    mechanics.hinged(sheet, law, true),
                     &deployment.path,
-                    &judgement.by_path,
+                    partials.by_path,
                     by_last,
                     &mut by_sheet,
                 )?;
@@ -303,12 +376,9 @@ impl DesignProblem {
                 .collect(),
             opening: by_opening,
         };
-        Ok(Evaluation {
-            loss: judgement.loss,
-            terms: judgement.terms,
+        Ok(Pulled {
             gradient,
             sensitivities,
-            deployment,
             adjoint_residual,
         })
     }

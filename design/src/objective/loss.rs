@@ -184,6 +184,25 @@ impl Objective {
         outline.iter().map(moved).collect()
     }
 
+    /// Vectors v in P whose sum of v v^T approximates the second derivative of the Chamfer distance (Gauss-Newton).
+    pub(crate) fn shape_curvature(&self, outline: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+        let factors = (self.chamfer).curvature_factors(&self.placed(outline), &self.target);
+        let share = if self.centred {
+            1.0 / outline.len() as f64
+        } else {
+            0.0
+        };
+        let mut vectors = Vec::new();
+        for (k, columns) in factors.into_iter().enumerate() {
+            for column in columns.into_iter().filter(|column| *column != [0.0; 2]) {
+                let mut vector = vec![column.map(|entry| -share * entry); outline.len()];
+                (0..2).for_each(|axis| vector[k][axis] += column[axis]);
+                vectors.push(vector);
+            }
+        }
+        vectors
+    }
+
     /// The Chamfer distance of the points P to the target (mm^2), and its gradient in P.
     pub fn shape(&self, outline: &[[f64; 2]]) -> (f64, Vec<[f64; 2]>) {
         let (chamfer, mut by_outline) =

@@ -1,4 +1,4 @@
-//! The outer loop, Algorithm 1: Adam or L-BFGS on theta = (z, ell, omega).
+//! The outer loop, Algorithm 1: Adam, L-BFGS or Gauss-Newton on theta = (z, ell, omega).
 //!
 //! Every few steps the path of the design is followed from the flat sheet; those between are corrected from that path.
 //!
@@ -10,6 +10,7 @@ use crate::equilibrium::nearby_path::KnownPath;
 use crate::objective::design_problem::{DesignProblem, Evaluation, Model};
 use crate::objective::scores::Scores;
 use crate::optimise::backing_off::{MAX_HALVINGS, Setback, evaluate_or_back_off};
+use crate::optimise::gauss_newton::ShapeCurvature;
 use crate::optimise::search::{Search, SearchMethod};
 use crate::pattern::design_vector::DesignVector;
 use serde::{Deserialize, Serialize};
@@ -198,7 +199,12 @@ impl SearchState {
         }
         let gradient = evaluation.gradient.to_flat();
         let x = design.to_flat();
-        let increment = self.search.increment(&x, evaluation.loss, &gradient);
+        // A singular tangent has no curvature; the step is then that of L-BFGS.
+        let curvature = (self.search.needs_curvature())
+            .then(|| problem.shape_curvature(&design, &evaluation.deployment))
+            .and_then(Result::ok)
+            .map(ShapeCurvature::new);
+        let increment = (self.search).increment(&x, evaluation.loss, &gradient, curvature.as_ref());
         self.design = design;
         self.propose(&increment);
         self.history.push(StepRecord {

@@ -1,11 +1,13 @@
-//! How the next design is proposed: by Adam, as in Algorithm 1, or by L-BFGS with backtracking.
+//! How the next design is proposed: by Adam, as in Algorithm 1, or by L-BFGS with backtracking, from a multiple of the
+//! unit matrix or from the Gauss-Newton matrix of the shape.
 //!
-//! L-BFGS needs a fraction of Adam's evaluations on designs with equilibrium; on pins it converges to a
-//! slightly higher loss than Adam.
+//! L-BFGS needs a fraction of Adam's evaluations on designs with equilibrium, and with the Gauss-Newton matrix a fraction
+//! of these (docs/results/optimisers).
 
 use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::lbfgs_memory::Memory;
 use crate::optimise::adam::Adam;
+use crate::optimise::gauss_newton::ShapeCurvature;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +25,8 @@ pub enum SearchMethod {
     Adam,
     /// L-BFGS with backtracking.
     Lbfgs,
+    /// L-BFGS that starts from the Gauss-Newton matrix of the shape.
+    GaussNewton,
 }
 
 /// The state of the optimiser: all that a resumed run needs.
@@ -39,6 +43,9 @@ pub(crate) enum Search {
 pub(crate) struct Lbfgs {
     /// Length per coordinate of a step without curvature memory.
     learning_rate: f64,
+    /// Whether steps use the Gauss-Newton matrix of the shape.
+    #[serde(default)]
+    gauss_newton: bool,
     memory: Memory,
     /// The point of the last proposal; `None` before the first.
     from: Option<Point>,
@@ -59,12 +66,24 @@ impl Search {
     pub(crate) fn new(method: SearchMethod, learning_rate: f64, n: usize) -> Self {
         match method {
             SearchMethod::Adam => Self::Adam(Adam::new(n, learning_rate)),
-            SearchMethod::Lbfgs => Self::Lbfgs(Lbfgs {
+            SearchMethod::Lbfgs | SearchMethod::GaussNewton => Self::Lbfgs(Lbfgs {
                 learning_rate,
+                gauss_newton: method == SearchMethod::GaussNewton,
                 memory: Memory::default(),
                 from: None,
             }),
         }
+    }
+
+    /// Whether [`increment`](Self::increment) uses the curvature of the shape.
+    pub(crate) fn needs_curvature(&self) -> bool {
+        matches!(
+            self,
+            Self::Lbfgs(Lbfgs {
+                gauss_newton: true,
+                ..
+            })
+        )
     }
 
     /// Whether the state has `n` coordinates.
@@ -78,8 +97,14 @@ impl Search {
         }
     }
 
-    /// The step from an accepted point.
-    pub(crate) fn increment(&mut self, x: &[f64], loss: f64, gradient: &[f64]) -> Vec<f64> {
+    /// The step from an accepted point, with the curvature of the shape there if it is needed.
+    pub(crate) fn increment(
+        &mut self,
+        x: &[f64],
+        loss: f64,
+        gradient: &[f64],
+        curvature: Option<&ShapeCurvature>,
+    ) -> Vec<f64> {
         match self {
             Self::Adam(adam) => adam.increment(gradient),
             Self::Lbfgs(lbfgs) => {
@@ -96,7 +121,7 @@ impl Search {
                     gradient: gradient.to_vec(),
                     slope: 0.0,
                 });
-                lbfgs.step()
+                lbfgs.step(curvature)
             }
         }
     }
@@ -117,7 +142,7 @@ impl Search {
         match self {
             Self::Lbfgs(lbfgs) if !lbfgs.memory.is_empty() => {
                 lbfgs.memory = Memory::default();
-                Some(lbfgs.step())
+                Some(lbfgs.step(None))
             }
             _ => None,
         }
@@ -125,12 +150,21 @@ impl Search {
 }
 
 impl Lbfgs {
-    fn step(&mut self) -> Vec<f64> {
+    fn step(&mut self, curvature: Option<&ShapeCurvature>) -> Vec<f64> {
         let Some(from) = &mut self.from else {
             return Vec::new();
         };
-        let first_length = self.learning_rate * (from.x.len() as f64).sqrt();
-        let mut step = self.memory.direction(&from.gradient, first_length);
+        let (gradient, memory) = (&from.gradient, &self.memory);
+        let mut step = match curvature {
+            Some(curvature) if memory.is_empty() => {
+                curvature.step(gradient, memory, self.learning_rate)
+            }
+            Some(curvature) => curvature.step(gradient, memory, LONGEST),
+            None => {
+                let first_length = self.learning_rate * (from.x.len() as f64).sqrt();
+                memory.direction(gradient, first_length)
+            }
+        };
         let longest = step
             .iter()
             .fold(0.0, |longest, s| f64::max(longest, s.abs()));
@@ -159,7 +193,7 @@ mod tests {
         let mut x = vec![-1.2, 1.0];
         let (mut loss, mut gradient) = valley(&x);
         let mut evaluations = 1;
-        let mut step = search.increment(&x, loss, &gradient);
+        let mut step = search.increment(&x, loss, &gradient, None);
         'steps: loop {
             for halvings in 0..30 {
                 let fraction = 0.5f64.powi(halvings);
@@ -169,7 +203,7 @@ mod tests {
                 if search.accepts(next.0, fraction) {
                     x = beside.to_vec();
                     (loss, gradient) = next;
-                    step = search.increment(&x, loss, &gradient);
+                    step = search.increment(&x, loss, &gradient, None);
                     continue 'steps;
                 }
             }
@@ -183,7 +217,7 @@ mod tests {
         assert!(search.fits(2) && !search.fits(3));
         // Adam accepts any step and has no other to offer.
         let mut adam = Search::new(SearchMethod::Adam, 0.1, 2);
-        adam.increment(&x, loss, &gradient);
+        adam.increment(&x, loss, &gradient, None);
         assert!(adam.accepts(1e9, 1.0));
         assert_eq!(adam.retry(), None);
     }

@@ -159,7 +159,7 @@ pub struct OptimiserConfig {
     pub steps: usize,
     /// Length of the first step in every chart coordinate, 1e-9 to 10; for Adam also of the later steps.
     pub learning_rate: f64,
-    /// `adam`, as in the paper, or `lbfgs`.
+    /// `adam`, as in the paper, `lbfgs` or `gauss-newton`.
     #[serde(default)]
     pub method: SearchMethod,
     /// Standard deviation of the random start about the uniform sheet, in the chart coordinates, 0 to 10.

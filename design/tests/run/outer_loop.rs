@@ -31,15 +31,18 @@ fn the_loss_falls_and_the_best_design_is_returned() {
 }
 
 const LBFGS: (&str, &str) = ("steps = 25", "steps = 25\nmethod = \"lbfgs\"");
+const GAUSS_NEWTON: (&str, &str) = ("steps = 25", "steps = 25\nmethod = \"gauss-newton\"");
 
 #[test]
-fn every_step_of_lbfgs_lowers_the_loss() {
-    let folder = tempfile::tempdir().unwrap();
+fn every_step_of_lbfgs_and_gauss_newton_lowers_the_loss() {
     let curve = ("coverage = 0.5", "coverage = 0.5\nprecision = \"curve\"");
-    let designed = run(&read(folder.path(), &with(&[LBFGS, curve])), None).unwrap();
-    let falls = |pair: &[StepRecord]| pair[1].scores.loss < pair[0].scores.loss;
-    assert!(designed.history.windows(2).all(falls));
-    assert!(designed.best.loss < 0.8 * designed.start.loss);
+    for method in [LBFGS, GAUSS_NEWTON] {
+        let folder = tempfile::tempdir().unwrap();
+        let designed = run(&read(folder.path(), &with(&[method, curve])), None).unwrap();
+        let falls = |pair: &[StepRecord]| pair[1].scores.loss < pair[0].scores.loss;
+        assert!(designed.history.windows(2).all(falls));
+        assert!(designed.best.loss < 0.8 * designed.start.loss);
+    }
 }
 
 #[test]
@@ -65,6 +68,7 @@ fn lbfgs_ends_at_a_minimum() {
 fn a_stopped_run_resumes_to_the_same_trajectory() {
     resumes(SCENE);
     resumes(&with(&[LBFGS]));
+    resumes(&with(&[GAUSS_NEWTON]));
 }
 
 fn resumes(text: &str) {

@@ -9,7 +9,7 @@ use design::equilibrium::solver::EquilibriumSolver;
 use design::equilibrium::supports::{Dof, Load, Support};
 use design::geometry::chamfer::{Chamfer, Precision};
 use design::hinge_law::{CondensedLaw, Contact, DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
-use design::objective::design_problem::{DesignProblem, Mechanics, Model};
+use design::objective::design_problem::{Deployment, DesignProblem, Mechanics, Model};
 use design::objective::domain_penalty::DomainPenalty;
 use design::objective::loss::{Objective, OutlinePoints};
 use design::objective::path_functionals::PerFunctional;
@@ -191,6 +191,53 @@ fn ideal_deployment() {
         &problem(Model::Ideal { opening: 0.0 }, HingePoint::Corner),
         &design,
     );
+}
+
+/// The products of the rows with a direction are the motions of the outline points along it, in the metric of the Chamfer
+/// distance.
+#[test]
+fn the_curvature_of_the_shape_is_that_of_its_points() {
+    for model in [
+        Model::Ideal { opening: 0.9 },
+        mechanics(springs(), 40.0, East::Pulled(15.0)),
+    ] {
+        let (problem, design) = (problem(model, HingePoint::Corner), start());
+        let deployment = problem.evaluate(&design).unwrap().deployment;
+        let x = design.to_flat();
+        let direction = Random::new(17).numbers(x.len(), 1.0);
+        let placed = |deployment: &Deployment| {
+            let corners = problem.objective.outline.of(&deployment.sheet);
+            problem.objective.placed(&deployment.outline(&corners))
+        };
+        let moved = |step: f64| {
+            let x = std::iter::zip(&x, &direction).map(|(x, d)| x + step * d);
+            placed(
+                &problem
+                    .deploy(&design.with_flat(&x.collect::<Vec<f64>>()))
+                    .unwrap(),
+            )
+        };
+        let (ahead, behind) = (moved(1e-4), moved(-1e-4));
+        let chamfer = &problem.objective.chamfer;
+        let factors = chamfer.curvature_factors(&placed(&deployment), &problem.objective.target);
+        let by_points: f64 = (0..factors.len())
+            .flat_map(|k| {
+                let motion = [0, 1].map(|axis| (ahead[k][axis] - behind[k][axis]) / 2e-4);
+                factors[k].map(|[x, y]| (x * motion[0] + y * motion[1]).powi(2))
+            })
+            .sum();
+        let rows = problem.shape_curvature(&design, &deployment).unwrap();
+        let along = |row: &Vec<f64>| -> f64 {
+            std::iter::zip(row, &direction)
+                .map(|(row, d)| row * d)
+                .sum()
+        };
+        let by_rows: f64 = rows.iter().map(|row| along(row).powi(2)).sum();
+        assert!(
+            (by_rows / by_points - 1.0).abs() < 1e-5,
+            "{by_rows} {by_points}"
+        );
+    }
 }
 
 fn springs() -> LinearLaw {

@@ -14,27 +14,42 @@ pub struct Curve {
     pub forces: Vec<(f64, f64)>,
 }
 
-/// Errors against rays on logarithmic axes: one chart for the energy, one for the forces.
+/// Errors against rays on logarithmic axes: one chart for the energy, one for the forces, and the names beside them.
 pub fn against_rays(curves: &[Curve]) -> Result<String> {
-    drawn((1000, 420), |root| {
+    drawn((1240, 420), |root| {
+        let (root, names) = root.split_horizontally(1000);
+        legend(&names, curves)?;
         type Points = fn(&Curve) -> &[(f64, f64)];
         let quantities: [(&str, Points); 2] = [
             ("energy W", |curve| &curve.energy),
             ("forces", |curve| &curve.forces),
         ];
         for (area, (title, points)) in root.split_evenly((1, 2)).iter().zip(quantities) {
-            let lines: Vec<_> = curves
-                .iter()
-                .map(|it| (it.title.as_str(), points(it)))
-                .collect();
+            let lines: Vec<_> = curves.iter().map(points).collect();
             rays_chart(area, title, &lines)?;
         }
         Ok(())
     })
 }
 
-fn rays_chart(area: &Area, title: &str, lines: &[(&str, &[(f64, f64)])]) -> ChartResult {
-    let all = || lines.iter().flat_map(|(_, points)| *points);
+/// The colour of each curve, in their order.
+fn colours() -> impl Iterator<Item = RGBColor> {
+    SLICES.into_iter().cycle()
+}
+
+/// The names of the curves with their colours, one below the other.
+fn legend(area: &Area, curves: &[Curve]) -> ChartResult {
+    for ((curve, colour), row) in curves.iter().zip(colours()).zip(1..) {
+        let y = 40 * row;
+        area.draw(&PathElement::new([(8, y), (30, y)], colour.stroke_width(2)))?;
+        area.draw(&Circle::new((19, y), 3, colour.filled()))?;
+        area.draw(&Text::new(curve.title.clone(), (38, y - 7), (FONT, 13)))?;
+    }
+    Ok(())
+}
+
+fn rays_chart(area: &Area, title: &str, lines: &[&[(f64, f64)]]) -> ChartResult {
+    let all = || lines.iter().copied().flatten();
     let margin = |values: Vec<f64>| {
         let min = values.iter().copied().fold(f64::INFINITY, f64::min);
         let max = values.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
@@ -58,27 +73,17 @@ fn rays_chart(area: &Area, title: &str, lines: &[(&str, &[(f64, f64)])]) -> Char
         .x_desc("training rays")
         .y_desc("error on unseen geometries, %")
         .draw()?;
-    for (&(name, points), &colour) in lines.iter().zip(SLICES.iter().cycle()) {
-        chart
-            .draw_series(LineSeries::new(
-                points.iter().copied(),
-                colour.stroke_width(2),
-            ))?
-            .label(name)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+    for (points, colour) in lines.iter().zip(colours()) {
+        chart.draw_series(LineSeries::new(
+            points.iter().copied(),
+            colour.stroke_width(2),
+        ))?;
         chart.draw_series(
             points
                 .iter()
                 .map(|&point| Circle::new(point, 3, colour.filled())),
         )?;
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .label_font((FONT, 13))
-        .border_style(GUIDE)
-        .background_style(WHITE)
-        .draw()?;
     Ok(())
 }
 
