@@ -280,29 +280,31 @@ fn a_host_with_another_version_of_a_solver_is_refused() {
 #[test]
 fn a_file_system_without_locks_is_no_obstacle() {
     let replay = Replay::new();
-    let run = replay.run("unlocked");
-    let mut traced = Command::new("strace");
-    traced
-        .args([
-            "-f",
-            "-qqq",
-            "-o",
-            "trace",
-            "-e",
-            "trace=flock",
-            "-e",
-            "inject=flock:error=ENOSYS",
-        ])
-        .arg(run.get_program())
-        .args(run.get_args())
-        .current_dir(replay.work.path(""))
-        .stdout(Stdio::null());
-    for (variable, value) in run.get_envs() {
-        traced.env(variable, value.unwrap());
+    let design = "design configs/scenes/pin-7x7.toml --steps 1 --force";
+    for run in [replay.run("unlocked"), replay.work.program(design)] {
+        let mut traced = Command::new("strace");
+        traced
+            .args([
+                "-f",
+                "-qqq",
+                "-o",
+                "trace",
+                "-e",
+                "trace=flock",
+                "-e",
+                "inject=flock:error=ENOSYS",
+            ])
+            .arg(run.get_program())
+            .args(run.get_args())
+            .current_dir(replay.work.path(""))
+            .stdout(Stdio::null());
+        for (variable, value) in run.get_envs() {
+            traced.env(variable, value.unwrap());
+        }
+        assert!(traced.status().unwrap().success());
+        let trace = std::fs::read_to_string(replay.work.path("trace")).unwrap();
+        assert!(trace.contains("ENOSYS"), "{trace}");
     }
-    assert!(traced.status().unwrap().success());
-    let trace = std::fs::read_to_string(replay.work.path("trace")).unwrap();
-    assert!(trace.contains("ENOSYS"), "{trace}");
     let whole = timeless(&replay.collected("recorded-campaign"));
     assert_eq!(timeless(&replay.collected("unlocked")), whole);
 }

@@ -1,8 +1,10 @@
 //! The output folder of a command: created if missing, and locked against a second run.
 
 use anyhow::{Context, Result, bail};
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::File;
+use std::io::ErrorKind;
 use std::path::Path;
+use support::lock_file;
 
 /// Creates the folder and locks it until the returned file is dropped.
 pub fn hold(folder: &Path) -> Result<File> {
@@ -18,15 +20,9 @@ pub fn hold(folder: &Path) -> Result<File> {
 
 /// Locks a file, created if missing, until the returned file is dropped; `taken` says what to do if it is locked.
 pub fn lock(path: &Path, taken: impl FnOnce() -> String) -> Result<File> {
-    // Not truncated: a link in its place would destroy the file that it names.
-    let file = OpenOptions::new().create(true).append(true).open(path);
-    let file = file.with_context(|| format!("cannot write {}", path.display()))?;
-    match file.try_lock() {
-        Ok(()) => Ok(file),
-        Err(TryLockError::WouldBlock) => bail!(taken()),
-        Err(TryLockError::Error(error)) => {
-            Err(error).with_context(|| format!("cannot lock {}", path.display()))
-        }
+    match lock_file::try_hold(path) {
+        Err(error) if error.kind() == ErrorKind::WouldBlock => bail!(taken()),
+        held => held.with_context(|| format!("cannot lock {}", path.display())),
     }
 }
 

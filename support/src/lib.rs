@@ -1,8 +1,10 @@
-//! Domain-independent utilities: configuration files, misspelt names, input files, VTK files, atomic file writes, external
-//! programs, temporary folders, notes of what a command does, a pool of threads, shards of a list of jobs.
+//! Domain-independent utilities: configuration files, misspelt names, input files, VTK files, atomic file writes,
+//! lock files, external programs, temporary folders, notes of what a command does, a pool of threads, shards of a list of
+//! jobs.
 
 #![warn(missing_docs)]
 
+pub mod lock_file;
 pub mod nearest;
 mod processes;
 pub mod program;

@@ -1,15 +1,15 @@
 //! The history of a shard: an append-only file of events, locked by the process that writes it.
 
 use crate::campaign::definition::CampaignError;
-use crate::campaign::host::lock;
 use crate::campaign::job::JobRecord;
 use crate::record_file::FileError;
 use crate::window::failure::RetryStep;
 use serde::Serialize;
-use std::fs::{File, OpenOptions};
-use std::io::{self, Write};
+use std::fs::File;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
+use support::lock_file;
 
 /// An event in the history of a job.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -45,17 +45,11 @@ pub(crate) struct History {
 impl History {
     /// Opens the history and locks it; an error if another process has locked it.
     pub fn open(path: &Path) -> Result<Self, CampaignError> {
-        let file = OpenOptions::new()
-            .create(true)
-            .append(true)
-            .open(path)
-            .map_err(FileError::at(path))?;
+        let held = lock_file::try_hold(path);
         let path = path.to_owned();
-        match lock(&file, |file| file.try_lock().map_err(io::Error::from)) {
-            Ok(()) => Ok(Self { path, file }),
-            Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
-                Err(CampaignError::Locked(path))
-            }
+        match held {
+            Ok(file) => Ok(Self { path, file }),
+            Err(error) if error.kind() == ErrorKind::WouldBlock => Err(CampaignError::Locked(path)),
             Err(source) => Err(FileError { path, source }.into()),
         }
     }

@@ -9,7 +9,7 @@
 
 use crate::campaign::definition::{Campaign, CampaignError};
 use crate::campaign::history::History;
-use crate::campaign::host::{host, lock};
+use crate::campaign::host::host;
 use crate::campaign::job::{JobFolder, JobRecord, JobSpec, JobState};
 use crate::campaign::job_folders::{gather, ids, job_folder};
 use crate::campaign::shard_history::{history_name, overlaps};
@@ -18,10 +18,9 @@ use crate::window::failure::FailureKind;
 use crate::window::versions::ToolVersions;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
 use support::shard::Shard;
-use support::whole_file;
+use support::{lock_file, whole_file};
 
 /// The folder of a campaign.
 #[derive(Clone, Debug)]
@@ -88,10 +87,7 @@ impl CampaignFolder {
         // Shards that start at the same time enter one after the other. Otherwise each would find the lock of the
         // other.
         let door = home.join("lock");
-        // Not truncated: a link in its place would destroy the file that it names.
-        let _held = (OpenOptions::new().create(true).append(true).open(&door))
-            .and_then(|file| lock(&file, File::lock).map(|()| file))
-            .map_err(FileError::at(&door))?;
+        let _held = lock_file::hold(&door).map_err(FileError::at(&door))?;
         self.belongs_to(&index.name)?;
         if shard != Shard::WHOLE {
             self.refuse_other_versions(index)?;

@@ -1,0 +1,48 @@
+//! Lock files: they keep two commands from doing the same work. On a file system without locks they do nothing, since no
+//! result depends on them.
+
+use nix::errno::Errno;
+use std::fs::{File, OpenOptions};
+use std::io;
+use std::path::Path;
+
+/// Locks a file, created if missing, until the returned file is dropped. If another process has locked it, the error is
+/// of the kind [`io::ErrorKind::WouldBlock`].
+pub fn try_hold(path: &Path) -> io::Result<File> {
+    hold_by(path, |file| file.try_lock().map_err(io::Error::from))
+}
+
+/// Like [`try_hold`], but waits while another process has locked the file.
+pub fn hold(path: &Path) -> io::Result<File> {
+    hold_by(path, File::lock)
+}
+
+fn hold_by(path: &Path, lock: impl Fn(&File) -> io::Result<()>) -> io::Result<File> {
+    // Not truncated: a link in its place would destroy the file that it names.
+    let file = OpenOptions::new().create(true).append(true).open(path)?;
+    match lock(&file) {
+        Err(error) if !is_without_locks(&error) => Err(error),
+        _ => Ok(file),
+    }
+}
+
+/// Whether an error says that the file system has no locks.
+fn is_without_locks(error: &io::Error) -> bool {
+    error.kind() == io::ErrorKind::Unsupported || error.raw_os_error() == Some(Errno::ENOLCK as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_held_file_cannot_be_held_again_until_it_is_dropped() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("lock");
+        let held = hold(&path).unwrap();
+        let refused = try_hold(&path).unwrap_err();
+        assert_eq!(refused.kind(), io::ErrorKind::WouldBlock);
+        drop(held);
+        try_hold(&path).unwrap();
+    }
+}
