@@ -7,10 +7,11 @@ use common::processes::left_running;
 use common::{TWO_WORKERS, campaign, fake_ccx, history, job_folder, jobs, run_with};
 use fe_driver::{
     Campaign, CampaignError, Ccx, FailureKind, FinishedJob, Restored, RunOptions, Shard, Tally,
-    ToolVersions, Tools, plan, restore, retry, status,
+    ToolVersions, Tools, plan, restore, retry, solve_again, status,
 };
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 const RAYS: usize = 3;
@@ -322,6 +323,26 @@ fn collected_jobs_are_not_solved_again() {
     other.material.young += 1.0;
     let error = restore(&other, folder, &collected).unwrap_err();
     assert!(matches!(error, CampaignError::Stranger(_)), "{error}");
+}
+
+#[test]
+fn a_restored_ray_is_not_solved_again_to_compare() {
+    let replay = tempfile::tempdir().unwrap();
+    let tools = replaying(replay.path(), "");
+    let [here, restored] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    let campaign = campaign(RAYS);
+    run_whole(&campaign, here.path(), &tools);
+    restore(&campaign, restored.path(), &jobs(here.path())).unwrap();
+    let stop = AtomicBool::new(true);
+    // A stopped check names the number of rays to solve, and solves none.
+    let chosen = |folder: &Path| {
+        let mut chosen = 0;
+        let mut count = |_, all| chosen = all;
+        solve_again(&campaign, folder, &tools, 1, &stop, &mut count).unwrap();
+        chosen
+    };
+    assert_eq!(chosen(here.path()), RAYS);
+    assert_eq!(chosen(restored.path()), 0);
 }
 
 /// Every file of a job, damaged or deleted, makes the job open; nothing of it reaches the database, and the next run

@@ -95,6 +95,11 @@ impl JobRecord {
     pub fn is_closed(&self) -> bool {
         self.next.is_none()
     }
+
+    /// Whether the job was solved in this folder, not restored from a database, which has no wall times.
+    pub(crate) fn is_solved_here(&self) -> bool {
+        self.wall_seconds > 0.0
+    }
 }
 
 /// The state of a job in its folder.

@@ -194,7 +194,7 @@ impl Tally {
         }
         self.cpu_seconds += record.cpu_seconds;
         self.wall_seconds += record.wall_seconds;
-        if record.wall_seconds > 0.0 {
+        if record.is_solved_here() {
             self.cpu_seconds_here += record.cpu_seconds;
             if record.is_closed() {
                 self.solved_here += 1;

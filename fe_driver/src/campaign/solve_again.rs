@@ -2,7 +2,7 @@
 //! that hosts of a cluster differ although their versions agree.
 
 use crate::campaign::definition::{Campaign, CampaignError};
-use crate::campaign::job::JobState;
+use crate::campaign::job::{JobRecord, JobSpec, JobState};
 use crate::campaign::ledger::{CampaignFolder, refuse_changed};
 use crate::record_file::FileError;
 use crate::window::solve::{Tools, solve_window};
@@ -47,7 +47,16 @@ impl Difference {
     }
 }
 
-/// Solves every `every`-th job of `folder` again, among those that were complete at the first attempt, and compares the
+/// Whether the samples are those of a complete first attempt, which is made as the job asks. A restored job may have been
+/// solved by a retry.
+fn is_of_first_attempt(spec: &JobSpec, record: &JobRecord) -> bool {
+    record.failure.is_none()
+        && record.attempts == 1
+        && record.is_solved_here()
+        && record.tier == spec.problem.tier
+}
+
+/// Solves every `every`-th job of `folder` again, among those that were complete here at the first attempt, and compares the
 /// samples. Nothing in the folder is changed. `progress` receives the numbers of jobs done and of all.
 ///
 /// Returns early, with the jobs done so far, when `stop` becomes true.
@@ -66,8 +75,7 @@ pub fn solve_again(
     for id in folder.index()?.jobs {
         let job = folder.job(&id);
         if let JobState::Ended(ended) = job.state()?
-            && ended.1.failure.is_none()
-            && ended.1.attempts == 1
+            && is_of_first_attempt(&ended.0, &ended.1)
         {
             complete.push((id, job, ended));
         }

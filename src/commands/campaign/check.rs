@@ -8,6 +8,7 @@ use anyhow::{Result, ensure};
 use clap::Args;
 use fe_driver::{ToolVersions, Tools, solve_again};
 use std::num::NonZeroUsize;
+use std::sync::atomic::Ordering;
 
 /// Solve some of the finished rays again and compare their samples to the last bit
 ///
@@ -45,6 +46,12 @@ impl CheckCommand {
             rows.add_row([job.clone(), before, now, format!("{:.1e}", difference.w)]);
         }
         let (all, versions) = (solved.len(), ToolVersions::of(&tools));
+        ensure!(
+            all > 0 || stop.load(Ordering::Relaxed),
+            "no ray of {} was solved there to its end at the first attempt: nothing to compare with. Restored rays may be \
+             those of a retry",
+            folder.display()
+        );
         println!("{all} rays solved again with {versions}; {count} differ");
         if count > 0 {
             println!("{rows}");
