@@ -31,6 +31,7 @@ fn measure(work: &Workplace, name: &str, corners: &[[[f64; 2]; 4]]) {
             text += &format!("P{panel},{corner},{},{},cm\n", 100.0 - y / 10.0, x / 10.0);
         }
     }
+    text += "# measured with a ruler";
     std::fs::write(work.path(name), text).unwrap();
 }
 

@@ -1,9 +1,10 @@
-//! Domain-independent utilities: configuration files, misspelt names, input files, VTK files, atomic file writes,
+//! Domain-independent utilities: configuration files, misspelt names, input files, CSV tables, VTK files, atomic file writes,
 //! lock files, external programs, temporary folders, notes of what a command does, a pool of threads, shards of a list of
 //! jobs.
 
 #![warn(missing_docs)]
 
+pub mod csv_table;
 pub mod lock_file;
 pub mod nearest;
 mod processes;

@@ -8,6 +8,7 @@ use hinge::{HingeConstants, HingeDeformation};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
+use support::csv_table;
 
 /// A file that is not a valid list of rays, or that cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -18,6 +19,11 @@ use std::path::{Path, PathBuf};
 pub enum ExtraRaysError {
     #[error("{path}: {source}", path = .path.display())]
     Csv { path: PathBuf, source: csv::Error },
+    #[error(
+        "{path} has its columns in another order: rays are appended below `{header}`",
+        path = .path.display(), header = COLUMNS.join(",")
+    )]
+    Order { path: PathBuf },
     #[error("{path}, ray {row}: {reason}", path = .path.display())]
     Ray {
         path: PathBuf,
@@ -31,7 +37,10 @@ pub enum ExtraRaysError {
     },
 }
 
-/// One row of the file: a hinge and the end of its ray.
+/// The columns in the order in which rays are appended.
+const COLUMNS: [&str; 5] = ["w_lig", "alpha_deg", "eta_a", "eta_s", "theta_deg"];
+
+/// One row of the file: a hinge and the end of its ray. Its fields are in the order of [`COLUMNS`].
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Row {
@@ -45,7 +54,7 @@ struct Row {
 /// Reads the rays of hinges with the constants `common`.
 pub fn read_extra_rays(path: &Path, common: &HingeConstants) -> Result<Vec<Ray>, ExtraRaysError> {
     let mut rays = Vec::new();
-    for (i, row) in read_rows(path)?.into_iter().enumerate() {
+    for (i, row) in read_rows(path)?.1.into_iter().enumerate() {
         let ray = row.ray(common);
         if let Some(reason) = row.defect(&ray) {
             return Err(ExtraRaysError::Ray {
@@ -75,13 +84,17 @@ pub struct Added {
 
 /// Appends rays to the file, which is created if it does not exist.
 pub fn add_extra_rays(path: &Path, rays: &[Ray]) -> Result<Added, ExtraRaysError> {
-    let mut rows = match path.exists() {
+    let (header, mut rows) = match path.exists() {
         true => read_rows(path)?,
-        false => Vec::new(),
+        false => Default::default(),
     };
+    if !header.is_empty() && header != COLUMNS[..] {
+        let path = path.to_owned();
+        return Err(ExtraRaysError::Order { path });
+    }
     let mut count = Added::default();
     let mut writer = csv::WriterBuilder::new()
-        .has_headers(rows.is_empty())
+        .has_headers(header.is_empty())
         .from_writer(Vec::new());
     for ray in rays {
         let row = Row::of(ray);
@@ -104,7 +117,7 @@ pub fn add_extra_rays(path: &Path, rays: &[Ray]) -> Result<Added, ExtraRaysError
         path: path.to_owned(),
         source,
     };
-    let mut bytes = match rows.len() > count.added {
+    let mut bytes = match path.exists() {
         true => support::regular_file::read(path).map_err(unwritable)?,
         false => Vec::new(),
     };
@@ -116,16 +129,12 @@ pub fn add_extra_rays(path: &Path, rays: &[Ray]) -> Result<Added, ExtraRaysError
     Ok(count)
 }
 
-fn read_rows(path: &Path) -> Result<Vec<Row>, ExtraRaysError> {
-    let rows = || -> Result<Vec<Row>, csv::Error> {
-        let mut bytes = support::regular_file::read(path)?;
-        // A comment at the end of the file without a line break would be read as a row.
-        bytes.push(b'\n');
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .comment(Some(b'#'))
-            .from_reader(bytes.as_slice());
-        reader.deserialize().collect()
+/// The header and the rows of the file.
+fn read_rows(path: &Path) -> Result<(csv::StringRecord, Vec<Row>), ExtraRaysError> {
+    let rows = || -> Result<_, csv::Error> {
+        let mut reader = csv_table::open(path)?;
+        let header = reader.headers()?.clone();
+        Ok((header, reader.deserialize().collect::<Result<_, _>>()?))
     };
     rows().map_err(|source| ExtraRaysError::Csv {
         path: path.to_owned(),
@@ -226,6 +235,27 @@ mod tests {
         assert!((rays[0].design.w_lig - 17.1235).abs() < 1e-12);
         assert!((rays[1].design.alpha.to_degrees() - 80.0).abs() < 1e-9);
         assert!((rays[1].end.s + rays[0].end.s).abs() < 1e-9);
+    }
+
+    #[test]
+    fn rays_are_appended_below_a_header_of_their_order_only() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rays.csv");
+        let other = "alpha_deg,w_lig,eta_a,eta_s,theta_deg\n80,18,-0.3,0.1,20\n";
+        std::fs::write(&path, other).unwrap();
+        let message = add_extra_rays(&path, &[ray(70.0)]).unwrap_err().to_string();
+        assert!(message.contains("w_lig,alpha_deg,eta_a"), "{message}");
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), other);
+
+        let header = "w_lig,alpha_deg,eta_a,eta_s,theta_deg";
+        for before in ["# of a design", &format!("# of a design\n{header}\n")] {
+            std::fs::write(&path, before).unwrap();
+            add_extra_rays(&path, &[ray(70.0)]).unwrap();
+            let text = std::fs::read_to_string(&path).unwrap();
+            let lines: Vec<&str> = text.lines().collect();
+            assert_eq!(lines[..2], ["# of a design", header], "{text}");
+            assert_eq!(read_extra_rays(&path, &COMMON).unwrap().len(), 1, "{text}");
+        }
     }
 
     #[test]

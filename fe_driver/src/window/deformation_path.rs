@@ -11,6 +11,7 @@
 use hinge::HingeDeformation;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
+use support::csv_table;
 
 /// A piecewise linear path from the undeformed state at lambda = 0 to its end at lambda = 1.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -134,11 +135,7 @@ impl Row {
 
 /// The rows of the file, each with its line number.
 fn read_rows(path: &Path) -> Result<Vec<(u64, Row)>, csv::Error> {
-    let bytes = support::regular_file::read(path)?;
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_reader(bytes.as_slice());
+    let mut reader = csv_table::open(path)?;
     let headers = reader.headers()?.clone();
     reader
         .into_records()
@@ -186,6 +183,7 @@ mod tests {
         }
         let from_rest = text.replace("30, 0, 0", "0, 0, 0\n30, 0, 0");
         assert_eq!(read(&from_rest).unwrap(), path);
+        assert_eq!(read(&format!("{text}# end")).unwrap(), path);
     }
 
     #[test]

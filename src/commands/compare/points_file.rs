@@ -5,8 +5,8 @@ use clap::ValueEnum;
 use design::analysis::marks::{Mark, MeasuredPoint};
 use design::analysis::measured_sheet::{MeasurementError, PointFault};
 use std::path::{Path, PathBuf};
+use support::csv_table;
 use support::nearest::nearest;
-use support::regular_file;
 
 /// The columns of a file; the last two are those of the template, and are not read.
 const COLUMNS: [&str; 7] = [
@@ -58,12 +58,8 @@ impl Unit {
 impl PointsFile {
     /// Reads a file whose lengths are in `unit`, mm by default, or in that of its column `unit`.
     pub fn read(path: &Path, unit: Option<Unit>, y_down: bool) -> Result<Self> {
-        let bytes =
-            regular_file::read(path).with_context(|| format!("cannot read {}", path.display()))?;
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .comment(Some(b'#'))
-            .from_reader(bytes.as_slice());
+        let mut reader =
+            csv_table::open(path).with_context(|| format!("cannot read {}", path.display()))?;
         let broken = |error: csv::Error| Error::from(error).context(path.display().to_string());
         let header = reader.headers().map_err(broken)?.clone();
         let columns = Columns::new(&header)
