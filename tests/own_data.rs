@@ -138,6 +138,11 @@ fn input_that_cannot_be_evaluated_or_resumed_gives_an_error() {
         error.contains("own.csv does not match its manifest"),
         "{error}"
     );
+    let absolute = work.path("own.safetensors").display().to_string();
+    for out in ["./own.safetensors", "runs/../own.safetensors", &absolute] {
+        let error = work.error(&format!("train {DATABASE} --out {out} --replace"));
+        assert!(error.contains("replace the database's manifest"), "{error}");
+    }
     let error = work.error(&format!("train {DATABASE} --out own.safetensors --replace"));
     assert!(error.contains("manifest"), "{error}");
     let tiny = concat!(

@@ -108,11 +108,11 @@ impl TrainCommand {
             let database = self.database.display();
             bail!("{database}: {leak}: split it again with `kirigami dataset split`");
         }
-        self.refuse_card_of_database()?;
         if let Some(folder) = self.out.parent() {
             std::fs::create_dir_all(folder)
                 .with_context(|| format!("cannot create the folder {}", folder.display()))?;
         }
+        self.refuse_card_of_database()?;
         if self.seeds > 1 {
             return self.train_seeds(&database, &config, base.as_ref());
         }
@@ -148,7 +148,7 @@ impl TrainCommand {
 
     fn refuse_card_of_database(&self) -> Result<()> {
         // Card and manifest are both `<stem>.json`.
-        if card_path(&self.out) == card_path(&self.database) {
+        if located(&card_path(&self.out))? == located(&card_path(&self.database))? {
             bail!(
                 "the card of {} would replace the database's manifest: choose another name",
                 self.out.display()
@@ -301,6 +301,15 @@ fn write(path: &Path, text: &str) -> Result<()> {
 /// The path of the card of weights, or of the manifest of a database.
 fn card_path(file: &Path) -> PathBuf {
     file.with_extension("json")
+}
+
+/// The path of a file in an existing folder, without links and `.` in the path of the folder.
+fn located(file: &Path) -> Result<PathBuf> {
+    let file = std::path::absolute(file)?;
+    let folder = file.parent().unwrap_or(Path::new("/"));
+    let folder = (folder.canonicalize())
+        .with_context(|| format!("cannot read the folder {}", folder.display()))?;
+    Ok(folder.join(file.file_name().unwrap_or_default()))
 }
 
 fn parity_chart(parity: &Parity) -> Result<String> {
