@@ -10,6 +10,8 @@ use design::output::cut_file::{
     mark_errors, split, write_dxf, write_pdf, write_svg,
 };
 use design::output::report::{Severity, Warning, warnings};
+use design::pattern::design_vector::DesignVector;
+use design::scene::Scene;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -28,7 +30,7 @@ pub struct CutCommand {
     out: Option<PathBuf>,
     /// Write tiles for this paper: a4, a3 or letter
     #[arg(long, value_name = "PAPER", value_parser = paper)]
-    paper: Option<(Paper, String)>,
+    paper: Option<(Paper, &'static str)>,
     /// Write parts that fit on a bed of this width and height (mm); the height of a roll is inf
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = bed)]
     bed: Option<[f64; 2]>,
@@ -43,13 +45,45 @@ pub struct CutCommand {
     json: bool,
 }
 
+/// The papers, and their names in the name of a file.
+const PAPERS: [(Paper, &str); 3] = [
+    (Paper::A4, "a4"),
+    (Paper::A3, "a3"),
+    (Paper::Letter, "letter"),
+];
+const JOINTS: &str = "joints.csv";
+
+/// What is written of a sheet.
+struct Pieces {
+    whole: SheetDrawing,
+    /// The whole sheet with marks and notes, for a machine.
+    annotated: CutDrawing,
+    list: String,
+    summary: String,
+    tiling: Option<Tiling>,
+    split: Option<Split>,
+}
+
 impl CutCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let (scene, design) = self.designed.read_run()?;
-        let deployment = scene.problem()?.deploy(&design)?;
+        let pieces = self.pieces(&scene, &design)?;
+        let out = match &self.out {
+            Some(out) => out.clone(),
+            None => scene.output().join("cut"),
+        };
+        let _held = run_folder::hold(&out)?;
+        remove_earlier(&out)?;
+        self.write(&pieces, &scene.config.title, &out)?;
+        self.print(&pieces, &out)
+    }
+
+    /// The drawings of a design; an error if it has errors, unless they are marked on request.
+    fn pieces(&self, scene: &Scene, design: &DesignVector) -> Result<Pieces> {
+        let deployment = scene.problem()?.deploy(design)?;
         let (pattern, sheet) = (&deployment.pattern, &deployment.sheet);
         let cuts = CutLines::new(pattern, sheet, scene.config.cutting);
-        let found = warnings(&scene, &deployment, &cuts);
+        let found = warnings(scene, &deployment, &cuts);
         let cuts = cuts?;
         let errors = found.iter().filter(|it| it.severity == Severity::Error);
         let errors: Vec<String> = errors.map(Warning::to_string).collect();
@@ -58,53 +92,57 @@ impl CutCommand {
             "no cut file: {}; --force writes one",
             errors.join("; ")
         );
-
-        let mut drawing = SheetDrawing::new(&cuts, sheet, &scene.material);
-        let mut annotated = drawing.annotated();
+        let mut whole = SheetDrawing::new(&cuts, sheet, &scene.material);
+        let mut annotated = whole.annotated();
         mark_errors(&mut annotated, &errors);
-        mark_errors(&mut drawing.numbered, &errors);
-        let tiling = (self.paper.as_ref())
-            .map(|(paper, _)| Tiling::new(*paper, drawing.numbered.bounds()))
+        mark_errors(&mut whole.numbered, &errors);
+        let tiling = (self.paper)
+            .map(|(paper, _)| Tiling::new(paper, whole.numbered.bounds()))
             .transpose()?;
-        let mut parts = (self.bed)
+        let mut split = (self.bed)
             .map(|bed| split(&cuts, sheet, bed, self.lap))
             .transpose()?;
-        for part in parts.iter_mut().flat_map(|split| &mut split.parts) {
+        for part in split.iter_mut().flat_map(|split| &mut split.parts) {
             mark_errors(&mut part.drawing, &errors);
         }
+        Ok(Pieces {
+            list: cut_list(sheet, &cuts),
+            summary: cut_summary(&cuts, &whole.totals),
+            whole,
+            annotated,
+            tiling,
+            split,
+        })
+    }
 
-        let out = match &self.out {
-            Some(out) => out.clone(),
-            None => scene.output().join("cut"),
-        };
-        let _held = run_folder::hold(&out)?;
-        remove_earlier(&out)?;
-        write_dxf(&out.join("cut.dxf"), &annotated)?;
-        write_svg(&out.join("cut.svg"), &annotated)?;
-        run_folder::write(&out, "cut-list.csv", &cut_list(sheet, &cuts))?;
-        run_folder::write(
-            &out,
-            "cut-summary.csv",
-            &cut_summary(&cuts, &drawing.totals),
-        )?;
-        if let (Some((_, name)), Some(tiling)) = (&self.paper, &tiling) {
-            let path = out.join(format!("tiles-{name}.pdf"));
-            let title = &scene.config.title;
-            write_pdf(&path, &drawing.numbered, tiling, title, &drawing.notes)?;
+    fn write(&self, pieces: &Pieces, title: &str, out: &Path) -> Result<()> {
+        write_dxf(&out.join("cut.dxf"), &pieces.annotated)?;
+        write_svg(&out.join("cut.svg"), &pieces.annotated)?;
+        run_folder::write(out, "cut-list.csv", &pieces.list)?;
+        run_folder::write(out, "cut-summary.csv", &pieces.summary)?;
+        if let (Some((_, paper)), Some(tiling)) = (self.paper, &pieces.tiling) {
+            let whole = &pieces.whole;
+            let path = out.join(tiles_name(paper));
+            write_pdf(&path, &whole.numbered, tiling, title, &whole.notes)?;
         }
-        if let Some(parts) = &parts {
-            for (i, part) in parts.parts.iter().enumerate() {
+        if let Some(split) = &pieces.split {
+            for (i, part) in split.parts.iter().enumerate() {
                 let stem = out.join(format!("part-{}", i + 1));
                 write_dxf(&stem.with_extension("dxf"), &part.drawing)?;
                 write_svg(&stem.with_extension("svg"), &part.drawing)?;
             }
-            run_folder::write(&out, "joints.csv", &parts.joint_list())?;
+            run_folder::write(out, JOINTS, &split.joint_list())?;
         }
+        Ok(())
+    }
+
+    fn print(&self, pieces: &Pieces, out: &Path) -> Result<()> {
+        let (tiling, split) = (&pieces.tiling, &pieces.split);
         if self.json {
             let value = json!({
-                "totals": drawing.totals,
-                "tiles": tiling.map(|tiling| tiling.pages()),
-                "parts": parts.map(|split| split.parts.iter().map(|part| json!({
+                "totals": pieces.whole.totals,
+                "tiles": tiling.as_ref().map(Tiling::pages),
+                "parts": split.as_ref().map(|split| split.parts.iter().map(|part| json!({
                     "origin": part.origin, "size": part.size, "area": part.area,
                 })).collect::<Vec<_>>()),
                 "folder": out,
@@ -112,7 +150,7 @@ impl CutCommand {
             println!("{}", serde_json::to_string_pretty(&value)?);
             return Ok(());
         }
-        println!("{}", drawing.totals);
+        println!("{}", pieces.whole.totals);
         if let Some(Tiling {
             counts: [rows, columns],
             ..
@@ -123,8 +161,8 @@ impl CutCommand {
                 rows * columns + 1
             );
         }
-        if let Some(split) = &parts {
-            print_parts(split, CutDrawing::extent(drawing.numbered.cuts()));
+        if let Some(split) = split {
+            print_parts(split, CutDrawing::extent(pieces.whole.numbered.cuts()));
         }
         println!("written to {}", out.canonicalize()?.display());
         Ok(())
@@ -161,16 +199,10 @@ fn print_parts(split: &Split, [low, high]: [[f64; 2]; 2]) {
 
 /// Removes the tiles and parts of an earlier call, which may be of another design.
 fn remove_earlier(folder: &Path) -> Result<()> {
-    let made = |name: &str| {
-        name.starts_with("tiles-") || name.starts_with("part-") || name == "joints.csv"
-    };
     for entry in std::fs::read_dir(folder)? {
-        let path = entry?.path();
-        if path
-            .file_name()
-            .and_then(|name| name.to_str())
-            .is_some_and(made)
-        {
+        let entry = entry?;
+        let path = entry.path();
+        if entry.file_type()?.is_file() && is_written(&entry.file_name().to_string_lossy()) {
             std::fs::remove_file(&path)
                 .with_context(|| format!("cannot remove {}", path.display()))?;
         }
@@ -178,15 +210,26 @@ fn remove_earlier(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-fn paper(name: &str) -> Result<(Paper, String), String> {
+/// Whether a file with this name is written with --paper or --bed.
+fn is_written(name: &str) -> bool {
+    let number = name.strip_prefix("part-").and_then(|rest| {
+        rest.strip_suffix(".dxf")
+            .or_else(|| rest.strip_suffix(".svg"))
+    });
+    let is_part = number.is_some_and(|number| {
+        !number.is_empty() && !number.starts_with('0') && number.bytes().all(|c| c.is_ascii_digit())
+    });
+    is_part || name == JOINTS || PAPERS.iter().any(|(_, paper)| name == tiles_name(paper))
+}
+
+fn tiles_name(paper: &str) -> String {
+    format!("tiles-{paper}.pdf")
+}
+
+fn paper(name: &str) -> Result<(Paper, &'static str), String> {
     let name = name.to_lowercase();
-    let paper = match name.as_str() {
-        "a4" => Paper::A4,
-        "a3" => Paper::A3,
-        "letter" => Paper::Letter,
-        _ => return Err("must be a4, a3 or letter".into()),
-    };
-    Ok((paper, name))
+    let paper = PAPERS.into_iter().find(|(_, paper)| *paper == name);
+    paper.ok_or_else(|| "must be a4, a3 or letter".into())
 }
 
 fn bed(text: &str) -> Result<[f64; 2], String> {
@@ -197,4 +240,34 @@ fn bed(text: &str) -> Result<[f64; 2], String> {
 fn lap(text: &str) -> Result<f64, String> {
     let lap = text.parse().ok().filter(|lap| (0.0..=200.0).contains(lap));
     lap.ok_or_else(|| "must be 0 to 200 mm".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_files_that_a_cut_writes_are_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let own = [
+            "part-list.xlsx",
+            "part-a.dxf",
+            "part-01.dxf",
+            "part-1.dxf.bak",
+            "tiles-of-mine.pdf",
+            "cut.dxf",
+        ];
+        let ours = ["part-1.dxf", "part-12.svg", "tiles-letter.pdf", JOINTS];
+        for name in own.iter().chain(&ours) {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        std::fs::create_dir(folder.path().join("part-2.dxf")).unwrap();
+        remove_earlier(folder.path()).unwrap();
+        for name in own.iter().chain(&["part-2.dxf"]) {
+            assert!(folder.path().join(name).exists(), "{name}");
+        }
+        for name in ours {
+            assert!(!folder.path().join(name).exists(), "{name}");
+        }
+    }
 }
