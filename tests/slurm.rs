@@ -3,9 +3,10 @@
 
 mod common;
 
-use common::Workplace;
+use common::{Workplace, failure};
 use dataset::{Database, Gates, Row, SplitPlan};
 use serde_json::Value;
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -168,6 +169,90 @@ fn timeless(path: &Path) -> Vec<u8> {
     let path = path.with_extension("timeless.parquet");
     database.write(&path, false).unwrap();
     std::fs::read(path).unwrap()
+}
+
+/// A workplace whose `PATH` begins with scripts in place of Slurm's programs: `sbatch` counts the arrays, and fails for the
+/// job that collects; the others run `answer`.
+struct Scripted {
+    work: Workplace,
+}
+
+impl Scripted {
+    fn new() -> Self {
+        let scripted = Self {
+            work: Workplace::new(),
+        };
+        std::fs::create_dir(scripted.work.path("bin")).unwrap();
+        let arrays = scripted.work.path("arrays").display().to_string();
+        scripted.script(
+            "sbatch",
+            &format!("case \"$2\" in --array*) echo x >> {arrays}; echo 7;; *) exit 1;; esac"),
+        );
+        scripted
+    }
+
+    fn script(&self, program: &str, body: &str) {
+        let path = self.work.path("bin").join(program);
+        std::fs::write(&path, format!("#!/bin/sh\n{body}\n")).unwrap();
+        std::fs::set_permissions(&path, PermissionsExt::from_mode(0o755)).unwrap();
+    }
+
+    fn answer(&self, answer: &str) {
+        for program in ["squeue", "sacct"] {
+            self.script(program, answer);
+        }
+    }
+
+    fn campaign(&self, arguments: &str) -> Command {
+        let mut command = self.work.program(&format!("campaign {arguments}"));
+        let path = std::env::var("PATH").unwrap();
+        let bin = self.work.path("bin");
+        command.env("PATH", format!("{}:{path}", bin.display()));
+        command
+    }
+
+    /// The error of a submission, and the number of arrays submitted so far.
+    fn submit(&self) -> (String, usize) {
+        let submit = format!("submit {CAMPAIGN} --shards 4 --time 1");
+        let message = failure(&mut self.campaign(&submit));
+        let arrays = std::fs::read_to_string(self.work.path("arrays")).unwrap();
+        (message, arrays.lines().count())
+    }
+}
+
+#[test]
+fn an_array_is_not_submitted_twice() {
+    let slurm = Scripted::new();
+    slurm.answer("exit 1");
+    let (message, arrays) = slurm.submit();
+    assert!(
+        message.contains("array 7 is submitted, but not"),
+        "{message}"
+    );
+    assert_eq!(arrays, 1);
+    let (message, arrays) = slurm.submit();
+    assert!(
+        message.contains("does not say whether array 7"),
+        "{message}"
+    );
+    assert_eq!(arrays, 1);
+    // The accounting learns of a job late: its silence says nothing.
+    slurm.script("sacct", "true");
+    assert_eq!(slurm.submit().1, 1);
+    let status = slurm.campaign(&format!("status {CAMPAIGN}")).output();
+    let status = String::from_utf8(status.unwrap().stdout).unwrap();
+    assert!(status.contains("does not say whether array 7"), "{status}");
+
+    slurm.answer("echo '7_1|RUNNING'");
+    let (message, arrays) = slurm.submit();
+    assert!(
+        message.contains("1 running") && message.contains("scancel 7"),
+        "{message}"
+    );
+    assert_eq!(arrays, 1);
+    // The queue has forgotten it: all of its tasks have ended.
+    slurm.answer("true");
+    assert_eq!(slurm.submit().1, 2);
 }
 
 #[test]

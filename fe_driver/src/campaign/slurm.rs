@@ -27,6 +27,19 @@ pub enum SlurmError {
     },
     #[error("{0}: wait until it ends, or cancel it with `scancel {id}`", id = .0.array)]
     Active(ArrayStates),
+    #[error(
+        "Slurm does not say whether array {array} has ended: try again later; if it has ended, delete {record}",
+        record = .record.display()
+    )]
+    Silent { array: String, record: PathBuf },
+    #[error(
+        "array {array} is submitted, but not the job that collects the database: {source}. Run `kirigami campaign \
+         collect` when the array has ended, or cancel it with `scancel {array}`"
+    )]
+    NotCollected {
+        array: String,
+        source: Box<SlurmError>,
+    },
     #[error(transparent)]
     File(#[from] FileError),
 }
@@ -38,8 +51,8 @@ pub struct Submission {
     pub array: String,
     /// Number of tasks of the array.
     pub tasks: usize,
-    /// Id of the job that collects the database after the array.
-    pub collect: String,
+    /// Id of the job that collects the database after the array; `None` if it was not submitted.
+    pub collect: Option<String>,
 }
 
 /// The states of the last submission of a campaign.
@@ -49,9 +62,9 @@ pub struct ArrayStates {
     pub array: String,
     /// Number of tasks in each state, in Slurm's words; tasks that Slurm no longer knows are "unknown".
     pub tasks: BTreeMap<String, usize>,
-    /// Id of the job that collects the database.
-    pub collect: String,
-    /// State of this job; "unknown" if Slurm no longer knows it.
+    /// Id of the job that collects the database; `None` if it was not submitted.
+    pub collect: Option<String>,
+    /// State of this job; "unknown" if there is none, or if Slurm no longer knows it.
     pub collect_state: String,
 }
 
@@ -88,14 +101,11 @@ impl fmt::Display for ArrayStates {
             .iter()
             .map(|(state, n)| format!("{n} {state}"))
             .collect();
-        write!(
-            f,
-            "Slurm array {}: {}; job {} to collect: {}",
-            self.array,
-            tasks.join(", "),
-            self.collect,
-            self.collect_state
-        )
+        write!(f, "Slurm array {}: {}; ", self.array, tasks.join(", "))?;
+        match &self.collect {
+            Some(job) => write!(f, "job {job} to collect: {}", self.collect_state),
+            None => write!(f, "no job to collect"),
+        }
     }
 }
 
@@ -111,7 +121,7 @@ fn record_path(campaign_folder: &Path) -> PathBuf {
 /// Writes the script to the folder of the campaign and submits it twice: as an array of `tasks` tasks, and as the job
 /// that collects the database when all tasks have ended, in any state.
 ///
-/// It is an error if the last submission has not ended.
+/// It is an error if the last submission has not ended, or if Slurm does not say so.
 pub fn submit_array(
     campaign_folder: &Path,
     script: &str,
@@ -134,20 +144,27 @@ pub fn submit_array(
         let id = output("sbatch", &mut command)?;
         Ok::<_, SlurmError>(id.trim().split(';').next().unwrap_or_default().to_owned())
     };
-    let array = sbatch(&format!("--array=1-{tasks}"), None)?;
-    let collect = sbatch(&format!("--dependency=afterany:{array}"), Some("collect"))?;
-    let submission = Submission {
-        array,
+    let mut submission = Submission {
+        array: sbatch(&format!("--array=1-{tasks}"), None)?,
         tasks,
-        collect,
+        collect: None,
     };
+    // The array is recorded before anything else can fail: otherwise it would be submitted twice.
+    write_json(&record_path(campaign_folder), &submission)?;
+    let after = format!("--dependency=afterany:{}", submission.array);
+    let collect = sbatch(&after, Some("collect")).map_err(|source| SlurmError::NotCollected {
+        array: submission.array.clone(),
+        source: Box::new(source),
+    })?;
+    submission.collect = Some(collect);
     write_json(&record_path(campaign_folder), &submission)?;
     Ok(submission)
 }
 
-/// The states of the last submission of a campaign; `None` if it was never submitted, or if Slurm does not answer.
+/// The states of the last submission of a campaign; `None` if it was never submitted.
 pub fn array_states(campaign_folder: &Path) -> Result<Option<ArrayStates>, SlurmError> {
-    let Some(submission) = read_json::<Submission>(&record_path(campaign_folder))? else {
+    let record = record_path(campaign_folder);
+    let Some(submission) = read_json::<Submission>(&record)? else {
         return Ok(None);
     };
     let Submission {
@@ -155,8 +172,11 @@ pub fn array_states(campaign_folder: &Path) -> Result<Option<ArrayStates>, Slurm
         tasks,
         collect,
     } = submission;
-    let Some(known) = known_states(&[&array, &collect]) else {
-        return Ok(None);
+    let jobs: Vec<&str> = std::iter::once(array.as_str())
+        .chain(collect.as_deref())
+        .collect();
+    let Some(known) = known_states(&jobs) else {
+        return Err(SlurmError::Silent { array, record });
     };
     let state = |job: &str| known.get(job).map_or(UNKNOWN, String::as_str).to_owned();
     let mut counts = BTreeMap::new();
@@ -165,14 +185,15 @@ pub fn array_states(campaign_folder: &Path) -> Result<Option<ArrayStates>, Slurm
     }
     Ok(Some(ArrayStates {
         tasks: counts,
-        collect_state: state(&collect),
+        collect_state: collect.as_deref().map_or(UNKNOWN.to_owned(), state),
         array,
         collect,
     }))
 }
 
 /// The states of jobs and tasks by their ids: those of the queue, which forgets jobs minutes after their end, before
-/// those of the accounting, which not every site keeps. `None` if neither answers.
+/// those of the accounting, which not every site keeps, and which learns of jobs late. `None` if the queue does not answer
+/// and the accounting knows none of the jobs.
 fn known_states(jobs: &[&str]) -> Option<BTreeMap<String, String>> {
     let jobs = format!("--jobs={}", jobs.join(","));
     let mut squeue = Command::new("squeue");
@@ -201,11 +222,11 @@ fn known_states(jobs: &[&str]) -> Option<BTreeMap<String, String>> {
         Err(_) => None,
     };
     let accounting = output("sacct", &mut sacct).ok();
+    let is_queue_known = queue.is_some();
     let answers = [accounting, queue];
-    answers.iter().any(Option::is_some).then(|| {
-        let lines = answers.iter().flatten().flat_map(|text| text.lines());
-        lines.filter_map(state).collect()
-    })
+    let lines = answers.iter().flatten().flat_map(|text| text.lines());
+    let states: BTreeMap<_, _> = lines.filter_map(state).collect();
+    (is_queue_known || !states.is_empty()).then_some(states)
 }
 
 /// The id and the state in a line like `12_3|CANCELLED by 1000`.

@@ -3,7 +3,7 @@
 use crate::commands::campaign::campaign_args::{CampaignArgs, print_tally};
 use anyhow::Result;
 use clap::Args;
-use fe_driver::{ArrayStates, Status};
+use fe_driver::{ArrayStates, SlurmError, Status};
 use serde::Serialize;
 
 /// Print the state of the jobs, the reasons of failures, the throughput, and the tasks on a cluster
@@ -30,7 +30,10 @@ impl StatusCommand {
         let folder = self.campaign.folder();
         fe_driver::refuse_changed(&self.campaign.load()?, &folder)?;
         let status = fe_driver::status(&folder)?;
-        let slurm = fe_driver::array_states(&folder)?;
+        let (slurm, silent) = match fe_driver::array_states(&folder) {
+            Err(error @ SlurmError::Silent { .. }) => (None, Some(error)),
+            states => (states?, None),
+        };
         if self.json {
             let report = Report { status, slurm };
             println!("{}", serde_json::to_string_pretty(&report)?);
@@ -49,6 +52,9 @@ impl StatusCommand {
         }
         if let Some(states) = slurm {
             println!("{states}");
+        }
+        if let Some(error) = silent {
+            println!("{error}");
         }
         Ok(())
     }

@@ -68,7 +68,7 @@ impl SubmitCommand {
             duration(plan.seconds / (tasks * self.jobs.get()) as f64),
             tasks * self.jobs.get(),
             submission.array,
-            submission.collect,
+            submission.collect.unwrap_or_default(),
             slurm_folder(&folder).display()
         );
         Ok(())
