@@ -58,6 +58,8 @@ fn a_project_with_weights_is_designed_at_once() {
 fn a_project_without_weights_begins_with_its_campaign() {
     let work = Workplace::new();
     let steel = "--material configs/materials/s235-1.5mm.toml";
+    let message = work.error(&format!("init steel {steel} --weights no.safetensors"));
+    assert!(message.contains("there is no no.safetensors"), "{message}");
     let message = work.error(&format!("init steel {steel}"));
     assert!(
         message.contains("at most 0.10 mm for this size"),

@@ -47,15 +47,13 @@ pub struct InitCommand {
     /// loads open the new sheet as far as that of the scene
     #[arg(long, value_name = "SCENE")]
     like: Option<PathBuf>,
-    /// Weights that the scene uses if they are for this material
-    #[arg(
-        long,
-        value_name = "FILE",
-        default_value = "data/pet-0.5mm/medium.safetensors"
-    )]
-    weights: PathBuf,
+    /// Weights that the scene uses if they are for this material [default: data/pet-0.5mm/medium.safetensors, if it exists]
+    #[arg(long, value_name = "FILE")]
+    weights: Option<PathBuf>,
 }
 
+/// The shipped weights.
+const WEIGHTS: &str = "data/pet-0.5mm/medium.safetensors";
 /// The shipped files that are scaled.
 const CAMPAIGN: &str = include_str!("../../configs/campaigns/pet-0.5mm.toml");
 const TRAINING: &str = include_str!("../../configs/training/medium.toml");
@@ -114,16 +112,19 @@ impl InitCommand {
         Ok(())
     }
 
-    /// The path of the weights, if they exist and are for the material.
+    /// The path of the weights, if they are for the material. Weights that are named must exist.
     fn weights_of(&self, material: &SheetMaterial) -> Result<Option<PathBuf>> {
-        if !self.weights.is_file() {
-            return Ok(None);
-        }
-        let trained = Surrogate::load(&self.weights)?.card().material_hash.clone();
+        let weights = match &self.weights {
+            Some(weights) => {
+                input_file::require(weights, "--weights")?;
+                weights
+            }
+            None if Path::new(WEIGHTS).is_file() => Path::new(WEIGHTS),
+            None => return Ok(None),
+        };
+        let trained = Surrogate::load(weights)?.card().material_hash.clone();
         let fits = trained == Some(material.law_hash());
-        Ok(fits
-            .then(|| std::path::absolute(&self.weights))
-            .transpose()?)
+        Ok(fits.then(|| std::path::absolute(weights)).transpose()?)
     }
 }
 
