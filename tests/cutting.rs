@@ -7,6 +7,23 @@ use common::Workplace;
 const SCENE: &str = "configs/scenes/pin-7x7.toml";
 
 #[test]
+fn a_design_of_another_scene_is_not_cut_unless_it_is_named() {
+    let work = Workplace::new();
+    work.output(&format!("design {SCENE} --steps 1"));
+    work.output(&format!("cut {SCENE}"));
+    work.edit(SCENE, &[("steps = 150", "steps = 3")]);
+    work.output(&format!("cut {SCENE}"));
+    work.edit(SCENE, &[("kerf = 0.2", "kerf = 0.3")]);
+    for command in ["cut", "export", "compare --template"] {
+        let message = work.error(&format!("{command} {SCENE}"));
+        assert!(message.contains("the key `process` changed"), "{message}");
+    }
+    // The run has its own copy of the scene.
+    work.output("cut runs/pin-7x7");
+    work.output(&format!("cut {SCENE} --design runs/pin-7x7/state.json"));
+}
+
+#[test]
 fn a_designed_sheet_is_cut_on_paper_and_in_parts() {
     let work = Workplace::new();
     let missing = work.error(&format!("cut {SCENE}"));

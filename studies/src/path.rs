@@ -5,7 +5,7 @@ use crate::power_law::PowerLaw;
 use anyhow::{Result, ensure};
 use clap::Args;
 use design::scene::Scene;
-use design::scene::design_run::stored_design;
+use design::scene::design_run::design_of_run;
 use fe_driver::{KeptSolution, KeptSolve};
 use hinge::SheetMaterial;
 use kirigami::replays::kept_solves::SolveArgs;
@@ -13,7 +13,7 @@ use kirigami::replays::routes::{HingeRoute, hinge_routes};
 use kirigami::ui::{picture, run_folder};
 use mesher::Tier;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Measure path dependence: hinges solved along their paths in a sheet, and straight to the same end
 ///
@@ -174,11 +174,7 @@ impl Pair {
 
 /// The hinge paths of a scene's sheet, with the best design of its run if there is one.
 fn deployed(scene: &Scene) -> Result<Vec<HingeRoute>> {
-    let state = scene.output().join("state.json");
-    let design = match Path::exists(&state) {
-        true => stored_design(&state, scene)?,
-        false => scene.start(),
-    };
+    let design = design_of_run(scene, false)?.unwrap_or_else(|| scene.start());
     hinge_routes(scene, &design)
 }
 

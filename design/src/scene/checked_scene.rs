@@ -20,6 +20,10 @@ use surrogate::Surrogate;
 /// depend on the load steps.
 const MODEL_VERSION: u32 = 3;
 
+/// What the parts of [`Scene::model_hash`] identify, in their order.
+pub(super) const MODEL_PARTS: [&str; 4] = ["version of kirigami", "material", "target", WEIGHTS];
+pub(super) const WEIGHTS: &str = "weights";
+
 /// A scene with checked values, its material and its sampled target.
 #[derive(Clone, Debug)]
 pub struct Scene {

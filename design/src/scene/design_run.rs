@@ -7,11 +7,13 @@ use crate::objective::design_problem::{DesignError, DesignProblem, Evaluation};
 use crate::objective::panel_width::thinnest_panel;
 use crate::optimise::outer_loop::{Ended, SearchState, StepRecord, optimise};
 use crate::pattern::design_vector::DesignVector;
-use crate::scene::checked_scene::Scene;
+use crate::scene::checked_scene::{MODEL_PARTS, Scene, WEIGHTS};
 use crate::scene::keys::SceneConfig;
 use crate::scene::run_inputs::{self, InputHashes, RunInputsError, STATE_FILE};
 use crate::scene::scene_error::SceneError;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -95,6 +97,12 @@ pub enum InverseDesignError {
         path = .path.display()
     )]
     OtherModel { path: PathBuf },
+    #[error(
+        "{path} is not the run of this scene, {changed} changed since: design it again (`kirigami design --restart`), or \
+         name the file with --design to take its design nevertheless",
+        path = .path.display()
+    )]
+    Outdated { path: PathBuf, changed: String },
 }
 
 impl InverseDesignError {
@@ -141,6 +149,36 @@ pub fn stored_design(path: &Path, scene: &Scene) -> Result<DesignVector, Inverse
     }
     let path = path.to_owned();
     Err(InverseDesignError::OtherSize { path })
+}
+
+/// The best design of the run in the scene's run folder; `None` if there is no run.
+///
+/// It is an error if the run is of another scene or model. Only its weights may be others, with `other_weights`.
+pub fn design_of_run(
+    scene: &Scene,
+    other_weights: bool,
+) -> Result<Option<DesignVector>, InverseDesignError> {
+    let path = scene.output().join(STATE_FILE);
+    let Some(state) = State::load(&path)? else {
+        return Ok(None);
+    };
+    let mut changed: Vec<String> = (state.changed_keys(scene).iter())
+        .map(|key| format!("the key `{key}`"))
+        .collect();
+    let inputs = state.changed_inputs(scene).into_iter();
+    changed.extend(
+        inputs
+            .filter(|input| !(other_weights && *input == WEIGHTS))
+            .map(|input| format!("the {input}")),
+    );
+    if !changed.is_empty() {
+        let changed = changed.join(", ");
+        return Err(InverseDesignError::Outdated { path, changed });
+    }
+    match state.search.fits(&scene.start()) {
+        true => Ok(Some(state.search.best)),
+        false => Err(InverseDesignError::OtherSize { path }),
+    }
 }
 
 /// Runs the search of a scene in its run folder; continues from the state there if there is one.
@@ -254,13 +292,8 @@ pub fn forget(scene: &Scene) -> Result<(), InverseDesignError> {
 }
 
 impl State {
-    /// The state of an earlier run of the same scene; only the number of steps may differ.
-    fn read(
-        path: &Path,
-        scene: &Scene,
-        model: &str,
-        start: &Evaluation,
-    ) -> Result<Option<Self>, InverseDesignError> {
+    /// The state in a file; `None` if there is no file.
+    fn load(path: &Path) -> Result<Option<Self>, InverseDesignError> {
         let text = match regular_file::read(path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
@@ -269,17 +302,57 @@ impl State {
                 return Err(InverseDesignError::Folder { path, source });
             }
         };
-        let mut state: Self =
-            sealed_json::from_slice(&text).map_err(|source| InverseDesignError::State {
-                path: path.to_owned(),
-                source,
-            })?;
+        let state = sealed_json::from_slice(&text);
+        state.map(Some).map_err(|source| InverseDesignError::State {
+            path: path.to_owned(),
+            source,
+        })
+    }
+
+    /// The keys of the scene that changed since the run, without those that may: the number of steps, the title and the
+    /// cutting, which change no design, and paths, since [`Scene::model_hash`] identifies what they name.
+    fn changed_keys(&self, scene: &Scene) -> BTreeSet<String> {
+        let mut before = self.scene.without_paths();
+        before.optimiser.steps = scene.config.optimiser.steps;
+        before.title.clone_from(&scene.config.title);
+        before.cutting = scene.config.cutting;
+        let keys = |config: &SceneConfig| match serde_json::to_value(config) {
+            Ok(Value::Object(keys)) => keys,
+            _ => unreachable!("a run writes the same keys to its state"),
+        };
+        let (before, now) = (keys(&before), keys(&scene.config.without_paths()));
+        let both = before.keys().chain(now.keys());
+        both.filter(|key| before.get(*key) != now.get(*key))
+            .cloned()
+            .collect()
+    }
+
+    /// The inputs besides the keys of the scene that changed since the run; none if the state is of a version that did
+    /// not identify them.
+    fn changed_inputs(&self, scene: &Scene) -> Vec<&'static str> {
+        let (Some(before), now) = (&self.model, scene.model_hash()) else {
+            return Vec::new();
+        };
+        let hashes = before.split('-').zip(now.split('-'));
+        let parts = MODEL_PARTS.into_iter().zip(hashes);
+        parts
+            .filter(|(_, (before, now))| before != now)
+            .map(|(part, _)| part)
+            .collect()
+    }
+
+    /// The state of an earlier run of the same scene; only the number of steps may differ.
+    fn read(
+        path: &Path,
+        scene: &Scene,
+        model: &str,
+        start: &Evaluation,
+    ) -> Result<Option<Self>, InverseDesignError> {
+        let Some(state) = Self::load(path)? else {
+            return Ok(None);
+        };
         let path = path.to_owned();
-        state.scene.optimiser.steps = scene.config.optimiser.steps;
-        // Neither the title nor the cutting changes a design, and what a path names is compared by `model`.
-        state.scene.title.clone_from(&scene.config.title);
-        state.scene.cutting = scene.config.cutting;
-        if state.scene.without_paths() != scene.config.without_paths() {
+        if !state.changed_keys(scene).is_empty() {
             return Err(InverseDesignError::OtherScene { path });
         }
         if !state.search.fits(&scene.start()) {

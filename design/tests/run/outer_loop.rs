@@ -4,7 +4,8 @@
 use super::{SCENE, read, run, with};
 use design::optimise::outer_loop::{Ended, StepRecord};
 use design::output::run_results::write_results;
-use design::scene::design_run::{Designed, inverse_design};
+use design::scene::Scene;
+use design::scene::design_run::{Designed, design_of_run, inverse_design};
 use std::sync::atomic::AtomicBool;
 
 #[test]
@@ -118,6 +119,44 @@ fn a_run_continues_with_more_steps_but_not_with_another_scene() {
     std::fs::write(&path, "{").unwrap();
     let error = run_with(&[]).err().unwrap().to_string();
     assert!(error.contains("restart the run"), "{error}");
+}
+
+#[test]
+fn the_design_of_a_run_is_that_of_the_same_scene_and_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = |changes: &[_]| read(folder.path(), &with(changes));
+    assert!(design_of_run(&scene(&[]), false).unwrap().is_none());
+    let two_steps = ("steps = 25", "steps = 2");
+    let best = run(&scene(&[two_steps]), None).unwrap().design;
+    // The number of steps, the title and the cutting change no design.
+    let allowed = ("title = \"", "cutting.over_run = 1.0\ntitle = \"another ");
+    let found = design_of_run(&scene(&[allowed]), false).unwrap();
+    assert_eq!(found, Some(best));
+    let message = |scene: &Scene| design_of_run(scene, false).unwrap_err().to_string();
+    let harder = scene(&[("[2.0, 0.0]", "[3.0, 0.0]")]);
+    let loads = message(&harder);
+    assert!(loads.contains("the key `loads` changed since"), "{loads}");
+    assert!(loads.contains("--design"), "{loads}");
+
+    let path = folder.path().join("run/state.json");
+    let state = std::fs::read(&path).unwrap();
+    let mut state: serde_json::Value = serde_json::from_slice(&state).unwrap();
+    state.as_object_mut().unwrap().remove("checksum");
+    let model = state["model"].as_str().unwrap().to_owned();
+    for (part, name) in ["version of kirigami", "material", "target", "weights"]
+        .into_iter()
+        .enumerate()
+    {
+        let mut parts: Vec<&str> = model.split('-').collect();
+        parts[part] = "another";
+        state["model"] = parts.join("-").into();
+        std::fs::write(&path, state.to_string()).unwrap();
+        let scene = scene(&[]);
+        let error = message(&scene);
+        assert!(error.contains(&format!("the {name} changed")), "{error}");
+        let other_weights = design_of_run(&scene, true);
+        assert_eq!(other_weights.is_ok(), name == "weights");
+    }
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! The command line arguments that select a scene and a design, and the printing of their numbers.
 
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result};
 use clap::Args;
 use design::pattern::design_vector::DesignVector;
-use design::scene::design_run::stored_design;
-use design::scene::run_inputs::{STATE_FILE, scene_file};
+use design::scene::design_run::{design_of_run, stored_design};
+use design::scene::run_inputs::scene_file;
 use design::scene::{Scene, SceneConfig};
 use serde::Serialize;
 use std::fmt::Display;
@@ -53,7 +53,7 @@ impl Inspected {
         let scene = self.scene()?;
         let design = match &self.design {
             Some(path) => stored_design(path, &scene)?,
-            None if self.scene.is_dir() => stored_design(&self.scene.join(STATE_FILE), &scene)?,
+            None if self.scene.is_dir() => self.design_of_run(&scene)?,
             None => scene.start(),
         };
         Ok((scene, design))
@@ -62,18 +62,21 @@ impl Inspected {
     /// The scene with its designed sheet: without `--design`, the state of its run folder.
     pub(crate) fn read_run(&self) -> Result<(Scene, DesignVector)> {
         let scene = self.scene()?;
-        let path = match &self.design {
-            Some(path) => path.clone(),
-            None => scene.output().join(STATE_FILE),
+        let design = match &self.design {
+            Some(path) => stored_design(path, &scene)?,
+            None => self.design_of_run(&scene)?,
         };
-        ensure!(
-            self.design.is_some() || path.exists(),
-            "the scene {} has no run, there is no {}: run `kirigami design` first, or name a design (--design)",
-            self.scene.display(),
-            path.display()
-        );
-        let design = stored_design(&path, &scene)?;
         Ok((scene, design))
+    }
+
+    fn design_of_run(&self, scene: &Scene) -> Result<DesignVector> {
+        design_of_run(scene, self.weights.is_some())?.with_context(|| {
+            format!(
+                "the scene {} has no run, there is no state in {}: run `kirigami design` first, or name a design (--design)",
+                self.scene.display(),
+                scene.output().display()
+            )
+        })
     }
 
     fn scene(&self) -> Result<Scene> {
