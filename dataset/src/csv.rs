@@ -102,6 +102,16 @@ fn rows_of(bytes: &[u8], map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
                 .collect(),
         ))
     };
+    let numbers = |name: &'static str| -> Result<Option<Vec<f64>>, DatasetError> {
+        let mut values = match (column(name)?, map.constants.get(name)) {
+            (Some(cells), _) => parsed(name, &cells)?,
+            (None, Some(Constant::Number(value))) => vec![*value; frame.height()],
+            (None, _) => return Ok(None),
+        };
+        let factor = map.factors.get(name).copied().unwrap_or(1.0);
+        values.iter_mut().for_each(|value| *value *= factor);
+        Ok(Some(values))
+    };
     for text in &TEXTS {
         let values = match (column(text.name)?, map.constants.get(text.name)) {
             // An empty cell is an empty text; for example, most rows have no failure.
@@ -120,27 +130,22 @@ fn rows_of(bytes: &[u8], map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
         schema::fill(&mut rows, text.name, values, text.set)?;
     }
     for known in &KNOWN {
-        let factor = map.factors.get(known.name).copied().unwrap_or(1.0);
-        if let Some(cells) = column(known.name)? {
-            for (row, cell) in rows.iter_mut().zip(parsed(known.name, &cells)?) {
-                (known.set)(row, Some(factor * cell).filter(|value| !value.is_nan()));
-            }
+        for (row, value) in rows
+            .iter_mut()
+            .zip(numbers(known.name)?.unwrap_or_default())
+        {
+            (known.set)(row, Some(value).filter(|value| !value.is_nan()));
         }
     }
     for number in &NUMBERS {
-        let values = match (column(number.name)?, map.constants.get(number.name)) {
-            (Some(cells), _) => parsed(number.name, &cells)?,
-            (None, Some(Constant::Number(value))) => vec![*value; rows.len()],
-            (None, _) if REQUIRED.contains(&number.name) => {
-                return Err(DatasetError::NoColumn {
-                    column: number.name.into(),
-                });
-            }
-            (None, _) => continue,
-        };
-        let factor = map.factors.get(number.name).copied().unwrap_or(1.0);
-        for (row, value) in rows.iter_mut().zip(values) {
-            (number.set)(row, factor * value);
+        let values = numbers(number.name)?;
+        if values.is_none() && REQUIRED.contains(&number.name) {
+            return Err(DatasetError::NoColumn {
+                column: number.name.into(),
+            });
+        }
+        for (row, value) in rows.iter_mut().zip(values.unwrap_or_default()) {
+            (number.set)(row, value);
         }
     }
     Ok(rows)

@@ -143,6 +143,20 @@ fn a_foreign_table_is_imported() {
 }
 
 #[test]
+fn a_constant_fills_a_column_that_may_have_gaps() {
+    let (_folder, path) = file(FOREIGN);
+    let mut map = foreign_map();
+    for (name, value) in [("D_peak", 0.25), ("strain_max", 3.0)] {
+        map.constants.insert(name.into(), Constant::Number(value));
+    }
+    map.factors.insert("strain_max".into(), 0.5);
+    for row in rows_from_csv(&path, &map).unwrap() {
+        let found = (row.sample.d_peak, row.sample.strain_max);
+        assert_eq!(found, (Some(0.25), Some(1.5)));
+    }
+}
+
+#[test]
 fn errors_in_tables_and_column_maps_name_the_place() {
     let error = |text: &str, map: &ColumnMap| {
         let (_folder, path) = file(text);
