@@ -92,12 +92,14 @@ fn with<'a>(rays: &[&'a [Row]], condition: fn(&[Row]) -> bool) -> Vec<&'a Row> {
     rays.map(|ray| &ray[0]).collect()
 }
 
-/// Rows whose state occurs in an earlier ray.
-fn repeated(rows: &[Row]) -> Vec<&Row> {
+/// Rows whose state, up to mirroring, occurs in an earlier ray of the same mesh and material law.
+pub(crate) fn repeated(rows: &[Row]) -> Vec<&Row> {
     let mut seen: BTreeMap<_, &str> = BTreeMap::new();
-    (rows.iter())
-        .filter(|row| *seen.entry((state(row), &row.tier)).or_insert(&row.job) != row.job)
-        .collect()
+    let earlier = rows.iter().filter(|row| {
+        let solved = (state(row), &row.tier, &row.material_hash);
+        *seen.entry(solved).or_insert(&row.job) != row.job
+    });
+    earlier.collect()
 }
 
 /// Whether the plastic strain recedes by more than its noise.
@@ -162,6 +164,22 @@ mod tests {
     #[test]
     fn a_sound_database_has_no_findings() {
         assert_eq!(found(|_| ()), Vec::<&str>::new());
+    }
+
+    #[test]
+    fn a_state_is_repeated_only_within_one_mesh_and_material() {
+        let other = |change: fn(&mut Row)| {
+            let mut both = rows(12);
+            for mut row in rows(12) {
+                row.job = format!("other-{}", row.job);
+                change(&mut row);
+                both.push(row);
+            }
+            repeated(&both).len()
+        };
+        assert_eq!(other(|_| ()), rows(12).len());
+        assert_eq!(other(|row| row.tier = "fine".into()), 0);
+        assert_eq!(other(|row| row.material_hash = "57ee1".into()), 0);
     }
 
     #[test]

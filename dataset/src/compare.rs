@@ -1,8 +1,8 @@
 //! Comparison of the rays that two databases contain: the error of a database relative to one of a finer mesh.
 //!
-//! Two jobs are the same ray if their designs and their ends are the same. They
-//! are compared at the states of the first job, up to the smaller lambda of the two; the second job is interpolated
-//! linearly in lambda.
+//! Two jobs are the same ray if their designs, their ends and their material laws are the same; an unknown law, as in
+//! rows of another solver, is taken for that of the other job. They are compared at the states of the first job, up to
+//! the smaller lambda of the two; the second job is interpolated linearly in lambda.
 
 use crate::database::Database;
 use crate::rows::Row;
@@ -74,8 +74,13 @@ impl ComparedState {
 /// The rays that both databases contain, in the order of their designs.
 pub fn compare<'a>(judged: &'a Database, reference: &'a Database) -> Vec<ComparedRay<'a>> {
     let references = rays(reference.rows());
-    let pairs = rays(judged.rows()).into_iter().filter_map(|(ray, rows)| {
-        let reference = references.get(&ray)?;
+    let pairs = rays(judged.rows());
+    let pairs = pairs.into_iter().filter_map(|((ray, law), rows)| {
+        let mut alike = references
+            .range((ray, "")..)
+            .take_while(|((other, _), _)| *other == ray);
+        let (_, reference) =
+            alike.find(|((_, other), _)| *other == law || other.is_empty() || law.is_empty())?;
         Some((rows, reference))
     });
     pairs
@@ -126,9 +131,9 @@ fn rms<'a>(
 /// Design and end of a ray, in millionths of their units.
 type Ray = [i64; 8];
 
-/// Rows by ray, in order of lambda.
-fn rays(rows: &[Row]) -> BTreeMap<Ray, Vec<&Row>> {
-    let mut rays: BTreeMap<Ray, Vec<&Row>> = BTreeMap::new();
+/// Rows by ray and hash of the material law, in order of lambda.
+fn rays(rows: &[Row]) -> BTreeMap<(Ray, &str), Vec<&Row>> {
+    let mut rays: BTreeMap<(Ray, &str), Vec<&Row>> = BTreeMap::new();
     for row in rows {
         let (design, x) = (&row.design, &row.sample);
         let [a, s, theta] = [x.a, x.s, x.theta].map(|component| component / x.lambda);
@@ -143,7 +148,7 @@ fn rays(rows: &[Row]) -> BTreeMap<Ray, Vec<&Row>> {
             theta,
         ];
         let ray = ray.map(|number| (1e6 * number).round() as i64);
-        rays.entry(ray).or_default().push(row);
+        rays.entry((ray, &row.material_hash)).or_default().push(row);
     }
     for rows in rays.values_mut() {
         rows.sort_by(|x, y| x.sample.lambda.total_cmp(&y.sample.lambda));
@@ -155,6 +160,7 @@ fn rays(rows: &[Row]) -> BTreeMap<Ray, Vec<&Row>> {
 mod tests {
     use super::*;
     use crate::gates::Gates;
+    use crate::mixing::Mixing;
     use crate::rows::tests::rows;
     use crate::split::SplitPlan;
 
@@ -200,5 +206,27 @@ mod tests {
         // Only rays that both databases contain are compared.
         let fewer = database(rows(4));
         assert_eq!(compare(&judged, &fewer).len(), 4);
+    }
+
+    #[test]
+    fn rays_of_other_materials_are_not_compared() {
+        let of = |law: &str| {
+            let rows = rows(6).into_iter();
+            let named = rows.map(|row| Row {
+                job: format!("{law}-{}", row.job),
+                material_hash: law.into(),
+                ..row
+            });
+            database(named.collect())
+        };
+        let [film, steel, unknown] = ["f11f", "57ee1", ""].map(of);
+        let both = [film.clone(), steel.clone()];
+        let both = Database::merge(&both, &SplitPlan::default(), Mixing::Allowed).unwrap();
+        assert_eq!(compare(&film, &steel).len(), 0);
+        assert_eq!(compare(&film, &unknown).len(), 6);
+        assert_eq!(compare(&unknown, &steel).len(), 6);
+        let rays = compare(&both, &film);
+        assert_eq!(rays.len(), 6);
+        assert!(rays.iter().all(|ray| ray.end().material_hash == "f11f"));
     }
 }
