@@ -14,6 +14,7 @@ mod keys;
 mod loaded_hinge;
 pub mod placement;
 mod problem;
+mod ratios;
 mod relative_path;
 pub mod run_inputs;
 mod scene_error;
@@ -29,5 +30,6 @@ pub use hinge_model::{
     CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
 };
 pub use keys::{ObjectiveConfig, OptimiserConfig, SceneConfig};
+pub use ratios::{Ratios, rounded};
 pub use scene_error::SceneError;
 pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};

@@ -1,5 +1,6 @@
 //! Changes of a TOML text that keep its comments.
 
+use design::scene::rounded;
 use toml_edit::{Array, DocumentMut, Item, Value};
 
 /// Replaces a value and keeps its comment.
@@ -25,11 +26,6 @@ pub(super) fn scale(item: &mut Item, factor: f64) {
             }
         }
     }
-}
-
-/// To six significant digits, so that a product of two short numbers is short.
-pub(super) fn rounded(x: f64) -> f64 {
-    format!("{x:.5e}").parse().unwrap_or(x)
 }
 
 /// Replaces the comment at the head of a file.

@@ -9,8 +9,9 @@
 //!
 //! It is rotated about the held panel by the rotation that the panel would have in the symmetric deployment.
 
-use crate::commands::init::edited::{heading, rounded, scale, set};
+use crate::commands::init::edited::{heading, scale, set};
 use anyhow::{Result, ensure};
+use design::scene::rounded;
 use std::path::Path;
 use toml_edit::{Array, DocumentMut};
 

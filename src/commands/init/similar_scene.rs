@@ -1,16 +1,11 @@
 //! A scene like another one, for a sheet of another thickness, size or material.
-//!
-//! With lambda the ratio of the thicknesses, mu that of the sizes and e that of Young's moduli, ligaments and windows grow
-//! with lambda, the sheet and its displacements with mu. The energy of a hinge at an equal rotation grows with
-//! e lambda^3, so couples do too, forces with e lambda^3 / mu, and the stiffnesses k_a and k_s with e lambda.
 
-use crate::commands::init::edited::rounded;
 use crate::ui::progress::Progress;
 use anyhow::{Context, Result, bail, ensure};
 use design::equilibrium::load_step::LoadStep;
 use design::objective::target::TargetShape;
 use design::scene::run_inputs::scene_file;
-use design::scene::{HingeModel, Scene, SceneConfig};
+use design::scene::{HingeModel, Ratios, Scene, SceneConfig, rounded};
 use hinge::SheetMaterial;
 use std::path::{Path, absolute};
 
@@ -19,17 +14,6 @@ const SAME_SHAPE: f64 = 0.01;
 /// Powers of two between which the factor of the loads is looked for, and the number of times that they are halved.
 const POWERS: [f64; 2] = [-6.0, 6.0];
 const HALVINGS: usize = 10;
-
-/// Ratios of the new sheet to the original one.
-#[derive(Clone, Copy, Debug)]
-struct Ratios {
-    /// lambda.
-    thickness: f64,
-    /// mu.
-    size: f64,
-    /// e.
-    young: f64,
-}
 
 /// A scene for a new sheet, and the scene that it is like.
 pub(super) struct SimilarScene {
@@ -167,78 +151,4 @@ fn proportion(config: &SceneConfig, size: [f64; 2]) -> Result<f64> {
         across * sides[1]
     );
     Ok(across)
-}
-
-impl Ratios {
-    fn apply(self, config: &mut SceneConfig) {
-        let Self {
-            thickness,
-            size,
-            young,
-        } = self;
-        let energy = young * thickness.powi(3);
-        let by = |factor: f64| move |x: f64| rounded(factor * x);
-        let sheet = &mut config.sheet;
-        sheet.size = sheet.size.map(|sides| sides.map(by(size)));
-        sheet.corners = (sheet.corners).map(|corners| corners.map(|corner| corner.map(by(size))));
-        let ligament = &mut config.ligament;
-        ligament.start = by(thickness)(ligament.start);
-        ligament.range = ligament.range.map(by(thickness));
-        for width in config.start.w_lig.iter_mut().flatten() {
-            *width = by(thickness)(*width);
-        }
-        // Not rounded: it must agree with the windows of the weights.
-        config.process.r_win *= thickness;
-        for support in &mut config.supports {
-            support.displacement = support.displacement.map(by(size));
-        }
-        for load in &mut config.loads {
-            load.force = load.force.map(by(energy / size));
-            load.couple = by(energy)(load.couple);
-        }
-        for load in &mut config.edge_loads {
-            load.traction = load.traction.map(by(energy / size.powi(2)));
-        }
-        for load in &mut config.opening_couples {
-            load.couple = by(energy)(load.couple);
-        }
-        if let Some(drive) = &mut config.drive {
-            drive.stroke = by(size)(drive.stroke);
-        }
-        if let Some(linear) = &mut config.linear {
-            linear.k_a = by(young * thickness)(linear.k_a);
-            linear.k_s = by(young * thickness)(linear.k_s);
-            linear.k_theta = by(energy)(linear.k_theta);
-        }
-        if let Some(contact) = &mut config.contact {
-            contact.stiffness = by(energy)(contact.stiffness);
-        }
-        config.objective.min_panel_width = by(size)(config.objective.min_panel_width);
-        config.objective.smoothing = by(size.powi(2))(config.objective.smoothing);
-        scale_target(&mut config.target, size);
-    }
-}
-
-fn scale_target(target: &mut TargetShape, factor: f64) {
-    let by = |x: f64| rounded(factor * x);
-    match target {
-        TargetShape::Circle { centre, radius } => {
-            *centre = centre.map(by);
-            *radius = by(*radius);
-        }
-        TargetShape::Rectangle { centre, size, .. } => {
-            *centre = centre.map(by);
-            *size = size.map(by);
-        }
-        TargetShape::Polygon { vertices } => {
-            for vertex in vertices {
-                *vertex = vertex.map(by);
-            }
-        }
-        TargetShape::Svg { centre, height, .. } => {
-            *centre = centre.map(by);
-            *height = by(*height);
-        }
-        TargetShape::Csv { .. } => {}
-    }
 }

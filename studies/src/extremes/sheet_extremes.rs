@@ -6,7 +6,7 @@ use design::equilibrium::load_step::{LoadStep, Status};
 use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
 use design::objective::target::TargetShape;
-use design::scene::{Scene, SceneConfig};
+use design::scene::{Ratios, Scene, SceneConfig};
 use std::f64::consts::PI;
 use std::fmt::Write;
 use std::path::Path;
@@ -77,6 +77,7 @@ pub(super) fn all<'a>(
     let (config, path) = learned;
     let own = deployment(config, path).map_err(|reason| anyhow!(reason))?;
     let own = Opened(own.final_step().opening());
+    let thickness = Scene::new(config.clone(), path)?.material.thickness;
     let mut all = Vec::new();
     let mut add = |(base, path): (&SceneConfig, &'a Path),
                    name: String,
@@ -140,7 +141,9 @@ pub(super) fn all<'a>(
     }
     for factor in [0.05, 8.0] {
         let name = format!("all lengths x {factor}");
-        add(learned, name, own, &|config| scaled(config, factor));
+        add(learned, name, own, &|config| {
+            scaled(config, thickness, factor)
+        });
     }
     for steps in [1, 1000] {
         add(learned, format!("{steps} load steps"), own, &|config| {
@@ -174,18 +177,16 @@ pub(super) fn all<'a>(
     Ok(all)
 }
 
-/// All lengths of the scene multiplied by `factor`, and its forces by the square of it: the same sheet by similarity.
-fn scaled(config: &mut SceneConfig, factor: f64) {
-    config.thickness = Some(factor * 0.5);
-    for length in config.sheet.size.iter_mut().flatten() {
-        *length *= factor;
-    }
-    let ligament = &mut config.ligament;
-    ligament.start *= factor;
-    ligament.range = ligament.range.map(|width| factor * width);
+/// All lengths of the scene multiplied by `factor`: the same sheet by similarity. `thickness` is that of the sheet (mm).
+fn scaled(config: &mut SceneConfig, thickness: f64, factor: f64) {
+    let ratios = Ratios {
+        thickness: factor,
+        size: factor,
+        young: 1.0,
+    };
+    ratios.apply(config);
+    config.thickness = Some(factor * thickness);
     config.process.kerf *= factor;
-    config.process.r_win *= factor;
-    config.scale_loads(factor * factor);
     around(config);
 }
 
