@@ -5,6 +5,7 @@ mod drive_readings;
 
 use crate::designed::designed;
 use crate::drawing::{ActuationRow, actuations};
+use crate::shape_alone::shape_alone;
 use anyhow::Result;
 use clap::Args;
 use design::analysis::force_transmission::ForceTransmission;
@@ -13,7 +14,7 @@ use design::analysis::void_families::{VoidFamilies, disjoint_voids};
 use design::objective::loss::Objective;
 use design::objective::outline_error::outline_error;
 use design::scene::design_run::Designed;
-use design::scene::{ObjectiveConfig, Scene, SceneConfig};
+use design::scene::{Scene, SceneConfig};
 use drive_readings::READINGS;
 use kirigami::ui::progress::Progress;
 use kirigami::ui::{picture, run_folder};
@@ -83,15 +84,10 @@ impl ActuationStudy {
                 .collect();
             config.scale_loads(factors[0]);
             let (scene, designed) = search.design(label, &config, &path)?;
-            config.objective = ObjectiveConfig {
-                compression: 0.0,
-                shear: 0.0,
-                balance: false,
-                ..config.objective
-            };
+            let config = shape_alone(&config);
             let (alone, of_shape) = search.design(&format!("{label}-shape"), &config, &path)?;
-            let shape_alone = boundary_error(&alone, &of_shape);
-            cases.push(Case::new(label, drives, scene, designed, shape_alone)?);
+            let of_shape = boundary_error(&alone, &of_shape);
+            cases.push(Case::new(label, drives, scene, designed, of_shape)?);
             search.done = 2 * (i + 1) * steps / LABELS.len();
         }
         search.bar.finish();

@@ -5,6 +5,8 @@ mod readings;
 
 use crate::charts::{self, CapacityCurve};
 use crate::designed::designed;
+use crate::shape_alone::shape_alone;
+use crate::stop::refuse_stop;
 use anyhow::{Result, bail, ensure};
 use clap::Args;
 use design::analysis::degeneration::{Degeneration, last_jump};
@@ -13,12 +15,11 @@ use design::objective::design_problem::Deployment;
 use design::objective::outline_error::outline_error;
 use design::output::drawing;
 use design::pattern::design_vector::DesignVector;
-use design::scene::{HingeModel, ObjectiveConfig, PinConfig, Scene, SceneConfig};
+use design::scene::{HingeModel, PinConfig, Scene, SceneConfig};
 use kirigami::ui::progress::Progress;
 use kirigami::ui::{interrupt, picture, run_folder};
 use readings::READINGS;
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
 
 /// Compare the load capacity of a sheet under a pull and a transverse load, for four ways to design it
 ///
@@ -139,10 +140,7 @@ impl CapacityStudy {
         for (i, (strategy, design)) in std::iter::zip(strategies, designs).enumerate() {
             let mut points = Vec::new();
             for &rho in &values {
-                ensure!(
-                    !stop.load(Ordering::Relaxed),
-                    "stopped; run the same command again to continue"
-                );
+                refuse_stop(stop)?;
                 points.push(self.point(&config, &design, rho)?);
                 bar.show(values.len() * i + points.len(), None, strategy.name);
             }
@@ -298,18 +296,6 @@ fn strategies(config: &SceneConfig) -> [Strategy; 4] {
         name,
         search: searches.next().flatten(),
     })
-}
-
-/// The scene without the objectives on the hinge deformation.
-fn shape_alone(config: &SceneConfig) -> SceneConfig {
-    let mut config = config.clone();
-    config.objective = ObjectiveConfig {
-        compression: 0.0,
-        shear: 0.0,
-        balance: false,
-        ..config.objective
-    };
-    config
 }
 
 impl Capacity {

@@ -9,6 +9,7 @@ mod chain_page;
 
 use crate::condensed::{condense, own_weights};
 use crate::designed::designed;
+use crate::step_time::step_time;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use dataset::Database;
@@ -24,7 +25,6 @@ use kirigami::ui::{interrupt, run_folder};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
-use std::time::Instant;
 use surrogate::{Surrogate, WeightsError};
 
 /// Measure cost and error of every choice of the chain on one sheet
@@ -58,9 +58,6 @@ const LOAD_STEPS: usize = 40;
 
 const NETWORK: &str = "network";
 const WINDOW_TIER: &str = "window tier";
-
-/// Number of evaluations, the fastest of which is the cost of a step.
-const REPEATS: usize = 5;
 
 /// A choice with its cost and errors.
 struct Row {
@@ -127,12 +124,7 @@ impl ChainStudy {
             let judged = || -> Result<Row> {
                 let design = self.design(&scene, &choice)?;
                 let chosen = scene.problem()?;
-                let mut step_s = f64::INFINITY;
-                for _ in 0..REPEATS {
-                    let began = Instant::now();
-                    chosen.evaluate(&reference)?;
-                    step_s = step_s.min(began.elapsed().as_secs_f64());
-                }
+                let step_s = step_time(&chosen, &reference)?;
                 let predicted = Deployed::of(&chosen, &reference)?;
                 let own = Deployed::of(&chosen, &design)?;
                 let made = Deployed::of(&problem, &design)?;

@@ -3,6 +3,7 @@
 mod fine_tuning_page;
 
 use crate::charts;
+use crate::stop::refuse_stop;
 use ::train::{Backend, Parity, Start, Training, TrainingConfig};
 use anyhow::{Result, ensure};
 use clap::Args;
@@ -10,7 +11,6 @@ use dataset::{Database, Part, SplitPlan};
 use kirigami::commands::train::kept_fit;
 use kirigami::ui::{interrupt, picture, run_folder};
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
 use surrogate::{Surrogate, TestErrors};
 
 /// Compare fine-tuned networks with networks trained from scratch, over the number of training rays
@@ -157,10 +157,7 @@ impl FineTuningStudy {
             let cases = cases(&splits[0]);
             let mut measured = Vec::new();
             for (done, &(way, rays)) in cases.iter().enumerate() {
-                ensure!(
-                    !stop.load(Ordering::Relaxed),
-                    "stopped; run the same command again to continue"
-                );
+                refuse_stop(stop)?;
                 eprintln!(
                     "{name}, {} of {}: {way}, {rays} rays",
                     done + 1,

@@ -7,6 +7,7 @@
 use crate::chain::rms;
 use crate::condensed::{condense, own_weights};
 use crate::designed::designed;
+use crate::step_time::step_time;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::objective::design_problem::{Deployment, DesignProblem};
@@ -19,7 +20,6 @@ use kirigami::ui::run_folder;
 use mesher::Tier;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// Measure cost and error of the levels draft, everyday and final, and of every choice, on designed sheets
 ///
@@ -47,8 +47,6 @@ pub struct LevelsStudy {
     out: PathBuf,
 }
 
-/// Number of evaluations, the fastest of which is the cost of a step.
-const REPEATS: usize = 5;
 /// Load steps and tolerance of the level draft.
 const DRAFT: (usize, f64) = (5, 1e-3);
 
@@ -165,12 +163,7 @@ impl Row {
         truth: &Balanced,
     ) -> Result<Self> {
         let deployed = problem.evaluate(design)?.deployment;
-        let mut step_s = f64::INFINITY;
-        for _ in 0..REPEATS {
-            let begun = Instant::now();
-            problem.evaluate(design)?;
-            step_s = step_s.min(begun.elapsed().as_secs_f64());
-        }
+        let step_s = step_time(problem, design)?;
         let (own, by_elements) = (truth.by_law(), truth.by_elements());
         let error = rms(&movements(by_elements, &deployed));
         let rotations = |of: &Deployment| -> Vec<f64> {

@@ -2,12 +2,13 @@
 
 mod sheet_page;
 
+use crate::condensed::condense;
 use anyhow::{Context, Result};
 use clap::Args;
 use design::equilibrium::load_step::Status;
 use design::equilibrium::settings::Method;
 use design::objective::design_problem::{Deployment, DesignProblem, Evaluation};
-use design::scene::{CondensedConfig, HingeModel, PinConfig, Scene, SceneConfig, SurrogateFile};
+use design::scene::{HingeModel, PinConfig, Scene, SceneConfig, SurrogateFile};
 use design::sheet::cut_sheet::HingePoint;
 use design::sheet::kinematics::deployed_corners;
 use kirigami::ui::run_folder;
@@ -157,14 +158,8 @@ fn solver_cases(base: &SceneConfig) -> Vec<Case> {
 fn law_cases(base: &SceneConfig, weights: &Path, opening: f64) -> Vec<Case> {
     let condensed = |secant_deg: f64, hinge_point| {
         let mut config = base.clone();
-        let weights = weights.to_owned();
-        config.hinge = HingeModel::Linear;
+        condense(&mut config, weights, secant_deg);
         config.hinge_point = Some(hinge_point);
-        config.surrogate = None;
-        config.condensed = Some(CondensedConfig {
-            weights,
-            secant_deg,
-        });
         config
     };
     let mut pinned = base.clone();

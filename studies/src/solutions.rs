@@ -5,6 +5,7 @@ mod plane_contours;
 mod solutions_page;
 
 use crate::charts::{self, PlaneValues, SolutionChart};
+use crate::stop::refuse_stop;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::analysis::solution_set::{PrincipalPlane, curvatures, outline_rank};
@@ -19,7 +20,6 @@ use kirigami::ui::{interrupt, picture, run_folder};
 use opening_profile::opening_profile;
 use plane_contours::losses;
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
 use support::worker_pool::{Reports, work_through};
 
 /// Run one scene from many random starts: families of solutions, and the curvature of the objective
@@ -183,10 +183,7 @@ impl SolutionStudy {
             Ok::<_, anyhow::Error>(())
         })?;
         bar.finish();
-        ensure!(
-            !stop.load(Ordering::Relaxed),
-            "stopped; run the same command again to continue"
-        );
+        refuse_stop(stop)?;
         Ok(solutions)
     }
 }

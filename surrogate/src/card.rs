@@ -141,9 +141,13 @@ impl TestErrors {
 
     /// Root mean square of the errors of the three forces (%).
     pub fn forces_percent(&self) -> f64 {
-        let [_, f_a, f_s, m_theta, ..] = self.percents();
-        ((f_a * f_a + f_s * f_s + m_theta * m_theta) / 3.0).sqrt()
+        forces_percent(&self.percents())
     }
+}
+
+/// Root mean square of the errors of the three forces in [`TestErrors::percents`].
+pub fn forces_percent([_, f_a, f_s, m_theta, ..]: &[f64; 6]) -> f64 {
+    ((f_a * f_a + f_s * f_s + m_theta * m_theta) / 3.0).sqrt()
 }
 
 impl Card {

@@ -5,6 +5,7 @@ use crate::charts::Curve;
 use ::train::TrainingConfig;
 use anyhow::Result;
 use std::fmt::Write;
+use surrogate::forces_percent;
 
 /// Errors against rays for each way.
 pub fn curves(material: &Material) -> Vec<Curve> {
@@ -14,15 +15,12 @@ pub fn curves(material: &Material) -> Vec<Curve> {
         Curve {
             title: way.to_string(),
             energy: measured().map(|it| point(it, it.test[0])).collect(),
-            forces: measured().map(|it| point(it, forces(&it.test))).collect(),
+            forces: measured()
+                .map(|it| point(it, forces_percent(&it.test)))
+                .collect(),
         }
     };
     COMPARED.map(curve).into()
-}
-
-/// Root mean square of the errors of the three forces.
-fn forces([_, f_a, f_s, m_theta, ..]: &[f64; 6]) -> f64 {
-    ((f_a * f_a + f_s * f_s + m_theta * m_theta) / 3.0).sqrt()
 }
 
 pub fn csv(materials: &[Material]) -> Result<String> {
@@ -32,7 +30,7 @@ pub fn csv(materials: &[Material]) -> Result<String> {
             .to_owned();
     for material in materials {
         for it in &material.measured {
-            let validation = [it.validation[0], forces(&it.validation)];
+            let validation = [it.validation[0], forces_percent(&it.validation)];
             write!(text, "{},\"{}\",{}", material.name, it.way, it.rays)?;
             for error in validation.iter().chain(&it.test) {
                 write!(text, ",{error:.4}")?;
@@ -76,8 +74,8 @@ pub fn markdown(
                 it.way,
                 it.rays,
                 it.validation[0],
-                forces(&it.validation),
-                forces(&it.test),
+                forces_percent(&it.validation),
+                forces_percent(&it.test),
                 it.training_s
             )?;
         }
