@@ -32,6 +32,29 @@ fn shorten(work: &Workplace) {
     work.edit("learned/fine-tuning.toml", &[("epochs = 80", "epochs = 3")]);
 }
 
+/// The summary of the spot check's database, and the number of states in the first round of learn.csv.
+fn spot_check(work: &Workplace) -> (String, String) {
+    let summary = work.output("dataset summary learned/spot-check.parquet");
+    let table = std::fs::read_to_string(work.path("learned/learn.csv")).unwrap();
+    let round = table.lines().nth(1).unwrap();
+    (summary, round.split(',').nth(4).unwrap().to_owned())
+}
+
+/// Makes the damage at the end of every solved window negative.
+fn spoil_last_states(folder: &Path) {
+    for file in std::fs::read_dir(folder).unwrap() {
+        let path = file.unwrap().path();
+        if path.extension().is_none_or(|kind| kind != "json") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).unwrap();
+        let mut solution: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let samples = solution["samples"].as_array_mut().unwrap();
+        samples.last_mut().unwrap()["d"] = (-1.0).into();
+        std::fs::write(&path, solution.to_string()).unwrap();
+    }
+}
+
 #[test]
 fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
     let work = Workplace::new();
@@ -72,6 +95,22 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
         std::fs::metadata(&fits).unwrap().modified().unwrap(),
         before
     );
+    // Rows that the database of the spot check rejects judge no weights.
+    let (summary, states) = spot_check(&work);
+    assert!(summary.contains("12 rows of 3 rays"), "{summary}");
+    assert_eq!(states, "12");
+    spoil_last_states(&work.path("learned/spot-check"));
+    work.output(&learn(
+        POLYPROPYLENE,
+        &format!("{OPTIONS} --accuracy 100% --forces 100%"),
+    ));
+    let (summary, states) = spot_check(&work);
+    assert!(summary.contains("rejected"), "{summary}");
+    assert!(
+        states != "12" && summary.contains(&format!("{states} rows of 3 rays")),
+        "{states} states: {summary}"
+    );
+
     let card = work.output("surrogate card learned/weights.safetensors");
     assert!(
         card.contains("polypropylene-0.8mm") && card.contains("fine-tuned from"),

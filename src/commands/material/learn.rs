@@ -160,26 +160,25 @@ impl LearnCommand {
     }
 
     /// The states on which weights are tested, drawn uniformly inside the region of the campaign.
-    fn spot_check(&self, campaign: &Campaign) -> Result<Solved> {
+    fn spot_check(&self, campaign: &Campaign) -> Result<Database> {
         let domain = region(campaign).context("the campaign has no region of rays")?;
         let count = STATES_PER_RAY * usize::from(self.spot_rays);
         let probes =
             spot_states::drawn(&domain, &campaign.design, count, STATES_PER_RAY, SPOT_SEED);
         let solve = SolveArgs::new(self.jobs, campaign.time_limit);
         let folder = self.out.join("spot-check");
-        let solved =
-            spot_states::solve(&probes, &campaign.material, campaign.tier, &solve, &folder)?;
-        let states = solved.rows.len();
-        let plan = SplitPlan::default();
-        let database = Database::collect(solved.rows.clone(), &Gates::default(), &plan)
+        let Solved {
+            rows, cpu_seconds, ..
+        } = spot_states::solve(&probes, &campaign.material, campaign.tier, &solve, &folder)?;
+        let states = rows.len();
+        let database = Database::collect(rows, &Gates::default(), &SplitPlan::default())
             .context("the solver followed too few rays of the spot check: increase --spot-rays")?;
         database.write(&self.out.join("spot-check.parquet"), true)?;
         println!(
-            "spot check: {} rays, {states} of {count} states reached by the solver, {:.0} s of CPU time",
-            probes.len(),
-            solved.cpu_seconds
+            "spot check: {} rays, {states} of {count} states reached by the solver, {cpu_seconds:.0} s of CPU time",
+            probes.len()
         );
-        Ok(solved)
+        Ok(database)
     }
 
     /// Solves the first `rays` rays of the campaign, fine-tunes and tests.
@@ -189,7 +188,7 @@ impl LearnCommand {
         campaign: &Campaign,
         config: &TrainingConfig,
         parent: &Surrogate,
-        spot: &Solved,
+        spot: &Database,
         time_limit: Duration,
     ) -> Result<Round> {
         let jobs = self.out.join("campaign");
@@ -215,7 +214,7 @@ impl LearnCommand {
             Some(parent),
         )?;
         weights.save(&self.weights())?;
-        Ok(Round::new(&tally, &weights, spot))
+        Ok(Round::new(&tally, &weights, spot.rows()))
     }
 }
 

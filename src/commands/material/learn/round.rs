@@ -1,8 +1,8 @@
 //! The results of one round: its rays, its cost, and the errors of its weights at the spot check.
 
-use crate::replays::spot_states::Solved;
 use ::train::Parity;
 use anyhow::Result;
+use dataset::Row;
 use fe_driver::Tally;
 use std::fmt::{self, Write};
 use surrogate::{Surrogate, TestErrors};
@@ -29,9 +29,9 @@ pub(super) const HEADING: &str = "  rays  to their end  solver CPU, s  training,
     W, %   F_a, %   F_s, %     M, %  forces, %     D, %  D_peak, %";
 
 impl Round {
-    pub(super) fn new(tally: &Tally, weights: &Surrogate, spot: &Solved) -> Self {
+    pub(super) fn new(tally: &Tally, weights: &Surrogate, spot: &[Row]) -> Self {
         let domain = weights.domain();
-        let inside = spot.rows.iter().filter(|row| {
+        let inside = spot.iter().filter(|row| {
             let state = row.sample.deformation();
             domain.contains(&row.design, &state)
         });
@@ -41,7 +41,7 @@ impl Round {
             cpu_s: tally.cpu_seconds,
             training_s: weights.card().training_s.unwrap_or_default(),
             inside: inside.count(),
-            errors: Parity::of(weights, &spot.rows).errors(),
+            errors: Parity::of(weights, spot).errors(),
         }
     }
 
