@@ -77,6 +77,13 @@ fn a_table_becomes_weights_that_predict_it() {
     ] {
         assert!(output.contains(expected), "{output}");
     }
+    // The table has no D_peak.
+    let card = work.output(&format!("surrogate card {WEIGHTS}"));
+    let damage = card
+        .lines()
+        .find(|line| line.contains("damage D_peak"))
+        .unwrap();
+    assert!(damage.ends_with('-') && !damage.contains('%'), "{damage}");
     for name in ["own-last.safetensors", "own-seed-1.json", "own-parity.png"] {
         assert!(work.path("runs").join(name).exists(), "{name}");
     }

@@ -333,11 +333,15 @@ fn parity_chart(parity: &Parity) -> Result<String> {
 pub fn error_table(errors: &TestErrors, what: &str) -> Table {
     let header = format!("on {} {what}", errors.rows);
     let mut table = table([header.as_str(), "relative RMSE", "median"]);
+    let percent = |error: f64| match error.is_nan() {
+        true => "-".to_owned(),
+        false => format!("{:.2} %", 100.0 * error),
+    };
     for (name, error) in quantities(errors) {
         table.add_row([
             name.to_owned(),
-            format!("{:.2} %", 100.0 * error.relative_rmse),
-            format!("{:.2} %", 100.0 * error.median),
+            percent(error.relative_rmse),
+            percent(error.median),
         ]);
     }
     table

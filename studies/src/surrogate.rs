@@ -11,7 +11,7 @@ use kirigami::ui::{picture, run_folder};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use surrogate::{Order, Surrogate, TestErrors};
+use surrogate::{Order, Surrogate, TestErrors, number_or_dash};
 
 /// Measure the accuracy of the surrogate against its cost: rays, network size, epochs, precision
 ///
@@ -228,11 +228,12 @@ fn markdown(fits: &[Fit]) -> Result<String> {
         kernel_us,
     } in fits
     {
-        let [w, f_a, f_s, m_theta, d, d_peak] = errors.percents();
+        let [w, f_a, f_s, m_theta, ..] = errors.percents();
+        let [.., d, d_peak] = errors.percents().map(|error| number_or_dash(error, 1));
         writeln!(
             text,
             "| {} | {} | {} | {} | {w:.2} % | {:.2} % | {f_a:.1} % | {f_s:.1} % | {m_theta:.1} % | \
-             {d:.1} % | {d_peak:.1} % | {training_s:.0} s | {kernel_us:.1} us |",
+             {d} % | {d_peak} % | {training_s:.0} s | {kernel_us:.1} us |",
             case.size,
             case.precision(),
             case.rays,
@@ -270,10 +271,11 @@ fn tradeoff(fits: &[Fit]) -> Result<String> {
     } in fits
     {
         let [w, .., d, _] = errors.percents();
+        let d = number_or_dash(d, 1);
         writeln!(
             text,
             "| {} {} | {} | {} | {training_s:.0} s | {kernel_us:.1} | {w:.2} % | {:.1} % | \
-             {d:.1} % | {} |",
+             {d} % | {} |",
             case.size,
             case.precision(),
             case.rays,

@@ -10,7 +10,7 @@ use kirigami::commands::train::kept_fit;
 use kirigami::ui::{picture, run_folder};
 use std::fmt::Write;
 use std::path::PathBuf;
-use surrogate::{Surrogate, TestErrors};
+use surrogate::{Surrogate, TestErrors, number_or_dash};
 
 /// Measure the spread over seeds, the ensemble's deviation as an error estimate, and errors outside the domain
 ///
@@ -147,11 +147,12 @@ impl Answers {
                         |\n|---|---|---|---|---|---|---|---|\n"
                 .to_owned();
         let mut line = |name: &str, errors: &TestErrors, worst: Option<f64>| {
-            let [w, f_a, f_s, m, d, peak] = errors.percents();
+            let [w, f_a, f_s, m, ..] = errors.percents();
+            let [.., d, peak] = errors.percents().map(|error| number_or_dash(error, 1));
             let worst = worst.map_or(String::new(), |worst| format!("{worst:.2} %"));
             writeln!(
                 text,
-                "| {name} | {w:.2} % | {f_a:.1} % | {f_s:.1} % | {m:.1} % | {d:.1} % | {peak:.1} % \
+                "| {name} | {w:.2} % | {f_a:.1} % | {f_s:.1} % | {m:.1} % | {d} % | {peak} % \
                  | {worst} |"
             )
         };
@@ -309,10 +310,11 @@ impl Answers {
                 .to_owned();
         let mut line = |networks: usize, errors: [f64; 5], what: &str| {
             let [w, f_a, f_s, m, d] = errors;
+            let d = number_or_dash(d, 1);
             writeln!(
                 text,
                 "| {networks} | {networks} | {w:.2} % | {f_a:.1} % | {f_s:.1} % | {m:.1} % | \
-                 {d:.1} % | {what} |"
+                 {d} % | {what} |"
             )
         };
         line(1, std::array::from_fn(rms), "design")?;

@@ -3,7 +3,7 @@
 use crate::features::{FEATURE_NAMES, LOG_WIDTH, Standardisation};
 use crate::network::InvalidWeights;
 use hinge::{HingeConstants, TrainingDomain};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// Format version of the weight file and its card that this crate writes; it also reads all earlier versions.
 ///
@@ -96,8 +96,8 @@ pub struct TestErrors {
     pub m_theta: FitError,
     /// Error of D.
     pub damage: FitError,
-    /// Error of D_peak; zero if no head predicts it.
-    #[serde(default)]
+    /// Error of D_peak; not known if no head predicts it. Some older cards have zero then.
+    #[serde(default = "FitError::unknown")]
     pub damage_peak: FitError,
 }
 
@@ -114,14 +114,38 @@ pub struct ErrorBin {
     pub errors: TestErrors,
 }
 
-/// Deviation of predictions from their targets.
+/// Deviation of predictions from their targets; NaN if it is not known, which is `null` in a card.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FitError {
     /// Root mean square of the error, divided by the root mean square of the target.
+    #[serde(deserialize_with = "number_or_null")]
     pub relative_rmse: f64,
     /// Median of |error| / |target| over the rows with a non-zero target.
+    #[serde(deserialize_with = "number_or_null")]
     pub median: f64,
+}
+
+impl FitError {
+    /// Without a known target that is not zero.
+    pub fn unknown() -> Self {
+        Self {
+            relative_rmse: f64::NAN,
+            median: f64::NAN,
+        }
+    }
+}
+
+fn number_or_null<'de, D: Deserializer<'de>>(value: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(value)?.unwrap_or(f64::NAN))
+}
+
+/// A number for a table; `-` if it is not known (NaN).
+pub fn number_or_dash(value: f64, decimals: usize) -> String {
+    match value.is_nan() {
+        true => "-".into(),
+        false => format!("{value:.decimals$}"),
+    }
 }
 
 impl TestErrors {
@@ -222,4 +246,25 @@ impl Card {
 /// The damage sharpness of weights before version 4.
 fn one() -> f64 {
     1.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_that_is_not_known_is_null_on_the_card() {
+        let errors = TestErrors {
+            rows: 3,
+            damage_peak: FitError::unknown(),
+            ..TestErrors::default()
+        };
+        let text = serde_json::to_string(&errors).unwrap();
+        assert!(text.contains(r#""damage_peak":{"relative_rmse":null,"median":null}"#));
+        let read: TestErrors = serde_json::from_str(&text).unwrap();
+        assert!(read.damage_peak.relative_rmse.is_nan() && read.damage_peak.median.is_nan());
+        assert_eq!(read.energy, errors.energy);
+        let shown = errors.percents().map(|percent| number_or_dash(percent, 1));
+        assert_eq!(shown, ["0.0", "0.0", "0.0", "0.0", "0.0", "-"]);
+    }
 }

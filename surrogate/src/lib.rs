@@ -55,7 +55,9 @@ mod passes;
 mod tanh;
 mod weights;
 
-pub use card::{Card, ErrorBin, FORMAT_VERSION, FitError, TestErrors, UNITS, forces_percent};
+pub use card::{
+    Card, ErrorBin, FORMAT_VERSION, FitError, TestErrors, UNITS, forces_percent, number_or_dash,
+};
 pub use damage::HingeDamage;
 pub use energy::{HingeEnergy, Order, Prepared};
 pub use features::{FEATURE_NAMES, Standardisation, features};

@@ -1,6 +1,6 @@
 //! The record of one epoch.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// The result of one pass over the training rows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -14,7 +14,8 @@ pub struct Epoch {
     /// The loss (15) on the validation part at the end of the epoch.
     pub validation_loss: f64,
     /// Relative errors of each network on the validation part: of W and the forces (their geometric mean), of D,
-    /// and of D_peak (zero if it is not predicted).
+    /// and of D_peak; NaN if no validation row has a known target that is not zero.
+    #[serde(deserialize_with = "numbers_or_null")]
     pub validation_errors: [f64; 3],
     /// Learning rate at the end of the epoch.
     pub learning_rate: f64,
@@ -22,4 +23,10 @@ pub struct Epoch {
     pub best: bool,
     /// Training time so far (s).
     pub elapsed_s: f64,
+}
+
+/// JSON has no NaN.
+fn numbers_or_null<'de, D: Deserializer<'de>>(values: D) -> Result<[f64; 3], D::Error> {
+    let values = <[Option<f64>; 3]>::deserialize(values)?;
+    Ok(values.map(|value| value.unwrap_or(f64::NAN)))
 }

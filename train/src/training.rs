@@ -30,7 +30,8 @@ use surrogate::{Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNIT
 /// A trained surrogate with its history and test errors.
 #[derive(Clone, Debug)]
 pub struct Trained {
-    /// The surrogate in which each network is from the epoch of its minimum validation error.
+    /// The surrogate in which each network is from the epoch of its minimum validation error, or from the last epoch if
+    /// that error is not known.
     pub surrogate: Surrogate,
     /// The surrogate of the last epoch.
     pub last: Surrogate,
@@ -218,14 +219,16 @@ impl Training {
             let before = self.history.iter().map(|it| it.validation_errors[network]);
             errors[network] < before.fold(f64::INFINITY, f64::min)
         });
-        // The networks have no common layers, and the damage heads overfit earlier.
-        if better[0] {
+        // The networks have no common layers, and the damage heads overfit earlier. Without a known error, the network of
+        // the last epoch is kept.
+        let kept = [0, 1, 2].map(|network| better[network] || errors[network].is_nan());
+        if kept[0] {
             self.best.chi = self.networks.chi.clone();
         }
-        if better[1] {
+        if kept[1] {
             self.best.chi_d = self.networks.chi_d.clone();
         }
-        if better[2] {
+        if kept[2] {
             self.best.chi_p = self.networks.chi_p.clone();
         }
         let report = Epoch {

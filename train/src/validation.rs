@@ -143,23 +143,28 @@ impl Parity {
     }
 
     /// The relative root mean square error of each network, by which its best epoch is chosen: the geometric mean of
-    /// the errors of W and the forces; the error of D; and the error of D_peak, zero if it is not predicted. The
+    /// the known errors of W and the forces; the error of D; and the error of D_peak. NaN if it is not known. The
     /// geometric mean prevents a few states of large force, which dominate the loss, from determining the choice. The
     /// error of each state is limited to the root mean square of its quantity, so that a single ray far from all
     /// training rays does not determine the choice.
     pub(crate) fn network_errors(&self) -> [f64; 3] {
-        let error = |points: &[ParityPoint]| limited_error(points);
         let potential = [&self.energy, &self.f_a, &self.f_s, &self.m_theta];
-        let product: f64 = potential.iter().map(|points| error(points)).product();
+        let potential = potential.map(|points| limited_error(points));
+        let known: Vec<f64> = potential.into_iter().filter(|it| !it.is_nan()).collect();
+        let mean = match known.len() {
+            0 => f64::NAN,
+            count => known.iter().product::<f64>().powf(1.0 / count as f64),
+        };
         [
-            product.powf(0.25),
-            error(&self.damage),
-            error(&self.damage_peak),
+            mean,
+            limited_error(&self.damage),
+            limited_error(&self.damage_peak),
         ]
     }
 }
 
-/// The root mean square error divided by the root mean square of the targets, each error being limited to the latter.
+/// The root mean square error divided by the root mean square of the targets, each error being limited to the latter; NaN
+/// if no target is known, or all are zero.
 fn limited_error(points: &[ParityPoint]) -> f64 {
     let targets: Vec<f64> = known(points).map(|point| point.target).collect();
     let target = root_mean_square(targets.into_iter());
@@ -168,7 +173,7 @@ fn limited_error(points: &[ParityPoint]) -> f64 {
     if target > 0.0 {
         root_mean_square(errors.into_iter()) / target
     } else {
-        0.0
+        f64::NAN
     }
 }
 
@@ -190,7 +195,7 @@ fn known(points: &[ParityPoint]) -> impl Iterator<Item = &ParityPoint> {
     points.iter().filter(|point| !point.target.is_nan())
 }
 
-/// Errors relative to the targets; zero if all targets are zero.
+/// Errors relative to the targets; not known if no target is known, or all are zero.
 pub(crate) fn fit_error(points: &[ParityPoint]) -> FitError {
     let targets: Vec<f64> = known(points).map(|point| point.target).collect();
     let target = root_mean_square(targets.into_iter());
@@ -199,13 +204,12 @@ pub(crate) fn fit_error(points: &[ParityPoint]) -> FitError {
         .map(|point| ((point.predicted - point.target) / point.target).abs())
         .collect();
     relative.sort_by(f64::total_cmp);
-    FitError {
-        relative_rmse: if target > 0.0 {
-            rms_error(points) / target
-        } else {
-            0.0
+    match relative.get(relative.len() / 2) {
+        Some(&median) => FitError {
+            relative_rmse: rms_error(points) / target,
+            median,
         },
-        median: relative.get(relative.len() / 2).copied().unwrap_or(0.0),
+        None => FitError::unknown(),
     }
 }
 
@@ -238,7 +242,15 @@ mod tests {
             target: f64::NAN,
             predicted: 1.0,
         };
-        assert_eq!(limited_error(&[unknown]), 0.0);
+        let zero = ParityPoint {
+            target: 0.0,
+            predicted: 1.0,
+        };
+        for points in [vec![], vec![unknown], vec![zero, unknown]] {
+            assert!(limited_error(&points).is_nan());
+            assert!(fit_error(&points).relative_rmse.is_nan());
+            assert!(fit_error(&points).median.is_nan());
+        }
         assert_eq!(
             fit_error(&[point(2.1), unknown]).relative_rmse,
             fit_error(&[point(2.1)]).relative_rmse

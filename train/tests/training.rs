@@ -156,6 +156,45 @@ fn an_energy_in_closed_form_is_learned() {
     assert_eq!(trained.parity.energy.len(), errors.rows);
 }
 
+/// The validation rows have no damage, and their D_peak is not known.
+#[test]
+fn a_damage_head_without_a_known_error_is_that_of_the_last_epoch() {
+    let whole = database(rows(30));
+    let validation = &whole.manifest().split.validation;
+    let mut rows = whole.rows().to_vec();
+    for row in rows.iter_mut().filter(|row| validation.contains(&row.job)) {
+        row.sample.d = 0.0;
+        row.sample.d_peak = None;
+    }
+    let database = database(rows);
+    let config = config(3);
+    let folder = tempfile::tempdir().unwrap();
+    let state = folder.path().join("state");
+    let mut training = Training::new(&database, &config, Backend::default(), Start::Fresh).unwrap();
+    training.epoch().unwrap();
+    training.save(&state).unwrap();
+    let start = Start::State {
+        state: &state,
+        parent: None,
+    };
+    let mut training = Training::new(&database, &config, Backend::default(), start).unwrap();
+    while !training.is_finished() {
+        training.epoch().unwrap();
+    }
+    let trained = training.finish().unwrap();
+    for epoch in &trained.history {
+        let [energy, d, d_peak] = epoch.validation_errors;
+        assert!(energy > 0.0 && d.is_nan() && d_peak.is_nan(), "{epoch:?}");
+    }
+    let test = database.part(Part::Test);
+    let predicted = |surrogate: &Surrogate| {
+        let parity = Parity::of(surrogate, &test);
+        (parity.damage, parity.damage_peak)
+    };
+    assert_eq!(predicted(&trained.surrogate), predicted(&trained.last));
+    assert!(trained.test_errors.damage_peak.relative_rmse > 0.0);
+}
+
 #[test]
 fn mirror_images_give_the_same_energy_and_damage() {
     let surrogate = trained(2, Backend::default()).surrogate;

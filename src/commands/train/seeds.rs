@@ -16,7 +16,7 @@ use comfy_table::Table;
 use dataset::{Database, Part};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
-use surrogate::{Surrogate, TestErrors};
+use surrogate::{Surrogate, TestErrors, number_or_dash};
 
 /// What all seeds of one command have in common.
 #[derive(Clone, Copy)]
@@ -156,7 +156,7 @@ impl TrainCommand {
 
     /// The cells of one seed in the comparison.
     fn cells(&self, config: &TrainingConfig, member: &Trained, chosen: bool) -> [String; 13] {
-        let percent = |value: f64| format!("{:.2}", 100.0 * value);
+        let percent = |value: f64| number_or_dash(100.0 * value, 2);
         let [w, d, d_peak] = validation_errors(member).map(percent);
         let tested = quantities(&member.test_errors).map(|(_, error)| percent(error.relative_rmse));
         let [test_w, f_a, f_s, m, test_d, test_d_peak] = tested;
@@ -204,18 +204,18 @@ const COLUMNS: [&str; 13] = [
     "weights",
 ];
 
-/// The minimum validation error of each network over the epochs.
+/// The minimum validation error of each network over the epochs; NaN if it is not known.
 fn validation_errors(trained: &Trained) -> [f64; 3] {
     [0, 1, 2].map(|network| {
         let errors = (trained.history.iter()).map(|it| it.validation_errors[network]);
-        errors.fold(f64::INFINITY, f64::min)
+        errors.fold(f64::NAN, f64::min)
     })
 }
 
-/// The product of the minimum validation errors of the networks of W and of D.
+/// The product of the minimum validation errors of the networks of W and of D, as far as they are known.
 fn validation_error(trained: &Trained) -> f64 {
     let [w, d, _] = validation_errors(trained);
-    w * d
+    [w, d].into_iter().filter(|it| !it.is_nan()).product()
 }
 
 /// Prints the spread of the errors of the seeds, and what it implies for the error.
@@ -247,12 +247,13 @@ fn spread_table(errors: &[TestErrors]) -> Table {
             .iter()
             .map(|errors| 100.0 * errors[quantity].1.relative_rmse)
             .collect();
-        let fold = |pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick).unwrap_or(0.0);
+        let fold =
+            |pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick).unwrap_or(f64::NAN);
         table.add_row([
             all[0][quantity].0.to_owned(),
-            format!("{:.2}", fold(f64::min)),
-            format!("{:.2}", values.iter().sum::<f64>() / values.len() as f64),
-            format!("{:.2}", fold(f64::max)),
+            number_or_dash(fold(f64::min), 2),
+            number_or_dash(values.iter().sum::<f64>() / values.len() as f64, 2),
+            number_or_dash(fold(f64::max), 2),
         ]);
     }
     table

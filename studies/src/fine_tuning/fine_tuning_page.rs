@@ -5,7 +5,7 @@ use crate::charts::Curve;
 use ::train::TrainingConfig;
 use anyhow::Result;
 use std::fmt::Write;
-use surrogate::forces_percent;
+use surrogate::{forces_percent, number_or_dash};
 
 /// Errors against rays for each way.
 pub fn curves(material: &Material) -> Vec<Curve> {
@@ -66,11 +66,12 @@ pub fn markdown(
             material.name, material.rays
         )?;
         for it in &material.measured {
-            let [w, f_a, f_s, m_theta, d, d_peak] = it.test;
+            let [w, f_a, f_s, m_theta, ..] = it.test;
+            let [.., d, d_peak] = it.test.map(|error| number_or_dash(error, 1));
             writeln!(
                 text,
-                "| {} | {} | {:.2} | {:.1} | {w:.2} | {f_a:.1} | {f_s:.1} | {m_theta:.1} | {:.1} | {d:.1} | \
-                 {d_peak:.1} | {:.0} s |",
+                "| {} | {} | {:.2} | {:.1} | {w:.2} | {f_a:.1} | {f_s:.1} | {m_theta:.1} | {:.1} | {d} | {d_peak} | \
+                 {:.0} s |",
                 it.way,
                 it.rays,
                 it.validation[0],

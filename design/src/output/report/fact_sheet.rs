@@ -244,7 +244,10 @@ impl WeightFacts {
             .map_or("an unknown number of".to_owned(), |rays| rays.to_string());
         let names = ["W", "F_a", "F_s", "M_theta", "D", "D_peak"];
         let errors: Vec<String> = std::iter::zip(names, &self.errors_percent)
-            .map(|(name, error)| format!("{name} {}", rounded(*error, 3)))
+            .map(|(name, error)| match error.is_nan() {
+                true => format!("{name} -"),
+                false => format!("{name} {}", rounded(*error, 3)),
+            })
             .collect();
         let trained = format!(
             "{}, trained on {rays} rays of the mesh `{}`",

@@ -5,7 +5,7 @@ use anyhow::Result;
 use dataset::Row;
 use fe_driver::Tally;
 use std::fmt::{self, Write};
-use surrogate::{Surrogate, TestErrors};
+use surrogate::{Surrogate, TestErrors, number_or_dash};
 
 /// One round.
 #[derive(Clone, Copy)]
@@ -58,17 +58,19 @@ impl Round {
 
 impl fmt::Display for Round {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let [w, f_a, f_s, m_theta, d, d_peak] = self.errors.percents();
+        let percents = self.errors.percents();
+        let w = number_or_dash(percents[0], 2);
+        let [_, f_a, f_s, m_theta, d, d_peak] = percents.map(|it| number_or_dash(it, 1));
         write!(
             f,
-            "{:>6}  {:>10.0} %  {:>13.0}  {:>11.0}  {:>13}  {w:>6.2}  {f_a:>7.1}  {f_s:>7.1}  {m_theta:>7.1}  {:>9.1}  \
-             {d:>7.1}  {d_peak:>9.1}",
+            "{:>6}  {:>10.0} %  {:>13.0}  {:>11.0}  {:>13}  {w:>6}  {f_a:>7}  {f_s:>7}  {m_theta:>7}  {:>9}  {d:>7}  \
+             {d_peak:>9}",
             self.rays,
             self.ended_percent(),
             self.cpu_s,
             self.training_s,
             format!("{} of {}", self.inside, self.errors.rows),
-            self.errors.forces_percent()
+            number_or_dash(self.errors.forces_percent(), 1)
         )
     }
 }
