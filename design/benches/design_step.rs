@@ -190,6 +190,7 @@ fn network() -> SurrogateLaw {
         training_s: None,
         test_errors: TestErrors::default(),
         error_bins: Vec::new(),
+        spot_check: None,
     };
     let networks = Layers {
         chi: layers(&[5, 256, 256, 256, 128]),

@@ -123,5 +123,6 @@ fn card() -> Card {
         training_s: None,
         test_errors: TestErrors::default(),
         error_bins: Vec::new(),
+        spot_check: None,
     }
 }

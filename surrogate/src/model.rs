@@ -65,6 +65,12 @@ impl Surrogate {
         self
     }
 
+    /// The same surrogate with the errors at a spot check on its card.
+    pub fn with_spot_check(mut self, errors: TestErrors) -> Self {
+        self.card.spot_check = Some(errors);
+        self
+    }
+
     /// The surrogate of the same material at `factor` times the thickness, exact for geometrically similar hinges.
     ///
     /// The window is rate-independent and has no length of its own, so that with all lengths multiplied by `factor`,

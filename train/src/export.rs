@@ -108,6 +108,7 @@ mod tests {
             training_s: None,
             test_errors: TestErrors::default(),
             error_bins: Vec::new(),
+            spot_check: None,
         };
         Surrogate::from_parts(layers(networks).unwrap(), card).unwrap()
     }

@@ -366,6 +366,7 @@ fn card(
         training_s: None,
         test_errors: TestErrors::default(),
         error_bins: Vec::new(),
+        spot_check: None,
     })
 }
 

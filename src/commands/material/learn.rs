@@ -61,7 +61,7 @@ pub struct LearnCommand {
     #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
     tier: Tier,
     /// Number of rays of the first round
-    #[arg(long, value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u16).range(3..))]
+    #[arg(long, value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u16).range(6..))]
     rays: u16,
     /// Number of rays of the spot check, each with 4 states
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u16).range(3..))]
@@ -95,14 +95,20 @@ impl LearnCommand {
             .with_context(|| format!("{}", self.from.display()))?;
         let campaign = self.campaign(&material)?;
         let spot = self.spot_check(&campaign)?;
+        let solved = self.solved_before()?;
         println!("{HEADING}");
         let mut rounds: Vec<Round> = Vec::new();
-        for rays in counts(usize::from(self.rays), campaign.count) {
+        let mut counts = counts(usize::from(self.rays), campaign.count).peekable();
+        while let Some(rays) = counts.next() {
             let left = self.time.saturating_sub(began.elapsed());
             let round = self.round(rays, &campaign, &config, &parent, &spot, left)?;
             println!("{round}");
             rounds.push(round);
             run_folder::write(&self.out, "learn.csv", &csv(&rounds)?)?;
+            // The weights are those of all rays that an earlier command has solved.
+            if counts.peek().is_some_and(|next| *next <= solved) {
+                continue;
+            }
             if round.is_within(self.accuracy, self.forces) {
                 println!(
                     "accurate enough after {}; weights written to {}",
@@ -111,8 +117,10 @@ impl LearnCommand {
                 );
                 return Ok(());
             }
-            if began.elapsed() >= self.time && rays < campaign.count {
-                bail!(Unfinished::new(campaign.count - rays, "rays"));
+            if let Some(next) = counts.peek()
+                && began.elapsed() >= self.time
+            {
+                bail!(Unfinished::new(next - rays, "rays of the next round"));
             }
         }
         bail!(
@@ -121,6 +129,20 @@ impl LearnCommand {
             campaign.count,
             self.out.join("campaign.toml").display()
         )
+    }
+
+    /// Number of rays that earlier commands have solved.
+    fn solved_before(&self) -> Result<usize> {
+        let jobs = self.jobs();
+        match jobs.exists() {
+            true => Ok(fe_driver::status(&jobs)?.tally.closed()),
+            false => Ok(0),
+        }
+    }
+
+    /// The folder of the rays.
+    fn jobs(&self) -> PathBuf {
+        self.out.join("campaign")
     }
 
     fn weights(&self) -> PathBuf {
@@ -191,7 +213,7 @@ impl LearnCommand {
         spot: &Database,
         time_limit: Duration,
     ) -> Result<Round> {
-        let jobs = self.out.join("campaign");
+        let jobs = self.jobs();
         let options = RunOptions {
             shard: Shard::WHOLE,
             workers: SolveArgs::new(self.jobs, campaign.time_limit).workers(),
@@ -202,7 +224,10 @@ impl LearnCommand {
             ..campaign.clone()
         };
         let tally = solve_rays(&first, &jobs, &options)?;
-        refuse_unfinished(&tally, &jobs)?;
+        refuse_unfinished(&tally, &jobs).map_err(|error| match error.downcast::<Unfinished>() {
+            Ok(Unfinished { left, .. }) => Unfinished::new(left, "rays of this round").into(),
+            Err(error) => error,
+        })?;
         let database = collected(&jobs)?;
         database.write(&self.out.join("hinges.parquet"), true)?;
         let fits = self.out.join("fits");
@@ -213,8 +238,10 @@ impl LearnCommand {
             config,
             Some(parent),
         )?;
+        let round = Round::new(&tally, &weights, spot.rows());
+        let weights = weights.with_spot_check(round.errors());
         weights.save(&self.weights())?;
-        Ok(Round::new(&tally, &weights, spot.rows()))
+        Ok(round)
     }
 }
 

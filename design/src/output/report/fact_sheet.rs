@@ -10,6 +10,7 @@ use crate::output::report::hinge_row::HingeRow;
 use crate::scene::{HingeModel, Scene};
 use crate::sheet::kinematics::deployed_corners;
 use serde::Serialize;
+use surrogate::TestErrors;
 
 /// Facts of the best design of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -81,6 +82,8 @@ pub struct WeightFacts {
     pub test_rows: usize,
     /// Relative root mean square errors (%): W, F_a, F_s, M_theta, D and, if it is predicted, D_peak.
     pub errors_percent: Vec<f64>,
+    /// Number of states of the spot check of the weights, and the same errors there; `None` if there was none.
+    pub spot_check: Option<(usize, Vec<f64>)>,
 }
 
 impl FactSheet {
@@ -225,8 +228,8 @@ impl WeightFacts {
             _ => condensed,
         };
         let card = surrogate.card();
-        let errors = card.test_errors.percents();
         let predicted = if card.peak_scale.is_some() { 6 } else { 5 };
+        let errors = |of: &TestErrors| of.percents()[..predicted].to_vec();
         Some(Self {
             file: (path.and_then(|path| path.file_name()))
                 .map_or(String::new(), |name| name.to_string_lossy().into_owned()),
@@ -234,7 +237,8 @@ impl WeightFacts {
             tier: card.tier.clone(),
             training_rays: card.training_rays,
             test_rows: card.test_errors.rows,
-            errors_percent: errors[..predicted].to_vec(),
+            errors_percent: errors(&card.test_errors),
+            spot_check: card.spot_check.as_ref().map(|it| (it.rows, errors(it))),
         })
     }
 
@@ -242,24 +246,29 @@ impl WeightFacts {
         let rays = self
             .training_rays
             .map_or("an unknown number of".to_owned(), |rays| rays.to_string());
-        let names = ["W", "F_a", "F_s", "M_theta", "D", "D_peak"];
-        let errors: Vec<String> = std::iter::zip(names, &self.errors_percent)
-            .map(|(name, error)| match error.is_nan() {
-                true => format!("{name} -"),
-                false => format!("{name} {}", rounded(*error, 3)),
-            })
-            .collect();
         let trained = format!(
             "{}, trained on {rays} rays of the mesh `{}`",
             self.file, self.tier
         );
-        let errors = format!(
-            "{} % (rms, {} unseen states)",
-            errors.join(", "),
-            self.test_rows
-        );
-        vec![("weights", trained), ("test errors", errors)]
+        let test_errors = errors(&self.errors_percent, self.test_rows, "unseen");
+        let mut rows = vec![("weights", trained), ("test errors", test_errors)];
+        if let Some((states, percents)) = &self.spot_check {
+            rows.push(("spot check", errors(percents, *states, "random")));
+        }
+        rows
     }
+}
+
+/// Errors of W, F_a, F_s, M_theta, D and D_peak as one line.
+fn errors(percents: &[f64], states: usize, kind: &str) -> String {
+    let names = ["W", "F_a", "F_s", "M_theta", "D", "D_peak"];
+    let errors: Vec<String> = std::iter::zip(names, percents)
+        .map(|(name, error)| match error.is_nan() {
+            true => format!("{name} -"),
+            false => format!("{name} {}", rounded(*error, 3)),
+        })
+        .collect();
+    format!("{} % (rms, {states} {kind} states)", errors.join(", "))
 }
 
 /// What moves the sheet, and what its displacement means.

@@ -51,6 +51,10 @@ impl Round {
         w <= energy && self.errors.forces_percent() <= forces
     }
 
+    pub(super) fn errors(&self) -> TestErrors {
+        self.errors
+    }
+
     fn ended_percent(&self) -> f64 {
         100.0 * self.ended as f64 / self.rays as f64
     }
