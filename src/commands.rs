@@ -18,6 +18,8 @@ pub mod init;
 #[cfg(feature = "pipeline")]
 mod input_file;
 pub mod inspect;
+#[cfg(feature = "pipeline")]
+mod judged_design;
 pub mod man;
 pub mod material;
 #[cfg(feature = "pipeline")]

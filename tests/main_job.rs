@@ -87,11 +87,17 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
     }
 
     let design = "configs/scenes/demo.toml --design runs/demo/design/state.json";
-    let replay = format!(
-        "verify {design} --ensemble runs/demo/surrogate-last.safetensors --tier tiny --out replay"
-    );
-    let page = work.output(&replay);
-    for expected in ["states of 12 hinges", "| M_theta |", "standard deviations"] {
+    // Without --design, the design of the run.
+    let replay = "verify configs/scenes/demo.toml --ensemble runs/demo/surrogate-last.safetensors --tier tiny --out \
+                  replay";
+    let page = work.output(replay);
+    for expected in [
+        "The design ",
+        "runs/demo/design/state.json: ",
+        "states of 12 hinges",
+        "| M_theta |",
+        "standard deviations",
+    ] {
         assert!(page.contains(expected), "{page}");
     }
     let states = std::fs::read_to_string(work.path("replay/replay.csv")).unwrap();
@@ -99,7 +105,7 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
     // Of hinges that have left the domain of so few rays, D and D_peak are not known.
     assert!(states.lines().any(|line| line.contains(",,")), "{states}");
     let again = Instant::now();
-    assert_eq!(work.output(&replay), page, "solved once");
+    assert_eq!(work.output(replay), page, "solved once");
     assert!(again.elapsed() < Duration::from_secs(5), "solved once");
 
     // Six rays make no law whose corrections converge. Those of the shipped weights do, though the coarsest mesh is far
@@ -113,6 +119,7 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
     let movement = |round: usize| balanced["rounds"][round]["movement"].as_f64().unwrap();
     assert!(movement(1) < 0.7 * movement(0), "{balanced}");
     assert!(balanced["corners"][1].as_f64().unwrap() > 0.0, "{balanced}");
+    assert_eq!(balanced["design"], "design runs/demo/design/state.json");
     let page = || std::fs::read_to_string(work.path("balance/equilibrium.md")).unwrap();
     assert!(page().contains("by finite elements"), "{}", page());
     // Where a further round fails, the rounds before are reported.
@@ -135,13 +142,16 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
         work.output(test)
             .contains("6 of 6 states inside the training domain")
     );
-    let on_paths = format!("{check} --scene {design}")
+    let on_paths = format!("{check} --scene configs/scenes/demo.toml --design start")
         .replace("--out spot", "--out spot-paths")
         .replace("--count 6", "--count 30");
-    assert!(
-        work.output(&on_paths)
-            .contains("states inside the training domain")
-    );
+    let judged = work.output(&on_paths);
+    for expected in [
+        "start design of configs/scenes/demo.toml",
+        "states inside the training domain",
+    ] {
+        assert!(judged.contains(expected), "{judged}");
+    }
     // The rays of two checks are different jobs.
     work.output("dataset merge spot/spot-check.parquet spot-paths/spot-check.parquet --mixed --out both.parquet");
     let rows = |file: &str| -> u64 {

@@ -3,7 +3,7 @@
 mod polished;
 mod sheet_errors;
 
-use crate::commands::inspect::scene_args::Inspected;
+use crate::commands::judged_design::JudgedDesign;
 use crate::replays::balanced_sheet::{WindowSolves, balanced};
 use crate::replays::comparison;
 use crate::replays::comparison::{SCALE, spread_table};
@@ -32,12 +32,12 @@ use surrogate::Surrogate;
 /// error of the whole chain on one design. Writes replay.md, replay.csv and a chart. With --equilibrium the sheet is
 /// balanced with the forces of the finite elements: the error of its deployed shape. Writes equilibrium.md. With
 /// --polish N the design is searched for N more steps with these forces. Writes polish.md, design.json and the files of
-/// a run.
-/// Example: kirigami verify configs/scenes/demo.toml --design runs/demo/design/state.json --equilibrium
+/// a run. Without --design the design of the scene's run is verified, or the start design if the scene has no run.
+/// Example: kirigami verify configs/scenes/demo.toml --equilibrium
 #[derive(Args)]
 pub struct VerifyCommand {
     #[command(flatten)]
-    inspected: Inspected,
+    judged: JudgedDesign,
     /// Weights of further networks of the same training (train --seeds), whose spread estimates the error
     #[arg(long, value_name = "FILE", num_args = 1..)]
     ensemble: Vec<PathBuf>,
@@ -83,19 +83,25 @@ struct Replayed {
 
 impl VerifyCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        let (scene, design) = self.inspected.read()?;
+        let (scene, design, name) = self.judged.read()?;
         let surrogate = scene
             .surrogate()
             .context("only a surrogate can be verified: set hinge = \"surrogate\" in the scene")?;
         let tier = judging_tier(self.tier, surrogate)?;
         match self.equilibrium {
-            true => self.balance(scene, &design, tier),
-            false => self.replay(&scene, &design, surrogate, tier),
+            true => self.balance(scene, &design, name, tier),
+            false => self.replay(&scene, &design, &name, surrogate, tier),
         }
     }
 
     /// The equilibrium with finite elements, and the polish from there.
-    fn balance(&self, mut scene: Scene, design: &DesignVector, tier: Tier) -> Result<()> {
+    fn balance(
+        &self,
+        mut scene: Scene,
+        design: &DesignVector,
+        name: String,
+        tier: Tier,
+    ) -> Result<()> {
         let _held = run_folder::hold(&self.out)?;
         let windows = WindowSolves {
             tier,
@@ -108,11 +114,12 @@ impl VerifyCommand {
                 let end = found.by_elements();
                 let picture = drawing::deployed(&scene, &end.sheet, end.final_step());
                 run_folder::write(&self.out, "deployed.svg", &picture)?;
-                self.print(&sheet_errors::write(&found, &windows)?)
+                self.print(&sheet_errors::write(&found, name, &windows)?)
             }
             Some(steps) => {
                 scene.config.output = std::path::absolute(&self.out)?;
-                let gain = polished::run(&scene, design, &windows, self.rounds, steps, self.force)?;
+                let given = (design, name);
+                let gain = polished::run(&scene, given, &windows, self.rounds, steps, self.force)?;
                 self.print(&gain)
             }
         }
@@ -131,6 +138,7 @@ impl VerifyCommand {
         &self,
         scene: &Scene,
         design: &DesignVector,
+        name: &str,
         surrogate: &Surrogate,
         tier: Tier,
     ) -> Result<()> {
@@ -158,7 +166,7 @@ impl VerifyCommand {
             }
         }
         ensure!(!replayed.is_empty(), "no hinge was solved:\n{failures}");
-        let page = page(&replayed, tier, &failures)?;
+        let page = page(name, &replayed, tier, &failures)?;
         run_folder::write(&self.out, "replay.md", &page)?;
         run_folder::write(&self.out, "replay.csv", &csv(&replayed)?)?;
         let groups: Vec<_> = replayed.iter().map(|hinge| &hinge.states[..]).collect();
@@ -236,7 +244,7 @@ fn deviation(first: &[HingeSample], others: &[Vec<HingeSample>], k: usize) -> [f
     })
 }
 
-fn page(replayed: &[Replayed], tier: Tier, failures: &str) -> Result<String> {
+fn page(name: &str, replayed: &[Replayed], tier: Tier, failures: &str) -> Result<String> {
     let states = replayed
         .iter()
         .map(|hinge| hinge.states.len())
@@ -248,8 +256,8 @@ fn page(replayed: &[Replayed], tier: Tier, failures: &str) -> Result<String> {
     };
     let (learned, solved) = (total(|end| end.value[0]), total(|end| end.reference[0]));
     let mut text = format!(
-        "# The hinges of a designed sheet, replayed\n\n\
-         {states} states of {} hinges on their paths in the sheet, windows of tier {tier}; {:.0} % of the \
+        "# The hinges of a sheet, replayed\n\n\
+         The {name}: {states} states of {} hinges on their paths in the sheet, windows of tier {tier}; {:.0} % of the \
          states inside the training domain. Differences of the surrogate from the finite elements are root mean \
          squares, relative to the root mean square of the finite elements: {SCALE}. D and D_peak of a hinge are known, \
          and compared, until it leaves the domain.\n\n{}\n\

@@ -31,6 +31,8 @@ pub struct Polished {
 /// The objective of a design before and after its polish, and what is known of the numbers.
 #[derive(Debug, Serialize)]
 pub struct PolishGain {
+    /// The given design, for a person.
+    given: String,
     /// By the hinge law of the scene: the given design, and the one that was found.
     by_law: [Scores; 2],
     /// By finite elements for all hinges.
@@ -44,13 +46,13 @@ pub struct PolishGain {
     cpu_seconds: Option<f64>,
 }
 
-/// Balances `design` in at most `rounds` rounds, searches for `steps` steps, and balances the design that was found.
+/// Balances a design, which has a name for a person, in at most `rounds` rounds, searches for `steps` steps, and balances the design that was found.
 ///
 /// # Errors
 /// [`Unfinished`] if `stop` becomes true during the search; windows that were solved are kept.
 pub fn polish(
     scene: &Scene,
-    design: &DesignVector,
+    (design, name): (&DesignVector, &str),
     windows: &WindowSolves,
     rounds: usize,
     steps: usize,
@@ -82,6 +84,7 @@ pub fn polish(
     let best = problem.evaluate(&found)?;
     let scores = |evaluation: &Evaluation| Scores::of(&law.objective, evaluation);
     let gain = PolishGain {
+        given: name.to_owned(),
         by_law: [
             scores(&law.evaluate(design)?),
             scores(&law.evaluate(&found)?),
@@ -127,11 +130,11 @@ impl fmt::Display for PolishGain {
         writeln!(
             f,
             "# The design, polished\n\n\
-             Searched for {} steps with the hinge law corrected to finite elements at the hinges of the given \
+             Given: {}. Searched for {} steps with the hinge law corrected to finite elements at the hinges of the given \
              design{minutes}. \"By finite elements\" is the equilibrium with finite elements for all hinges of the design \
              of that column.\n\n\
              | | given design | polished design |\n|---|---|---|",
-            self.steps,
+            self.given, self.steps,
         )?;
         for (name, [before, after]) in [
             ("by the hinge law", &self.by_law),

@@ -12,11 +12,11 @@ use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
 use std::num::NonZeroUsize;
 
-/// Polishes a design and writes `polish.md`, `equilibrium.md`, `design.json` and the results of a run to the scene's
+/// Polishes a design, which has a name for a person, and writes `polish.md`, `equilibrium.md`, `design.json` and the results of a run to the scene's
 /// output folder.
 pub(super) fn run(
     scene: &Scene,
-    design: &DesignVector,
+    (design, name): (&DesignVector, String),
     windows: &WindowSolves,
     rounds: usize,
     steps: NonZeroUsize,
@@ -26,7 +26,7 @@ pub(super) fn run(
     let bar = Progress::new(steps.get(), "design steps");
     let polished = polish(
         scene,
-        design,
+        (design, &name),
         windows,
         rounds,
         steps.get(),
@@ -37,7 +37,7 @@ pub(super) fn run(
         },
     )?;
     bar.finish();
-    sheet_errors::write(&polished.after, windows)?;
+    sheet_errors::write(&polished.after, format!("polished {name}"), windows)?;
     let json = serde_json::to_string(&polished.designed.design)?;
     run_folder::write(windows.folder, "design.json", &json)?;
     write_run(scene, &polished.designed, force)?;

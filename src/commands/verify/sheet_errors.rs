@@ -13,6 +13,8 @@ use std::fmt;
 /// The equilibrium by the hinge law compared with that by finite elements.
 #[derive(Debug, Serialize)]
 pub(super) struct SheetErrors {
+    /// The design that is judged, for a person.
+    design: String,
     /// Mesh tier of the windows.
     tier: Tier,
     rounds: Vec<Round>,
@@ -42,14 +44,18 @@ struct HingeErrors {
 }
 
 /// Writes `equilibrium.md` of a balanced sheet.
-pub(super) fn write(found: &Balanced, windows: &WindowSolves) -> Result<SheetErrors> {
-    let errors = SheetErrors::new(found, windows.tier);
+pub(super) fn write(
+    found: &Balanced,
+    design: String,
+    windows: &WindowSolves,
+) -> Result<SheetErrors> {
+    let errors = SheetErrors::new(found, design, windows.tier);
     run_folder::write(windows.folder, "equilibrium.md", &errors.to_string())?;
     Ok(errors)
 }
 
 impl SheetErrors {
-    fn new(found: &Balanced, tier: Tier) -> Self {
+    fn new(found: &Balanced, design: String, tier: Tier) -> Self {
         let (by_law, by_elements) = (found.by_law(), found.by_elements());
         let ends = [by_law, by_elements].map(Deployment::final_step);
         let peak_by_law = |hinge: usize| {
@@ -69,6 +75,7 @@ impl SheetErrors {
             .collect();
         let turned = |hinge: &HingeErrors| hinge.theta_deg[1] - hinge.theta_deg[0];
         Self {
+            design,
             tier,
             rounds: found.rounds.clone(),
             ended: found.ended.clone(),
@@ -101,9 +108,10 @@ impl fmt::Display for SheetErrors {
         writeln!(
             f,
             "# The deployed sheet, by finite elements\n\n\
-             Equilibrium with finite elements for all {} hinges, windows of tier {}. Every round solves the hinges along \
+             Equilibrium of the {} with finite elements for all {} hinges, windows of tier {}. Every round solves the hinges along \
              their paths, corrects the hinge law to their forces and deploys the sheet again{}.\n\n\
              | round | force error | movement, mm |\n|---|---|---|",
+            self.design,
             self.hinges.len(),
             self.tier,
             self.cpu_seconds.map_or(String::new(), |seconds| format!(
