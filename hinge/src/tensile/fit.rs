@@ -60,8 +60,10 @@ pub struct HardeningRow {
 pub enum FractureSource {
     /// Given.
     Given,
-    /// Plastic strain at the end of records whose specimens deform uniformly to the end.
+    /// Plastic strain at the end of records whose specimens deform uniformly to their break.
     Break,
+    /// The same, but a record ends without a break: a lower bound, because the specimen strains further.
+    RecordEnd,
     /// Plastic strain at the maximum force: a lower bound, because the neck strains further.
     MaximumForce,
     /// Plastic strain at the natural draw ratio: a lower bound, because the drawn material strains further.
@@ -298,7 +300,8 @@ fn fracture(
     let source = match (worst(End::Drawing), worst(End::Neck)) {
         (true, _) => FractureSource::DrawRatio,
         (_, true) => FractureSource::MaximumForce,
-        _ => FractureSource::Break,
+        _ if specimens.iter().all(Specimen::broke) => FractureSource::Break,
+        _ => FractureSource::RecordEnd,
     };
     let reached = |it: &Specimen| {
         last(if it.after.is_empty() {

@@ -33,11 +33,21 @@ pub struct Draw {
     pub(super) top: usize,
 }
 
-/// A plateau whose end is not on the curve.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct NoRatio {
-    pub plateau: f64,
-    pub strain: f64,
+/// A draw whose natural draw ratio is not known.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub(super) enum RatioFault {
+    /// The end of the plateau is not on the curve.
+    #[error(
+        "draws at {plateau:.2} MPa and ends at a strain of {strain:.2}, before its stress rises again: measure the section \
+         of the drawn neck and give --draw-ratio, the initial section over it"
+    )]
+    Missing { plateau: f64, strain: f64 },
+    /// The neck has covered the specimen, which is stretched less than the given ratio.
+    #[error(
+        "ends at a stretch of {stretch:.2}, after its stress has risen from the draw plateau: the draw ratio {given} is \
+         beyond it; give the initial section over that of the drawn neck, or leave --draw-ratio out"
+    )]
+    BeyondEnd { given: f64, stretch: f64 },
 }
 
 /// The nominal stress (MPa) at which the curve crosses the line of slope `young` through the strain 0.2 %, after the
@@ -61,7 +71,7 @@ pub(super) fn draw(
     mut from: usize,
     noise: f64,
     given: Option<f64>,
-) -> Result<Option<Draw>, NoRatio> {
+) -> Result<Option<Draw>, RatioFault> {
     let stress = |row: usize| curve[row][1];
     let end = curve.len();
     while let Some(top) = peak(curve, from, noise) {
@@ -87,6 +97,10 @@ pub(super) fn draw(
             let [plateau, natural] = plateau_end(&curve[start..=high]);
             // A short drop is a serration of the flow curve and no neck.
             if natural - strain(top) >= 0.5 * strain(top) {
+                let stretch = 1.0 + strain(end - 1);
+                if let Some(given) = given.filter(|given| *given > stretch) {
+                    return Err(RatioFault::BeyondEnd { given, stretch });
+                }
                 let draw_ratio = given.unwrap_or(1.0 + natural);
                 return Ok(Some(found(plateau, draw_ratio, given.is_some())));
             }
@@ -101,7 +115,7 @@ pub(super) fn draw(
         let plateau = curve[start..].iter().map(|row| row[1]).sum::<f64>() / (end - start) as f64;
         return match given {
             Some(ratio) => Ok(Some(found(plateau, ratio, true))),
-            None => Err(NoRatio {
+            None => Err(RatioFault::Missing {
                 plateau,
                 strain: strain(end - 1),
             }),
@@ -238,9 +252,25 @@ mod tests {
     fn a_plateau_without_a_rise_needs_the_ratio() {
         let short = curve(1.5, 1500, drawn);
         let missing = draw(&short, 10, 0.0, None).unwrap_err();
-        assert!((missing.plateau - 34.0).abs() < 0.2, "{missing:?}");
+        assert!(
+            matches!(missing, RatioFault::Missing { plateau, .. } if (plateau - 34.0).abs() < 0.2),
+            "{missing:?}"
+        );
         let given = draw(&short, 10, 0.0, Some(3.28)).unwrap().unwrap();
         assert_eq!((given.draw_ratio, given.ratio_given), (3.28, true));
+    }
+
+    /// 33 for 3.3, on a strip that ends at a stretch of 4.5.
+    #[test]
+    fn a_ratio_beyond_the_end_of_a_drawn_specimen_is_refused() {
+        let long = curve(3.5, 3500, drawn);
+        let fault = RatioFault::BeyondEnd {
+            given: 33.0,
+            stretch: 4.5,
+        };
+        assert_eq!(draw(&long, 10, 0.0, Some(33.0)), Err(fault));
+        let given = draw(&long, 10, 0.0, Some(3.3)).unwrap().unwrap();
+        assert_eq!(given.draw_ratio, 3.3);
     }
 
     #[test]

@@ -153,6 +153,9 @@ impl FractureSource {
         match self {
             Self::Given => "given",
             Self::Break => "where the specimens broke, at uniform strain",
+            Self::RecordEnd => {
+                "the record ends here without a break: a lower bound; measure ln(A0 / A)"
+            }
             Self::MaximumForce => "at the maximum force: a lower bound, the neck strains further",
             Self::DrawRatio => "at the natural draw ratio: a lower bound",
         }

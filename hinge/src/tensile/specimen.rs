@@ -132,13 +132,8 @@ impl Specimen {
         check_yield_strain(offset_yield / young).map_err(file)?;
         let draw = match is_local {
             true => None,
-            false => draw(smooth, elastic, noise[1], options.draw_ratio).map_err(|missing| {
-                file(format!(
-                    "draws at {:.2} MPa and ends at a strain of {:.2}, before its stress rises again: measure the \
-                     section of the drawn neck and give --draw-ratio, the initial section over it",
-                    missing.plateau, missing.strain
-                ))
-            })?,
+            false => draw(smooth, elastic, noise[1], options.draw_ratio)
+                .map_err(|fault| file(fault.to_string()))?,
         };
         let (last, end) = match (&draw, is_local) {
             (_, true) => (smooth.len() - 1, End::Uniform),
@@ -188,6 +183,11 @@ impl Specimen {
             before,
             after,
         })
+    }
+
+    /// Whether the record shows the break of the specimen.
+    pub(super) fn broke(&self) -> bool {
+        self.dropped_for(Cause::Broken) > 0
     }
 
     /// Number of rows dropped for a cause.

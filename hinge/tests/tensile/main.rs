@@ -97,10 +97,16 @@ const EXACT: [f64; 3] = [0.015, 0.005, 0.005];
 #[test]
 fn clean_curves_give_their_law() {
     for law in METALS {
-        let fit = fit_text(&csv(HEADER, &law.record(8000)), &OPTIONS);
+        let mut rows = law.record(8000);
+        let fit = fit_text(&csv(HEADER, &rows), &OPTIONS);
         agrees(&fit, &law, "clean", EXACT);
-        assert_eq!(fit.fracture_source, FractureSource::Break);
+        // A record that merely ends shows no break.
+        assert_eq!(fit.fracture_source, FractureSource::RecordEnd);
         assert!(fit.specimens[0].dropped.is_empty(), "{}", law.name);
+        let [strain, stress] = rows[rows.len() - 1];
+        rows.extend([1e-4, 2e-4].map(|further| [strain + further, 0.01 * stress]));
+        let fit = fit_text(&csv(HEADER, &rows), &OPTIONS);
+        assert_eq!(fit.fracture_source, FractureSource::Break);
     }
 }
 
