@@ -204,7 +204,7 @@ mod tests {
         for (stress, strain, expected) in [
             (1.0, 0.01, "per cent"),
             (1.0, 0.001, "--units engineering"),
-            (1000.0, 1.0, "in other units"),
+            (1000.0, 1.0, "in another unit"),
             (1e-6, 1.0, "in Pa"),
         ] {
             let text = with_header(&recorded(stress, strain));

@@ -79,6 +79,22 @@ impl Quantity {
         matches!(self, Force | Stress | TrueStress)
     }
 
+    /// The question whether a column of this quantity was read rightly, with the options that decide it. `how` are the
+    /// words for the `unit` that would explain its values.
+    pub(super) fn doubt(self, how: &str, unit: &str) -> String {
+        match self {
+            Force => {
+                "are --thickness, --width and the unit of the force (--units force=UNIT) right"
+                    .into()
+            }
+            Extension => {
+                "are --gauge-length and the unit of the extension (--units extension=UNIT) right"
+                    .into()
+            }
+            _ => format!("is the {self} {how} (--units {self}={unit})"),
+        }
+    }
+
     /// The number of N, MPa, mm or 1 in a unit of this quantity; `None` for other units.
     pub fn factor(self, unit: &str) -> Option<f64> {
         let units: &[(&str, f64)] = match self {

@@ -41,9 +41,9 @@ pub(super) struct Record {
     pub path: PathBuf,
     /// The rows as measured.
     pub rows: Vec<RecordRow>,
-    /// Quantity of `stress`: [`Stress`] or [`TrueStress`].
+    /// Quantity of the column from which the stresses are.
     pub load: Quantity,
-    /// Quantity of `strain`: [`Strain`], [`TrueStrain`] or [`PlasticStrain`].
+    /// Quantity of the column from which the strains are.
     pub deformation: Quantity,
     /// The columns and the units that were read, in words.
     pub read_as: String,
@@ -108,7 +108,8 @@ impl Record {
                 strain: number(deformation)? * deformation.factor / length,
                 stress: number(load)? * load.factor / area,
             };
-            read.check().map_err(refuse)?;
+            read.check(load.quantity, deformation.quantity)
+                .map_err(refuse)?;
             rows.push(read);
         }
         let most = rows.iter().map(|row| row.strain).fold(0.0, f64::max);
@@ -125,16 +126,8 @@ impl Record {
         Ok(Self {
             path: path.to_owned(),
             rows,
-            load: if load.quantity == Force {
-                Stress
-            } else {
-                load.quantity
-            },
-            deformation: if deformation.quantity == Extension {
-                Strain
-            } else {
-                deformation.quantity
-            },
+            load: load.quantity,
+            deformation: deformation.quantity,
             read_as: format!("{}, {}", load.read_as(), deformation.read_as()),
             hash: table.hash,
         })
@@ -142,17 +135,18 @@ impl Record {
 }
 
 impl RecordRow {
-    fn check(&self) -> Result<(), String> {
+    fn check(&self, load: Quantity, deformation: Quantity) -> Result<(), String> {
         let Self { strain, stress, .. } = self;
         if !(MIN_STRAIN..=MAX_STRAIN).contains(strain) {
             return Err(format!(
-                "strain = {strain} violates {MIN_STRAIN} <= strain <= {MAX_STRAIN}: if it is in per cent, add \
-                 --units strain=%; are the columns swapped?"
+                "strain = {strain} violates {MIN_STRAIN} <= strain <= {MAX_STRAIN}: {}, or are the columns swapped?",
+                deformation.doubt("in per cent", "%")
             ));
         }
         if stress.abs() > MAX_STRESS {
             return Err(format!(
-                "stress = {stress:e} MPa violates |stress| <= {MAX_STRESS:e} MPa: if it is in Pa, add --units stress=Pa"
+                "stress = {stress:e} MPa violates |stress| <= {MAX_STRESS:e} MPa: {}?",
+                load.doubt("in Pa", "Pa")
             ));
         }
         Ok(())

@@ -119,7 +119,8 @@ impl Specimen {
                 .iter_mut()
                 .for_each(|row| *row = nominal(record, *row));
         }
-        let curve = Compensated::new(&cleaned.curve, cleaned.noise, options).map_err(file)?;
+        let curve =
+            Compensated::new(record, &cleaned.curve, cleaned.noise, options).map_err(file)?;
         let (young, elastic, noise) = (curve.young, curve.elastic, curve.noise);
         let smooth = &curve.rows;
         let offset_yield = offset_yield(smooth, young, elastic).ok_or_else(|| {
@@ -129,7 +130,7 @@ impl Specimen {
                 smooth[smooth.len() - 1][1]
             ))
         })?;
-        check_yield_strain(offset_yield / young).map_err(file)?;
+        check_yield_strain(record, offset_yield / young).map_err(file)?;
         let draw = match is_local {
             true => None,
             false => draw(smooth, elastic, noise[1], options.draw_ratio)
@@ -212,14 +213,19 @@ struct Compensated {
 }
 
 impl Compensated {
-    fn new(curve: &[[f64; 2]], noise: [f64; 2], options: &SpecimenOptions) -> Result<Self, String> {
+    fn new(
+        record: &Record,
+        curve: &[[f64; 2]],
+        noise: [f64; 2],
+        options: &SpecimenOptions,
+    ) -> Result<Self, String> {
         let half = half_window(curve, noise[1]);
         let noise = [noise[0], noise[1] / (2.0 * half as f64 + 1.0).sqrt()];
         let mut rows = smoothed(curve, half);
         let (linear, toe) = linear_part(&mut rows, noise, options).ok_or(
             "has no linear part: the stress does not rise with the strain; are the columns swapped?",
         )?;
-        let young = check_modulus(&linear, options)?;
+        let young = check_modulus(record, &linear, options)?;
         let compliance = 1.0 / linear.young - 1.0 / young;
         rows.iter_mut()
             .for_each(|row| row[0] -= row[1] * compliance);
@@ -295,42 +301,52 @@ fn linear_part(
 }
 
 /// Young's modulus of the evaluation, if it is not in other units.
-fn check_modulus(linear: &LinearPart, options: &SpecimenOptions) -> Result<f64, String> {
+fn check_modulus(
+    record: &Record,
+    linear: &LinearPart,
+    options: &SpecimenOptions,
+) -> Result<f64, String> {
+    let (load, deformation) = (record.load, record.deformation);
     let measured = linear.young;
     let [least, most] = YOUNG;
     if measured < least {
         return Err(format!(
-            "has a modulus of {measured:.3} MPa, less than {least} MPa: is the strain in per cent (--units strain=%) or \
-             the stress in GPa (--units stress=GPa)?"
+            "has a modulus of {measured:.3} MPa, less than {least} MPa: {}, or {}?",
+            deformation.doubt("in per cent", "%"),
+            load.doubt("in GPa", "GPa")
         ));
     }
     if measured > most {
         return Err(format!(
-            "has a modulus of {measured:.3e} MPa, more than {most:e} MPa: is the stress in Pa (--units stress=Pa), or the \
-             strain not in per cent (--units strain=1)?"
+            "has a modulus of {measured:.3e} MPa, more than {most:e} MPa: {}, or {}?",
+            load.doubt("in Pa", "Pa"),
+            deformation.doubt("not in per cent", "1")
         ));
     }
     let young = options.young.unwrap_or(measured);
     if !(SOFTER * young..=STIFFER * young).contains(&measured) {
         return Err(format!(
             "has the initial slope {measured:.0} MPa, but Young's modulus is {young:.0} MPa: a machine's compliance lowers \
-             the slope by less; are stress and strain in other units (--units)?"
+             the slope by less; {}, or {}?",
+            load.doubt("in another unit", "UNIT"),
+            deformation.doubt("in another unit", "UNIT")
         ));
     }
     Ok(young)
 }
 
-fn check_yield_strain(strain: f64) -> Result<(), String> {
+fn check_yield_strain(record: &Record, strain: f64) -> Result<(), String> {
     let [least, most] = YIELD_STRAIN;
     if strain < least {
         return Err(format!(
-            "yields at an elastic strain of {strain:.1e}, less than {least:e}: is the strain a fraction and not in per \
-             cent (--units strain=1)?"
+            "yields at an elastic strain of {strain:.1e}, less than {least:e}: {}?",
+            record.deformation.doubt("not in per cent", "1")
         ));
     }
     if strain > most {
         return Err(format!(
-            "yields at an elastic strain of {strain:.2}, more than {most}: is the strain in per cent (--units strain=%)?"
+            "yields at an elastic strain of {strain:.2}, more than {most}: {}?",
+            record.deformation.doubt("in per cent", "%")
         ));
     }
     Ok(())

@@ -5,9 +5,13 @@ use hinge::tensile::{MaterialFit, RecordOptions};
 
 /// The message for one text.
 fn message(text: &str) -> String {
+    message_with(text, &RecordOptions::default())
+}
+
+fn message_with(text: &str, options: &RecordOptions) -> String {
     let folder = tempfile::tempdir().unwrap();
     let path = write(folder.path(), "test.csv", text);
-    let records = [(path, RecordOptions::default())];
+    let records = [(path, options.clone())];
     let error = MaterialFit::new(&records, &OPTIONS).map(|fit| fit.table);
     let message = error.unwrap_err().to_string();
     assert!(message.contains("test.csv"), "{message}");
@@ -170,4 +174,34 @@ fn specimens_of_two_kinds_are_named() {
         message.contains("film.csv have a draw plateau") && message.contains("metal.csv have none"),
         "{message}"
     );
+}
+
+/// The strain and the stress of such files have no unit that could be wrong.
+#[test]
+fn the_messages_for_force_and_extension_name_their_own_options() {
+    let text = record("Extension (mm),Force (N)", 1.0, 1.0);
+    let of_load = ["--thickness", "--width", "--units force="];
+    let of_deformation = ["--gauge-length", "--units extension="];
+    // Strains far too small, stresses far too small, both far too large.
+    for (gauge_length, width, expected) in [
+        (1e6, 10.0, &of_load[..]),
+        (1.0, 1e7, &of_deformation),
+        (1e-3, 10.0, &of_deformation),
+        (1.0, 1e-7, &of_load),
+    ] {
+        let options = RecordOptions {
+            gauge_length: Some(gauge_length),
+            width: Some(width),
+            thickness: Some(0.5),
+            ..RecordOptions::default()
+        };
+        let message = message_with(&text, &options);
+        for option in expected {
+            assert!(message.contains(option), "{message}");
+        }
+        assert!(
+            !message.contains("strain=") && !message.contains("stress="),
+            "{message}"
+        );
+    }
 }
