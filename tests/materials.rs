@@ -31,7 +31,13 @@ fn records_of_a_film_become_a_material_file_that_is_checked() {
     ] {
         assert!(printed.contains(text), "{text}: {printed}");
     }
-    let json: Value = serde_json::from_str(&work.output(&format!("{FIT} --json"))).unwrap();
+    let message = work.error(FIT);
+    assert!(
+        message.contains("film.toml already exists") && message.contains("--replace"),
+        "{message}"
+    );
+    let json = work.output(&format!("{FIT} --replace --json"));
+    let json: Value = serde_json::from_str(&json).unwrap();
     for (path, expected, tolerance) in [
         ("/fit/young/mean", 3000.0, 0.03),
         ("/fit/offset_yield/mean", FACTOR * 38.654, 0.02),

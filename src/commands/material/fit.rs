@@ -40,6 +40,9 @@ pub struct FitCommand {
     /// Folder for the material file and the picture
     #[arg(long, value_name = "FOLDER", default_value = "runs/material")]
     out: PathBuf,
+    /// Overwrite an existing material file
+    #[arg(long)]
+    replace: bool,
     /// Print JSON instead of tables
     #[arg(long)]
     json: bool,
@@ -97,7 +100,14 @@ const PICTURE_WIDTH: u32 = 1800;
 
 impl FitCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        let fit = MaterialFit::new(&self.records()?, &self.options()?)?;
+        let records = self.records()?;
+        let file = self.out.join(format!("{}.toml", self.name));
+        ensure!(
+            self.replace || !file.exists(),
+            "{} already exists; choose another --name or --out, or replace it with `--replace`",
+            file.display()
+        );
+        let fit = MaterialFit::new(&records, &self.options()?)?;
         let facts = SheetFacts {
             name: self.name.clone(),
             thickness: self.thickness,
@@ -107,11 +117,10 @@ impl FitCommand {
         };
         let material = fit.material(&facts)?;
         let _held = run_folder::hold(&self.out)?;
-        let file = format!("{}.toml", self.name);
-        run_folder::write(&self.out, &file, &material_file(&fit, &facts))?;
+        let name = format!("{}.toml", self.name);
+        run_folder::write(&self.out, &name, &material_file(&fit, &facts))?;
         let chart = tensile_test(&fit, &self.name)?;
         let pictures = picture::save(&chart, &self.out.join(&self.name), PICTURE_WIDTH)?;
-        let file = self.out.join(file);
         if self.json {
             let json = serde_json::json!({
                 "file": file,
