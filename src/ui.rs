@@ -8,6 +8,7 @@ pub mod interrupt;
 pub mod picture;
 pub mod progress;
 pub mod run_folder;
+pub mod shell_word;
 pub mod table;
 pub mod width_by_height;
 

@@ -8,6 +8,7 @@ use crate::commands::init::edited::{heading, scale, set};
 use crate::commands::init::first_scene::FirstScene;
 use crate::commands::init::similar_scene::SimilarScene;
 use crate::commands::input_file;
+use crate::ui::shell_word::shell_word;
 use crate::ui::width_by_height::width_by_height;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -152,7 +153,7 @@ pub(crate) fn campaign(name: &str, thickness: f64, tier: Tier) -> Result<String>
 
 /// The commands of the project, in their order.
 fn readme(folder: &Path, trained: bool) -> String {
-    let path = |name: &str| folder.join(name).display().to_string();
+    let path = |name: &str| shell_word(&folder.join(name));
     let (campaign, scene) = (path("campaign.toml"), path("scene.toml"));
     let (jobs, database) = (path("campaign"), path("hinges.parquet"));
     let (weights, training) = (path("weights.safetensors"), path("training.toml"));
@@ -197,6 +198,15 @@ fn size(text: &str) -> Result<[f64; 2], String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_commands_of_a_folder_with_a_space_can_be_copied() {
+        let text = readme(Path::new("my sheet"), true);
+        assert!(
+            text.contains("kirigami design 'my sheet/scene.toml'\n"),
+            "{text}"
+        );
+    }
 
     #[test]
     fn a_copied_material_names_the_curve_of_the_original() {

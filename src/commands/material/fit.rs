@@ -1,6 +1,7 @@
 //! `kirigami material fit`: from the files of a testing machine to a material file.
 
 use crate::ui::charts::tensile_test;
+use crate::ui::shell_word::shell_word;
 use crate::ui::table::table;
 use crate::ui::{picture, run_folder};
 use anyhow::{Result, ensure};
@@ -144,7 +145,7 @@ impl FitCommand {
             material.law_hash()
         );
         println!("picture:  {}", pictures[1].display());
-        println!("next:     kirigami material check {}", file.display());
+        println!("next:     kirigami material check {}", shell_word(&file));
         Ok(())
     }
 
