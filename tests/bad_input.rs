@@ -88,6 +88,35 @@ fn missing_files_are_named() {
     ] {
         assert!(work.error(command).contains("nowhere"));
     }
+    // The file itself, not its manifest.
+    assert!(
+        work.error("train nowhere.parquet")
+            .contains("nowhere.parquet")
+    );
+}
+
+#[test]
+fn weights_and_databases_are_not_taken_for_each_other() {
+    let work = Workplace::new();
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm");
+    let shipped = shipped.display();
+    for command in ["train", "dataset summary"] {
+        let message = work.error(&format!("{command} {shipped}/medium.safetensors"));
+        assert!(
+            message.contains("medium.safetensors holds weights: a database is"),
+            "{message}"
+        );
+    }
+    for command in [
+        "init sheet --material configs/materials/pet-0.5mm.toml",
+        "design configs/scenes/pet-3x3.toml",
+    ] {
+        let message = work.error(&format!("{command} --weights {shipped}/reference.parquet"));
+        assert!(
+            message.contains("reference.parquet is a database"),
+            "{message}"
+        );
+    }
 }
 
 #[test]

@@ -66,6 +66,8 @@ fn a_run_is_replayed_from_its_folder_alone() {
     work.output("export moved --out exported");
     assert!(work.path("exported/sheet.pvd").exists());
 
+    work.output("material check moved/inputs/material.toml moved");
+
     // The search continues there, too.
     work.output("design moved --steps 3 --force --quiet");
     let report: Value = serde_json::from_slice(&written("report.json")).unwrap();

@@ -12,8 +12,12 @@ use support::whole_file;
 impl Database {
     /// Reads `X.parquet` and its manifest `X.json`; an error if the hash of the file is not that in the manifest.
     pub fn read(path: &Path) -> Result<Self, DatasetError> {
-        let manifest = read_manifest(&manifest_path(path))?;
         let parquet = read_bytes(path)?;
+        if let Some(what) = other_kind(&parquet) {
+            let path = path.to_owned();
+            return Err(DatasetError::NoDatabase { path, what });
+        }
+        let manifest = read_manifest(&manifest_path(path))?;
         let found = parquet::hash(&parquet);
         if found != manifest.hash {
             return Err(DatasetError::Hash {
@@ -95,6 +99,16 @@ fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
     }
     let manifest: Manifest = sealed_json::from_slice(&bytes).map_err(malformed)?;
     Ok(manifest)
+}
+
+/// What a file is whose first bytes are not those of a Parquet file.
+fn other_kind(bytes: &[u8]) -> Option<&'static str> {
+    match bytes {
+        [b'P', b'A', b'R', b'1', ..] => None,
+        // Safetensors: the length of the header in eight bytes, then the header, a JSON object.
+        [_, _, _, _, _, _, _, 0, b'{', ..] => Some("holds weights"),
+        _ => Some("is no Parquet file"),
+    }
 }
 
 fn read_bytes(path: &Path) -> Result<Vec<u8>, DatasetError> {

@@ -86,6 +86,8 @@ pub enum DatasetError {
         path = .path.display()
     )]
     Exists { path: PathBuf },
+    #[error("{path} {what}: a database is a Parquet file (.parquet) with its manifest", path = .path.display())]
+    NoDatabase { path: PathBuf, what: &'static str },
     #[error("{path} is not a manifest of a database: {source}", path = .path.display())]
     Manifest {
         path: PathBuf,

@@ -51,6 +51,12 @@ pub enum WeightsError {
         path = .path.display()
     )]
     UnknownVersion { path: PathBuf, found: u64 },
+    #[error(
+        "{path} is a database (Parquet), but weights (.safetensors) are expected; `kirigami train` makes weights from a \
+         database",
+        path = .path.display()
+    )]
+    Database { path: PathBuf },
     #[error("{path} is not a safetensors file: {source}", path = .path.display())]
     Malformed {
         path: PathBuf,
@@ -259,6 +265,10 @@ fn read_card(weights: &Path) -> Result<Card, WeightsError> {
 }
 
 fn read_tensors(path: &Path, bytes: &[u8]) -> Result<BTreeMap<String, Tensor>, WeightsError> {
+    if bytes.starts_with(b"PAR1") {
+        let path = path.to_owned();
+        return Err(WeightsError::Database { path });
+    }
     let file = SafeTensors::deserialize(bytes).map_err(|source| WeightsError::Malformed {
         path: path.to_owned(),
         source,

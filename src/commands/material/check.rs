@@ -6,6 +6,7 @@ use clap::Args;
 use design::output::material_check::{Intended, MaterialCheck};
 use design::output::report::Severity;
 use design::scene::SceneConfig;
+use design::scene::run_inputs::scene_file;
 use hinge::SheetMaterial;
 use std::path::PathBuf;
 use support::toml_file;
@@ -22,7 +23,7 @@ pub struct CheckCommand {
     /// Material (TOML); see configs/materials
     #[arg(value_name = "MATERIAL")]
     material: PathBuf,
-    /// Scene (TOML) whose ligament widths and panels are intended; its own material is not read
+    /// Scene (TOML), or the folder of a run, whose ligament widths and panels are intended; its own material is not read
     #[arg(value_name = "SCENE")]
     scene: Option<PathBuf>,
     /// Ligament widths (mm) [default: those of the scene, or 10 and 50 thicknesses]
@@ -42,7 +43,10 @@ pub struct CheckCommand {
 impl CheckCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let measured = SheetMaterial::load(&self.material)?;
-        let scene: Option<SceneConfig> = self.scene.as_deref().map(toml_file::read).transpose()?;
+        let scene: Option<SceneConfig> = match &self.scene {
+            Some(scene) => Some(toml_file::read(&scene_file(scene)?)?),
+            None => None,
+        };
         let thickness = scene.as_ref().and_then(|scene| scene.thickness);
         let material = SheetMaterial {
             thickness: thickness.unwrap_or(measured.thickness),
