@@ -138,7 +138,7 @@ pub(crate) fn campaign(name: &str, thickness: f64, tier: Tier) -> Result<String>
     set(&mut campaign["material"], "material.toml");
     heading(
         &mut campaign,
-        "# Hinge windows of the material, from which its hinge energy is trained. Six hours on one core.\n",
+        "# Hinge windows of the material, from which its hinge energy is trained.\n",
     );
     for (section, key) in [
         ("design", "kerf"),
@@ -236,7 +236,7 @@ mod tests {
             assert!(text.contains(line), "{line}\n{text}");
         }
         assert!(
-            text.starts_with("# Hinge windows of the material"),
+            text.starts_with("# Hinge windows of the material") && !text.contains("hours"),
             "{text}"
         );
     }

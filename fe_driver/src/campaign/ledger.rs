@@ -148,6 +148,10 @@ pub struct Tally {
     pub wall_seconds: f64,
     /// Closed jobs that were solved in this folder, not restored. The throughput is that of these jobs.
     pub solved_here: usize,
+    /// Closed jobs whose time is known: the wall time of those solved here, the CPU time of restored ones.
+    pub timed: usize,
+    #[serde(skip)]
+    timed_seconds: f64,
     #[serde(skip)]
     rows_solved_here: usize,
     #[serde(skip)]
@@ -194,6 +198,14 @@ impl Tally {
         }
         self.cpu_seconds += record.cpu_seconds;
         self.wall_seconds += record.wall_seconds;
+        let seconds = match record.is_solved_here() {
+            true => record.wall_seconds,
+            false => record.cpu_seconds,
+        };
+        if seconds > 0.0 {
+            self.timed_seconds += seconds;
+            self.timed += usize::from(record.is_closed());
+        }
         if record.is_solved_here() {
             self.cpu_seconds_here += record.cpu_seconds;
             if record.is_closed() {
@@ -213,9 +225,9 @@ impl Tally {
         self.open + self.retry
     }
 
-    /// Wall time of one worker per job (s); `None` before a job was solved in this folder.
+    /// Time of one worker per job (s); `None` before a job of known time is closed.
     pub(crate) fn seconds_a_job(&self) -> Option<f64> {
-        (self.solved_here > 0).then(|| self.wall_seconds / self.solved_here as f64)
+        (self.timed > 0).then(|| self.timed_seconds / self.timed as f64)
     }
 
     /// The throughput so far; `None` before there are samples of jobs solved in this folder.
@@ -295,4 +307,29 @@ pub fn status(folder: &Path) -> Result<Status, CampaignError> {
         throughput: tally.throughput(),
         tally,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn solved(cpu_seconds: f64, wall_seconds: f64) -> Option<JobRecord> {
+        Some(JobRecord {
+            rows: 20,
+            cpu_seconds,
+            wall_seconds,
+            ..JobRecord::default()
+        })
+    }
+
+    /// Restored jobs have no wall time, but their CPU time is that of the material.
+    #[test]
+    fn the_time_of_a_job_is_also_that_of_restored_ones() {
+        assert_eq!(Tally::of(&[None]).seconds_a_job(), None);
+        let restored = Tally::of(&[solved(60.0, 0.0), solved(80.0, 0.0), None]);
+        assert_eq!((restored.timed, restored.seconds_a_job()), (2, Some(70.0)));
+        assert_eq!((restored.solved_here, restored.throughput()), (0, None));
+        let mixed = Tally::of(&[solved(60.0, 0.0), solved(75.0, 80.0), None]);
+        assert_eq!((mixed.timed, mixed.seconds_a_job()), (2, Some(70.0)));
+    }
 }

@@ -19,7 +19,8 @@ pub struct Plan {
     pub reasons: BTreeMap<String, usize>,
     /// Jobs in the folder that no longer belong to the campaign; they are kept.
     pub stale: usize,
-    /// Estimated time of one worker (s).
+    /// Estimated time of one worker (s), from the jobs whose time is known ([`Tally::timed`]); if there is none, that of as
+    /// many jobs of the polyester film.
     pub seconds: f64,
 }
 

@@ -43,10 +43,14 @@ impl PlanCommand {
             );
         }
         println!(
-            "a run would solve {} rays in about {} on {} processors",
+            "a run would solve {} rays in about {} on {} processors, {}",
             plan.tally.to_run(),
             duration(plan.seconds / processors() as f64),
-            processors()
+            processors(),
+            match plan.tally.timed {
+                0 => "the time for the polyester film of 0.5 mm; rays of another material may take longer".into(),
+                timed => format!("by the time of the {timed} rays solved so far"),
+            }
         );
         Ok(())
     }
