@@ -162,7 +162,8 @@ impl Problem<'_> {
     }
 
     /// Gauss-Newton: the variance of the position x is sigma^2 / |dp/dx|^2, with the part of dp/dx that is no rigid
-    /// motion (and no change of scale) of the sheet.
+    /// motion (and no change of scale) of the points. `None` if there is no such part, as for the corners of one panel, or
+    /// if the standard error of x is that of the whole path.
     pub(crate) fn load_factor_error(
         &self,
         &(position, motion): &Placed,
@@ -188,6 +189,9 @@ impl Problem<'_> {
             .collect();
         let rigid = Similarity::least_squares(&change, self.scale)?;
         let speed = squares(&change, rigid).sqrt() / STEP;
+        if speed <= LEAST_SIGMA * self.path.sheet.outline.size() || sigma / speed > end {
+            return None;
+        }
         let factors = [position, position + step].map(|at| self.path.at(at).load_factor);
         let error = sigma / speed * ((factors[1] - factors[0]) / step).abs();
         (end > 0.0 && free > 0.0 && error.is_finite()).then_some(error)

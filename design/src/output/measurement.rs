@@ -9,7 +9,7 @@ pub use agreement::{Agreement, OpeningSpread, Spread};
 
 use crate::analysis::marks::{FittedPoint, Mark};
 use crate::analysis::measured_openings::{MeasuredOpening, MeasuredPanel, openings, scatter, slip};
-use crate::analysis::measured_sheet::MeasuredSheet;
+use crate::analysis::measured_sheet::{MeasuredSheet, suspicious};
 use crate::analysis::misread::Renumbered;
 use crate::analysis::robust_pose::Fit;
 use crate::geometry::plane::point;
@@ -55,7 +55,7 @@ pub struct MeasurementReport {
 /// The rigid motion from the design to the measurement.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Motion {
-    /// Position of the design's origin (mm).
+    /// Position of the design's origin (mm, or pixels if the points are in pixels).
     pub origin: [f64; 2],
     /// Rotation (deg).
     pub rotation_deg: f64,
@@ -79,6 +79,8 @@ pub struct Outlier {
 pub struct Closed {
     /// Agreement of the closed sheet with the flat design.
     pub floor: Agreement,
+    /// Whether the floor is so high that the points are hardly those of the closed sheet.
+    pub doubtful: bool,
     /// Panels whose deployed centre is farther from its prediction than the rms of the closed centres.
     pub centres_above: Vec<usize>,
     /// Motion of the supported panels between the two measurements that the model does not predict.
@@ -155,12 +157,15 @@ impl Closed {
             .centres
             .as_ref()
             .map_or(f64::INFINITY, |centres| centres.rms);
+        let spreads = [&floor.corners, &floor.centres].into_iter().flatten();
+        let most = spreads.map(|spread| spread.rms).fold(0.0, f64::max);
         let above = panels.iter().filter(|panel| panel.distance() > level);
         let slips = supported.iter().filter_map(|&panel| {
             let slip = slip(sheet, closed, deployed, panel)?;
             Some(Slip { panel, slip })
         });
         Self {
+            doubtful: most > suspicious(sheet),
             centres_above: above.map(|panel| panel.panel).collect(),
             slips: slips.collect(),
             floor,

@@ -12,6 +12,7 @@ use design::equilibrium::settings::SolverSettings;
 use design::equilibrium::supports::{Dof, Load, Support};
 use design::geometry::similarity::Scale;
 use design::objective::design_problem::Deployment;
+use design::output::measurement::MeasurementReport;
 use design::sheet::cut_sheet::{Centroid, HingePoint, SheetOptions};
 use design::sheet::kinematics::hinge_deformations;
 use design::*;

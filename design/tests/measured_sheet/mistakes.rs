@@ -195,3 +195,50 @@ fn points_that_cannot_be_compared_are_refused() {
         .for_each(|point| point.position = [1.0, 2.0]);
     assert_eq!(refused(&same), MeasurementError::Coincide);
 }
+
+/// Four corners of one panel fit every state of the path.
+#[test]
+fn one_panel_determines_no_load_factor() {
+    let (problem, deployment) = deployed();
+    let path = ShapePath::new(&problem, &deployment);
+    let mut points = corners(&path);
+    points.truncate(4);
+    disturb(&mut points, 0.5, 5);
+    assert!(
+        points
+            .iter()
+            .all(|it| it.mark.panel == points[0].mark.panel)
+    );
+    let found = MeasuredSheet::new(&path, &points, Scale::Given).unwrap();
+    assert_eq!(found.load_factor_error, None);
+    let page = MeasurementReport::new("one panel", path.sheet, &found, None, &[]).to_string();
+    for text in [
+        "not determined",
+        "note: the points do not determine the load factor",
+    ] {
+        assert!(page.contains(text), "{page}");
+    }
+    let shift = page.lines().find(|line| line.starts_with("removed: shift"));
+    assert!(shift.unwrap().contains(") mm, rotation"), "{page}");
+}
+
+#[test]
+fn a_deployed_sheet_in_place_of_the_closed_one_is_suspected() {
+    let (problem, deployment) = deployed();
+    let path = ShapePath::new(&problem, &deployment);
+    let points = corners(&path);
+    let found = MeasuredSheet::new(&path, &points, Scale::Given).unwrap();
+    let flat = ShapePath::flat(path.sheet);
+    for (closed, doubtful) in [(measured(&path, 0.0, true, 1.0), false), (points, true)] {
+        let closed = MeasuredSheet::new(&flat, &closed, Scale::Given).unwrap();
+        let closed = Some(&closed.best);
+        let report = MeasurementReport::new("closed", path.sheet, &found, closed, &[]);
+        assert_eq!(report.closed.as_ref().unwrap().doubtful, doubtful);
+        let page = report.to_string();
+        assert_eq!(
+            page.contains("warning: this is more than"),
+            doubtful,
+            "{page}"
+        );
+    }
+}

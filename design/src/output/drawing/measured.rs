@@ -43,9 +43,12 @@ pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String 
             rms.rms, rms.rms_percent
         )
     });
+    let state = match report.load_factor_error {
+        Some(_) => format!("at load factor {:.3}", best.load_factor),
+        None => "at a load factor that is not determined".to_owned(),
+    };
     let subtitle = format!(
-        "Measured (teal) on predicted (grey) at load factor {:.3}; residuals magnified {factor} times{rms}",
-        best.load_factor
+        "Measured (teal) on predicted (grey) {state}; residuals magnified {factor} times{rms}"
     );
     let mut page = Page::around(whole, &report.title, &subtitle, false);
     for (k, corners) in corners.iter().enumerate() {

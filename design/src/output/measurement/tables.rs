@@ -62,11 +62,14 @@ impl MeasurementReport {
             "",
             ["end of the path", "best fit"].map(|name| Some(name.to_owned())),
         )?;
-        let [full, mut best] = both(&|it| Some(shown(it.load_factor)));
-        if let (Some(best), Some(error)) = (&mut best, self.load_factor_error) {
-            *best += &format!(" +- {}", shown(error));
-        }
-        row("load factor", [full, best])?;
+        let best = match self.load_factor_error {
+            Some(error) => format!("{} +- {}", shown(self.best.load_factor), shown(error)),
+            None => "not determined".to_owned(),
+        };
+        row(
+            "load factor",
+            [shown(self.full.load_factor), best].map(Some),
+        )?;
         type Part = fn(&Agreement) -> Option<&Spread>;
         let parts: [(&str, Part); 2] = [
             ("corners", |it| it.corners.as_ref()),
@@ -174,10 +177,12 @@ impl fmt::Display for MeasurementReport {
             "{} points, {used} used; sheet of {:.1} mm",
             self.points, self.sheet_size
         )?;
-        let ([x, y], rotation) = (self.motion.origin, self.motion.rotation_deg);
+        // In mm of the design, also if the points are in pixels.
+        let [x, y] = self.motion.origin.map(|x| x / self.motion.scale);
+        let rotation = self.motion.rotation_deg;
         writeln!(
             f,
-            "removed: shift ({x:.2}, {y:.2}), rotation {rotation:.3} deg, scale {:.5}",
+            "removed: shift ({x:.2}, {y:.2}) mm, rotation {rotation:.3} deg, scale {:.5}",
             self.motion.scale
         )?;
         if let Some(scatter) = self.scatter {
@@ -188,7 +193,13 @@ impl fmt::Display for MeasurementReport {
         }
         writeln!(f)?;
         self.agreement(f)?;
-        if self.at_the_end {
+        if self.load_factor_error.is_none() {
+            writeln!(
+                f,
+                "\nnote: the points do not determine the load factor, and the best fit is one of many: measure points on \
+                 several panels that turn against each other"
+            )?;
+        } else if self.at_the_end {
             writeln!(
                 f,
                 "\nnote: the best fit is the end of the path; the sheet may be opened further than predicted"
@@ -215,6 +226,12 @@ impl fmt::Display for Closed {
             rms(&self.floor.corners),
             rms(&self.floor.centres)
         )?;
+        if self.doubtful {
+            writeln!(
+                f,
+                "warning: this is more than 5 % of a panel: is the file of --closed the measurement of the closed sheet?"
+            )?;
+        }
         let above = self.centres_above.iter().map(|panel| format!(" P{panel}"));
         let (count, more) = (above.len(), if above.len() > LISTED { " ..." } else { "" });
         let listed: String = above.take(LISTED).collect();
