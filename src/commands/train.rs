@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use support::shard::Shard;
-use surrogate::{ErrorBin, FitError, Surrogate, TestErrors};
+use surrogate::{ErrorBin, FitError, Surrogate, TestErrors, number_or_dash};
 use train::{Backend, Epoch, Parity, Start, StiffnessCheck, Trained, Training, TrainingConfig};
 
 /// Train the surrogate hinge energy on a database
@@ -384,7 +384,7 @@ pub fn bin_table(bins: &[ErrorBin]) -> Table {
             format!("{upper:.2}"),
             errors.rows.to_string(),
         ];
-        let percent = |error: FitError| format!("{:.2}", 100.0 * error.relative_rmse);
+        let percent = |error: FitError| number_or_dash(100.0 * error.relative_rmse, 2);
         row.extend(quantities(errors).map(|(_, error)| percent(error)));
         table.add_row(row);
     }

@@ -15,7 +15,9 @@
 //! 3. Outliers: residuals above c sigma are left out, and x and the motion are fitted again, until they are the same
 //!    points. sigma is the standard deviation of one coordinate by the median absolute deviation: residual lengths
 //!    with Gaussian errors have the Rayleigh distribution, whose median is sigma sqrt(2 ln 2). P(length > c sigma) =
-//!    exp(-c^2 / 2), so that with c = sqrt(2 ln(20 n)) one of twenty measurements of n points loses a correct point.
+//!    exp(-c^2 / 2), so that with c = sqrt(2 ln(20 n)) one of twenty measurements of n points loses a correct point. The fit
+//!    to the nearest points makes the median of few residuals too small: sigma is multiplied by 1 + 5 / (n - u / 2) for u
+//!    unknowns (Rousseeuw and Leroy, Robust Regression and Outlier Detection, 1987, section 5.1).
 //!
 //! Half of the points may be wrong by any amount. Residuals are in the frame of the design, in mm.
 
@@ -64,6 +66,14 @@ pub(crate) struct Problem<'a> {
 }
 
 impl Problem<'_> {
+    /// Number of unknowns: the position on the path, the motion and, if requested, the scale.
+    fn unknowns(&self) -> f64 {
+        match self.scale {
+            Scale::Given => 4.0,
+            Scale::Free => 5.0,
+        }
+    }
+
     /// Predicted and measured positions of `points` at a position of the path.
     fn pairs<'p>(
         &self,
@@ -112,7 +122,8 @@ impl Problem<'_> {
             placed = self.least_squares(&next)?;
             kept = next;
         }
-        let cutoff = (2.0 * (20.0 * count as f64).ln()).sqrt();
+        let few = 1.0 + 5.0 / (count as f64 - 0.5 * self.unknowns());
+        let cutoff = few * (2.0 * (20.0 * count as f64).ln()).sqrt();
         let least = LEAST_SIGMA * self.path.sheet.outline.size();
         let mut limit = f64::INFINITY;
         for _ in 0..MAX_REPETITIONS {
@@ -172,11 +183,7 @@ impl Problem<'_> {
         /// Difference of two positions, in load steps.
         const STEP: f64 = 1e-3;
         let end = self.path.end();
-        let unknowns = match self.scale {
-            Scale::Given => 4.0,
-            Scale::Free => 5.0,
-        };
-        let free = 2.0 * kept.len() as f64 - unknowns;
+        let free = 2.0 * kept.len() as f64 - self.unknowns();
         let pairs = self.pairs_of(position, kept);
         let squares = |pairs: &[Pair], motion: Similarity| -> f64 {
             pairs.iter().map(|pair| motion.residual(pair).powi(2)).sum()

@@ -64,6 +64,25 @@ fn gaussian_errors_give_the_rms_of_the_chi_distribution() {
     }
 }
 
+/// One of twenty measurements may lose a correct point, whatever the number of points: of 60, more than 8 with a
+/// probability below one per cent.
+#[test]
+fn few_correct_points_are_rarely_outliers() {
+    let (problem, deployment) = deployed();
+    let path = ShapePath::new(&problem, &deployment);
+    for every in [7, 13, 25] {
+        let with_outliers = (0..60).filter(|seed| {
+            let mut points: Vec<MeasuredPoint> =
+                corners(&path).into_iter().step_by(every).collect();
+            disturb(&mut points, 1.0, 300 + seed);
+            let found = MeasuredSheet::new(&path, &points, Scale::Given).unwrap();
+            found.best.points.iter().any(|point| point.outlier)
+        });
+        let count = with_outliers.count();
+        assert!(count <= 8, "{count} of 60 with every {every}th point");
+    }
+}
+
 /// Normalised by the standard error that each fit states, the squared errors of the load factor have a mean of 1
 /// with a standard deviation of sqrt(2 / 40).
 #[test]

@@ -8,7 +8,6 @@ use dataset::Database;
 use hinge::SheetMaterial;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Numbers of rays of the family in training; all that are not held out are added.
 pub const LAWS: [usize; 3] = [30, 60, 120];
@@ -156,12 +155,4 @@ pub fn inputs(states: &[SolvedState]) -> Vec<LawState> {
 
 pub fn films(states: &[SolvedState]) -> Vec<EnergySlopes> {
     states.iter().map(|state| state.film).collect()
-}
-
-pub fn refuse_stop(stop: &AtomicBool) -> Result<()> {
-    ensure!(
-        !stop.load(Ordering::Relaxed),
-        "stopped; run the same command again"
-    );
-    Ok(())
 }

@@ -1,8 +1,9 @@
 //! Networks of the laws of one split, tested on the laws that are held out and on the materials.
 
+use crate::stop::refuse_stop;
 use crate::universal::cases::{
     Case, HELD_OUT, LAWS, Material, Measured, NETWORKS, Network, OTHER_RAYS, TEST, Way, counts,
-    inputs, refuse_stop, thinned,
+    inputs, thinned,
 };
 use crate::universal::family_table::SolvedRay;
 use crate::universal::judgement::Errors;

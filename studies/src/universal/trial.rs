@@ -1,7 +1,8 @@
 //! A network of the family, tested on a material without a ray of its own and with few, beside the weights of the film.
 
+use crate::stop::refuse_stop;
 use crate::universal::cases::{
-    Case, Material, Measured, Network, OWN_RAYS, Way, counts, films, inputs, refuse_stop,
+    Case, Material, Measured, Network, OWN_RAYS, Way, counts, films, inputs,
 };
 use crate::universal::judgement::{Errors, best_factor, scaled};
 use crate::universal::states::{Film, SolvedState, training_data};
