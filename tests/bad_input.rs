@@ -293,7 +293,7 @@ fn a_refused_thread_is_an_error_and_no_panic() {
 #[test]
 fn a_pipe_in_place_of_a_file_is_refused() {
     let work = Workplace::new();
-    for kind in ["toml", "json", "safetensors", "csv", "svg"] {
+    for kind in ["toml", "json", "safetensors", "parquet", "csv", "svg"] {
         let pipe = work.path("pipe").with_extension(kind);
         let made = std::process::Command::new("mkfifo").arg(pipe).status();
         assert!(made.unwrap().success());

@@ -5,7 +5,6 @@ use crate::analysis::misread::{Misread, Renumbered, misread, renumbered};
 use crate::analysis::robust_pose::{Fit, MIN_POINTS, Problem};
 use crate::analysis::shape_path::ShapePath;
 use crate::geometry::similarity::Scale;
-use crate::sheet::cut_sheet::Sheet;
 use std::collections::HashMap;
 
 /// A median residual above this fraction of the panel size is a reason to look for mistakes of the whole file.
@@ -84,7 +83,9 @@ impl MeasuredSheet {
             scale,
         };
         let (position, motion, level) = problem.start(points).ok_or(MeasurementError::Coincide)?;
-        if level > suspicious(path.sheet) {
+        let area: f64 = path.sheet.panels.iter().map(|panel| panel.area()).sum();
+        let panel_size = (area / path.sheet.panels.len() as f64).sqrt();
+        if level > SUSPICIOUS * panel_size {
             misread(&problem, level)?;
         }
         let (best, kept, limit) = problem
@@ -100,12 +101,6 @@ impl MeasuredSheet {
             full: problem.fit(full, &kept),
         })
     }
-}
-
-/// The median residual (mm) that is a reason to look for mistakes of the whole file.
-pub(crate) fn suspicious(sheet: &Sheet) -> f64 {
-    let area: f64 = sheet.panels.iter().map(|panel| panel.area()).sum();
-    SUSPICIOUS * (area / sheet.panels.len() as f64).sqrt()
 }
 
 /// The points must be different marks of the sheet, at finite positions, and determine the unknowns.

@@ -9,10 +9,11 @@ pub use agreement::{Agreement, OpeningSpread, Spread};
 
 use crate::analysis::marks::{FittedPoint, Mark};
 use crate::analysis::measured_openings::{MeasuredOpening, MeasuredPanel, openings, scatter, slip};
-use crate::analysis::measured_sheet::{MeasuredSheet, suspicious};
+use crate::analysis::measured_sheet::MeasuredSheet;
 use crate::analysis::misread::Renumbered;
 use crate::analysis::robust_pose::Fit;
-use crate::geometry::plane::point;
+use crate::geometry::plane::{complex, point};
+use crate::geometry::similarity::{Pair, Scale, Similarity};
 use crate::sheet::cut_sheet::Sheet;
 use faer::c64;
 use serde::Serialize;
@@ -79,7 +80,8 @@ pub struct Outlier {
 pub struct Closed {
     /// Agreement of the closed sheet with the flat design.
     pub floor: Agreement,
-    /// Whether the floor is so high that the points are hardly those of the closed sheet.
+    /// Whether the points are more than half as far from the flat sheet as those of the deployed sheet: they are hardly those
+    /// of the closed sheet.
     pub doubtful: bool,
     /// Panels whose deployed centre is farther from its prediction than the rms of the closed centres.
     pub centres_above: Vec<usize>,
@@ -157,18 +159,29 @@ impl Closed {
             .centres
             .as_ref()
             .map_or(f64::INFINITY, |centres| centres.rms);
-        let spreads = [&floor.corners, &floor.centres].into_iter().flatten();
-        let most = spreads.map(|spread| spread.rms).fold(0.0, f64::max);
         let above = panels.iter().filter(|panel| panel.distance() > level);
         let slips = supported.iter().filter_map(|&panel| {
             let slip = slip(sheet, closed, deployed, panel)?;
             Some(Slip { panel, slip })
         });
         Self {
-            doubtful: most > suspicious(sheet),
+            doubtful: from_flat(sheet, closed) > 0.5 * from_flat(sheet, deployed),
             centres_above: above.map(|panel| panel.panel).collect(),
             slips: slips.collect(),
             floor,
         }
     }
+}
+
+/// Root mean square distance of the points of a fit from the flat sheet, without a rigid motion (mm).
+fn from_flat(sheet: &Sheet, fit: &Fit) -> f64 {
+    let points = fit.kept();
+    let pairs: Vec<Pair> = points
+        .map(|point| [point.mark.flat(sheet), point.measured].map(complex))
+        .collect();
+    let Some(motion) = Similarity::least_squares(&pairs, Scale::Given) else {
+        return 0.0;
+    };
+    let squares = pairs.iter().map(|pair| motion.residual(pair).powi(2));
+    (squares.sum::<f64>() / pairs.len() as f64).sqrt()
 }

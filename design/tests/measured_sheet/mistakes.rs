@@ -236,7 +236,7 @@ fn a_deployed_sheet_in_place_of_the_closed_one_is_suspected() {
         assert_eq!(report.closed.as_ref().unwrap().doubtful, doubtful);
         let page = report.to_string();
         assert_eq!(
-            page.contains("warning: this is more than"),
+            page.contains("warning: these points are more than half"),
             doubtful,
             "{page}"
         );

@@ -229,7 +229,8 @@ impl fmt::Display for Closed {
         if self.doubtful {
             writeln!(
                 f,
-                "warning: this is more than 5 % of a panel: is the file of --closed the measurement of the closed sheet?"
+                "warning: these points are more than half as far from the flat sheet as those of the deployed sheet: is the \
+                 file of --closed that of the closed sheet?"
             )?;
         }
         let above = self.centres_above.iter().map(|panel| format!(" P{panel}"));
