@@ -142,12 +142,12 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
         work.output(test)
             .contains("6 of 6 states inside the training domain")
     );
-    let on_paths = format!("{check} --scene configs/scenes/demo.toml --design start")
+    let on_paths = format!("{check} --scene configs/scenes/demo.toml")
         .replace("--out spot", "--out spot-paths")
         .replace("--count 6", "--count 30");
     let judged = work.output(&on_paths);
     for expected in [
-        "start design of configs/scenes/demo.toml",
+        "design runs/demo/design/state.json",
         "states inside the training domain",
     ] {
         assert!(judged.contains(expected), "{judged}");
