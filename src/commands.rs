@@ -19,7 +19,6 @@ pub mod init;
 mod input_file;
 pub mod inspect;
 #[cfg(feature = "pipeline")]
-mod judged_design;
 pub mod man;
 pub mod material;
 #[cfg(feature = "pipeline")]

@@ -258,7 +258,11 @@ fn a_host_with_another_version_of_a_solver_is_refused() {
     assert!(shard("1/2").status().unwrap().success());
     let newer = failing_ccx(&replay.work.path(""), "");
     let text = std::fs::read_to_string(&newer).unwrap();
-    std::fs::write(&newer, text.replace("ccx -v", "echo 'This is Version 2.99'")).unwrap();
+    std::fs::write(
+        &newer,
+        text.replace("ccx -v", "echo 'This is Version 2.99'"),
+    )
+    .unwrap();
     let message = failure(
         shard("2/2")
             .env("KIRIGAMI_HOST", "b")

@@ -3,7 +3,7 @@
 mod polished;
 mod sheet_errors;
 
-use crate::commands::judged_design::JudgedDesign;
+use crate::commands::inspect::scene_args::{DESIGN_TO_JUDGE, Inspected};
 use crate::replays::balanced_sheet::{WindowSolves, balanced};
 use crate::replays::comparison;
 use crate::replays::comparison::{SCALE, spread_table};
@@ -35,9 +35,10 @@ use surrogate::Surrogate;
 /// a run. Without --design the design of the scene's run is verified, or the start design if the scene has no run.
 /// Example: kirigami verify configs/scenes/demo.toml --equilibrium
 #[derive(Args)]
+#[command(mut_arg("design", |arg| arg.help(DESIGN_TO_JUDGE)))]
 pub struct VerifyCommand {
     #[command(flatten)]
-    judged: JudgedDesign,
+    judged: Inspected,
     /// Weights of further networks of the same training (train --seeds), whose spread estimates the error
     #[arg(long, value_name = "FILE", num_args = 1..)]
     ensemble: Vec<PathBuf>,
@@ -83,7 +84,7 @@ struct Replayed {
 
 impl VerifyCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        let (scene, design, name) = self.judged.read()?;
+        let (scene, design, name) = self.judged.read_judged()?;
         let surrogate = scene
             .surrogate()
             .context("only a surrogate can be verified: set hinge = \"surrogate\" in the scene")?;

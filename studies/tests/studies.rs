@@ -85,10 +85,12 @@ fn optimisers_and_approaches_on_pins() {
     for row in [
         "samples | Adam",
         "samples | L-BFGS",
+        "samples | Gauss-Newton",
         "curve | Adam",
         "curve | L-BFGS",
+        "curve | Gauss-Newton",
     ] {
-        let [evaluations, quarter, half, end, _] =
+        let [evaluations, quarter, half, end, ..] =
             numbers(&optimisers, &format!("pin-7x7 | {row}"))[..]
         else {
             panic!("{optimisers}");

@@ -8,7 +8,7 @@ use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensors};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use surrogate::{InvalidWeights, Order, Surrogate, WeightsError};
+use surrogate::{FORMAT_VERSION, InvalidWeights, Order, Surrogate, WeightsError};
 use tempfile::TempDir;
 
 /// A copy of the files of a surrogate, to be changed and written.
@@ -92,7 +92,9 @@ fn a_saved_surrogate_is_loaded_bit_exactly() {
     for surrogate in [tiny(), with_peak()] {
         surrogate.save(&path).unwrap();
         let copy = Surrogate::load(&path).unwrap();
-        assert_eq!(copy.card(), surrogate.card());
+        // As text, in which an error that is not known (NaN) is equal to itself.
+        let [read, written] = [&copy, &surrogate].map(|it| format!("{:?}", it.card()));
+        assert_eq!(read, written);
         assert_eq!(energy(&copy), energy(&surrogate));
     }
     let mut names: Vec<_> = std::fs::read_dir(folder.path())
@@ -215,7 +217,7 @@ fn cards_of_other_versions_shapes_and_trainings_are_errors() {
         file.card = file.card.replace(from, to);
         file.load().unwrap_err()
     };
-    for found in [0, 7] {
+    for found in [0, u64::from(FORMAT_VERSION) + 1] {
         let error = with_card(
             "\"format_version\": 1",
             &format!("\"format_version\": {found}"),

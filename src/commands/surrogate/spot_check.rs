@@ -1,7 +1,7 @@
 //! `kirigami surrogate spot-check`: errors of weights against finite elements inside their training domain.
 
 use crate::commands::input_file;
-use crate::commands::judged_design::{self, JudgedDesign};
+use crate::commands::inspect::scene_args::{DESIGN_TO_JUDGE, Inspected};
 use crate::commands::surrogate::errors::StateErrors;
 use crate::replays::kept_solves::SolveArgs;
 use crate::replays::routes::{hinge_routes, judging_tier};
@@ -66,7 +66,7 @@ struct PathArgs {
     /// Use the hinges of this scene (TOML) along their paths instead, with at least COUNT of their states
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
-    #[arg(long, value_name = "FILE", requires = "scene", help = judged_design::DESIGN)]
+    #[arg(long, value_name = "FILE", requires = "scene", help = DESIGN_TO_JUDGE)]
     design: Option<PathBuf>,
 }
 
@@ -125,12 +125,8 @@ impl SpotCheckCommand {
 
     fn on_paths(&self) -> Result<Vec<Probe>> {
         let PathArgs { scene, design } = &self.paths;
-        let judged = JudgedDesign {
-            scene: scene.clone().context("no scene")?,
-            design: design.clone(),
-            weights: None,
-        };
-        let (scene, design, name) = judged.read()?;
+        let scene = scene.clone().context("no scene")?;
+        let (scene, design, name) = Inspected::new(scene, design.clone()).read_judged()?;
         println!("{name}");
         let routes = hinge_routes(&scene, &design)?;
         let states = routes.first().map_or(1, |route| route.states.len());
