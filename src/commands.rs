@@ -18,7 +18,6 @@ pub mod init;
 #[cfg(feature = "pipeline")]
 mod input_file;
 pub mod inspect;
-#[cfg(feature = "pipeline")]
 pub mod man;
 pub mod material;
 #[cfg(feature = "pipeline")]

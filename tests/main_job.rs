@@ -147,7 +147,7 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
         .replace("--count 6", "--count 30");
     let judged = work.output(&on_paths);
     for expected in [
-        "design runs/demo/design/state.json",
+        "runs/demo/design/state.json",
         "states inside the training domain",
     ] {
         assert!(judged.contains(expected), "{judged}");

@@ -3,6 +3,8 @@
 mod deploy;
 mod equilibrium;
 mod gradient;
+#[cfg(feature = "pipeline")]
+pub(crate) mod judged_design;
 mod pattern;
 pub mod scene_args;
 

@@ -3,7 +3,8 @@
 mod polished;
 mod sheet_errors;
 
-use crate::commands::inspect::scene_args::{DESIGN_TO_JUDGE, Inspected};
+use crate::commands::inspect::judged_design::DESIGN_TO_JUDGE;
+use crate::commands::inspect::scene_args::Inspected;
 use crate::replays::balanced_sheet::{WindowSolves, balanced};
 use crate::replays::comparison;
 use crate::replays::comparison::{SCALE, spread_table};

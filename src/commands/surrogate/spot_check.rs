@@ -1,7 +1,8 @@
 //! `kirigami surrogate spot-check`: errors of weights against finite elements inside their training domain.
 
 use crate::commands::input_file;
-use crate::commands::inspect::scene_args::{DESIGN_TO_JUDGE, Inspected};
+use crate::commands::inspect::judged_design::DESIGN_TO_JUDGE;
+use crate::commands::inspect::scene_args::Inspected;
 use crate::commands::surrogate::errors::StateErrors;
 use crate::replays::kept_solves::SolveArgs;
 use crate::replays::routes::{hinge_routes, judging_tier};
