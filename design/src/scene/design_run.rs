@@ -163,6 +163,7 @@ pub fn design_of_run(
         return Ok(None);
     };
     let mut changed: Vec<String> = (state.changed_keys(scene).iter())
+        .filter(|key| !SEARCH_KEYS.contains(&key.as_str()))
         .map(|key| format!("the key `{key}`"))
         .collect();
     let inputs = state.changed_inputs(scene).into_iter();
@@ -180,6 +181,9 @@ pub fn design_of_run(
         false => Err(InverseDesignError::OtherSize { path }),
     }
 }
+
+/// The keys of a scene by which a design is found. They change neither its sheet nor how it deploys.
+const SEARCH_KEYS: [&str; 2] = ["objective", "optimiser"];
 
 /// Runs the search of a scene in its run folder; continues from the state there if there is one.
 ///
