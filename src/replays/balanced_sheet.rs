@@ -81,8 +81,7 @@ struct Made {
     round: Round,
     hinges: Vec<HingeSample>,
     cpu_seconds: Option<f64>,
-    /// The problem with the corrected law, and the sheet by it.
-    problem: DesignProblem,
+    /// The sheet by the corrected law.
     deployed: Deployment,
 }
 
@@ -106,10 +105,7 @@ pub fn balanced(
 ) -> Result<(Balanced, DesignProblem)> {
     ensure!(rounds > 0, "at least one round is needed");
     let mut problem = scene.problem()?;
-    let law = match &problem.model {
-        Model::Equilibrium(mechanics) => mechanics.law.clone(),
-        Model::Ideal { .. } => bail!("pin hinges have no forces to be balanced"),
-    };
+    let law = law_of(&mut problem)?.clone();
     let deployed = problem.deploy(design)?;
     deployed.at_full_load()?;
     let mut found = Balanced {
@@ -120,7 +116,14 @@ pub fn balanced(
         ended: BalanceEnd::RoundsMade,
     };
     while found.rounds.len() < rounds && found.ended != BalanceEnd::Converged {
-        let made = match round(scene, design, windows, &law, &problem, found.by_elements()) {
+        let made = match round(
+            scene,
+            design,
+            windows,
+            &law,
+            &mut problem,
+            found.by_elements(),
+        ) {
             Ok(made) => made,
             Err(error) if error.is::<RoundFailed>() && !found.rounds.is_empty() => {
                 found.ended = BalanceEnd::Failed(error.to_string());
@@ -131,7 +134,6 @@ pub fn balanced(
         if made.round.movement <= BALANCED * size(&made.deployed) {
             found.ended = BalanceEnd::Converged;
         }
-        problem = made.problem;
         found.deployments.push(made.deployed);
         found.hinges = made.hinges;
         found.rounds.push(made.round);
@@ -141,13 +143,14 @@ pub fn balanced(
     Ok((found, problem))
 }
 
-/// Solves the hinges along their paths in `deployed`, the sheet of `problem`, and deploys it with the law corrected to them.
+/// Solves the hinges along their paths in `deployed`, the sheet of `problem`, and deploys it with the law corrected to
+/// them, which `problem` then has. After a [`RoundFailed`] it has the law that it had before.
 fn round(
     scene: &Scene,
     design: &DesignVector,
     windows: &WindowSolves,
     law: &Arc<dyn HingeLaw>,
-    problem: &DesignProblem,
+    problem: &mut DesignProblem,
     deployed: &Deployment,
 ) -> Result<Made> {
     let solutions = solved(scene, deployed, windows)?;
@@ -156,13 +159,13 @@ fn round(
         .sum();
     let hinges: Vec<HingeSample> = solutions.into_iter().map(|(_, end)| end).collect();
     let force_error = force_error(&problem.model, deployed, &hinges);
-    let mut problem = scene.problem()?;
-    if let Model::Equilibrium(mechanics) = &mut problem.model {
-        mechanics.law = Arc::new(corrected(law, deployed, &hinges));
-    }
+    let corrected = Arc::new(corrected(law, deployed, &hinges));
+    let before = std::mem::replace(law_of(problem)?, corrected);
     let next = problem.deploy(design)?;
-    next.at_full_load()
-        .map_err(|error| RoundFailed(error.to_string()))?;
+    if let Err(error) = next.at_full_load() {
+        *law_of(problem)? = before;
+        bail!(RoundFailed(error.to_string()));
+    }
     let movement = movements(deployed, &next).into_iter().fold(0.0, f64::max);
     Ok(Made {
         round: Round {
@@ -171,9 +174,16 @@ fn round(
         },
         hinges,
         cpu_seconds,
-        problem,
         deployed: next,
     })
+}
+
+/// The hinge law of a problem.
+fn law_of(problem: &mut DesignProblem) -> Result<&mut Arc<dyn HingeLaw>> {
+    match &mut problem.model {
+        Model::Equilibrium(mechanics) => Ok(&mut mechanics.law),
+        Model::Ideal { .. } => bail!("pin hinges have no forces to be balanced"),
+    }
 }
 
 impl Balanced {

@@ -46,7 +46,8 @@ pub struct PolishGain {
     cpu_seconds: Option<f64>,
 }
 
-/// Balances a design, which has a name for a person, in at most `rounds` rounds, searches for `steps` steps, and balances the design that was found.
+/// Balances a design, which has a name for a person, in at most `rounds` rounds, searches for `steps` steps, and
+/// balances the design that was found.
 ///
 /// # Errors
 /// [`Unfinished`] if `stop` becomes true during the search; windows that were solved are kept.

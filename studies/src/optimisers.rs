@@ -1,7 +1,7 @@
 //! `kirigami-studies optimisers`: Adam, L-BFGS and Gauss-Newton at equal cost.
 
 use crate::designed::designed;
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::geometry::chamfer::Precision;
 use design::optimise::outer_loop::{Ended, StepRecord};
@@ -12,6 +12,7 @@ use kirigami::ui::progress::Progress;
 use kirigami::ui::run_folder;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use support::processes::cpu_seconds;
 
 /// Compare Adam, L-BFGS and Gauss-Newton on scenes at an equal number of evaluations of the loss and its gradient
 ///
@@ -31,6 +32,7 @@ pub struct OptimiserStudy {
     out: PathBuf,
 }
 
+const NO_TIME: &str = "the operating system does not report the CPU time of this process";
 const METHODS: [SearchMethod; 3] = [
     SearchMethod::Adam,
     SearchMethod::Lbfgs,
@@ -90,26 +92,27 @@ impl OptimiserStudy {
         let scene = Scene::new(config, path)?;
         // The time is that of a whole search.
         forget(&scene)?;
-        let began = cpu_seconds()?;
+        let process = std::process::id();
+        let began = cpu_seconds(process).context(NO_TIME)?;
         let designed = designed(&scene, &mut |_| {})?;
-        let seconds = (cpu_seconds()? - began) / cost(&designed.history) as f64;
+        let spent = cpu_seconds(process).context(NO_TIME)? - began;
+        let seconds = spent / cost(&designed.history) as f64;
         let within = |budget| afforded(&designed.history, budget);
-        let loss = |budget| minimum(within(budget));
+        let best = |budget: usize| {
+            let steps = within(budget).iter();
+            steps.min_by(|x, y| x.scores.loss.total_cmp(&y.scores.loss))
+        };
+        let loss = |budget| best(budget).map_or(f64::NAN, |step| step.scores.loss);
         let affordable = within(budget);
-        let mut steps = affordable.iter();
-        let best = steps.find(|step| step.scores.loss == minimum(affordable));
         Ok(Searched {
             scene: name,
             precision,
             method,
             evaluations: cost(affordable),
             losses: [budget / 4, budget / 2, budget].map(loss),
-            outline_error: best.map_or(f64::NAN, |step| step.scores.outline_error),
+            outline_error: best(budget).map_or(f64::NAN, |step| step.scores.outline_error),
             seconds,
-            progress: (1..=affordable.len())
-                .map(|count| &affordable[..count])
-                .map(|steps| (cost(steps), minimum(steps)))
-                .collect(),
+            progress: progress(affordable),
             settled: designed.ended == Ended::Settled && affordable.len() == designed.history.len(),
         })
     }
@@ -126,21 +129,14 @@ fn cost(steps: &[StepRecord]) -> usize {
     steps.iter().map(|step| 1 + step.halvings as usize).sum()
 }
 
-/// The minimum loss of some steps.
-fn minimum(steps: &[StepRecord]) -> f64 {
-    let losses = steps.iter().map(|step| step.scores.loss);
-    losses.fold(f64::NAN, f64::min)
-}
-
-/// CPU time of this process, of all threads (s).
-fn cpu_seconds() -> Result<f64> {
-    const TICKS_PER_SECOND: f64 = 100.0;
-    let text = std::fs::read_to_string("/proc/self/stat")?;
-    // After the name of the program, which may contain spaces: fields 3 and following; times are fields 14 and 15.
-    let fields = text.rsplit_once(')').map_or("", |(_, fields)| fields);
-    let ticks = fields.split_whitespace().skip(11).take(2);
-    let ticks: Vec<f64> = ticks.map(str::parse).collect::<Result<_, _>>()?;
-    Ok(ticks.iter().sum::<f64>() / TICKS_PER_SECOND)
+/// Number of evaluations up to each step, and the minimum loss so far.
+fn progress(steps: &[StepRecord]) -> Vec<(usize, f64)> {
+    let next = |(evaluations, minimum): &mut (usize, f64), step: &StepRecord| {
+        *evaluations += cost(std::slice::from_ref(step));
+        *minimum = minimum.min(step.scores.loss);
+        Some((*evaluations, *minimum))
+    };
+    steps.iter().scan((0, f64::INFINITY), next).collect()
 }
 
 /// Number of evaluations after which a search has the final loss of L-BFGS on the same problem.

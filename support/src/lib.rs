@@ -7,7 +7,7 @@
 pub mod csv_table;
 pub mod lock_file;
 pub mod nearest;
-mod processes;
+pub mod processes;
 pub mod program;
 pub mod regular_file;
 pub mod scratch;

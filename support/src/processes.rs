@@ -45,8 +45,9 @@ fn of(folder: &Path) -> Vec<Pid> {
     processes.flatten().filter_map(marked).collect()
 }
 
-/// User and system seconds of a process that has exited but was not reaped, from /proc.
-pub(crate) fn cpu_seconds(pid: u32) -> Option<f64> {
+/// User and system seconds of all threads of a process, in hundredths, from /proc; `None` if it was reaped, or if the
+/// operating system does not report them.
+pub fn cpu_seconds(pid: u32) -> Option<f64> {
     /// Clock ticks per second in /proc, the same on every Linux system.
     const USER_HZ: f64 = 100.0;
     let stat = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;

@@ -88,6 +88,21 @@ impl Memory {
     }
 }
 
+/// The longest coordinate of a step.
+pub(crate) fn reach(step: &[f64]) -> f64 {
+    step.iter()
+        .fold(0.0, |reach, entry| f64::max(reach, entry.abs()))
+}
+
+/// A step no coordinate of which is longer than `longest`.
+pub(crate) fn shortened(mut step: Vec<f64>, longest: f64) -> Vec<f64> {
+    let reach = reach(&step);
+    if reach > longest {
+        step.iter_mut().for_each(|entry| *entry *= longest / reach);
+    }
+    step
+}
+
 /// sum += weight * vector
 fn add(sum: &mut [f64], vector: &[f64], weight: f64) {
     std::iter::zip(sum, vector).for_each(|(sum, v)| *sum += weight * v);

@@ -7,7 +7,7 @@ use crate::equilibrium::load_step::{LoadStep, Status};
 use crate::equilibrium::nearby_path::KnownPath;
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
 use crate::geometry::plane::add;
-use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, PreparedLaw};
+use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, Order, PreparedLaw};
 use crate::objective::loss::{Judgement, Objective, Terms};
 use crate::objective::path_functionals::PerFunctional;
 use crate::pattern::cut_pattern::{CutPattern, Outline};
@@ -141,9 +141,11 @@ pub struct Evaluation {
 
 /// The partial derivatives of a function of a deployment.
 struct Partials<'a> {
+    /// The load steps on which the function depends, the last one among them.
+    path: &'a [LoadStep],
     /// In the deployed positions of the outline points.
     by_outline: &'a [[f64; 2]],
-    /// In (a, s, theta, w_lig, alpha) per hinge and load step.
+    /// In (a, s, theta, w_lig, alpha) per hinge and step of `path`.
     by_path: &'a [Vec<[f64; 5]>],
     /// In the flat corners of every panel; `None` if all are zero.
     by_corners: Option<&'a [[[f64; 2]; 4]]>,
@@ -285,6 +287,7 @@ impl DesignProblem {
         let outline = self.objective.outline.of(&deployment.sheet);
         let judgement = self.judge(&deployment, &outline)?;
         let partials = Partials {
+            path: &deployment.path,
             by_outline: &judgement.by_outline,
             by_path: &judgement.by_path,
             by_corners: Some(&judgement.by_corners),
@@ -307,17 +310,25 @@ impl DesignProblem {
         design: &DesignVector,
         deployment: &Deployment,
     ) -> Result<Vec<Vec<f64>>, DesignError> {
-        let outline = self.objective.outline.of(&deployment.sheet);
-        let law = match &self.model {
-            Model::Ideal { .. } => None,
-            Model::Equilibrium(mechanics) => {
-                Some(mechanics.law.prepare(&deployment.sheet.designs()))
+        let sheet = &deployment.sheet;
+        let outline = self.objective.outline.of(sheet);
+        let mut last = deployment.final_step().clone();
+        let mut law = None;
+        if let Model::Equilibrium(mechanics) = &self.model {
+            let prepared = mechanics.law.prepare(&sheet.designs());
+            if last.order != Order::Design {
+                // Evaluated here once, and not by the adjoint of every vector.
+                let hinged = mechanics.hinged(sheet, &*prepared, true);
+                last.hinges = hinged.energies(&last.deformations, Order::Design);
+                last.order = Order::Design;
             }
-        };
-        let by_path = vec![vec![[0.0; 5]; deployment.path.len()]; deployment.sheet.hinges.len()];
+            law = Some(prepared);
+        }
+        let by_path = vec![vec![[0.0; 5]]; sheet.hinges.len()];
         let vectors = (self.objective).shape_curvature(&deployment.outline(&outline));
         let pulled = vectors.iter().map(|by_outline| {
             let partials = Partials {
+                path: std::slice::from_ref(&last),
                 by_outline,
                 by_path: &by_path,
                 by_corners: None,
@@ -356,7 +367,7 @@ impl DesignProblem {
                 let sums = adjoint(
                     &mechanics.solver,
                     mechanics.hinged(sheet, law, true),
-                    &deployment.path,
+                    partials.path,
                     partials.by_path,
                     by_last,
                     &mut by_sheet,

@@ -6,14 +6,14 @@
 //! H_0 = V^T V + mu I,     H_0^-1 g = (g - V^T (V V^T + mu I)^-1 V g) / mu
 //! ```
 //!
-//! instead of a multiple of I. It needs a dense factorisation whose size is twice the number of outline points. mu is the
-//! change of the gradient along the last step that V^T V does not explain, over the length of the step. Where the step is too
-//! long, mu is raised (Levenberg), up to a million times; then the step is shortened.
+//! instead of a multiple of I. It needs a dense factorisation whose size is twice the number of outline points. mu is
+//! the change of the gradient along the last step that V^T V does not explain, over the length of the step. Where the
+//! step is too long, mu is raised (Levenberg), up to a million times; then the step is shortened.
 //!
 //! [`DesignProblem::shape_curvature`]: crate::objective::design_problem::DesignProblem::shape_curvature
 
 use crate::equilibrium::displacement_control::dot;
-use crate::equilibrium::lbfgs_memory::Memory;
+use crate::equilibrium::lbfgs_memory::{Memory, reach, shortened};
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 
@@ -49,9 +49,7 @@ impl ShapeCurvature {
             }
             mu *= RAISE.0;
         }
-        let scale = longest / reach(&step);
-        step.iter_mut().for_each(|entry| *entry *= scale);
-        step
+        shortened(step, longest)
     }
 
     /// mu by the last step; 0 before the first.
@@ -91,12 +89,6 @@ impl ShapeCurvature {
             std::iter::zip(&mut *x, row).for_each(|(x, entry)| *x += weight * entry);
         }
     }
-}
-
-/// The longest coordinate of a step.
-fn reach(step: &[f64]) -> f64 {
-    step.iter()
-        .fold(0.0, |reach, entry| f64::max(reach, entry.abs()))
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 //! of these (docs/results/optimisers).
 
 use crate::equilibrium::displacement_control::dot;
-use crate::equilibrium::lbfgs_memory::Memory;
+use crate::equilibrium::lbfgs_memory::{Memory, shortened};
 use crate::optimise::adam::Adam;
 use crate::optimise::gauss_newton::ShapeCurvature;
 use schemars::JsonSchema;
@@ -155,22 +155,16 @@ impl Lbfgs {
             return Vec::new();
         };
         let (gradient, memory) = (&from.gradient, &self.memory);
-        let mut step = match curvature {
+        let step = match curvature {
             Some(curvature) if memory.is_empty() => {
                 curvature.step(gradient, memory, self.learning_rate)
             }
             Some(curvature) => curvature.step(gradient, memory, LONGEST),
             None => {
                 let first_length = self.learning_rate * (from.x.len() as f64).sqrt();
-                memory.direction(gradient, first_length)
+                shortened(memory.direction(gradient, first_length), LONGEST)
             }
         };
-        let longest = step
-            .iter()
-            .fold(0.0, |longest, s| f64::max(longest, s.abs()));
-        if longest > LONGEST {
-            step.iter_mut().for_each(|s| *s *= LONGEST / longest);
-        }
         from.slope = dot(&step, &from.gradient);
         step
     }

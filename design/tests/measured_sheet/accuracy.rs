@@ -64,7 +64,7 @@ fn gaussian_errors_give_the_rms_of_the_chi_distribution() {
     }
 }
 
-/// One of twenty measurements may lose a correct point, whatever the number of points: of 60, more than 8 with a
+/// One of twenty measurements may lose a correct point, for any number of points: of 60, more than 8 with a
 /// probability below one per cent.
 #[test]
 fn few_correct_points_are_rarely_outliers() {

@@ -102,7 +102,8 @@ const PICTURE_WIDTH: u32 = 1800;
 impl FitCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let records = self.records()?;
-        let file = self.out.join(format!("{}.toml", self.name));
+        let name = format!("{}.toml", self.name);
+        let file = self.out.join(&name);
         ensure!(
             self.replace || !file.exists(),
             "{} already exists; choose another --name or --out, or replace it with `--replace`",
@@ -118,7 +119,6 @@ impl FitCommand {
         };
         let material = fit.material(&facts)?;
         let _held = run_folder::hold(&self.out)?;
-        let name = format!("{}.toml", self.name);
         run_folder::write(&self.out, &name, &material_file(&fit, &facts))?;
         let chart = tensile_test(&fit, &self.name)?;
         let pictures = picture::save(&chart, &self.out.join(&self.name), PICTURE_WIDTH)?;

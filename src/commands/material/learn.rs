@@ -101,7 +101,7 @@ impl LearnCommand {
         let mut counts = counts(usize::from(self.rays), campaign.count).peekable();
         while let Some(rays) = counts.next() {
             let left = self.time.saturating_sub(began.elapsed());
-            let round = self.round(rays, &campaign, &config, &parent, &spot, left)?;
+            let (round, weights) = self.round(rays, &campaign, &config, &parent, &spot, left)?;
             println!("{round}");
             rounds.push(round);
             run_folder::write(&self.out, "learn.csv", &csv(&rounds)?)?;
@@ -109,6 +109,7 @@ impl LearnCommand {
             if counts.peek().is_some_and(|next| *next <= solved) {
                 continue;
             }
+            weights.save(&self.weights())?;
             if round.is_within(self.accuracy, self.forces) {
                 println!(
                     "accurate enough after {}; weights written to {}",
@@ -203,7 +204,7 @@ impl LearnCommand {
         Ok(database)
     }
 
-    /// Solves the first `rays` rays of the campaign, fine-tunes and tests.
+    /// Solves the first `rays` rays of the campaign, fine-tunes and tests; the round and its weights.
     fn round(
         &self,
         rays: usize,
@@ -212,7 +213,7 @@ impl LearnCommand {
         parent: &Surrogate,
         spot: &Database,
         time_limit: Duration,
-    ) -> Result<Round> {
+    ) -> Result<(Round, Surrogate)> {
         let jobs = self.jobs();
         let options = RunOptions {
             shard: Shard::WHOLE,
@@ -240,8 +241,7 @@ impl LearnCommand {
         )?;
         let round = Round::new(&tally, &weights, spot.rows());
         let weights = weights.with_spot_check(round.errors());
-        weights.save(&self.weights())?;
-        Ok(round)
+        Ok((round, weights))
     }
 }
 

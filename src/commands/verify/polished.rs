@@ -12,8 +12,8 @@ use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
 use std::num::NonZeroUsize;
 
-/// Polishes a design, which has a name for a person, and writes `polish.md`, `equilibrium.md`, `design.json` and the results of a run to the scene's
-/// output folder.
+/// Polishes a design, which has a name for a person, and writes `polish.md`, `equilibrium.md`, `design.json` and the
+/// results of a run to the scene's output folder.
 pub(super) fn run(
     scene: &Scene,
     (design, name): (&DesignVector, String),

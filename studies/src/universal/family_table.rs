@@ -53,12 +53,12 @@ impl SolvedRay {
         let (design, end) = (ray.ray.design, ray.ray.end);
         let [eta_a, eta_s] = end.eta(design.w_lig);
         let hinge = [design.w_lig / sheet.thickness, design.alpha];
-        // The solver prints the end with seven digits.
+        // The end is reached at lambda = 1, up to the rounding of the quotients.
         let ends = last.at.into_iter().zip([eta_a, eta_s, end.theta]);
         let reached = ends.map(|(found, end)| (found - end).abs());
         last.law == ray.law
             && [last.ligament, last.alpha] == hinge
-            && reached.fold(0.0, f64::max) < 1e-5
+            && reached.fold(0.0, f64::max) < 1e-9
     }
 }
 
