@@ -3,11 +3,13 @@
 pub mod adjoint;
 pub mod branch;
 pub mod displacement_control;
+pub mod elimination;
 pub mod follower;
 pub mod hinged_sheet;
 pub mod lbfgs;
 pub mod lbfgs_memory;
 pub mod load_step;
+pub mod multifrontal;
 pub mod nearby_path;
 pub mod newton;
 pub mod path_following;

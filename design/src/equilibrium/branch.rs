@@ -63,12 +63,11 @@ pub(crate) struct Corrected {
     pub error: f64,
 }
 
-/// A state, its tangent, the factors of the tangent, and the rate with the load parameter by them.
+/// A state, its tangent and the factors of the tangent.
 struct Linearised {
     state: State,
     values: Vec<f64>,
     factor: HeldFactor,
-    rate: Vec<[f64; 3]>,
 }
 
 /// A correction of a place.
@@ -183,7 +182,9 @@ impl<'a> Branch<'a> {
                 self.linearised(place.at, State { expected, ..state })
             });
             let mut near = near.ok_or(DIVERGED)?;
-            let mut last = self.correction(&near.state, &near.factor, &near.rate, normal);
+            let rate = self.rate(&self.potential(place.at), &near.state, &near.factor);
+            let in_plane = normal.map(|normal| (&rate[..], normal));
+            let mut last = self.correction(&near.state, &near.factor, in_plane);
             if last.length.is_nan() || last.length > DIVERGENCE * before {
                 return Err(DIVERGED);
             }
@@ -198,7 +199,7 @@ impl<'a> Branch<'a> {
             while next > CLOSE {
                 let state = self.state(&place, Order::Forces).ok_or(DIVERGED)?;
                 near.state = state.with_stiffness_of(&near.state);
-                let again = self.correction(&near.state, &near.factor, &near.rate, normal);
+                let again = self.correction(&near.state, &near.factor, in_plane);
                 if again.length.is_nan() || again.length > CONTRACTION * last.length {
                     break;
                 }
@@ -215,7 +216,7 @@ impl<'a> Branch<'a> {
                     },
                     state,
                     factor: near.factor,
-                    rate: near.rate,
+                    rate,
                     error,
                 });
             }
@@ -234,7 +235,7 @@ impl<'a> Branch<'a> {
             }
             state.expected = Some(place.forces.clone());
             let mut near = self.linearised(place.at, state)?;
-            let first = self.correction(&near.state, &near.factor, &near.rate, None);
+            let first = self.correction(&near.state, &near.factor, None);
             if first.length.is_nan() || first.length > DIVERGENCE * before {
                 return None;
             }
@@ -266,7 +267,7 @@ impl<'a> Branch<'a> {
                     });
                 }
                 polished = balanced;
-                let again = self.correction(&state, &near.factor, &near.rate, None);
+                let again = self.correction(&state, &near.factor, None);
                 if again.length.is_nan() || (!balanced && again.length > CONTRACTION * last.length)
                 {
                     break;
@@ -285,16 +286,14 @@ impl<'a> Branch<'a> {
         self.potential(place.at).state_up_to(configuration, order)
     }
 
-    /// The tangent of a state, its factors and the rate by them.
+    /// The tangent of a state and its factors, if it has any.
     fn linearised(&mut self, at: f64, state: State) -> Option<Linearised> {
         let potential = self.potential(at);
         let (values, factor) = self.factor(&potential, &state);
-        let factor = factor?;
         Some(Linearised {
-            rate: self.rate(&potential, &state, &factor),
             state,
             values,
-            factor,
+            factor: factor?,
         })
     }
 
@@ -310,18 +309,17 @@ impl<'a> Branch<'a> {
         (values, factor)
     }
 
-    /// The correction of a state by factors and a rate with the load parameter: in the plane normal to `normal`, or at
+    /// The correction of a state by factors: with the rate with the load parameter in the plane normal to the path, or at
     /// constant load.
     fn correction(
         &mut self,
         state: &State,
         factor: &HeldFactor,
-        rate: &[[f64; 3]],
-        normal: Option<&Place>,
+        in_plane: Option<(&[[f64; 3]], &Place)>,
     ) -> Correction {
         let direct = self.direct(state, factor);
-        let (motion, at) = match normal {
-            Some(normal) => self.in_plane(&direct, rate, normal),
+        let (motion, at) = match in_plane {
+            Some((rate, normal)) => self.in_plane(&direct, rate, normal),
             None => (direct, 0.0),
         };
         let length = self.potential(0.0).length(state, &motion);

@@ -7,9 +7,10 @@
 //! If the path follows another, minus the work of the loads held constant.
 
 use crate::equilibrium::displacement_control::Stroke;
+use crate::equilibrium::elimination::Elimination;
 use crate::equilibrium::settings::SolverSettings;
 use crate::equilibrium::supports::{Dof, Load, Support, hold_rigid_body};
-use crate::equilibrium::tangent::{TangentPattern, elimination_order};
+use crate::equilibrium::tangent::TangentPattern;
 use crate::pattern::grid::Grid;
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::panel_vectors::gather;
@@ -121,13 +122,13 @@ impl EquilibriumSolver {
             }
             total[panel][dof.index()] += value;
         }
-        let free = elimination_order(grid, supported.as_flattened());
+        let elimination = Elimination::new(grid, supported.as_flattened());
         Ok(Self {
             grid,
             settings,
             steps,
-            pattern: Box::new(TangentPattern::new(grid, &free)),
-            free: free.into(),
+            free: elimination.free.clone().into(),
+            pattern: Box::new(TangentPattern::new(grid, elimination)),
             supports: supports.into(),
             held: vec![[0.0; 3]; total.len()].into(),
             loads: total.into(),

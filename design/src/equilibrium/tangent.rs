@@ -2,23 +2,10 @@
 //! done once per topology and set of supports; free degrees of freedom are numbered in elimination
 //! order.
 
+use crate::equilibrium::elimination::{Elimination, columns_of};
+use crate::equilibrium::multifrontal::Multifrontal;
 use crate::pattern::grid::Grid;
 use crate::sheet::topology::hinge_sites;
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
-use faer::mat::MatMut;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky, supernodal::SupernodalLdltRef,
-};
-use faer::sparse::linalg::{SupernodalThreshold, amd};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
-use faer::{Conj, Par, Side};
-use std::cell::RefCell;
-use std::collections::BTreeSet;
-
-/// Number of free degrees of freedom from which the supernodal factorisation is faster (measured).
-const SUPERNODAL_FROM: usize = 400;
 
 /// Maximum rounds of the condition estimate, which seldom needs more than three.
 const HAGER_ROUNDS: usize = 5;
@@ -29,14 +16,12 @@ pub(crate) const MIN_PIVOT_RATIO: f64 = 1e-13;
 /// Sparsity of the tangent in the free degrees of freedom, lower triangle by columns.
 #[derive(Debug)]
 pub(crate) struct TangentPattern {
-    matrix: SymbolicSparseColMat<usize>,
-    cholesky: SymbolicCholesky<usize>,
-    /// Size of the workspace of factorisation and solution.
-    scratch: StackReq,
+    /// Where the columns start, and the row of each entry.
+    starts: Vec<usize>,
+    rows: Vec<usize>,
+    fronts: Multifrontal,
     /// Positions of the entries of each hinge's 6 x 6 block; `None` for supported or upper entries.
     slots: Vec<[[Option<u32>; 6]; 6]>,
-    /// Positions of the diagonal entries.
-    diagonal: Vec<usize>,
 }
 
 /// LDL^T of a tangent.
@@ -49,36 +34,6 @@ pub(crate) struct Factor {
     pub pivot_ratio: f64,
 }
 
-thread_local! {
-    /// Kept between factorisations, since new memory would cost page faults.
-    static SCRATCH: RefCell<MemBuffer> = RefCell::new(MemBuffer::new(StackReq::EMPTY));
-}
-
-/// Indices of the free degrees of freedom of the panels, three entries per panel, in an elimination
-/// order with little fill-in (approximate minimum degree).
-pub(crate) fn elimination_order(grid: Grid, supported: &[bool]) -> Vec<Option<usize>> {
-    let mut numbers = 0..;
-    let mut free: Vec<Option<usize>> = (supported.iter())
-        .map(|&supported| if supported { None } else { numbers.next() })
-        .collect();
-    let matrix = sparsity(grid, &free);
-    let (dimension, entries) = (matrix.ncols(), matrix.row_idx().len());
-    let (mut order, mut rank) = (vec![0; dimension], vec![0; dimension]);
-    let scratch = amd::order_scratch::<usize>(dimension, entries);
-    amd::order(
-        &mut order,
-        &mut rank,
-        matrix.as_ref(),
-        amd::Control::default(),
-        MemStack::new(&mut MemBuffer::new(scratch)),
-    )
-    .expect("indices fit in usize");
-    free.iter_mut()
-        .flatten()
-        .for_each(|number| *number = rank[*number]);
-    free
-}
-
 /// The indices of the six degrees of freedom of each hinge.
 fn at_hinges(grid: Grid, free: &[Option<usize>]) -> Vec<[Option<usize>; 6]> {
     let numbers = |panels: [usize; 2]| std::array::from_fn(|d| free[3 * panels[d / 3] + d % 3]);
@@ -89,88 +44,46 @@ fn at_hinges(grid: Grid, free: &[Option<usize>]) -> Vec<[Option<usize>; 6]> {
         .collect()
 }
 
-/// The sparsity of the lower triangle; it always contains the diagonal, for the shift.
-fn sparsity(grid: Grid, free: &[Option<usize>]) -> SymbolicSparseColMat<usize> {
-    let dimension = free.iter().flatten().count();
-    let mut columns: Vec<BTreeSet<usize>> = (0..dimension).map(|i| [i].into()).collect();
-    for numbers in at_hinges(grid, free) {
-        for &column in numbers.iter().flatten() {
-            let lower = numbers.iter().flatten().filter(|&&row| row >= column);
-            columns[column].extend(lower);
-        }
-    }
-    let mut starts = vec![0];
-    let mut rows = Vec::new();
-    for column in &columns {
-        rows.extend(column.iter().copied());
-        starts.push(rows.len());
-    }
-    SymbolicSparseColMat::new_checked(dimension, dimension, starts, None, rows)
-}
-
 impl TangentPattern {
-    /// `free[3 k + d]` numbers the free degrees of freedom of panel k, as [`elimination_order`] does.
-    pub fn new(grid: Grid, free: &[Option<usize>]) -> Self {
-        let matrix = sparsity(grid, free);
-        let (starts, rows) = (matrix.col_ptr(), matrix.row_idx());
+    /// The tangent of a grid whose degrees of freedom are numbered by an elimination.
+    pub fn new(grid: Grid, Elimination { free, fronts }: Elimination) -> Self {
+        let at_hinges = at_hinges(grid, &free);
+        // Always with the diagonal, for the shift.
+        let dimension = free.iter().flatten().count();
+        let mut columns: Vec<Vec<usize>> = (0..dimension).map(|i| vec![i]).collect();
+        for numbers in &at_hinges {
+            for &column in numbers.iter().flatten() {
+                let lower = numbers.iter().flatten().filter(|&&row| row > column);
+                columns[column].extend(lower);
+            }
+        }
+        let (starts, rows) = columns_of(columns);
         let slot = |row: usize, column: usize| {
             let range = starts[column]..starts[column + 1];
             let offset = rows[range.clone()].binary_search(&row).ok()?;
             Some((range.start + offset) as u32)
         };
-        let slots = at_hinges(grid, free)
-            .iter()
+        let slots = (at_hinges.iter())
             .map(|numbers| {
                 std::array::from_fn(|i| std::array::from_fn(|j| slot(numbers[i]?, numbers[j]?)))
             })
             .collect();
-        let dimension = matrix.ncols();
-        let diagonal = starts[..dimension].to_vec();
-        // Without a given ordering faer analyses the upper triangle, whichever side is passed.
-        let upper = matrix
-            .transpose()
-            .to_col_major()
-            .expect("indices fit in usize");
-        let cholesky = factorize_symbolic_cholesky(
-            upper.as_ref(),
-            Side::Upper,
-            SymmetricOrdering::Identity,
-            CholeskySymbolicParams {
-                supernodal_flop_ratio_threshold: if dimension < SUPERNODAL_FROM {
-                    SupernodalThreshold::FORCE_SIMPLICIAL
-                } else {
-                    SupernodalThreshold::FORCE_SUPERNODAL
-                },
-                ..Default::default()
-            },
-        )
-        .expect("indices fit in usize and the factor in memory");
-        let scratch = StackReq::any_of(&[
-            cholesky.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default()),
-            cholesky.solve_in_place_scratch::<f64>(1, Par::Seq),
-        ]);
         Self {
-            matrix,
-            cholesky,
-            scratch,
+            fronts: Multifrontal::new(fronts, &starts, &rows),
+            starts,
+            rows,
             slots,
-            diagonal,
         }
     }
 
-    /// Lends this thread's workspace to `work`, which must not request it again.
-    fn with_scratch<T>(&self, work: impl FnOnce(&mut MemStack) -> T) -> T {
-        SCRATCH.with_borrow_mut(|memory| {
-            if !MemStack::new(memory).can_hold(self.scratch) {
-                *memory = MemBuffer::new(self.scratch);
-            }
-            work(MemStack::new(memory))
-        })
+    /// Positions of the diagonal entries, the first of their columns.
+    fn diagonal_slots(&self) -> &[usize] {
+        &self.starts[..self.starts.len() - 1]
     }
 
     /// The lower triangle of H from the 6 x 6 blocks of the hinges.
     pub fn assemble(&self, blocks: impl Iterator<Item = [[f64; 6]; 6]>) -> Vec<f64> {
-        let mut values = vec![0.0; self.matrix.row_idx().len()];
+        let mut values = vec![0.0; self.rows.len()];
         for (slots, block) in std::iter::zip(&self.slots, blocks) {
             for (slots, entries) in std::iter::zip(slots, block) {
                 for (slot, entry) in std::iter::zip(slots, entries) {
@@ -185,7 +98,9 @@ impl TangentPattern {
 
     /// The diagonal of H.
     pub fn diagonal(&self, values: &[f64]) -> Vec<f64> {
-        self.diagonal.iter().map(|&slot| values[slot]).collect()
+        (self.diagonal_slots().iter())
+            .map(|&slot| values[slot])
+            .collect()
     }
 
     /// S: the magnitudes of the diagonal of a tangent, all non-zero.
@@ -204,7 +119,7 @@ impl TangentPattern {
     /// H + shift, for a diagonal shift.
     pub fn shifted(&self, values: &[f64], shift: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut values = values.to_vec();
-        for (&slot, shift) in std::iter::zip(&self.diagonal, shift) {
+        for (&slot, shift) in std::iter::zip(self.diagonal_slots(), shift) {
             values[slot] += shift;
         }
         values
@@ -217,7 +132,7 @@ impl TangentPattern {
             product[row] += term;
             bound[row] += term.abs();
         };
-        let (starts, rows) = (self.matrix.col_ptr(), self.matrix.row_idx());
+        let (starts, rows) = (&self.starts, &self.rows);
         for column in 0..x.len() {
             for slot in starts[column]..starts[column + 1] {
                 let row = rows[slot];
@@ -233,23 +148,9 @@ impl TangentPattern {
     /// LDL^T, stored in `memory` of an earlier factor; `None` if a pivot vanishes or is not finite.
     pub fn factorise(&self, values: &[f64], memory: Vec<f64>) -> Option<Factor> {
         let mut factor = memory;
-        factor.resize(self.cholesky.len_val(), 0.0);
-        self.with_scratch(|stack| {
-            self.cholesky
-                .factorize_numeric_ldlt(
-                    &mut factor,
-                    SparseColMatRef::new(self.matrix.as_ref(), values),
-                    Side::Lower,
-                    LdltRegularization::default(),
-                    Par::Seq,
-                    stack,
-                    Default::default(),
-                )
-                .ok()
-                .map(|_| ())
-        })?;
+        self.fronts.factorise(values, &mut factor)?;
         let (mut negative_pivots, mut pivot_ratio) = (0, 1.0_f64);
-        for (pivot, &slot) in std::iter::zip(self.pivots(&factor), &self.diagonal) {
+        for (pivot, &slot) in std::iter::zip(self.fronts.pivots(&factor), self.diagonal_slots()) {
             // Relative to its original diagonal entry of H.
             let ratio = pivot / values[slot].abs();
             if !ratio.is_finite() || ratio == 0.0 {
@@ -265,25 +166,6 @@ impl TangentPattern {
         })
     }
 
-    /// The diagonal of D.
-    fn pivots(&self, factor: &[f64]) -> Vec<f64> {
-        let mut pivots = Vec::with_capacity(self.diagonal.len());
-        match self.cholesky.raw() {
-            SymbolicCholeskyRaw::Simplicial(symbolic) => {
-                let starts = &symbolic.col_ptr()[..symbolic.ncols()];
-                pivots.extend(starts.iter().map(|&start| factor[start]));
-            }
-            SymbolicCholeskyRaw::Supernodal(symbolic) => {
-                let ldlt = SupernodalLdltRef::new(symbolic, factor);
-                for s in 0..symbolic.n_supernodes() {
-                    let block = ldlt.supernode(s).val();
-                    pivots.extend((0..block.ncols()).map(|j| block[(j, j)]));
-                }
-            }
-        }
-        pivots
-    }
-
     /// Estimate of the condition number of H scaled to a unit diagonal, in the 1-norm (Hager 1984).
     pub fn condition(&self, values: &[f64], factor: &Factor) -> f64 {
         let root: Vec<f64> = self
@@ -295,7 +177,7 @@ impl TangentPattern {
         if n == 0 {
             return 1.0;
         }
-        let (starts, rows) = (self.matrix.col_ptr(), self.matrix.row_idx());
+        let (starts, rows) = (&self.starts, &self.rows);
         let mut sums = vec![0.0; n];
         for column in 0..n {
             for slot in starts[column]..starts[column + 1] {
@@ -331,15 +213,7 @@ impl TangentPattern {
 
     /// Solves with the factor, in place.
     pub fn solve(&self, factor: &Factor, rhs: &mut [f64]) {
-        let rows = rhs.len();
-        self.with_scratch(|stack| {
-            LdltRef::new(&self.cholesky, &factor.values).solve_in_place_with_conj(
-                Conj::No,
-                MatMut::from_column_major_slice_mut(rhs, rows, 1),
-                Par::Seq,
-                stack,
-            );
-        });
+        self.fronts.solve(&factor.values, rhs);
     }
 }
 
@@ -347,16 +221,18 @@ impl TangentPattern {
 mod tests {
     use super::*;
 
-    /// A small sheet is factored column by column, a large one by supernodes.
-    const GRIDS: [Grid; 2] = [Grid { m: 3, n: 3 }, Grid { m: 12, n: 12 }];
+    const GRIDS: [Grid; 4] = [
+        Grid { m: 2, n: 1 },
+        Grid { m: 1, n: 9 },
+        Grid { m: 3, n: 3 },
+        Grid { m: 25, n: 20 },
+    ];
 
-    /// Panel 0 clamped.
+    /// Panel 0 clamped, and of some others one or two degrees of freedom supported.
     fn pattern(grid: Grid) -> TangentPattern {
-        let supported: Vec<bool> = (0..3 * grid.panel_count()).map(|i| i < 3).collect();
-        let pattern = TangentPattern::new(grid, &elimination_order(grid, &supported));
-        let large = pattern.diagonal.len() >= SUPERNODAL_FROM;
-        assert_eq!(large, grid.m == 12);
-        pattern
+        let supported = |i: usize| i < 3 || (i > 5 && i % 17 < 2);
+        let supported: Vec<bool> = (0..3 * grid.panel_count()).map(supported).collect();
+        TangentPattern::new(grid, Elimination::new(grid, &supported))
     }
 
     /// A positive definite matrix: a full block v v^T of each hinge plus a diagonal.
@@ -375,7 +251,7 @@ mod tests {
             let values = positive(&pattern);
             let factor = pattern.factorise(&values, Vec::new()).unwrap();
             assert_eq!(factor.negative_pivots, 0);
-            let rhs: Vec<f64> = (0..pattern.diagonal.len())
+            let rhs: Vec<f64> = (0..pattern.diagonal_slots().len())
                 .map(|i| (i as f64).cos())
                 .collect();
             let mut solution = rhs.clone();
@@ -388,7 +264,7 @@ mod tests {
     #[test]
     fn negative_pivots_are_counted_and_zero_ones_refused() {
         for pattern in GRIDS.map(pattern) {
-            let dimension = pattern.diagonal.len();
+            let dimension = pattern.diagonal_slots().len();
             let factorise = |values: &[f64]| pattern.factorise(values, Vec::new());
             let opposite: Vec<f64> = positive(&pattern).iter().map(|value| -value).collect();
             assert_eq!(factorise(&opposite).unwrap().negative_pivots, dimension);

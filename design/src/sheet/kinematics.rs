@@ -182,16 +182,20 @@ impl HingeMotion {
         // In z = (Delta u_x, Delta u_y, phi_k, phi_l); the six motions enter with the signs of COPIES.
         let [x, y, mean, relative] = self.translation_rates();
         let rates = [x, y, 0.5 * mean - relative, 0.5 * mean + relative];
-        let jacobian = [
-            rates.map(|rate| rate.re),
-            rates.map(|rate| rate.im),
-            [0.0, 0.0, -1.0, 1.0],
-        ];
-        let product: [[f64; 4]; 3] = tangent
-            .map(|row| std::array::from_fn(|j| (0..3).map(|q| row[q] * jacobian[q][j]).sum()));
-        let mut by_z: [[f64; 4]; 4] = std::array::from_fn(|i| {
-            std::array::from_fn(|j| (0..3).map(|p| jacobian[p][i] * product[p][j]).sum())
-        });
+        let mut jacobian = [[0.0; 4], [0.0; 4], [0.0, 0.0, -1.0, 1.0]];
+        for (j, rate) in rates.into_iter().enumerate() {
+            (jacobian[0][j], jacobian[1][j]) = (rate.re, rate.im);
+        }
+        let mut by_z = [[0.0; 4]; 4];
+        for (row, of_row) in std::iter::zip(tangent, &jacobian) {
+            for j in 0..4 {
+                let product =
+                    row[0] * jacobian[0][j] + row[1] * jacobian[1][j] + row[2] * jacobian[2][j];
+                for i in 0..4 {
+                    by_z[i][j] += of_row[i] * product;
+                }
+            }
+        }
         let force = c64::new(forces[0], forces[1]);
         for (axis, rate) in [x, y].into_iter().enumerate() {
             let mixed = 0.5 * dot(force, -I * rate);
@@ -211,7 +215,13 @@ impl HingeMotion {
         }
         const COPIES: [(usize, f64); 6] =
             [(0, -1.0), (1, -1.0), (2, 1.0), (0, 1.0), (1, 1.0), (3, 1.0)];
-        COPIES.map(|(i, sign)| COPIES.map(|(j, other)| sign * other * by_z[i][j]))
+        let mut stiffness = [[0.0; 6]; 6];
+        for (row, (i, sign)) in std::iter::zip(&mut stiffness, COPIES) {
+            for (entry, (j, other)) in std::iter::zip(row, COPIES) {
+                *entry = sign * other * by_z[i][j];
+            }
+        }
+        stiffness
     }
 
     /// The gradient of `weights . (a, s, theta)` with respect to the flat geometry.
