@@ -7,6 +7,7 @@ use crate::schema::{self, KNOWN, NUMBERS, TEXTS};
 use polars::prelude::{CsvReadOptions, CsvWriter, SerReader, SerWriter};
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -14,7 +15,7 @@ use std::path::Path;
 ///
 /// Each column of the database has the same name in the table unless `columns` gives another name. A column that is
 /// missing in the table is taken from `constants`. `job` (the ray) and `lambda` may be missing if every row is a
-/// separate ray. Of the results, only W, F_a, F_s and M_theta are required.
+/// separate ray. Of the results, W, F_a, F_s, M_theta and D are required; without a model of damage, D is the constant 0.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ColumnMap {
@@ -37,7 +38,7 @@ pub enum Constant {
 }
 
 /// Columns of numbers that a foreign table must have, because a surrogate is trained on them.
-const REQUIRED: [&str; 12] = [
+const REQUIRED: [&str; 13] = [
     "w_lig",
     "alpha",
     "fillet_ratio",
@@ -50,6 +51,7 @@ const REQUIRED: [&str; 12] = [
     "F_a",
     "F_s",
     "M_theta",
+    "D",
 ];
 
 impl Database {
@@ -146,6 +148,17 @@ fn rows_of(bytes: &[u8], map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
         }
         for (row, value) in rows.iter_mut().zip(values.unwrap_or_default()) {
             (number.set)(row, value);
+        }
+    }
+    for (index, row) in rows.iter().enumerate() {
+        for (column, value) in [("alpha", row.design.alpha), ("theta", row.sample.theta)] {
+            if value.abs() > PI {
+                return Err(DatasetError::Degrees {
+                    column,
+                    index,
+                    value,
+                });
+            }
         }
     }
     Ok(rows)

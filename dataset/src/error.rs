@@ -61,6 +61,15 @@ pub enum DatasetError {
         text: String,
     },
     #[error(
+        "column `{column}`, row {index}: {value} is no angle of a hinge in rad; for degrees, set \
+         `factors.{column} = 0.017453292519943295` in the column map"
+    )]
+    Degrees {
+        column: &'static str,
+        index: usize,
+        value: f64,
+    },
+    #[error(
         "the column map contains `{key}`, which is not a column of a database, or a column of another type"
     )]
     ColumnMap { key: String },

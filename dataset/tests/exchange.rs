@@ -54,7 +54,12 @@ fn foreign_map() -> ColumnMap {
         ("M_theta", "M"),
     ];
     let degree = 1f64.to_radians();
-    let numbers = [("fillet_ratio", 0.16), ("kerf", 0.2), ("r_win", 100.0)];
+    let numbers = [
+        ("fillet_ratio", 0.16),
+        ("kerf", 0.2),
+        ("r_win", 100.0),
+        ("D", 0.0),
+    ];
     let numbers = numbers.map(|(name, value)| (name.to_owned(), Constant::Number(value)));
     let material = [("material".to_owned(), Constant::Text("steel".into()))];
     ColumnMap {
@@ -180,9 +185,22 @@ fn errors_in_tables_and_column_maps_name_the_place() {
     let mut typo = foreign_map();
     typo.columns.insert("w_lug".into(), "width".into());
     assert!(error(FOREIGN, &typo).contains("w_lug"));
-    let mut bare = foreign_map();
-    bare.constants.remove("kerf");
-    assert!(error(FOREIGN, &bare).contains("no column `kerf`"));
+    for column in ["kerf", "D"] {
+        let mut bare = foreign_map();
+        bare.constants.remove(column);
+        let message = error(FOREIGN, &bare);
+        assert!(
+            message.contains(&format!("no column `{column}`")),
+            "{message}"
+        );
+    }
+    let mut degrees = foreign_map();
+    degrees.factors.remove("theta");
+    let message = error(FOREIGN, &degrees);
+    assert!(
+        message.contains("column `theta`, row 0: 10 is no angle"),
+        "{message}"
+    );
 }
 
 #[test]

@@ -22,6 +22,7 @@ mod outline_match;
 mod pages;
 mod panel_penalties;
 mod path;
+mod path_costs;
 mod peak;
 mod polyester;
 mod power_law;
@@ -59,6 +60,7 @@ enum Study {
     Window(window::WindowStudy),
     Noise(noise::NoiseStudy),
     Path(path::PathStudy),
+    PathCosts(path_costs::PathCostStudy),
     Peak(peak::PeakStudy),
     Detours(detours::DetourStudy),
     Polyester(polyester::PolyesterStudy),
@@ -89,6 +91,7 @@ impl Study {
             Self::Window(study) => study.run(),
             Self::Noise(study) => study.run(),
             Self::Path(study) => study.run(),
+            Self::PathCosts(study) => study.run(),
             Self::Peak(study) => study.run(),
             Self::Detours(study) => study.run(),
             Self::Polyester(study) => study.run(),

@@ -21,6 +21,8 @@ use std::ops::Range;
 const LANES: usize = 8;
 /// Columns that are computed together.
 const STRIP: usize = 6;
+/// Columns that are subtracted from all later ones at a time, so that they stay in cache: a multiple of a strip (measured).
+const SLAB: usize = 48;
 
 /// The fronts of a sparse matrix and where their entries are stored.
 #[derive(Debug)]
@@ -161,6 +163,17 @@ impl Multifrontal {
             size,
             stacks,
         }
+    }
+
+    /// Number of entries of L with D, and of multiplications that compute them from A.
+    pub fn size(&self) -> [usize; 2] {
+        let columns = self.fronts.iter().flat_map(|stored| {
+            let height = stored.pivots() + stored.front.rows.len();
+            (0..stored.pivots()).map(move |column| height - column)
+        });
+        columns.fold([0, 0], |[entries, multiplications], rows| {
+            [entries + rows, multiplications + rows * (rows + 1) / 2]
+        })
     }
 
     /// D, in the order of elimination.
@@ -305,25 +318,29 @@ fn factorise_block<S: Simd>(
 ) -> Option<()> {
     let height = front.height;
     for first in (0..front.pivots()).step_by(STRIP) {
-        let (entries, rest) = block.split_at_mut(first * height);
+        let (done, rest) = block.split_at_mut(first * height);
         let width = STRIP.min(front.pivots() - first);
         let strip = &mut rest[..width * height];
-        let (done, top) = (
-            Done {
-                entries,
-                height,
-                base: 0,
-            },
-            first / LANES * LANES,
-        );
+        // The columns since the last whole slab; those before have been subtracted.
+        let slab = first / SLAB * SLAB;
+        let done = Done::new(&done[slab * height..], height, slab, 0);
         done.weigh(first..first + width, weights);
-        done.multiply::<S, true>(simd, strip, top, weights);
+        done.multiply::<S, true>(simd, strip, first, weights);
         factorise_strip(simd, strip, height, first)?;
+        let next = first + width;
+        if next.is_multiple_of(SLAB) {
+            let (done, rest) = block.split_at_mut(next * height);
+            let done = Done::new(&done[(next - SLAB) * height..], height, next - SLAB, 0);
+            for (strip, row) in rest.chunks_mut(STRIP * height).zip((next..).step_by(STRIP)) {
+                done.weigh(row..row + strip.len() / height, weights);
+                done.multiply::<S, true>(simd, strip, row, weights);
+            }
+        }
     }
     Some(())
 }
 
-/// -L21 D1 L21'.
+/// U = -L21 D1 L21'.
 #[inline(always)]
 fn downdate_rest<S: Simd>(
     simd: S,
@@ -332,57 +349,68 @@ fn downdate_rest<S: Simd>(
     update: &mut [f64],
     weights: &mut Vec<f64>,
 ) {
-    let (base, tall, rows) = (front.base(), front.update_height(), front.front.rows.len());
-    let done = Done {
-        entries: block,
-        height: front.height,
-        base,
-    };
-    for first in (0..rows).step_by(STRIP) {
-        let row = front.pivots() + first;
-        let width = STRIP.min(rows - first);
-        done.weigh(row..row + width, weights);
-        let strip = &mut update[first * tall..][..width * tall];
-        done.multiply::<S, false>(simd, strip, (row - base) / LANES * LANES, weights);
+    let (height, tall) = (front.height, front.update_height());
+    for (first, slab) in (0..).step_by(SLAB).zip(block.chunks(SLAB * height)) {
+        let done = Done::new(slab, height, first, front.base());
+        let strips = update.chunks_mut((STRIP * tall).max(1));
+        for (strip, row) in strips.zip((front.pivots()..).step_by(STRIP)) {
+            done.weigh(row..row + strip.len() / tall, weights);
+            match first {
+                0 => done.multiply::<S, false>(simd, strip, row, weights),
+                _ => done.multiply::<S, true>(simd, strip, row, weights),
+            }
+        }
     }
 }
 
-/// Columns of L with D on their diagonal, and their row that is row 0 of the strips to which their products are added.
+/// Successive columns of L with D on their diagonal.
 #[derive(Clone, Copy)]
 struct Done<'a> {
     entries: &'a [f64],
     height: usize,
+    /// Column of the front that is the first of these.
+    first: usize,
+    /// Row of the front that is row 0 of the strips to which their products are added.
     base: usize,
 }
 
-impl Done<'_> {
+impl<'a> Done<'a> {
+    fn new(entries: &'a [f64], height: usize, first: usize, base: usize) -> Self {
+        Self {
+            entries,
+            height,
+            first,
+            base,
+        }
+    }
+
     /// -D L' of some rows, by columns.
     #[inline(always)]
     fn weigh(self, rows: Range<usize>, weights: &mut Vec<f64>) {
         weights.clear();
-        for (k, column) in self.entries.chunks_exact(self.height).enumerate() {
+        for (k, column) in (self.first..).zip(self.entries.chunks_exact(self.height)) {
             let pivot = column[k];
             weights.extend(column[rows.clone()].iter().map(|entry| -pivot * entry));
         }
     }
 
     /// Adds to a strip (`ADD`), or writes to it, the products of the columns with their weights, in its rows from
-    /// `top`.
+    /// that with its first diagonal entry, which is row `diagonal` of the front.
     #[inline(always)]
     fn multiply<S: Simd, const ADD: bool>(
         self,
         simd: S,
         strip: &mut [f64],
-        top: usize,
+        diagonal: usize,
         weights: &[f64],
     ) {
         match strip.len() / (self.height - self.base) {
-            1 => self.multiply_by::<S, 1, ADD>(simd, strip, top, weights),
-            2 => self.multiply_by::<S, 2, ADD>(simd, strip, top, weights),
-            3 => self.multiply_by::<S, 3, ADD>(simd, strip, top, weights),
-            4 => self.multiply_by::<S, 4, ADD>(simd, strip, top, weights),
-            5 => self.multiply_by::<S, 5, ADD>(simd, strip, top, weights),
-            _ => self.multiply_by::<S, STRIP, ADD>(simd, strip, top, weights),
+            1 => self.multiply_by::<S, 1, ADD>(simd, strip, diagonal, weights),
+            2 => self.multiply_by::<S, 2, ADD>(simd, strip, diagonal, weights),
+            3 => self.multiply_by::<S, 3, ADD>(simd, strip, diagonal, weights),
+            4 => self.multiply_by::<S, 4, ADD>(simd, strip, diagonal, weights),
+            5 => self.multiply_by::<S, 5, ADD>(simd, strip, diagonal, weights),
+            _ => self.multiply_by::<S, STRIP, ADD>(simd, strip, diagonal, weights),
         }
     }
 
@@ -392,12 +420,12 @@ impl Done<'_> {
         self,
         simd: S,
         strip: &mut [f64],
-        top: usize,
+        diagonal: usize,
         weights: &[f64],
     ) {
         let (weights, _) = weights.as_chunks::<N>();
         let tall = self.height - self.base;
-        let mut row = top;
+        let mut row = (diagonal - self.base) / LANES * LANES;
         // Sums of six columns by four vectors fit into the 32 registers of AVX-512.
         while S::F64_LANES == LANES && row + 4 * S::F64_LANES <= tall {
             self.tile::<S, 4, N, ADD>(simd, strip, row, weights);

@@ -78,6 +78,15 @@ pub struct EquilibriumSolver {
     pub(crate) pattern: Box<TangentPattern>,
 }
 
+/// The size of the factors of a tangent, zeros of merged fronts included.
+#[derive(Clone, Copy, Debug)]
+pub struct FactorSize {
+    /// Number of entries of L and D.
+    pub entries: usize,
+    /// Number of multiplications of a factorisation.
+    pub multiplications: usize,
+}
+
 impl EquilibriumSolver {
     /// Equilibria at the load factors i/steps, i = 1..=steps.
     pub fn new(
@@ -146,6 +155,15 @@ impl EquilibriumSolver {
         let direction = direction.ok_or(EquilibriumError::NothingDrives)?;
         self.drive = Some((Box::new(direction), stroke));
         Ok(self)
+    }
+
+    /// The size of a factorisation of the tangent.
+    pub fn factor_size(&self) -> FactorSize {
+        let [entries, multiplications] = self.pattern.fronts.size();
+        FactorSize {
+            entries,
+            multiplications,
+        }
     }
 
     /// An error if the supports leave a sheet free to move as a rigid body.

@@ -19,7 +19,7 @@ pub(crate) struct TangentPattern {
     /// Where the columns start, and the row of each entry.
     starts: Vec<usize>,
     rows: Vec<usize>,
-    fronts: Multifrontal,
+    pub fronts: Multifrontal,
     /// Positions of the entries of each hinge's 6 x 6 block; `None` for supported or upper entries.
     slots: Vec<[[Option<u32>; 6]; 6]>,
 }

@@ -41,7 +41,7 @@ pub enum Ended {
     Completed,
     /// Stopped on request; the next run continues.
     Stopped,
-    /// No step from the last design lowers the loss: a minimum, or a kink that L-BFGS cannot leave.
+    /// No step from the last design lowers the loss by more than rounding: a minimum, or a kink that L-BFGS cannot leave.
     Settled,
     /// No step from the last design, however small, leads to a design with an equilibrium.
     Stuck {

@@ -13,6 +13,8 @@ use serde::{Deserialize, Serialize};
 
 /// Armijo constant: the fraction of the decrease predicted by the slope that an L-BFGS step must achieve.
 const ARMIJO: f64 = 1e-4;
+/// Fall of the loss, relative to the loss, below which it is a rounding error of the equilibria.
+const RESOLUTION: f64 = 1e-13;
 /// Maximum L-BFGS step in one chart coordinate; the quadratic model is not valid beyond it.
 const LONGEST: f64 = 1.0;
 
@@ -131,7 +133,10 @@ impl Search {
         match self {
             Self::Lbfgs(Lbfgs {
                 from: Some(from), ..
-            }) => loss < from.loss + ARMIJO * fraction * from.slope,
+            }) => {
+                let fall = from.loss - loss;
+                fall > (-ARMIJO * fraction * from.slope).max(RESOLUTION * from.loss.abs())
+            }
             _ => true,
         }
     }
