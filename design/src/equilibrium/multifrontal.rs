@@ -8,9 +8,9 @@
 //! [L11; L21] of a front are stored as a dense block of columns, D1 on its diagonal. U is added to the parent. The fronts
 //! of even and of odd depth have a stack of such matrices each: children lie on the other stack than their parent.
 //!
-//! Six columns, the degrees of freedom of two panels, are computed at a time from all before them, two vectors of
-//! rows by two vectors of rows, in registers. The length of columns and the first row of U are multiples of the vector
-//! length.
+//! Six columns, the degrees of freedom of two panels, are computed at a time from those before them, one to four
+//! vectors of rows after another, whose sums stay in registers. So that there are only whole vectors, columns end with
+//! zeros, and U begins with the pivot rows that fill its first vector; those are never read.
 
 use crate::equilibrium::elimination::Front;
 use pulp::{Simd, WithSimd};

@@ -130,7 +130,6 @@ fn paths_do_not_depend_on_the_number_of_load_steps() {
 
 /// The same for several hundred sheets.
 #[test]
-#[ignore = "takes minutes"]
 fn paths_of_hundreds_of_sheets_do_not_depend_on_the_number_of_load_steps() {
     let mut jumping = 0;
     for seed in 100..350 {
