@@ -40,22 +40,19 @@ impl PathCostStudy {
             linear.push(linear::measured(sheet)?);
             bar.show(linear.len(), None, "");
         }
-        let (mut rows, mut learned) = (Vec::new(), Vec::new());
+        let mut learned = Vec::new();
         for (done, name) in (1..).zip(learned::SCENES) {
-            let (of_scene, costs) = learned::measured(name)?;
-            rows.extend(of_scene);
-            learned.extend(costs);
+            learned.extend(learned::measured(name)?);
             bar.show(linear.len() + done, None, "");
         }
         bar.finish();
-        let page = format!("{}\n{}", linear::table(&linear), learned::table(&rows));
+        let page = format!("{}\n{}", linear::table(&linear), learned::table(&learned));
         run_folder::write(&self.out, "path-costs.md", &page)?;
         let linear: Vec<PathCost> = linear.into_iter().map(|measured| measured.cost).collect();
-        picture::save(
-            &growth(&linear, &learned)?,
-            &self.out.join("path-costs"),
-            1400,
-        )?;
+        let random = learned.iter().filter(|row| !row.near);
+        let learned: Vec<_> = random.map(|row| (row.panels as f64, row.seconds)).collect();
+        let chart = growth(&linear, &learned)?;
+        picture::save(&chart, &self.out.join("path-costs"), 1400)?;
         println!("{page}\nwritten to {}", self.out.display());
         Ok(())
     }

@@ -12,13 +12,18 @@ pub struct PathCost {
     pub with_gradient: f64,
 }
 
-/// CPU time against panels on logarithmic axes: linear sheets as a line, the learned ones as points, each with and without
-/// the gradient, and the goal of a growth with the power 1.25 from the linear sheet of 600 panels on.
-pub fn growth(linear: &[PathCost], learned: &[PathCost]) -> Result<String> {
+/// CPU time against panels on logarithmic axes: linear sheets as lines, with and without the gradient, the learned ones, (panels,
+/// CPU time with gradient), as points, and the goal of a growth with the power 1.25 from the linear sheet of 600 panels on.
+pub fn growth(linear: &[PathCost], learned: &[(f64, f64)]) -> Result<String> {
     drawn((700, 480), |root| {
-        let all = || linear.iter().chain(learned);
-        let panels = decades(all().map(|cost| cost.panels as f64));
-        let seconds = decades(all().flat_map(|cost| [cost.path, cost.with_gradient]));
+        let all = || {
+            let linear = linear.iter().flat_map(|cost| {
+                [cost.path, cost.with_gradient].map(|seconds| (cost.panels as f64, seconds))
+            });
+            linear.chain(learned.iter().copied())
+        };
+        let panels = decades(all().map(|(panels, _)| panels));
+        let seconds = decades(all().map(|(_, seconds)| seconds));
         let mut chart = ChartBuilder::on(root)
             .margin(14)
             .margin_right(40)
@@ -62,9 +67,11 @@ pub fn growth(linear: &[PathCost], learned: &[PathCost]) -> Result<String> {
         }
         let colour = SLICES[2];
         chart
-            .draw_series(learned.iter().map(|cost| {
-                Circle::new((cost.panels as f64, cost.with_gradient), 4, colour.filled())
-            }))?
+            .draw_series(
+                learned
+                    .iter()
+                    .map(|&point| Circle::new(point, 4, colour.filled())),
+            )?
             .label("learned, with gradient")
             .legend(move |(x, y)| Circle::new((x + 9, y), 4, colour.filled()));
         chart

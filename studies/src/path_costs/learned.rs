@@ -1,6 +1,5 @@
 //! The scenes with learned hinges.
 
-use crate::charts::PathCost;
 use crate::path_costs::{effort, jumps, timed};
 use anyhow::Result;
 use design::equilibrium::nearby_path::KnownPath;
@@ -68,20 +67,23 @@ impl PreparedLaw for CountedHinges<'_> {
 /// One row of the table.
 pub struct Row {
     name: String,
+    pub panels: usize,
     seed: u64,
-    near: bool,
+    /// Whether the design is the one near the random design.
+    pub near: bool,
     followed: bool,
     steps: usize,
     /// As in the heading of the table.
     counts: [usize; 8],
-    seconds: f64,
+    /// CPU time of path and gradient (s).
+    pub seconds: f64,
     loss: f64,
 }
 
 /// The rows of a scene, three for each random design: the design, and one near it whose path is followed and corrected from that of
-/// the first. And the costs of the random designs.
-pub fn measured(name: &str) -> Result<(Vec<Row>, Vec<PathCost>)> {
-    let (mut rows, mut costs) = (Vec::new(), Vec::new());
+/// the first.
+pub fn measured(name: &str) -> Result<Vec<Row>> {
+    let mut rows = Vec::new();
     for seed in SEEDS {
         let (problem, counts, start) = problem(name, seed)?;
         let mut row =
@@ -95,6 +97,7 @@ pub fn measured(name: &str) -> Result<(Vec<Row>, Vec<PathCost>)> {
                     [forces, tangents, designs].map(|count| count.load(Relaxed));
                 rows.push(Row {
                     name: name.to_owned(),
+                    panels: problem.grid.panel_count(),
                     seed,
                     near,
                     followed: evaluation.deployment.followed,
@@ -121,14 +124,8 @@ pub fn measured(name: &str) -> Result<(Vec<Row>, Vec<PathCost>)> {
         let near = start.with_flat(&beside);
         row(true, &near, None)?;
         row(true, &near, Some(&known))?;
-        let (_, path) = timed(1, || Ok(problem.deploy(&start)?))?;
-        costs.push(PathCost {
-            panels: problem.grid.panel_count(),
-            path,
-            with_gradient: rows[rows.len() - 3].seconds,
-        });
     }
-    Ok((rows, costs))
+    Ok(rows)
 }
 
 /// The problem of a scene, with the counts of the evaluations of all its hinges, and a random design.
