@@ -15,7 +15,8 @@ use crate::schema::{KNOWN, NUMBERS};
 /// Column names of the quantities that a surrogate is trained on.
 const QUANTITIES: [&str; 6] = ["W", "F_a", "F_s", "M_theta", "D", "D_peak"];
 
-/// Scatter of each quantity, divided by its root mean square: [root mean square over all increments, median].
+/// Scatter of each quantity that some row has, divided by its root mean square: [root mean square over all increments,
+/// median].
 pub fn noise(rows: &[Row]) -> Vec<(&'static str, [f64; 2])> {
     let numbers = NUMBERS.iter().map(|column| {
         let value = column.get;
@@ -28,6 +29,7 @@ pub fn noise(rows: &[Row]) -> Vec<(&'static str, [f64; 2])> {
     let columns = numbers.chain(known);
     columns
         .filter(|(name, _)| QUANTITIES.contains(name))
+        .filter(|(_, values)| values.iter().any(|value| !value.is_nan()))
         .map(|(name, values)| {
             let mut first = 0;
             let mut scatter: Vec<f64> = Vec::new();
@@ -107,6 +109,14 @@ mod tests {
         let mut short: Vec<Row> = rows(2).into_iter().step_by(4).collect();
         assert!(noise(&short).iter().all(|(_, values)| *values == [0.0; 2]));
         short.iter_mut().for_each(|row| row.sample.d = 0.0);
-        assert!(noise(&[]).iter().all(|(_, values)| *values == [0.0; 2]));
+        assert!(noise(&[]).is_empty());
+    }
+
+    #[test]
+    fn a_quantity_that_no_row_has_is_left_out() {
+        let mut rows = rows(20);
+        assert!(noise(&rows).iter().any(|(name, _)| *name == "D_peak"));
+        rows.iter_mut().for_each(|row| row.sample.d_peak = None);
+        assert!(noise(&rows).iter().all(|(name, _)| *name != "D_peak"));
     }
 }

@@ -127,7 +127,11 @@ impl fmt::Display for Details<'_> {
         for name in ["w_lig", "alpha", "a", "s", "theta", "W", "D", "D_peak"] {
             let values = values(rows, name);
             let counts = histogram(&values).map(|count| format!("{count:6}"));
-            writeln!(f, "{name:18} {}", counts.join(" "))?;
+            let counts = match values.is_empty() {
+                true => "not known".into(),
+                false => counts.join(" "),
+            };
+            writeln!(f, "{name:18} {counts}")?;
         }
         let mut residuals: Vec<f64> = rows.iter().map(|row| row.sample.energy_residual).collect();
         residuals.sort_by(f64::total_cmp);
@@ -199,16 +203,16 @@ fn covered(rows: &[Row], point: fn(&Row) -> [f64; 2]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rows::tests::rows;
 
     /// Rows of older databases have no D_peak.
     #[test]
     fn a_value_that_some_rows_lack_is_counted_where_it_is_known() {
-        let mut rows = crate::rows::tests::rows(2);
+        let mut rows = rows(2);
         rows[0].sample.d_peak = None;
         assert_eq!(values(&rows, "D_peak").len(), rows.len() - 1);
         assert_eq!(values(&rows, "W").len(), rows.len());
     }
-    use crate::rows::tests::rows;
 
     #[test]
     fn histograms_count_every_value_and_constants_are_in_one_bin() {
