@@ -50,6 +50,15 @@ fn separation_chart(area: &Area, chart: &SeparationChart) -> ChartResult {
         .x_label_area_size(38)
         .y_label_area_size(64)
         .build_cartesian_2d(across.clone().log_scale(), up.clone().log_scale())?;
+    context
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .label_style((FONT, 12))
+        .x_label_formatter(&|x| format!("{x:.0e}"))
+        .y_label_formatter(&|y| format!("{y:.0e}"))
+        .x_desc("separation of path and ray, ligament widths")
+        .y_desc("relative difference at the end")
+        .draw()?;
     let (width, height) = ((across.end / across.start).ln(), (up.end / up.start).ln());
     let mut counts = [0usize; BARS];
     for x in chart.all {
@@ -65,17 +74,14 @@ fn separation_chart(area: &Area, chart: &SeparationChart) -> ChartResult {
             GUIDE.mix(0.25).filled(),
         )
     }))?;
-    context
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .label_style((FONT, 12))
-        .x_label_formatter(&|x| format!("{x:.0e}"))
-        .y_label_formatter(&|y| format!("{y:.0e}"))
-        .x_desc("separation of path and ray, ligament widths")
-        .y_desc("relative difference at the end")
-        .draw()?;
     if let Some(law) = chart.fit {
-        let line = [across.start, across.end].map(|x| (x, law.at(x)));
+        // From where the law enters the chart to where it leaves it: points outside would be moved to its edge.
+        let [one, other] = [up.start, up.end].map(|y| law.reaches(y));
+        let ends = [
+            across.start.max(one.min(other)),
+            across.end.min(one.max(other)),
+        ];
+        let line = ends.map(|x| (x, law.at(x)));
         context.draw_series(LineSeries::new(line, VALIDATION))?;
     }
     context.draw_series(marks.iter().map(|p| Circle::new(*p, 4, POINT.filled())))?;
