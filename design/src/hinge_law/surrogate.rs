@@ -21,8 +21,8 @@ use surrogate::{Prepared, Surrogate};
 
 /// delta: maximum distance outside the domain at which the network is evaluated, relative to the half-range.
 const BEYOND: f64 = 0.1;
-/// k: the force along a line outwards does not fall if W at the edge grows with gamma by at most 6 (W_s + W):
-/// psi'' is at most 0.16 of the second derivative of the returning term.
+/// k: the force along a line outwards does not fall if dW/dgamma at the edge is at most 6 (W_s + W), since the second
+/// derivative of e^3 / (e + delta) is at least 0.16 times that of -psi.
 const RETURN_STIFFNESS: f64 = 40.0;
 /// Half-range of the cut angle (rad) for weights that were trained on a single one.
 const NARROWEST_ANGLE: f64 = 0.01;
@@ -118,7 +118,7 @@ impl PreparedLaw for PreparedSurrogate<'_> {
                 .iter_mut()
                 .for_each(|m| m[1] *= self.angle_slopes[h]);
             if let Some(continuation) = &continuations[h] {
-                *energy = continuation.energy(energy, scale);
+                *energy = continuation.energy(energy, scale, order);
             }
         }
         energies
@@ -182,7 +182,7 @@ impl Continuation {
     }
 
     /// W_law from the energy at y and W_s.
-    fn energy(&self, at: &HingeEnergy, scale: f64) -> HingeEnergy {
+    fn energy(&self, at: &HingeEnergy, scale: f64, order: Order) -> HingeEnergy {
         let y = &self.mapped;
         let returning = self.gauge.map(returning(self.gauge.value)) * RETURN_STIFFNESS;
         // d2W/dy_i d(variable j); the variable changes y only.
@@ -202,13 +202,21 @@ impl Continuation {
             grown * sum(|i| y[i].gradient[j] * at.mixed[i][g])
                 + returning.gradient[j] * at.design[g]
         };
-        HingeEnergy {
+        let mut energy = HingeEnergy {
             w: law.value,
-            forces: from_fn(|j| law.gradient[j]),
-            tangent: from_fn(|j| from_fn(|k| law.hessian[j][k])),
-            design: [grown * at.design[0] + law.gradient[3], grown * at.design[1]],
-            mixed: from_fn(|j| [mixed(j, 0) + law.hessian[j][3], mixed(j, 1)]),
+            ..HingeEnergy::default()
+        };
+        if order >= Order::Forces {
+            energy.forces = from_fn(|j| law.gradient[j]);
         }
+        if order >= Order::Tangent {
+            energy.tangent = from_fn(|j| from_fn(|k| law.hessian[j][k]));
+        }
+        if order >= Order::Design {
+            energy.design = [grown * at.design[0] + law.gradient[3], grown * at.design[1]];
+            energy.mixed = from_fn(|j| [mixed(j, 0) + law.hessian[j][3], mixed(j, 1)]);
+        }
+        energy
     }
 
     /// A gradient in (a, s, theta, w_lig, alpha) at y, pulled back to x.
@@ -345,6 +353,34 @@ mod tests {
         let bare = surrogate.evaluate(&surrogate.prepare(&[design]), &[state], Order::Design);
         assert_eq!(energy(&law, &[1.0, 1.0, 0.5, 18.0, 1.5]), bare[0]);
         assert_eq!(law.prepare(&[design]).inside(&[state]), [true]);
+    }
+
+    #[test]
+    fn the_return_outweighs_the_end_of_the_learned_force() {
+        for i in 1..1000 {
+            let gauge = 1.0 + 1e-3 * f64::from(i);
+            let [lost, gained] = [-saturated(gauge)[2], returning(gauge)[2]];
+            assert!(gained >= 0.16 * lost, "{gauge}");
+        }
+    }
+
+    #[test]
+    fn derivatives_beyond_the_order_are_zero_outside_too() {
+        let law = tiny();
+        let design = hinge::HingeConstants::PAPER.hinge(18.0, 1.4);
+        let prepared = law.prepare(&[design]);
+        let outside = HingeDeformation::from([9.0, -11.0, 1.4]);
+        let at = |order| prepared.energies(&[outside], order)[0];
+        let all = at(Order::Design);
+        let mut expected = HingeEnergy {
+            w: all.w,
+            ..HingeEnergy::default()
+        };
+        assert_eq!(at(Order::Value), expected);
+        expected.forces = all.forces;
+        assert_eq!(at(Order::Forces), expected);
+        expected.tangent = all.tangent;
+        assert_eq!(at(Order::Tangent), expected);
     }
 
     /// Along lines from the centre outwards the force that returns a hinge does not fall: no ridge, no second minimum,
