@@ -2,6 +2,7 @@
 
 pub mod balanced_sheet;
 pub mod comparison;
+pub mod doubtful_states;
 pub mod kept_solves;
 pub mod polish;
 pub mod routes;

@@ -162,6 +162,16 @@ fn the_whole_chain_runs_resumes_and_refuses_to_overwrite() {
     let parts = ["spot", "spot-paths"].map(|folder| rows(&format!("{folder}/spot-check.parquet")));
     assert_eq!(rows("both.parquet"), parts[0] + parts[1]);
 
+    let anywhere = "campaign extend configs/scenes/demo.toml --anywhere 5 --doubt 0 --rays configs/campaigns/anywhere.csv";
+    assert!(work.error(anywhere).contains("--ensemble"));
+    let anywhere = format!("{anywhere} --ensemble runs/demo/surrogate-last.safetensors");
+    assert!(
+        work.output(&anywhere)
+            .contains("100.00 % of the training domain")
+    );
+    let rays = std::fs::read_to_string(work.path("configs/campaigns/anywhere.csv")).unwrap();
+    assert_eq!(rays.lines().count(), 6, "{rays}");
+
     // Six rays with small rotations do not cover the hinge states of a design.
     let extend = format!("campaign extend {design} --rays configs/campaigns/further.csv");
     assert!(work.output(&extend).contains("rays added"));

@@ -9,9 +9,10 @@
 //! alpha - pi/2, eta_a, eta_s and theta, each divided by its range, that satisfy the mirror symmetry. Outside
 //! the range of the rays on both meshes, q is constant in that coordinate. c is fitted to the energy
 //! alone, by least squares of the relative error; the corrected forces remain the gradient of the corrected energy.
+//! A quantity remains uncorrected if the correction by the other rays does not reduce the errors of a ray.
 //! (Fernandez-Godino et al., "Review of multi-fidelity models", 2016, section 2.)
 
-use crate::compare::{ComparedRay, ComparedState, compare};
+use crate::compare::{COMPARED, ComparedRay, ComparedState, compare};
 use crate::database::Database;
 use crate::error::DatasetError;
 use crate::fidelity::Fidelity;
@@ -88,6 +89,20 @@ impl Bridge {
         }
     }
 
+    /// The correction of the energy, the damage and D_peak, as far as they are to be `corrected`.
+    fn only(self, corrected: [bool; 3]) -> Self {
+        let kept = |of: Coefficients, i: usize| match corrected[i] {
+            true => of,
+            false => [0.0; TERMS.len()],
+        };
+        Self {
+            energy: kept(self.energy, 0),
+            damage: kept(self.damage, 1),
+            damage_peak: kept(self.damage_peak, 2),
+            ..self
+        }
+    }
+
     /// The sample of a row, corrected to the finer mesh. Quantities that no surrogate is trained on are unchanged,
     /// including the work of the reaction forces and the energy residual. A row that was solved on a finer tier than
     /// the requested one is also unchanged.
@@ -148,7 +163,8 @@ impl Database {
             .corrected_to(&theirs.tier)?
             .to_string();
         let rays = compare(self, reference);
-        let bridge = Bridge::fit(enough(&rays)?);
+        let corrected = left_out(&rays)?.corrected;
+        let bridge = Bridge::fit(&rays).only(corrected);
         let cpu_s = rays.iter().map(|ray| (&ray.end().job, ray.cpu_s[1]));
         let cpu_s: BTreeMap<_, _> = cpu_s.collect();
         let rows = self.rows().iter().map(|row| Row {
@@ -161,18 +177,61 @@ impl Database {
     }
 }
 
+/// Positions of the quantities with a correction of their own in [`COMPARED`].
+const CORRECTED: [usize; 3] = [0, 4, 5];
+
+/// Leave-one-out validation of the correction; see [`left_out`].
+#[derive(Clone, Debug)]
+pub struct LeftOut {
+    /// The states of each ray, corrected by the other rays.
+    pub states: Vec<Vec<ComparedState>>,
+    /// Whether W, with the forces, D and D_peak are corrected.
+    corrected: [bool; 3],
+}
+
+impl LeftOut {
+    /// The quantities that remain uncorrected, because the correction does not reduce their errors.
+    pub fn uncorrected(&self) -> Vec<&'static str> {
+        let quantities = std::iter::zip(CORRECTED, self.corrected);
+        let left = quantities.filter(|(_, corrected)| !corrected);
+        left.map(|(i, _)| COMPARED[i]).collect()
+    }
+}
+
 /// Leave-one-out validation: each ray, corrected by a bridge fitted to the other rays only. It measures the error of
-/// the correction for rays that were not solved on both meshes.
-pub fn left_out(rays: &[ComparedRay]) -> Result<Vec<Vec<ComparedState>>, DatasetError> {
+/// the correction for rays that were not solved on both meshes. Quantities whose errors it does not reduce remain
+/// uncorrected.
+pub fn left_out(rays: &[ComparedRay]) -> Result<LeftOut, DatasetError> {
     enough(rays)?;
-    let judged = (0..rays.len()).map(|i| {
-        let bridge = Bridge::fit(&[&rays[..i], &rays[i + 1..]].concat());
-        let states = rays[i].pairs();
-        states
-            .map(|(row, reference)| ComparedState::new(&bridge.corrected(row), reference))
-            .collect()
-    });
-    Ok(judged.collect())
+    let bridges: Vec<Bridge> = (0..rays.len())
+        .map(|i| Bridge::fit(&[&rays[..i], &rays[i + 1..]].concat()))
+        .collect();
+    let states = |corrected: [bool; 3]| -> Vec<Vec<ComparedState>> {
+        let of_ray = |(ray, bridge): (&ComparedRay, &Bridge)| {
+            let bridge = bridge.clone().only(corrected);
+            let state = |(row, reference): (&Row, &HingeSample)| {
+                ComparedState::new(&bridge.corrected(row), reference)
+            };
+            ray.pairs().map(state).collect()
+        };
+        std::iter::zip(rays, &bridges).map(of_ray).collect()
+    };
+    let [before, after] = [false, true].map(|all| errors(&states([all; 3])));
+    let corrected = std::array::from_fn(|i| after[i] < before[i]);
+    Ok(LeftOut {
+        states: states(corrected),
+        corrected,
+    })
+}
+
+/// The sums of the squared errors of W, D and D_peak.
+fn errors(states: &[Vec<ComparedState>]) -> [f64; 3] {
+    CORRECTED.map(|i| {
+        let known = states.iter().flatten().filter(|state| state.is_known(i));
+        known
+            .map(|state| (state.value[i] - state.reference[i]).powi(2))
+            .sum()
+    })
 }
 
 /// The rays, if they remain enough to fit every term when one is left out.
@@ -374,7 +433,7 @@ mod tests {
         }
         let spoilt = database(spoilt);
         let rays = compare(&coarse, &spoilt);
-        let judged = left_out(&rays).unwrap();
+        let judged = left_out(&rays).unwrap().states;
         let i = rays
             .iter()
             .position(|ray| ray.end().job == "job-003")
@@ -384,6 +443,23 @@ mod tests {
             (corrected / solved - 1.0).abs() < 0.1,
             "{corrected} {solved}"
         );
+    }
+
+    #[test]
+    fn a_quantity_that_is_not_improved_remains_uncorrected() {
+        // Damage differs by as much in either direction, ray by ray.
+        let spoilt = coarse().rows().to_vec().into_iter().map(|mut row| {
+            let odd = row.job.ends_with(['1', '3', '5', '7', '9']);
+            row.sample.d *= if odd { 1.3 } else { 0.7 };
+            row
+        });
+        let (coarse, fine) = (database(spoilt.collect()), database(rows(RAYS)));
+        let judged = left_out(&compare(&coarse, &fine)).unwrap();
+        assert_eq!(judged.uncorrected(), ["D"]);
+        let corrected = coarse.corrected(&fine).unwrap();
+        let both = || std::iter::zip(coarse.rows(), corrected.rows());
+        assert!(both().all(|(before, after)| before.sample.d == after.sample.d));
+        assert!(both().any(|(before, after)| before.sample.w != after.sample.w));
     }
 
     #[test]

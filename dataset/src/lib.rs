@@ -69,7 +69,7 @@ pub use csv::{ColumnMap, Constant, rows_from_csv};
 pub use database::Database;
 pub use error::DatasetError;
 pub use fidelity::Fidelity;
-pub use fidelity_correction::left_out;
+pub use fidelity_correction::{LeftOut, left_out};
 pub use gates::{Gates, Rejection};
 pub use manifest::{FORMAT_VERSION, Manifest};
 pub use mirror::with_mirrored;

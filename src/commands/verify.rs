@@ -40,7 +40,8 @@ use surrogate::Surrogate;
 pub struct VerifyCommand {
     #[command(flatten)]
     judged: Inspected,
-    /// Weights of further networks of the same training (train --seeds), whose spread estimates the error
+    /// Weights of further networks of the same training (train --seeds), whose spread estimates the error [default: the
+    /// ensemble of the scene]
     #[arg(long, value_name = "FILE", num_args = 1..)]
     ensemble: Vec<PathBuf>,
     /// Number of hinges to solve, spread evenly over the sheet [default: all]

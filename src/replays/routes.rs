@@ -47,8 +47,12 @@ pub fn routes_of(deployment: &Deployment) -> Vec<HingeRoute> {
     routes.collect()
 }
 
-/// Loads further networks trained on the data of the scene's `surrogate`; their spread estimates its error.
+/// The other networks of an ensemble with the scene's `surrogate`, whose spread estimates its error: `files`, trained on
+/// the same data, or those that the scene names.
 pub fn ensemble(scene: &Scene, surrogate: &Surrogate, files: &[PathBuf]) -> Result<Vec<Surrogate>> {
+    if files.is_empty() {
+        return Ok(scene.networks().into_iter().skip(1).cloned().collect());
+    }
     let load = |path: &PathBuf| {
         let network = scene.network(path)?;
         let (own, other) = (surrogate.card(), network.card());

@@ -7,6 +7,7 @@ mod convergence;
 mod costs;
 mod front;
 mod growth;
+mod log_log;
 mod rays;
 mod routes;
 mod separations;

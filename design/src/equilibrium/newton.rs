@@ -119,6 +119,7 @@ impl Potential<'_> {
         // A shifted step is too short where the energy curves downwards.
         let reach = if factor.shifted { REACH / length } else { 1.0 };
         let mut fraction = (*longest / length).min(reach.max(1.0));
+        let mut cut = false;
         while fraction > SHORTEST_FRACTION {
             if let Some(mut next) = self.moved(state, &motion, fraction) {
                 let fall = state.potential - next.potential;
@@ -127,7 +128,8 @@ impl Potential<'_> {
                 let level = fall.abs() <= LEVEL * state.magnitude
                     && dot(&next.gradient, &direction).abs() <= 0.5 * slope.abs();
                 if fall >= SUFFICIENT_FALL * predicted || level {
-                    *longest = LONGEST_STEP.min(2.0 * fraction * length).max(*longest);
+                    let reached = LONGEST_STEP.min(2.0 * fraction * length);
+                    *longest = if cut { reached } else { reached.max(*longest) };
                     // Near a saddle point the residual grows before it decreases.
                     let progress = factor.shifted
                         || state.residual > settings.loose_tolerance
@@ -138,7 +140,7 @@ impl Potential<'_> {
                 }
             }
             fraction *= STEP_CUT;
-            *longest = fraction * length;
+            cut = true;
         }
         None
     }

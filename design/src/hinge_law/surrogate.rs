@@ -420,10 +420,10 @@ mod tests {
             let slopes: Vec<f64> = (0..=60)
                 .map(|i| slope(1.0 + 0.005 * f64::from(i)))
                 .collect();
-            let (mut greatest, mut fall) = (f64::NEG_INFINITY, 0.0_f64);
+            let (mut peak, mut fall) = (f64::NEG_INFINITY, 0.0_f64);
             for slope in slopes {
-                greatest = greatest.max(slope);
-                fall = fall.max(greatest - slope);
+                peak = peak.max(slope);
+                fall = fall.max(peak - slope);
             }
             // The networks' own softening at the edge of a folding hinge.
             let most = 0.3 * law.surrogate().energy_scale();

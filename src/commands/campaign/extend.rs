@@ -1,6 +1,7 @@
 //! `kirigami campaign extend`: new rays for hinge states that the training data does not cover.
 
 use crate::commands::inspect::scene_args::Inspected;
+use crate::replays::doubtful_states::{doubtful_states, rays_through};
 use crate::replays::routes::{HingeRoute, ensemble, hinge_routes};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -13,19 +14,24 @@ use surrogate::{Order, Surrogate};
 ///
 /// A hinge is selected if a state on its path lies outside the training domain, or if the forces of
 /// an ensemble (train --seeds) deviate there by more than --doubt. A ray is then added through the
-/// outermost such state, ending 10 % beyond it. The rays are appended to a CSV file, which a campaign
-/// names as extra_rays. Example: kirigami campaign extend configs/scenes/pet-3x3.toml --design
+/// outermost such state, ending 10 % beyond it. With --anywhere, rays are added through random states of the whole
+/// training domain instead, where the energies of the ensemble deviate most. The rays are appended to a CSV
+/// file, which a campaign names as extra_rays. Example: kirigami campaign extend configs/scenes/pet-3x3.toml --design
 /// runs/pet-3x3/state.json --rays configs/campaigns/pet-0.5mm-rays.csv
 #[derive(Args)]
 pub struct ExtendCommand {
     #[command(flatten)]
     inspected: Inspected,
-    /// Weights of further networks trained on the same data
+    /// Weights of further networks trained on the same data [default: the ensemble of the scene]
     #[arg(long, value_name = "FILE", num_args = 1..)]
     ensemble: Vec<PathBuf>,
-    /// Maximum standard deviation of the ensemble's forces, relative to their root mean square
+    /// Maximum standard deviation of the ensemble: of its forces, relative to their root mean square, or with --anywhere of
+    /// its energies, relative to their mean
     #[arg(long, value_name = "FRACTION", default_value_t = 0.05)]
     doubt: f64,
+    /// Add at most N rays through states of the training domain, without a design
+    #[arg(long, value_name = "N", conflicts_with = "design")]
+    anywhere: Option<usize>,
     /// CSV file to append the rays to
     #[arg(long, value_name = "FILE")]
     rays: PathBuf,
@@ -42,12 +48,39 @@ impl ExtendCommand {
         )?;
         let mut networks = vec![surrogate.clone()];
         networks.extend(ensemble(&scene, surrogate, &self.ensemble)?);
-        let routes = hinge_routes(&scene, &design)?;
+        let (rays, found) = match self.anywhere {
+            Some(count) => self.in_the_domain(count, &networks)?,
+            None => self.on_paths(&hinge_routes(&scene, &design)?, &networks)?,
+        };
+        // The campaign solves sheets of the thickness of the material file.
+        let of_the_file = |ray: Ray| Ray {
+            design: ray.design.scaled(scene.scale().recip()),
+            end: ray.end.scaled(scene.scale().recip()),
+        };
+        let rays: Vec<Ray> = rays.into_iter().map(of_the_file).collect();
+        let Added {
+            added,
+            known,
+            refused,
+        } = add_extra_rays(&self.rays, &rays)?;
+        println!(
+            "{found}; {added} rays added to {}, {known} already in the file, {refused} rejected (beyond |eta| = 1 or -30 to \
+             120 deg)\nTo solve the new rays, set extra_rays = \"FILE\" in a campaign (path relative to the campaign file).",
+            self.rays.display()
+        );
+        Ok(())
+    }
+
+    /// Rays of the hinges of a sheet, and what was found.
+    fn on_paths(
+        &self,
+        routes: &[HingeRoute],
+        networks: &[Surrogate],
+    ) -> Result<(Vec<Ray>, String)> {
         ensure!(!routes.is_empty(), "the sheet has no hinges");
-        let doubts = doubts(&networks, &routes);
-        let domain = surrogate.domain();
+        let domain = networks[0].domain();
         let (mut outside, mut doubted, mut rays) = (0, 0, Vec::new());
-        for (route, doubt) in routes.iter().zip(doubts) {
+        for (route, doubt) in routes.iter().zip(doubts(networks, routes)) {
             let leaves = |state: &&HingeDeformation| !domain.contains(&route.design, state);
             let left: Vec<_> = route.states.iter().filter(leaves).copied().collect();
             let through = if !left.is_empty() {
@@ -59,25 +92,34 @@ impl ExtendCommand {
             } else {
                 continue;
             };
-            // The campaign solves sheets of the thickness of the material file.
             rays.push(Ray {
-                design: route.design.scaled(scene.scale().recip()),
-                end: through.scaled(scene.scale().recip()).at(BEYOND),
+                design: route.design,
+                end: through.at(BEYOND),
             });
         }
-        let Added {
-            added,
-            known,
-            refused,
-        } = add_extra_rays(&self.rays, &rays)?;
-        println!(
-            "of {} hinges {outside} leave the training domain and {doubted} exceed --doubt; {added} rays added to {}, \
-             {known} already in the file, {refused} rejected (beyond |eta| = 1 or -30 to 120 deg)\n\
-             To solve the new rays, set extra_rays = \"FILE\" in a campaign (path relative to the campaign file).",
-            routes.len(),
-            self.rays.display()
+        let found = format!(
+            "of {} hinges {outside} leave the training domain and {doubted} exceed --doubt",
+            routes.len()
         );
-        Ok(())
+        Ok((rays, found))
+    }
+
+    /// Rays through states of the training domain, and what was found.
+    fn in_the_domain(&self, count: usize, networks: &[Surrogate]) -> Result<(Vec<Ray>, String)> {
+        ensure!(
+            networks.len() > 1,
+            "--anywhere needs an ensemble: pass further networks with --ensemble, or name them in the scene"
+        );
+        let (states, share) = doubtful_states(networks, self.doubt);
+        let rays = rays_through(&states, networks[0].domain(), count, BEYOND);
+        let worst = states.first().map_or(0.0, |state| state.doubt);
+        let found = format!(
+            "the energies of {} networks deviate by more than {:.3} in {:.2} % of the training domain, by {worst:.2} at most",
+            networks.len(),
+            self.doubt,
+            100.0 * share
+        );
+        Ok((rays, found))
     }
 }
 

@@ -89,9 +89,17 @@ fn summary(
 
 /// The remaining differences when every ray is corrected by the others.
 pub fn correction(rays: &[ComparedRay]) -> Result<String> {
-    let table = spread_table(&groups(&left_out(rays)?), "ray")?;
+    let judged = left_out(rays)?;
+    let table = spread_table(&groups(&judged.states), "ray")?;
+    let note = match &judged.uncorrected()[..] {
+        [] => String::new(),
+        left => format!(
+            " Not corrected, because that does not reduce the differences: {}.",
+            left.join(", ")
+        ),
+    };
     Ok(format!(
-        "\nRemaining differences when each of the {} rays is corrected by the others. `kirigami \
+        "\nRemaining differences when each of the {} rays is corrected by the others.{note} `kirigami \
          dataset correct`.\n\n{table}",
         rays.len()
     ))

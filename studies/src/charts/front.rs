@@ -1,5 +1,6 @@
 //! Charts of choices by cost and error; a choice on the Pareto front has no other to its lower left.
 
+use super::log_log::log_log;
 use anyhow::Result;
 use kirigami::ui::charts::*;
 use plotters::prelude::*;
@@ -37,21 +38,12 @@ fn front_chart(area: &Area, panel: &FrontPanel) -> ChartResult {
     // Space for the labels.
     let across = across.start..4.0 * across.end;
     let up = decades(points.iter().map(|(_, (_, error))| *error));
-    let mut chart = ChartBuilder::on(area)
-        .caption(panel.title, (FONT, 15))
-        .margin(10)
-        .x_label_area_size(38)
-        .y_label_area_size(64)
-        .build_cartesian_2d(across.log_scale(), up.log_scale())?;
-    chart
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .label_style((FONT, 12))
-        .x_label_formatter(&|x| format!("{x:.0e}"))
-        .y_label_formatter(&|y| format!("{y:.0e}"))
-        .x_desc("cost, s")
-        .y_desc("error of the deployed shape, % of the sheet")
-        .draw()?;
+    let mut chart = log_log(
+        area,
+        panel.title,
+        (across, "cost, s"),
+        (up, "error of the deployed shape, % of the sheet"),
+    )?;
     let mut named: Vec<(f64, f64)> = Vec::new();
     chart.draw_series(points.iter().map(|(name, at)| {
         // Labels must not overlap: of several close points the first is labelled.

@@ -1,5 +1,6 @@
 //! Charts of path dependence: differences against the separation of path and ray.
 
+use super::log_log::log_log;
 use crate::power_law::PowerLaw;
 use anyhow::Result;
 use kirigami::ui::charts::*;
@@ -44,21 +45,15 @@ fn separation_chart(area: &Area, chart: &SeparationChart) -> ChartResult {
             .chain(chart.all.iter().map(|x| x.max(MIN_DIFFERENCE))),
     );
     let up = decades(marks.iter().map(|p| p.1));
-    let mut context = ChartBuilder::on(area)
-        .caption(chart.quantity, (FONT, 15))
-        .margin(10)
-        .x_label_area_size(38)
-        .y_label_area_size(64)
-        .build_cartesian_2d(across.clone().log_scale(), up.clone().log_scale())?;
-    context
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .label_style((FONT, 12))
-        .x_label_formatter(&|x| format!("{x:.0e}"))
-        .y_label_formatter(&|y| format!("{y:.0e}"))
-        .x_desc("separation of path and ray, ligament widths")
-        .y_desc("relative difference at the end")
-        .draw()?;
+    let mut context = log_log(
+        area,
+        chart.quantity,
+        (
+            across.clone(),
+            "separation of path and ray, ligament widths",
+        ),
+        (up.clone(), "relative difference at the end"),
+    )?;
     let (width, height) = ((across.end / across.start).ln(), (up.end / up.start).ln());
     let mut counts = [0usize; BARS];
     for x in chart.all {

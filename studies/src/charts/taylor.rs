@@ -1,5 +1,6 @@
 //! Chart of the Taylor remainders of a gradient.
 
+use super::log_log::log_log;
 use anyhow::Result;
 use kirigami::ui::charts::*;
 use plotters::prelude::*;
@@ -24,20 +25,12 @@ fn taylor_chart(area: &Area, lines: &[TaylorLine]) -> ChartResult {
     };
     let across = decades(points().map(|p| p.0));
     let up = decades(points().map(|p| p.1));
-    let mut chart = ChartBuilder::on(area)
-        .margin(10)
-        .x_label_area_size(38)
-        .y_label_area_size(64)
-        .build_cartesian_2d(across.clone().log_scale(), up.clone().log_scale())?;
-    chart
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .label_style((FONT, 12))
-        .x_label_formatter(&|x| format!("{x:.0e}"))
-        .y_label_formatter(&|y| format!("{y:.0e}"))
-        .x_desc("step h")
-        .y_desc("Taylor remainder / loss")
-        .draw()?;
+    let mut chart = log_log(
+        area,
+        "Taylor remainders",
+        (across.clone(), "step h"),
+        (up.clone(), "Taylor remainder / loss"),
+    )?;
     for (order, name) in [(1, "order 1"), (2, "order 2")] {
         // Through the upper right corner, as far as it is visible.
         let at = |x: f64| up.end * (x / across.end).powi(order);

@@ -1,0 +1,159 @@
+//! States of a training domain at which the networks of an ensemble disagree, and rays through them.
+
+use crate::replays::spot_states;
+use fe_driver::Ray;
+use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
+use surrogate::{Order, Surrogate};
+
+/// Number of states drawn: a part of a thousandth of the domain has fifty.
+const DRAWN: usize = 50_000;
+/// Energies below this fraction of their median count as that fraction: their relative deviation has no effect on sheets.
+const LEAST_ENERGY: f64 = 0.01;
+/// Minimum distance of two rays' states, where every coordinate has the range 1 over the domain.
+const APART: f64 = 0.15;
+
+/// A hinge state and the disagreement of the networks there.
+#[derive(Clone, Copy)]
+pub struct DoubtfulState {
+    /// The hinge design.
+    pub design: HingeDesign,
+    /// Its deformation.
+    pub state: HingeDeformation,
+    /// Standard deviation of the energies, relative to their mean.
+    pub doubt: f64,
+}
+
+/// The states where the energies of the networks deviate by more than `doubt`, the largest deviation first, and their share
+/// of the training domain of the first network.
+pub fn doubtful_states(networks: &[Surrogate], doubt: f64) -> (Vec<DoubtfulState>, f64) {
+    let Some(first) = networks.first() else {
+        return (Vec::new(), 0.0);
+    };
+    let probes = spot_states::drawn(first.domain(), &first.card().hinge, DRAWN, 1, 0);
+    let designs: Vec<HingeDesign> = probes.iter().map(|probe| probe.design).collect();
+    let states: Vec<HingeDeformation> = probes.iter().map(|probe| probe.path.at(1.0)).collect();
+    let energies: Vec<Vec<f64>> = networks
+        .iter()
+        .map(|network| {
+            let prepared = network.prepare(&designs);
+            let energies = network.evaluate(&prepared, &states, Order::Value);
+            energies.iter().map(|energy| energy.w).collect()
+        })
+        .collect();
+    let mut sizes: Vec<f64> = energies[0].iter().map(|w| w.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let least = LEAST_ENERGY * sizes[DRAWN / 2];
+    let mut found: Vec<DoubtfulState> = (0..DRAWN)
+        .map(|k| DoubtfulState {
+            design: designs[k],
+            state: states[k],
+            doubt: deviation(energies.iter().map(|of| of[k]), least),
+        })
+        .filter(|state| state.doubt > doubt)
+        .collect();
+    found.sort_by(|a, b| b.doubt.total_cmp(&a.doubt));
+    let share = found.len() as f64 / DRAWN as f64;
+    (found, share)
+}
+
+/// Standard deviation of energies relative to their mean, or to `least` if that is larger.
+fn deviation(energies: impl Iterator<Item = f64> + Clone, least: f64) -> f64 {
+    let n = energies.clone().count() as f64;
+    let mean = energies.clone().sum::<f64>() / n;
+    let squares: f64 = energies.map(|w| (w - mean).powi(2)).sum();
+    (squares / (n - 1.0).max(1.0)).sqrt() / mean.abs().max(least)
+}
+
+/// At most `count` rays through the first of the states that are not close to each other, each ending at `beyond` times its
+/// state. A state and its mirror image count as one.
+pub fn rays_through(
+    states: &[DoubtfulState],
+    domain: &TrainingDomain,
+    count: usize,
+    beyond: f64,
+) -> Vec<Ray> {
+    let mut taken: Vec<[f64; 5]> = Vec::new();
+    let mut rays = Vec::new();
+    for DoubtfulState { design, state, .. } in states {
+        let at = coordinates(domain, design, state);
+        let far = |other: &[f64; 5]| {
+            let squares = std::iter::zip(at, other).map(|(x, y)| (x - y).powi(2));
+            squares.sum::<f64>() > APART * APART
+        };
+        if rays.len() < count && taken.iter().all(far) {
+            taken.push(at);
+            rays.push(Ray {
+                design: *design,
+                end: state.at(beyond),
+            });
+        }
+    }
+    rays
+}
+
+/// log w_lig, alpha, eta_a, eta_s and theta over their ranges in the domain, of the state or its mirror image whose alpha is
+/// not obtuse.
+fn coordinates(
+    domain: &TrainingDomain,
+    design: &HingeDesign,
+    state: &HingeDeformation,
+) -> [f64; 5] {
+    let obtuse = design.alpha > std::f64::consts::FRAC_PI_2;
+    let (design, state) = match obtuse {
+        true => (design.mirrored(), state.mirrored()),
+        false => (*design, *state),
+    };
+    let [eta_a, eta_s] = state.eta(design.w_lig);
+    let [of_a, of_s, of_theta] = domain.bounds();
+    let over = |value: f64, [from, to]: [f64; 2]| value / (to - from);
+    [
+        over(design.w_lig.ln(), domain.w_lig.map(f64::ln)),
+        over(design.alpha, domain.alpha),
+        over(eta_a, of_a),
+        over(eta_s, of_s),
+        over(state.theta, of_theta),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hinge::HingeConstants;
+
+    fn doubtful(w_lig: f64, alpha: f64, eta_s: f64, doubt: f64) -> DoubtfulState {
+        DoubtfulState {
+            design: HingeConstants::PAPER.hinge(w_lig, alpha),
+            state: HingeDeformation::from_eta(0.1, eta_s, 0.3, w_lig),
+            doubt,
+        }
+    }
+
+    #[test]
+    fn deviations_are_relative_to_the_mean_or_the_least_energy() {
+        let of = |energies: [f64; 2], least| deviation(energies.into_iter(), least);
+        assert!((of([9.0, 11.0], 1.0) - 0.02f64.sqrt()).abs() < 1e-15);
+        assert!((of([0.0, 0.2], 1.0) - 0.02f64.sqrt()).abs() < 1e-15);
+        assert_eq!(deviation([3.0].into_iter(), 1.0), 0.0);
+    }
+
+    #[test]
+    fn rays_pass_through_states_far_from_each_other_and_from_their_mirror_images() {
+        let domain = TrainingDomain::of_box(
+            [[-0.8, 0.2], [-0.4, 0.4], [-0.1, 1.3]],
+            [5.0, 25.0],
+            [0.8, 2.3],
+        );
+        let states = [
+            doubtful(10.0, 1.0, 0.2, 0.9),
+            doubtful(10.1, 1.0, 0.2, 0.8),
+            doubtful(10.0, std::f64::consts::PI - 1.0, -0.2, 0.7),
+            doubtful(20.0, 1.0, 0.2, 0.6),
+            doubtful(10.0, 1.0, -0.2, 0.5),
+        ];
+        let rays = rays_through(&states, &domain, 10, 1.1);
+        let found: Vec<_> = rays.iter().map(|ray| ray.design.w_lig).collect();
+        assert_eq!(found, [10.0, 20.0, 10.0]);
+        assert_eq!(rays[0].end, states[0].state.at(1.1));
+        assert_eq!(rays_through(&states, &domain, 2, 1.1).len(), 2);
+    }
+}
