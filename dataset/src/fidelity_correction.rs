@@ -9,7 +9,8 @@
 //! alpha - pi/2, eta_a, eta_s and theta, each divided by its range, that satisfy the mirror symmetry. Outside
 //! the range of the rays on both meshes, q is constant in that coordinate. c is fitted to the energy
 //! alone, by least squares of the relative error; the corrected forces remain the gradient of the corrected energy.
-//! A quantity remains uncorrected if the correction by the other rays does not reduce the errors of a ray.
+//! W with its forces, D or D_peak remains uncorrected if the sum of its squared errors over all rays, each corrected by the
+//! others, is no smaller than without the correction. W decides for the forces.
 //! (Fernandez-Godino et al., "Review of multi-fidelity models", 2016, section 2.)
 
 use crate::compare::{COMPARED, ComparedRay, ComparedState, compare};
@@ -149,8 +150,9 @@ impl Bridge {
 }
 
 impl Database {
-    /// Corrects every row to the mesh of `reference`, using the rays that both databases contain. The CPU time of these
-    /// rays is the sum over both meshes.
+    /// Corrects every row to the mesh of `reference`, using the rays that both databases contain, but for quantities that
+    /// [`left_out`] leaves uncorrected; without a correction of W the tier remains. The CPU time of these rays is the sum
+    /// over both meshes.
     pub fn corrected(&self, reference: &Self) -> Result<Self, DatasetError> {
         let [ours, theirs] = [self, reference].map(Self::manifest);
         if ours.material_hashes != theirs.material_hashes {
@@ -159,11 +161,13 @@ impl Database {
                 found: theirs.material.clone(),
             });
         }
-        let tier = Fidelity::of(&ours.tier)
-            .corrected_to(&theirs.tier)?
-            .to_string();
+        let tier = Fidelity::of(&ours.tier).corrected_to(&theirs.tier)?;
         let rays = compare(self, reference);
-        let corrected = left_out(&rays)?.corrected;
+        let corrected = left_out(&rays)?.corrected();
+        let tier = match corrected[0] {
+            true => tier.to_string(),
+            false => ours.tier.clone(),
+        };
         let bridge = Bridge::fit(&rays).only(corrected);
         let cpu_s = rays.iter().map(|ray| (&ray.end().job, ray.cpu_s[1]));
         let cpu_s: BTreeMap<_, _> = cpu_s.collect();
@@ -185,24 +189,34 @@ const CORRECTED: [usize; 3] = [0, 4, 5];
 pub struct LeftOut {
     /// The states of each ray, corrected by the other rays.
     pub states: Vec<Vec<ComparedState>>,
-    /// Whether W, with the forces, D and D_peak are corrected.
-    corrected: [bool; 3],
+    /// Sums of the squared errors of W, D and D_peak without and with the correction.
+    errors: [[f64; 3]; 2],
 }
 
 impl LeftOut {
+    /// Whether W, with the forces, D and D_peak are corrected.
+    fn corrected(&self) -> [bool; 3] {
+        let [before, after] = self.errors;
+        std::array::from_fn(|i| after[i] < before[i])
+    }
+
     /// The quantities that remain uncorrected, because the correction does not reduce their errors.
     pub fn uncorrected(&self) -> Vec<&'static str> {
-        let quantities = std::iter::zip(CORRECTED, self.corrected);
-        let left = quantities.filter(|(_, corrected)| !corrected);
-        left.map(|(i, _)| COMPARED[i]).collect()
+        let corrected = self.corrected();
+        let left = (0..3).filter(|&i| !corrected[i] && self.errors[0][i] > 0.0);
+        left.map(|i| COMPARED[CORRECTED[i]]).collect()
     }
 }
 
 /// Leave-one-out validation: each ray, corrected by a bridge fitted to the other rays only. It measures the error of
-/// the correction for rays that were not solved on both meshes. Quantities whose errors it does not reduce remain
-/// uncorrected.
+/// the correction for rays that were not solved on both meshes. The choice of the quantities that are corrected is made on
+/// all rays.
 pub fn left_out(rays: &[ComparedRay]) -> Result<LeftOut, DatasetError> {
-    enough(rays)?;
+    let (found, needed) = (rays.len(), TERMS.len() + 1);
+    if found < needed {
+        // Too few to fit every term when one ray is left out.
+        return Err(DatasetError::TooFewRays { found, needed });
+    }
     let bridges: Vec<Bridge> = (0..rays.len())
         .map(|i| Bridge::fit(&[&rays[..i], &rays[i + 1..]].concat()))
         .collect();
@@ -216,11 +230,14 @@ pub fn left_out(rays: &[ComparedRay]) -> Result<LeftOut, DatasetError> {
         };
         std::iter::zip(rays, &bridges).map(of_ray).collect()
     };
-    let [before, after] = [false, true].map(|all| errors(&states([all; 3])));
-    let corrected = std::array::from_fn(|i| after[i] < before[i]);
+    let corrected = states([true; 3]);
+    let judged = LeftOut {
+        errors: [errors(&states([false; 3])), errors(&corrected)],
+        states: corrected,
+    };
     Ok(LeftOut {
-        states: states(corrected),
-        corrected,
+        states: states(judged.corrected()),
+        ..judged
     })
 }
 
@@ -232,15 +249,6 @@ fn errors(states: &[Vec<ComparedState>]) -> [f64; 3] {
             .map(|state| (state.value[i] - state.reference[i]).powi(2))
             .sum()
     })
-}
-
-/// The rays, if they remain enough to fit every term when one is left out.
-fn enough<'a, 'b>(rays: &'b [ComparedRay<'a>]) -> Result<&'b [ComparedRay<'a>], DatasetError> {
-    let (found, needed) = (rays.len(), TERMS.len() + 1);
-    match found < needed {
-        true => Err(DatasetError::TooFewRays { found, needed }),
-        false => Ok(rays),
-    }
 }
 
 /// Whether a row was solved on the tier of its campaign, and not on a finer one after a failure.
@@ -460,6 +468,20 @@ mod tests {
         let both = || std::iter::zip(coarse.rows(), corrected.rows());
         assert!(both().all(|(before, after)| before.sample.d == after.sample.d));
         assert!(both().any(|(before, after)| before.sample.w != after.sample.w));
+
+        let unknown = |rows: Vec<Row>| {
+            let without = rows.into_iter().map(|mut row| {
+                row.sample.d_peak = None;
+                row
+            });
+            database(without.collect())
+        };
+        let (coarse, fine) = (
+            unknown(coarse.rows().to_vec()),
+            unknown(fine.rows().to_vec()),
+        );
+        let judged = left_out(&compare(&coarse, &fine)).unwrap();
+        assert_eq!(judged.uncorrected(), ["D"]);
     }
 
     #[test]

@@ -111,7 +111,8 @@ struct ExportCommand {
 /// Correct a database to a finer mesh, by those of its rays that were also solved on that mesh
 ///
 /// The energy is multiplied by a fitted ratio of the two meshes, a polynomial in geometry and deformation;
-/// the forces remain its gradient. D and D_peak have their own factors. The split and the columns that are
+/// the forces remain its gradient. D and D_peak have their own factors. Quantities whose differences this does not
+/// reduce on rays that were left out remain as they are. The split and the columns that are
 /// not used for training are unchanged. Prints the remaining differences when each ray is corrected
 /// by the others. Example: kirigami dataset correct data/pet-0.5mm/hinges.parquet
 /// data/pet-0.5mm/reference.parquet --out runs/corrected.parquet

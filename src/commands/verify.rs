@@ -41,7 +41,7 @@ pub struct VerifyCommand {
     #[command(flatten)]
     judged: Inspected,
     /// Weights of further networks of the same training (train --seeds), whose spread estimates the error [default: the
-    /// ensemble of the scene]
+    /// ensemble of the scene, none with --weights]
     #[arg(long, value_name = "FILE", num_args = 1..)]
     ensemble: Vec<PathBuf>,
     /// Number of hinges to solve, spread evenly over the sheet [default: all]

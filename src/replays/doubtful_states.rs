@@ -19,17 +19,15 @@ pub struct DoubtfulState {
     pub design: HingeDesign,
     /// Its deformation.
     pub state: HingeDeformation,
-    /// Standard deviation of the energies, relative to their mean.
+    /// Standard deviation of the energies, relative to their mean or to a hundredth of the median energy, whichever is
+    /// larger; infinite if an energy is not finite.
     pub doubt: f64,
 }
 
-/// The states where the energies of the networks deviate by more than `doubt`, the largest deviation first, and their share
-/// of the training domain of the first network.
-pub fn doubtful_states(networks: &[Surrogate], doubt: f64) -> (Vec<DoubtfulState>, f64) {
-    let Some(first) = networks.first() else {
-        return (Vec::new(), 0.0);
-    };
-    let probes = spot_states::drawn(first.domain(), &first.card().hinge, DRAWN, 1, 0);
+/// Random states of the training domain that the networks share, those with the largest doubt first.
+pub fn doubtful_states(networks: &[Surrogate]) -> Vec<DoubtfulState> {
+    let shared = &networks[0];
+    let probes = spot_states::drawn(shared.domain(), &shared.card().hinge, DRAWN, 1, 0);
     let designs: Vec<HingeDesign> = probes.iter().map(|probe| probe.design).collect();
     let states: Vec<HingeDeformation> = probes.iter().map(|probe| probe.path.at(1.0)).collect();
     let energies: Vec<Vec<f64>> = networks
@@ -49,11 +47,9 @@ pub fn doubtful_states(networks: &[Surrogate], doubt: f64) -> (Vec<DoubtfulState
             state: states[k],
             doubt: deviation(energies.iter().map(|of| of[k]), least),
         })
-        .filter(|state| state.doubt > doubt)
         .collect();
     found.sort_by(|a, b| b.doubt.total_cmp(&a.doubt));
-    let share = found.len() as f64 / DRAWN as f64;
-    (found, share)
+    found
 }
 
 /// Standard deviation of energies relative to their mean, or to `least` if that is larger.
@@ -61,13 +57,17 @@ fn deviation(energies: impl Iterator<Item = f64> + Clone, least: f64) -> f64 {
     let n = energies.clone().count() as f64;
     let mean = energies.clone().sum::<f64>() / n;
     let squares: f64 = energies.map(|w| (w - mean).powi(2)).sum();
-    (squares / (n - 1.0).max(1.0)).sqrt() / mean.abs().max(least)
+    let deviation = (squares / (n - 1.0)).sqrt() / mean.abs().max(least);
+    if deviation.is_nan() {
+        return f64::INFINITY;
+    }
+    deviation
 }
 
-/// At most `count` rays through the first of the states that are not close to each other, each ending at `beyond` times its
-/// state. A state and its mirror image count as one.
-pub fn rays_through(
-    states: &[DoubtfulState],
+/// At most `count` rays through the first of the states that are not close to each other or to the mirror image of each
+/// other, each ending at `beyond` times its state.
+pub fn rays_through<'a>(
+    states: impl Iterator<Item = &'a DoubtfulState>,
     domain: &TrainingDomain,
     count: usize,
     beyond: f64,
@@ -75,12 +75,13 @@ pub fn rays_through(
     let mut taken: Vec<[f64; 5]> = Vec::new();
     let mut rays = Vec::new();
     for DoubtfulState { design, state, .. } in states {
+        if rays.len() == count {
+            break;
+        }
         let at = coordinates(domain, design, state);
-        let far = |other: &[f64; 5]| {
-            let squares = std::iter::zip(at, other).map(|(x, y)| (x - y).powi(2));
-            squares.sum::<f64>() > APART * APART
-        };
-        if rays.len() < count && taken.iter().all(far) {
+        let image = coordinates(domain, &design.mirrored(), &state.mirrored());
+        let far = |other: &[f64; 5]| distance(&at, other).min(distance(&image, other)) > APART;
+        if taken.iter().all(far) {
             taken.push(at);
             rays.push(Ray {
                 design: *design,
@@ -91,21 +92,20 @@ pub fn rays_through(
     rays
 }
 
-/// log w_lig, alpha, eta_a, eta_s and theta over their ranges in the domain, of the state or its mirror image whose alpha is
-/// not obtuse.
+fn distance(one: &[f64; 5], other: &[f64; 5]) -> f64 {
+    let squares = std::iter::zip(one, other).map(|(x, y)| (x - y).powi(2));
+    squares.sum::<f64>().sqrt()
+}
+
+/// log w_lig, alpha, eta_a, eta_s and theta over their ranges in the domain; 0 for a coordinate that is constant there.
 fn coordinates(
     domain: &TrainingDomain,
     design: &HingeDesign,
     state: &HingeDeformation,
 ) -> [f64; 5] {
-    let obtuse = design.alpha > std::f64::consts::FRAC_PI_2;
-    let (design, state) = match obtuse {
-        true => (design.mirrored(), state.mirrored()),
-        false => (*design, *state),
-    };
     let [eta_a, eta_s] = state.eta(design.w_lig);
     let [of_a, of_s, of_theta] = domain.bounds();
-    let over = |value: f64, [from, to]: [f64; 2]| value / (to - from);
+    let over = |value: f64, [from, to]: [f64; 2]| if to > from { value / (to - from) } else { 0.0 };
     [
         over(design.w_lig.ln(), domain.w_lig.map(f64::ln)),
         over(design.alpha, domain.alpha),
@@ -119,6 +119,7 @@ fn coordinates(
 mod tests {
     use super::*;
     use hinge::HingeConstants;
+    use std::f64::consts::PI;
 
     fn doubtful(w_lig: f64, alpha: f64, eta_s: f64, doubt: f64) -> DoubtfulState {
         DoubtfulState {
@@ -133,7 +134,7 @@ mod tests {
         let of = |energies: [f64; 2], least| deviation(energies.into_iter(), least);
         assert!((of([9.0, 11.0], 1.0) - 0.02f64.sqrt()).abs() < 1e-15);
         assert!((of([0.0, 0.2], 1.0) - 0.02f64.sqrt()).abs() < 1e-15);
-        assert_eq!(deviation([3.0].into_iter(), 1.0), 0.0);
+        assert_eq!(of([1.0, f64::NAN], 1.0), f64::INFINITY);
     }
 
     #[test]
@@ -146,14 +147,14 @@ mod tests {
         let states = [
             doubtful(10.0, 1.0, 0.2, 0.9),
             doubtful(10.1, 1.0, 0.2, 0.8),
-            doubtful(10.0, std::f64::consts::PI - 1.0, -0.2, 0.7),
+            doubtful(10.0, PI - 1.0, -0.2, 0.7),
             doubtful(20.0, 1.0, 0.2, 0.6),
             doubtful(10.0, 1.0, -0.2, 0.5),
         ];
-        let rays = rays_through(&states, &domain, 10, 1.1);
+        let rays = rays_through(states.iter(), &domain, 10, 1.1);
         let found: Vec<_> = rays.iter().map(|ray| ray.design.w_lig).collect();
         assert_eq!(found, [10.0, 20.0, 10.0]);
         assert_eq!(rays[0].end, states[0].state.at(1.1));
-        assert_eq!(rays_through(&states, &domain, 2, 1.1).len(), 2);
+        assert_eq!(rays_through(states.iter(), &domain, 2, 1.1).len(), 2);
     }
 }

@@ -60,7 +60,7 @@ impl PathCostStudy {
 
 /// CPU time of a piece of work (s), and its result. Short work is repeated `repeats` times.
 fn timed<T>(repeats: usize, mut work: impl FnMut() -> Result<T>) -> Result<(T, f64)> {
-    // In microseconds: /proc has hundredths, longer than the paths of small sheets.
+    // getrusage counts microseconds; /proc counts hundredths of a second, longer than the path of a small sheet takes.
     let seconds = || -> Result<f64> {
         let usage = getrusage(UsageWho::RUSAGE_SELF)?;
         let time = usage.user_time() + usage.system_time();

@@ -119,6 +119,7 @@ impl Potential<'_> {
         // A shifted step is too short where the energy curves downwards.
         let reach = if factor.shifted { REACH / length } else { 1.0 };
         let mut fraction = (*longest / length).min(reach.max(1.0));
+        // A search that fails leaves the maximum step length as it was.
         let mut cut = false;
         while fraction > SHORTEST_FRACTION {
             if let Some(mut next) = self.moved(state, &motion, fraction) {

@@ -22,11 +22,11 @@ use surrogate::{Order, Surrogate};
 pub struct ExtendCommand {
     #[command(flatten)]
     inspected: Inspected,
-    /// Weights of further networks trained on the same data [default: the ensemble of the scene]
+    /// Weights of further networks trained on the same data [default: the ensemble of the scene, none with --weights]
     #[arg(long, value_name = "FILE", num_args = 1..)]
     ensemble: Vec<PathBuf>,
     /// Maximum standard deviation of the ensemble: of its forces, relative to their root mean square, or with --anywhere of
-    /// its energies, relative to their mean
+    /// its energies, relative to their mean or to a hundredth of the median energy
     #[arg(long, value_name = "FRACTION", default_value_t = 0.05)]
     doubt: f64,
     /// Add at most N rays through states of the training domain, without a design
@@ -42,6 +42,7 @@ const BEYOND: f64 = 1.1;
 
 impl ExtendCommand {
     pub fn run(&self) -> Result<()> {
+        ensure!(self.doubt >= 0.0, "--doubt must not be negative");
         let (scene, design) = self.inspected.read()?;
         let surrogate = scene.surrogate().context(
             "only the data of a surrogate can be extended: set hinge = \"surrogate\" in the scene",
@@ -110,9 +111,11 @@ impl ExtendCommand {
             networks.len() > 1,
             "--anywhere needs an ensemble: pass further networks with --ensemble, or name them in the scene"
         );
-        let (states, share) = doubtful_states(networks, self.doubt);
-        let rays = rays_through(&states, networks[0].domain(), count, BEYOND);
+        let states = doubtful_states(networks);
         let worst = states.first().map_or(0.0, |state| state.doubt);
+        let doubted = || states.iter().filter(|state| state.doubt > self.doubt);
+        let share = doubted().count() as f64 / states.len() as f64;
+        let rays = rays_through(doubted(), networks[0].domain(), count, BEYOND);
         let found = format!(
             "the energies of {} networks deviate by more than {:.3} in {:.2} % of the training domain, by {worst:.2} at most",
             networks.len(),

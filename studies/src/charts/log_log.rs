@@ -5,9 +5,10 @@ use plotters::coord::combinators::LogCoord;
 use plotters::prelude::*;
 use std::ops::Range;
 
+/// A chart with two logarithmic axes.
 pub type LogLog<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
-/// An empty chart whose axes have the given ranges and names; their numbers are powers of ten.
+/// An empty chart whose axes have the given ranges and names.
 pub fn log_log<'a>(
     area: &Area<'a>,
     title: &str,
