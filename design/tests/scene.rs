@@ -156,6 +156,10 @@ fn a_hinge_law_without_what_it_needs_is_refused() {
         "hinge = \"linear\"",
     );
     assert!(message.contains("objective.domain needs"), "{message}");
+    let section = "[linear]\nk_a = 400.0                # N/mm\nk_s = 250.0                # N/mm\n\
+                   k_theta = 300.0            # N mm/rad\n";
+    let message = refusal("linear-7x7.toml", section, "");
+    assert!(message.contains("needs the section [linear]"), "{message}");
     let message = refusal(
         "linear-7x7.toml",
         "hinge = \"linear\"",
