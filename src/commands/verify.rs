@@ -25,7 +25,7 @@ use std::collections::BTreeSet;
 use std::fmt::{Display, Write};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use surrogate::Surrogate;
+use surrogate::{Surrogate, mean_and_variance};
 
 /// Solve the hinges of a design by finite elements, along their paths in the sheet
 ///
@@ -239,11 +239,9 @@ fn deviation(first: &[HingeSample], others: &[Vec<HingeSample>], k: usize) -> [f
     let values: Vec<_> = all
         .map(|it| ComparedState::new(&it[k], &it[k]).value)
         .collect();
-    let n = values.len() as f64;
     std::array::from_fn(|i| {
-        let mean = values.iter().map(|value| value[i]).sum::<f64>() / n;
-        let squares = values.iter().map(|value| (value[i] - mean).powi(2));
-        (squares.sum::<f64>() / (n - 1.0)).sqrt()
+        let [_, variance] = mean_and_variance(values.iter().map(|value| value[i]));
+        variance.sqrt()
     })
 }
 

@@ -3,7 +3,7 @@
 use crate::replays::spot_states;
 use fe_driver::Ray;
 use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
-use surrogate::{Order, Surrogate};
+use surrogate::{Order, Surrogate, mean_and_variance};
 
 /// Number of states drawn: a part of a thousandth of the domain has fifty.
 const DRAWN: usize = 50_000;
@@ -54,10 +54,8 @@ pub fn doubtful_states(networks: &[Surrogate]) -> Vec<DoubtfulState> {
 
 /// Standard deviation of energies relative to their mean, or to `least` if that is larger.
 fn deviation(energies: impl Iterator<Item = f64> + Clone, least: f64) -> f64 {
-    let n = energies.clone().count() as f64;
-    let mean = energies.clone().sum::<f64>() / n;
-    let squares: f64 = energies.map(|w| (w - mean).powi(2)).sum();
-    let deviation = (squares / (n - 1.0)).sqrt() / mean.abs().max(least);
+    let [mean, variance] = mean_and_variance(energies);
+    let deviation = variance.sqrt() / mean.abs().max(least);
     if deviation.is_nan() {
         return f64::INFINITY;
     }

@@ -18,6 +18,7 @@
 //! | `energy` | W and its derivatives in deformation and design |
 //! | `damage` | D and D_peak with their gradients |
 //! | `model` | networks and card together: [`Surrogate`] |
+//! | `ensemble` | agreement of several networks |
 //! | `card` | metadata: training data, scaling, test errors |
 //! | `weights` | reading and writing the two files |
 //!
@@ -48,6 +49,7 @@
 mod card;
 mod damage;
 mod energy;
+mod ensemble;
 mod features;
 mod model;
 mod network;
@@ -60,6 +62,7 @@ pub use card::{
 };
 pub use damage::HingeDamage;
 pub use energy::{HingeEnergy, Order, Prepared};
+pub use ensemble::mean_and_variance;
 pub use features::{FEATURE_NAMES, Standardisation, features};
 pub use model::{Layers, Surrogate};
 pub use network::{InvalidWeights, Layer, Network, Tensor};

@@ -8,7 +8,7 @@ use clap::Args;
 use fe_driver::{Added, Ray, add_extra_rays};
 use hinge::HingeDeformation;
 use std::path::PathBuf;
-use surrogate::{Order, Surrogate};
+use surrogate::{Order, Surrogate, mean_and_variance};
 
 /// Add rays to a campaign where a design leaves the training domain or the ensemble disagrees
 ///
@@ -139,7 +139,6 @@ fn furthest(states: &[HingeDeformation], w_lig: f64) -> HingeDeformation {
 /// For each path, the maximum standard deviation of (w_lig F_a, w_lig F_s, M) over the networks,
 /// relative to the root mean square of all; zero with one network.
 fn doubts(networks: &[Surrogate], routes: &[HingeRoute]) -> Vec<f64> {
-    let n = networks.len() as f64;
     let (mut squares, mut count) = (0.0, 0.0);
     let deviations: Vec<f64> = routes
         .iter()
@@ -162,10 +161,9 @@ fn doubts(networks: &[Surrogate], routes: &[HingeRoute]) -> Vec<f64> {
             for k in 0..route.states.len() {
                 let mut variance = 0.0;
                 for c in 0..3 {
-                    let values = || forces.iter().map(|network| network[k][c]);
-                    let mean = values().sum::<f64>() / n;
-                    variance +=
-                        values().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+                    let values = forces.iter().map(|network| network[k][c]);
+                    let [mean, of_component] = mean_and_variance(values);
+                    variance += of_component;
                     squares += mean * mean;
                 }
                 count += 1.0;

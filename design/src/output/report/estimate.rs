@@ -12,7 +12,7 @@
 use crate::objective::design_problem::Deployment;
 use hinge::HingeDeformation;
 use serde::Serialize;
-use surrogate::{Order, Surrogate};
+use surrogate::{Order, Surrogate, mean_and_variance};
 
 /// Standard deviations over an ensemble, relative to the root mean square over the path.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -121,10 +121,8 @@ fn answers(
 impl Spread {
     /// Adds one quantity at one state, with its value for each network.
     fn add(&mut self, values: &[f64]) {
-        let count = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / count;
-        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-        self.variances += squares / (count - 1.0).max(1.0);
+        let [mean, variance] = mean_and_variance(values.iter().copied());
+        self.variances += variance;
         self.squares += mean * mean;
     }
 
