@@ -11,10 +11,8 @@ const OPTIONS: &str = "--tier tiny --rays 6 --spot-rays 3 --out learned";
 fn learn(material: &str, options: &str) -> String {
     // Of other sizes than those of the configuration.
     let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/small.safetensors");
-    format!(
-        "material learn {material} --from {} {options}",
-        weights.display()
-    )
+    let weights = weights.display();
+    format!("material learn {material} --from {weights} {weights} {options}")
 }
 
 /// Short rays, and a short training.
@@ -119,7 +117,9 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
 
     let card = work.output("surrogate card learned/weights.safetensors");
     assert!(
-        card.contains("polypropylene-0.8mm") && card.contains("fine-tuned from"),
+        card.contains("polypropylene-0.8mm")
+            && card.contains("fine-tuned from")
+            && card.contains("the mean of the weights"),
         "{card}"
     );
 

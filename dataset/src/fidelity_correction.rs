@@ -152,8 +152,8 @@ impl Bridge {
 impl Database {
     /// Corrects every row to the mesh of `reference`, using the rays that both databases contain, but for quantities that
     /// [`left_out`] leaves uncorrected; without a correction of W the tier remains. The CPU time of these rays is the sum
-    /// over both meshes.
-    pub fn corrected(&self, reference: &Self) -> Result<Self, DatasetError> {
+    /// over both meshes. Returns the validation too.
+    pub fn corrected(&self, reference: &Self) -> Result<(Self, LeftOut), DatasetError> {
         let [ours, theirs] = [self, reference].map(Self::manifest);
         if ours.material_hashes != theirs.material_hashes {
             return Err(DatasetError::OtherMaterial {
@@ -163,7 +163,8 @@ impl Database {
         }
         let tier = Fidelity::of(&ours.tier).corrected_to(&theirs.tier)?;
         let rays = compare(self, reference);
-        let corrected = left_out(&rays)?.corrected();
+        let judged = left_out(&rays)?;
+        let corrected = judged.corrected();
         let tier = match corrected[0] {
             true => tier.to_string(),
             false => ours.tier.clone(),
@@ -177,7 +178,7 @@ impl Database {
             cpu_s: row.cpu_s + cpu_s.get(&row.job).unwrap_or(&0.0),
             ..row.clone()
         });
-        self.with_rows(rows.collect())
+        Ok((self.with_rows(rows.collect())?, judged))
     }
 }
 
@@ -365,7 +366,7 @@ mod tests {
         // With a split that no plan gives.
         let (coarse, fine) = (coarse().thinned(20), database(rows(RAYS)));
         let half = database(rows(RAYS / 2));
-        let corrected = coarse.corrected(&half).unwrap();
+        let (corrected, _) = coarse.corrected(&half).unwrap();
         // Ten seconds per ray; half of the rays were solved twice.
         assert_eq!(corrected.manifest().cpu_s, 15.0 * RAYS as f64);
         assert_eq!(corrected.manifest().tier, "default corrected to default");
@@ -462,9 +463,8 @@ mod tests {
             row
         });
         let (coarse, fine) = (database(spoilt.collect()), database(rows(RAYS)));
-        let judged = left_out(&compare(&coarse, &fine)).unwrap();
+        let (corrected, judged) = coarse.corrected(&fine).unwrap();
         assert_eq!(judged.uncorrected(), ["D"]);
-        let corrected = coarse.corrected(&fine).unwrap();
         let both = || std::iter::zip(coarse.rows(), corrected.rows());
         assert!(both().all(|(before, after)| before.sample.d == after.sample.d));
         assert!(both().any(|(before, after)| before.sample.w != after.sample.w));
@@ -489,7 +489,7 @@ mod tests {
         let (coarse, fine) = (coarse(), database(rows(RAYS)));
         let mut rows: Vec<Row> = coarse.rows().to_vec();
         rows[0].solved_tier = "fine".into();
-        let corrected = database(rows).corrected(&fine).unwrap();
+        let (corrected, _) = database(rows).corrected(&fine).unwrap();
         let same = |i: usize| corrected.rows()[i].sample == coarse.rows()[i].sample;
         assert!(same(0) && !same(1));
     }
@@ -539,7 +539,7 @@ mod tests {
             row.sample.d = 0.0;
             row
         });
-        let corrected = coarse().corrected(&database(gentle.collect())).unwrap();
+        let (corrected, _) = coarse().corrected(&database(gentle.collect())).unwrap();
         assert_eq!(corrected.rows()[3].sample.d, coarse().rows()[3].sample.d);
     }
 }

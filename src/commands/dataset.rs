@@ -4,7 +4,7 @@ mod compare;
 
 use anyhow::{Context, Result, ensure};
 use clap::{Args, Subcommand};
-use dataset::{ColumnMap, Database, Details, Gates, Mixing, SplitPlan, compare, rows_from_csv};
+use dataset::{ColumnMap, Database, Details, Gates, Mixing, SplitPlan, rows_from_csv};
 use std::path::{Path, PathBuf};
 
 /// Summarise, join, split, correct and compare hinge databases, and exchange them as CSV
@@ -261,9 +261,9 @@ impl CorrectCommand {
     fn run(&self) -> Result<()> {
         let database = Database::read(&self.database)?;
         let reference = Database::read(&self.reference)?;
-        let corrected = database.corrected(&reference)?;
+        let (corrected, judged) = database.corrected(&reference)?;
         write(&corrected, &self.out, self.replace)?;
-        println!("{}", compare::correction(&compare(&database, &reference))?);
+        println!("{}", compare::correction(&judged)?);
         Ok(())
     }
 }

@@ -24,7 +24,9 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use support::shard::Shard;
 use surrogate::{ErrorBin, FitError, Surrogate, TestErrors, number_or_dash};
-use train::{Backend, Epoch, Parity, Start, StiffnessCheck, Trained, Training, TrainingConfig};
+use train::{
+    Backend, Epoch, Parity, Start, StiffnessCheck, Trained, Training, TrainingConfig, TrainingData,
+};
 
 /// Train the surrogate hinge energy on a database
 ///
@@ -132,7 +134,7 @@ impl TrainCommand {
             (false, Some(parent)) => Start::Weights(parent),
             (false, None) => Start::Fresh,
         };
-        let trained = fit(&database, &config, self.backend, start, &state)?;
+        let trained = fit((&database).into(), &config, self.backend, start, &state)?;
         self.write(&trained, &database)?;
         std::fs::remove_file(&state).ok();
         Ok(())
@@ -245,14 +247,14 @@ impl TrainCommand {
 
 /// One training; its state is saved in the file `state` from time to time, when it is stopped and at its end.
 pub fn fit(
-    database: &Database,
+    data: TrainingData,
     config: &TrainingConfig,
     backend: Backend,
     start: Start,
     state: &Path,
 ) -> Result<Trained> {
     let stop = interrupt::stop_flag()?;
-    let mut training = Training::new(database, config, backend, start)?;
+    let mut training = Training::new(data, config, backend, start)?;
     let bar = Progress::new(config.epochs, "epochs");
     let mut saved = Instant::now();
     while !training.is_finished() {

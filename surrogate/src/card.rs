@@ -63,6 +63,11 @@ pub struct Card {
     /// [`Surrogate::hash`]: crate::Surrogate::hash
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fine_tuned_from: Option<String>,
+    /// For weights that are also trained on the mean of an ensemble: [`Surrogate::hash`] of its networks.
+    ///
+    /// [`Surrogate::hash`]: crate::Surrogate::hash
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub taught_by: Vec<String>,
     /// Hash of the split into training, validation and test.
     pub split_hash: String,
     /// The training configuration.

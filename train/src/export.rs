@@ -91,6 +91,7 @@ mod tests {
             peak_scale: scales.peak,
             damage_sharpness: SHARPNESS,
             fine_tuned_from: None,
+            taught_by: Vec::new(),
             domain: TrainingDomain::of_box([[0.0; 2]; 3], [1.0; 2], [1.0; 2]),
             hinge: HingeConstants {
                 fillet_ratio: 0.16,
@@ -119,7 +120,10 @@ mod tests {
         let networks = Networks::new(&[64, 64, 32], &[64, 64], true, true, 1, &options);
         let rows: Vec<Row> = (0..200).map(row).collect();
         let scales = Scales::of(&rows, false).unwrap();
-        let samples: Vec<_> = rows.iter().map(|row| scales.sample(row)).collect();
+        let samples: Vec<_> = rows
+            .iter()
+            .map(|row| scales.sample(&row.design, &row.sample))
+            .collect();
         let predicted = predict(&networks, &Batch::new(&samples, &options), SHARPNESS);
         let column = |tensor: &burn::tensor::Tensor<2>, k: usize, scale: f64| -> Vec<f64> {
             let column = tensor.clone().inner().narrow(1, k, 1);

@@ -4,7 +4,7 @@ use crate::error::TrainError;
 use crate::mirror;
 use burn::tensor::{Tensor, TensorCreationOptions, TensorData};
 use dataset::Row;
-use hinge::HingeDeformation;
+use hinge::{HingeDeformation, HingeDesign, HingeSample};
 use surrogate::{Card, FEATURE_NAMES, Standardisation, features};
 
 /// The scales of (14) and (15), computed from the training rows.
@@ -127,19 +127,18 @@ impl Scales {
         })
     }
 
-    /// One row in these scales.
-    pub fn sample(&self, row: &Row) -> Sample {
+    /// One state in these scales.
+    pub fn sample(&self, design: &HingeDesign, sample: &HingeSample) -> Sample {
         let Standardisation { mean, std } = self.standardisation;
         let standardise =
             |xi: [f64; 5]| -> [f64; 5] { std::array::from_fn(|k| (xi[k] - mean[k]) / std[k]) };
         // d(eta_a, eta_s, theta) / d(a, s, theta)
-        let w = row.design.w_lig;
+        let w = design.w_lig;
         let by_deformation = [1.0 / w, 1.0 / w, 1.0];
-        let sample = &row.sample;
         let forces = [sample.f_a, sample.f_s, sample.m_theta];
         Sample {
-            inputs: standardise(row_features(row)),
-            origin: standardise(features(&row.design, &HingeDeformation::default())),
+            inputs: standardise(features(design, &sample.deformation())),
+            origin: standardise(features(design, &HingeDeformation::default())),
             force_factors: std::array::from_fn(|k| {
                 self.energy * by_deformation[k] / (std[k] * self.forces[k])
             }),
@@ -147,7 +146,8 @@ impl Scales {
             forces: std::array::from_fn(|k| forces[k] / self.forces[k]),
             damage: [
                 sample.d / self.damage,
-                self.peak.map_or(0.0, |scale| d_peak(row) / scale),
+                self.peak
+                    .map_or(0.0, |scale| sample.d_peak.unwrap_or(0.0) / scale),
             ],
             damage_weights: [1.0, sample.d_peak.map_or(0.0, |_| self.peak_weight)],
         }

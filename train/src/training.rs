@@ -7,6 +7,7 @@ use crate::config::{Precision, TrainingConfig};
 use crate::epoch::Epoch;
 use crate::error::TrainError;
 use crate::export::layers;
+use crate::lesson::TrainingData;
 use crate::loss::loss;
 use crate::networks::Networks;
 use crate::optimiser::{learning_rate, optimiser};
@@ -104,15 +105,16 @@ pub fn train(
 
 impl Training {
     /// Scales the rows of the database, and initialises or loads the networks.
-    pub fn new(
-        database: &Database,
+    pub fn new<'a>(
+        data: impl Into<TrainingData<'a>>,
         config: &TrainingConfig,
         backend: Backend,
         start: Start,
     ) -> Result<Self, TrainError> {
         config.validate()?;
         let began = Instant::now();
-        let parts = Parts::of(database)?;
+        let data: TrainingData = data.into();
+        let parts = Parts::of(data.database)?;
         let dtype = match config.precision {
             Precision::F32 => DType::F32,
             Precision::F64 => DType::F64,
@@ -126,7 +128,7 @@ impl Training {
             true => with_mirrored(&parts.training),
             false => parts.training.clone(),
         };
-        let manifest = database.manifest();
+        let manifest = data.database.manifest();
         let initial = match start {
             Start::Weights(parent) => {
                 check_parent(parent, config, backend)?;
@@ -143,6 +145,7 @@ impl Training {
             (None, None) => Scales::of(&described, config.mirror)?,
         };
         let mut card = card(manifest, &described, &scales, config)?;
+        card.taught_by = data.taught_by().to_vec();
         match start {
             Start::Fresh => {}
             Start::Weights(parent) => inherit(&mut card, parent, &described),
@@ -159,13 +162,14 @@ impl Training {
                 &options,
             ),
         };
+        let solved = parts.training.iter().map(|row| (&row.design, &row.sample));
+        let taught = data.lesson.into_iter().flat_map(|lesson| &lesson.samples);
+        let taught = taught.map(|(design, sample)| (design, sample));
         let mut training = Self {
             config: config.clone(),
             options,
-            samples: parts
-                .training
-                .iter()
-                .map(|row| scales.sample(row))
+            samples: (solved.chain(taught))
+                .map(|(design, sample)| scales.sample(design, sample))
                 .collect(),
             parts,
             scales,
@@ -196,7 +200,7 @@ impl Training {
         &self.history
     }
 
-    /// One pass over the training rows.
+    /// One pass over the training rows, and the states of the lesson.
     pub fn epoch(&mut self) -> Result<Epoch, TrainError> {
         let epoch = self.history.len() + 1;
         let training_loss = self.descend(epoch)?;
@@ -359,6 +363,7 @@ fn card(
         tier: manifest.tier.clone(),
         dataset_hash: manifest.hash.clone(),
         fine_tuned_from: None,
+        taught_by: Vec::new(),
         split_hash: manifest.split_hash.clone(),
         training: serde_json::to_value(config)
             .expect("a configuration of numbers and lists can always be written as JSON"),

@@ -12,8 +12,8 @@ use hinge::{HingeDeformation, HingeDesign, HingeSample};
 use std::path::Path;
 use surrogate::{Order, Surrogate};
 use train::{
-    Backend, EnsembleCheck, Epoch, Parity, ParityPoint, Precision, Start, StateError, TrainError,
-    Trained, Training, TrainingConfig, disagreements, train,
+    Backend, EnsembleCheck, Epoch, Lesson, Parity, ParityPoint, Precision, Start, StateError,
+    TrainError, Trained, Training, TrainingConfig, TrainingData, disagreements, train,
 };
 
 fn sample(design: &HingeDesign, eps: HingeDeformation, lambda: f64) -> HingeSample {
@@ -690,4 +690,105 @@ fn a_database_without_compression_and_without_d_peak_can_be_trained_on() {
     assert_eq!(card.peak_scale, None);
     assert!(trained.parity.damage_peak.is_empty());
     assert!(trained.test_errors.energy.relative_rmse.is_finite());
+}
+
+/// Two networks of one database, and the states on rays that they were not trained on.
+fn ensemble() -> ([Surrogate; 2], Vec<(HingeDesign, HingeDeformation)>) {
+    let members = [1, 2].map(|seed| {
+        let config = TrainingConfig { seed, ..config(20) };
+        let trained = train(
+            &database(rows(20)),
+            &config,
+            Backend::default(),
+            &mut |_| {},
+        );
+        trained.unwrap().surrogate
+    });
+    let others = rows(120).split_off(200);
+    let states = others
+        .iter()
+        .map(|row| (row.design, row.sample.deformation()));
+    (members, states.collect())
+}
+
+#[test]
+fn a_network_learns_the_mean_of_several() {
+    let (members, states) = ensemble();
+    let database = database(rows(20));
+    let lesson = Lesson::new(&members, &states);
+    let student = |lesson: Option<&Lesson>| {
+        let data = TrainingData {
+            database: &database,
+            lesson,
+        };
+        let start = Start::Weights(&members[0]);
+        finished(Training::new(data, &config(40), Backend::default(), start).unwrap()).surrogate
+    };
+    let [taught, alone] = [Some(&lesson), None].map(student);
+    // On rays of neither.
+    let unseen = rows(220).split_off(1200);
+    let parities = |networks: &[Surrogate]| {
+        let parities: Vec<Parity> = networks.iter().map(|it| Parity::of(it, &unseen)).collect();
+        Parity::mean(&parities)
+    };
+    let mean = parities(&members);
+    let distance = |network: &Surrogate| {
+        let found = parities(std::slice::from_ref(network));
+        let pairs = mean.energy.iter().zip(&found.energy);
+        pairs
+            .map(|(mean, found)| (mean.predicted - found.predicted).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
+    let [taught_distance, alone_distance] = [&taught, &alone].map(distance);
+    assert!(
+        taught_distance < 0.3 * alone_distance,
+        "{taught_distance} and {alone_distance}"
+    );
+    let hashes = members.each_ref().map(Surrogate::hash);
+    assert_eq!(taught.card().taught_by, hashes);
+    assert!(alone.card().taught_by.is_empty());
+    // The lesson is not evidence: domain, scales and test errors are of the rows alone.
+    assert_eq!(taught.card().domain, alone.card().domain);
+    assert_eq!(taught.card().energy_scale, alone.card().energy_scale);
+    assert_eq!(
+        taught.card().test_errors.rows,
+        alone.card().test_errors.rows
+    );
+}
+
+#[test]
+fn a_training_with_a_lesson_continues_only_with_that_lesson() {
+    let (members, states) = ensemble();
+    let database = database(rows(20));
+    let folder = tempfile::tempdir().unwrap();
+    let state = folder.path().join("chi.state");
+    let begun = |members: &[Surrogate], start| {
+        let lesson = Lesson::new(members, &states);
+        let data = TrainingData {
+            database: &database,
+            lesson: Some(&lesson),
+        };
+        Training::new(data, &config(2), Backend::default(), start)
+    };
+    let mut training = begun(&members, Start::Fresh).unwrap();
+    training.epoch().unwrap();
+    training.save(&state).unwrap();
+    let resumed = Start::State {
+        state: &state,
+        parent: None,
+    };
+    let straight = finished(begun(&members, Start::Fresh).unwrap());
+    let continued = finished(begun(&members, resumed).unwrap());
+    assert_eq!(
+        energies(&straight.surrogate),
+        energies(&continued.surrogate)
+    );
+    assert!(matches!(
+        begun(&members[..1], resumed).err(),
+        Some(TrainError::State(StateError::Other {
+            what: "ensemble",
+            ..
+        }))
+    ));
 }

@@ -5,7 +5,7 @@ use crate::replays::comparison::{SCALE, each_relative, spread_table};
 use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use dataset::{COMPARED, ComparedRay, ComparedState, Database, compare, left_out};
+use dataset::{COMPARED, ComparedRay, ComparedState, Database, LeftOut, compare, left_out};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -46,8 +46,8 @@ impl CompareCommand {
             .with_context(|| format!("cannot create the folder {}", self.out.display()))?;
         let tiers = [&judged, &reference].map(|database| database.manifest().tier.clone());
         let mut summary = summary(&rays, &states, &tiers)?;
-        match correction(&rays) {
-            Ok(text) => summary += &text,
+        match left_out(&rays) {
+            Ok(judged) => summary += &correction(&judged)?,
             // The comparison is valid without it.
             Err(reason) => {
                 eprintln!("cannot evaluate what `dataset correct` would leave: {reason}")
@@ -88,8 +88,7 @@ fn summary(
 }
 
 /// The remaining differences when every ray is corrected by the others.
-pub fn correction(rays: &[ComparedRay]) -> Result<String> {
-    let judged = left_out(rays)?;
+pub fn correction(judged: &LeftOut) -> Result<String> {
     let table = spread_table(&groups(&judged.states), "ray")?;
     let note = match &judged.uncorrected()[..] {
         [] => String::new(),
@@ -101,7 +100,7 @@ pub fn correction(rays: &[ComparedRay]) -> Result<String> {
     Ok(format!(
         "\nRemaining differences when each of the {} rays is corrected by the others.{note} `kirigami \
          dataset correct`.\n\n{table}",
-        rays.len()
+        judged.states.len()
     ))
 }
 

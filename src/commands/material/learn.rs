@@ -1,7 +1,8 @@
 //! `kirigami material learn`: from a material file to weights of its hinge energy, with a known error.
 //!
-//! Rays of the campaign are solved in rounds, each with twice the rays of the one before. After each round the weights of
-//! another material are fine-tuned on all rays, and tested at random states that no training contains.
+//! Rays of the campaign are solved in rounds, each with twice the rays of the one before. After each round several weights
+//! of another material are fine-tuned on all rays. One network learns these rays and, on rays that are not solved, the mean
+//! of the fine-tuned networks. It is tested at random states that no training contains.
 
 mod options;
 mod round;
@@ -16,11 +17,11 @@ use crate::replays::spot_states::{self, Solved};
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::duration;
 use crate::ui::run_folder;
-use ::train::{Backend, TrainingConfig, check_parent};
+use ::train::{Backend, Lesson, TrainingConfig, TrainingData, check_parent};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use dataset::{Database, Gates, SplitPlan};
-use fe_driver::{Campaign, RunOptions, Shard};
+use fe_driver::{Campaign, Ray, RunOptions, Shard};
 use hinge::{HingeDeformation, HingeDesign, SheetMaterial, TrainingDomain};
 use mesher::Tier;
 use std::num::NonZeroUsize;
@@ -30,9 +31,10 @@ use surrogate::Surrogate;
 
 /// Solve hinge windows of a material and train its weights until they are accurate enough
 ///
-/// Starts from the weights of another material and solves rays in rounds: 25, 50, 100, ... After each round the weights
-/// are fine-tuned and compared with a spot check: windows at random states of the campaign's region, never trained on.
-/// Stops when the root mean square errors of W and of the forces there are small enough, or at the time limit (exit code
+/// Starts from weights of another material and solves rays in rounds: 25, 50, 100, ... After each round the weights are
+/// fine-tuned, and one network learns the rays and the mean of the fine-tuned networks. It is compared with a spot check:
+/// windows at random states of the campaign's region, never trained on. Stops when the root mean square errors of W and of
+/// the forces there are small enough, or at the time limit (exit code
 /// 75: the same command continues). The folder holds weights.safetensors, the database, the spot check, learn.csv, and the
 /// campaign and training that can be edited. Example:
 /// kirigami material learn configs/materials/polypropylene-0.8mm.toml --accuracy 1% --time 1h --out runs/polypropylene
@@ -41,13 +43,15 @@ pub struct LearnCommand {
     /// Material (TOML), as written by `material fit`
     #[arg(value_name = "MATERIAL")]
     material: PathBuf,
-    /// Weights of another material, with which fine-tuning starts
+    /// Weights of another material, with which fine-tuning starts. The mean of several has smaller errors than each. One
+    /// alone is fine-tuned and kept
     #[arg(
         long,
         value_name = "WEIGHTS",
-        default_value = "data/pet-0.5mm/medium.safetensors"
+        num_args = 1..,
+        default_values = PARENTS
     )]
-    from: PathBuf,
+    from: Vec<PathBuf>,
     /// Error of W at which the weights are accurate enough, relative to its root mean square
     #[arg(long, value_name = "PERCENT", default_value = "1%", value_parser = percent)]
     accuracy: f64,
@@ -66,6 +70,9 @@ pub struct LearnCommand {
     /// Number of rays of the spot check, each with 4 states
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u16).range(3..))]
     spot_rays: u16,
+    /// Seed of the states of the spot check. Errors that led to a choice are measured again with another seed
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    spot_seed: u64,
     /// Number of solves in parallel [default: one per processor]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZeroUsize>,
@@ -74,10 +81,18 @@ pub struct LearnCommand {
     out: PathBuf,
 }
 
+/// Weights with which fine-tuning starts: networks of one training with several seeds.
+const PARENTS: [&str; 4] = [
+    "data/pet-0.5mm/medium.safetensors",
+    "data/pet-0.5mm/medium-1.safetensors",
+    "data/pet-0.5mm/medium-2.safetensors",
+    "data/pet-0.5mm/medium-3.safetensors",
+];
+/// Number of unsolved rays on which one network learns the mean of several, and of states on each of them.
+const TAUGHT_RAYS: usize = 1000;
+const TAUGHT_STATES: u32 = 10;
 /// States on a ray of the spot check.
 const STATES_PER_RAY: usize = 4;
-/// Seed of the spot check's states.
-const SPOT_SEED: u64 = 1;
 /// The shipped training, and its copy in the folder. `kirigami init` writes another training to the same folder.
 const TRAINING_FILE: &str = "fine-tuning.toml";
 const TRAINING: &str = include_str!("../../../configs/training/fine-tuning.toml");
@@ -86,13 +101,15 @@ impl LearnCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let began = Instant::now();
         let material = SheetMaterial::load(&self.material)?;
-        let parent = Surrogate::load(&self.from)?;
+        let parents = self.parents()?;
         let _held = run_folder::hold(&self.out)?;
         self.write_inputs(&material)?;
         let config: TrainingConfig = support::toml_file::read(&self.out.join(TRAINING_FILE))?;
-        let config = config.with_sizes_of(&parent);
-        check_parent(&parent, &config, Backend::default())
-            .with_context(|| format!("{}", self.from.display()))?;
+        let config = config.with_sizes_of(&parents[0]);
+        for (parent, file) in parents.iter().zip(&self.from) {
+            check_parent(parent, &config, Backend::default())
+                .with_context(|| format!("{}", file.display()))?;
+        }
         let campaign = self.campaign(&material)?;
         let spot = self.spot_check(&campaign)?;
         let solved = self.solved_before()?;
@@ -101,7 +118,7 @@ impl LearnCommand {
         let mut counts = counts(usize::from(self.rays), campaign.count).peekable();
         while let Some(rays) = counts.next() {
             let left = self.time.saturating_sub(began.elapsed());
-            let (round, weights) = self.round(rays, &campaign, &config, &parent, &spot, left)?;
+            let (round, weights) = self.round(rays, &campaign, &config, &parents, &spot, left)?;
             println!("{round}");
             rounds.push(round);
             run_folder::write(&self.out, "learn.csv", &csv(&rounds)?)?;
@@ -130,6 +147,11 @@ impl LearnCommand {
             campaign.count,
             self.out.join("campaign.toml").display()
         )
+    }
+
+    fn parents(&self) -> Result<Vec<Surrogate>> {
+        let loaded = self.from.iter().map(|file| Surrogate::load(file));
+        Ok(loaded.collect::<Result<_, _>>()?)
     }
 
     /// Number of rays that earlier commands have solved.
@@ -186,8 +208,8 @@ impl LearnCommand {
     fn spot_check(&self, campaign: &Campaign) -> Result<Database> {
         let domain = region(campaign).context("the campaign has no region of rays")?;
         let count = STATES_PER_RAY * usize::from(self.spot_rays);
-        let probes =
-            spot_states::drawn(&domain, &campaign.design, count, STATES_PER_RAY, SPOT_SEED);
+        let (design, seed) = (&campaign.design, self.spot_seed);
+        let probes = spot_states::drawn(&domain, design, count, STATES_PER_RAY, seed);
         let solve = SolveArgs::new(self.jobs, campaign.time_limit);
         let folder = self.out.join("spot-check");
         let Solved {
@@ -210,7 +232,7 @@ impl LearnCommand {
         rays: usize,
         campaign: &Campaign,
         config: &TrainingConfig,
-        parent: &Surrogate,
+        parents: &[Surrogate],
         spot: &Database,
         time_limit: Duration,
     ) -> Result<(Round, Surrogate)> {
@@ -231,17 +253,39 @@ impl LearnCommand {
         })?;
         let database = collected(&jobs)?;
         database.write(&self.out.join("hinges.parquet"), true)?;
-        let fits = self.out.join("fits");
-        let weights = kept_fit(
-            &fits,
-            &format!("{rays}-rays"),
-            &database,
-            config,
-            Some(parent),
-        )?;
-        let round = Round::new(&tally, &weights, spot.rows());
+        let (weights, training_s) = self.trained(rays, &database, campaign, config, parents)?;
+        let round = Round::new(&tally, &weights, training_s, spot.rows());
         let weights = weights.with_spot_check(round.errors());
         Ok((round, weights))
+    }
+
+    /// The network of the first `rays` rays, and the time of its training and of that of its teachers (s).
+    fn trained(
+        &self,
+        rays: usize,
+        database: &Database,
+        campaign: &Campaign,
+        config: &TrainingConfig,
+        parents: &[Surrogate],
+    ) -> Result<(Surrogate, f64)> {
+        let fits = self.out.join("fits");
+        let tuned = parents.iter().enumerate().map(|(place, parent)| {
+            let name = format!("{rays}-rays-{place}");
+            kept_fit(&fits, &name, database, config, Some(parent))
+        });
+        let mut networks: Vec<Surrogate> = tuned.collect::<Result<_>>()?;
+        if networks.len() > 1 {
+            let states = unsolved(rays, campaign, networks[0].domain());
+            let data = TrainingData {
+                database,
+                lesson: Some(&Lesson::new(&networks, &states)),
+            };
+            let name = format!("{rays}-rays");
+            networks.push(kept_fit(&fits, &name, data, config, Some(&networks[0]))?);
+        }
+        let training_s = networks.iter().filter_map(|it| it.card().training_s).sum();
+        let weights = networks.pop().context("`--from` needs weights")?;
+        Ok((weights, training_s))
     }
 }
 
@@ -253,6 +297,25 @@ fn counts(first: usize, all: usize) -> impl Iterator<Item = usize> {
         .chain(std::iter::once(all))
 }
 
+/// States on the rays that follow the first `rays` of the campaign, as far as they are inside the domain.
+fn unsolved(
+    rays: usize,
+    campaign: &Campaign,
+    domain: &TrainingDomain,
+) -> Vec<(HingeDesign, HingeDeformation)> {
+    let all = (campaign.rays).rays(&campaign.design, rays + TAUGHT_RAYS, campaign.seed);
+    let states = (all.into_iter().skip(rays)).flat_map(|ray| states(ray, TAUGHT_STATES));
+    states
+        .filter(|(design, state)| domain.contains(design, state))
+        .collect()
+}
+
+/// States at equal distances on a ray, up to its end.
+fn states(ray: Ray, count: u32) -> impl Iterator<Item = (HingeDesign, HingeDeformation)> {
+    let (design, end) = (ray.design, ray.end);
+    (1..=count).map(move |k| (design, end.at(f64::from(k) / f64::from(count))))
+}
+
 /// The states that the campaign's rays pass through if they are solved to their ends. It does not depend on the number of
 /// rays, so that the spot check remains the same when the campaign is enlarged.
 fn region(campaign: &Campaign) -> Option<TrainingDomain> {
@@ -260,12 +323,7 @@ fn region(campaign: &Campaign) -> Option<TrainingDomain> {
     const STATES: u32 = 10;
     let rays = (campaign.rays).rays(&campaign.design, RAYS, campaign.seed);
     let rays = rays.into_iter().flat_map(|ray| [ray, ray.mirrored()]);
-    let states: Vec<(HingeDesign, HingeDeformation)> = rays
-        .flat_map(|ray| {
-            let lambdas = (1..=STATES).map(|k| f64::from(k) / f64::from(STATES));
-            lambdas.map(move |lambda| (ray.design, ray.end.at(lambda)))
-        })
-        .collect();
+    let states: Vec<_> = rays.flat_map(|ray| states(ray, STATES)).collect();
     TrainingDomain::covering(states)
 }
 

@@ -34,6 +34,12 @@ impl CardCommand {
         if let Some(base) = &card.fine_tuned_from {
             println!("fine-tuned from weights {base}");
         }
+        if !card.taught_by.is_empty() {
+            println!(
+                "also trained on the mean of the weights {}",
+                card.taught_by.join(", ")
+            );
+        }
         let hinge = card.hinge;
         println!(
             "hinges with fillet_ratio {}, kerf {} mm, r_win {} mm",

@@ -2,23 +2,23 @@
 
 use crate::commands::train::fit;
 use crate::ui::exit::Unfinished;
-use ::train::{Backend, Start, TrainError, Trained, TrainingConfig};
+use ::train::{Backend, Start, TrainError, Trained, TrainingConfig, TrainingData};
 use anyhow::{Context, Result};
-use dataset::Database;
 use std::path::Path;
 use surrogate::{Card, Surrogate};
 
-/// The network of a configuration, a database and its initial weights (random if there is no `parent`): the file `name` of
+/// The network of a configuration, its data and its initial weights (random if there is no `parent`): the file `name` of
 /// the folder, if it was trained so, otherwise a new one.
 ///
 /// A training that was stopped is continued.
-pub fn kept_fit(
+pub fn kept_fit<'a>(
     folder: &Path,
     name: &str,
-    database: &Database,
+    data: impl Into<TrainingData<'a>>,
     config: &TrainingConfig,
     parent: Option<&Surrogate>,
 ) -> Result<Surrogate> {
+    let data = data.into();
     std::fs::create_dir_all(folder)
         .with_context(|| format!("cannot create the folder {}", folder.display()))?;
     let path = folder.join(name).with_added_extension("safetensors");
@@ -31,12 +31,12 @@ pub fn kept_fit(
             None
         }
     };
-    if let Some(kept) = kept.filter(|kept| is_of(kept.card(), database, config, parent)) {
+    if let Some(kept) = kept.filter(|kept| is_of(kept.card(), data, config, parent)) {
         return Ok(kept);
     }
     let state = path.with_extension("state");
     let backend = Backend::default();
-    let trained = continued_fit(database, config, backend, parent, &state, true);
+    let trained = continued_fit(data, config, backend, parent, &state, true);
     let trained = trained.map_err(|error| match error.downcast::<Unfinished>() {
         // Here the same command continues without --resume.
         Ok(Unfinished { left, what, .. }) => Unfinished::new(left, what).into(),
@@ -47,31 +47,32 @@ pub fn kept_fit(
     Ok(trained.surrogate)
 }
 
-/// Whether a card is that of the network of a configuration, a database and its initial weights.
+/// Whether a card is that of the network of a configuration, its data and its initial weights.
 pub(super) fn is_of(
     card: &Card,
-    database: &Database,
+    data: TrainingData,
     config: &TrainingConfig,
     parent: Option<&Surrogate>,
 ) -> bool {
-    let manifest = database.manifest();
+    let manifest = data.database.manifest();
     serde_json::to_value(config).is_ok_and(|training| card.training == training)
         && card.dataset_hash == manifest.hash
         && card.split_hash == manifest.split_hash
         && card.fine_tuned_from == parent.map(Surrogate::hash)
+        && card.taught_by == data.taught_by()
 }
 
 /// A training that continues from the file `state`, if it exists. The state of another training, or a damaged one, is an
 /// error, or with `discard` is discarded.
 pub(super) fn continued_fit(
-    database: &Database,
+    data: TrainingData,
     config: &TrainingConfig,
     backend: Backend,
     parent: Option<&Surrogate>,
     state: &Path,
     discard: bool,
 ) -> Result<Trained> {
-    let fit = |start| fit(database, config, backend, start, state);
+    let fit = |start| fit(data, config, backend, start, state);
     let first = parent.map_or(Start::Fresh, Start::Weights);
     if !state.exists() {
         return fit(first);

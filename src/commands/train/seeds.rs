@@ -30,7 +30,7 @@ impl Shared<'_> {
     /// Whether a file holds weights of the training with this configuration.
     fn holds(self, weights: &Path, config: &TrainingConfig) -> bool {
         let loaded = Surrogate::load(weights);
-        loaded.is_ok_and(|weights| is_of(weights.card(), self.database, config, self.base))
+        loaded.is_ok_and(|weights| is_of(weights.card(), self.database.into(), config, self.base))
     }
 }
 
@@ -133,7 +133,7 @@ impl TrainCommand {
     fn continued(&self, config: &TrainingConfig, shared: Shared, discard: bool) -> Result<Trained> {
         let state = state(&self.member(config.seed));
         let Shared { database, base } = shared;
-        continued_fit(database, config, self.backend, base, &state, discard)
+        continued_fit(database.into(), config, self.backend, base, &state, discard)
     }
 
     /// Writes the weights of the best seed with their curves and plots, and the comparison of the seeds.

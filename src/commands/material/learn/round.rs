@@ -16,7 +16,7 @@ pub(super) struct Round {
     ended: usize,
     /// Solver CPU time of all rays so far (s).
     cpu_s: f64,
-    /// Time of the training (s).
+    /// Time of all trainings of the round (s).
     training_s: f64,
     /// Number of states of the spot check that lie inside the training domain of the weights.
     inside: usize,
@@ -29,7 +29,7 @@ pub(super) const HEADING: &str = "  rays  to their end  solver CPU, s  training,
     W, %   F_a, %   F_s, %     M, %  forces, %     D, %  D_peak, %";
 
 impl Round {
-    pub(super) fn new(tally: &Tally, weights: &Surrogate, spot: &[Row]) -> Self {
+    pub(super) fn new(tally: &Tally, weights: &Surrogate, training_s: f64, spot: &[Row]) -> Self {
         let domain = weights.domain();
         let inside = spot.iter().filter(|row| {
             let state = row.sample.deformation();
@@ -39,7 +39,7 @@ impl Round {
             rays: tally.closed(),
             ended: tally.complete,
             cpu_s: tally.cpu_seconds,
-            training_s: weights.card().training_s.unwrap_or_default(),
+            training_s,
             inside: inside.count(),
             errors: Parity::of(weights, spot).errors(),
         }
