@@ -4,20 +4,21 @@
 //! of another material are fine-tuned on all rays. One network learns these rays and, on rays that are not solved, the mean
 //! of the fine-tuned networks. It is tested at random states that no training contains.
 
+mod fine_tuning;
 mod options;
 mod round;
 
 use crate::commands::campaign::{collected, refuse_unfinished, solve_rays};
 use crate::commands::init;
+use crate::commands::material::learn::fine_tuning::FineTuning;
 use crate::commands::material::learn::options::{percent, time};
 use crate::commands::material::learn::round::{HEADING, Round, csv};
-use crate::commands::train::kept_fit;
 use crate::replays::kept_solves::SolveArgs;
 use crate::replays::spot_states::{self, Solved};
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::duration;
 use crate::ui::run_folder;
-use ::train::{Backend, Lesson, TrainingConfig, TrainingData, check_parent};
+use ::train::{Backend, TrainingConfig, check_parent};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use dataset::{Database, Gates, SplitPlan};
@@ -88,9 +89,6 @@ const PARENTS: [&str; 4] = [
     "data/pet-0.5mm/medium-2.safetensors",
     "data/pet-0.5mm/medium-3.safetensors",
 ];
-/// Number of unsolved rays on which one network learns the mean of several, and of states on each of them.
-const TAUGHT_RAYS: usize = 1000;
-const TAUGHT_STATES: u32 = 10;
 /// States on a ray of the spot check.
 const STATES_PER_RAY: usize = 4;
 /// The shipped training, and its copy in the folder. `kirigami init` writes another training to the same folder.
@@ -101,7 +99,8 @@ impl LearnCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let began = Instant::now();
         let material = SheetMaterial::load(&self.material)?;
-        let parents = self.parents()?;
+        let loaded = self.from.iter().map(|file| Surrogate::load(file));
+        let parents: Vec<Surrogate> = loaded.collect::<Result<_, _>>()?;
         let _held = run_folder::hold(&self.out)?;
         self.write_inputs(&material)?;
         let config: TrainingConfig = support::toml_file::read(&self.out.join(TRAINING_FILE))?;
@@ -111,6 +110,12 @@ impl LearnCommand {
                 .with_context(|| format!("{}", file.display()))?;
         }
         let campaign = self.campaign(&material)?;
+        let fits = self.out.join("fits");
+        let fine_tuning = FineTuning {
+            parents,
+            config,
+            fits,
+        };
         let spot = self.spot_check(&campaign)?;
         let solved = self.solved_before()?;
         println!("{HEADING}");
@@ -118,7 +123,7 @@ impl LearnCommand {
         let mut counts = counts(usize::from(self.rays), campaign.count).peekable();
         while let Some(rays) = counts.next() {
             let left = self.time.saturating_sub(began.elapsed());
-            let (round, weights) = self.round(rays, &campaign, &config, &parents, &spot, left)?;
+            let (round, weights) = self.round(rays, &campaign, &fine_tuning, &spot, left)?;
             println!("{round}");
             rounds.push(round);
             run_folder::write(&self.out, "learn.csv", &csv(&rounds)?)?;
@@ -147,11 +152,6 @@ impl LearnCommand {
             campaign.count,
             self.out.join("campaign.toml").display()
         )
-    }
-
-    fn parents(&self) -> Result<Vec<Surrogate>> {
-        let loaded = self.from.iter().map(|file| Surrogate::load(file));
-        Ok(loaded.collect::<Result<_, _>>()?)
     }
 
     /// Number of rays that earlier commands have solved.
@@ -231,8 +231,7 @@ impl LearnCommand {
         &self,
         rays: usize,
         campaign: &Campaign,
-        config: &TrainingConfig,
-        parents: &[Surrogate],
+        fine_tuning: &FineTuning,
         spot: &Database,
         time_limit: Duration,
     ) -> Result<(Round, Surrogate)> {
@@ -253,39 +252,10 @@ impl LearnCommand {
         })?;
         let database = collected(&jobs)?;
         database.write(&self.out.join("hinges.parquet"), true)?;
-        let (weights, training_s) = self.trained(rays, &database, campaign, config, parents)?;
+        let (weights, training_s) = fine_tuning.network(rays, &database, campaign)?;
         let round = Round::new(&tally, &weights, training_s, spot.rows());
         let weights = weights.with_spot_check(round.errors());
         Ok((round, weights))
-    }
-
-    /// The network of the first `rays` rays, and the time of its training and of that of its teachers (s).
-    fn trained(
-        &self,
-        rays: usize,
-        database: &Database,
-        campaign: &Campaign,
-        config: &TrainingConfig,
-        parents: &[Surrogate],
-    ) -> Result<(Surrogate, f64)> {
-        let fits = self.out.join("fits");
-        let tuned = parents.iter().enumerate().map(|(place, parent)| {
-            let name = format!("{rays}-rays-{place}");
-            kept_fit(&fits, &name, database, config, Some(parent))
-        });
-        let mut networks: Vec<Surrogate> = tuned.collect::<Result<_>>()?;
-        if networks.len() > 1 {
-            let states = unsolved(rays, campaign, networks[0].domain());
-            let data = TrainingData {
-                database,
-                lesson: Some(&Lesson::new(&networks, &states)),
-            };
-            let name = format!("{rays}-rays");
-            networks.push(kept_fit(&fits, &name, data, config, Some(&networks[0]))?);
-        }
-        let training_s = networks.iter().filter_map(|it| it.card().training_s).sum();
-        let weights = networks.pop().context("`--from` needs weights")?;
-        Ok((weights, training_s))
     }
 }
 
@@ -295,19 +265,6 @@ fn counts(first: usize, all: usize) -> impl Iterator<Item = usize> {
     doubled
         .take_while(move |count| *count < all)
         .chain(std::iter::once(all))
-}
-
-/// States on the rays that follow the first `rays` of the campaign, as far as they are inside the domain.
-fn unsolved(
-    rays: usize,
-    campaign: &Campaign,
-    domain: &TrainingDomain,
-) -> Vec<(HingeDesign, HingeDeformation)> {
-    let all = (campaign.rays).rays(&campaign.design, rays + TAUGHT_RAYS, campaign.seed);
-    let states = (all.into_iter().skip(rays)).flat_map(|ray| states(ray, TAUGHT_STATES));
-    states
-        .filter(|(design, state)| domain.contains(design, state))
-        .collect()
 }
 
 /// States at equal distances on a ray, up to its end.

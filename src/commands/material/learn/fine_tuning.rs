@@ -1,0 +1,68 @@
+//! The network of one round: several weights are fine-tuned on its rays, and one network learns the rays and their mean.
+
+use crate::commands::material::learn::states;
+use crate::commands::train::kept_fit;
+use ::train::{Lesson, TrainingConfig, TrainingData};
+use anyhow::{Context, Result};
+use dataset::Database;
+use fe_driver::Campaign;
+use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
+use std::path::PathBuf;
+use surrogate::Surrogate;
+
+/// Number of unsolved rays on which one network learns the mean of several, and of states on each of them.
+const TAUGHT_RAYS: usize = 1000;
+const TAUGHT_STATES: u32 = 10;
+
+/// What the trainings of all rounds have in common.
+pub(super) struct FineTuning {
+    /// Weights of another material, with which fine-tuning starts.
+    pub parents: Vec<Surrogate>,
+    pub config: TrainingConfig,
+    /// Folder of the trained networks.
+    pub fits: PathBuf,
+}
+
+impl FineTuning {
+    /// The network of the first `rays` rays of the campaign, and the time of all trainings that it took (s). One parent
+    /// alone is fine-tuned.
+    pub(super) fn network(
+        &self,
+        rays: usize,
+        database: &Database,
+        campaign: &Campaign,
+    ) -> Result<(Surrogate, f64)> {
+        let tuned = self.parents.iter().enumerate().map(|(place, parent)| {
+            let name = format!("{rays}-rays-{place}");
+            kept_fit(&self.fits, &name, database, &self.config, Some(parent))
+        });
+        let mut networks: Vec<Surrogate> = tuned.collect::<Result<_>>()?;
+        if networks.len() > 1 {
+            let states = unsolved(rays, campaign, networks[0].domain());
+            let data = TrainingData {
+                database,
+                lesson: Some(&Lesson::new(&networks, &states)),
+            };
+            let (name, first) = (format!("{rays}-rays"), Some(&networks[0]));
+            networks.push(kept_fit(&self.fits, &name, data, &self.config, first)?);
+        }
+        let training_s = networks.iter().filter_map(|it| it.card().training_s).sum();
+        let last = networks
+            .pop()
+            .context("fine-tuning needs weights to start from")?;
+        Ok((last, training_s))
+    }
+}
+
+/// States on the rays that follow the first `rays` of the campaign, as far as they are inside the domain.
+fn unsolved(
+    rays: usize,
+    campaign: &Campaign,
+    domain: &TrainingDomain,
+) -> Vec<(HingeDesign, HingeDeformation)> {
+    let all = (campaign.rays).rays(&campaign.design, rays + TAUGHT_RAYS, campaign.seed);
+    let states = (all.into_iter().skip(rays)).flat_map(|ray| states(ray, TAUGHT_STATES));
+    states
+        .filter(|(design, state)| domain.contains(design, state))
+        .collect()
+}
