@@ -8,11 +8,19 @@ use std::path::Path;
 const POLYPROPYLENE: &str = "configs/materials/polypropylene-0.8mm.toml";
 const OPTIONS: &str = "--tier tiny --rays 6 --spot-rays 3 --out learned";
 
+/// The command with two networks of the film.
 fn learn(material: &str, options: &str) -> String {
-    // Of other sizes than those of the configuration.
-    let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm/small.safetensors");
-    let weights = weights.display();
-    format!("material learn {material} --from {weights} {weights} {options}")
+    learn_from(&["medium-1", "medium-2"], material, options)
+}
+
+fn learn_from(weights: &[&str], material: &str, options: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pet-0.5mm");
+    let from = weights.iter().map(|name| {
+        let file = folder.join(name).with_added_extension("safetensors");
+        format!("--from {}", file.display())
+    });
+    let from: Vec<String> = from.collect();
+    format!("material learn {} {material} {options}", from.join(" "))
 }
 
 /// Short rays, and a short training.
@@ -119,9 +127,21 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
     assert!(
         card.contains("polypropylene-0.8mm")
             && card.contains("fine-tuned from")
-            && card.contains("the mean of the weights"),
+            && card.matches("taught by").count() == 2,
         "{card}"
     );
+    // One network alone, of other sizes than those of the configuration, is fine-tuned and kept.
+    let options = format!("{OPTIONS} --accuracy 100% --forces 100%");
+    work.output(&learn_from(&["small"], POLYPROPYLENE, &options));
+    let card = work.output("surrogate card learned/weights.safetensors");
+    assert!(
+        card.contains("fine-tuned from") && !card.contains("taught by"),
+        "{card}"
+    );
+    // Several networks must have the same sizes.
+    let message =
+        failure(&mut work.program(&learn_from(&["medium-1", "small"], POLYPROPYLENE, &options)));
+    assert!(message.contains("small.safetensors"), "{message}");
 
     for (material, options, expected) in [
         (
@@ -143,7 +163,7 @@ fn unsuitable_weights_are_refused_before_a_window_is_solved() {
     let sharper = shipped.replace("damage_sharpness = 8.0", "damage_sharpness = 9.0");
     std::fs::create_dir(work.path("learned")).unwrap();
     std::fs::write(work.path("learned/fine-tuning.toml"), sharper).unwrap();
-    let message = work.error(&learn(POLYPROPYLENE, OPTIONS));
+    let message = work.error(&learn_from(&["small"], POLYPROPYLENE, OPTIONS));
     assert!(
         message.contains("small.safetensors") && message.contains("damage_sharpness"),
         "{message}"

@@ -117,7 +117,7 @@ fn card() -> Card {
         tier: "none".into(),
         dataset_hash: "none".into(),
         fine_tuned_from: None,
-        taught_by: Vec::new(),
+        lesson: None,
         split_hash: "none".into(),
         training: Default::default(),
         training_rays: None,

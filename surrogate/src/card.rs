@@ -63,11 +63,9 @@ pub struct Card {
     /// [`Surrogate::hash`]: crate::Surrogate::hash
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fine_tuned_from: Option<String>,
-    /// For weights that are also trained on the mean of an ensemble: [`Surrogate::hash`] of its networks.
-    ///
-    /// [`Surrogate::hash`]: crate::Surrogate::hash
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub taught_by: Vec<String>,
+    /// The ensemble whose mean the weights are also trained on, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lesson: Option<LessonRecord>,
     /// Hash of the split into training, validation and test.
     pub split_hash: String,
     /// The training configuration.
@@ -86,6 +84,29 @@ pub struct Card {
     /// Errors at random states of the campaign's region, which no training has seen, if they were measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spot_check: Option<TestErrors>,
+}
+
+/// The ensemble whose mean predictions weights were also trained on, at states that no solver has computed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LessonRecord {
+    /// The networks of the ensemble.
+    pub teachers: Vec<Teacher>,
+    /// BLAKE3 hash (hexadecimal) of the states and of the mean predictions there.
+    pub hash: String,
+}
+
+/// One network of an ensemble; the hashes are those of [`Surrogate::hash`].
+///
+/// [`Surrogate::hash`]: crate::Surrogate::hash
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Teacher {
+    /// Hash of the network.
+    pub weights: String,
+    /// Hash of the weights that the network was fine-tuned from, if it was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fine_tuned_from: Option<String>,
 }
 
 /// Errors of a surrogate on rows that were not used in training.

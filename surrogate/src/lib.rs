@@ -58,7 +58,8 @@ mod tanh;
 mod weights;
 
 pub use card::{
-    Card, ErrorBin, FORMAT_VERSION, FitError, TestErrors, UNITS, forces_percent, number_or_dash,
+    Card, ErrorBin, FORMAT_VERSION, FitError, LessonRecord, Teacher, TestErrors, UNITS,
+    forces_percent, number_or_dash,
 };
 pub use damage::HingeDamage;
 pub use energy::{HingeEnergy, Order, Prepared};

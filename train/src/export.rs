@@ -91,7 +91,7 @@ mod tests {
             peak_scale: scales.peak,
             damage_sharpness: SHARPNESS,
             fine_tuned_from: None,
-            taught_by: Vec::new(),
+            lesson: None,
             domain: TrainingDomain::of_box([[0.0; 2]; 3], [1.0; 2], [1.0; 2]),
             hinge: HingeConstants {
                 fillet_ratio: 0.16,

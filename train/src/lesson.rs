@@ -1,19 +1,18 @@
 //! The mean of several networks as further targets of one network (knowledge distillation).
 //!
 //! Networks that start from different weights make different errors between the rays, and their mean has smaller errors
-//! than each. One network that is also trained on this mean, at states that no solver has computed, has nearly the errors
-//! of the mean and the cost of one network.
+//! than each. One network that is also trained on this mean, at states that no solver has computed, approaches it at the cost
+//! of one network.
 //! (Hinton, Vinyals and Dean, "Distilling the knowledge in a neural network", 2015.)
 
 use dataset::Database;
 use hinge::{HingeDeformation, HingeDesign, HingeSample};
-use surrogate::{Order, Surrogate};
+use surrogate::{LessonRecord, Order, Surrogate, Teacher};
 
 /// States whose targets are the mean predictions of an ensemble.
 #[derive(Clone, Debug)]
 pub struct Lesson {
-    /// [`Surrogate::hash`] of each member.
-    pub(crate) taught_by: Vec<String>,
+    pub(crate) record: LessonRecord,
     pub(crate) samples: Vec<(HingeDesign, HingeSample)>,
 }
 
@@ -36,9 +35,9 @@ impl<'a> From<&'a Database> for TrainingData<'a> {
 }
 
 impl TrainingData<'_> {
-    /// The hashes of the networks of the lesson.
-    pub fn taught_by(&self) -> &[String] {
-        self.lesson.map_or(&[], |lesson| &lesson.taught_by)
+    /// What the card of a network states about the lesson.
+    pub fn record(&self) -> Option<&LessonRecord> {
+        self.lesson.map(|lesson| &lesson.record)
     }
 }
 
@@ -54,13 +53,27 @@ impl Lesson {
             .map(|member| predictions(member, &designs, &deformations))
             .collect();
         let of_state = |state: usize| mean(predicted.iter().map(|member| member[state]));
-        Self {
-            taught_by: members.iter().map(Surrogate::hash).collect(),
-            samples: (designs.into_iter().enumerate())
-                .map(|(state, design)| (design, of_state(state)))
-                .collect(),
-        }
+        let samples: Vec<_> = (designs.into_iter().enumerate())
+            .map(|(state, design)| (design, of_state(state)))
+            .collect();
+        let record = LessonRecord {
+            teachers: members.iter().map(teacher).collect(),
+            hash: hash(&samples),
+        };
+        Self { record, samples }
     }
+}
+
+fn teacher(network: &Surrogate) -> Teacher {
+    Teacher {
+        weights: network.hash(),
+        fine_tuned_from: network.card().fine_tuned_from.clone(),
+    }
+}
+
+fn hash(samples: &[(HingeDesign, HingeSample)]) -> String {
+    let bytes = serde_json::to_vec(samples).expect("designs and samples are numbers");
+    blake3::hash(&bytes).to_hex().to_string()
 }
 
 /// Deformation, W, forces and damage of one network. The other quantities of the samples are zero.
@@ -106,5 +119,30 @@ fn mean(members: impl Iterator<Item = HingeSample> + Clone) -> HingeSample {
         d: mean(|it| it.d),
         d_peak: peaks.map(|sum| sum / count),
         ..members.clone().next().unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mean_of_an_unknown_d_peak_is_unknown() {
+        let sample = |w: f64, d_peak| HingeSample {
+            theta: 0.5,
+            w,
+            f_s: -w,
+            d: 0.1 * w,
+            d_peak,
+            ..HingeSample::default()
+        };
+        let known = mean([sample(1.0, Some(0.2)), sample(3.0, Some(0.6))].into_iter());
+        assert_eq!((known.w, known.f_s, known.theta), (2.0, -2.0, 0.5));
+        assert!((known.d - 0.2).abs() < 1e-15);
+        assert!((known.d_peak.unwrap() - 0.4).abs() < 1e-15);
+        assert_eq!(
+            mean([sample(1.0, Some(0.2)), sample(3.0, None)].into_iter()).d_peak,
+            None
+        );
     }
 }

@@ -145,7 +145,7 @@ impl Training {
             (None, None) => Scales::of(&described, config.mirror)?,
         };
         let mut card = card(manifest, &described, &scales, config)?;
-        card.taught_by = data.taught_by().to_vec();
+        card.lesson = data.record().cloned();
         match start {
             Start::Fresh => {}
             Start::Weights(parent) => inherit(&mut card, parent, &described),
@@ -363,7 +363,7 @@ fn card(
         tier: manifest.tier.clone(),
         dataset_hash: manifest.hash.clone(),
         fine_tuned_from: None,
-        taught_by: Vec::new(),
+        lesson: None,
         split_hash: manifest.split_hash.clone(),
         training: serde_json::to_value(config)
             .expect("a configuration of numbers and lists can always be written as JSON"),

@@ -745,9 +745,10 @@ fn a_network_learns_the_mean_of_several() {
         taught_distance < 0.3 * alone_distance,
         "{taught_distance} and {alone_distance}"
     );
-    let hashes = members.each_ref().map(Surrogate::hash);
-    assert_eq!(taught.card().taught_by, hashes);
-    assert!(alone.card().taught_by.is_empty());
+    let record = taught.card().lesson.as_ref().unwrap();
+    let hashes = members.iter().map(Surrogate::hash);
+    assert!(hashes.eq(record.teachers.iter().map(|it| it.weights.clone())));
+    assert_eq!(alone.card().lesson, None);
     // The lesson is not evidence: domain, scales and test errors are of the rows alone.
     assert_eq!(taught.card().domain, alone.card().domain);
     assert_eq!(taught.card().energy_scale, alone.card().energy_scale);
@@ -763,32 +764,35 @@ fn a_training_with_a_lesson_continues_only_with_that_lesson() {
     let database = database(rows(20));
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("chi.state");
-    let begun = |members: &[Surrogate], start| {
-        let lesson = Lesson::new(members, &states);
+    let begun = |members: &[Surrogate], states: &[_], start| {
+        let lesson = Lesson::new(members, states);
         let data = TrainingData {
             database: &database,
             lesson: Some(&lesson),
         };
         Training::new(data, &config(2), Backend::default(), start)
     };
-    let mut training = begun(&members, Start::Fresh).unwrap();
+    let mut training = begun(&members, &states, Start::Fresh).unwrap();
     training.epoch().unwrap();
     training.save(&state).unwrap();
     let resumed = Start::State {
         state: &state,
         parent: None,
     };
-    let straight = finished(begun(&members, Start::Fresh).unwrap());
-    let continued = finished(begun(&members, resumed).unwrap());
+    let fewer = &states[1..];
+    let straight = finished(begun(&members, &states, Start::Fresh).unwrap());
+    let continued = finished(begun(&members, &states, resumed).unwrap());
     assert_eq!(
         energies(&straight.surrogate),
         energies(&continued.surrogate)
     );
-    assert!(matches!(
-        begun(&members[..1], resumed).err(),
-        Some(TrainError::State(StateError::Other {
-            what: "ensemble",
-            ..
-        }))
-    ));
+    for other in [
+        begun(&members[..1], &states, resumed),
+        begun(&members, fewer, resumed),
+    ] {
+        assert!(matches!(
+            other.err(),
+            Some(TrainError::State(StateError::Other { what: "lesson", .. }))
+        ));
+    }
 }

@@ -6,12 +6,14 @@
 
 mod fine_tuning;
 mod options;
+mod ray_states;
 mod round;
 
 use crate::commands::campaign::{collected, refuse_unfinished, solve_rays};
 use crate::commands::init;
 use crate::commands::material::learn::fine_tuning::FineTuning;
 use crate::commands::material::learn::options::{percent, time};
+use crate::commands::material::learn::ray_states::region;
 use crate::commands::material::learn::round::{HEADING, Round, csv};
 use crate::replays::kept_solves::SolveArgs;
 use crate::replays::spot_states::{self, Solved};
@@ -22,8 +24,8 @@ use ::train::{Backend, TrainingConfig, check_parent};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use dataset::{Database, Gates, SplitPlan};
-use fe_driver::{Campaign, Ray, RunOptions, Shard};
-use hinge::{HingeDeformation, HingeDesign, SheetMaterial, TrainingDomain};
+use fe_driver::{Campaign, RunOptions, Shard};
+use hinge::SheetMaterial;
 use mesher::Tier;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -33,25 +35,20 @@ use surrogate::Surrogate;
 /// Solve hinge windows of a material and train its weights until they are accurate enough
 ///
 /// Starts from weights of another material and solves rays in rounds: 25, 50, 100, ... After each round the weights are
-/// fine-tuned, and one network learns the rays and the mean of the fine-tuned networks. It is compared with a spot check:
-/// windows at random states of the campaign's region, never trained on. Stops when the root mean square errors of W and of
-/// the forces there are small enough, or at the time limit (exit code
-/// 75: the same command continues). The folder holds weights.safetensors, the database, the spot check, learn.csv, and the
-/// campaign and training that can be edited. Example:
+/// fine-tuned, and one network learns the rays and the mean of the fine-tuned networks. This network is compared with a spot
+/// check: windows at random states of the campaign's region, never trained on. Stops when the root mean square errors of W
+/// and of the forces there are small enough, or at the time limit (exit code 75: the same command continues). The folder
+/// holds weights.safetensors, the database, the spot check, learn.csv, and the campaign and training that can be edited.
+/// Example:
 /// kirigami material learn configs/materials/polypropylene-0.8mm.toml --accuracy 1% --time 1h --out runs/polypropylene
 #[derive(Args)]
 pub struct LearnCommand {
     /// Material (TOML), as written by `material fit`
     #[arg(value_name = "MATERIAL")]
     material: PathBuf,
-    /// Weights of another material, with which fine-tuning starts. The mean of several has smaller errors than each. One
-    /// alone is fine-tuned and kept
-    #[arg(
-        long,
-        value_name = "WEIGHTS",
-        num_args = 1..,
-        default_values = PARENTS
-    )]
+    /// Weights of another material, with which fine-tuning starts; once for each file. The mean of several has smaller errors
+    /// than each. One alone is fine-tuned and kept
+    #[arg(long, value_name = "WEIGHTS", default_values = PARENTS)]
     from: Vec<PathBuf>,
     /// Error of W at which the weights are accurate enough, relative to its root mean square
     #[arg(long, value_name = "PERCENT", default_value = "1%", value_parser = percent)]
@@ -265,23 +262,6 @@ fn counts(first: usize, all: usize) -> impl Iterator<Item = usize> {
     doubled
         .take_while(move |count| *count < all)
         .chain(std::iter::once(all))
-}
-
-/// States at equal distances on a ray, up to its end.
-fn states(ray: Ray, count: u32) -> impl Iterator<Item = (HingeDesign, HingeDeformation)> {
-    let (design, end) = (ray.design, ray.end);
-    (1..=count).map(move |k| (design, end.at(f64::from(k) / f64::from(count))))
-}
-
-/// The states that the campaign's rays pass through if they are solved to their ends. It does not depend on the number of
-/// rays, so that the spot check remains the same when the campaign is enlarged.
-fn region(campaign: &Campaign) -> Option<TrainingDomain> {
-    const RAYS: usize = 1500;
-    const STATES: u32 = 10;
-    let rays = (campaign.rays).rays(&campaign.design, RAYS, campaign.seed);
-    let rays = rays.into_iter().flat_map(|ray| [ray, ray.mirrored()]);
-    let states: Vec<_> = rays.flat_map(|ray| states(ray, STATES)).collect();
-    TrainingDomain::covering(states)
 }
 
 #[cfg(test)]

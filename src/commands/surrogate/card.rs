@@ -4,7 +4,7 @@ use crate::commands::train::{UNSEEN, bin_table, error_table};
 use anyhow::Result;
 use clap::Args;
 use std::path::PathBuf;
-use surrogate::Surrogate;
+use surrogate::{Surrogate, Teacher};
 
 /// Print what weights were trained on, and their test errors
 #[derive(Args)]
@@ -34,11 +34,13 @@ impl CardCommand {
         if let Some(base) = &card.fine_tuned_from {
             println!("fine-tuned from weights {base}");
         }
-        if !card.taught_by.is_empty() {
-            println!(
-                "also trained on the mean of the weights {}",
-                card.taught_by.join(", ")
-            );
+        for Teacher {
+            weights,
+            fine_tuned_from,
+        } in card.lesson.iter().flat_map(|lesson| &lesson.teachers)
+        {
+            let from = known(fine_tuned_from);
+            println!("taught by weights {weights}, fine-tuned from {from}");
         }
         let hinge = card.hinge;
         println!(

@@ -59,7 +59,7 @@ pub(super) fn is_of(
         && card.dataset_hash == manifest.hash
         && card.split_hash == manifest.split_hash
         && card.fine_tuned_from == parent.map(Surrogate::hash)
-        && card.taught_by == data.taught_by()
+        && card.lesson.as_ref() == data.record()
 }
 
 /// A training that continues from the file `state`, if it exists. The state of another training, or a damaged one, is an

@@ -1,18 +1,13 @@
 //! The network of one round: several weights are fine-tuned on its rays, and one network learns the rays and their mean.
 
-use crate::commands::material::learn::states;
+use crate::commands::material::learn::ray_states::unsolved;
 use crate::commands::train::kept_fit;
 use ::train::{Lesson, TrainingConfig, TrainingData};
 use anyhow::{Context, Result};
 use dataset::Database;
 use fe_driver::Campaign;
-use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
 use std::path::PathBuf;
 use surrogate::Surrogate;
-
-/// Number of unsolved rays on which one network learns the mean of several, and of states on each of them.
-const TAUGHT_RAYS: usize = 1000;
-const TAUGHT_STATES: u32 = 10;
 
 /// What the trainings of all rounds have in common.
 pub(super) struct FineTuning {
@@ -43,6 +38,7 @@ impl FineTuning {
                 database,
                 lesson: Some(&Lesson::new(&networks, &states)),
             };
+            // Any of the networks can be the start.
             let (name, first) = (format!("{rays}-rays"), Some(&networks[0]));
             networks.push(kept_fit(&self.fits, &name, data, &self.config, first)?);
         }
@@ -52,17 +48,4 @@ impl FineTuning {
             .context("fine-tuning needs weights to start from")?;
         Ok((last, training_s))
     }
-}
-
-/// States on the rays that follow the first `rays` of the campaign, as far as they are inside the domain.
-fn unsolved(
-    rays: usize,
-    campaign: &Campaign,
-    domain: &TrainingDomain,
-) -> Vec<(HingeDesign, HingeDeformation)> {
-    let all = (campaign.rays).rays(&campaign.design, rays + TAUGHT_RAYS, campaign.seed);
-    let states = (all.into_iter().skip(rays)).flat_map(|ray| states(ray, TAUGHT_STATES));
-    states
-        .filter(|(design, state)| domain.contains(design, state))
-        .collect()
 }
