@@ -54,7 +54,9 @@ mod tests {
             designs.any(|design| solved.iter().any(|ray| ray.design == *design))
         };
         let whole = unsolved(40, &campaign, &domain);
-        assert_eq!(whole.len(), TAUGHT_RAYS * TAUGHT_STATES as usize);
+        // The edges of the domain are rounded, so that few ends of rays lie outside.
+        let all = TAUGHT_RAYS * TAUGHT_STATES as usize;
+        assert!(whole.len() < all && whole.len() > all * 9 / 10);
         assert!(!on_solved(&whole) && on_solved(&unsolved(0, &campaign, &domain)));
 
         let smaller = domain.scaled_by(0.5);
