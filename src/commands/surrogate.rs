@@ -8,7 +8,6 @@ mod test;
 
 use anyhow::Result;
 use clap::{Args, Subcommand};
-pub use errors::predicted;
 
 /// Evaluate exported weights, and measure their errors against finite elements
 #[derive(Args)]

@@ -230,7 +230,7 @@ impl Replayed {
 /// The predictions of a surrogate at every state of a path.
 fn predicted(surrogate: &Surrogate, route: &HingeRoute) -> Vec<HingeSample> {
     let designs = vec![route.design; route.states.len()];
-    crate::commands::surrogate::predicted(surrogate, &designs, &route.states)
+    surrogate.samples(&designs, &route.states)
 }
 
 /// Standard deviation over all networks at the state `k`.

@@ -17,7 +17,6 @@ use design::scene::design_run::Designed;
 use design::scene::{HingeModel, Scene, SceneConfig};
 use design::sheet::cut_sheet::{HingePoint, Panel};
 use hinge::HingeSample;
-use kirigami::commands::surrogate::predicted;
 use kirigami::replays::kept_solves::{Outcome, SolveArgs};
 use kirigami::replays::routes::{HingeRoute, judging_tier, routes_of};
 use kirigami::ui::run_folder;
@@ -250,7 +249,7 @@ fn worst(damage: &[Option<f64>]) -> usize {
 
 /// The prediction of the surrogate at the end of the path.
 fn learned(surrogate: &Surrogate, route: &HingeRoute) -> [f64; 4] {
-    figures(&predicted(surrogate, &[route.design], &[route.end()])[0])
+    figures(&surrogate.samples(&[route.design], &[route.end()])[0])
 }
 
 fn replayed(outcome: &Outcome) -> Option<[f64; 4]> {

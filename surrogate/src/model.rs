@@ -4,7 +4,7 @@ use crate::card::{Card, ErrorBin, TestErrors};
 use crate::damage::{self, HingeDamage};
 use crate::energy::{self, HingeEnergy, Order, Prepared};
 use crate::network::{InvalidWeights, Layer, Network};
-use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
+use hinge::{HingeDeformation, HingeDesign, HingeSample, TrainingDomain};
 
 /// The networks of (14), with the card that contains their scaling and provenance.
 #[derive(Clone, Debug)]
@@ -192,6 +192,38 @@ impl Surrogate {
         deformations: &[HingeDeformation],
     ) -> Vec<HingeDamage> {
         self.damages(designs, deformations, false)
+    }
+
+    /// The hinge deformation with W and the forces (14), D and D_peak, for each hinge. The other quantities of the samples are
+    /// zero.
+    ///
+    /// # Panics
+    /// If the numbers of designs and of deformations differ.
+    pub fn samples(
+        &self,
+        designs: &[HingeDesign],
+        deformations: &[HingeDeformation],
+    ) -> Vec<HingeSample> {
+        let energies = self.evaluate(&self.prepare(designs), deformations, Order::Forces);
+        let damages = self.damage_values(designs, deformations);
+        (deformations.iter().zip(energies).zip(damages))
+            .map(|((deformation, energy), damage)| {
+                let [a, s, theta] = deformation.to_array();
+                let [f_a, f_s, m_theta] = energy.forces;
+                HingeSample {
+                    a,
+                    s,
+                    theta,
+                    w: energy.w,
+                    f_a,
+                    f_s,
+                    m_theta,
+                    d: damage.d,
+                    d_peak: damage.d_peak,
+                    ..HingeSample::default()
+                }
+            })
+            .collect()
     }
 
     fn damages(

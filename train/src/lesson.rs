@@ -7,7 +7,7 @@
 
 use dataset::Database;
 use hinge::{HingeDeformation, HingeDesign, HingeSample};
-use surrogate::{LessonRecord, Order, Surrogate, Teacher};
+use surrogate::{LessonRecord, Surrogate, Teacher};
 
 /// States whose targets are the mean predictions of an ensemble.
 #[derive(Clone, Debug)]
@@ -50,7 +50,7 @@ impl Lesson {
         assert!(!members.is_empty(), "a mean needs at least one network");
         let (designs, deformations): (Vec<_>, Vec<_>) = states.iter().copied().unzip();
         let predicted: Vec<Vec<HingeSample>> = (members.iter())
-            .map(|member| predictions(member, &designs, &deformations))
+            .map(|member| member.samples(&designs, &deformations))
             .collect();
         let of_state = |state: usize| mean(predicted.iter().map(|member| member[state]));
         let samples: Vec<_> = (designs.into_iter().enumerate())
@@ -74,35 +74,6 @@ fn teacher(network: &Surrogate) -> Teacher {
 fn hash(samples: &[(HingeDesign, HingeSample)]) -> String {
     let bytes = serde_json::to_vec(samples).expect("designs and samples are numbers");
     blake3::hash(&bytes).to_hex().to_string()
-}
-
-/// Deformation, W, forces and damage of one network. The other quantities of the samples are zero.
-fn predictions(
-    network: &Surrogate,
-    designs: &[HingeDesign],
-    deformations: &[HingeDeformation],
-) -> Vec<HingeSample> {
-    let prepared = network.prepare(designs);
-    let energies = network.evaluate(&prepared, deformations, Order::Forces);
-    let damages = network.damage_values(designs, deformations);
-    (deformations.iter().zip(energies).zip(damages))
-        .map(|((deformation, energy), damage)| {
-            let [a, s, theta] = deformation.to_array();
-            let [f_a, f_s, m_theta] = energy.forces;
-            HingeSample {
-                a,
-                s,
-                theta,
-                w: energy.w,
-                f_a,
-                f_s,
-                m_theta,
-                d: damage.d,
-                d_peak: damage.d_peak,
-                ..HingeSample::default()
-            }
-        })
-        .collect()
 }
 
 /// The mean of W, forces and damage at one state. D_peak is unknown if one network does not predict it.

@@ -3,7 +3,7 @@
 use crate::config::TrainingConfig;
 use crate::samples::Scales;
 use dataset::Row;
-use surrogate::{FitError, Order, Surrogate, TestErrors};
+use surrogate::{FitError, Surrogate, TestErrors};
 
 /// One value of the finite elements and of the surrogate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,22 +38,19 @@ impl Parity {
             .iter()
             .map(|row| (row.design, row.sample.deformation()))
             .unzip();
-        let prepared = surrogate.prepare(&designs);
-        let energies = surrogate.evaluate(&prepared, &deformations, Order::Forces);
-        let damages = surrogate.damage_values(&designs, &deformations);
         let mut parity = Self::default();
-        for ((row, energy), damage) in rows.iter().zip(energies).zip(damages) {
+        for (row, found) in rows.iter().zip(surrogate.samples(&designs, &deformations)) {
             let target = row.sample;
             let pairs = [
-                (&mut parity.energy, target.w, Some(energy.w)),
-                (&mut parity.f_a, target.f_a, Some(energy.forces[0])),
-                (&mut parity.f_s, target.f_s, Some(energy.forces[1])),
-                (&mut parity.m_theta, target.m_theta, Some(energy.forces[2])),
-                (&mut parity.damage, target.d, Some(damage.d)),
+                (&mut parity.energy, target.w, Some(found.w)),
+                (&mut parity.f_a, target.f_a, Some(found.f_a)),
+                (&mut parity.f_s, target.f_s, Some(found.f_s)),
+                (&mut parity.m_theta, target.m_theta, Some(found.m_theta)),
+                (&mut parity.damage, target.d, Some(found.d)),
                 (
                     &mut parity.damage_peak,
                     target.d_peak.unwrap_or(f64::NAN),
-                    damage.d_peak,
+                    found.d_peak,
                 ),
             ];
             for (points, target, predicted) in pairs {

@@ -3,9 +3,8 @@
 use crate::ui::table::table;
 use comfy_table::Table;
 use dataset::{COMPARED, ComparedState, Row, reference_rms};
-use hinge::{HingeDeformation, HingeDesign, HingeSample};
 use std::fmt;
-use surrogate::{Order, Surrogate};
+use surrogate::Surrogate;
 
 /// Number of states listed as the worst.
 const LISTED: usize = 5;
@@ -29,7 +28,7 @@ impl<'a> StateErrors<'a> {
             .iter()
             .map(|row| (row.design, row.sample.deformation()))
             .unzip();
-        let predicted = predicted(surrogate, &designs, &deformations);
+        let predicted = surrogate.samples(&designs, &deformations);
         Self {
             outside: rows.len() - inside.len(),
             states: std::iter::zip(&predicted, &inside)
@@ -140,28 +139,4 @@ impl fmt::Display for StateErrors<'_> {
         )?;
         write!(f, "{}", self.worst())
     }
-}
-
-/// The predictions of the weights at each state.
-pub fn predicted(
-    surrogate: &Surrogate,
-    designs: &[HingeDesign],
-    deformations: &[HingeDeformation],
-) -> Vec<HingeSample> {
-    let prepared = surrogate.prepare(designs);
-    let energies = surrogate.evaluate(&prepared, deformations, Order::Forces);
-    let damages = surrogate.damage_values(designs, deformations);
-    energies
-        .iter()
-        .zip(damages)
-        .map(|(energy, damage)| HingeSample {
-            w: energy.w,
-            f_a: energy.forces[0],
-            f_s: energy.forces[1],
-            m_theta: energy.forces[2],
-            d: damage.d,
-            d_peak: damage.d_peak,
-            ..HingeSample::default()
-        })
-        .collect()
 }
