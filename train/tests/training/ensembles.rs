@@ -1,0 +1,157 @@
+//! Several networks of one database, and a network that learns their mean.
+
+use crate::closed_form::{config, database, energies, finished, rows};
+use dataset::Row;
+use hinge::{HingeDeformation, HingeDesign};
+use surrogate::Surrogate;
+use train::{
+    Backend, EnsembleCheck, Lesson, Parity, Start, StateError, TrainError, Training,
+    TrainingConfig, TrainingData, disagreements, train,
+};
+
+#[test]
+fn equal_members_of_an_ensemble_agree_and_different_ones_deviate() {
+    let rows = rows(20);
+    let database = database(rows.clone());
+    let member = |seed| {
+        let config = TrainingConfig { seed, ..config(3) };
+        train(&database, &config, Backend::default(), &mut |_| {})
+            .unwrap()
+            .surrogate
+    };
+    let first = member(1);
+    let same = EnsembleCheck::of(&disagreements(&[first.clone(), first.clone()], &rows));
+    assert!(same.deviation < 1e-12 && same.error > 0.0, "{same:?}");
+    let different = EnsembleCheck::of(&disagreements(&[first, member(2)], &rows));
+    assert!(different.deviation > 0.01, "{different:?}");
+    assert!(different.error_in_top_tenth > 0.0 && different.error_in_top_tenth < 1.0);
+}
+
+#[test]
+fn an_outlier_is_an_error_that_names_job_and_target() {
+    type Change = fn(&mut Row);
+    let changes: [(Change, &str); 3] = [
+        (|row| row.sample.f_s = -1e6, "F_s"),
+        (|row| row.sample.w = 1e6, "W"),
+        (|row| row.sample.d_peak = Some(1e6), "D_peak"),
+    ];
+    for (change, name) in changes {
+        let mut rows = rows(20);
+        // Every second ray has an outlier, so that the training part contains some.
+        rows.iter_mut().step_by(20).for_each(change);
+        let error =
+            train(&database(rows), &config(1), Backend::default(), &mut |_| {}).unwrap_err();
+        match error {
+            TrainError::Outlier { target, job, .. } => {
+                assert_eq!(target, name);
+                assert!(job.starts_with("job-"), "{job}");
+            }
+            other => panic!("{other}"),
+        }
+    }
+}
+
+/// Two networks of one database, and the states on rays that they were not trained on.
+fn ensemble() -> ([Surrogate; 2], Vec<(HingeDesign, HingeDeformation)>) {
+    let members = [1, 2].map(|seed| {
+        let config = TrainingConfig { seed, ..config(20) };
+        let trained = train(
+            &database(rows(20)),
+            &config,
+            Backend::default(),
+            &mut |_| {},
+        );
+        trained.unwrap().surrogate
+    });
+    let others = rows(120).split_off(200);
+    let states = others
+        .iter()
+        .map(|row| (row.design, row.sample.deformation()));
+    (members, states.collect())
+}
+
+#[test]
+fn a_network_learns_the_mean_of_several() {
+    let (members, states) = ensemble();
+    let database = database(rows(20));
+    let lesson = Lesson::new(&members, &states);
+    let student = |lesson: Option<&Lesson>| {
+        let data = TrainingData {
+            database: &database,
+            lesson,
+        };
+        let start = Start::Weights(&members[0]);
+        finished(Training::new(data, &config(40), Backend::default(), start).unwrap()).surrogate
+    };
+    let [taught, alone] = [Some(&lesson), None].map(student);
+    // On rays of neither.
+    let unseen = rows(220).split_off(1200);
+    let parities = |networks: &[Surrogate]| {
+        let parities: Vec<Parity> = networks.iter().map(|it| Parity::of(it, &unseen)).collect();
+        Parity::mean(&parities)
+    };
+    let mean = parities(&members);
+    let distance = |network: &Surrogate| {
+        let found = parities(std::slice::from_ref(network));
+        let pairs = mean.energy.iter().zip(&found.energy);
+        pairs
+            .map(|(mean, found)| (mean.predicted - found.predicted).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
+    let [taught_distance, alone_distance] = [&taught, &alone].map(distance);
+    assert!(
+        taught_distance < 0.3 * alone_distance,
+        "{taught_distance} and {alone_distance}"
+    );
+    let record = taught.card().lesson.as_ref().unwrap();
+    let hashes = members.iter().map(Surrogate::hash);
+    assert!(hashes.eq(record.teachers.iter().map(|it| it.weights.clone())));
+    assert_eq!(alone.card().lesson, None);
+    // The lesson is not evidence: domain, scales and test errors are of the rows alone.
+    assert_eq!(taught.card().domain, alone.card().domain);
+    assert_eq!(taught.card().energy_scale, alone.card().energy_scale);
+    assert_eq!(
+        taught.card().test_errors.rows,
+        alone.card().test_errors.rows
+    );
+}
+
+#[test]
+fn a_training_with_a_lesson_continues_only_with_that_lesson() {
+    let (members, states) = ensemble();
+    let database = database(rows(20));
+    let folder = tempfile::tempdir().unwrap();
+    let state = folder.path().join("chi.state");
+    let begun = |members: &[Surrogate], states: &[_], start| {
+        let lesson = Lesson::new(members, states);
+        let data = TrainingData {
+            database: &database,
+            lesson: Some(&lesson),
+        };
+        Training::new(data, &config(2), Backend::default(), start)
+    };
+    let mut training = begun(&members, &states, Start::Fresh).unwrap();
+    training.epoch().unwrap();
+    training.save(&state).unwrap();
+    let resumed = Start::State {
+        state: &state,
+        parent: None,
+    };
+    let fewer = &states[1..];
+    let straight = finished(begun(&members, &states, Start::Fresh).unwrap());
+    let continued = finished(begun(&members, &states, resumed).unwrap());
+    assert_eq!(
+        energies(&straight.surrogate),
+        energies(&continued.surrogate)
+    );
+    for other in [
+        begun(&members[..1], &states, resumed),
+        begun(&members, fewer, resumed),
+    ] {
+        assert!(matches!(
+            other.err(),
+            Some(TrainError::State(StateError::Other { what: "lesson", .. }))
+        ));
+    }
+}

@@ -1,0 +1,208 @@
+//! Trainings that start with the weights of another material.
+
+use crate::closed_form::{config, database, finished, rows, trained};
+use dataset::{Database, Part, Row};
+use hinge::HingeSample;
+use surrogate::Surrogate;
+use train::{
+    Backend, Parity, ParityPoint, Precision, Start, StateError, TrainError, Training,
+    TrainingConfig, train,
+};
+
+/// The rows in a sheet of `factor` times the thickness, whose material is `stiffness` times as stiff.
+fn similar(rows: Vec<Row>, factor: f64, stiffness: f64) -> Vec<Row> {
+    let (areas, volumes) = (factor.powi(2) * stiffness, factor.powi(3) * stiffness);
+    let row = |row: Row| Row {
+        design: row.design.scaled(factor),
+        sample: HingeSample {
+            a: factor * row.sample.a,
+            s: factor * row.sample.s,
+            w: volumes * row.sample.w,
+            f_a: areas * row.sample.f_a,
+            f_s: areas * row.sample.f_s,
+            m_theta: volumes * row.sample.m_theta,
+            ..row.sample
+        },
+        ..row
+    };
+    rows.into_iter().map(row).collect()
+}
+
+/// The training of `epochs` epochs in float64 on the rows of a sheet of another thickness and stiffness, which starts from
+/// `parent`.
+fn tuned(parent: &Surrogate, epochs: usize) -> (Database, Training) {
+    let database = database(similar(rows(30), 0.4, 3.0));
+    let config = TrainingConfig {
+        precision: Precision::F64,
+        learning_rate: 1e-3,
+        ..config(epochs)
+    };
+    let start = Start::Weights(parent);
+    let training = Training::new(&database, &config, Backend::default(), start).unwrap();
+    (database, training)
+}
+
+#[test]
+fn fine_tuning_starts_with_the_function_of_the_given_weights() {
+    let parent = trained(40, Backend::default()).surrogate;
+    let (database, training) = tuned(&parent, 1);
+    let start = training.finish().unwrap().surrogate;
+    let scaled = parent.clone().scaled(0.4);
+    assert_ne!(start.card().standardisation, scaled.card().standardisation);
+    let hash = start.card().fine_tuned_from.clone();
+    assert_eq!(hash, Some(parent.hash()));
+
+    let predicted = |surrogate: &Surrogate| {
+        let parity = Parity::of(surrogate, &database.part(Part::Training));
+        [
+            parity.energy,
+            parity.f_a,
+            parity.f_s,
+            parity.m_theta,
+            parity.damage,
+            parity.damage_peak,
+        ]
+    };
+    let (expected, found) = (predicted(&scaled), predicted(&start));
+    let factor = |points: &[ParityPoint]| {
+        let product: f64 = points.iter().map(|it| it.target * it.predicted).sum();
+        product / points.iter().map(|it| it.predicted.powi(2)).sum::<f64>()
+    };
+    let [energy, d, d_peak] = [0, 4, 5].map(|k| factor(&expected[k]));
+    assert!((energy / 3.0 - 1.0).abs() < 0.1, "{energy}");
+    let factors = [energy, energy, energy, energy, d, d_peak];
+    for ((expected, found), factor) in expected.iter().zip(&found).zip(factors) {
+        let size = expected
+            .iter()
+            .map(|it| it.predicted.abs())
+            .fold(0.0, f64::max);
+        for (expected, found) in expected.iter().zip(found) {
+            let difference = (factor * expected.predicted - found.predicted).abs();
+            assert!(difference < 1e-10 * factor * size, "{difference}");
+        }
+    }
+}
+
+#[test]
+fn a_fine_tuned_network_is_closer_than_one_from_scratch() {
+    let parent = trained(40, Backend::default()).surrogate;
+    let (database, training) = tuned(&parent, 10);
+    let scratch = train(&database, &config(10), Backend::default(), &mut |_| {}).unwrap();
+    let tuned = finished(training);
+    for k in 0..4 {
+        let [tuned, scratch] = [&tuned, &scratch].map(|it| it.test_errors.percents()[k]);
+        assert!(tuned < 0.5 * scratch, "{k}: {tuned} and {scratch}");
+    }
+}
+
+#[test]
+fn weights_of_the_same_law_keep_their_domain_and_sizes() {
+    let of_law = |rows: Vec<Row>, law: &str| {
+        let with_law = |row| Row {
+            material_hash: law.into(),
+            ..row
+        };
+        database(rows.into_iter().map(with_law).collect())
+    };
+    let whole = of_law(rows(40), "film");
+    let parent = train(&whole, &config(1), Backend::default(), &mut |_| {})
+        .unwrap()
+        .surrogate;
+    let few: Vec<Row> = whole.part(Part::Training).into_iter().take(80).collect();
+    let start = |rows: &Database| {
+        let other = TrainingConfig {
+            embedding: vec![4],
+            damage: vec![4],
+            ..config(1)
+        };
+        let config = other.with_sizes_of(&parent);
+        let training = Training::new(rows, &config, Backend::default(), Start::Weights(&parent));
+        training.unwrap().finish().unwrap().surrogate
+    };
+    let domain = |surrogate: &Surrogate| surrogate.card().domain.clone();
+    assert_eq!(
+        domain(&start(&of_law(few.clone(), "film"))),
+        domain(&parent)
+    );
+    let other = domain(&start(&of_law(few.clone(), "steel")));
+    assert_ne!(other, domain(&parent));
+    // Rows beyond the domain enlarge it.
+    assert_ne!(domain(&start(&of_law(rows(120), "film"))), domain(&parent));
+    // The same law in another thickness: the ligaments scale with it.
+    let thin = domain(&start(&of_law(similar(few, 0.4, 1.0), "film")));
+    assert_eq!(thin, domain(&parent.clone().scaled(0.4)));
+    assert_ne!(thin, domain(&parent));
+}
+
+#[test]
+fn frozen_layers_are_not_trained() {
+    let parent = trained(2, Backend::default()).surrogate;
+    let database = database(rows(20));
+    let config = TrainingConfig {
+        frozen_layers: 1,
+        ..config(2)
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let state = folder.path().join("chi.state");
+    let begun = |start| Training::new(&database, &config, Backend::default(), start).unwrap();
+    let start = Start::Weights(&parent);
+    let initial = begun(start).finish().unwrap().last.layers();
+    let mut training = begun(start);
+    training.epoch().unwrap();
+    training.save(&state).unwrap();
+    // Also of a training that is resumed.
+    let resumed = |parent| Start::State {
+        state: &state,
+        parent,
+    };
+    let last = finished(begun(resumed(Some(&parent)))).last.layers();
+    let without = Training::new(&database, &config, Backend::default(), resumed(None));
+    assert!(matches!(
+        without.err(),
+        Some(TrainError::State(StateError::Other { what, .. })) if what.contains("start from")
+    ));
+    for (initial, last) in [
+        (&initial.chi, &last.chi),
+        (&initial.chi_d, &last.chi_d),
+        (
+            initial.chi_p.as_ref().unwrap(),
+            last.chi_p.as_ref().unwrap(),
+        ),
+    ] {
+        assert_eq!(initial[0], last[0]);
+        assert_ne!(initial[1], last[1]);
+    }
+}
+
+#[test]
+fn unsuitable_initial_weights_are_errors() {
+    let base = trained(1, Backend::default()).surrogate;
+    let database = database(rows(20));
+    let refusal = |parent: &Surrogate, config: &TrainingConfig| {
+        let start = Start::Weights(parent);
+        let training = Training::new(&database, config, Backend::default(), start);
+        training.err().unwrap()
+    };
+    let wider = TrainingConfig {
+        embedding: vec![32, 32, 32],
+        ..config(1)
+    };
+    let error = refusal(&base, &wider);
+    assert!(matches!(error, TrainError::OtherSizes { .. }), "{error}");
+    let sharper = TrainingConfig {
+        damage_sharpness: 9.0,
+        ..config(1)
+    };
+    let error = refusal(&base, &sharper);
+    assert!(
+        matches!(error, TrainError::OtherSharpness { .. }),
+        "{error}"
+    );
+    let plain = TrainingConfig {
+        mirror: false,
+        ..config(1)
+    };
+    let plain = train(&database, &plain, Backend::default(), &mut |_| {}).unwrap();
+    let error = refusal(&plain.surrogate, &config(1));
+    assert!(matches!(error, TrainError::NotSymmetric), "{error}");
+}

@@ -1,0 +1,258 @@
+//! Training on an energy that is known in closed form.
+
+mod closed_form;
+mod ensembles;
+mod fine_tuning;
+mod resuming;
+
+use crate::closed_form::{config, database, energies, rows, sample, trained};
+use dataset::{Part, Row};
+use hinge::{HingeDeformation, HingeDesign, HingeSample};
+use surrogate::{Order, Surrogate};
+use train::{Backend, Epoch, Parity, Start, TrainError, Training, TrainingConfig, train};
+
+#[test]
+fn an_energy_in_closed_form_is_learned() {
+    let mut reported: Vec<Epoch> = Vec::new();
+    let database = database(rows(200));
+    let trained = train(&database, &config(100), Backend::default(), &mut |epoch| {
+        reported.push(*epoch);
+    })
+    .unwrap();
+    let errors = trained.test_errors;
+    assert_eq!(errors.rows, 200);
+    assert!(errors.energy.relative_rmse < 0.02, "{errors:?}");
+    assert!(errors.energy.median < 0.03, "{errors:?}");
+    for force in [errors.f_a, errors.f_s, errors.m_theta, errors.damage] {
+        assert!(force.relative_rmse < 0.05, "{errors:?}");
+    }
+    assert_eq!(reported, trained.history);
+    assert_eq!(reported.len(), 100);
+    let mut minimum = [f64::INFINITY; 3];
+    for epoch in &reported {
+        let errors = epoch.validation_errors;
+        let better = (0..3).any(|k| errors[k] < minimum[k]);
+        assert_eq!(epoch.best, better, "{epoch:?}");
+        minimum = [0, 1, 2].map(|k| errors[k].min(minimum[k]));
+    }
+    assert!(minimum[0] < 0.1 * reported[0].validation_errors[0]);
+
+    let card = trained.surrogate.card();
+    assert_eq!(card.dataset_hash, database.manifest().hash);
+    assert_eq!(card.split_hash, database.manifest().split_hash);
+    assert_eq!(card.test_errors, errors);
+    assert_eq!(card.training["batch_size"], 64);
+    assert_eq!(card.hinge.r_win, 100.0);
+    assert!(
+        card.domain.alpha[1] > 2.0,
+        "mirror images belong to the domain"
+    );
+    assert_eq!(trained.parity.energy.len(), errors.rows);
+}
+
+/// The validation rows have no damage, and their D_peak is not known.
+#[test]
+fn a_damage_head_without_a_known_error_is_that_of_the_last_epoch() {
+    let whole = database(rows(30));
+    let validation = &whole.manifest().split.validation;
+    let mut rows = whole.rows().to_vec();
+    for row in rows.iter_mut().filter(|row| validation.contains(&row.job)) {
+        row.sample.d = 0.0;
+        row.sample.d_peak = None;
+    }
+    let database = database(rows);
+    let config = config(3);
+    let folder = tempfile::tempdir().unwrap();
+    let state = folder.path().join("state");
+    let mut training = Training::new(&database, &config, Backend::default(), Start::Fresh).unwrap();
+    training.epoch().unwrap();
+    training.save(&state).unwrap();
+    let start = Start::State {
+        state: &state,
+        parent: None,
+    };
+    let mut training = Training::new(&database, &config, Backend::default(), start).unwrap();
+    while !training.is_finished() {
+        training.epoch().unwrap();
+    }
+    let trained = training.finish().unwrap();
+    for epoch in &trained.history {
+        let [energy, d, d_peak] = epoch.validation_errors;
+        assert!(energy > 0.0 && d.is_nan() && d_peak.is_nan(), "{epoch:?}");
+    }
+    let test = database.part(Part::Test);
+    let predicted = |surrogate: &Surrogate| {
+        let parity = Parity::of(surrogate, &test);
+        (parity.damage, parity.damage_peak)
+    };
+    assert_eq!(predicted(&trained.surrogate), predicted(&trained.last));
+    assert!(trained.test_errors.damage_peak.relative_rmse > 0.0);
+}
+
+#[test]
+fn mirror_images_give_the_same_energy_and_damage() {
+    let surrogate = trained(2, Backend::default()).surrogate;
+    let (designs, states): (Vec<_>, Vec<_>) = rows(7)
+        .iter()
+        .map(|row| (row.design, row.sample.deformation()))
+        .unzip();
+    let images: Vec<_> = designs.iter().map(HingeDesign::mirrored).collect();
+    let mirrored: Vec<_> = states.iter().map(HingeDeformation::mirrored).collect();
+    let close = |left: f64, right: f64| (left - right).abs() <= 1e-12 * left.abs().max(1.0);
+
+    let evaluate = |designs: &[HingeDesign], states: &[HingeDeformation]| {
+        surrogate.evaluate(&surrogate.prepare(designs), states, Order::Forces)
+    };
+    for (hinge, image) in evaluate(&designs, &states)
+        .iter()
+        .zip(evaluate(&images, &mirrored))
+    {
+        assert!(hinge.w > 0.0 && close(hinge.w, image.w));
+        let [f_a, f_s, m_theta] = image.forces;
+        for (force, image) in hinge.forces.into_iter().zip([f_a, -f_s, m_theta]) {
+            assert!(close(force, image), "{force} and {image}");
+        }
+    }
+    let damages = surrogate.damage(&designs, &states);
+    for (hinge, image) in damages.iter().zip(surrogate.damage(&images, &mirrored)) {
+        assert!(close(hinge.d, image.d));
+    }
+}
+
+#[test]
+fn equal_seeds_give_equal_weights_and_different_seeds_different_ones() {
+    let first = energies(&trained(2, Backend::default()).surrogate);
+    assert_eq!(first, energies(&trained(2, Backend::default()).surrogate));
+    let other = TrainingConfig {
+        seed: 5,
+        ..config(2)
+    };
+    let other = train(&database(rows(60)), &other, Backend::default(), &mut |_| {}).unwrap();
+    assert_ne!(first, energies(&other.surrogate));
+}
+
+#[test]
+fn backends_agree_on_the_first_steps() {
+    let all: Vec<Vec<f64>> = Backend::ALL
+        .iter()
+        .map(|&backend| energies(&trained(1, backend).surrogate))
+        .collect();
+    for energies in &all[1..] {
+        for (left, right) in energies.iter().zip(&all[0]) {
+            assert!(
+                (left - right).abs() <= 1e-4 * left.abs().max(1.0),
+                "{left} and {right}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_trained_surrogate_round_trips_through_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("chi.safetensors");
+    let trained = trained(1, Backend::default());
+    trained.surrogate.save(&path).unwrap();
+    let loaded = Surrogate::load(&path).unwrap();
+    assert_eq!(loaded.card(), trained.surrogate.card());
+    assert_eq!(energies(&loaded), energies(&trained.surrogate));
+}
+
+#[test]
+fn constant_features_and_zero_targets_are_errors() {
+    let refusal = |change: fn(&mut Row)| {
+        let mut rows = rows(12);
+        rows.iter_mut().for_each(change);
+        // With mirror images, alpha would not be constant.
+        let config = TrainingConfig {
+            mirror: false,
+            ..config(1)
+        };
+        train(&database(rows), &config, Backend::default(), &mut |_| {}).unwrap_err()
+    };
+    let error = refusal(|row| row.design.alpha = 1.0);
+    assert!(
+        matches!(
+            error,
+            TrainError::ConstantFeature {
+                feature: "alpha",
+                ..
+            }
+        ),
+        "{error}"
+    );
+    let error = refusal(|row| row.sample.theta = 0.7);
+    assert!(
+        matches!(
+            error,
+            TrainError::ConstantFeature {
+                feature: "theta",
+                ..
+            }
+        ),
+        "{error}"
+    );
+    let error = refusal(|row| row.sample.d = 0.0);
+    assert!(
+        matches!(error, TrainError::NoScale { target: "D", .. }),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_loss_that_overflows_float32_is_an_error() {
+    let mut rows = rows(12);
+    for row in &mut rows {
+        row.sample.f_a *= 1e-60;
+    }
+    let error = train(&database(rows), &config(2), Backend::default(), &mut |_| {}).unwrap_err();
+    assert!(
+        matches!(error, TrainError::Diverged { epoch: 1, .. }),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_training_that_no_longer_improves_stops_after_the_patience() {
+    let config = TrainingConfig {
+        patience: Some(2),
+        learning_rate: 1e-30,
+        learning_rate_end: 1e-30,
+        ..config(50)
+    };
+    let trained = train(
+        &database(rows(20)),
+        &config,
+        Backend::default(),
+        &mut |_| {},
+    )
+    .unwrap();
+    assert_eq!(trained.history.len(), 3);
+}
+
+#[test]
+fn a_database_without_compression_and_without_d_peak_can_be_trained_on() {
+    let mut tension = rows(20);
+    for row in &mut tension {
+        let end = HingeDeformation {
+            a: row.sample.a.abs(),
+            ..row.sample.deformation()
+        };
+        row.sample = HingeSample {
+            d_peak: None,
+            ..sample(&row.design, end, row.sample.lambda)
+        };
+    }
+    let trained = train(
+        &database(tension),
+        &config(2),
+        Backend::default(),
+        &mut |_| {},
+    )
+    .unwrap();
+    let card = trained.surrogate.card();
+    assert!(card.domain.bounds()[0][0] >= -0.1);
+    assert_eq!(card.peak_scale, None);
+    assert!(trained.parity.damage_peak.is_empty());
+    assert!(trained.test_errors.energy.relative_rmse.is_finite());
+}
