@@ -5,7 +5,7 @@
 //! | [`LinearLaw`] | (11), three springs | constants |
 //! | [`CondensedLaw`] | (11) with the constants of a learned energy | weights |
 //! | [`SurrogateLaw`] | (14), continued beyond the training domain | weights |
-//! | [`CorrectedLaw`] | another law, corrected to forces measured at one state of each hinge | those forces |
+//! | [`CorrectedLaw`] | another law, corrected to forces measured at some states of each hinge | those forces |
 //!
 //! A law is prepared once for the hinges of a sheet and then evaluated for all of them at once.
 
@@ -18,7 +18,7 @@ mod surrogate;
 
 pub use condensed::{CondensedLaw, Constant};
 pub use contact::{Contact, InvalidContact};
-pub use corrected::{CorrectedLaw, Correction};
+pub use corrected::{CorrectedLaw, Correction, MissingForces};
 pub use law::{DamageMeasure, HingeDamage, HingeEnergy, HingeLaw, Order, PreparedLaw};
 pub use linear::{InvalidStiffness, LinearLaw};
 pub use surrogate::SurrogateLaw;

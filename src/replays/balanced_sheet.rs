@@ -1,14 +1,14 @@
 //! The equilibrium of a sheet with finite elements for its hinges.
 //!
 //! Every hinge is solved along its path in the sheet. The hinge law is corrected to the forces of the finite elements at
-//! full load ([`CorrectedLaw`]), and the sheet is deployed again; hinges then have other states, and this is repeated
-//! until the panels stay where they are. It is a quasi-Newton iteration for the equilibrium of the finite-element
-//! hinges with the tangent of the hinge law.
+//! full load, of this round and of those before ([`CorrectedLaw`]), and the sheet is deployed again; hinges then have other
+//! states, and this is repeated until the panels stay where they are. It is a quasi-Newton iteration for the equilibrium of
+//! the finite-element hinges: the tangent is that of the hinge law in the first round, and learns from each further one.
 
 use crate::replays::kept_solves::SolveArgs;
 use crate::replays::routes::routes_of;
 use anyhow::{Result, bail, ensure};
-use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, Order};
+use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
 use design::objective::design_problem::{Deployment, DesignProblem, Model};
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
@@ -96,7 +96,7 @@ pub struct WindowSolves<'a> {
 }
 
 /// Deploys a design with finite elements for its hinges, in at most `rounds` rounds. Also returns the problem of the
-/// scene with the hinge law corrected to the finite elements of the last round.
+/// scene with the hinge law corrected to the finite elements of all rounds.
 pub fn balanced(
     scene: &Scene,
     design: &DesignVector,
@@ -108,6 +108,7 @@ pub fn balanced(
     let law = law_of(&mut problem)?.clone();
     let deployed = problem.deploy(design)?;
     deployed.at_full_load()?;
+    let mut missing = vec![Vec::new(); deployed.sheet.designs().len()];
     let mut found = Balanced {
         deployments: vec![deployed],
         hinges: Vec::new(),
@@ -121,6 +122,7 @@ pub fn balanced(
             design,
             windows,
             &law,
+            &mut missing,
             &mut problem,
             found.by_elements(),
         ) {
@@ -143,13 +145,15 @@ pub fn balanced(
     Ok((found, problem))
 }
 
-/// Solves the hinges along their paths in `deployed`, the sheet of `problem`, and deploys it with the law corrected to
-/// them, which `problem` then has. After a [`RoundFailed`] it has the law that it had before.
+/// Solves the hinges along their paths in `deployed`, the sheet of `problem`, adds to `missing`, for each hinge, what the
+/// law lacks of their forces, and deploys the sheet with the law corrected to them, which `problem` then has. After a
+/// [`RoundFailed`] it has the law that it had before.
 fn round(
     scene: &Scene,
     design: &DesignVector,
     windows: &WindowSolves,
     law: &Arc<dyn HingeLaw>,
+    missing: &mut [Vec<MissingForces>],
     problem: &mut DesignProblem,
     deployed: &Deployment,
 ) -> Result<Made> {
@@ -159,7 +163,15 @@ fn round(
         .sum();
     let hinges: Vec<HingeSample> = solutions.into_iter().map(|(_, end)| end).collect();
     let force_error = force_error(&problem.model, deployed, &hinges);
-    let corrected = Arc::new(corrected(law, deployed, &hinges));
+    let designs = deployed.sheet.designs();
+    let now = missing_forces(law, deployed, &hinges);
+    for (known, now) in missing.iter_mut().zip(now) {
+        known.push(now);
+    }
+    let corrections = (designs.iter().zip(&*missing))
+        .map(|(design, missing)| Correction::new(design, missing))
+        .collect();
+    let corrected = Arc::new(CorrectedLaw::new(law.clone(), corrections));
     let before = std::mem::replace(law_of(problem)?, corrected);
     let next = problem.deploy(design)?;
     if let Err(error) = next.at_full_load() {
@@ -232,20 +244,23 @@ fn solved(
     )))
 }
 
-/// The law corrected to the forces of finite elements at the last state of the path.
-fn corrected(
+/// What the law lacks of the forces of finite elements at the last state of the path.
+fn missing_forces(
     law: &Arc<dyn HingeLaw>,
     deployment: &Deployment,
     hinges: &[HingeSample],
-) -> CorrectedLaw {
+) -> Vec<MissingForces> {
     let designs = deployment.sheet.designs();
     let states = &deployment.final_step().deformations;
     let own = law.prepare(&designs).energies(states, Order::Forces);
-    let corrections = (0..designs.len()).map(|h| {
-        let forces = hinges[h].forces().to_array();
-        Correction::new(&designs[h], &states[h], forces, own[h].forces)
+    let missing = (0..designs.len()).map(|h| {
+        let measured = hinges[h].forces().to_array();
+        MissingForces {
+            state: states[h],
+            forces: std::array::from_fn(|i| measured[i] - own[h].forces[i]),
+        }
     });
-    CorrectedLaw::new(law.clone(), corrections.collect())
+    missing.collect()
 }
 
 /// See [`Round::force_error`].

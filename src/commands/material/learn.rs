@@ -103,6 +103,12 @@ impl LearnCommand {
         let config: TrainingConfig = support::toml_file::read(&self.out.join(TRAINING_FILE))?;
         let config = config.with_sizes_of(&parents[0]);
         for (parent, file) in parents.iter().zip(&self.from) {
+            ensure!(
+                config.clone().with_sizes_of(parent) == config,
+                "{}: its layers have other sizes than those of {}: all --from need the same",
+                file.display(),
+                self.from[0].display()
+            );
             check_parent(parent, &config, Backend::default())
                 .with_context(|| format!("{}", file.display()))?;
         }
