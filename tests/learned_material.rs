@@ -141,7 +141,10 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
     // Several networks must have the same sizes.
     let message =
         failure(&mut work.program(&learn_from(&["medium-1", "small"], POLYPROPYLENE, &options)));
-    assert!(message.contains("small.safetensors"), "{message}");
+    assert!(
+        message.contains("small.safetensors: its layers have other sizes"),
+        "{message}"
+    );
 
     for (material, options, expected) in [
         (

@@ -59,6 +59,8 @@ pub enum Way {
     /// The film's, over E t^3.
     Film,
     Family(Network),
+    /// The mean of the networks of works that are trained on the family alone.
+    MeanOfWorks,
     /// The film's times a factor of the material's rays.
     FilmTimes,
     /// A network times a factor of the material's rays.
@@ -98,6 +100,14 @@ impl Network {
             Self::WorksTimesFilm => LawForm::WorksOfKnown { numbers: false },
             Self::WorksAndNumbersTimesFilm => LawForm::WorksOfKnown { numbers: true },
         }
+    }
+
+    /// Whether the works of the law enter.
+    pub fn is_of_works(self) -> bool {
+        matches!(
+            self.form(),
+            LawForm::Works { .. } | LawForm::WorksOfKnown { .. }
+        )
     }
 
     /// Whether the film is known to the network, so that it is no test.

@@ -79,6 +79,18 @@ pub fn scaled(found: &[EnergySlopes], factor: f64) -> Vec<EnergySlopes> {
     found.iter().map(scaled).collect()
 }
 
+/// The mean of several predictions at the same states.
+pub fn mean(all: &[Vec<EnergySlopes>]) -> Vec<EnergySlopes> {
+    let states = all.first().map_or(0, Vec::len);
+    let over =
+        |of: &dyn Fn(&Vec<EnergySlopes>) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
+    let mean = (0..states).map(|state| EnergySlopes {
+        energy: over(&|it| it[state].energy),
+        slopes: std::array::from_fn(|k| over(&|it| it[state].slopes[k])),
+    });
+    mean.collect()
+}
+
 /// Root mean square of the differences of pairs [target, found], over that of the targets, in per cent.
 fn relative(pairs: impl Iterator<Item = [f64; 2]>) -> f64 {
     let (mut errors, mut squares) = (0.0, 0.0);
@@ -121,5 +133,7 @@ mod tests {
         assert!((errors.factor - 25.0).abs() < 1e-9);
         assert!((errors.all_forces() - 20.0).abs() < 1e-9);
         assert_eq!(Errors::averaged(&[errors, errors]), errors);
+        let halfway = mean(&[scaled(&solved, 0.8), scaled(&solved, 1.0)]);
+        assert!((Errors::of(&states, &halfway).w - 10.0).abs() < 1e-9);
     }
 }

@@ -6,9 +6,9 @@ use crate::universal::cases::{
     inputs, thinned,
 };
 use crate::universal::family_table::SolvedRay;
-use crate::universal::judgement::Errors;
+use crate::universal::judgement::{Errors, mean};
 use crate::universal::states::{SolvedState, training_data};
-use ::train::{LawEnergy, TrainingConfig};
+use ::train::{EnergySlopes, LawEnergy, TrainingConfig};
 use anyhow::{Context, Result};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -54,25 +54,38 @@ impl<'a> SplitOfLaws<'a> {
         let mut last = None;
         for laws in counts(&LAWS, self.training.len()) {
             let data = training_data(self.states(laws));
+            let mut trained = Vec::new();
             for network in NETWORKS {
                 refuse_stop(stop)?;
                 eprintln!("split {}, {laws} laws, {network:?}", config.seed);
                 let energy = LawEnergy::fit(&data, network.form(), config, None)?;
-                let targets = materials.iter();
-                let targets = targets.map(|it| (it.sheet.name.as_str(), &it.states));
-                let targets = targets.filter(|(name, _)| *name != film || !network.knows_film());
-                for (target, states) in targets.chain([(HELD_OUT, &self.held_out)]) {
+                trained.push((network, energy));
+            }
+            let targets = materials.iter();
+            let targets = targets.map(|it| (it.sheet.name.as_str(), &it.states));
+            for (target, states) in targets.chain([(HELD_OUT, &self.held_out)]) {
+                let mut record = |way, found: &[EnergySlopes]| {
                     let case = Case {
                         target: target.into(),
-                        way: Way::Family(network),
+                        way,
                         laws,
                         own_rays: 0,
                     };
-                    let errors = Errors::of(states, &energy.at(&inputs(states))?);
+                    let errors = Errors::of(states, found);
                     measured.entry(case).or_default().push(errors);
+                };
+                let mut of_works = Vec::new();
+                let judged = (trained.iter()).filter(|(it, _)| target != film || !it.knows_film());
+                for (network, energy) in judged {
+                    let found = energy.at(&inputs(states))?;
+                    record(Way::Family(*network), &found);
+                    if network.is_of_works() {
+                        of_works.push(found);
+                    }
                 }
-                last = Some(energy);
+                record(Way::MeanOfWorks, &mean(&of_works));
             }
+            last = trained.pop().map(|(_, energy)| energy);
         }
         last.context("there is no law to train on")
     }

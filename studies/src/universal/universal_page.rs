@@ -135,6 +135,7 @@ impl Display for Way {
         match self {
             Self::Film => write!(f, "film"),
             Self::Family(network) => write!(f, "{network}"),
+            Self::MeanOfWorks => write!(f, "mean of the networks of works"),
             Self::FilmTimes => write!(f, "film times factor"),
             Self::FamilyTimes(network) => write!(f, "{network}, times factor"),
             Self::FamilyTuned(network) => write!(f, "{network}, fine-tuned"),
