@@ -211,7 +211,7 @@ impl UniversalStudy {
                 epochs: self.epochs,
                 ..training.clone()
             };
-            let of_film = split.run(&config, &materials, &film.sheet.name, stop, &mut measured)?;
+            split.run(&config, &materials, &film.sheet.name, stop, &mut measured)?;
             for material in &materials {
                 let plan = SplitPlan {
                     seed,
@@ -227,16 +227,11 @@ impl UniversalStudy {
                 };
                 let errors = Errors::of(&material.states, &of_all.at(&inputs(&material.states))?);
                 measured.entry(case).or_default().push(errors);
-                let (network, energy) = match material.sheet.name == film.sheet.name {
-                    true => (Network::WorksOfAll, &of_all),
-                    false => (Network::WorksTimesFilm, &of_film),
-                };
                 let trial = Trial {
                     material,
                     database: material.database.split(&plan)?,
                     film,
-                    network,
-                    energy,
+                    energy: &of_all,
                     tuned: &tuned,
                     fits: self.out.join("fits"),
                 };

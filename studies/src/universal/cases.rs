@@ -18,9 +18,6 @@ pub const OWN_RAYS: [usize; 3] = [10, 25, 50];
 /// Fraction of the laws that is held out, and fractions of the geometries of a material.
 pub const TEST: f64 = 0.2;
 pub const VALIDATION: f64 = 0.1;
-/// States of a ray of the family that are trained on.
-const STATES_OF_RAY: usize = 16;
-
 /// What the networks are tested on when the laws are held out.
 pub const HELD_OUT: &str = "laws held out";
 
@@ -39,7 +36,7 @@ pub enum Network {
     WorksTimesFilm,
     /// The same; the weights depend on the three numbers too.
     WorksAndNumbersTimesFilm,
-    /// [`Self::Works`], trained also on rays of the other materials.
+    /// [`Self::WorksAndNumbers`], trained also on rays of the other materials.
     WorksOfAll,
 }
 
@@ -95,8 +92,8 @@ impl Network {
         match self {
             Self::Numbers => LawForm::Alone,
             Self::TimesFilm => LawForm::Factor,
-            Self::Works | Self::WorksOfAll => LawForm::Works { numbers: false },
-            Self::WorksAndNumbers => LawForm::Works { numbers: true },
+            Self::Works => LawForm::Works { numbers: false },
+            Self::WorksAndNumbers | Self::WorksOfAll => LawForm::Works { numbers: true },
             Self::WorksTimesFilm => LawForm::WorksOfKnown { numbers: false },
             Self::WorksAndNumbersTimesFilm => LawForm::WorksOfKnown { numbers: true },
         }
@@ -151,12 +148,6 @@ impl Material {
 pub fn counts(fewer: &[usize], all: usize) -> Vec<usize> {
     let fewer = fewer.iter().copied().filter(|&count| count < all);
     fewer.chain([all]).collect()
-}
-
-/// Evenly spaced states of a ray, its last one among them.
-pub fn thinned(states: &[SolvedState]) -> impl Iterator<Item = &SolvedState> {
-    let step = states.len().div_ceil(STATES_OF_RAY).max(1);
-    states.iter().rev().step_by(step)
 }
 
 pub fn inputs(states: &[SolvedState]) -> Vec<LawState> {

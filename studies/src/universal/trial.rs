@@ -19,8 +19,7 @@ pub(super) struct Trial<'a> {
     pub material: &'a Material,
     pub database: Database,
     pub film: &'a Film,
-    pub network: Network,
-    /// The network, without a ray of the material.
+    /// [`Network::WorksOfAll`], without a ray of the material.
     pub energy: &'a LawEnergy,
     pub tuned: &'a TrainingConfig,
     /// Folder of the fine-tuned weights of the film.
@@ -40,7 +39,7 @@ impl Trial<'_> {
             };
             measured.entry(case).or_default().push(errors);
         };
-        let (network, energy) = (self.network, self.energy);
+        let (network, energy) = (Network::WorksOfAll, self.energy);
         if !is_film {
             let all = &self.material.states;
             keep(Way::Film, 0, Errors::of(all, &films(all)));

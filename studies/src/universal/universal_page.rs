@@ -150,7 +150,7 @@ impl Display for Network {
             Self::Numbers => "numbers",
             Self::TimesFilm => "numbers times film",
             Self::Works => "works",
-            Self::WorksOfAll => "works, other materials",
+            Self::WorksOfAll => "works and numbers, other materials",
             Self::WorksAndNumbers => "works and numbers",
             Self::WorksTimesFilm => "works times film",
             Self::WorksAndNumbersTimesFilm => "works and numbers times film",
