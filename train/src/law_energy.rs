@@ -115,21 +115,27 @@ struct Batch {
 }
 
 impl LawEnergy {
-    /// Fits the energy to solved states. `start`: a trained energy, from which the fit continues.
+    /// Fits an energy of a form to solved states.
     pub fn fit(
         solved: &[(LawState, EnergySlopes)],
         form: LawForm,
         config: &TrainingConfig,
-        start: Option<&Self>,
+    ) -> Result<Self, TrainError> {
+        config.validate()?;
+        Self::initial(solved, form, config).tuned(solved, config)
+    }
+
+    /// The energy of a fit that continues with other states; scales and layers remain.
+    pub fn tuned(
+        &self,
+        solved: &[(LawState, EnergySlopes)],
+        config: &TrainingConfig,
     ) -> Result<Self, TrainError> {
         config.validate()?;
         if solved.is_empty() {
             return Err(TrainError::NoRows { part: "training" });
         }
-        let mut energy = match start {
-            Some(start) => start.clone(),
-            None => Self::initial(solved, form, config),
-        };
+        let mut energy = self.clone();
         let mut optimiser = optimiser(config);
         let steps = solved.len().div_ceil(config.batch_size);
         for epoch in 0..config.epochs {
@@ -378,7 +384,7 @@ mod tests {
             (LawForm::WorksOfKnown { numbers: false }, 0.02),
             (LawForm::WorksOfKnown { numbers: true }, 0.02),
         ] {
-            let energy = LawEnergy::fit(&solved, form, &config(), None).unwrap();
+            let energy = LawEnergy::fit(&solved, form, &config()).unwrap();
             let states: Vec<LawState> = solved.iter().map(|(state, _)| *state).collect();
             let found = energy.at(&states).unwrap();
             let [mut errors, mut squares] = [0.0; 2];
@@ -412,16 +418,17 @@ mod tests {
     #[test]
     fn a_fit_continues_from_a_trained_energy() {
         let solved = solved(200);
-        let first = LawEnergy::fit(&solved, LawForm::Alone, &config(), None).unwrap();
+        let first = LawEnergy::fit(&solved, LawForm::Alone, &config()).unwrap();
         let still = TrainingConfig {
             learning_rate: 1e-12,
             epochs: 1,
             ..config()
         };
-        let next = LawEnergy::fit(&solved[..50], LawForm::Alone, &still, Some(&first)).unwrap();
+        let next = first.tuned(&solved[..50], &still).unwrap();
         let state = [solved[3].0];
         let [before, after] = [&first, &next].map(|energy| energy.at(&state).unwrap()[0].energy);
         assert!((before - after).abs() < 1e-4 * before);
-        assert!(LawEnergy::fit(&[], LawForm::Alone, &still, None).is_err());
+        assert!(first.tuned(&[], &still).is_err());
+        assert!(LawEnergy::fit(&[], LawForm::Alone, &still).is_err());
     }
 }

@@ -56,7 +56,7 @@ impl<'a> SplitOfLaws<'a> {
             for network in NETWORKS {
                 refuse_stop(stop)?;
                 eprintln!("split {}, {laws} laws, {network:?}", config.seed);
-                let energy = LawEnergy::fit(&data, network.form(), config, None)?;
+                let energy = LawEnergy::fit(&data, network.form(), config)?;
                 trained.push((network, energy));
             }
             let targets = materials.iter();
@@ -102,6 +102,6 @@ impl<'a> SplitOfLaws<'a> {
         let others = others.flat_map(|it| it.rays().take(OTHER_RAYS).flatten());
         let data = training_data(self.states(self.training.len()).chain(others));
         let form = Network::WorksOfAll.form();
-        Ok(LawEnergy::fit(&data, form, config, None)?)
+        Ok(LawEnergy::fit(&data, form, config)?)
     }
 }

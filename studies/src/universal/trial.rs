@@ -62,7 +62,7 @@ impl Trial<'_> {
                 ..self.tuned.clone()
             };
             let data = training_data(&own);
-            let tuned = LawEnergy::fit(&data, network.form(), &config, Some(energy))?;
+            let tuned = energy.tuned(&data, &config)?;
             let errors = Errors::of(&test, &tuned.at(&inputs(&test))?);
             keep(Way::FamilyTuned(network), own_rays, errors);
             if is_film {
