@@ -22,13 +22,14 @@ pub const POINT: RGBColor = RGBColor(31, 110, 140);
 /// Colour of the second curve, such as the validation error.
 pub const VALIDATION: RGBColor = RGBColor(217, 95, 2);
 /// Colours of the curves of one chart, in order.
-pub const SLICES: [RGBColor; 6] = [
+pub const SLICES: [RGBColor; 7] = [
     POINT,
     VALIDATION,
     RGBColor(117, 112, 179),
     RGBColor(102, 166, 30),
     RGBColor(166, 118, 29),
     RGBColor(231, 41, 138),
+    RGBColor(0, 0, 0),
 ];
 /// Colour of guide lines.
 pub const GUIDE: RGBColor = RGBColor(120, 120, 120);

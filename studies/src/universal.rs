@@ -79,7 +79,7 @@ pub struct UniversalStudy {
     )]
     training: PathBuf,
     /// Number of epochs of the networks of the family, chosen on laws held out
-    #[arg(long, value_name = "N", default_value_t = 200)]
+    #[arg(long, value_name = "N", default_value_t = 100)]
     epochs: usize,
     /// Training configuration for fine-tuning
     #[arg(

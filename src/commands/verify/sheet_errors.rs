@@ -30,6 +30,8 @@ pub(super) struct SheetErrors {
     rotations_deg: [f64; 2],
     /// Load factor at the end of the path, by the law and by finite elements; equal under dead loads.
     load_factor: [f64; 2],
+    /// Hinges that leave the training domain in the sheet by the law or in that by finite elements.
+    outside: Vec<usize>,
     hinges: Vec<HingeErrors>,
 }
 
@@ -73,6 +75,10 @@ impl SheetErrors {
                 damage_peak: [peak_by_law(hinge), found.hinges[hinge].d_peak],
             })
             .collect();
+        let leaves = |hinge: &usize| {
+            let paths = by_law.path.iter().chain(&by_elements.path);
+            paths.into_iter().any(|step| !step.inside[*hinge])
+        };
         let turned = |hinge: &HingeErrors| hinge.theta_deg[1] - hinge.theta_deg[0];
         Self {
             design,
@@ -84,6 +90,7 @@ impl SheetErrors {
             corners: rms_and_maximum(movements(by_law, by_elements)),
             rotations_deg: rms_and_maximum(hinges.iter().map(turned)),
             load_factor: ends.map(|end| end.load_factor),
+            outside: (0..hinges.len()).filter(leaves).collect(),
             hinges,
         }
     }
@@ -147,8 +154,20 @@ impl fmt::Display for SheetErrors {
         )?;
         writeln!(
             f,
-            "Load factor {by_law:.4} by the law, {by_elements:.4} by finite elements.\n\n\
-             | hinge | theta, deg | by FE | D_peak | by FE |\n|---|---|---|---|---|"
+            "Load factor {by_law:.4} by the law, {by_elements:.4} by finite elements.\n"
+        )?;
+        if !self.outside.is_empty() {
+            let hinges: Vec<String> = self.outside.iter().map(usize::to_string).collect();
+            writeln!(
+                f,
+                "Outside the training domain: hinge {}. The law has a return force there that finite elements do not have, and \
+                 the rounds may not converge.\n",
+                hinges.join(", ")
+            )?;
+        }
+        writeln!(
+            f,
+            "| hinge | theta, deg | by FE | D_peak | by FE |\n|---|---|---|---|---|"
         )?;
         for hinge in &self.hinges {
             let [theta, theta_fe] = hinge.theta_deg;
