@@ -8,7 +8,7 @@
 //! over which the error of a law changes. The vectors b_j are such that the correction has the measured forces, conjugate
 //! to x, minus those of the law: of all energies that have them, this is the smoothest one (the mean of a Gaussian process
 //! with this kernel, whose slopes are observed). Energy and forces of the flat hinge remain zero, and far from all
-//! states, in units of l, the law remains as it is. The last measurement is met exactly, earlier ones within a noise: finite
+//! states, in units of l, the forces of the law remain as they are. The last measurement that is not nearly flat is met exactly, earlier ones within a noise: finite
 //! elements depend on the path, and differences of nearly equal states are no tangent.
 //! As a function of (a, s, theta) the correction is that of the design at which the forces were measured, also for a
 //! design close to it: derivatives in the design are those of the law alone.
@@ -37,8 +37,9 @@ const LENGTHS: [f64; 3] = [0.1, 0.1, 0.3];
 /// Variance of the noise of all measurements but the last one, relative to that of the correction's slopes.
 const NOISE: f64 = 1e-3;
 
-/// States closer than this to the flat hinge, in units of the lengths, are not corrected: the forces are small there.
-const NEARLY_FLAT: f64 = 1e-4;
+/// States closer than this to the flat hinge, in units of the lengths, are not corrected: the noise of
+/// their small forces would give a large slope.
+const NEARLY_FLAT: f64 = 1e-2;
 
 /// What the forces of a law lack at one state of a hinge.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -160,8 +160,7 @@ impl fmt::Display for SheetErrors {
             let hinges: Vec<String> = self.outside.iter().map(usize::to_string).collect();
             writeln!(
                 f,
-                "Outside the training domain: hinge {}. The law has a return force there that finite elements do not have, and \
-                 the rounds may not converge.\n",
+                "Outside the training domain: hinge {}. The law has a return force there that finite elements do not have.\n",
                 hinges.join(", ")
             )?;
         }
