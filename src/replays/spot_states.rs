@@ -28,11 +28,11 @@ pub struct Probe {
     pub fractions: Vec<f64>,
 }
 
-/// The states that the solver reached.
+/// The states on rays that the solver followed to their end.
 pub struct Solved {
     /// One row a state; the rows of a window have one job.
     pub rows: Vec<Row>,
-    /// Number of states that it did not reach.
+    /// Number of states on the other rays.
     pub failed: usize,
     /// Solver CPU time of the paths that it followed to their end (s).
     pub cpu_seconds: f64,
@@ -143,7 +143,7 @@ fn edge(domain: &TrainingDomain, design: &HingeDesign, state: &HingeDeformation)
 }
 
 impl Probe {
-    /// The states that the solver reached.
+    /// The states, none if the solver did not follow the ray to its end.
     fn rows(
         &self,
         outcome: &Outcome,

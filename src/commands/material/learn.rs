@@ -1,19 +1,19 @@
 //! `kirigami material learn`: from a material file to weights of its hinge energy, with a known error.
 //!
 //! Rays of the campaign are solved in rounds, each with twice the rays of the one before. After each round several weights
-//! of another material are fine-tuned on all rays. One network learns these rays and, on rays that are not solved, the mean
-//! of the fine-tuned networks. It is tested at random states that no training contains.
+//! of another material are fine-tuned on all rays. One network learns these rays and, at random states, the mean of the
+//! fine-tuned networks. It is tested at random states of rays that no training contains.
 
 mod fine_tuning;
 mod options;
-mod ray_states;
+mod region;
 mod round;
 
 use crate::commands::campaign::{collected, refuse_unfinished, solve_rays};
 use crate::commands::init;
 use crate::commands::material::learn::fine_tuning::FineTuning;
 use crate::commands::material::learn::options::{percent, time};
-use crate::commands::material::learn::ray_states::region;
+use crate::commands::material::learn::region::{region, taught};
 use crate::commands::material::learn::round::{HEADING, Round, csv};
 use crate::replays::kept_solves::SolveArgs;
 use crate::replays::spot_states::{self, Solved};
@@ -25,7 +25,7 @@ use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use dataset::{Database, Gates, SplitPlan};
 use fe_driver::{Campaign, RunOptions, Shard};
-use hinge::SheetMaterial;
+use hinge::{SheetMaterial, TrainingDomain};
 use mesher::Tier;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -114,12 +114,14 @@ impl LearnCommand {
         }
         let campaign = self.campaign(&material)?;
         let fits = self.out.join("fits");
+        let region = region(&campaign).context("the campaign has no region of rays")?;
         let fine_tuning = FineTuning {
             parents,
             config,
+            taught: taught(&region, &campaign.design),
             fits,
         };
-        let spot = self.spot_check(&campaign)?;
+        let spot = self.spot_check(&campaign, &region)?;
         let solved = self.solved_before()?;
         println!("{HEADING}");
         let mut rounds: Vec<Round> = Vec::new();
@@ -208,11 +210,10 @@ impl LearnCommand {
     }
 
     /// The states on which weights are tested, drawn uniformly inside the region of the campaign.
-    fn spot_check(&self, campaign: &Campaign) -> Result<Database> {
-        let domain = region(campaign).context("the campaign has no region of rays")?;
+    fn spot_check(&self, campaign: &Campaign, region: &TrainingDomain) -> Result<Database> {
         let count = STATES_PER_RAY * usize::from(self.spot_rays);
         let (design, seed) = (&campaign.design, self.spot_seed);
-        let probes = spot_states::drawn(&domain, design, count, STATES_PER_RAY, seed);
+        let probes = spot_states::drawn(region, design, count, STATES_PER_RAY, seed);
         let solve = SolveArgs::new(self.jobs, campaign.time_limit);
         let folder = self.out.join("spot-check");
         let Solved {
@@ -223,7 +224,7 @@ impl LearnCommand {
             .context("the solver followed too few rays of the spot check: increase --spot-rays")?;
         database.write(&self.out.join("spot-check.parquet"), true)?;
         println!(
-            "spot check: {} rays, {states} of {count} states reached by the solver, {cpu_seconds:.0} s of CPU time",
+            "spot check: {} rays, {states} of {count} states on rays followed to their end, {cpu_seconds:.0} s of CPU time",
             probes.len()
         );
         Ok(database)
@@ -255,7 +256,7 @@ impl LearnCommand {
         })?;
         let database = collected(&jobs)?;
         database.write(&self.out.join("hinges.parquet"), true)?;
-        let (weights, training_s) = fine_tuning.network(rays, &database, campaign)?;
+        let (weights, training_s) = fine_tuning.network(rays, &database)?;
         let round = Round::new(&tally, &weights, training_s, spot.rows());
         let weights = weights.with_spot_check(round.errors());
         Ok((round, weights))

@@ -109,7 +109,7 @@ impl SpotCheckCommand {
         let path = self.out.join("spot-check.parquet");
         database.write(&path, true)?;
         println!(
-            "{} states of {} rays on tier {tier}; {failed} states not reached by the solver",
+            "{} states of {} rays on tier {tier}; {failed} states on rays that the solver did not follow to their end",
             database.rows().len(),
             probes.len()
         );

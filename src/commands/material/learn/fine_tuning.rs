@@ -1,11 +1,10 @@
 //! The network of one round: several weights are fine-tuned on its rays, and one network learns the rays and their mean.
 
-use crate::commands::material::learn::ray_states::unsolved;
 use crate::commands::train::kept_fit;
 use ::train::{Lesson, TrainingConfig, TrainingData};
 use anyhow::{Context, Result};
 use dataset::Database;
-use fe_driver::Campaign;
+use hinge::{HingeDeformation, HingeDesign};
 use std::path::PathBuf;
 use surrogate::Surrogate;
 
@@ -14,6 +13,8 @@ pub(super) struct FineTuning {
     /// Weights of another material, with which fine-tuning starts.
     pub parents: Vec<Surrogate>,
     pub config: TrainingConfig,
+    /// States at which the network learns the mean of the fine-tuned ones.
+    pub taught: Vec<(HingeDesign, HingeDeformation)>,
     /// Folder of the trained networks.
     pub fits: PathBuf,
 }
@@ -21,22 +22,16 @@ pub(super) struct FineTuning {
 impl FineTuning {
     /// The network of the first `rays` rays of the campaign, and the time of all trainings that it took (s). One parent
     /// alone is fine-tuned.
-    pub(super) fn network(
-        &self,
-        rays: usize,
-        database: &Database,
-        campaign: &Campaign,
-    ) -> Result<(Surrogate, f64)> {
+    pub(super) fn network(&self, rays: usize, database: &Database) -> Result<(Surrogate, f64)> {
         let tuned = self.parents.iter().enumerate().map(|(place, parent)| {
             let name = format!("{rays}-rays-{place}");
             kept_fit(&self.fits, &name, database, &self.config, Some(parent))
         });
         let mut networks: Vec<Surrogate> = tuned.collect::<Result<_>>()?;
         if networks.len() > 1 {
-            let states = unsolved(rays, campaign, networks[0].domain());
             let data = TrainingData {
                 database,
-                lesson: Some(&Lesson::new(&networks, &states)),
+                lesson: Some(&Lesson::new(&networks, &self.taught)),
             };
             // Any of the networks can be the start.
             let (name, first) = (format!("{rays}-rays"), Some(&networks[0]));
