@@ -63,7 +63,7 @@ pub struct Card {
     /// [`Surrogate::hash`]: crate::Surrogate::hash
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fine_tuned_from: Option<String>,
-    /// The ensemble whose mean the weights are also trained on, if there is one.
+    /// The ensemble whose median the weights are also trained on, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lesson: Option<LessonRecord>,
     /// Hash of the split into training, validation and test.
@@ -86,13 +86,13 @@ pub struct Card {
     pub spot_check: Option<TestErrors>,
 }
 
-/// The ensemble whose mean predictions weights were also trained on, at states that no solver has computed.
+/// The ensemble whose median predictions weights were also trained on, at states that no solver has computed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonRecord {
     /// The networks of the ensemble.
     pub teachers: Vec<Teacher>,
-    /// BLAKE3 hash (hexadecimal) of the states and of the mean predictions there.
+    /// BLAKE3 hash (hexadecimal) of the states and of the median predictions there.
     pub hash: String,
 }
 

@@ -1,15 +1,15 @@
-//! The mean of several networks as further targets of one network (knowledge distillation).
+//! The median of several networks as further targets of one network (knowledge distillation).
 //!
-//! Networks that start from different weights make different errors between the rays, and their mean has smaller errors
-//! than each. One network that is also trained on this mean, at states that no solver has computed, approaches it at the cost
-//! of one network.
+//! Networks that start from different weights make different errors between the rays, and their median has smaller errors
+//! than each. One network that is also trained on it, at states that no solver has computed, approaches it at the cost
+//! of one network. Unlike a mean, the median of four is not affected by one network that is wrong by orders of magnitude.
 //! (Hinton, Vinyals and Dean, "Distilling the knowledge in a neural network", 2015.)
 
 use dataset::Database;
 use hinge::{HingeDeformation, HingeDesign, HingeSample};
 use surrogate::{LessonRecord, Surrogate, Teacher};
 
-/// States whose targets are the mean predictions of an ensemble.
+/// States whose targets are the median predictions of an ensemble.
 #[derive(Clone, Debug)]
 pub struct Lesson {
     pub(crate) record: LessonRecord,
@@ -42,17 +42,20 @@ impl TrainingData<'_> {
 }
 
 impl Lesson {
-    /// The mean predictions of the members at the states.
+    /// The median predictions of the members at the states, each quantity by itself.
     ///
     /// # Panics
     /// If there are no members.
     pub fn new(members: &[Surrogate], states: &[(HingeDesign, HingeDeformation)]) -> Self {
-        assert!(!members.is_empty(), "a mean needs at least one network");
+        assert!(!members.is_empty(), "a median needs at least one network");
         let (designs, deformations): (Vec<_>, Vec<_>) = states.iter().copied().unzip();
         let predicted: Vec<Vec<HingeSample>> = (members.iter())
             .map(|member| member.samples(&designs, &deformations))
             .collect();
-        let of_state = |state: usize| mean(predicted.iter().map(|member| member[state]));
+        let of_state = |state: usize| {
+            let members: Vec<_> = predicted.iter().map(|member| &member[state]).collect();
+            medians(&members)
+        };
         let samples: Vec<_> = (designs.into_iter().enumerate())
             .map(|(state, design)| (design, of_state(state)))
             .collect();
@@ -76,21 +79,26 @@ fn hash(samples: &[(HingeDesign, HingeSample)]) -> String {
     blake3::hash(&bytes).to_hex().to_string()
 }
 
-/// The mean of W, forces and damage at one state. D_peak is unknown if one network does not predict it.
-fn mean(members: impl Iterator<Item = HingeSample> + Clone) -> HingeSample {
-    let count = members.clone().count() as f64;
-    let mean =
-        |value: fn(&HingeSample) -> f64| members.clone().map(|it| value(&it)).sum::<f64>() / count;
-    let peaks: Option<f64> = members.clone().map(|it| it.d_peak).sum();
+/// The medians of W, forces and damage at one state. D_peak is unknown if one network does not predict it.
+fn medians(members: &[&HingeSample]) -> HingeSample {
+    let of = |value: fn(&HingeSample) -> f64| median(members.iter().map(|it| value(it)).collect());
+    let peaks: Option<Vec<f64>> = members.iter().map(|it| it.d_peak).collect();
     HingeSample {
-        w: mean(|it| it.w),
-        f_a: mean(|it| it.f_a),
-        f_s: mean(|it| it.f_s),
-        m_theta: mean(|it| it.m_theta),
-        d: mean(|it| it.d),
-        d_peak: peaks.map(|sum| sum / count),
-        ..members.clone().next().unwrap_or_default()
+        w: of(|it| it.w),
+        f_a: of(|it| it.f_a),
+        f_s: of(|it| it.f_s),
+        m_theta: of(|it| it.m_theta),
+        d: of(|it| it.d),
+        d_peak: peaks.map(median),
+        ..*members[0]
     }
+}
+
+/// The middle value, or the mean of the two in the middle.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let [below, above] = [(values.len() - 1) / 2, values.len() / 2];
+    0.5 * (values[below] + values[above])
 }
 
 #[cfg(test)]
@@ -98,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_mean_of_an_unknown_d_peak_is_unknown() {
+    fn the_median_ignores_one_wild_network_and_is_unknown_with_an_unknown_d_peak() {
         let sample = |w: f64, d_peak| HingeSample {
             theta: 0.5,
             w,
@@ -107,13 +115,13 @@ mod tests {
             d_peak,
             ..HingeSample::default()
         };
-        let known = mean([sample(1.0, Some(0.2)), sample(3.0, Some(0.6))].into_iter());
-        assert_eq!((known.w, known.f_s, known.theta), (2.0, -2.0, 0.5));
-        assert!((known.d - 0.2).abs() < 1e-15);
-        assert!((known.d_peak.unwrap() - 0.4).abs() < 1e-15);
-        assert_eq!(
-            mean([sample(1.0, Some(0.2)), sample(3.0, None)].into_iter()).d_peak,
-            None
-        );
+        let [one, two, three] = [1.0, 2.0, 3.0].map(|w| sample(w, Some(0.2 * w)));
+        let wild = sample(1e6, Some(1.0));
+        let known = medians(&[&wild, &two, &one, &three]);
+        assert_eq!((known.w, known.f_s, known.theta), (2.5, -2.5, 0.5));
+        assert!((known.d - 0.25).abs() < 1e-15);
+        assert!((known.d_peak.unwrap() - 0.5).abs() < 1e-15);
+        assert_eq!(medians(&[&three, &one, &two]).w, 2.0);
+        assert_eq!(medians(&[&one, &sample(3.0, None)]).d_peak, None);
     }
 }

@@ -1,8 +1,8 @@
 //! `kirigami material learn`: from a material file to weights of its hinge energy, with a known error.
 //!
 //! Rays of the campaign are solved in rounds, each with twice the rays of the one before. After each round several weights
-//! of another material are fine-tuned on all rays. One network learns these rays and, at random states, the mean of the
-//! fine-tuned networks. It is tested at random states of rays that no training contains.
+//! of another material are fine-tuned on all rays. One network learns these rays and, at random states, the median of
+//! the fine-tuned networks. It is tested at random states of rays that no training contains.
 
 mod fine_tuning;
 mod options;
@@ -35,7 +35,7 @@ use surrogate::Surrogate;
 /// Solve hinge windows of a material and train its weights until they are accurate enough
 ///
 /// Starts from weights of another material and solves rays in rounds: 25, 50, 100, ... After each round the weights are
-/// fine-tuned, and one network learns the rays and the mean of the fine-tuned networks. This network is compared with a spot
+/// fine-tuned, and one network learns the rays and the median of the fine-tuned networks. This network is compared with a spot
 /// check: windows at random states of the campaign's region, never trained on. Stops when the root mean square errors of W
 /// and of the forces there are small enough, or at the time limit (exit code 75: the same command continues). The folder
 /// holds weights.safetensors, the database, the spot check, learn.csv, and the campaign and training that can be edited.
@@ -46,7 +46,7 @@ pub struct LearnCommand {
     /// Material (TOML), as written by `material fit`
     #[arg(value_name = "MATERIAL")]
     material: PathBuf,
-    /// Weights of another material, with which fine-tuning starts; once for each file. The mean of several has smaller errors
+    /// Weights of another material, with which fine-tuning starts; once for each file. Several together have smaller errors
     /// than each. One alone is fine-tuned and kept
     #[arg(long, value_name = "WEIGHTS", default_values = PARENTS)]
     from: Vec<PathBuf>,

@@ -1,4 +1,4 @@
-//! The network of one round: several weights are fine-tuned on its rays, and one network learns the rays and their mean.
+//! The network of one round: several weights are fine-tuned on its rays, and one network learns the rays and their median.
 
 use crate::commands::train::kept_fit;
 use ::train::{Lesson, TrainingConfig, TrainingData};
@@ -13,7 +13,7 @@ pub(super) struct FineTuning {
     /// Weights of another material, with which fine-tuning starts.
     pub parents: Vec<Surrogate>,
     pub config: TrainingConfig,
-    /// States at which the network learns the mean of the fine-tuned ones.
+    /// States at which the network learns the median of the fine-tuned ones.
     pub taught: Vec<(HingeDesign, HingeDeformation)>,
     /// Folder of the trained networks.
     pub fits: PathBuf,

@@ -21,7 +21,7 @@ fn states(ray: Ray, count: u32) -> impl Iterator<Item = (HingeDesign, HingeDefor
     (1..=count).map(move |k| (design, end.at(f64::from(k) / f64::from(count))))
 }
 
-/// The states at which one network learns the mean of several, drawn uniformly inside the region. If they lie on rays of
+/// The states at which one network learns the median of several, drawn uniformly inside the region. If they lie on rays of
 /// the campaign alone, the network is free in the corners that no ray passes: the moment of one of steel was wrong by 27 times
 /// the root mean square there, although those of its teachers were not (`docs/results/fine-tuning`).
 pub(super) fn taught(
