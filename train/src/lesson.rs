@@ -1,8 +1,9 @@
 //! The median of several networks as further targets of one network (knowledge distillation).
 //!
 //! Networks that start from different weights make different errors between the rays, and their median has smaller errors
-//! than each. One network that is also trained on it, at states that no solver has computed, approaches it at the cost
-//! of one network. Unlike a mean, the median of four is not affected by one network that is wrong by orders of magnitude.
+//! than each has in the mean. One network that is also trained on it, at states that no solver has computed, approaches it at
+//! the cost of one network. A network that is wrong by orders of magnitude moves the median no further than to a value
+//! between those of the others.
 //! (Hinton, Vinyals and Dean, "Distilling the knowledge in a neural network", 2015.)
 
 use dataset::Database;
@@ -106,7 +107,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_median_ignores_one_wild_network_and_is_unknown_with_an_unknown_d_peak() {
+    fn the_median_lies_among_the_sane_networks_and_is_unknown_with_an_unknown_d_peak() {
         let sample = |w: f64, d_peak| HingeSample {
             theta: 0.5,
             w,
