@@ -52,8 +52,8 @@ pub struct Balanced {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BalanceEnd {
-    /// The last round moved the panels by less than [`BALANCED`]. Forces at the new states are not solved; the force error of the
-    /// round tells how far those before were off.
+    /// The last round moved the panels by less than [`BALANCED`]. Forces at the new states are not solved; the force error of
+    /// the round is that of the states before.
     Converged,
     /// All rounds were made, and the panels still move.
     RoundsMade,

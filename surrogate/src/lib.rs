@@ -63,7 +63,7 @@ pub use card::{
 };
 pub use damage::HingeDamage;
 pub use energy::{HingeEnergy, Order, Prepared};
-pub use ensemble::mean_and_variance;
+pub use ensemble::{mean_and_variance, median};
 pub use features::{FEATURE_NAMES, Standardisation, features};
 pub use model::{Layers, Surrogate};
 pub use network::{InvalidWeights, Layer, Network, Tensor};

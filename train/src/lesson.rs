@@ -8,7 +8,7 @@
 
 use dataset::Database;
 use hinge::{HingeDeformation, HingeDesign, HingeSample};
-use surrogate::{LessonRecord, Surrogate, Teacher};
+use surrogate::{LessonRecord, Surrogate, Teacher, median};
 
 /// States whose targets are the median predictions of an ensemble.
 #[derive(Clone, Debug)]
@@ -95,16 +95,30 @@ fn medians(members: &[&HingeSample]) -> HingeSample {
     }
 }
 
-/// The middle value, or the mean of the two in the middle.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let [below, above] = [(values.len() - 1) / 2, values.len() / 2];
-    0.5 * (values[below] + values[above])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hinge::HingeConstants;
+    use std::path::Path;
+
+    #[test]
+    fn a_lesson_has_the_median_of_three_networks() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/pet-0.5mm");
+        let members = ["medium", "medium-1", "small"].map(|name| {
+            Surrogate::load(&folder.join(name).with_added_extension("safetensors")).unwrap()
+        });
+        let design = HingeConstants::PAPER.hinge(15.0, 1.2);
+        let state = HingeDeformation::from_eta(-0.2, 0.1, 0.4, design.w_lig);
+        let lesson = Lesson::new(&members, &[(design, state)]);
+        let of_members = members.map(|it| it.samples(&[design], &[state])[0]);
+        let quantities: [fn(&HingeSample) -> f64; 3] = [|it| it.w, |it| it.m_theta, |it| it.d];
+        for value in quantities {
+            let mut values = of_members.each_ref().map(value);
+            values.sort_by(f64::total_cmp);
+            assert!(values[0] < values[1] && values[1] < values[2], "{values:?}");
+            assert_eq!(value(&lesson.samples[0].1), values[1]);
+        }
+    }
 
     #[test]
     fn the_median_lies_among_the_sane_networks_and_is_unknown_with_an_unknown_d_peak() {

@@ -8,8 +8,9 @@
 //! over which the error of a law changes. The vectors b_j are such that the correction has the measured forces, conjugate
 //! to x, minus those of the law: of all energies that have them, this is the smoothest one (the mean of a Gaussian process
 //! with this kernel, whose slopes are observed). Energy and forces of the flat hinge remain zero, and far from all
-//! states, in units of l, the forces of the law remain as they are. The last measurement that is not nearly flat is met exactly, earlier ones within a noise: finite
-//! elements depend on the path, and differences of nearly equal states are no tangent.
+//! states, in units of l, the forces of the law remain as they are. The last measurement that is not nearly flat is met
+//! exactly, earlier ones within a noise: finite elements depend on the path, and differences of nearly equal states are
+//! no tangent.
 //! As a function of (a, s, theta) the correction is that of the design at which the forces were measured, also for a
 //! design close to it: derivatives in the design are those of the law alone.
 //! (Solak, Murray-Smith, Leithead, Leith, Rasmussen, "Derivative observations in Gaussian process models of dynamic

@@ -10,6 +10,7 @@ use design::scene::{ObjectiveConfig, SceneConfig};
 use design::sheet::cut_sheet::HingePoint;
 use kirigami::ui::progress::Progress;
 use std::fmt::Write;
+use surrogate::median;
 
 /// Random starts of each objective, and the standard deviation of their coordinates.
 const SEEDS: u64 = 4;
@@ -108,17 +109,20 @@ fn of(row: &Row) -> [Option<f64>; COLUMNS.len()] {
 
 fn median_and_range(mut values: Vec<f64>) -> String {
     values.sort_by(f64::total_cmp);
-    let Some((first, last)) = values.first().zip(values.last()) else {
+    let (Some(&first), Some(&last)) = (values.first(), values.last()) else {
         return "not known".to_owned();
     };
-    let middle = values.len() / 2;
-    let median = 0.5 * (values[(values.len() - 1) / 2] + values[middle]);
     let shown = |value: f64| match value.abs() {
         size if size >= 10.0 => format!("{value:.1}"),
         size if size >= 1.0 => format!("{value:.2}"),
         _ => format!("{value:.3}"),
     };
-    format!("{} ({} to {})", shown(median), shown(*first), shown(*last))
+    format!(
+        "{} ({} to {})",
+        shown(median(values)),
+        shown(first),
+        shown(last)
+    )
 }
 
 #[cfg(test)]
