@@ -192,6 +192,7 @@ fn network() -> SurrogateLaw {
         test_errors: TestErrors::default(),
         error_bins: Vec::new(),
         spot_check: None,
+        spot_check_inside: None,
     };
     let networks = Layers {
         chi: layers(&[5, 256, 256, 256, 128]),

@@ -106,7 +106,7 @@ pub fn polish(
         design: found,
         start,
         best,
-        searched: None,
+        contradicted: search.contradicted,
     };
     Ok(Polished {
         designed,

@@ -16,5 +16,6 @@ pub mod shard;
 pub mod toml_file;
 pub mod verbose;
 pub mod vtk;
+mod whole_arrays;
 pub mod whole_file;
 pub mod worker_pool;

@@ -1,7 +1,9 @@
-//! Reading TOML configuration files. An unknown key is an error that names the most similar known key.
+//! Reading TOML configuration files. An unknown key is an error that names the most similar known key; an array with more
+//! elements than its type has is an error.
 
 use crate::nearest::nearest;
 use crate::regular_file;
+use crate::whole_arrays::Whole;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 
@@ -47,7 +49,9 @@ pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, ConfigError> {
 
 /// Parses TOML text; errors name `path`.
 pub fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ConfigError> {
-    toml::from_str(text).map_err(|error| {
+    let document = toml::Deserializer::parse(text);
+    let read = document.and_then(|document| T::deserialize(Whole(document)));
+    read.map_err(|error| {
         let path = path.to_owned();
         let line = error
             .span()
@@ -115,6 +119,49 @@ mod tests {
             message,
             "film.toml:2: unknown key `thicknes`; did you mean `thickness`?"
         );
+    }
+
+    #[test]
+    fn an_array_with_decimal_commas_is_refused_wherever_it_stands() {
+        #[derive(Debug, PartialEq, Deserialize)]
+        #[serde(rename_all = "kebab-case")]
+        enum Shape {
+            Circle { centre: [f64; 2] },
+            Line([f64; 1]),
+        }
+        #[derive(Debug, Deserialize)]
+        struct Scene {
+            size: [f64; 2],
+            range: Option<[f64; 2]>,
+            shape: Option<Shape>,
+            #[serde(default)]
+            rows: Vec<[f64; 2]>,
+        }
+        let read = |text: &str| parse::<Scene>(text, Path::new("scene.toml"));
+        let whole = "size = [1, 2]\nrange = [0.5, 1.0]\nrows = [[1, 2], [3, 4], [5, 6]]\n[shape.circle]\ncentre = [1, 2]\n";
+        let scene = read(whole).unwrap();
+        assert_eq!((scene.size, scene.rows.len()), ([1.0, 2.0], 3));
+        assert_eq!(scene.range, Some([0.5, 1.0]));
+        let centre = [1.0, 2.0];
+        assert_eq!(scene.shape, Some(Shape::Circle { centre }));
+        let line = read("size = [1, 2]\nshape.line = [3]\n").unwrap();
+        assert_eq!(line.shape, Some(Shape::Line([3.0])));
+        for (from, to, line, counts) in [
+            ("size = [1, 2]", "size = [1,5, 2,5]", 1, "of 2 has 4"),
+            ("range = [0.5, 1.0]", "range = [0,5, 1]", 2, "of 2 has 3"),
+            ("[3, 4], ", "[3, 4, 4], ", 3, "of 2 has 3"),
+            ("centre = [1, 2]", "centre = [1, 2, 3]", 5, "of 2 has 3"),
+            ("[shape.circle]\ncentre = [1, 2]", "shape.line = [1, 2]", 4, "of 1 has 2"),
+        ] {
+            let text = match to.starts_with("shape") {
+                true => format!("{}shape.line = [1, 2]\n", &whole[..whole.find("[shape").unwrap()]),
+                false => whole.replace(from, to),
+            };
+            let message = read(&text).unwrap_err().to_string();
+            assert!(message.starts_with(&format!("scene.toml:{line}: ")), "{message}");
+            assert!(message.contains(counts) && message.contains("40.5"), "{message}");
+        }
+        assert!(read("size = [1]").unwrap_err().to_string().contains("length 1"));
     }
 
     #[test]

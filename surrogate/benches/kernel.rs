@@ -125,5 +125,6 @@ fn card() -> Card {
         test_errors: TestErrors::default(),
         error_bins: Vec::new(),
         spot_check: None,
+        spot_check_inside: None,
     }
 }

@@ -11,8 +11,9 @@ use serde::{Deserialize, Deserializer, Serialize};
 /// the material law and of the campaign's settings. 4: D_peak has a separate head; beta;
 /// the training time. 5: the domain is the set of states that the rows cover, not their box; D_peak is the mean over
 /// the most strained 1 % of the ligament. D_peak of older weights is another measure and is ignored. 6: the card
-/// states the hash of the weight file, and has a checksum. 7: the card may state the errors at a spot check.
-pub const FORMAT_VERSION: u32 = 7;
+/// states the hash of the weight file, and has a checksum. 7: the card may state the errors at a spot check. 8: and how many
+/// of its states are inside the domain.
+pub const FORMAT_VERSION: u32 = 8;
 
 /// The units of all inputs and outputs of a surrogate.
 pub const UNITS: &str = "mm, N, MPa, N mm, rad";
@@ -84,6 +85,9 @@ pub struct Card {
     /// Errors at random states of the campaign's region, which no training has seen, if they were measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spot_check: Option<TestErrors>,
+    /// Number of states of the spot check that lie inside `domain`, if it was counted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spot_check_inside: Option<usize>,
 }
 
 /// The ensemble whose median predictions weights were also trained on, at states that no solver has computed.

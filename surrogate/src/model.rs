@@ -65,9 +65,10 @@ impl Surrogate {
         self
     }
 
-    /// The same surrogate with the errors at a spot check on its card.
-    pub fn with_spot_check(mut self, errors: TestErrors) -> Self {
+    /// The same surrogate with the errors at a spot check on its card, `inside` of whose states lie inside the domain.
+    pub fn with_spot_check(mut self, errors: TestErrors, inside: usize) -> Self {
         self.card.spot_check = Some(errors);
+        self.card.spot_check_inside = Some(inside);
         self
     }
 

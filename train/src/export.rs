@@ -110,6 +110,7 @@ mod tests {
             test_errors: TestErrors::default(),
             error_bins: Vec::new(),
             spot_check: None,
+            spot_check_inside: None,
         };
         Surrogate::from_parts(layers(networks).unwrap(), card).unwrap()
     }

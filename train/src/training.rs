@@ -372,6 +372,7 @@ fn card(
         test_errors: TestErrors::default(),
         error_bins: Vec::new(),
         spot_check: None,
+        spot_check_inside: None,
     })
 }
 

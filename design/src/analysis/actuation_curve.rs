@@ -8,6 +8,9 @@
 //! In both cases the area below the curve is the work done on the sheet; for one force it is the displacement of
 //! its panel along the force. F and D are sums of the magnitudes of forces or translations, or, if there are none, of
 //! couples or rotations.
+//!
+//! Where a stroke or a motion is prescribed, the load may have a maximum on the way. A dead load, such as a hung weight,
+//! opens the sheet only as far as the first state that carries it.
 
 use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::solver::EquilibriumSolver;
@@ -16,6 +19,7 @@ use crate::objective::design_problem::{Deployment, Mechanics};
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::kinematics::HingeMotion;
 use crate::sheet::panel_vectors::add_at_hinge;
+use serde::Serialize;
 
 /// What moves the sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,8 +42,35 @@ pub struct ActuationCurve {
 }
 
 impl ActuationCurve {
-    /// The curve of a deployment by `mechanics`; `None` if nothing moves the sheet.
+    /// The curve through the load steps of a deployment by `mechanics`; `None` if nothing moves the sheet.
     pub fn new(mechanics: &Mechanics, deployment: &Deployment) -> Option<Self> {
+        Self::through(mechanics, &deployment.sheet, &deployment.path)
+    }
+
+    /// The curve through the increments of the path, and through states close together about the maximum of the load and
+    /// where the load of the end is first reached. The path is followed twice more.
+    pub fn resolved(mechanics: &Mechanics, sheet: &Sheet) -> Option<Self> {
+        let law = mechanics.law.prepare(&sheet.designs());
+        let hinged = mechanics.hinged(sheet, &*law, false);
+        let solver = &mechanics.solver;
+        let (ends, states): (Vec<f64>, Vec<LoadStep>) =
+            solver.increments(hinged).into_iter().unzip();
+        let coarse = Self::through(mechanics, sheet, &states)?.forwards();
+        let (top, reached) = (highest(&coarse), first_reached(&coarse));
+        let mut readings = Vec::new();
+        let mut from = 0.0;
+        for (i, to) in ends.into_iter().enumerate() {
+            let fine = i + 1 == top || i == top || Some(i) == reached;
+            let parts = if fine { READINGS } else { 1 };
+            readings.extend((1..parts).map(|k| from + (to - from) * f64::from(k) / f64::from(parts)));
+            readings.push(to);
+            from = to;
+        }
+        Self::through(mechanics, sheet, &solver.readings(hinged, &readings))
+    }
+
+    /// The curve through states of the path.
+    fn through(mechanics: &Mechanics, sheet: &Sheet, path: &[LoadStep]) -> Option<Self> {
         let solver = &mechanics.solver;
         let (mover, direction) = match magnitude(&solver.loads) {
             Some(_) => (Mover::Loads, solver.loads.to_vec()),
@@ -51,7 +82,7 @@ impl ActuationCurve {
             match mover {
                 Mover::Loads => [work(&direction, &step.configuration) / size, zeta * size],
                 Mover::Supports => {
-                    let forces = holding_forces(mechanics, &deployment.sheet, step);
+                    let forces = holding_forces(mechanics, sheet, step);
                     [zeta * size, work(&direction, &forces) / size]
                 }
             }
@@ -60,8 +91,40 @@ impl ActuationCurve {
         Some(Self {
             mover,
             translational,
-            points: flat.chain(deployment.path.iter().map(point)).collect(),
+            points: flat.chain(path.iter().map(point)).collect(),
         })
+    }
+
+    /// The maximum of the load, in the direction of the displacement.
+    pub fn peak(&self) -> LoadPeak {
+        let (points, sense) = (self.forwards(), self.sense());
+        let top = highest(&points);
+        let [displacement, load] = match points.get(top.wrapping_sub(1)..top + 2) {
+            Some(&[before, top, after]) => vertex(before, top, after),
+            _ => points[top],
+        };
+        let [_, last] = points[points.len() - 1];
+        let reached = first_reached(&points).map_or(0.0, |i| {
+            let [[x, f], [next, higher]] = [points[i], points[i + 1]];
+            x + (next - x) * (last - f) / (higher - f)
+        });
+        LoadPeak {
+            displacement: sense * displacement,
+            load: sense * load,
+            dead_load_reaches: (load > (1.0 + SAME_LOAD) * last).then_some(sense * reached),
+        }
+    }
+
+    /// The points with their signs changed if the displacement is negative at the end.
+    fn forwards(&self) -> Vec<[f64; 2]> {
+        let sense = self.sense();
+        let points = self.points.iter();
+        points.map(|point| point.map(|value| sense * value)).collect()
+    }
+
+    fn sense(&self) -> f64 {
+        let [end, _] = self.points[self.points.len() - 1];
+        if end < 0.0 { -1.0 } else { 1.0 }
     }
 
     /// Units of displacement and load.
@@ -70,6 +133,49 @@ impl ActuationCurve {
             true => ["mm", "N"],
             false => ["rad", "N mm"],
         }
+    }
+}
+
+/// The maximum load of a path on which a displacement is prescribed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LoadPeak {
+    /// Displacement at the maximum: mm or rad.
+    pub displacement: f64,
+    /// Maximum load: N or N mm.
+    pub load: f64,
+    /// The displacement at which the path first carries the load of its end, if it exceeds that load before its end: a
+    /// dead load of that size moves the sheet no further. 0 if the sheet must be held back at the end.
+    pub dead_load_reaches: Option<f64>,
+}
+
+/// Relative difference below which two loads count as equal.
+const SAME_LOAD: f64 = 1e-3;
+
+/// Number of parts into which an interval between two increments is divided.
+const READINGS: u32 = 16;
+
+/// The index of the point of maximum load.
+fn highest(points: &[[f64; 2]]) -> usize {
+    let by_load = |&i: &usize, &j: &usize| points[i][1].total_cmp(&points[j][1]);
+    (0..points.len()).max_by(by_load).unwrap_or(0)
+}
+
+/// The index of the first interval in which the load of the end is reached; `None` if that is not positive.
+fn first_reached(points: &[[f64; 2]]) -> Option<usize> {
+    let [_, last] = *points.last()?;
+    let reaches = |pair: &[[f64; 2]]| pair[1][1] >= last;
+    points.windows(2).position(reaches).filter(|_| last > 0.0)
+}
+
+/// The vertex of the parabola through three points, the second of which is the highest.
+fn vertex([x0, f0]: [f64; 2], [x1, f1]: [f64; 2], [x2, f2]: [f64; 2]) -> [f64; 2] {
+    let [left, right] = [(f1 - f0) / (x1 - x0), (f2 - f1) / (x2 - x1)];
+    let curvature = (right - left) / (x2 - x0);
+    let slope = left + curvature * (x1 - x0);
+    let ahead = -0.5 * slope / curvature;
+    match ahead.is_finite() && (x0 - x1..=x2 - x1).contains(&ahead) {
+        true => [x1 + ahead, f1 + 0.5 * slope * ahead],
+        false => [x1, f1],
     }
 }
 
@@ -112,4 +218,57 @@ fn work(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     std::iter::zip(a.as_flattened(), b.as_flattened())
         .map(|(a, b)| a * b)
         .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    fn curve(load: impl Fn(f64) -> f64, end: f64) -> ActuationCurve {
+        let points = (0..=40).map(|i| end * f64::from(i) / 40.0);
+        ActuationCurve {
+            mover: Mover::Loads,
+            translational: true,
+            points: points.map(|x| [x, load(x)]).collect(),
+        }
+    }
+
+    #[test]
+    fn the_maximum_lies_between_the_points() {
+        for sense in [1.0, -1.0] {
+            let peak = curve(|x| 10.0 * x.sin(), sense * 0.8 * PI).peak();
+            assert!((peak.load - sense * 10.0).abs() < 1e-4, "{peak:?}");
+            assert!((peak.displacement - sense * 0.5 * PI).abs() < 1e-3, "{peak:?}");
+            // sin 0.8 pi = sin 0.2 pi
+            let reached = peak.dead_load_reaches.unwrap();
+            assert!((reached - sense * 0.2 * PI).abs() < 1e-3, "{peak:?}");
+        }
+    }
+
+    #[test]
+    fn a_load_that_increases_has_its_maximum_at_the_end() {
+        let peak = curve(|x| x * x, 2.0).peak();
+        let expected = LoadPeak {
+            displacement: 2.0,
+            load: 4.0,
+            dead_load_reaches: None,
+        };
+        assert_eq!(peak, expected);
+        // Nor does a dead load stop at a maximum below that of the end.
+        assert_eq!(curve(|x| x + 0.9 * (3.0 * x).sin(), 6.9).peak().dead_load_reaches, None);
+    }
+
+    #[test]
+    fn a_sheet_that_is_held_back_at_its_end_is_opened_by_no_dead_load() {
+        let peak = curve(f64::sin, 1.5 * PI).peak();
+        assert!((peak.load - 1.0).abs() < 1e-4);
+        assert_eq!(peak.dead_load_reaches, Some(0.0));
+    }
+
+    #[test]
+    fn a_sheet_that_does_not_move_has_no_load() {
+        let peak = curve(|_| 0.0, 0.0).peak();
+        assert_eq!((peak.load, peak.dead_load_reaches), (0.0, None));
+    }
 }

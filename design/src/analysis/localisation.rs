@@ -1,17 +1,18 @@
-//! Whether the panels stay flat while their ligaments buckle: Gamma and L* of (21)-(22).
+//! Whether the weight of its panels can hold a sheet down that lies on a surface: Gamma and L* of (21)-(22).
 //!
-//! The moment of gravity on a panel of edge L, p L^3 / 2 with p = rho g t, keeps the panel flat against the moment
+//! The moment of gravity on a panel of edge L, p L^3 / 2 with p = rho g t, presses the panel down against the moment
 //! E t^4 / (12 w_lig) of the folded ligament. Their ratio is
 //!
 //!   Gamma = 6 p L^3 w_lig / (E t^4) = (L / L*)^3,   L* = (E t^3 / (6 rho g w_lig))^(1/3).
 //!
-//! For Gamma > 1 buckling localises in the ligaments and the panels stay coplanar. The
-//! prefactor is of order one, so L* is an order of magnitude and not a sharp limit.
+//! For Gamma > 1 buckling localises in the ligaments. The prefactor is of order one, so L* is an order of magnitude and
+//! not a sharp limit: by finite elements of whole sheets, panels lift off a table also where Gamma is above 10. Of a sheet
+//! that hangs or stands Gamma says nothing.
 
 use hinge::SheetMaterial;
 
-/// mm/s^2
-const GRAVITY: f64 = 9810.0;
+/// Acceleration of gravity (mm/s^2).
+pub(crate) const GRAVITY: f64 = 9810.0;
 /// From kg/m^3 to tonne/mm^3, consistent with mm, N and MPa.
 const TONNE_PER_MM3: f64 = 1e-12;
 

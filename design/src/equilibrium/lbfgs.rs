@@ -7,7 +7,7 @@
 use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::lbfgs_memory::Memory;
 use crate::equilibrium::load_step::Effort;
-use crate::equilibrium::newton::{Failure, Minimum};
+use crate::equilibrium::newton::{DescentEnd, Failure, Minimum};
 use crate::equilibrium::potential::{Potential, State, moved};
 use crate::equilibrium::settings::SolverSettings;
 use crate::hinge_law::Order;
@@ -32,7 +32,7 @@ impl Potential<'_> {
         max_iterations: usize,
         effort: &mut Effort,
     ) -> Result<Minimum, Failure> {
-        let mut state = self.forces(start).ok_or(Failure(f64::INFINITY))?;
+        let mut state = self.forces(start).ok_or(Failure::NOT_FINITE)?;
         let scale = vec![[1.0, 1.0, 1.0 / self.panel_size]; state.configuration.len()];
         let scale = gather(self.free, &scale);
         let mut gradient = self.scaled(&state, &scale);
@@ -55,10 +55,16 @@ impl Potential<'_> {
         effort.iterations += iterations;
         effort.factorisations += 1;
         if state.residual > settings.loose_tolerance {
-            return Err(Failure(state.residual));
+            return Err(Failure {
+                residual: state.residual,
+                end: match iterations < max_iterations {
+                    true => DescentEnd::Stagnated,
+                    false => DescentEnd::Iterations,
+                },
+            });
         }
         let state = self.state(state.configuration);
-        let state = state.ok_or(Failure(f64::INFINITY))?;
+        let state = state.ok_or(Failure::NOT_FINITE)?;
         let tangent = self.tangent(&state);
         Ok(Minimum {
             factor: self.factorise(&tangent, Vec::new()),

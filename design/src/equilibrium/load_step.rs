@@ -2,6 +2,7 @@
 
 use crate::equilibrium::displacement_control::{HeldFactor, Stroke, dot};
 use crate::equilibrium::hinged_sheet::HingedSheet;
+use crate::equilibrium::newton::DescentEnd;
 use crate::equilibrium::potential::State;
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::{HingeDamage, HingeEnergy, Order};
@@ -61,6 +62,8 @@ pub struct LoadStep {
     pub potential: f64,
     /// How the step ended.
     pub status: Status,
+    /// Why no equilibrium was found beyond this step, if the path ends early.
+    pub descent_end: Option<DescentEnd>,
     /// Maximum unbalanced force, relative to the maximum force.
     pub residual: f64,
     /// The part of the residual that rounding can cause: below it no state is closer to equilibrium.
@@ -148,6 +151,7 @@ impl LoadStep {
             damage: Vec::new(),
             potential: 0.0,
             status: Status::Converged,
+            descent_end: None,
             residual: 0.0,
             rounding: 0.0,
             iterations: 0,
@@ -182,6 +186,7 @@ impl LoadStep {
             energies: state.energies.iter().map(|energy| energy.w).collect(),
             potential: state.stored - held - state.load_factor * work,
             status,
+            descent_end: None,
             residual: state.residual,
             rounding: state.rounding,
             iterations: effort.iterations,

@@ -15,6 +15,8 @@ use crate::equilibrium::potential::{Potential, State, moved};
 use crate::equilibrium::settings::SolverSettings;
 use crate::sheet::kinematics::Configuration;
 use crate::sheet::panel_vectors::spread;
+use serde::Serialize;
+use std::fmt;
 
 /// Maximum length of a step: rotations in rad, hinge translations in panel sizes.
 const LONGEST_STEP: f64 = 0.5;
@@ -42,9 +44,45 @@ pub(crate) struct Minimum {
     pub factor: Option<HeldFactor>,
 }
 
-/// The residual at which a minimisation ended without a minimum.
+/// A minimisation that ended without a minimum.
 #[derive(Debug)]
-pub(crate) struct Failure(pub f64);
+pub(crate) struct Failure {
+    pub residual: f64,
+    pub end: DescentEnd,
+}
+
+/// Why a descent in energy ended without a minimum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DescentEnd {
+    /// The maximum number of iterations was made while the energy still decreased.
+    Iterations,
+    /// No further step lowers the energy, but the residual is above the loose tolerance.
+    Stagnated,
+    /// The energy or its gradient is not a finite number.
+    NotFinite,
+}
+
+impl fmt::Display for DescentEnd {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Iterations => {
+                "the energy still decreases after solver.max_iterations: raise that"
+            }
+            Self::Stagnated => {
+                "no step lowers the energy further, but the forces are not balanced to solver.loose_tolerance"
+            }
+            Self::NotFinite => "the energy is not a finite number",
+        })
+    }
+}
+
+impl Failure {
+    pub const NOT_FINITE: Self = Self {
+        residual: f64::INFINITY,
+        end: DescentEnd::NotFinite,
+    };
+}
 
 impl Potential<'_> {
     /// A minimum near `start`, at lower energy.
@@ -54,7 +92,7 @@ impl Potential<'_> {
         settings: &SolverSettings,
         effort: &mut Effort,
     ) -> Result<Minimum, Failure> {
-        let mut state = self.state(start).ok_or(Failure(f64::INFINITY))?;
+        let mut state = self.state(start).ok_or(Failure::NOT_FINITE)?;
         let (mut scale, mut memory) = (None, Vec::new());
         let (mut longest, mut shift) = (LONGEST_STEP, SHIFTS[0]);
         for _ in 0..settings.max_iterations {
@@ -94,11 +132,17 @@ impl Potential<'_> {
                         factor,
                     });
                 }
-                None => return Err(Failure(residual)),
+                None => {
+                    let end = DescentEnd::Stagnated;
+                    return Err(Failure { residual, end });
+                }
             }
             memory = factor.map_or(Vec::new(), |held| held.factor.values);
         }
-        Err(Failure(state.residual))
+        Err(Failure {
+            residual: state.residual,
+            end: DescentEnd::Iterations,
+        })
     }
 
     /// The state after a damped Newton step; `None` if no state along it is better, or if the

@@ -9,7 +9,7 @@ use crate::equilibrium::displacement_control::HeldFactor;
 use crate::equilibrium::follower::{Follower, LEAP};
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{LoadStep, Status, StepTangent};
-use crate::equilibrium::newton::{Failure, Minimum};
+use crate::equilibrium::newton::{DescentEnd, Failure, Minimum};
 use crate::equilibrium::place::Place;
 use crate::equilibrium::potential::moved;
 use crate::equilibrium::settings::{Method, SolverSettings};
@@ -56,6 +56,27 @@ impl EquilibriumSolver {
     /// # Panics
     /// If the sheet or the start has another grid than the solver.
     pub fn path_from(&self, sheet: HingedSheet, start: Configuration) -> Vec<LoadStep> {
+        let ends = (1..=self.steps).map(|i| i as f64 / self.steps as f64);
+        self.read(sheet, start, ends)
+    }
+
+    /// The equilibria at load parameters, in ascending order, on the path from the flat sheet: fractions of the loads or,
+    /// if they are prescribed, of the stroke and the support motions.
+    ///
+    /// # Panics
+    /// If the grids of sheet and solver differ.
+    pub fn readings(&self, sheet: HingedSheet, parameters: &[f64]) -> Vec<LoadStep> {
+        let flat = vec![[0.0; 3]; self.grid.panel_count()];
+        self.read(sheet, flat, parameters.iter().copied())
+    }
+
+    /// The load steps that end at load parameters in ascending order. The path ends early if no equilibrium is found.
+    fn read(
+        &self,
+        sheet: HingedSheet,
+        start: Configuration,
+        ends: impl Iterator<Item = f64>,
+    ) -> Vec<LoadStep> {
         assert_eq!(
             self.grid, sheet.sheet.grid,
             "the grids of solver and sheet must be the same"
@@ -66,12 +87,13 @@ impl EquilibriumSolver {
                 load_factor: 0.0,
                 status: Status::Diverged,
                 residual: f64::INFINITY,
+                descent_end: Some(DescentEnd::NotFinite),
                 ..LoadStep::ideal(sheet.sheet, start)
             }];
         };
         let mut path: Vec<LoadStep> = Vec::with_capacity(self.steps);
-        for i in 1..=self.steps {
-            let step = follower.load_step(i as f64 / self.steps as f64);
+        for end in ends {
+            let step = follower.load_step(end);
             let diverged = step.status == Status::Diverged;
             path.push(step);
             if diverged {
@@ -79,6 +101,28 @@ impl EquilibriumSolver {
             }
         }
         path
+    }
+
+    /// The load parameters and equilibria at the increments of the path from the flat sheet, which are close together
+    /// where it bends.
+    ///
+    /// # Panics
+    /// If the grids of sheet and solver differ.
+    pub fn increments(&self, sheet: HingedSheet) -> Vec<(f64, LoadStep)> {
+        assert_eq!(
+            self.grid, sheet.sheet.grid,
+            "the grids of solver and sheet must be the same"
+        );
+        let start = vec![[0.0; 3]; self.grid.panel_count()];
+        let mut increments = Vec::new();
+        if let Some(mut follower) = Follower::new(self, sheet, start) {
+            while follower.last.place.at < 1.0 && follower.advance().is_some() {
+                let jumps = std::mem::take(&mut follower.jumps);
+                let at = follower.last.place.at;
+                increments.push((at, follower.last_point(Status::Converged, jumps)));
+            }
+        }
+        increments
     }
 
     /// Work of the full loads and of the loads held constant (N mm).
@@ -101,20 +145,32 @@ impl Follower<'_> {
         let jumps = std::mem::take(&mut self.jumps);
         match found {
             Ok(minimum) => self.branch.load_step(minimum, jumps),
-            // The last state that was found.
-            Err(Failure(residual)) => {
-                let Place {
-                    at, configuration, ..
-                } = self.last.place.clone();
-                let effort = std::mem::take(&mut self.branch.effort);
-                let works = self.branch.solver.works(&configuration);
-                let state = self.branch.potential(at).state(configuration);
-                let state = state.expect("this state was computed before");
-                let (sheet, status) = (self.branch.sheet, Status::Diverged);
-                let step = LoadStep::new(sheet, state, works, None, status, effort, jumps);
-                LoadStep { residual, ..step }
-            }
+            Err(Failure { residual, end }) => LoadStep {
+                residual,
+                descent_end: Some(end),
+                ..self.last_point(Status::Diverged, jumps)
+            },
         }
+    }
+
+    /// The last point that was found, without a tangent.
+    fn last_point(&mut self, status: Status, jumps: usize) -> LoadStep {
+        let Place {
+            at, configuration, ..
+        } = self.last.place.clone();
+        let effort = std::mem::take(&mut self.branch.effort);
+        let works = self.branch.solver.works(&configuration);
+        let state = self.branch.potential(at).state(configuration);
+        let state = state.expect("this state was computed before");
+        LoadStep::new(
+            self.branch.sheet,
+            state,
+            works,
+            None,
+            status,
+            effort,
+            jumps,
+        )
     }
 
     /// The equilibrium at `to` on the path.

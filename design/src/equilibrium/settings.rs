@@ -27,7 +27,8 @@ pub struct SolverSettings {
     pub method: Method,
     /// Residual of an almost converged state, relative to the largest force, 1e-14 to 0.5; at least `tolerance`.
     pub loose_tolerance: f64,
-    /// Maximum number of Newton iterations of a minimisation, as after a jump, 1 to 10 000.
+    /// Maximum number of Newton iterations of a descent in energy, as after a jump, 1 to 1 000 000. A descent ends before
+    /// that where it reaches an equilibrium or makes no progress.
     pub max_iterations: usize,
     /// Maximum number of increments that are tried along a path, 1 to 10 000 000; a path that needs more ends there.
     pub max_increments: usize,
@@ -42,7 +43,7 @@ impl Default for SolverSettings {
             tolerance: 1e-10,
             method: Method::default(),
             loose_tolerance: 1e-6,
-            max_iterations: 60,
+            max_iterations: 10_000,
             max_increments: 100_000,
             follow_every: 10,
         }

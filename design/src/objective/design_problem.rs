@@ -5,6 +5,7 @@ use crate::equilibrium::adjoint::{SingularTangent, adjoint};
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{LoadStep, Status};
 use crate::equilibrium::nearby_path::KnownPath;
+use crate::equilibrium::newton::DescentEnd;
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
 use crate::geometry::plane::add;
 use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, Order, PreparedLaw};
@@ -45,10 +46,14 @@ pub enum DesignError {
     #[error("the opening angle {0} rad is not a finite number")]
     Opening(f64),
     #[error(
-        "no equilibrium beyond load factor {reached:.4} (relative residual {residual:.1e}): reduce \
-         the load, widen the ligaments or support the sheet differently"
+        "no equilibrium was found beyond load factor {reached:.4} (relative residual {residual:.1e}){}",
+        end.map(|end| format!(": {end}")).unwrap_or_default()
     )]
-    NoEquilibrium { reached: f64, residual: f64 },
+    NoEquilibrium {
+        reached: f64,
+        residual: f64,
+        end: Option<DescentEnd>,
+    },
     #[error(transparent)]
     SingularTangent(#[from] SingularTangent),
 }
@@ -180,6 +185,7 @@ impl Deployment {
             Status::Diverged => Err(DesignError::NoEquilibrium {
                 reached: last.load_factor,
                 residual: last.residual,
+                end: last.descent_end,
             }),
             _ => Ok(last),
         }

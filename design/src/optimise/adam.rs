@@ -30,6 +30,11 @@ impl Adam {
         }
     }
 
+    /// The state before the first step.
+    pub fn restarted(&self) -> Self {
+        Self::new(self.mean.len(), self.learning_rate)
+    }
+
     /// Number of unknowns; zero if the stored moments have different lengths.
     pub fn dimension(&self) -> usize {
         if self.mean.len() == self.square.len() {

@@ -77,6 +77,18 @@ impl Search {
         }
     }
 
+    /// The optimiser before its first step.
+    pub(crate) fn restarted(&self) -> Self {
+        match self {
+            Self::Adam(adam) => Self::Adam(adam.restarted()),
+            Self::Lbfgs(lbfgs) => Self::Lbfgs(Lbfgs {
+                memory: Memory::default(),
+                from: None,
+                ..*lbfgs
+            }),
+        }
+    }
+
     /// Whether [`increment`](Self::increment) uses the curvature of the shape.
     pub(crate) fn needs_curvature(&self) -> bool {
         matches!(

@@ -3,7 +3,9 @@
 mod columns;
 mod estimate;
 mod fact_sheet;
+mod finding;
 mod hinge_row;
+mod self_weight;
 mod text;
 mod warning;
 
@@ -12,8 +14,9 @@ pub(crate) use estimate::force_spreads;
 pub(crate) use text::worst_first;
 
 pub use estimate::Estimate;
-pub use fact_sheet::{FactSheet, Reached, WeightFacts};
+pub use fact_sheet::{FactSheet, Reached, SpotCheck, WeightFacts};
 pub use hinge_row::HingeRow;
+pub use self_weight::SelfWeight;
 pub use warning::{Concern, Severity, Warning};
 
 use crate::objective::design_problem::Deployment;
@@ -105,6 +108,11 @@ impl Report {
         let hinges: Vec<HingeRow> = (0..deployment.sheet.hinges.len())
             .map(|h| HingeRow::new(scene, deployment, h))
             .collect();
+        let facts = FactSheet::new(scene, &designed.problem, deployment, &hinges);
+        let after = Scores::of(&designed.problem.objective, &designed.best);
+        let mut warnings = warning::all(scene, deployment, cuts, &hinges);
+        warnings.extend(finding::of_run(scene, designed, &facts, &after));
+        warnings.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
         let mut report = Self {
             cut_file: false,
             title: scene.config.title.clone(),
@@ -116,10 +124,10 @@ impl Report {
                 .filter(|record| record.setback.is_some())
                 .count(),
             before: Scores::of(&designed.problem.objective, &designed.start),
-            after: Scores::of(&designed.problem.objective, &designed.best),
+            after,
             estimate: Estimate::of(&scene.networks(), deployment),
-            facts: FactSheet::new(scene, &designed.problem, deployment, &hinges),
-            warnings: warning::of_run(scene, designed, cuts, &hinges),
+            facts,
+            warnings,
             hinges,
         };
         report.cut_file = cuts.is_ok() && (force || report.errors().next().is_none());

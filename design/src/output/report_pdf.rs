@@ -252,7 +252,7 @@ impl Deployed<'_> {
         match self.scene.config.hinge {
             HingeModel::Pin => "Deployed; target dashed".to_owned(),
             _ => format!(
-                "Deployed, load factor {:.4}; target dashed",
+                "Deployed with panels held flat, loads at their centroids, load factor {:.4}; target dashed",
                 self.last.load_factor
             ),
         }

@@ -330,7 +330,7 @@ fn search(scene: &SceneConfig) -> Result<(), String> {
     within("solver.tolerance", solver.tolerance, [1e-14, 0.1], "")?;
     let key = "solver.loose_tolerance";
     within(key, solver.loose_tolerance, [1e-14, 0.5], "")?;
-    counted("solver.max_iterations", solver.max_iterations, 10_000)?;
+    counted("solver.max_iterations", solver.max_iterations, 1_000_000)?;
     counted("solver.max_increments", solver.max_increments, 10_000_000)?;
     counted("solver.follow_every", solver.follow_every, 10_000)?;
     if let Method::Lbfgs { max_iterations } = solver.method {

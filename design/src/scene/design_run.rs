@@ -40,14 +40,15 @@ pub struct Designed {
     pub ended: Ended,
     /// One record per step, beginning with that of the start.
     pub history: Vec<StepRecord>,
-    /// The design with the minimum loss.
+    /// The design with the minimum loss of those whose path was followed from the flat sheet.
     pub design: DesignVector,
     /// The evaluation of the start.
     pub start: Evaluation,
     /// The evaluation of `design`, whose path is followed from the flat sheet.
     pub best: Evaluation,
-    /// The loss of `design` as the search found it; `None` if `best` is the evaluation by another hinge law.
-    pub searched: Option<f64>,
+    /// Whether a corrected path of the search was on another branch than the followed one; see
+    /// [`SearchState::contradicted`].
+    pub contradicted: bool,
 }
 
 /// Why a run failed.
@@ -250,7 +251,7 @@ pub fn inverse_design(
     Ok(Designed {
         problem,
         ended,
-        searched: Some(search.minimum()),
+        contradicted: search.contradicted,
         history: search.history,
         design: search.best,
         start,

@@ -1,6 +1,8 @@
 //! Whole runs of small scenes: the outer loop, the learned hinge law, the files and the page of a run.
 
 mod actuation_curve;
+mod branches;
+mod findings;
 mod learned;
 mod outer_loop;
 mod paper;

@@ -3,9 +3,8 @@
 
 use super::{SCENE, read, run, with};
 use design::optimise::outer_loop::{Ended, StepRecord};
-use design::output::run_results::write_results;
 use design::scene::Scene;
-use design::scene::design_run::{Designed, design_of_run, inverse_design};
+use design::scene::design_run::{design_of_run, inverse_design};
 use std::sync::atomic::AtomicBool;
 
 #[test]
@@ -181,23 +180,6 @@ fn a_step_to_a_design_without_value_is_halved_and_reported() {
             .iter()
             .all(|record| record.scores.loss.is_finite())
     );
-}
-
-#[test]
-fn a_design_that_the_search_saw_on_another_branch_is_reported() {
-    let folder = tempfile::tempdir().unwrap();
-    let scene = read(folder.path(), SCENE);
-    let mut designed = run(&scene, None).unwrap();
-    let warned = |designed: &Designed| {
-        let report = write_results(&scene, designed, false).unwrap();
-        let warnings = report.warnings.iter();
-        let text = warnings.map(|warning| warning.message.as_str());
-        text.filter(|message| message.contains("follow_every"))
-            .count()
-    };
-    assert_eq!(warned(&designed), 0);
-    designed.searched = designed.searched.map(|loss| 0.999 * loss);
-    assert_eq!(warned(&designed), 1);
 }
 
 #[test]

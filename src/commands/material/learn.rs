@@ -258,7 +258,7 @@ impl LearnCommand {
         database.write(&self.out.join("hinges.parquet"), true)?;
         let (weights, training_s) = fine_tuning.network(rays, &database)?;
         let round = Round::new(&tally, &weights, training_s, spot.rows());
-        let weights = weights.with_spot_check(round.errors());
+        let weights = weights.with_spot_check(round.errors(), round.inside());
         Ok((round, weights))
     }
 }

@@ -24,8 +24,12 @@ pub fn deployed(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> String {
         .iter()
         .copied()
         .fold(f64::NEG_INFINITY, f64::max);
+    let actuation = match scene.config.hinge {
+        HingeModel::Pin => "",
+        _ => ". Panels held flat, loads and supports at their centroids",
+    };
     let subtitle = format!(
-        "Deployed: mean hinge opening {mean:.1}\u{b0}, maximum {max:.1}\u{b0}. Target dashed"
+        "Deployed: mean hinge opening {mean:.1}\u{b0}, maximum {max:.1}\u{b0}{actuation}. Target dashed"
     );
     let scale = ColourScale::covering(openings_deg.iter().copied());
     state.drawn(state.extent(), &subtitle, &scale)

@@ -1,12 +1,13 @@
 //! The facts of a run: what the sheet is made of, how far it opens under which load, what the hinge law rests on.
 
-use crate::analysis::actuation_curve::{ActuationCurve, Mover};
+use crate::analysis::actuation_curve::{ActuationCurve, LoadPeak, Mover};
 use crate::equilibrium::load_step::Status;
 use crate::geometry::polygon::area;
 use crate::objective::design_problem::{Deployment, DesignProblem, Model};
 use crate::output::drawing::page::bounds;
 use crate::output::report::columns::rounded;
 use crate::output::report::hinge_row::HingeRow;
+use crate::output::report::self_weight::SelfWeight;
 use crate::scene::{HingeModel, Scene};
 use crate::sheet::kinematics::deployed_corners;
 use serde::Serialize;
@@ -25,15 +26,17 @@ pub struct FactSheet {
     pub thickness: f64,
     /// Mass of the uncut sheet (kg).
     pub mass_kg: f64,
+    /// Weight and friction of the uncut sheet, which are not in the model.
+    pub self_weight: SelfWeight,
     /// [columns, rows]
     pub panels: [usize; 2],
     /// Extent of the flat sheet along x and y (mm).
     pub flat_size: [f64; 2],
-    /// Extent of the deployed sheet along x and y (mm).
+    /// Extent of the deployed sheet along x and y with all panels held flat (mm).
     pub deployed_size: [f64; 2],
     /// Load and stroke at the end of the path; `None` without equilibrium, or if nothing moves the sheet.
     pub reached: Option<Reached>,
-    /// Minimum of Gamma (21) over the hinges.
+    /// Minimum of Gamma (21) over the hinges; it is of a sheet that lies on a surface.
     pub gamma_min: f64,
     /// Fraction of the hinge states of the path that are inside the training domain of the hinge law.
     pub share_inside: f64,
@@ -62,6 +65,8 @@ pub struct Reached {
     pub load: f64,
     /// Units of displacement and load.
     pub units: [&'static str; 2],
+    /// The maximum of the load along the path; `None` under dead loads, whose maximum is the load at the end.
+    pub peak: Option<LoadPeak>,
     /// Increment of the load for an increment of the displacement; `None` if supports move the sheet, or if the
     /// tangent is singular.
     pub stiffness: Option<f64>,
@@ -82,8 +87,19 @@ pub struct WeightFacts {
     pub test_rows: usize,
     /// Relative root mean square errors (%): W, F_a, F_s, M_theta, D and, if it is predicted, D_peak.
     pub errors_percent: Vec<f64>,
-    /// Number of states of the spot check of the weights, and the same errors there; `None` if there was none.
-    pub spot_check: Option<(usize, Vec<f64>)>,
+    /// The spot check of the weights, if there was one.
+    pub spot_check: Option<SpotCheck>,
+}
+
+/// Errors of weights at random states that no training has seen.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SpotCheck {
+    /// Number of states.
+    pub states: usize,
+    /// Number of states inside the training domain, if it was counted.
+    pub inside: Option<usize>,
+    /// As [`WeightFacts::errors_percent`], at all states.
+    pub errors_percent: Vec<f64>,
 }
 
 impl FactSheet {
@@ -96,16 +112,19 @@ impl FactSheet {
         let material = &scene.material;
         let flat = &deployment.sheet.outline.corners;
         let corners = deployed_corners(&deployment.sheet, &deployment.final_step().configuration);
+        let mass_kg = 1e-9 * material.density_kg_m3 * area(flat).abs() * material.thickness;
+        let reached = Reached::new(scene, problem, deployment);
         Self {
             version: env!("CARGO_PKG_VERSION"),
             hinge: scene.config.hinge,
             material: material.name.clone(),
             thickness: material.thickness,
-            mass_kg: 1e-9 * material.density_kg_m3 * area(flat).abs() * material.thickness,
+            mass_kg,
+            self_weight: SelfWeight::new(mass_kg, reached.as_ref()),
             panels: scene.config.sheet.panels,
             flat_size: extent(flat.iter().copied()),
             deployed_size: extent(corners.into_iter().flatten()),
-            reached: Reached::new(scene, problem, deployment),
+            reached,
             gamma_min: hinges
                 .iter()
                 .map(|row| row.gamma)
@@ -136,15 +155,23 @@ impl FactSheet {
             ("mass", format!("{} kg, uncut", rounded(self.mass_kg, 4))),
             ("panels", format!("{columns} x {rows}")),
             ("flat size", size(self.flat_size)),
-            ("deployed size", size(self.deployed_size)),
+            (
+                "deployed size",
+                format!("{}, panels held flat", size(self.deployed_size)),
+            ),
             ("hinge law", hinge.to_owned()),
         ];
         if let Some(reached) = &self.reached {
             facts.extend(reached.rows());
         }
+        if self.hinge != HingeModel::Pin {
+            let weight = self.self_weight.beside_load();
+            facts.push(("weight", format!("{weight}; neither is modelled")));
+        }
+        let gamma = rounded(self.gamma_min, 4);
         facts.push((
             "minimum Gamma",
-            format!("{} (panels stay flat above 1)", rounded(self.gamma_min, 4)),
+            format!("{gamma}, for a sheet that lies on a surface"),
         ));
         if let Some(weights) = &self.weights {
             let inside = rounded(100.0 * self.share_inside, 4);
@@ -173,6 +200,10 @@ impl Reached {
         let by_loads = last
             .stiffness(&mechanics.solver)
             .filter(|_| curve.mover == Mover::Loads);
+        let prescribed = mechanics.solver.drive.is_some() || curve.mover == Mover::Supports;
+        let resolved = prescribed
+            .then(|| ActuationCurve::resolved(mechanics, &deployment.sheet))
+            .flatten();
         Some(Self {
             stroke_of: stroke_of(scene, &curve),
             load_factor: last.load_factor,
@@ -180,6 +211,7 @@ impl Reached {
             displacement,
             load,
             units: curve.units(),
+            peak: resolved.map(|curve| curve.peak()),
             stiffness: by_loads,
         })
     }
@@ -190,24 +222,22 @@ impl Reached {
             true => ", where the path ends early",
             false => "",
         };
-        let mut rows = vec![
-            (
-                "load reached",
-                format!(
-                    "{} {force}, load factor {}{end}",
-                    rounded(self.load, 4),
-                    rounded(self.load_factor, 4)
-                ),
+        let mut rows = vec![(
+            "load reached",
+            format!(
+                "{} {force}, load factor {}{end}",
+                rounded(self.load, 4),
+                rounded(self.load_factor, 4)
             ),
-            (
-                "stroke reached",
-                format!(
-                    "{} {length}, {}",
-                    rounded(self.displacement, 4),
-                    self.stroke_of
-                ),
-            ),
-        ];
+        )];
+        if let Some(peak) = &self.peak {
+            let [load, stroke] = [peak.load, peak.displacement].map(|value| rounded(value, 4));
+            let text = format!("{load} {force} at a stroke of {stroke} {length}");
+            rows.push(("largest load", text));
+        }
+        let stroke = rounded(self.displacement, 4);
+        let text = format!("{stroke} {length}, {}", self.stroke_of);
+        rows.push(("stroke reached", text));
         if let Some(stiffness) = self.stiffness {
             let stiffness = rounded(stiffness, 4);
             let text = format!("{stiffness} {force}/{length} at the end of the path");
@@ -238,7 +268,11 @@ impl WeightFacts {
             training_rays: card.training_rays,
             test_rows: card.test_errors.rows,
             errors_percent: errors(&card.test_errors),
-            spot_check: card.spot_check.as_ref().map(|it| (it.rows, errors(it))),
+            spot_check: card.spot_check.as_ref().map(|check| SpotCheck {
+                states: check.rows,
+                inside: card.spot_check_inside,
+                errors_percent: errors(check),
+            }),
         })
     }
 
@@ -252,8 +286,9 @@ impl WeightFacts {
         );
         let test_errors = errors(&self.errors_percent, self.test_rows, "unseen");
         let mut rows = vec![("weights", trained), ("test errors", test_errors)];
-        if let Some((states, percents)) = &self.spot_check {
-            rows.push(("spot check", errors(percents, *states, "random")));
+        if let Some(check) = &self.spot_check {
+            let text = errors(&check.errors_percent, check.states, "random");
+            rows.push(("spot check", text));
         }
         rows
     }

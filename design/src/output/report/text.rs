@@ -19,7 +19,7 @@ eta      a / w_lig and s / w_lig there: axial opening and shear of the ligament 
 D        maximum along the path of the mean damage of the ligament, and D_peak of its most strained 1 %,
          which tears at 1; ?: not known, since the hinge left the training domain of its law; -: no prediction
 domain   whether every state of the path is inside the training domain
-Gamma    above 1 the panels stay flat while their ligaments buckle
+Gamma    (21), for a sheet that lies on a surface: moment of a panel's weight over that of its folded ligament
 ";
 
 impl fmt::Display for Report {

@@ -7,7 +7,6 @@ use crate::objective::target::Target;
 use crate::output::cut_file::{CutLines, FabricationError};
 use crate::output::report::hinge_row::HingeRow;
 use crate::scene::Scene;
-use crate::scene::design_run::Designed;
 use crate::sheet::hinge_window::Window;
 use serde::Serialize;
 use std::fmt;
@@ -45,7 +44,7 @@ pub enum Concern {
     WindowsOverlap,
     /// Panels are too small for the windows of their hinges.
     WindowsLeavePanels,
-    /// Gamma < 1 (21): panels tilt out of plane with their ligaments.
+    /// Gamma < 1 (21): on a surface, the weight of panels does not hold them down.
     PanelsTilt,
     /// w_lig or alpha is outside the training domain of the hinge law.
     LigamentsOutsideDomain,
@@ -63,8 +62,20 @@ pub enum Concern {
     CannotBeCut,
     /// The equilibrium path is not converged and stable throughout.
     Path,
+    /// The search met designs whose corrected path was on another branch than the followed one.
+    OtherBranch,
     /// The target outline crosses or touches itself.
     TargetCrosses,
+    /// The outline is further from the target than 1 % of the sheet.
+    TargetMissed,
+    /// What the model of every learned law leaves out: panels that leave the plane, weight and friction.
+    NotModelled,
+    /// The weight of the sheet is more than a tenth of the load.
+    Weight,
+    /// The load has a maximum on the path: a dead load of the final size does not open the sheet.
+    LoadPeak,
+    /// The weights state errors above 10 % in a force, or a spot check that mostly lies outside their domain.
+    WeakWeights,
 }
 
 /// Separation of a path from its ray, in ligament widths, up to which W differs by less than 1 % (docs/results/detours).
@@ -74,13 +85,20 @@ impl Concern {
     /// The severity of the concern.
     fn severity(self) -> Severity {
         match self {
-            Self::WindowsLeavePanels | Self::PathDependence => Severity::Note,
+            Self::WindowsLeavePanels
+            | Self::PathDependence
+            | Self::OtherBranch
+            | Self::TargetMissed
+            | Self::NotModelled => Severity::Note,
             Self::WindowsOverlap
             | Self::PanelsTilt
             | Self::LigamentsOutsideDomain
             | Self::StatesOutsideDomain
             | Self::Path
-            | Self::TargetCrosses => Severity::Warning,
+            | Self::TargetCrosses
+            | Self::Weight
+            | Self::LoadPeak
+            | Self::WeakWeights => Severity::Warning,
             Self::Tearing | Self::Overstrained | Self::CutsTooClose | Self::CannotBeCut => {
                 Severity::Error
             }
@@ -88,7 +106,7 @@ impl Concern {
     }
 
     /// A warning about the whole sheet.
-    fn of_sheet(self, message: String) -> Warning {
+    pub(super) fn of_sheet(self, message: String) -> Warning {
         Warning {
             concern: self,
             severity: self.severity(),
@@ -143,19 +161,6 @@ pub(super) fn all(
     warnings.extend(overstrained(hinges));
     warnings.extend(path(deployment));
     warnings.extend(target(&scene.target));
-    warnings.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
-    warnings
-}
-
-/// All warnings about the best design of a run.
-pub(super) fn of_run(
-    scene: &Scene,
-    designed: &Designed,
-    cuts: &Result<CutLines, FabricationError>,
-    hinges: &[HingeRow],
-) -> Vec<Warning> {
-    let mut warnings = all(scene, &designed.best.deployment, cuts, hinges);
-    warnings.extend(other_branch(designed));
     warnings.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
     warnings
 }
@@ -237,8 +242,8 @@ fn tilting(scene: &Scene, hinges: &[HingeRow]) -> Option<Warning> {
         .map(|&h| critical_edge(&scene.material, hinges[h].w_lig))
         .fold(0.0, f64::max);
     let message = format!(
-        "panel edges are shorter than the critical length of {edge:.0} mm: Gamma < 1, panels tilt out \
-         of plane with their ligaments"
+        "panel edges are shorter than the critical length of {edge:.0} mm: Gamma < 1, also on a surface the weight of the \
+         panels does not hold them down against their ligaments"
     );
     about(Concern::PanelsTilt, tilting, message)
 }
@@ -310,7 +315,11 @@ fn path(deployment: &Deployment) -> Option<Warning> {
                 Status::Converged | Status::LeftDomain => return None,
                 Status::Almost => format!("residual {:.0e}", step.residual),
                 Status::LimitPoint => "a jump past a limit point".into(),
-                Status::Diverged => "no equilibrium".into(),
+                Status::Diverged => {
+                    let end = step.descent_end.map(|end| format!(": {end}"));
+                    let beyond = format!("beyond load factor {:.3}", step.load_factor);
+                    return Some(format!("no equilibrium was found {beyond}{}", end.unwrap_or_default()));
+                }
             };
             Some(format!("{what} at load factor {:.3}", step.load_factor))
         })
@@ -327,19 +336,6 @@ fn path(deployment: &Deployment) -> Option<Warning> {
             },
             _ => Concern::Path.of_sheet(message),
         }
-    })
-}
-
-/// A warning if the followed path of the best design has another loss than the search found by corrected paths.
-fn other_branch(designed: &Designed) -> Option<Warning> {
-    const SAME_BRANCH: f64 = 1e-6;
-    let (searched, followed) = (designed.searched?, designed.best.loss);
-    let differs = (searched - followed).abs() > SAME_BRANCH * followed.abs();
-    differs.then(|| {
-        Concern::Path.of_sheet(format!(
-            "the search found a loss of {searched:.6e} at this design, but its path, followed from the flat sheet, ends \
-             on another branch with {followed:.6e}: set follow_every = 1 in [solver] and restart"
-        ))
     })
 }
 

@@ -55,6 +55,10 @@ impl Round {
         self.errors
     }
 
+    pub(super) fn inside(&self) -> usize {
+        self.inside
+    }
+
     fn ended_percent(&self) -> f64 {
         100.0 * self.ended as f64 / self.rays as f64
     }
