@@ -60,7 +60,7 @@ fn a_project_without_weights_begins_with_its_campaign() {
     let steel = "--material configs/materials/s235-1.5mm.toml";
     let message = work.error(&format!("init steel {steel} --weights no.safetensors"));
     assert!(message.contains("there is no no.safetensors"), "{message}");
-    let message = work.error(&format!("init steel {steel}"));
+    let message = work.error(&format!("init steel {steel} --size 210x297"));
     assert!(
         message.contains("at most 0.10 mm for this size"),
         "{message}"
@@ -145,4 +145,43 @@ fn a_project_like_a_scene_is_similar_to_it() {
     close(&force.get(0).unwrap().clone().into(), 27.85 / 25.0, 0.02);
     work.output("design thin/scene.toml --steps 1 --force");
     assert!(work.path("thin/design/cut.dxf").exists());
+}
+
+/// Without further options, `--like` keeps thickness, material and weights of the scene.
+#[test]
+fn a_project_like_a_scene_has_its_sheet() {
+    let work = Workplace::new();
+    let like = "configs/scenes/a2-polypropylene.toml";
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    work.edit(like, &[("../../data", &data.display().to_string())]);
+    let said = work.output(&format!("init same --like {like}"));
+    assert!(said.contains("The material has weights"), "{said}");
+    let [project, shipped] = ["same/scene.toml", like].map(|file| keys(&work, file));
+    assert_eq!(project["thickness"].as_float(), Some(0.2));
+    for (section, key) in [("sheet", "panels"), ("process", "r_win")] {
+        let [new, old] = [&project, &shipped].map(|scene| &scene[section][key]);
+        let value = |item: &toml_edit::Item| {
+            let item = item.to_string();
+            let value = item.split('#').next().unwrap_or_default();
+            value.replace(".0", "").replace(' ', "")
+        };
+        assert_eq!(value(new), value(old), "{section}.{key}");
+    }
+    let weights = project["surrogate"]["weights"].as_str().unwrap();
+    assert!(weights.ends_with("polypropylene-0.8mm/weights.safetensors"), "{weights}");
+    let material = std::fs::read_to_string(work.path("same/material.toml")).unwrap();
+    assert!(material.contains("polypropylene-0.8mm"), "{material}");
+    work.output("design same/scene.toml --steps 1 --force");
+}
+
+/// `init FOLDER` alone gives a project that can be designed.
+#[test]
+fn a_project_with_all_defaults_is_designed() {
+    let work = Workplace::new();
+    work.output(&format!("init sheet --weights {}", weights()));
+    let scene = keys(&work, "sheet/scene.toml");
+    assert_eq!(scene["thickness"].as_float(), Some(0.5));
+    let size = scene["sheet"]["size"].to_string();
+    assert!(size.contains("[1050.0, 1485.0]"), "{size}");
+    work.output("design sheet/scene.toml --steps 1 --force");
 }

@@ -34,7 +34,7 @@ struct MaterialFile {
     name: String,
     /// Thickness of the sheet (mm), 0.02 to 10.
     thickness: f64,
-    /// Young's modulus (MPa), 10 to 1e6.
+    /// Young's modulus (MPa), 10 to 500 000: tungsten has 411 000.
     young: f64,
     /// Poisson's ratio, 0 to 0.499.
     poisson: f64,
@@ -140,7 +140,7 @@ impl SheetMaterial {
         };
         let limits = [
             ("thickness", self.thickness, 0.02, 10.0, "mm", 1e3),
-            ("young", self.young, 10.0, 1e6, "MPa", 1e3),
+            ("young", self.young, 10.0, 5e5, "MPa", 1e3),
             ("poisson", self.poisson, 0.0, 0.499, "", f64::NAN),
             (
                 "density_kg_m3",
@@ -243,6 +243,13 @@ mod tests {
                     ..film()
                 },
                 "did you mean 3000 MPa",
+            ),
+            (
+                SheetMaterial {
+                    young: 660e3,
+                    ..film()
+                },
+                "young = 660000 violates 10 <= young <= 500000 MPa",
             ),
             (
                 SheetMaterial {

@@ -6,7 +6,7 @@ mod similar_scene;
 
 use crate::commands::init::edited::{heading, scale, set};
 use crate::commands::init::first_scene::FirstScene;
-use crate::commands::init::similar_scene::SimilarScene;
+use crate::commands::init::similar_scene::{Like, SimilarScene};
 use crate::commands::input_file;
 use crate::ui::shell_word::shell_word;
 use crate::ui::width_by_height::width_by_height;
@@ -25,41 +25,39 @@ use toml_edit::DocumentMut;
 /// sheet. The files run as they are: with a material that has weights, `design` at once; with another, after its
 /// campaign and training. README.md in the folder lists the commands.
 /// Examples: kirigami init my-sheet --thickness 0.1 --size 210x297;
-/// kirigami init thin --like configs/scenes/pet-3x3.toml --thickness 0.1
+/// kirigami init thin --like configs/scenes/pet-3x3.toml --thickness 0.1;
+/// kirigami init longer --like configs/scenes/a4-polyester.toml --size 420x594
 #[derive(Args)]
 pub struct InitCommand {
     /// Folder to create
     #[arg(value_name = "FOLDER")]
     folder: PathBuf,
-    /// Sheet material (TOML)
-    #[arg(
-        long,
-        value_name = "FILE",
-        default_value = "configs/materials/pet-0.5mm.toml"
-    )]
-    material: PathBuf,
-    /// Thickness of the sheet (mm) [default: that of the material file]
+    /// Sheet material (TOML) [default: configs/materials/pet-0.5mm.toml; with --like that of its scene]
+    #[arg(long, value_name = "FILE")]
+    material: Option<PathBuf>,
+    /// Thickness of the sheet (mm) [default: that of the material file; with --like that of its sheet]
     #[arg(long, value_name = "MM")]
     thickness: Option<f64>,
-    /// Width and height of the sheet (mm) [default: 210x297; with --like those of its sheet, in proportion to the thickness]
+    /// Width and height of the sheet (mm) [default: 210x297 up to a thickness of 0.1 mm, above it in proportion to the
+    /// thickness; with --like those of its sheet, in proportion to the thickness]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
     size: Option<[f64; 2]>,
     /// Scene whose pattern, panels, supports, loads and target are taken, scaled to thickness and size. With weights the
     /// loads open the new sheet as far as that of the scene
     #[arg(long, value_name = "SCENE")]
     like: Option<PathBuf>,
-    /// Weights that the scene uses if they are for this material [default: data/pet-0.5mm/medium.safetensors, if it exists]
+    /// Weights that the scene uses if they are for this material [default: data/pet-0.5mm/medium.safetensors, if it exists;
+    /// with --like those of its scene]
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
 }
 
-/// The shipped weights.
+/// The material of a sheet unless another one is given, and its shipped weights.
+const MATERIAL: &str = "configs/materials/pet-0.5mm.toml";
 const WEIGHTS: &str = "data/pet-0.5mm/medium.safetensors";
 /// The shipped files that are scaled.
 const CAMPAIGN: &str = include_str!("../../configs/campaigns/pet-0.5mm.toml");
 const TRAINING: &str = include_str!("../../configs/training/medium.toml");
-/// Width and height of a sheet unless others are given (mm).
-const A4: [f64; 2] = [210.0, 297.0];
 /// Thickness of the shipped campaign's sheet (mm).
 const CAMPAIGN_THICKNESS: f64 = 0.5;
 
@@ -70,23 +68,30 @@ impl InitCommand {
             "{} exists already: name a new folder",
             self.folder.display()
         );
-        input_file::require(&self.material, "--material")?;
-        let measured = SheetMaterial::load(&self.material)?;
-        let text = material_text(&self.material)?;
+        let like = self.like.as_deref().map(Like::read).transpose()?;
+        let material = match (&self.material, &like) {
+            (Some(material), _) => material.clone(),
+            (None, Some(like)) => like.beside(&like.scene.config.material),
+            (None, None) => MATERIAL.into(),
+        };
+        input_file::require(&material, "--material")?;
+        let measured = SheetMaterial::load(&material)?;
+        let text = material_text(&material)?;
+        let alike = like.as_ref().map(|like| like.scene.material.thickness);
         let sheet = SheetMaterial {
-            thickness: self.thickness.unwrap_or(measured.thickness),
+            thickness: self.thickness.or(alike).unwrap_or(measured.thickness),
             ..measured.clone()
         };
         sheet.validate()?;
-        let weights = self.weights_of(&measured)?;
+        let weights = self.weights_of(&measured, like.as_ref())?;
         let trained = weights.is_some();
         let weights = weights.unwrap_or_else(|| "weights.safetensors".into());
-        let scene = match &self.like {
+        let scene = match like {
             Some(like) => {
-                let material = trained.then_some(&*self.material);
+                let material = trained.then_some(&*material);
                 SimilarScene::new(like, &sheet, self.size)?.text(&weights, material)?
             }
-            None => FirstScene::new(self.size.unwrap_or(A4), sheet.thickness)?.text(&weights)?,
+            None => FirstScene::new(self.size, sheet.thickness)?.text(&weights)?,
         };
         let name = self
             .folder
@@ -114,16 +119,23 @@ impl InitCommand {
     }
 
     /// The path of the weights, if they are for the material. Weights that are named must exist.
-    fn weights_of(&self, material: &SheetMaterial) -> Result<Option<PathBuf>> {
+    fn weights_of(
+        &self,
+        material: &SheetMaterial,
+        like: Option<&Like>,
+    ) -> Result<Option<PathBuf>> {
         let weights = match &self.weights {
             Some(weights) => {
                 input_file::require(weights, "--weights")?;
-                weights
+                weights.clone()
             }
-            None if Path::new(WEIGHTS).is_file() => Path::new(WEIGHTS),
-            None => return Ok(None),
+            None => match like.and_then(Like::weights) {
+                Some(weights) => weights,
+                None if Path::new(WEIGHTS).is_file() => WEIGHTS.into(),
+                None => return Ok(None),
+            },
         };
-        let trained = Surrogate::load(weights)?.card().material_hash.clone();
+        let trained = Surrogate::load(&weights)?.card().material_hash.clone();
         let fits = trained == Some(material.law_hash());
         Ok(fits.then(|| std::path::absolute(weights)).transpose()?)
     }

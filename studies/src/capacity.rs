@@ -14,6 +14,7 @@ use design::analysis::further_load::FurtherLoad;
 use design::objective::design_problem::Deployment;
 use design::objective::outline_error::outline_error;
 use design::output::drawing;
+use design::optimise::outer_loop::Ended;
 use design::pattern::design_vector::DesignVector;
 use design::scene::{HingeModel, PinConfig, Scene, SceneConfig};
 use kirigami::ui::progress::Progress;
@@ -24,8 +25,9 @@ use std::path::PathBuf;
 /// Compare the load capacity of a sheet under a pull and a transverse load, for four ways to design it
 ///
 /// The first load of the scene is constant and the second is rho times the scene's. With both loads applied
-/// together, every rho is a separate deployment from the flat sheet; the smallest rho at which the sheet is not
-/// deployed is found by bisection. With the second load applied after the first, in its own and in the opposite
+/// together, every rho is a separate deployment from the flat sheet; the interval of rho about 1, the load of the designs,
+/// at which the sheet is deployed is found by bisection. A search ends when the scene's number of steps lowers its minimum
+/// loss by less than 1 %. With the second load applied after the first, in its own and in the opposite
 /// direction, its stroke is prescribed until the sheet reaches its first limit. The capacity of the uniform sheet is
 /// also computed in other readings of the paper. Writes capacity.csv, ways.csv,
 /// capacity.md and pictures. Example: kirigami-studies capacity
@@ -46,6 +48,12 @@ pub struct CapacityStudy {
 const SPACING: f64 = 0.25;
 /// Number of bisections of the interval that contains the capacity.
 const HALVINGS: usize = 8;
+/// Relative fall of the minimum loss in a round of the scene's steps below which a search has settled.
+const SETTLED: f64 = 0.01;
+/// Maximum number of rounds.
+const ROUNDS: usize = 30;
+/// rho of the designs.
+const DESIGN_LOAD: f64 = 1.0;
 /// Opening angle at the start of the kinematic search (deg).
 const OPENING_DEG: f64 = 70.0;
 /// Maximum stroke of the second load, relative to the width of the target.
@@ -71,12 +79,22 @@ struct Point {
     last_jump: Option<f64>,
 }
 
+/// The interval of rho at which a sheet is deployed: that about the load of the designs or, if it is not deployed there, the
+/// one that begins at 0.
+struct Carried {
+    /// The minimum; 0 if the sheet is deployed down to there.
+    from: f64,
+    /// The maximum, and the deployment just above it; `None` if all tested loads above `from` are carried.
+    to: Option<(f64, Point)>,
+}
+
 /// The load capacity of the pattern of a strategy.
 struct Capacity {
     name: &'static str,
+    /// Steps after which the search had settled.
+    steps: usize,
     points: Vec<Point>,
-    /// The maximum rho that is carried, and the deployment just above it; `None` if all are carried.
-    limit: Option<(f64, Point)>,
+    carried: Carried,
     /// The second load after the first, in the direction of the scene and in the opposite direction.
     after: [FurtherLoad; 2],
 }
@@ -110,49 +128,36 @@ impl CapacityStudy {
         let _held = run_folder::hold(&self.out)?;
         let stop = interrupt::stop_flag()?;
         let strategies = strategies(&config);
-        let searches = strategies
-            .iter()
-            .filter(|strategy| strategy.search.is_some())
-            .count();
-        let bar = Progress::new(searches * config.optimiser.steps, "design steps");
-        let mut done = 0;
         let mut designs = Vec::new();
         for (i, strategy) in strategies.iter().enumerate() {
             let Some(search) = &strategy.search else {
-                designs.push(self.scene_of(&config)?.start());
+                designs.push((self.scene_of(&config)?.start(), 0));
                 continue;
             };
             let mut search = search.clone();
             search.output = std::path::absolute(&self.out)?.join(format!("runs/{i}"));
-            let designed = designed(&self.scene_of(&search)?, &mut |_| {
-                done += 1;
-                bar.show(done, None, strategy.name);
-            })?;
-            designs.push(DesignVector {
-                opening: None,
-                ..designed.design
-            });
+            designs.push(self.settled(search, strategy.name)?);
         }
-        bar.finish();
         let values = self.values();
         let bar = Progress::new(strategies.len() * values.len(), "deployments");
         let mut capacities: Vec<Capacity> = Vec::new();
-        for (i, (strategy, design)) in std::iter::zip(strategies, designs).enumerate() {
+        for (i, (strategy, (design, steps))) in std::iter::zip(strategies, designs).enumerate() {
             let mut points = Vec::new();
             for &rho in &values {
                 refuse_stop(stop)?;
                 points.push(self.point(&config, &design, rho)?);
                 bar.show(values.len() * i + points.len(), None, strategy.name);
             }
-            let limit = self.limit(&config, &design, &points)?;
-            if let Some((_, above)) = &limit {
+            let carried = self.carried(&config, &design, &points)?;
+            if let Some((_, above)) = &carried.to {
                 let (scene, deployment) = self.deploy(&config, &design, above.rho)?;
                 let svg = drawing::deployed(&scene, &deployment.sheet, deployment.final_step());
                 picture::save(&svg, &self.out.join(format!("above-{}", i + 1)), 1600)?;
             }
             capacities.push(Capacity {
                 name: strategy.name,
-                limit,
+                steps,
+                carried,
                 after: self.after(&config, &design)?,
                 points,
             });
@@ -173,8 +178,31 @@ impl CapacityStudy {
         Ok(())
     }
 
-    /// The capacity of the uniform sheet in every reading; `None` if it carries the maximum rho.
-    fn readings(&self, config: &SceneConfig) -> Result<Vec<Option<f64>>> {
+    /// The best design of a search that has settled, and its number of steps.
+    fn settled(&self, mut search: SceneConfig, name: &str) -> Result<(DesignVector, usize)> {
+        let round = search.optimiser.steps;
+        let bar = Progress::new(ROUNDS * round, "design steps, at most");
+        let mut before = f64::INFINITY;
+        for _ in 0..ROUNDS {
+            let scene = self.scene_of(&search)?;
+            let found = designed(&scene, &mut |step| bar.show(step.step, None, name))?;
+            let loss = found.best.loss;
+            if loss > (1.0 - SETTLED) * before || found.ended == Ended::Settled {
+                bar.finish();
+                let design = DesignVector {
+                    opening: None,
+                    ..found.design
+                };
+                return Ok((design, found.history.len() - 1));
+            }
+            before = loss;
+            search.optimiser.steps += round;
+        }
+        bail!("{name}: the search has not settled after {} steps", ROUNDS * round)
+    }
+
+    /// What the uniform sheet carries in every reading.
+    fn readings(&self, config: &SceneConfig) -> Result<Vec<Carried>> {
         let carried = READINGS.iter().map(|reading| {
             let mut config = config.clone();
             (reading.change)(&mut config);
@@ -182,8 +210,7 @@ impl CapacityStudy {
             let sweep = self.values().into_iter();
             let points = sweep.map(|rho| self.point(&config, &uniform, rho));
             let points = points.collect::<Result<Vec<_>>>()?;
-            let limit = self.limit(&config, &uniform, &points)?;
-            Ok(limit.map(|(carried, _)| carried))
+            self.carried(&config, &uniform, &points)
         });
         carried.collect()
     }
@@ -246,27 +273,48 @@ impl CapacityStudy {
         })
     }
 
-    /// Bisects the interval of the sweep in which the deployment first fails.
-    fn limit(
+    /// The interval in which the sheet is deployed, with its ends by bisection between the points of the sweep.
+    fn carried(
         &self,
         config: &SceneConfig,
         design: &DesignVector,
         points: &[Point],
-    ) -> Result<Option<(f64, Point)>> {
-        let Some(first) = points.iter().position(|point| point.degeneration.is_some()) else {
-            return Ok(None);
+    ) -> Result<Carried> {
+        let fails = |point: &Point| point.degeneration.is_some();
+        let at_design = (points.iter()).position(|point| point.rho == DESIGN_LOAD && !fails(point));
+        let inside = at_design.unwrap_or(0);
+        let below = points[..inside].iter().rposition(fails);
+        let from = match below {
+            Some(below) => self.limit(config, design, points[below + 1].rho, points[below].rho)?.0,
+            None => 0.0,
         };
-        let mut above = self.point(config, design, points[first].rho)?;
-        let mut carried = (above.rho - SPACING).max(0.0);
+        let above = points[inside..].iter().position(fails);
+        let to = above.map(|above| {
+            let above = inside + above;
+            self.limit(config, design, points[above.saturating_sub(1)].rho, points[above].rho)
+        });
+        let to = to.transpose()?;
+        Ok(Carried { from, to })
+    }
+
+    /// The last rho that is carried between one that is and one that is not, and the deployment just beyond it.
+    fn limit(
+        &self,
+        config: &SceneConfig,
+        design: &DesignVector,
+        mut carried: f64,
+        failed: f64,
+    ) -> Result<(f64, Point)> {
+        let mut beyond = self.point(config, design, failed)?;
         for _ in 0..HALVINGS {
-            let point = self.point(config, design, 0.5 * (carried + above.rho))?;
+            let point = self.point(config, design, 0.5 * (carried + beyond.rho))?;
             if point.degeneration.is_some() {
-                above = point;
+                beyond = point;
             } else {
                 carried = point.rho;
             }
         }
-        Ok(Some((carried, above)))
+        Ok((carried, beyond))
     }
 }
 
@@ -298,11 +346,24 @@ fn strategies(config: &SceneConfig) -> [Strategy; 4] {
     })
 }
 
+impl Carried {
+    /// The maximum of the interval; `None` if all tested loads above its minimum are carried.
+    fn maximum(&self) -> Option<f64> {
+        self.to.as_ref().map(|(maximum, _)| *maximum)
+    }
+
+    /// The ends of the interval beyond which the sheet is not deployed.
+    fn limits(&self) -> Vec<f64> {
+        let minimum = Some(self.from).filter(|from| *from > 0.0);
+        minimum.into_iter().chain(self.maximum()).collect()
+    }
+}
+
 impl Capacity {
     fn curve(&self) -> CapacityCurve<'_> {
         CapacityCurve {
             name: self.name,
-            limit: self.limit.as_ref().map(|(carried, _)| *carried),
+            limits: self.carried.limits(),
             openings: self
                 .points
                 .iter()
@@ -315,7 +376,7 @@ impl Capacity {
 
     /// The boundary error at rho = 1 (%).
     fn boundary(&self) -> Option<f64> {
-        let point = self.points.iter().find(|point| point.rho == 1.0)?;
+        let point = self.points.iter().find(|point| point.rho == DESIGN_LOAD)?;
         Some(point.boundary)
     }
 }

@@ -1,4 +1,4 @@
-//! The first scene of a project: a sheet that hangs from its middle panel at the top and is pulled at the bottom.
+//! The first scene of a project: a sheet whose middle panel at the bottom is moved away from that at the top.
 //!
 //! The shipped A4 scene, with lengths in proportion to the thickness and the panels as small as their windows allow. The
 //! target is the rectangle that the uniform sheet of rigid panels a x b fills when every hinge opens by theta; (6):
@@ -16,7 +16,8 @@ use std::path::Path;
 use toml_edit::{Array, DocumentMut};
 
 const SCENE: &str = include_str!("../../../configs/scenes/a4-polyester.toml");
-/// Thickness of the shipped scene's sheet, and the radius of its windows (mm).
+/// Width and height of the shipped scene's sheet, its thickness, and the radius of its windows (mm).
+const A4: [f64; 2] = [210.0, 297.0];
 const THICKNESS: f64 = 0.1;
 const R_WIN: f64 = 20.0;
 /// Minimum side of a panel over the radius of a window: windows of neighbouring hinges do not overlap.
@@ -33,8 +34,11 @@ pub(super) struct FirstScene {
 }
 
 impl FirstScene {
-    /// The scene of a sheet of the given size and thickness (mm); an error if it is too thick for its size.
-    pub(super) fn new(size: [f64; 2], thickness: f64) -> Result<Self> {
+    /// The scene of a sheet of the given thickness and size (mm); an error if it is too thick for its size. Without a size
+    /// it is of A4, or as much larger as it is thicker than the shipped sheet.
+    pub(super) fn new(size: Option<[f64; 2]>, thickness: f64) -> Result<Self> {
+        let larger = f64::max(thickness / THICKNESS, 1.0);
+        let size = size.unwrap_or(A4.map(|side| rounded(larger * side)));
         let panel = PANEL * R_WIN * thickness / THICKNESS;
         let panels = size.map(|side| (side / panel) as usize);
         let least = FEWEST as f64;
@@ -60,7 +64,9 @@ impl FirstScene {
         let mut scene: DocumentMut = SCENE.parse()?;
         heading(
             &mut scene,
-            "# A sheet that hangs from a clip and is pulled at the bottom, written by `kirigami init`.\n\
+            "# A sheet whose middle panel at the bottom is moved away from that at the top, written by `kirigami init`.\n\
+             # The panels are held flat, as between two clear plates: a thin sheet that nothing holds leaves its plane and\n\
+             # opens less. Its weight and friction are not modelled.\n\
              # Lengths in mm, forces in N, couples in N mm; paths are relative to this file.\n\n",
         );
         set(&mut scene["title"], "My first sheet");
@@ -159,11 +165,20 @@ mod tests {
 
     #[test]
     fn a_sheet_that_is_too_thick_is_refused_with_the_thickness_that_fits() {
-        let message = FirstScene::new([210.0, 297.0], 0.5)
+        let message = FirstScene::new(Some(A4), 0.5)
             .err()
             .unwrap()
             .to_string();
         assert!(message.contains("at most 0.10 mm"), "{message}");
-        assert_eq!(FirstScene::new([210.0, 297.0], 0.1).unwrap().panels, [3, 4]);
+        assert_eq!(FirstScene::new(Some(A4), 0.1).unwrap().panels, [3, 4]);
+    }
+
+    #[test]
+    fn without_a_size_the_sheet_is_large_enough_for_its_thickness() {
+        for (thickness, size) in [(0.05, A4), (0.1, A4), (0.5, [1050.0, 1485.0]), (1.5, [3150.0, 4455.0])] {
+            let scene = FirstScene::new(None, thickness).unwrap();
+            assert_eq!(scene.size, size);
+            assert!(scene.panels.iter().all(|&count| count >= FEWEST));
+        }
     }
 }

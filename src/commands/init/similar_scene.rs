@@ -7,13 +7,39 @@ use design::objective::target::TargetShape;
 use design::scene::run_inputs::scene_file;
 use design::scene::{HingeModel, Ratios, Scene, SceneConfig, rounded};
 use hinge::SheetMaterial;
-use std::path::{Path, absolute};
+use std::path::{Path, PathBuf, absolute};
 
 /// Maximum relative difference of the ratios of widths and of heights.
 const SAME_SHAPE: f64 = 0.01;
 /// Powers of two between which the factor of the loads is looked for, and the number of times that they are halved.
 const POWERS: [f64; 2] = [-6.0, 6.0];
 const HALVINGS: usize = 10;
+
+/// The scene that another one is like, and its file.
+pub(super) struct Like {
+    pub(super) scene: Scene,
+    file: PathBuf,
+}
+
+impl Like {
+    /// The scene of a file or of a run folder.
+    pub(super) fn read(path: &Path) -> Result<Self> {
+        let file = scene_file(path)?;
+        let scene = Scene::read(&file)?;
+        Ok(Self { scene, file })
+    }
+
+    /// A path that the scene names.
+    pub(super) fn beside(&self, path: &Path) -> PathBuf {
+        self.file.parent().unwrap_or(Path::new("")).join(path)
+    }
+
+    /// The weights of its hinge law.
+    pub(super) fn weights(&self) -> Option<PathBuf> {
+        let learned = self.scene.config.surrogate.as_ref();
+        learned.map(|learned| self.beside(&learned.weights))
+    }
+}
 
 /// A scene for a new sheet, and the scene that it is like.
 pub(super) struct SimilarScene {
@@ -22,15 +48,14 @@ pub(super) struct SimilarScene {
 }
 
 impl SimilarScene {
-    /// The scene at `path` for a sheet of `material`, in its thickness. The width and height (mm) are by default those of
+    /// The scene `like` for a sheet of `material`, in its thickness. The width and height (mm) are by default those of
     /// the original in proportion to the thickness.
     pub(super) fn new(
-        path: &Path,
+        like: Like,
         material: &SheetMaterial,
         size: Option<[f64; 2]>,
     ) -> Result<Self> {
-        let path = scene_file(path)?;
-        let original = Scene::read(&path)?;
+        let original = &like.scene;
         let mut config = original.config.clone();
         let thickness = material.thickness / original.material.thickness;
         let ratios = Ratios {
@@ -46,16 +71,17 @@ impl SimilarScene {
             TargetShape::Csv { .. } if ratios.size != 1.0 => bail!(
                 "the target of {} is a table of points, which is not scaled: scale its file and name it in the new scene, \
                  or use a target.svg",
-                path.display()
+                like.file.display()
             ),
             TargetShape::Csv { file } | TargetShape::Svg { file, .. } => {
-                *file = absolute(path.parent().unwrap_or(Path::new("")).join(&*file))?;
+                *file = absolute(like.beside(file))?;
             }
             _ => {}
         }
         config.title = format!("Like: {}", config.title);
         config.thickness = Some(material.thickness);
         config.output = "design".into();
+        let original = like.scene;
         Ok(Self { original, config })
     }
 

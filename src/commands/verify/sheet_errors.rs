@@ -115,8 +115,8 @@ impl fmt::Display for SheetErrors {
         writeln!(
             f,
             "# The deployed sheet, by finite elements\n\n\
-             Equilibrium of the {} with finite elements for all {} hinges, windows of tier {}. Every round solves the hinges along \
-             their paths, corrects the hinge law to their forces and deploys the sheet again{}.\n\n\
+             Equilibrium of the {} with finite elements for all {} hinges, windows of tier {}, panels held flat. Every round solves \
+             the hinges along their paths, corrects the hinge law to their forces and deploys the sheet again{}.\n\n\
              | round | force error | movement, mm |\n|---|---|---|",
             self.design,
             self.hinges.len(),
@@ -139,13 +139,17 @@ impl fmt::Display for SheetErrors {
         }
         let ended = match self.ended.warning() {
             None => "The panels stay where they are within".into(),
-            Some(warning) => format!("NOT BALANCED: {warning}. The limit is"),
+            Some(warning) => format!(
+                "NOT BALANCED: {warning}. The equilibrium by finite elements is not known within {:.1} mm, the movement of the \
+                 last round, and neither are the errors below. The limit is",
+                self.rounds.last().map_or(f64::NAN, |round| round.movement)
+            ),
         };
         writeln!(
             f,
             "\nForce error: finite elements against the law of the round, root mean square over all hinges. Movement: of the \
              panel corner that moves furthest. {ended} {:.3} mm ({BALANCED:.0e} of the sheet).\n\n\
-             | error of the hinge law at full load | root mean square | maximum |\n|---|---|---|\n\
+             | error of the hinge law at full load, panels held flat | root mean square | maximum |\n|---|---|---|\n\
              | deployed corners | {rms:.3} mm, {:.3} % of the sheet | {maximum:.3} mm, {:.3} % |\n\
              | rotation of the hinges | {turned:.3} deg | {most_turned:.3} deg |\n",
             BALANCED * self.size,

@@ -1,14 +1,14 @@
 //! The tables of `kirigami-studies capacity`.
 
 use super::readings::READINGS;
-use super::{Capacity, PAPER};
+use super::{Capacity, Carried, PAPER};
 use anyhow::{Context, Result};
 use std::fmt::Write;
 use std::path::Path;
 
 pub(super) fn page(
     capacities: &[Capacity],
-    readings: &[Option<f64>],
+    readings: &[Carried],
     scene: &Path,
     to: f64,
 ) -> Result<String> {
@@ -16,14 +16,15 @@ pub(super) fn page(
         "# Load capacity\n\n\
         The sheet of `{}`: its first load is constant, its second is rho times the scene's. With both loads applied \
         together, every rho is a separate deployment, and a sheet counts as deployed if every void is open at full \
-        load. `kirigami-studies capacity`.\n\n\
+        load. The capacity is the interval of rho about 1, the load of the designs, at which it is. A search ends when a \
+        hundred steps lower its minimum loss by less than 1 %. `kirigami-studies capacity`.\n\n\
         ![opening and boundary error against rho, and rho against the stroke of the load](capacity.png)\n\n\
-        | pattern | maximum rho | paper | failure just above | last jump before full load, load factor | boundary rms at rho = 1, % |\n\
-        |---|---|---|---|---|---|\n",
+        | pattern | search steps | minimum rho | maximum rho | paper | failure just above | last jump before full load, load factor | boundary rms at rho = 1, % |\n\
+        |---|---|---|---|---|---|---|---|\n",
         scene.display()
     );
     for (capacity, paper) in capacities.iter().zip(PAPER) {
-        let [carries, above, jump] = match &capacity.limit {
+        let [carries, above, jump] = match &capacity.carried.to {
             None => [format!("over {to}"), "-".into(), "-".into()],
             Some((carried, above)) => [
                 format!("{carried:.3}"),
@@ -36,8 +37,8 @@ pub(super) fn page(
         let boundary = capacity.boundary().context("the sweep has no rho = 1")?;
         writeln!(
             text,
-            "| {} | {carries} | {paper:.2} | {above} | {jump} | {boundary:.3} |",
-            capacity.name
+            "| {} | {} | {:.3} | {carries} | {paper:.2} | {above} | {jump} | {boundary:.3} |",
+            capacity.name, capacity.steps, capacity.carried.from
         )?;
     }
     write!(
@@ -57,21 +58,20 @@ pub(super) fn page(
         text += &gains(kinematic, shape, full)?;
     }
     text += "\nThe uniform sheet in other readings of the paper (1.66), both loads together:\n\n\
-        | reading | maximum rho |\n|---|---|\n";
+        | reading | minimum rho | maximum rho |\n|---|---|---|\n";
     for (reading, carried) in READINGS.iter().zip(readings) {
-        let carried = carried.map_or(format!("over {to}"), |rho| format!("{rho:.2}"));
-        writeln!(text, "| {} | {carried} |", reading.name)?;
+        let maximum = carried.maximum();
+        let maximum = maximum.map_or(format!("over {to}"), |rho| format!("{rho:.2}"));
+        writeln!(text, "| {} | {:.2} | {maximum} |", reading.name, carried.from)?;
     }
     Ok(text)
 }
 
 /// The ratio of the capacity with the objectives on the hinges to that of the two patterns without them.
 fn gains(kinematic: &Capacity, shape: &Capacity, full: &Capacity) -> Result<String> {
-    type Carried = fn(&Capacity) -> Option<f64>;
-    let ways: [(_, Carried); 3] = [
-        ("both loads together", |it| {
-            it.limit.as_ref().map(|limit| limit.0)
-        }),
+    type Maximum = fn(&Capacity) -> Option<f64>;
+    let ways: [(_, Maximum); 3] = [
+        ("both loads together", |it| it.carried.maximum()),
         ("the pull first, then in the direction of the scene", |it| {
             it.after[0].limit()
         }),

@@ -7,8 +7,8 @@ use plotters::prelude::*;
 /// A pattern under a transverse load of rho times its pull.
 pub struct CapacityCurve<'a> {
     pub name: &'a str,
-    /// The maximum rho that is carried.
-    pub limit: Option<f64>,
+    /// The ends of the interval of rho that is carried.
+    pub limits: Vec<f64>,
     /// (rho, minimum opening in degrees)
     pub openings: Vec<(f64, f64)>,
     /// (rho, boundary error in % of the target's width)
@@ -19,7 +19,7 @@ pub struct CapacityCurve<'a> {
 
 const RHO: &str = "transverse load / pull, rho";
 
-/// Top: both loads together, the minimum opening of a hinge and the boundary error, with a dashed line where a
+/// Top: both loads together, the minimum opening of a hinge and the boundary error, with dashed lines where a
 /// pattern fails. Bottom: after the pull, rho against the stroke until the first limit.
 pub fn capacity(curves: &[CapacityCurve]) -> Result<String> {
     drawn((1100, 860), |root| {
@@ -109,7 +109,7 @@ fn panel(
             ))?
             .label(curve.name)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
-        if let Some(limit) = curve.limit.filter(|_| swept) {
+        for limit in curve.limits.iter().copied().filter(|_| swept) {
             let upright = [(limit, up.start), (limit, up.end)];
             let style = colour.mix(0.6).stroke_width(1);
             chart.draw_series(DashedLineSeries::new(upright, 4, 4, style))?;

@@ -72,7 +72,7 @@ fn markdown(rows: &[Row], weights: &Surrogate) -> Result<String> {
     let card = weights.card();
     let mut text = format!(
         "# Cost and error of the sheet's choices\n\n\
-         The scenes `demo` and `linear-7x7`, from a random start and without the damage term. The \
+         The scenes `a4-polyester` and `linear-7x7`, from a random start and without the damage term. The \
          learned hinges are of the material {}, window tier {}, database {:.12}, error of W {:.1} % \
          (root mean square, test rows). Differences are relative to the first row of each table: of the panel \
          corners (root mean square after the best rigid motion, relative to the size of a panel), of the \

@@ -36,10 +36,8 @@ impl fmt::Display for Report {
             writeln!(f, "{name:<width$}  {value}")?;
         }
         writeln!(f, "\n{}\n{LEGEND}", self.hinge_table())?;
-        if self.warnings.is_empty() {
-            return writeln!(f, "no warnings");
-        }
-        writeln!(f, "warnings")?;
+        let warned = (self.warnings.iter()).any(|it| it.severity > Severity::Note);
+        writeln!(f, "{}", if warned { "warnings" } else { "no warnings" })?;
         (self.warnings.iter()).try_for_each(|warning| writeln!(f, "- {warning}"))
     }
 }
