@@ -168,7 +168,10 @@ fn a_project_like_a_scene_has_its_sheet() {
         assert_eq!(value(new), value(old), "{section}.{key}");
     }
     let weights = project["surrogate"]["weights"].as_str().unwrap();
-    assert!(weights.ends_with("polypropylene-0.8mm/weights.safetensors"), "{weights}");
+    assert!(
+        weights.ends_with("polypropylene-0.8mm/weights.safetensors"),
+        "{weights}"
+    );
     let material = std::fs::read_to_string(work.path("same/material.toml")).unwrap();
     assert!(material.contains("polypropylene-0.8mm"), "{material}");
     work.output("design same/scene.toml --steps 1 --force");

@@ -119,11 +119,7 @@ impl InitCommand {
     }
 
     /// The path of the weights, if they are for the material. Weights that are named must exist.
-    fn weights_of(
-        &self,
-        material: &SheetMaterial,
-        like: Option<&Like>,
-    ) -> Result<Option<PathBuf>> {
+    fn weights_of(&self, material: &SheetMaterial, like: Option<&Like>) -> Result<Option<PathBuf>> {
         let weights = match &self.weights {
             Some(weights) => {
                 input_file::require(weights, "--weights")?;

@@ -13,8 +13,8 @@ use design::analysis::degeneration::{Degeneration, last_jump};
 use design::analysis::further_load::FurtherLoad;
 use design::objective::design_problem::Deployment;
 use design::objective::outline_error::outline_error;
-use design::output::drawing;
 use design::optimise::outer_loop::Ended;
+use design::output::drawing;
 use design::pattern::design_vector::DesignVector;
 use design::scene::{HingeModel, PinConfig, Scene, SceneConfig};
 use kirigami::ui::progress::Progress;
@@ -198,7 +198,10 @@ impl CapacityStudy {
             before = loss;
             search.optimiser.steps += round;
         }
-        bail!("{name}: the search has not settled after {} steps", ROUNDS * round)
+        bail!(
+            "{name}: the search has not settled after {} steps",
+            ROUNDS * round
+        )
     }
 
     /// What the uniform sheet carries in every reading.
@@ -285,13 +288,21 @@ impl CapacityStudy {
         let inside = at_design.unwrap_or(0);
         let below = points[..inside].iter().rposition(fails);
         let from = match below {
-            Some(below) => self.limit(config, design, points[below + 1].rho, points[below].rho)?.0,
+            Some(below) => {
+                self.limit(config, design, points[below + 1].rho, points[below].rho)?
+                    .0
+            }
             None => 0.0,
         };
         let above = points[inside..].iter().position(fails);
         let to = above.map(|above| {
             let above = inside + above;
-            self.limit(config, design, points[above.saturating_sub(1)].rho, points[above].rho)
+            self.limit(
+                config,
+                design,
+                points[above.saturating_sub(1)].rho,
+                points[above].rho,
+            )
         });
         let to = to.transpose()?;
         Ok(Carried { from, to })

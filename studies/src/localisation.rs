@@ -1,4 +1,4 @@
-//! `kirigami-studies localisation`: the sheets whose panels stay flat; section 5.1, Table 2.
+//! `kirigami-studies localisation`: weight of a panel against the moment of its ligaments; section 5.1, Table 2.
 
 use anyhow::Result;
 use clap::Args;
@@ -45,9 +45,10 @@ impl LocalisationStudy {
         let _held = run_folder::hold(&self.out)?;
         let mut text = format!(
             "# Range of validity of the model\n\n\
-             Panels of {} mm stay coplanar and buckling stays in their ligaments, {} mm wide, if the moment of \
-             gravity on a panel exceeds that of its folded ligament: Gamma = (L/L*)^3 > 1, (21)-(22). The report of a \
-             design lists Gamma for each hinge. The last column is L* of Table 2 of the paper, for 18 mm. \
+             Panels of {} mm with ligaments of {} mm, in a sheet that lies on a surface: Gamma = (L/L*)^3, (21)-(22), is \
+             the moment of gravity on a panel over that of its folded ligament. For Gamma > 1 the paper expects coplanar \
+             panels; finite elements of whole sheets show panels that lift off a table also where Gamma is above 10. The \
+             report of a design lists Gamma for each hinge. The last column is L* of Table 2 of the paper, for 18 mm. \
              `kirigami-studies localisation`.\n\n\
              | material | E, GPa | density, kg/m^3 | t, mm | L*, cm | Gamma | paper's L*, cm |\n|---|---|---|---|---|---|---|\n",
             self.edge, self.w_lig

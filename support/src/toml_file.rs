@@ -151,17 +151,36 @@ mod tests {
             ("range = [0.5, 1.0]", "range = [0,5, 1]", 2, "of 2 has 3"),
             ("[3, 4], ", "[3, 4, 4], ", 3, "of 2 has 3"),
             ("centre = [1, 2]", "centre = [1, 2, 3]", 5, "of 2 has 3"),
-            ("[shape.circle]\ncentre = [1, 2]", "shape.line = [1, 2]", 4, "of 1 has 2"),
+            (
+                "[shape.circle]\ncentre = [1, 2]",
+                "shape.line = [1, 2]",
+                4,
+                "of 1 has 2",
+            ),
         ] {
             let text = match to.starts_with("shape") {
-                true => format!("{}shape.line = [1, 2]\n", &whole[..whole.find("[shape").unwrap()]),
+                true => format!(
+                    "{}shape.line = [1, 2]\n",
+                    &whole[..whole.find("[shape").unwrap()]
+                ),
                 false => whole.replace(from, to),
             };
             let message = read(&text).unwrap_err().to_string();
-            assert!(message.starts_with(&format!("scene.toml:{line}: ")), "{message}");
-            assert!(message.contains(counts) && message.contains("40.5"), "{message}");
+            assert!(
+                message.starts_with(&format!("scene.toml:{line}: ")),
+                "{message}"
+            );
+            assert!(
+                message.contains(counts) && message.contains("40.5"),
+                "{message}"
+            );
         }
-        assert!(read("size = [1]").unwrap_err().to_string().contains("length 1"));
+        assert!(
+            read("size = [1]")
+                .unwrap_err()
+                .to_string()
+                .contains("length 1")
+        );
     }
 
     #[test]

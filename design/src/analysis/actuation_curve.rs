@@ -62,7 +62,8 @@ impl ActuationCurve {
         for (i, to) in ends.into_iter().enumerate() {
             let fine = i + 1 == top || i == top || Some(i) == reached;
             let parts = if fine { READINGS } else { 1 };
-            readings.extend((1..parts).map(|k| from + (to - from) * f64::from(k) / f64::from(parts)));
+            readings
+                .extend((1..parts).map(|k| from + (to - from) * f64::from(k) / f64::from(parts)));
             readings.push(to);
             from = to;
         }
@@ -119,7 +120,9 @@ impl ActuationCurve {
     fn forwards(&self) -> Vec<[f64; 2]> {
         let sense = self.sense();
         let points = self.points.iter();
-        points.map(|point| point.map(|value| sense * value)).collect()
+        points
+            .map(|point| point.map(|value| sense * value))
+            .collect()
     }
 
     fn sense(&self) -> f64 {
@@ -239,7 +242,10 @@ mod tests {
         for sense in [1.0, -1.0] {
             let peak = curve(|x| 10.0 * x.sin(), sense * 0.8 * PI).peak();
             assert!((peak.load - sense * 10.0).abs() < 1e-4, "{peak:?}");
-            assert!((peak.displacement - sense * 0.5 * PI).abs() < 1e-3, "{peak:?}");
+            assert!(
+                (peak.displacement - sense * 0.5 * PI).abs() < 1e-3,
+                "{peak:?}"
+            );
             // sin 0.8 pi = sin 0.2 pi
             let reached = peak.dead_load_reaches.unwrap();
             assert!((reached - sense * 0.2 * PI).abs() < 1e-3, "{peak:?}");
@@ -256,7 +262,12 @@ mod tests {
         };
         assert_eq!(peak, expected);
         // Nor does a dead load stop at a maximum below that of the end.
-        assert_eq!(curve(|x| x + 0.9 * (3.0 * x).sin(), 6.9).peak().dead_load_reaches, None);
+        assert_eq!(
+            curve(|x| x + 0.9 * (3.0 * x).sin(), 6.9)
+                .peak()
+                .dead_load_reaches,
+            None
+        );
     }
 
     #[test]

@@ -162,15 +162,7 @@ impl Follower<'_> {
         let works = self.branch.solver.works(&configuration);
         let state = self.branch.potential(at).state(configuration);
         let state = state.expect("this state was computed before");
-        LoadStep::new(
-            self.branch.sheet,
-            state,
-            works,
-            None,
-            status,
-            effort,
-            jumps,
-        )
+        LoadStep::new(self.branch.sheet, state, works, None, status, effort, jumps)
     }
 
     /// The equilibrium at `to` on the path.

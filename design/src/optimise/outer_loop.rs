@@ -194,7 +194,11 @@ impl SearchState {
     /// Whether there is a path from which the next one can be corrected: that of the anchor, which is computed again
     /// after a pause of the search. It is forgotten if the next path must be followed.
     fn knows_a_path(&mut self, problem: &DesignProblem) -> bool {
-        let recent = self.history.iter().rev().take(self.follow_every(problem) - 1);
+        let recent = self
+            .history
+            .iter()
+            .rev()
+            .take(self.follow_every(problem) - 1);
         match &self.anchor {
             Some(anchor) if recent.clone().any(|record| record.followed) => {
                 if self.known.is_none()

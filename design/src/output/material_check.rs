@@ -233,10 +233,10 @@ fn panels(intended: &Intended, ligaments: &[LigamentEstimate]) -> Option<Verdict
     );
     Some(match gamma < 1.0 {
         true => warning(format!(
-            "{at}: below 1 the panels of a horizontal sheet tilt out of plane with their ligaments"
+            "{at}, for a sheet that lies on a surface: below 1 its weight does not hold the panels down"
         )),
         false => note(format!(
-            "{at}: above 1 gravity keeps the panels of a horizontal sheet in plane"
+            "{at}, for a sheet that lies on a surface: its weight presses the panels down, which need not keep them flat"
         )),
     })
 }

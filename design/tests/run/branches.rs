@@ -27,7 +27,12 @@ fn full_load_is_reached_after_long_descents() {
     assert_eq!(files.len(), 16);
     for file in files {
         let scene = Scene::read(&file).unwrap();
-        let path = scene.problem().unwrap().deploy(&scene.start()).unwrap().path;
+        let path = scene
+            .problem()
+            .unwrap()
+            .deploy(&scene.start())
+            .unwrap()
+            .path;
         assert_eq!(path.len(), scene.config.load_steps, "{}", file.display());
         for step in path {
             assert_ne!(step.status, Status::Diverged, "{}", file.display());
@@ -41,7 +46,10 @@ fn full_load_is_reached_after_long_descents() {
 #[test]
 fn a_descent_that_is_cut_short_names_the_key() {
     let files = sheets_that_jump();
-    let file = files.iter().find(|file| file.ends_with("1235.toml")).unwrap();
+    let file = files
+        .iter()
+        .find(|file| file.ends_with("1235.toml"))
+        .unwrap();
     let mut config: SceneConfig = toml_file::read(file).unwrap();
     config.solver.max_iterations = 60;
     let scene = Scene::new(config, file).unwrap();
@@ -74,7 +82,10 @@ fn a_search_keeps_a_design_whose_path_was_followed() {
         let scene = circle(folder.path(), method, seed, 10);
         let designed = run(&scene, None).unwrap();
         assert!(designed.contradicted, "{method} {seed}");
-        assert!(designed.best.loss < 0.5 * designed.start.loss, "{method} {seed}");
+        assert!(
+            designed.best.loss < 0.5 * designed.start.loss,
+            "{method} {seed}"
+        );
         // The design in the run folder has the loss that the report states, and no step found a lower one.
         let stored = design_of_run(&scene, false).unwrap().unwrap();
         let problem = scene.problem().unwrap();
@@ -87,8 +98,14 @@ fn a_search_keeps_a_design_whose_path_was_followed() {
             assert!(designed.history.last().unwrap().followed);
         }
         let report = write_results(&scene, &designed, false).unwrap();
-        let notes = report.warnings.iter().filter(|it| it.concern == Concern::OtherBranch);
-        assert_eq!(notes.map(|it| it.severity).collect::<Vec<_>>(), [Severity::Note]);
+        let notes = report
+            .warnings
+            .iter()
+            .filter(|it| it.concern == Concern::OtherBranch);
+        assert_eq!(
+            notes.map(|it| it.severity).collect::<Vec<_>>(),
+            [Severity::Note]
+        );
     }
 }
 
@@ -102,7 +119,10 @@ fn every_path_is_followed_after_a_contradiction() {
     assert!(history.len() > 20 && history.iter().all(|step| step.followed));
     assert_eq!(designed.history.len(), 41);
     let steps = designed.history.iter().map(|step| step.step);
-    assert!(steps.eq(0..41), "the discarded steps are not in the history");
+    assert!(
+        steps.eq(0..41),
+        "the discarded steps are not in the history"
+    );
 }
 
 #[test]
@@ -112,7 +132,12 @@ fn a_search_without_a_contradiction_is_not_noted() {
     let designed = run(&scene, None).unwrap();
     assert!(!designed.contradicted);
     let report = write_results(&scene, &designed, false).unwrap();
-    assert!(report.warnings.iter().all(|it| it.concern != Concern::OtherBranch));
+    assert!(
+        report
+            .warnings
+            .iter()
+            .all(|it| it.concern != Concern::OtherBranch)
+    );
 }
 
 /// A search that is stopped between two followed paths returns the best design so far, not the last followed one.

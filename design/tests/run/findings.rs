@@ -37,7 +37,14 @@ fn a_learned_law_states_what_is_not_modelled() {
         panic!("{:?}", heavy.warnings);
     };
     assert_eq!(note.severity, Severity::Note);
-    for part in ["held flat", "leave the plane", "9.82 N", "491 % of the load", "2.95 N", "147 %"] {
+    for part in [
+        "held flat",
+        "leave the plane",
+        "9.82 N",
+        "491 % of the load",
+        "2.95 N",
+        "147 %",
+    ] {
         assert!(note.message.contains(part), "{part}: {}", note.message);
     }
     let [warning] = found(&heavy, Concern::Weight)[..] else {
@@ -45,7 +52,9 @@ fn a_learned_law_states_what_is_not_modelled() {
     };
     assert_eq!(warning.severity, Severity::Warning);
     let text = heavy.to_string();
-    assert!(text.contains("panels held flat") && text.contains("for a sheet that lies on a surface"));
+    assert!(
+        text.contains("panels held flat") && text.contains("for a sheet that lies on a surface")
+    );
     assert!(!text.contains("stay flat"), "{text}");
 
     // Above a tenth of the load the weight is a warning.
@@ -96,16 +105,26 @@ fn the_largest_load_of_a_driven_path_is_stated() {
     let by_load = |one: &&[f64; 2], other: &&[f64; 2]| one[1].total_cmp(&other[1]);
     let [at, largest] = points.iter().max_by(by_load).copied().unwrap();
     let step = reached.displacement / 1000.0;
-    assert!((peak.load / largest - 1.0).abs() < 1e-3, "{peak:?} {largest}");
+    assert!(
+        (peak.load / largest - 1.0).abs() < 1e-3,
+        "{peak:?} {largest}"
+    );
     assert!((peak.displacement - at).abs() < 2.0 * step, "{peak:?} {at}");
-    let first = points.iter().find(|point| point[1] >= reached.load).unwrap();
+    let first = points
+        .iter()
+        .find(|point| point[1] >= reached.load)
+        .unwrap();
     assert!((first[0] - carried).abs() < step, "{peak:?} {first:?}");
 
     let [warning] = found(&report, Concern::LoadPeak)[..] else {
         panic!("{:?}", report.warnings);
     };
     assert_eq!(warning.severity, Severity::Warning);
-    assert!(warning.message.contains("a dead load of"), "{}", warning.message);
+    assert!(
+        warning.message.contains("a dead load of"),
+        "{}",
+        warning.message
+    );
     assert!(report.to_string().contains("largest load"));
 }
 
@@ -116,10 +135,18 @@ fn weights_with_large_errors_are_a_warning() {
     let [warning] = found(&steel, Concern::WeakWeights)[..] else {
         panic!("{:?}", steel.warnings);
     };
-    assert!(warning.message.contains("F_s is off by 25.3 %"), "{}", warning.message);
+    assert!(
+        warning.message.contains("F_s is off by 25.3 %"),
+        "{}",
+        warning.message
+    );
     let (_, film) = unsearched(folder.path(), "a4-polyester");
     assert!(found(&film, Concern::WeakWeights).is_empty());
-    assert!(found(&film, Concern::LoadPeak).is_empty(), "{:?}", film.warnings);
+    assert!(
+        found(&film, Concern::LoadPeak).is_empty(),
+        "{:?}",
+        film.warnings
+    );
     assert_eq!(found(&film, Concern::Weight).len(), 1, "16 % of the load");
 }
 
@@ -130,13 +157,18 @@ fn a_spot_check_outside_the_domain_is_a_warning() {
         let quantities = ["energy", "f_a", "f_s", "m_theta", "damage", "damage_peak"];
         let errors: Vec<String> = quantities.map(|name| format!("\"{name}\": {zero}")).into();
         let errors = errors.join(", ");
-        format!("\"spot_check\": {{\"rows\": 60, {errors}}}, \"spot_check_inside\": {inside}, \"test_errors\"")
+        format!(
+            "\"spot_check\": {{\"rows\": 60, {errors}}}, \"spot_check_inside\": {inside}, \"test_errors\""
+        )
     };
     for (inside, expected) in [(29, 1), (30, 0)] {
         let with = check(inside);
         let report = report(&[("\"test_errors\"", &with)], &[]);
         let outside = found(&report, Concern::WeakWeights);
-        let outside: Vec<_> = outside.iter().filter(|it| it.message.contains("of 60 states")).collect();
+        let outside: Vec<_> = outside
+            .iter()
+            .filter(|it| it.message.contains("of 60 states"))
+            .collect();
         assert_eq!(outside.len(), expected, "{:?}", report.warnings);
     }
 }

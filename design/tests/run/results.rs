@@ -29,7 +29,11 @@ fn hinges(report: &Report, concern: Concern) -> Option<usize> {
 fn a_sound_design_writes_all_files_and_no_warning() {
     // The design of this seed opens without a jump. Its outline is 98 mm from the circle.
     let (folder, report) = report(&[("seed = 3", "seed = 9")]);
-    let found: Vec<_> = report.warnings.iter().map(|it| (it.concern, it.severity)).collect();
+    let found: Vec<_> = report
+        .warnings
+        .iter()
+        .map(|it| (it.concern, it.severity))
+        .collect();
     assert_eq!(found, [(Concern::TargetMissed, Severity::Note)]);
     assert_eq!((report.steps, report.hinges.len()), (25, 12));
     assert!(report.after.loss < report.before.loss);

@@ -165,17 +165,19 @@ mod tests {
 
     #[test]
     fn a_sheet_that_is_too_thick_is_refused_with_the_thickness_that_fits() {
-        let message = FirstScene::new(Some(A4), 0.5)
-            .err()
-            .unwrap()
-            .to_string();
+        let message = FirstScene::new(Some(A4), 0.5).err().unwrap().to_string();
         assert!(message.contains("at most 0.10 mm"), "{message}");
         assert_eq!(FirstScene::new(Some(A4), 0.1).unwrap().panels, [3, 4]);
     }
 
     #[test]
     fn without_a_size_the_sheet_is_large_enough_for_its_thickness() {
-        for (thickness, size) in [(0.05, A4), (0.1, A4), (0.5, [1050.0, 1485.0]), (1.5, [3150.0, 4455.0])] {
+        for (thickness, size) in [
+            (0.05, A4),
+            (0.1, A4),
+            (0.5, [1050.0, 1485.0]),
+            (1.5, [3150.0, 4455.0]),
+        ] {
             let scene = FirstScene::new(None, thickness).unwrap();
             assert_eq!(scene.size, size);
             assert!(scene.panels.iter().all(|&count| count >= FEWEST));

@@ -62,7 +62,11 @@ pub(super) fn page(
     for (reading, carried) in READINGS.iter().zip(readings) {
         let maximum = carried.maximum();
         let maximum = maximum.map_or(format!("over {to}"), |rho| format!("{rho:.2}"));
-        writeln!(text, "| {} | {:.2} | {maximum} |", reading.name, carried.from)?;
+        writeln!(
+            text,
+            "| {} | {:.2} | {maximum} |",
+            reading.name, carried.from
+        )?;
     }
     Ok(text)
 }

@@ -83,7 +83,10 @@ mod tests {
         );
         // The bell: 161 kg and 28 N.
         let bell = SelfWeight::new(161.0, Some(&reached(28.0, "N"))).beside_load();
-        assert!(bell.contains("56 times the load") && bell.contains("17 times"), "{bell}");
+        assert!(
+            bell.contains("56 times the load") && bell.contains("17 times"),
+            "{bell}"
+        );
     }
 
     #[test]

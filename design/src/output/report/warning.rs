@@ -318,7 +318,10 @@ fn path(deployment: &Deployment) -> Option<Warning> {
                 Status::Diverged => {
                     let end = step.descent_end.map(|end| format!(": {end}"));
                     let beyond = format!("beyond load factor {:.3}", step.load_factor);
-                    return Some(format!("no equilibrium was found {beyond}{}", end.unwrap_or_default()));
+                    return Some(format!(
+                        "no equilibrium was found {beyond}{}",
+                        end.unwrap_or_default()
+                    ));
                 }
             };
             Some(format!("{what} at load factor {:.3}", step.load_factor))
