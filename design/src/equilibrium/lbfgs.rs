@@ -6,8 +6,8 @@
 
 use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::lbfgs_memory::Memory;
-use crate::equilibrium::load_step::Effort;
-use crate::equilibrium::newton::{DescentEnd, Failure, Minimum};
+use crate::equilibrium::load_step::{DescentEnd, Effort};
+use crate::equilibrium::newton::{Failure, Minimum};
 use crate::equilibrium::potential::{Potential, State, moved};
 use crate::equilibrium::settings::SolverSettings;
 use crate::hinge_law::Order;

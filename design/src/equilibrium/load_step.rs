@@ -2,7 +2,6 @@
 
 use crate::equilibrium::displacement_control::{HeldFactor, Stroke, dot};
 use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::newton::DescentEnd;
 use crate::equilibrium::potential::State;
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::{HingeDamage, HingeEnergy, Order};
@@ -30,6 +29,32 @@ pub enum Status {
     LimitPoint,
     /// No equilibrium was found: this is the last one found before, and the path ends.
     Diverged,
+}
+
+/// Why a descent in energy ended without a minimum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DescentEnd {
+    /// The maximum number of iterations was made while the energy still decreased.
+    Iterations,
+    /// No further step lowers the energy, but the residual is above the loose tolerance.
+    Stagnated,
+    /// The energy or its gradient is not a finite number.
+    NotFinite,
+}
+
+impl fmt::Display for DescentEnd {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Iterations => {
+                "the energy still decreases at the last iteration: raise max_iterations in [solver]"
+            }
+            Self::Stagnated => {
+                "no step lowers the energy further, but the forces are not balanced to solver.loose_tolerance"
+            }
+            Self::NotFinite => "the energy is not a finite number",
+        })
+    }
 }
 
 /// What a part of the path cost.

@@ -10,13 +10,11 @@
 //! (Magisano, Leonetti and Garcea 2017), until the state is stationary or no descent step is found.
 
 use crate::equilibrium::displacement_control::{HeldFactor, dot};
-use crate::equilibrium::load_step::Effort;
+use crate::equilibrium::load_step::{DescentEnd, Effort};
 use crate::equilibrium::potential::{Potential, State, moved};
 use crate::equilibrium::settings::SolverSettings;
 use crate::sheet::kinematics::Configuration;
 use crate::sheet::panel_vectors::spread;
-use serde::Serialize;
-use std::fmt;
 
 /// Maximum length of a step: rotations in rad, hinge translations in panel sizes.
 const LONGEST_STEP: f64 = 0.5;
@@ -49,32 +47,6 @@ pub(crate) struct Minimum {
 pub(crate) struct Failure {
     pub residual: f64,
     pub end: DescentEnd,
-}
-
-/// Why a descent in energy ended without a minimum.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum DescentEnd {
-    /// The maximum number of iterations was made while the energy still decreased.
-    Iterations,
-    /// No further step lowers the energy, but the residual is above the loose tolerance.
-    Stagnated,
-    /// The energy or its gradient is not a finite number.
-    NotFinite,
-}
-
-impl fmt::Display for DescentEnd {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Self::Iterations => {
-                "the energy still decreases after solver.max_iterations: raise that"
-            }
-            Self::Stagnated => {
-                "no step lowers the energy further, but the forces are not balanced to solver.loose_tolerance"
-            }
-            Self::NotFinite => "the energy is not a finite number",
-        })
-    }
 }
 
 impl Failure {

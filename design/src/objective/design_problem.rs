@@ -3,9 +3,8 @@
 
 use crate::equilibrium::adjoint::{SingularTangent, adjoint};
 use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::{LoadStep, Status};
+use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status};
 use crate::equilibrium::nearby_path::KnownPath;
-use crate::equilibrium::newton::DescentEnd;
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
 use crate::geometry::plane::add;
 use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, Order, PreparedLaw};

@@ -340,7 +340,7 @@ mod tests {
         assert!(says(
             &check(|_| {}, small),
             Severity::Warning,
-            "tilt out of plane"
+            "does not hold the panels down"
         ));
         let narrow = Intended {
             w_lig: [3.0, 30.0],

@@ -57,7 +57,7 @@ fn a_descent_that_is_cut_short_names_the_key() {
     let error = deployment.at_full_load().unwrap_err();
     assert!(matches!(error, DesignError::NoEquilibrium { .. }));
     let message = error.to_string();
-    assert!(message.contains("solver.max_iterations"), "{message}");
+    assert!(message.contains("max_iterations in [solver]"), "{message}");
     assert!(!message.contains("ligaments"), "{message}");
 }
 

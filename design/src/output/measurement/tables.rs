@@ -174,6 +174,10 @@ impl fmt::Display for MeasurementReport {
         writeln!(f, "{}: measured against predicted\n", self.title)?;
         writeln!(
             f,
+            "predicted with panels held flat, without weight and friction"
+        )?;
+        writeln!(
+            f,
             "{} points, {used} used; sheet of {:.1} mm",
             self.points, self.sheet_size
         )?;

@@ -120,7 +120,7 @@ impl FactSheet {
             material: material.name.clone(),
             thickness: material.thickness,
             mass_kg,
-            self_weight: SelfWeight::new(mass_kg, reached.as_ref()),
+            self_weight: SelfWeight::new(mass_kg, reached.as_ref().and_then(Reached::force)),
             panels: scene.config.sheet.panels,
             flat_size: extent(flat.iter().copied()),
             deployed_size: extent(corners.into_iter().flatten()),
@@ -214,6 +214,11 @@ impl Reached {
             peak: resolved.map(|curve| curve.peak()),
             stiffness: by_loads,
         })
+    }
+
+    /// The load, if it is a force (N).
+    fn force(&self) -> Option<f64> {
+        (self.units[1] == "N").then_some(self.load)
     }
 
     fn rows(&self) -> Vec<(&'static str, String)> {

@@ -3,7 +3,6 @@
 
 use crate::analysis::localisation::GRAVITY;
 use crate::output::report::columns::rounded;
-use crate::output::report::fact_sheet::Reached;
 use serde::Serialize;
 
 /// Coefficient of friction between a sheet and a floor or a table.
@@ -21,14 +20,14 @@ pub struct SelfWeight {
 }
 
 impl SelfWeight {
-    pub(super) fn new(mass_kg: f64, reached: Option<&Reached>) -> Self {
+    /// Of a sheet with the given mass, beside a force (N) if there is one.
+    pub(super) fn new(mass_kg: f64, load: Option<f64>) -> Self {
         let weight = 1e-3 * GRAVITY * mass_kg;
-        let load = reached.filter(|reached| reached.units[1] == "N");
-        let load = load.map(|reached| reached.load.abs());
+        let load = load.map(f64::abs).filter(|load| *load > 0.0);
         Self {
             weight,
             friction: FRICTION * weight,
-            over_load: load.filter(|load| *load > 0.0).map(|load| weight / load),
+            over_load: load.map(|load| weight / load),
         }
     }
 
@@ -59,30 +58,17 @@ pub(super) fn of_the_load(ratio: f64) -> String {
 mod tests {
     use super::*;
 
-    fn reached(load: f64, unit: &'static str) -> Reached {
-        Reached {
-            stroke_of: String::new(),
-            load_factor: 1.0,
-            ended_early: false,
-            displacement: 1.0,
-            load,
-            units: ["mm", unit],
-            peak: None,
-            stiffness: None,
-        }
-    }
-
     #[test]
     fn weight_and_friction_stand_beside_the_load() {
         // The A4 sheet of film: 0.00867 kg, pulled by 0.525 N.
-        let film = SelfWeight::new(0.008_67, Some(&reached(-0.525, "N")));
+        let film = SelfWeight::new(0.008_67, Some(-0.525));
         assert!((film.over_load.unwrap() - 0.162).abs() < 5e-4);
         assert_eq!(
             film.beside_load(),
             "0.0851 N, 16 % of the load; friction on a surface, at mu = 0.3, 0.0255 N, 4.9 % of the load"
         );
         // The bell: 161 kg and 28 N.
-        let bell = SelfWeight::new(161.0, Some(&reached(28.0, "N"))).beside_load();
+        let bell = SelfWeight::new(161.0, Some(28.0)).beside_load();
         assert!(
             bell.contains("56 times the load") && bell.contains("17 times"),
             "{bell}"
@@ -90,9 +76,9 @@ mod tests {
     }
 
     #[test]
-    fn a_couple_and_no_load_have_no_ratio() {
-        for load in [None, Some(reached(5.0, "N mm")), Some(reached(0.0, "N"))] {
-            let weight = SelfWeight::new(1.0, load.as_ref());
+    fn without_a_load_there_is_no_ratio() {
+        for load in [None, Some(0.0)] {
+            let weight = SelfWeight::new(1.0, load);
             assert_eq!(weight.over_load, None);
             assert!((weight.weight - 9.81).abs() < 1e-12);
             assert!(!weight.beside_load().contains("load"));

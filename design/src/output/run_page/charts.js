@@ -105,13 +105,18 @@ function drawCurve(state) {
   const jumps = states.curve.filter((_, i) => states.status[states.index.indexOf(i)] === "limit-point");
   const marks = states.curve.map(([x, y]) => ({ x, y, colour: TEAL, r: 2.5 }));
   marks.push(...jumps.map(([x, y]) => ({ x, y, colour: ACCENT, hollow: true })));
+  const last = states.curve[states.curve.length - 1];
+  const peak = run.peak && Math.abs(run.peak[0]) < Math.abs(last[0]) ? run.peak : null;
+  const path = peak ? [...states.curve, peak].sort((a, b) => Math.abs(a[0]) - Math.abs(b[0])) : states.curve;
+  if (peak) marks.push({ x: peak[0], y: peak[1], colour: ACCENT, r: 3.5 });
   const [x, y] = states.curve[states.index[state]];
   marks.push({ x, y, colour: INK, r: 5 });
   const named = { x: `${what.startsWith("rotation") || length === "rad" ? "rotation" : "displacement"} (${length})`, y: `${force === "N" ? "load" : "couple"} (${force})` };
-  chart(byId("curve"), 250, named, [{ points: states.curve, colour: TEAL }], marks);
+  chart(byId("curve"), 250, named, [{ points: path, colour: TEAL }], marks);
   byId("curve-note").textContent =
     `Displacement: ${what}. Load: ${run.actuation.loads.length + run.actuation.edges.length > 0 ? "sum of the magnitudes of all loads" : "its work-conjugate"}. ` +
-    `Points: load steps; large: the state shown.` + (jumps.length ? " Hollow: the sheet jumped to this state past a limit point." : "");
+    `Points: load steps; large: the state shown.` +
+    (peak ? ` Orange: the largest load, ${shown(peak[1])} ${force} at ${shown(peak[0])} ${length}.` : "") + (jumps.length ? " Hollow: the sheet jumped to this state past a limit point." : "");
 }
 
 const TERM_COLOURS = ["teal", "accent", "violet", "blue", "ochre", "rose"].map((name) => `var(--${name})`);

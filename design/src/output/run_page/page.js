@@ -68,7 +68,7 @@ function writeWarnings() {
 function legend() {
   const parts = ["Dashed orange: target."];
   if (run.model === "pin") parts.push("Pins carry no load; the sheet is centred on its target.");
-  else parts.push("Fine dashes: flat sheet. Arrows: loads (orange) and reactions (teal). Square: clamp; triangle: pin; disc: roller, free along its line.");
+  else parts.push("Fine dashes: flat sheet. Panels are held flat. Arrows: loads (orange) and reactions (teal) at the centroids of their panels. Square: clamp; triangle: pin; disc: roller, free along its line.");
   if (run.actuation.openings.length) parts.push("Curved orange arrows on panels: sums of the opening couples of their hinges.");
   parts.push("A panel has the fainter colour of its hinge with the largest value.");
   return parts.join(" ");

@@ -35,6 +35,8 @@ pub(super) struct PageData<'a> {
     actuation: ActuationMarks,
     /// What moves the sheet, and the units of displacement and load.
     stroke: Option<(&'a str, [&'static str; 2])>,
+    /// Displacement and load at the maximum of the load, if a displacement is prescribed.
+    peak: Option<[f64; 2]>,
     /// Closed outlines: of the flat sheet and of the target (mm).
     outline: [[f64; 2]; 4],
     target: Packed,
@@ -97,6 +99,9 @@ impl<'a> PageData<'a> {
             states: HingeStates::new(scene, designed),
             actuation: ActuationMarks::of(scene),
             stroke: reached.map(|reached| (reached.stroke_of.as_str(), reached.units)),
+            peak: reached
+                .and_then(|reached| reached.peak)
+                .map(|peak| [peak.displacement, peak.load]),
             outline: sheet.outline.corners,
             target: (kept(target.len(), MOST_POINTS).into_iter())
                 .flat_map(|i| target[i])
