@@ -172,6 +172,23 @@ fn a_project_like_a_scene_has_its_sheet() {
         weights.ends_with("polypropylene-0.8mm/weights.safetensors"),
         "{weights}"
     );
+    // A scene whose loads are dead keeps them, and its ensemble.
+    let dead = "configs/scenes/pet-3x3.toml";
+    work.edit(dead, &[("../../data", &data.display().to_string())]);
+    work.output(&format!("init dead --like {dead}"));
+    let [project, shipped] = ["dead/scene.toml", dead].map(|file| keys(&work, file));
+    let force = |scene: &toml_edit::DocumentMut| {
+        let load = scene["loads"].as_array_of_tables().unwrap().get(0).unwrap();
+        load["force"].as_array().unwrap().get(0).unwrap().as_float()
+    };
+    assert_eq!(force(&project), force(&shipped));
+    let networks = |scene: &toml_edit::DocumentMut| {
+        let networks = scene["surrogate"]
+            .get("ensemble")
+            .and_then(|list| list.as_array());
+        networks.map_or(0, toml_edit::Array::len)
+    };
+    assert_eq!(networks(&project), networks(&shipped));
     let material = std::fs::read_to_string(work.path("same/material.toml")).unwrap();
     assert!(material.contains("polypropylene-0.8mm"), "{material}");
     work.output("design same/scene.toml --steps 1 --force");

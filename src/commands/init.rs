@@ -120,20 +120,26 @@ impl InitCommand {
 
     /// The path of the weights, if they are for the material. Weights that are named must exist.
     fn weights_of(&self, material: &SheetMaterial, like: Option<&Like>) -> Result<Option<PathBuf>> {
-        let weights = match &self.weights {
+        let candidates = match &self.weights {
             Some(weights) => {
                 input_file::require(weights, "--weights")?;
-                weights.clone()
+                vec![weights.clone()]
             }
-            None => match like.and_then(Like::weights) {
-                Some(weights) => weights,
-                None if Path::new(WEIGHTS).is_file() => WEIGHTS.into(),
-                None => return Ok(None),
-            },
+            None => {
+                let shipped = Some(PathBuf::from(WEIGHTS)).filter(|weights| weights.is_file());
+                like.and_then(Like::weights)
+                    .into_iter()
+                    .chain(shipped)
+                    .collect()
+            }
         };
-        let trained = Surrogate::load(&weights)?.card().material_hash.clone();
-        let fits = trained == Some(material.law_hash());
-        Ok(fits.then(|| std::path::absolute(weights)).transpose()?)
+        for weights in candidates {
+            let trained = Surrogate::load(&weights)?.card().material_hash.clone();
+            if trained == Some(material.law_hash()) {
+                return Ok(Some(std::path::absolute(weights)?));
+            }
+        }
+        Ok(None)
     }
 }
 

@@ -80,7 +80,7 @@ pub fn polish(
         Ok(ended) => ended,
         Err(never) => match never {},
     };
-    let found = search.best;
+    let found = search.best.clone();
     let (after, problem) = balanced(scene, &found, windows, rounds)?;
     let best = problem.evaluate(&found)?;
     let scores = |evaluation: &Evaluation| Scores::of(&law.objective, evaluation);
@@ -102,11 +102,11 @@ pub fn polish(
     let designed = Designed {
         problem,
         ended,
+        contradicted: search.contradicted(),
         history: search.history,
         design: found,
         start,
         best,
-        contradicted: search.contradicted,
     };
     Ok(Polished {
         designed,

@@ -182,12 +182,21 @@ impl CapacityStudy {
     fn settled(&self, mut search: SceneConfig, name: &str) -> Result<(DesignVector, usize)> {
         let round = search.optimiser.steps;
         let bar = Progress::new(ROUNDS * round, "design steps, at most");
-        let mut before = f64::INFINITY;
-        for _ in 0..ROUNDS {
+        for done in 1..=ROUNDS {
+            search.optimiser.steps = done * round;
             let scene = self.scene_of(&search)?;
             let found = designed(&scene, &mut |step| bar.show(step.step, None, name))?;
-            let loss = found.best.loss;
-            if loss > (1.0 - SETTLED) * before || found.ended == Ended::Settled {
+            let least = |steps: usize| {
+                let losses = found
+                    .history
+                    .iter()
+                    .take(steps + 1)
+                    .map(|step| step.scores.loss);
+                losses.fold(f64::INFINITY, f64::min)
+            };
+            let [before, now] = [(done - 1) * round, done * round].map(least);
+            let settled = done > 1 && now > (1.0 - SETTLED) * before;
+            if settled || found.ended == Ended::Settled {
                 bar.finish();
                 let design = DesignVector {
                     opening: None,
@@ -195,8 +204,6 @@ impl CapacityStudy {
                 };
                 return Ok((design, found.history.len() - 1));
             }
-            before = loss;
-            search.optimiser.steps += round;
         }
         bail!(
             "{name}: the search has not settled after {} steps",

@@ -8,7 +8,7 @@ use kirigami::ui::run_folder;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// Compute Gamma and the critical panel edge of sheet materials, above which buckling stays in the ligaments
+/// Compute Gamma and the critical panel edge of sheet materials, for sheets that lie on a surface
 ///
 /// Writes localisation.md. Example: kirigami-studies localisation
 #[derive(Args)]

@@ -47,8 +47,8 @@ impl ActuationCurve {
         Self::through(mechanics, &deployment.sheet, &deployment.path)
     }
 
-    /// The curve through the increments of the path, and through states close together about the maximum of the load and
-    /// where the load of the end is first reached. The path is followed twice more.
+    /// The curve through the load steps and the increments of the path, and through states close together about the maximum
+    /// of the load and where the load of the end is first reached. The path is followed twice more.
     pub fn resolved(mechanics: &Mechanics, sheet: &Sheet) -> Option<Self> {
         let law = mechanics.law.prepare(&sheet.designs());
         let hinged = mechanics.hinged(sheet, &*law, false);
@@ -67,6 +67,10 @@ impl ActuationCurve {
             readings.push(to);
             from = to;
         }
+        // The load steps may go on where the path cannot be followed.
+        readings.extend(solver.ends());
+        readings.sort_by(f64::total_cmp);
+        readings.dedup();
         Self::through(mechanics, sheet, &solver.readings(hinged, &readings))
     }
 

@@ -182,7 +182,7 @@ impl<'a> Follower<'a> {
         }
     }
 
-    fn is_exhausted(&self) -> bool {
+    pub fn is_exhausted(&self) -> bool {
         self.tried > self.branch.solver.settings.max_increments
     }
 

@@ -59,7 +59,7 @@ impl Potential<'_> {
                 residual: state.residual,
                 end: match iterations < max_iterations {
                     true => DescentEnd::Stagnated,
-                    false => DescentEnd::Iterations,
+                    false => DescentEnd::LbfgsIterations,
                 },
             });
         }

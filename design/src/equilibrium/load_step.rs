@@ -35,8 +35,12 @@ pub enum Status {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DescentEnd {
-    /// The maximum number of iterations was made while the energy still decreased.
+    /// The maximum number of Newton iterations was made while the energy still decreased.
     Iterations,
+    /// The maximum number of iterations of L-BFGS was made.
+    LbfgsIterations,
+    /// The path has more increments than the maximum, and no equilibrium was found beyond them.
+    Increments,
     /// No further step lowers the energy, but the residual is above the loose tolerance.
     Stagnated,
     /// The energy or its gradient is not a finite number.
@@ -47,8 +51,12 @@ impl fmt::Display for DescentEnd {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(match self {
             Self::Iterations => {
-                "the energy still decreases at the last iteration: raise max_iterations in [solver]"
+                "the energy still decreases at the last iteration: raise solver.max_iterations"
             }
+            Self::LbfgsIterations => {
+                "L-BFGS is not at its end: raise max_iterations of solver.method.lbfgs"
+            }
+            Self::Increments => "the path is longer than solver.max_increments: raise that",
             Self::Stagnated => {
                 "no step lowers the energy further, but the forces are not balanced to solver.loose_tolerance"
             }

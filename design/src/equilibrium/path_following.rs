@@ -56,8 +56,12 @@ impl EquilibriumSolver {
     /// # Panics
     /// If the sheet or the start has another grid than the solver.
     pub fn path_from(&self, sheet: HingedSheet, start: Configuration) -> Vec<LoadStep> {
-        let ends = (1..=self.steps).map(|i| i as f64 / self.steps as f64);
-        self.read(sheet, start, ends)
+        self.read(sheet, start, self.ends())
+    }
+
+    /// The load parameters of the load steps.
+    pub(crate) fn ends(&self) -> impl Iterator<Item = f64> {
+        (1..=self.steps).map(|i| i as f64 / self.steps as f64)
     }
 
     /// The equilibria at load parameters, in ascending order, on the path from the flat sheet: fractions of the loads or,
@@ -170,7 +174,14 @@ impl Follower<'_> {
         while self.last.place.at < to {
             if self.advance().is_none() {
                 // Where the path cannot be followed, a minimum of the energy may be found nevertheless.
-                let (minimum, moved) = self.minimised(to)?;
+                let found = self.minimised(to);
+                let (minimum, moved) = found.map_err(|failure| match self.is_exhausted() {
+                    true => Failure {
+                        end: DescentEnd::Increments,
+                        ..failure
+                    },
+                    false => failure,
+                })?;
                 self.jumps += usize::from(moved > LEAP);
                 return Ok(minimum);
             }

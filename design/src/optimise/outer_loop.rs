@@ -2,9 +2,9 @@
 //!
 //! Every few steps the path of the design is followed from the flat sheet; those between are corrected from that path.
 //! A corrected path can be on another branch than the followed one. The best design is therefore one whose path was
-//! followed: the best of the designs since the last followed path is followed too, before the next one and at the end. If
-//! its loss is another one, these designs are discarded, and the search continues from the best design and follows every
-//! path.
+//! followed: the best of the corrected ones, the candidate, is followed too, unless the next followed design is better. If
+//! its loss is another one, the steps since the followed path before it are discarded; the search continues from the best
+//! followed design, as from a new start, and follows every path.
 //!
 //! If the sheet of a design has no equilibrium, the step from the last design that had one is halved until
 //! an equilibrium exists. Steps depend only on the problem and the search state, so a search continued from
@@ -62,14 +62,18 @@ pub struct SearchState {
     /// The next design that the search evaluates.
     pub(crate) proposal: DesignVector,
     pub(crate) search: Search,
-    /// The design with the minimum loss of those whose path was followed from the flat sheet.
+    /// The design with the minimum loss of those whose path was followed from the flat sheet, also at a pause.
     pub best: DesignVector,
-    /// The loss of `best`.
-    best_loss: f64,
-    /// The design with the minimum loss, below `best_loss`, of those whose path was only corrected.
-    candidate: Option<Candidate>,
+    /// The design with the minimum loss of those whose path was followed, without those at pauses, and its loss: the search
+    /// goes back to it, whether it was paused or not.
+    base: Scored,
+    /// The design with the minimum loss, below that of the base, of those whose path was only corrected since.
+    candidate: Option<Scored>,
     /// Whether the followed path of a candidate had another loss: since then every path is followed.
-    pub contradicted: bool,
+    contradicted: bool,
+    /// Whether the candidate of the present pause has another loss.
+    #[serde(skip)]
+    doubtful: bool,
     /// The last design whose path was followed from the flat sheet.
     anchor: Option<DesignVector>,
     /// The path of the anchor, if it is needed.
@@ -79,11 +83,12 @@ pub struct SearchState {
     pub history: Vec<StepRecord>,
 }
 
-/// A design with the loss of its corrected path.
+/// A design with its loss, and the step in which it was evaluated.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Candidate {
+struct Scored {
     design: DesignVector,
     loss: f64,
+    step: usize,
 }
 
 /// Relative difference of the losses of a corrected and a followed path on the same branch, unless the tolerance of the
@@ -114,10 +119,14 @@ pub fn optimise<E>(
                 Err(ended) => ended,
             },
         };
+        if matches!(ended, Ended::Completed | Ended::Stopped) {
+            state.pause(problem);
+            return Ok(ended);
+        }
         // A search whose last steps are discarded is not at its end.
         match state.confirm(problem) {
-            Ok(discarded) if discarded && ended != Ended::Stopped => {}
-            Ok(_) => return Ok(ended),
+            Ok(true) => {}
+            Ok(false) => return Ok(ended),
             Err(stuck) => return Ok(stuck),
         }
     }
@@ -136,9 +145,14 @@ impl SearchState {
             search: Search::new(method, learning_rate, start.to_flat().len()),
             proposal: start.clone(),
             best: start.clone(),
-            best_loss: f64::INFINITY,
+            base: Scored {
+                design: start.clone(),
+                loss: evaluation.loss,
+                step: 0,
+            },
             candidate: None,
             contradicted: false,
+            doubtful: false,
             design: start.clone(),
             anchor: None,
             known: None,
@@ -155,7 +169,7 @@ impl SearchState {
 
     /// Whether the designs of the state have the same dimensions as `start`.
     pub(crate) fn fits(&self, start: &DesignVector) -> bool {
-        let designs = [&self.design, &self.proposal, &self.best];
+        let designs = [&self.design, &self.proposal, &self.best, &self.base.design];
         let further = self.candidate.iter().map(|candidate| &candidate.design);
         !self.history.is_empty()
             && (designs.into_iter().chain(further)).all(|design| design.same_shape(start))
@@ -167,9 +181,11 @@ impl SearchState {
         &mut self,
         problem: &DesignProblem,
     ) -> Result<(DesignVector, Evaluation, Setback), Ended> {
-        if !self.knows_a_path(problem) {
+        // After a followed design that is not better than the candidate, the candidate is followed.
+        if self.last().followed {
             self.confirm(problem)?;
         }
+        self.know_a_path(problem);
         let mut rejected = 0;
         loop {
             let proposal = self.proposal.clone();
@@ -191,9 +207,8 @@ impl SearchState {
         }
     }
 
-    /// Whether there is a path from which the next one can be corrected: that of the anchor, which is computed again
-    /// after a pause of the search. It is forgotten if the next path must be followed.
-    fn knows_a_path(&mut self, problem: &DesignProblem) -> bool {
+    /// Computes the path of the anchor after a pause of the search; forgets it if the next path must be followed.
+    fn know_a_path(&mut self, problem: &DesignProblem) {
         let recent = self
             .history
             .iter()
@@ -209,38 +224,58 @@ impl SearchState {
             }
             _ => self.known = None,
         }
-        self.known.is_some()
     }
 
-    /// Follows the path of the candidate, which becomes the best design if its loss is below that of the best. Returns
-    /// whether the followed loss is another one, so that the search went back to the best design.
+    /// Whether a corrected path was on another branch than the followed one.
+    pub fn contradicted(&self) -> bool {
+        self.contradicted || self.doubtful
+    }
+
+    /// Follows the path of the candidate, which becomes the base if its loss is below that. Returns whether the followed
+    /// loss is another one, so that the search went back to the base.
     fn confirm(&mut self, problem: &DesignProblem) -> Result<bool, Ended> {
-        let Some(Candidate { design, loss }) = self.candidate.take() else {
+        let Some(candidate) = self.candidate.take() else {
             return Ok(false);
         };
-        let followed = problem.loss(&design).unwrap_or(f64::INFINITY);
-        if followed < self.best_loss {
-            (self.best, self.best_loss) = (design, followed);
+        let followed = candidate.followed(problem);
+        let (same, step) = (candidate.agrees_with(&followed, problem), candidate.step);
+        if followed.loss < self.base.loss {
+            self.best = followed.design.clone();
+            self.base = followed;
         }
-        let same = (followed - loss).abs() <= same_branch(problem) * loss.abs();
         if !same {
-            self.go_back(problem)?;
+            self.go_back(problem, step)?;
         }
         Ok(!same)
     }
 
-    /// Discards the steps since the last followed path and continues from the best design, as from a new start.
-    fn go_back(&mut self, problem: &DesignProblem) -> Result<(), Ended> {
-        let evaluation = problem.evaluate(&self.best);
+    /// Follows the path of the candidate for the best design, without an effect on the search.
+    fn pause(&mut self, problem: &DesignProblem) {
+        self.best = self.base.design.clone();
+        self.doubtful = false;
+        if let Some(candidate) = &self.candidate {
+            let followed = candidate.followed(problem);
+            self.doubtful = !candidate.agrees_with(&followed, problem);
+            if followed.loss < self.base.loss {
+                self.best = followed.design;
+            }
+        }
+    }
+
+    /// Discards the steps since the followed path before a step and continues from the base, as from a new start.
+    fn go_back(&mut self, problem: &DesignProblem, step: usize) -> Result<(), Ended> {
+        let evaluation = problem.evaluate(&self.base.design);
         let evaluation = evaluation.map_err(|error| Ended::Stuck {
             reason: error.to_string(),
         })?;
-        let followed = self.history.iter().rposition(|record| record.followed);
-        self.history.truncate(followed.map_or(1, |last| last + 1));
+        let before = self.history[..step]
+            .iter()
+            .rposition(|record| record.followed);
+        self.history.truncate(before.map_or(1, |last| last + 1));
         self.contradicted = true;
         (self.anchor, self.known) = (None, None);
         self.search = self.search.restarted();
-        self.go_on(problem, self.best.clone(), &evaluation);
+        self.go_on(problem, self.base.design.clone(), &evaluation);
         Ok(())
     }
 
@@ -253,16 +288,19 @@ impl SearchState {
         setback: Setback,
     ) {
         let (followed, loss) = (evaluation.deployment.followed, evaluation.loss);
-        let least = self.candidate.as_ref().map_or(self.best_loss, |it| it.loss);
+        let scored = Scored {
+            design: design.clone(),
+            loss,
+            step: self.history.len(),
+        };
+        let least = self.candidate.as_ref().unwrap_or(&self.base).loss;
         match followed {
-            true if loss < self.best_loss => {
-                (self.best, self.best_loss) = (design.clone(), loss);
+            true if loss < self.base.loss => {
                 self.candidate.take_if(|candidate| candidate.loss >= loss);
+                self.best = design.clone();
+                self.base = scored;
             }
-            false if loss < least => {
-                let design = design.clone();
-                self.candidate = Some(Candidate { design, loss });
-            }
+            false if loss < least => self.candidate = Some(scored),
             _ => {}
         }
         if followed {
@@ -312,9 +350,21 @@ impl SearchState {
     }
 }
 
-fn same_branch(problem: &DesignProblem) -> f64 {
-    match &problem.model {
-        Model::Ideal { .. } => SAME_BRANCH,
-        Model::Equilibrium(mechanics) => SAME_BRANCH.max(mechanics.solver.settings.tolerance),
+impl Scored {
+    /// The same design with the loss of its followed path; infinite if there is none.
+    fn followed(&self, problem: &DesignProblem) -> Self {
+        Self {
+            loss: problem.loss(&self.design).unwrap_or(f64::INFINITY),
+            ..self.clone()
+        }
+    }
+
+    /// Whether the path of `followed` is on the same branch.
+    fn agrees_with(&self, followed: &Self, problem: &DesignProblem) -> bool {
+        let tolerance = match &problem.model {
+            Model::Ideal { .. } => SAME_BRANCH,
+            Model::Equilibrium(mechanics) => SAME_BRANCH.max(mechanics.solver.settings.tolerance),
+        };
+        (followed.loss - self.loss).abs() <= tolerance * self.loss.abs()
     }
 }

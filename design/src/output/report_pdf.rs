@@ -169,11 +169,12 @@ fn drawings(
         }
     }
     let bottom = top - 2.5 * CAPTION - layout.height - 4.0;
-    scale_bar(content, [BORDER, bottom], scale);
+    scale_bar(content, [BORDER, bottom], scale, deployed.shown());
     bottom
 }
 
-fn scale_bar(content: &mut Content, [x, y]: [f64; 2], scale: f64) {
+/// A scale bar, and what the drawings above it show.
+fn scale_bar(content: &mut Content, [x, y]: [f64; 2], scale: f64, shown: &str) {
     let length = round_below(40.0 / scale);
     let end = x + scale * length;
     colour(content, INK);
@@ -182,7 +183,7 @@ fn scale_bar(content: &mut Content, [x, y]: [f64; 2], scale: f64) {
     for x in [x, end] {
         line(content, [[x, y - 1.0], [x, y + 1.0]]);
     }
-    let label = format!("{length} mm");
+    let label = format!("{length} mm; {shown}");
     write(content, &text([end + 2.0, y - 0.9], CAPTION, false, &label));
 }
 
@@ -248,11 +249,19 @@ impl Deployed<'_> {
         bounds(points)
     }
 
+    /// What the drawings show besides the sheet.
+    fn shown(&self) -> &'static str {
+        match self.scene.config.hinge {
+            HingeModel::Pin => "dashed: target",
+            _ => "dashed: target; loads and supports act at the centroids of their panels",
+        }
+    }
+
     fn caption(&self) -> String {
         match self.scene.config.hinge {
-            HingeModel::Pin => "Deployed; target dashed".to_owned(),
+            HingeModel::Pin => "Deployed".to_owned(),
             _ => format!(
-                "Deployed with panels held flat, loads at their centroids, load factor {:.4}; target dashed",
+                "Deployed, panels held flat, load factor {:.4}",
                 self.last.load_factor
             ),
         }

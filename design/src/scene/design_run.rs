@@ -251,7 +251,7 @@ pub fn inverse_design(
     Ok(Designed {
         problem,
         ended,
-        contradicted: search.contradicted,
+        contradicted: search.contradicted(),
         history: search.history,
         design: search.best,
         start,

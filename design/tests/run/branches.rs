@@ -3,6 +3,7 @@
 
 use super::{SCENE, read, run};
 use design::equilibrium::load_step::Status;
+use design::equilibrium::settings::Method;
 use design::objective::design_problem::DesignError;
 use design::optimise::outer_loop::Ended;
 use design::output::report::{Concern, Severity};
@@ -57,8 +58,24 @@ fn a_descent_that_is_cut_short_names_the_key() {
     let error = deployment.at_full_load().unwrap_err();
     assert!(matches!(error, DesignError::NoEquilibrium { .. }));
     let message = error.to_string();
-    assert!(message.contains("max_iterations in [solver]"), "{message}");
+    assert!(message.contains("solver.max_iterations"), "{message}");
     assert!(!message.contains("ligaments"), "{message}");
+
+    // Another limit is another key.
+    let message = |change: fn(&mut SceneConfig)| {
+        let mut config: SceneConfig = toml_file::read(file).unwrap();
+        change(&mut config);
+        let scene = Scene::new(config, file).unwrap();
+        let deployment = scene.problem().unwrap().deploy(&scene.start()).unwrap();
+        deployment.at_full_load().unwrap_err().to_string()
+    };
+    let short = message(|config| {
+        config.solver.max_increments = 1;
+        config.solver.max_iterations = 1;
+    });
+    assert!(short.contains("solver.max_increments"), "{short}");
+    let lbfgs = message(|config| config.solver.method = Method::Lbfgs { max_iterations: 2 });
+    assert!(lbfgs.contains("solver.method.lbfgs"), "{lbfgs}");
 }
 
 /// The scene linear-7x7 from a random start, with 40 steps of an optimiser.
@@ -123,6 +140,25 @@ fn every_path_is_followed_after_a_contradiction() {
         steps.eq(0..41),
         "the discarded steps are not in the history"
     );
+}
+
+/// A pause has no effect on a search, not even between a false design and its discovery.
+#[test]
+fn a_stopped_search_that_is_refuted_resumes_to_the_same_trajectory() {
+    for (method, seed) in [("adam", 6), ("lbfgs", 7)] {
+        let whole = tempfile::tempdir().unwrap();
+        let uninterrupted = run(&circle(whole.path(), method, seed, 10), None).unwrap();
+        for stop in [3, 7] {
+            let parts = tempfile::tempdir().unwrap();
+            let scene = circle(parts.path(), method, seed, 10);
+            let stopped = run(&scene, Some(stop)).unwrap();
+            assert_eq!(stopped.ended, Ended::Stopped);
+            assert!(stopped.best.loss <= stopped.start.loss);
+            let resumed = run(&scene, None).unwrap();
+            assert_eq!(resumed.history, uninterrupted.history, "{method} {stop}");
+            assert_eq!(resumed.design, uninterrupted.design);
+        }
+    }
 }
 
 #[test]

@@ -128,6 +128,40 @@ fn the_largest_load_of_a_driven_path_is_stated() {
     assert!(report.to_string().contains("largest load"));
 }
 
+/// Beyond the increments the load steps go on: the largest load is of the whole path.
+#[test]
+fn the_largest_load_is_not_below_that_reached() {
+    for increments in [1, 3, 8] {
+        let folder = tempfile::tempdir().unwrap();
+        let file = shipped("a4-polyester");
+        let mut config: SceneConfig = toml_file::read(&file).unwrap();
+        config.optimiser.steps = 1;
+        config.solver.max_increments = increments;
+        config.output = folder.path().join("run");
+        let scene = Scene::new(config, &file).unwrap();
+        let designed = run(&scene, None).unwrap();
+        let report = write_results(&scene, &designed, true).unwrap();
+        let reached = report.facts.reached.as_ref().unwrap();
+        let peak = reached.peak.unwrap();
+        assert!(peak.load >= reached.load, "{reached:?}");
+        assert!(
+            peak.displacement <= reached.displacement * (1.0 + 1e-12),
+            "{reached:?}"
+        );
+    }
+}
+
+/// The page draws the largest load between the load steps.
+#[test]
+fn the_run_page_knows_the_largest_load() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, report) = unsearched(folder.path(), "steel-1250x1500");
+    let page = std::fs::read_to_string(scene.output().join("run.html")).unwrap();
+    let peak = report.facts.reached.as_ref().unwrap().peak.unwrap();
+    let peak = serde_json::to_string(&[peak.displacement, peak.load]).unwrap();
+    assert!(page.contains(&format!("\"peak\":{peak}")), "{peak}");
+}
+
 #[test]
 fn weights_with_large_errors_are_a_warning() {
     let folder = tempfile::tempdir().unwrap();

@@ -45,6 +45,11 @@ impl Like {
 pub(super) struct SimilarScene {
     original: Scene,
     config: SceneConfig,
+    /// Whether the sheet is that of the original.
+    same_sheet: bool,
+    /// The weights of the original and their ensemble.
+    weights: Option<PathBuf>,
+    ensemble: Vec<PathBuf>,
 }
 
 impl SimilarScene {
@@ -81,16 +86,28 @@ impl SimilarScene {
         config.title = format!("Like: {}", config.title);
         config.thickness = Some(material.thickness);
         config.output = "design".into();
-        let original = like.scene;
-        Ok(Self { original, config })
+        let learned = original.config.surrogate.iter();
+        let ensemble = learned.flat_map(|learned| &learned.ensemble);
+        Ok(Self {
+            same_sheet: ratios.size == 1.0 && *material == original.material,
+            weights: like.weights().map(absolute).transpose()?,
+            ensemble: ensemble
+                .map(|file| absolute(like.beside(file)))
+                .collect::<Result<_, _>>()?,
+            original: like.scene,
+            config,
+        })
     }
 
     /// The scene file, in a folder with `material.toml`. With weights for `material`, the loads are those at which the
     /// hinges of the new start rotate as those of the original one.
     pub(super) fn text(mut self, weights: &Path, material: Option<&Path>) -> Result<String> {
         if let Some(learned) = &mut self.config.surrogate {
+            learned.ensemble = match self.weights.as_deref() == Some(weights) {
+                true => std::mem::take(&mut self.ensemble),
+                false => Vec::new(),
+            };
             learned.weights = weights.to_owned();
-            learned.ensemble.clear();
         }
         if let Some(condensed) = &mut self.config.condensed {
             condensed.weights = weights.to_owned();
@@ -116,7 +133,13 @@ impl SimilarScene {
         let free = self.config.loads.is_empty()
             && self.config.edge_loads.is_empty()
             && self.config.opening_couples.is_empty();
-        if free || self.config.drive.is_some() || self.config.hinge == HingeModel::Pin {
+        let learned = self
+            .config
+            .surrogate
+            .as_ref()
+            .map(|learned| &learned.weights);
+        let same = self.same_sheet && learned == self.weights.as_ref();
+        if same || free || self.config.drive.is_some() || self.config.hinge == HingeModel::Pin {
             return Ok(());
         }
         let Some(meant) = rotation(&self.original)?.filter(|meant| *meant > 0.0) else {

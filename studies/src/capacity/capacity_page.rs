@@ -17,7 +17,7 @@ pub(super) fn page(
         The sheet of `{}`: its first load is constant, its second is rho times the scene's. With both loads applied \
         together, every rho is a separate deployment, and a sheet counts as deployed if every void is open at full \
         load. The capacity is the interval of rho about 1, the load of the designs, at which it is. A search ends when a \
-        hundred steps lower its minimum loss by less than 1 %. `kirigami-studies capacity`.\n\n\
+        round of the scene's steps lowers its minimum loss by less than 1 %. `kirigami-studies capacity`.\n\n\
         ![opening and boundary error against rho, and rho against the stroke of the load](capacity.png)\n\n\
         | pattern | search steps | minimum rho | maximum rho | paper | failure just above | last jump before full load, load factor | boundary rms at rho = 1, % |\n\
         |---|---|---|---|---|---|---|---|\n",
@@ -91,7 +91,8 @@ fn gains(kinematic: &Capacity, shape: &Capacity, full: &Capacity) -> Result<Stri
     for (way, carried) in ways {
         // If all tested loads are carried, the capacity is unknown.
         let gain = |over: &Capacity| match (carried(full), carried(over)) {
-            (Some(full), Some(over)) if over > 0.0 => format!("{:.2}", full / over),
+            (Some(full), Some(over)) if full > 0.0 && over > 0.0 => format!("{:.2}", full / over),
+            (Some(_), Some(_)) => "-".into(),
             _ => "unknown".into(),
         };
         writeln!(text, "| {way} | {} | {} |", gain(shape), gain(kinematic))?;

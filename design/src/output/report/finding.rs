@@ -72,7 +72,7 @@ fn load_peak(reached: &Reached) -> Option<Warning> {
              {length}"
         ),
         false => format!(
-            "no dead load opens this sheet by {end} {length}: it must be held back there by {last} {force}"
+            "no dead load opens this sheet by {end} {length}: the load has changed its direction there, to {last} {force}"
         ),
     };
     Some(Concern::LoadPeak.of_sheet(format!(
@@ -96,8 +96,8 @@ fn inaccurate(weights: &WeightFacts) -> Option<Warning> {
         .filter(|(error, ..)| *error > INACCURATE)
         .max_by(|one, other| one.0.total_cmp(&other.0))?;
     Some(Concern::WeakWeights.of_sheet(format!(
-        "the weights {} are inaccurate: {name} is off by {} % at {states} states; check by `kirigami verify --equilibrium` \
-         before cutting",
+        "the weights {} are inaccurate: {name} is off by {} % at {states} states; solve more rays, or check this design by \
+         `kirigami verify --equilibrium`",
         weights.file,
         rounded(error, 3)
     )))
@@ -129,8 +129,8 @@ fn missed(facts: &FactSheet, after: &Scores) -> Option<Warning> {
 fn other_branch(designed: &Designed) -> Option<Warning> {
     designed.contradicted.then(|| {
         Concern::OtherBranch.of_sheet(
-            "during the search a corrected path was on another branch than the path followed from the flat sheet: the steps \
-             since the last followed path were discarded, and every later path was followed"
+            "during the search a corrected path was on another branch than the path followed from the flat sheet: the designs \
+             found by it are not used, and the search went on from the best design whose path was followed"
                 .into(),
         )
     })
