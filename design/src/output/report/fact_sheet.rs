@@ -293,7 +293,9 @@ impl WeightFacts {
         let mut rows = vec![("weights", trained), ("test errors", test_errors)];
         if let Some(check) = &self.spot_check {
             let text = errors(&check.errors_percent, check.states, "random");
-            let inside = check.inside.map(|inside| format!(", {inside} of them inside the domain"));
+            let inside = check
+                .inside
+                .map(|inside| format!(", {inside} of them inside the domain"));
             rows.push(("spot check", text + &inside.unwrap_or_default()));
         }
         rows
