@@ -1,4 +1,4 @@
-//! Analyses of a deployed sheet beyond its shape: forces, capacity, voids, tilting panels (section 3.2), comparison with
+//! Analyses of a deployed sheet beyond its shape: forces, capacity, voids (section 3.2), Gamma (section 5.1), comparison with
 //! measured points (section 4.4), paths of the hinges (section 5.2).
 
 pub mod actuation_curve;

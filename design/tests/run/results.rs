@@ -111,7 +111,7 @@ fn panels_too_small_for_their_windows_are_named() {
         hinges(&report, Concern::WindowsOverlap).is_some(),
         "{report}"
     );
-    assert_eq!(hinges(&report, Concern::PanelsTilt), None);
+    assert_eq!(hinges(&report, Concern::GammaBelowOne), None);
     assert!(
         report
             .to_string()
@@ -152,12 +152,12 @@ fn a_thick_stiff_sheet_whose_panels_tilt_is_named() {
     assert_eq!(
         hinges(
             &write_results(&scene, &designed, false).unwrap(),
-            Concern::PanelsTilt
+            Concern::GammaBelowOne
         ),
         None
     );
     let report = write_results(&steel, &designed, false).unwrap();
-    assert_eq!(hinges(&report, Concern::PanelsTilt), Some(12));
+    assert_eq!(hinges(&report, Concern::GammaBelowOne), Some(12));
 }
 
 #[test]

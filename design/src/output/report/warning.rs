@@ -45,7 +45,7 @@ pub enum Concern {
     /// Panels are too small for the windows of their hinges.
     WindowsLeavePanels,
     /// Gamma < 1 (21): on a surface, the weight of panels does not hold them down.
-    PanelsTilt,
+    GammaBelowOne,
     /// w_lig or alpha is outside the training domain of the hinge law.
     LigamentsOutsideDomain,
     /// The path leaves the training domain of the hinge law.
@@ -91,7 +91,7 @@ impl Concern {
             | Self::TargetMissed
             | Self::NotModelled => Severity::Note,
             Self::WindowsOverlap
-            | Self::PanelsTilt
+            | Self::GammaBelowOne
             | Self::LigamentsOutsideDomain
             | Self::StatesOutsideDomain
             | Self::Path
@@ -245,7 +245,7 @@ fn tilting(scene: &Scene, hinges: &[HingeRow]) -> Option<Warning> {
         "panel edges are shorter than the critical length of {edge:.0} mm: Gamma < 1, also on a surface the weight of the \
          panels does not hold them down against their ligaments"
     );
-    about(Concern::PanelsTilt, tilting, message)
+    about(Concern::GammaBelowOne, tilting, message)
 }
 
 fn domain(scene: &Scene, hinges: &[HingeRow]) -> Vec<Warning> {
