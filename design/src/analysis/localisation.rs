@@ -5,9 +5,9 @@
 //!
 //!   Gamma = 6 p L^3 w_lig / (E t^4) = (L / L*)^3,   L* = (E t^3 / (6 rho g w_lig))^(1/3).
 //!
-//! For Gamma > 1 the paper expects that buckling stays in the ligaments. The prefactor is of order one, so L* is an order of magnitude and
-//! not a sharp limit: by finite elements of whole sheets, panels lift off a table also where Gamma is above 10. Of a sheet
-//! that hangs or stands Gamma says nothing.
+//! For Gamma > 1 the paper expects that buckling stays in the ligaments. The prefactor is of order one, so L* is an order of
+//! magnitude and not a sharp limit: by finite elements of whole sheets, panels lift off a table also where Gamma is above
+//! 10. Of a sheet that hangs or stands Gamma says nothing.
 
 use hinge::SheetMaterial;
 

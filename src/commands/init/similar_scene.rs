@@ -47,9 +47,8 @@ pub(super) struct SimilarScene {
     config: SceneConfig,
     /// Whether the sheet is that of the original.
     same_sheet: bool,
-    /// The weights of the original and their ensemble.
+    /// The weights of the original.
     weights: Option<PathBuf>,
-    ensemble: Vec<PathBuf>,
 }
 
 impl SimilarScene {
@@ -86,14 +85,16 @@ impl SimilarScene {
         config.title = format!("Like: {}", config.title);
         config.thickness = Some(material.thickness);
         config.output = "design".into();
-        let learned = original.config.surrogate.iter();
-        let ensemble = learned.flat_map(|learned| &learned.ensemble);
+        for network in config
+            .surrogate
+            .iter_mut()
+            .flat_map(|learned| &mut learned.ensemble)
+        {
+            *network = absolute(like.beside(network))?;
+        }
         Ok(Self {
             same_sheet: ratios.size == 1.0 && *material == original.material,
             weights: like.weights().map(absolute).transpose()?,
-            ensemble: ensemble
-                .map(|file| absolute(like.beside(file)))
-                .collect::<Result<_, _>>()?,
             original: like.scene,
             config,
         })
@@ -102,19 +103,22 @@ impl SimilarScene {
     /// The scene file, in a folder with `material.toml`. With weights for `material`, the loads are those at which the
     /// hinges of the new start rotate as those of the original one.
     pub(super) fn text(mut self, weights: &Path, material: Option<&Path>) -> Result<String> {
+        // A law without weights is the same with any.
+        let same_law = self.weights.as_deref().is_none_or(|own| own == weights);
         if let Some(learned) = &mut self.config.surrogate {
-            learned.ensemble = match self.weights.as_deref() == Some(weights) {
-                true => std::mem::take(&mut self.ensemble),
-                false => Vec::new(),
-            };
             learned.weights = weights.to_owned();
+            if !same_law {
+                learned.ensemble.clear();
+            }
         }
         if let Some(condensed) = &mut self.config.condensed {
             condensed.weights = weights.to_owned();
         }
         if let Some(material) = material {
             self.config.material = absolute(material)?;
-            self.fit_loads()?;
+            if !(self.same_sheet && same_law) {
+                self.fit_loads()?;
+            }
         }
         self.config.material = "material.toml".into();
         let text = self
@@ -133,13 +137,7 @@ impl SimilarScene {
         let free = self.config.loads.is_empty()
             && self.config.edge_loads.is_empty()
             && self.config.opening_couples.is_empty();
-        let learned = self
-            .config
-            .surrogate
-            .as_ref()
-            .map(|learned| &learned.weights);
-        let same = self.same_sheet && learned == self.weights.as_ref();
-        if same || free || self.config.drive.is_some() || self.config.hinge == HingeModel::Pin {
+        if free || self.config.drive.is_some() || self.config.hinge == HingeModel::Pin {
             return Ok(());
         }
         let Some(meant) = rotation(&self.original)?.filter(|meant| *meant > 0.0) else {
