@@ -1,6 +1,5 @@
 //! Charts of the studies, one file per kind.
 
-mod calibration;
 mod capacity;
 mod contours;
 mod convergence;
@@ -10,11 +9,9 @@ mod growth;
 mod log_log;
 mod rays;
 mod routes;
-mod separations;
 mod solutions;
 mod taylor;
 
-pub use calibration::{Calibration, calibration};
 pub use capacity::{CapacityCurve, capacity};
 pub use contours::PlaneValues;
 pub use convergence::{StudyPanel, studies};
@@ -23,6 +20,5 @@ pub use front::{FrontPanel, front};
 pub use growth::{PathCost, growth};
 pub use rays::{Curve, against_rays};
 pub use routes::{RoutePanel, routes};
-pub use separations::{SeparationChart, separations};
 pub use solutions::{SolutionChart, solutions};
 pub use taylor::{TaylorLine, taylor};

@@ -7,25 +7,18 @@ mod chain;
 mod charts;
 mod condensed;
 mod designed;
-mod detours;
 mod drawing;
 mod extremes;
-mod fine_tuning;
 mod free_panels;
 mod gradient;
 mod keys;
 mod levels;
 mod localisation;
-mod noise;
-mod optimisers;
 mod outline_match;
 mod pages;
 mod panel_penalties;
-mod path;
 mod path_costs;
-mod peak;
 mod polyester;
-mod power_law;
 mod shape_alone;
 mod sheet;
 mod silhouettes;
@@ -35,8 +28,6 @@ mod stop;
 mod surrogate;
 mod tessellation;
 mod tradeoff;
-mod trust;
-mod universal;
 mod window;
 
 use anyhow::Result;
@@ -58,25 +49,17 @@ enum Study {
     Chain(chain::ChainStudy),
     Sheet(sheet::SheetStudy),
     Window(window::WindowStudy),
-    Noise(noise::NoiseStudy),
-    Path(path::PathStudy),
     PathCosts(path_costs::PathCostStudy),
-    Peak(peak::PeakStudy),
-    Detours(detours::DetourStudy),
     Polyester(polyester::PolyesterStudy),
     Gradient(gradient::GradientStudy),
     Solutions(solutions::SolutionStudy),
     Approaches(approaches::ApproachStudy),
     Silhouettes(silhouettes::SilhouetteStudy),
-    Optimisers(optimisers::OptimiserStudy),
     Actuations(actuations::ActuationStudy),
     Capacity(capacity::CapacityStudy),
     Localisation(localisation::LocalisationStudy),
     Extremes(extremes::ExtremesStudy),
     Surrogate(surrogate::SurrogateStudy),
-    FineTuning(fine_tuning::FineTuningStudy),
-    Trust(trust::TrustStudy),
-    Universal(universal::UniversalStudy),
     Tradeoff(tradeoff::TradeoffCommand),
     Pages(pages::PagesCommand),
     Keys(keys::KeysCommand),
@@ -89,25 +72,17 @@ impl Study {
             Self::Chain(study) => study.run(),
             Self::Sheet(study) => study.run(),
             Self::Window(study) => study.run(),
-            Self::Noise(study) => study.run(),
-            Self::Path(study) => study.run(),
             Self::PathCosts(study) => study.run(),
-            Self::Peak(study) => study.run(),
-            Self::Detours(study) => study.run(),
             Self::Polyester(study) => study.run(),
             Self::Gradient(study) => study.run(),
             Self::Solutions(study) => study.run(),
             Self::Approaches(study) => study.run(),
             Self::Silhouettes(study) => study.run(),
-            Self::Optimisers(study) => study.run(),
             Self::Actuations(study) => study.run(),
             Self::Capacity(study) => study.run(),
             Self::Localisation(study) => study.run(),
             Self::Extremes(study) => study.run(),
             Self::Surrogate(study) => study.run(),
-            Self::FineTuning(study) => study.run(),
-            Self::Trust(study) => study.run(),
-            Self::Universal(study) => study.run(),
             Self::Tradeoff(command) => command.run(),
             Self::Pages(command) => command.run(),
             Self::Keys(command) => command.run(),

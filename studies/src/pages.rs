@@ -13,7 +13,7 @@ use std::time::SystemTime;
 /// Write the pages of docs/results, all or those named, and the page that joins their tables
 ///
 /// Run it in the root of the repository. All pages together take hours; an interrupted page continues when it
-/// is started again. Example: kirigami-studies pages window trust
+/// is started again. Example: kirigami-studies pages window sheet
 #[derive(Args)]
 pub struct PagesCommand {
     /// Pages to make, by default all

@@ -15,7 +15,6 @@
 //! | `networks` | chi, chi_D and chi_P |
 //! | `force_tangents` | chi and its derivatives in (eta_a, eta_s, theta) |
 //! | `loss` | the loss (15) |
-//! | `law_energy` | an energy of a family of hardening laws |
 //! | `optimiser` | Muon and Adam, learning rate |
 //! | `parent` | given weights, scaled to the rows, as the start of a training |
 //! | `epoch` | the record of one epoch |
@@ -38,7 +37,6 @@ mod epoch;
 mod error;
 mod export;
 mod force_tangents;
-mod law_energy;
 mod lesson;
 mod loss;
 mod mirror;
@@ -56,7 +54,6 @@ pub use config::{InvalidConfig, Precision, TrainingConfig};
 pub use ensemble::{Disagreement, EnsembleCheck, disagreements};
 pub use epoch::Epoch;
 pub use error::TrainError;
-pub use law_energy::{EnergySlopes, LAW_STRAINS, LawEnergy, LawForm, LawState};
 pub use lesson::{Lesson, TrainingData};
 pub use parent::check_parent;
 pub use state::StateError;

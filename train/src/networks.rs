@@ -146,23 +146,6 @@ pub(crate) fn widths(layers: &Layers) -> Vec<Vec<usize>> {
 }
 
 impl Mlp {
-    /// A network without symmetry.
-    pub fn plain(
-        inputs: usize,
-        widths: &[usize],
-        seed: u64,
-        options: &TensorCreationOptions,
-    ) -> Self {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let sizes = std::iter::once(inputs).chain(widths.iter().copied());
-        let layers = (sizes.zip(widths)).map(|(inputs, &outputs)| {
-            Dense::new([inputs, outputs], Fold::Whole, &mut rng, options)
-        });
-        Self {
-            layers: layers.collect(),
-        }
-    }
-
     /// The layers as evaluated.
     pub fn affine(&self) -> Vec<Affine> {
         self.layers.iter().map(Dense::affine).collect()
