@@ -106,7 +106,7 @@ impl ActuationStudy {
             .map(|(case, families)| case.row(families))
             .collect();
         picture::save(&actuations(&rows), &self.out.join("actuations"), 2400)?;
-        run_folder::write(&self.out, "actuations.csv", &actuations_page::csv(&cases)?)?;
+        run_folder::write(&self.out, "actuations.csv", &actuations_page::csv(&cases))?;
         let page = actuations_page::page(&cases, &families, &self.scenes)?;
         run_folder::write(&self.out, "actuations.md", &page)?;
         println!("{page}\nwritten to {}", self.out.display());

@@ -12,9 +12,9 @@ use design::optimise::search::SearchMethod;
 use design::scene::design_run::forget;
 use design::scene::{Scene, SceneConfig};
 use kirigami::ui::{picture, run_folder};
-use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Instant;
+use support::table::{Cell, Table};
 
 /// Compare free panel corners, with and without penalties on validity, with the charts
 ///
@@ -107,9 +107,13 @@ impl ApproachStudy {
             let name = format!("charts until L-BFGS settles, coverage {coverage}");
             outcomes.push(self.chart(config, &name, "")?);
         }
-        let page = page(&outcomes, &drawn, self.steps, radius)?;
+        let lines: Vec<Line> = (outcomes.iter().enumerate())
+            .map(|(k, outcome)| (outcome, drawn.contains(&k)))
+            .collect();
+        let page = page(&lines, self.steps, radius);
         run_folder::write(&self.out, "approaches.md", &page)?;
-        run_folder::write(&self.out, "approaches.csv", &csv(&outcomes, radius)?)?;
+        let csv = with_match(validity(radius), radius).csv(&lines);
+        run_folder::write(&self.out, "approaches.csv", &csv)?;
         let columns: Vec<_> = drawn.iter().map(|k| outcomes[*k].column(radius)).collect();
         picture::save(&side_by_side(&columns), &self.out.join("approaches"), 2400)?;
         println!("{page}\nwritten to {}", self.out.display());
@@ -223,88 +227,83 @@ fn percent(fraction: f64) -> String {
     }
 }
 
-fn page(outcomes: &[Outcome], drawn: &[usize], steps: usize, radius: f64) -> Result<String> {
-    let mut text = format!(
+/// A fraction in per cent; rounding errors are shown as zero.
+fn fraction(value: f64) -> Cell {
+    Cell::number(value, percent(value))
+}
+
+/// An approach, and whether it is the better of its rates.
+type Line<'a> = (&'a Outcome, bool);
+
+fn name((outcome, drawn): &Line) -> Cell {
+    let mark = if *drawn { "**" } else { "" };
+    Cell::text(format!("{mark}{}{mark}", outcome.name))
+}
+
+fn validity<'a>(radius: f64) -> Table<'a, Line<'a>> {
+    Table::new()
+        .column("approach", name)
+        .column("coordinates", |(outcome, _)| {
+            Cell::text(outcome.coordinates)
+        })
+        .column("rate", |(outcome, _)| Cell::text(outcome.rate))
+        .column("steps", |(outcome, _)| Cell::text(outcome.steps))
+        .column("boundary", move |(outcome, _)| {
+            Cell::fixed(100.0 * outcome.fit.free.rms / radius, 3)
+        })
+        .column("flat gap", |(outcome, _)| fraction(outcome.defects.gap[0]))
+        .column("opening gap", |(outcome, _)| {
+            fraction(outcome.defects.gap[1])
+        })
+        .column("flat overlap", |(outcome, _)| {
+            fraction(outcome.defects.overlap[0])
+        })
+        .column("opening overlap", |(outcome, _)| {
+            fraction(outcome.defects.overlap[1])
+        })
+        .column("void", |(outcome, _)| fraction(outcome.defects.void))
+        .column("beside", |(outcome, _)| fraction(outcome.defects.outside))
+        .column("opening, deg", |(outcome, _)| {
+            Cell::fixed(outcome.opening_deg, 1)
+        })
+        .column("s", |(outcome, _)| Cell::fixed(outcome.seconds, 1))
+        .column("the paper", |(outcome, _)| Cell::text(outcome.paper))
+}
+
+/// The table with the columns of the match.
+fn with_match<'a>(table: Table<'a, Line<'a>>, radius: f64) -> Table<'a, Line<'a>> {
+    let of_radius = move |distance: fn(&OutlineMatch) -> f64| {
+        move |(outcome, _): &Line| Cell::fixed(100.0 * distance(&outcome.fit) / radius, 3)
+    };
+    table
+        .column("from free corners", of_radius(|fit| fit.free.rms))
+        .column("from all corners", of_radius(|fit| fit.all.rms))
+        .column("to free corners", of_radius(|fit| fit.free.uncovered))
+        .column("to all corners", of_radius(|fit| fit.all.uncovered))
+        .column("union, free", |(outcome, _)| {
+            Cell::fixed(outcome.fit.free.shared, 4)
+        })
+        .column("union, all", |(outcome, _)| {
+            Cell::fixed(outcome.fit.all.shared, 4)
+        })
+}
+
+fn page(outcomes: &[Line], steps: usize, radius: f64) -> String {
+    let named = Table::new()
+        .column("approach", name)
+        .column("rate", |(outcome, _): &Line| Cell::text(outcome.rate));
+    format!(
         "# Validity by construction\n\n\
          One target, one start, {steps} steps of Adam, each approach at two learning rates; the rate with the smaller \
          loss is in bold and in the picture. The last rows are the charts until L-BFGS converges, with the distance \
          measured to the target's curve. Boundary: root mean square distance of the free outline corners from the \
          circle, in % of its radius. Gaps are in % of the sheet's side; overlaps, voids and the area beside the sheet \
          in % of its area. \"Opening\" is the maximum over {STATES} states of the deployment. `kirigami-studies \
-         approaches`.\n\n\
-         | approach | coordinates | rate | steps | boundary | flat gap | opening gap | flat overlap | opening overlap | void | beside | opening, deg | s | the paper |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
-    );
-    let mark = |k: usize| if drawn.contains(&k) { "**" } else { "" };
-    for (k, it) in outcomes.iter().enumerate() {
-        let (mark, defects) = (mark(k), it.defects);
-        writeln!(
-            text,
-            "| {mark}{}{mark} | {} | {} | {} | {:.3} | {} | {} | {} | {} | {} | {} | {:.1} | {:.1} | {} |",
-            it.name,
-            it.coordinates,
-            it.rate,
-            it.steps,
-            100.0 * it.fit.free.rms / radius,
-            percent(defects.gap[0]),
-            percent(defects.gap[1]),
-            percent(defects.overlap[0]),
-            percent(defects.overlap[1]),
-            percent(defects.void),
-            percent(defects.outside),
-            it.opening_deg,
-            it.seconds,
-            it.paper,
-        )?;
-    }
-    write!(
-        text,
-        "\nThe match in other measures: root mean square distance of corners from the circle and of the circle's points \
+         approaches`.\n\n{}\
+         \nThe match in other measures: root mean square distance of corners from the circle and of the circle's points \
          from the nearest corner, in % of the radius, and intersection over union of the polygon through the corners \
-         with the circle; for the free outline corners and for all.\n\n\
-         | approach | rate | from free corners | from all corners | to free corners | to all corners | union, free | union, all |\n\
-         |---|---|---|---|---|---|---|---|\n"
-    )?;
-    for (k, it) in outcomes.iter().enumerate() {
-        let (mark, [free, all]) = (mark(k), [it.fit.free, it.fit.all]);
-        write!(text, "| {mark}{}{mark} | {} |", it.name, it.rate)?;
-        for distance in [free.rms, all.rms, free.uncovered, all.uncovered] {
-            write!(text, " {:.3} |", 100.0 * distance / radius)?;
-        }
-        writeln!(text, " {:.4} | {:.4} |", free.shared, all.shared)?;
-    }
-    Ok(text)
-}
-
-fn csv(outcomes: &[Outcome], radius: f64) -> Result<String> {
-    let mut text = "approach,coordinates,rate,steps,boundary_over_radius,all_corners_over_radius,\
-                    circle_to_free_over_radius,circle_to_all_over_radius,union_free,union_all,gap_flat,gap_opening,\
-                    overlap_flat,overlap_opening,void,outside,opening_deg,seconds\n"
-        .to_owned();
-    for it in outcomes {
-        let (defects, [free, all]) = (it.defects, [it.fit.free, it.fit.all]);
-        write!(
-            text,
-            "\"{}\",{},{},{}",
-            it.name, it.coordinates, it.rate, it.steps
-        )?;
-        for distance in [free.rms, all.rms, free.uncovered, all.uncovered] {
-            write!(text, ",{:.6}", distance / radius)?;
-        }
-        writeln!(
-            text,
-            ",{:.5},{:.5},{:.3e},{:.3e},{:.3e},{:.3e},{:.3e},{:.3e},{:.3},{:.2}",
-            free.shared,
-            all.shared,
-            defects.gap[0],
-            defects.gap[1],
-            defects.overlap[0],
-            defects.overlap[1],
-            defects.void,
-            defects.outside,
-            it.opening_deg,
-            it.seconds,
-        )?;
-    }
-    Ok(text)
+         with the circle; for the free outline corners and for all.\n\n{}",
+        validity(radius).markdown(outcomes),
+        with_match(named, radius).markdown(outcomes)
+    )
 }

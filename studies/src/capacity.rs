@@ -29,7 +29,7 @@ use std::path::PathBuf;
 /// at which the sheet is deployed is found by bisection. A search ends when the scene's number of steps lowers its minimum
 /// loss by less than 1 %. With the second load applied after the first, in its own and in the opposite
 /// direction, its stroke is prescribed until the sheet reaches its first limit. The capacity of the uniform sheet is
-/// also computed in other readings of the paper. Writes capacity.csv, ways.csv,
+/// also computed in other readings of the paper. Writes capacity.csv, paths.csv,
 /// capacity.md and pictures. Example: kirigami-studies capacity
 #[derive(Args)]
 pub struct CapacityStudy {
@@ -169,10 +169,10 @@ impl CapacityStudy {
             &self.out.join("capacity"),
             2000,
         )?;
-        run_folder::write(&self.out, "capacity.csv", &capacity_page::csv(&capacities)?)?;
-        run_folder::write(&self.out, "ways.csv", &capacity_page::ways(&capacities)?)?;
+        run_folder::write(&self.out, "capacity.csv", &capacity_page::csv(&capacities))?;
+        run_folder::write(&self.out, "paths.csv", &capacity_page::paths(&capacities))?;
         let readings = self.readings(&config)?;
-        let page = capacity_page::page(&capacities, &readings, &self.scene, self.to)?;
+        let page = capacity_page::page(&capacities, &readings, &self.scene, self.to);
         run_folder::write(&self.out, "capacity.md", &page)?;
         println!("{page}\nwritten to {}", self.out.display());
         Ok(())

@@ -13,8 +13,8 @@ use design::analysis::taylor::TaylorRemainders;
 use design::scene::{Scene, SceneConfig};
 use kirigami::ui::progress::Progress;
 use kirigami::ui::{picture, run_folder};
-use std::fmt::Write;
 use std::path::PathBuf;
+use support::table::{Cell, Table};
 
 /// Measure the Taylor remainders of the design gradient of scenes
 ///
@@ -67,9 +67,9 @@ impl GradientStudy {
             verified.push(self.verify(&scene, &name, &bar, verified.len())?);
         }
         bar.finish();
-        let page = page(&verified, self.directions)?;
+        let page = page(&verified, self.directions);
         run_folder::write(&self.out, "gradient.md", &page)?;
-        run_folder::write(&self.out, "gradient.csv", &csv(&verified)?)?;
+        run_folder::write(&self.out, "gradient.csv", &csv(&verified))?;
         let lines: Vec<_> = verified
             .iter()
             .map(|it| TaylorLine {
@@ -149,38 +149,38 @@ impl Verified {
     }
 }
 
-fn page(verified: &[Verified], directions: usize) -> Result<String> {
-    let mut text = format!(
+fn page(verified: &[Verified], directions: usize) -> String {
+    let table = Table::new()
+        .column("scene", |scene: &Verified| Cell::text(&scene.name))
+        .column("loss", |scene| Cell::fixed(scene.loss, 6))
+        .column("order of R_2", |scene| {
+            Cell::known(scene.order().map(|order| Cell::fixed(order, 3)), "none")
+        })
+        .column("floor", |scene| Cell::scientific(scene.floor(), 1));
+    format!(
         "# Verification of the gradient\n\n\
          Taylor remainders R_2 of (23) at the start design of each scene with noise {NOISE}, averaged over \
          {directions} random unit directions of the whole design. The order is that over the steps between which R_2 \
          decreases with a power between 1.5 and 2.5; the floor is the smallest remainder relative to the loss. \
-         `kirigami-studies gradient`.\n\n\
-         | scene | loss | order of R_2 | floor |\n|---|---|---|---|\n"
-    );
-    for it in verified {
-        let order = it
-            .order()
-            .map_or("none".to_owned(), |order| format!("{order:.3}"));
-        writeln!(
-            text,
-            "| {} | {:.6} | {order} | {:.1e} |",
-            it.name,
-            it.loss,
-            it.floor()
-        )?;
-    }
-    Ok(text)
+         `kirigami-studies gradient`.\n\n{}",
+        table.markdown(verified)
+    )
 }
 
-fn csv(verified: &[Verified]) -> Result<String> {
-    let mut text = "scene,h,remainder\n".to_owned();
-    for it in verified {
-        for (h, remainder) in it.steps.iter().zip(&it.remainders) {
-            writeln!(text, "{},{h:e},{remainder:e}", it.name)?;
-        }
-    }
-    Ok(text)
+/// One row per step.
+fn csv(verified: &[Verified]) -> String {
+    let rows: Vec<_> = verified
+        .iter()
+        .flat_map(|scene| {
+            let steps = std::iter::zip(&scene.steps, &scene.remainders);
+            steps.map(|(h, remainder)| (scene.name.as_str(), *h, *remainder))
+        })
+        .collect();
+    Table::new()
+        .column("scene", |row: &(&str, f64, f64)| Cell::text(row.0))
+        .column("h", |row| Cell::scientific(row.1, 2))
+        .column("remainder", |row| Cell::scientific(row.2, 2))
+        .csv(&rows)
 }
 
 #[cfg(test)]

@@ -4,10 +4,8 @@
 //! choice. *Effect* is the movement of the panel corners from the scene as it is, *error* that from the finite elements:
 //! a choice whose effect is far below the error costs no accuracy.
 
-use crate::chain::rms;
-use crate::condensed::{condense, own_weights};
+use crate::choices::{Choice, Choices, Measured, own_weights, rms};
 use crate::designed::designed;
-use crate::step_time::step_time;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::objective::design_problem::{Deployment, DesignProblem};
@@ -18,8 +16,8 @@ use kirigami::replays::balanced_sheet::{Balanced, WindowSolves, balanced, moveme
 use kirigami::replays::kept_solves::SolveArgs;
 use kirigami::ui::run_folder;
 use mesher::Tier;
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use support::table::{Cell, Table};
 
 /// Measure cost and error of the levels draft, everyday and final, and of every choice, on designed sheets
 ///
@@ -53,7 +51,7 @@ const DRAFT: (usize, f64) = (5, 1e-3);
 /// A choice on one sheet.
 struct Row {
     choice: String,
-    /// Time of one design step, equilibrium and gradient: the minimum of some repeats (s).
+    /// CPU time of one design step, equilibrium and gradient (s).
     step_s: f64,
     /// Root mean square movement of the panel corners (mm): from the scene as it is, and from finite elements.
     effect: f64,
@@ -108,50 +106,50 @@ impl LevelsStudy {
         };
         let (truth, _) = balanced(&own, &design, &windows, self.rounds)?;
         let mut rows = Vec::new();
-        for (choice, config) in self.choices(&base, path)? {
-            let problem = scene(config)?.problem()?;
-            let row = Row::new(choice.clone(), &problem, &design, &truth);
-            rows.push(row.with_context(|| format!("{name}, {choice}"))?);
+        for choice in self.choices(&base, path)? {
+            let problem = scene(choice.config)?.problem()?;
+            let row = Row::new(choice.name.clone(), &problem, &design, &truth);
+            rows.push(row.with_context(|| format!("{name}, {}", choice.name))?);
         }
-        table(&own.config.title, &truth, &rows)
+        Ok(section(&own.config.title, &truth, &rows))
     }
 
-    fn choices(&self, base: &SceneConfig, path: &Path) -> Result<Vec<(String, SceneConfig)>> {
-        let mut choices = vec![("everyday: the scene as it is".to_owned(), base.clone())];
+    fn choices(&self, base: &SceneConfig, path: &Path) -> Result<Vec<Choice>> {
+        let mut choices = Choices::new(base);
+        choices.vary("", "everyday: the scene as it is", |_| ());
         for (i, weights) in self.networks.iter().enumerate() {
-            let mut config = base.clone();
-            config.name_weights(weights)?;
+            let mut with_weights = base.clone();
+            with_weights.name_weights(weights)?;
             let stem = weights.file_stem().unwrap_or_default().to_string_lossy();
             if i == 0 {
-                let mut draft = config.clone();
-                (draft.load_steps, draft.solver.tolerance) = DRAFT;
                 let (steps, tolerance) = DRAFT;
-                let choice = format!("draft: {stem}, {steps} load steps, tolerance {tolerance:e}");
-                choices.push((choice, draft));
+                let name = format!("draft: {stem}, {steps} load steps, tolerance {tolerance:e}");
+                choices.vary("", name, |config| {
+                    *config = with_weights.clone();
+                    (config.load_steps, config.solver.tolerance) = DRAFT;
+                });
             }
-            choices.push((format!("weights {stem}"), config));
+            choices.vary("", format!("weights {stem}"), |config| {
+                *config = with_weights
+            });
         }
-        let mut add = |choice: String, change: &dyn Fn(&mut SceneConfig)| {
-            let mut config = base.clone();
-            change(&mut config);
-            choices.push((choice, config));
-        };
         for tolerance in [1e-6, 1e-3] {
-            let choice = format!("tolerance {tolerance:e}");
-            add(choice, &|config| config.solver.tolerance = tolerance);
+            choices.vary("", format!("tolerance {tolerance:e}"), |config| {
+                config.solver.tolerance = tolerance;
+            });
         }
         for steps in [5, 40] {
-            let choice = format!("{steps} load steps");
-            add(choice, &|config| config.load_steps = steps);
+            choices.vary("", format!("{steps} load steps"), |config| {
+                config.load_steps = steps
+            });
         }
         let weights = own_weights(base, path)?;
-        add("linear springs, secant at 20 deg".into(), &|config| {
-            condense(config, &weights, 20.0);
-        });
-        add("hinges at the corners".into(), &|config| {
+        let springs = "linear springs, secant at 20 deg";
+        choices.springs("", springs, &weights, 20.0, HingePoint::CutTip);
+        choices.vary("", "hinges at the corners", |config| {
             config.hinge_point = Some(HingePoint::Corner);
         });
-        Ok(choices)
+        Ok(choices.list)
     }
 }
 
@@ -162,8 +160,8 @@ impl Row {
         design: &DesignVector,
         truth: &Balanced,
     ) -> Result<Self> {
-        let deployed = problem.evaluate(design)?.deployment;
-        let step_s = step_time(problem, design)?;
+        let measured = Measured::new(problem, design)?;
+        let ([_, step_s], deployed) = (measured.seconds, measured.evaluation.deployment);
         let (own, by_elements) = (truth.by_law(), truth.by_elements());
         let error = rms(&movements(by_elements, &deployed));
         let rotations = |of: &Deployment| -> Vec<f64> {
@@ -184,39 +182,33 @@ impl Row {
     }
 }
 
-fn table(title: &str, truth: &Balanced, rows: &[Row]) -> Result<String> {
-    let rounds = truth.rounds.len();
-    let in_rounds = match rounds {
+/// The table of a sheet under its title.
+fn section(title: &str, truth: &Balanced, rows: &[Row]) -> String {
+    let in_rounds = match truth.rounds.len() {
         1 => "one round".into(),
         rounds => format!("{rounds} rounds"),
     };
     let moved = truth.rounds.last().map_or(0.0, |round| round.movement);
-    let warning =
-        (truth.ended.warning()).map_or(String::new(), |it| format!(" NOT BALANCED: {it}."));
+    let warning = truth.ended.warning();
+    let warning = warning.map_or(String::new(), |why| format!(" NOT BALANCED: {why}."));
     let minutes = truth
         .cpu_seconds
         .map_or("?".into(), |seconds| format!("{:.0}", seconds / 60.0));
-    let mut text = format!(
+    let table = Table::new()
+        .column("choice", |row: &Row| Cell::text(&row.choice))
+        .column("step, ms", |row| Cell::fixed(1e3 * row.step_s, 2))
+        .column("effect, mm", |row| Cell::scientific(row.effect, 1))
+        .column("error, mm", |row| Cell::fixed(row.error, 3))
+        .column("of the sheet", |row| Cell::percent(row.relative, 3))
+        .column("error of rotations, deg", |row| {
+            Cell::fixed(row.rotation_deg, 3)
+        });
+    format!(
         "### {title}\n\n\
          {} hinges by finite elements in {in_rounds}, {minutes} CPU minutes; no corner moved by more than {moved:.2} mm in the \
-         last.{warning} Step: equilibrium and gradient. Effect: movement of the panel corners from the scene as it is; error: \
-         from finite elements; both root mean squares. `kirigami-studies levels`.\n\n\
-         | choice | step, ms | effect, mm | error, mm | of the sheet | error of rotations, deg |\n\
-         |---|---|---|---|---|---|\n",
+         last.{warning} Step: CPU time of equilibrium and gradient. Effect: movement of the panel corners from the scene as \
+         it is; error: from finite elements; both root mean squares. `kirigami-studies levels`.\n\n{}\n",
         truth.hinges.len(),
-    );
-    for row in rows {
-        writeln!(
-            text,
-            "| {} | {:.2} | {:.1e} | {:.3} | {:.3} % | {:.3} |",
-            row.choice,
-            1e3 * row.step_s,
-            row.effect,
-            row.error,
-            100.0 * row.relative,
-            row.rotation_deg
-        )?;
-    }
-    text += "\n";
-    Ok(text)
+        table.markdown(rows)
+    )
 }

@@ -5,8 +5,8 @@ use clap::Args;
 use design::analysis::localisation::{critical_edge, gamma};
 use hinge::SheetMaterial;
 use kirigami::ui::run_folder;
-use std::fmt::Write;
 use std::path::PathBuf;
+use support::table::{Cell, Table};
 
 /// Compute Gamma and the critical panel edge of sheet materials, for sheets that lie on a surface
 ///
@@ -43,33 +43,41 @@ impl LocalisationStudy {
             "--w-lig and --edge must be positive (mm)"
         );
         let _held = run_folder::hold(&self.out)?;
-        let mut text = format!(
+        let materials: Vec<SheetMaterial> = (self.materials.iter())
+            .map(|path| SheetMaterial::load(path))
+            .collect::<Result<_, _>>()?;
+        let table = Table::new()
+            .column("material", |material: &SheetMaterial| {
+                Cell::text(&material.name)
+            })
+            .column("E, GPa", |material| Cell::text(material.young / 1e3))
+            .column("density, kg/m^3", |material| {
+                Cell::text(material.density_kg_m3)
+            })
+            .column("t, mm", |material| Cell::text(material.thickness))
+            .column("L*, cm", |material| {
+                Cell::fixed(critical_edge(material, self.w_lig) / 10.0, 1)
+            })
+            .column("Gamma", |material| {
+                Cell::fixed(gamma(material, self.w_lig, self.edge), 2)
+            })
+            .column("paper's L*, cm", |material| {
+                let printed = PAPER
+                    .iter()
+                    .find(|(name, _)| material.name.starts_with(name));
+                Cell::known(printed.map(|(_, edge)| Cell::fixed(*edge, 1)), "-")
+            });
+        let text = format!(
             "# Range of validity of the model\n\n\
              Panels of {} mm with ligaments of {} mm, in a sheet that lies on a surface: Gamma = (L/L*)^3, (21)-(22), is \
              the moment of gravity on a panel over that of its folded ligament. For Gamma > 1 the paper expects coplanar \
              panels; finite elements of whole sheets show panels that lift off a table also where Gamma is above 10. The \
              report of a design lists Gamma for each hinge. The last column is L* of Table 2 of the paper, for 18 mm. \
-             `kirigami-studies localisation`.\n\n\
-             | material | E, GPa | density, kg/m^3 | t, mm | L*, cm | Gamma | paper's L*, cm |\n|---|---|---|---|---|---|---|\n",
-            self.edge, self.w_lig
+             `kirigami-studies localisation`.\n\n{}",
+            self.edge,
+            self.w_lig,
+            table.markdown(&materials)
         );
-        for path in &self.materials {
-            let material = SheetMaterial::load(path)?;
-            let printed = PAPER
-                .iter()
-                .find(|(name, _)| material.name.starts_with(name));
-            writeln!(
-                text,
-                "| {} | {} | {} | {} | {:.1} | {:.2} | {} |",
-                material.name,
-                material.young / 1e3,
-                material.density_kg_m3,
-                material.thickness,
-                critical_edge(&material, self.w_lig) / 10.0,
-                gamma(&material, self.w_lig, self.edge),
-                printed.map_or("-".into(), |(_, edge)| format!("{edge:.1}")),
-            )?;
-        }
         run_folder::write(&self.out, "localisation.md", &text)?;
         println!("{text}\nwritten to {}", self.out.display());
         Ok(())

@@ -3,9 +3,8 @@
 mod actuations;
 mod approaches;
 mod capacity;
-mod chain;
 mod charts;
-mod condensed;
+mod choices;
 mod designed;
 mod drawing;
 mod extremes;
@@ -23,7 +22,6 @@ mod shape_alone;
 mod sheet;
 mod silhouettes;
 mod solutions;
-mod step_time;
 mod stop;
 mod surrogate;
 mod tessellation;
@@ -46,7 +44,6 @@ struct Cli {
 #[derive(Subcommand)]
 enum Study {
     Levels(levels::LevelsStudy),
-    Chain(chain::ChainStudy),
     Sheet(sheet::SheetStudy),
     Window(window::WindowStudy),
     PathCosts(path_costs::PathCostStudy),
@@ -69,7 +66,6 @@ impl Study {
     fn run(&self) -> Result<()> {
         match self {
             Self::Levels(study) => study.run(),
-            Self::Chain(study) => study.run(),
             Self::Sheet(study) => study.run(),
             Self::Window(study) => study.run(),
             Self::PathCosts(study) => study.run(),

@@ -1,19 +1,17 @@
 //! `kirigami-studies sheet`: cost and error of the choices for the sheet's equilibrium.
 
-mod sheet_page;
-
-use crate::condensed::condense;
+use crate::charts::{self, CostPanel};
+use crate::choices::{Choice, Choices, Measured};
 use anyhow::{Context, Result};
 use clap::Args;
-use design::equilibrium::load_step::Status;
 use design::equilibrium::settings::Method;
-use design::objective::design_problem::{Deployment, DesignProblem, Evaluation};
+use design::objective::design_problem::DesignProblem;
 use design::scene::{HingeModel, PinConfig, Scene, SceneConfig, SurrogateFile};
 use design::sheet::cut_sheet::HingePoint;
 use design::sheet::kinematics::deployed_corners;
-use kirigami::ui::run_folder;
+use kirigami::ui::{picture, run_folder};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use support::table::{Cell, Table};
 use surrogate::Surrogate;
 
 /// Measure cost and error of the sheet's choices: tolerance, load steps, method, hinge law, hinge point
@@ -38,41 +36,44 @@ const LEARNED: &str = "configs/scenes/a4-polyester.toml";
 const LINEAR: &str = "configs/scenes/linear-7x7.toml";
 /// Standard deviation of the random start, in the chart coordinates.
 const NOISE: f64 = 0.03;
-/// A cost is the mean over the repeats within this time, with a minimum number of repeats.
-const REPEAT: Duration = Duration::from_millis(500);
-const MIN_REPEATS: u32 = 5;
 
-/// A choice with its cost and result.
+/// The kinds of choices and their definitions.
+const KINDS: [(&str, &str); 5] = [
+    (
+        "tolerance",
+        "residual of an equilibrium, relative to the maximum force",
+    ),
+    (
+        "load steps",
+        "number N of load steps; the deployed shape does not depend on it, the path functionals do",
+    ),
+    (
+        "method",
+        "Newton on the sparse tangent, or L-BFGS as in the paper",
+    ),
+    ("hinge law", "model of the energy of a ligament"),
+    ("hinge point", "point at which the learned law measures (8)"),
+];
+
+/// A choice with its cost and its difference from the first choice of its kind and scene.
 struct Row {
     scene: &'static str,
-    study: &'static str,
-    value: String,
-    /// Time of the equilibria, and of equilibria with gradient.
-    seconds: [f64; 2],
-    iterations: usize,
-    /// The worst status of any load step.
-    status: Status,
-    found: Found,
-}
-
-/// The compared quantities.
-struct Found {
-    corners: Vec<[f64; 2]>,
-    openings: Vec<f64>,
-    /// Gradient in the pattern's coordinates.
-    gradient: Vec<f64>,
+    kind: &'static str,
+    name: String,
+    measured: Measured,
     /// Size of a panel (mm).
     panel: f64,
+    difference: Difference,
 }
 
-/// Difference of a choice from its reference.
+#[derive(Default)]
 struct Difference {
     /// Root mean square distance of the panel corners after the best rigid motion, relative to the size of a
     /// panel.
     shape: f64,
     /// Maximum difference of the opening of a hinge (deg).
     opening_deg: f64,
-    /// Norm of the difference of the gradients relative to that of the gradient.
+    /// Norm of the difference of the gradients in the pattern relative to that of the gradient.
     gradient: f64,
 }
 
@@ -81,24 +82,33 @@ impl SheetStudy {
         let _held = run_folder::hold(&self.out)?;
         let weights = std::path::absolute(&self.weights)?;
         let mut rows = Vec::new();
-        for (name, path) in [("A4, learned", LEARNED), ("7 x 7, linear", LINEAR)] {
-            let base = base(Path::new(path), &weights)?;
-            for (study, value, config) in solver_cases(&base) {
-                rows.push(measure(name, study, value, config, Path::new(path))?);
+        let base = base(Path::new(LEARNED), &weights)?;
+        let mut measure = |scene, path, choices: Vec<Choice>| -> Result<()> {
+            for choice in choices {
+                let row = Row::new(scene, Path::new(path), choice, &rows)?;
+                rows.push(row);
             }
-            if path == LEARNED {
-                let reference = rows.iter().find(|row| row.study == "hinge law");
-                let openings = &reference
-                    .context("the hinge law is measured first")?
-                    .found
-                    .openings;
-                let opening = openings.iter().sum::<f64>() / openings.len() as f64;
-                for (study, value, config) in law_cases(&base, &weights, opening) {
-                    rows.push(measure(name, study, value, config, Path::new(path))?);
-                }
-            }
-        }
-        sheet_page::write(&self.out, &rows, &Surrogate::load(&self.weights)?)
+            Ok(())
+        };
+        measure("A4, learned", LEARNED, solver_choices(&base))?;
+        measure("A4, learned", LEARNED, law_choices(&base, &weights)?)?;
+        let linear = self::base(Path::new(LINEAR), &weights)?;
+        measure("7 x 7, linear", LINEAR, solver_choices(&linear))?;
+        self.write(&rows)
+    }
+
+    fn write(&self, rows: &[Row]) -> Result<()> {
+        let csv = Table::new()
+            .column("scene", |row: &Row| Cell::text(row.scene))
+            .column("kind", |row| Cell::text(row.kind));
+        run_folder::write(&self.out, "sheet.csv", &columns(csv).csv(rows))?;
+        let page = page(rows, &Surrogate::load(&self.weights)?);
+        run_folder::write(&self.out, "sheet.md", &page)?;
+        run_folder::write(&self.out, "tradeoff.md", &tradeoff(rows))?;
+        let panels: Vec<CostPanel> = KINDS.iter().map(|(kind, _)| panel(kind, rows)).collect();
+        let pictures = picture::save(&charts::costs(&panels)?, &self.out.join("sheet"), 1600)?;
+        println!("{} choices; {}", rows.len(), pictures[1].display());
+        Ok(())
     }
 }
 
@@ -116,163 +126,116 @@ fn base(path: &Path, weights: &Path) -> Result<SceneConfig> {
     Ok(config)
 }
 
-type Case = (&'static str, String, SceneConfig);
-
-/// Tolerances, load steps and methods; the first case of each study is the reference of the others.
-fn solver_cases(base: &SceneConfig) -> Vec<Case> {
-    let mut cases = Vec::new();
-    let mut add = |study, value: String, change: &dyn Fn(&mut SceneConfig)| {
-        let mut config = base.clone();
-        change(&mut config);
-        cases.push((study, value, config));
-    };
+/// Tolerances, load steps and methods; the first choice of each kind is the reference of the others.
+fn solver_choices(base: &SceneConfig) -> Vec<Choice> {
+    let mut choices = Choices::new(base);
     for tolerance in [1e-13, 1e-10, 1e-8, 1e-6, 1e-4, 1e-3, 1e-2] {
-        let value = format!("{tolerance:.0e}");
-        add("tolerance", value, &|config| {
-            config.solver.tolerance = tolerance
+        choices.vary("tolerance", format!("{tolerance:.0e}"), |config| {
+            config.solver.tolerance = tolerance;
         });
     }
     for steps in [160, 80, 40, 20, 10, 5, 2, 1] {
-        let value = steps.to_string();
-        add("load steps", value, &|config| config.load_steps = steps);
+        choices.vary("load steps", steps.to_string(), |config| {
+            config.load_steps = steps;
+        });
     }
     for tolerance in [1e-10, 1e-8, 1e-6, 1e-4, 1e-2] {
-        let method = Method::Lbfgs {
+        let lbfgs = Method::Lbfgs {
             max_iterations: 200_000,
         };
-        for (name, method) in [("Newton", Method::Newton), ("L-BFGS", method)] {
-            let value = format!("{name}, {tolerance:.0e}");
-            add("method", value, &|config| {
+        for (name, method) in [("Newton", Method::Newton), ("L-BFGS", lbfgs)] {
+            choices.vary("method", format!("{name}, {tolerance:.0e}"), |config| {
                 config.solver.tolerance = tolerance;
                 config.solver.method = method;
             });
         }
     }
-    if base.hinge == HingeModel::Surrogate {
-        add("hinge law", "surrogate".into(), &|_| ());
-    }
-    cases
+    choices.list
 }
 
-/// Hinge laws besides the learned one, and hinge points; `opening` (rad) is the opening angle of the pins.
-fn law_cases(base: &SceneConfig, weights: &Path, opening: f64) -> Vec<Case> {
-    let condensed = |secant_deg: f64, hinge_point| {
-        let mut config = base.clone();
-        condense(&mut config, weights, secant_deg);
-        config.hinge_point = Some(hinge_point);
-        config
-    };
-    let mut pinned = base.clone();
-    pinned.hinge = HingeModel::Pin;
-    pinned.surrogate = None;
-    let opening_deg = opening.to_degrees();
-    pinned.pin = Some(PinConfig { opening_deg });
-    (pinned.supports, pinned.loads) = (Vec::new(), Vec::new());
-    pinned.drive = None;
-    let mut at_corner = base.clone();
-    at_corner.hinge_point = Some(HingePoint::Corner);
+/// Hinge laws and hinge points of a learned scene; the pins open by the mean opening of the learned hinges.
+fn law_choices(base: &SceneConfig, weights: &Path) -> Result<Vec<Choice>> {
+    let learned = Scene::new(base.clone(), Path::new(LEARNED))?;
+    let deployment = learned.problem()?.deploy(&learned.start())?;
+    let openings = deployment.final_step().deformations.iter();
+    let opening: f64 = openings.map(|eps| eps.theta).sum::<f64>();
+    let opening_deg = (opening / deployment.sheet.hinges.len() as f64).to_degrees();
     let (tip, corner) = (HingePoint::CutTip, HingePoint::Corner);
-    vec![
-        (
-            "hinge law",
-            "linear, secant at 20 deg".into(),
-            condensed(20.0, tip),
-        ),
-        (
-            "hinge law",
-            "linear, Hessian at 0".into(),
-            condensed(0.0, tip),
-        ),
-        (
-            "hinge law",
-            "linear at the corner, 20 deg".into(),
-            condensed(20.0, corner),
-        ),
-        ("hinge law", "pin, mean opening".into(), pinned),
-        ("hinge point", "cut-tip".into(), base.clone()),
-        ("hinge point", "corner".into(), at_corner),
-    ]
-}
-
-fn measure(
-    scene: &'static str,
-    study: &'static str,
-    value: String,
-    config: SceneConfig,
-    path: &Path,
-) -> Result<Row> {
-    let read = Scene::new(config, path)?;
-    let (problem, design) = (read.problem()?, read.start());
-    let failed = || format!("{scene}, {study}, {value}");
-    let evaluation = problem.evaluate(&design).with_context(failed)?;
-    let equilibria = cost(|| problem.deploy(&design).map(drop))?;
-    let gradient = cost(|| problem.evaluate(&design).map(drop))?;
-    let path = &evaluation.deployment.path;
-    let rank = |status: &Status| match status {
-        Status::Converged => 0,
-        Status::LeftDomain => 1,
-        Status::Almost => 2,
-        Status::LimitPoint => 3,
-        Status::Diverged => 4,
+    let mut choices = Choices::new(base);
+    choices.vary("hinge law", "surrogate", |_| ());
+    let mut springs = |name, secant_deg, point| {
+        choices.springs("hinge law", name, weights, secant_deg, point);
     };
-    let statuses = path.iter().map(|step| step.status);
-    Ok(Row {
-        scene,
-        study,
-        value,
-        seconds: [equilibria, gradient],
-        iterations: path.iter().map(|step| step.iterations).sum(),
-        status: statuses
-            .max_by_key(rank)
-            .context("a path has at least one step")?,
-        found: Found::of(&problem, &evaluation),
-    })
+    springs("linear, secant at 20 deg", 20.0, tip);
+    springs("linear, Hessian at 0", 0.0, tip);
+    springs("linear at the corner, 20 deg", 20.0, corner);
+    choices.vary("hinge law", "pin, mean opening", |config| {
+        config.hinge = HingeModel::Pin;
+        config.surrogate = None;
+        config.pin = Some(PinConfig { opening_deg });
+        (config.supports, config.loads) = (Vec::new(), Vec::new());
+        config.drive = None;
+    });
+    choices.vary("hinge point", "cut-tip", |_| ());
+    choices.vary("hinge point", "corner", |config| {
+        config.hinge_point = Some(corner);
+    });
+    Ok(choices.list)
 }
 
-/// Seconds per repeat: CPU time of this thread if the system reports it, otherwise wall time.
-fn cost<E>(mut work: impl FnMut() -> Result<(), E>) -> Result<f64, E> {
-    let (begin, busy, mut repeats) = (Instant::now(), thread_seconds(), 0);
-    while begin.elapsed() < REPEAT || repeats < MIN_REPEATS {
-        work()?;
-        repeats += 1;
-    }
-    let spent = match (busy, thread_seconds()) {
-        (Some(before), Some(after)) => after - before,
-        _ => begin.elapsed().as_secs_f64(),
-    };
-    Ok(spent / f64::from(repeats))
-}
-
-/// CPU time of this thread from the kernel (s), which counts in ticks of a few milliseconds.
-fn thread_seconds() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
-    Some(1e-9 * nanoseconds)
-}
-
-impl Found {
-    fn of(problem: &DesignProblem, evaluation: &Evaluation) -> Self {
-        let Deployment { sheet, .. } = &evaluation.deployment;
-        let last = evaluation.deployment.final_step();
-        let pattern = &evaluation.gradient.pattern;
-        Self {
-            corners: deployed_corners(sheet, &last.configuration).concat(),
-            openings: last.deformations.iter().map(|eps| eps.theta).collect(),
-            gradient: [pattern.z.as_slice(), &pattern.ell.concat()].concat(),
+impl Row {
+    /// `rows`: those before, with the reference of this one unless it is the first of its kind.
+    fn new(scene: &'static str, path: &Path, choice: Choice, rows: &[Self]) -> Result<Self> {
+        let Choice { kind, name, config } = choice;
+        let read = Scene::new(config, path)?;
+        let problem: DesignProblem = read.problem()?;
+        let measured = Measured::new(&problem, &read.start());
+        let measured = measured.with_context(|| format!("{scene}, {kind}, {name}"))?;
+        let mut row = Self {
+            scene,
+            kind,
+            name,
+            measured,
             panel: (problem.outline.area() / problem.grid.panel_count() as f64).sqrt(),
+            difference: Difference::default(),
+        };
+        let reference = rows
+            .iter()
+            .find(|other| other.scene == scene && other.kind == kind);
+        if let Some(reference) = reference {
+            row.difference = row.difference_from(reference);
         }
+        Ok(row)
     }
 
-    fn difference(&self, other: &Self) -> Difference {
-        let openings = std::iter::zip(&self.openings, &other.openings);
+    fn corners(&self) -> Vec<[f64; 2]> {
+        let deployment = &self.measured.evaluation.deployment;
+        let last = &deployment.final_step().configuration;
+        deployed_corners(&deployment.sheet, last).concat()
+    }
+
+    fn openings(&self) -> impl Iterator<Item = f64> {
+        let last = self.measured.evaluation.deployment.final_step();
+        last.deformations.iter().map(|eps| eps.theta)
+    }
+
+    fn gradient(&self) -> Vec<f64> {
+        let pattern = &self.measured.evaluation.gradient.pattern;
+        [pattern.z.as_slice(), &pattern.ell.concat()].concat()
+    }
+
+    fn difference_from(&self, other: &Self) -> Difference {
+        let openings = std::iter::zip(self.openings(), other.openings());
         let apart = openings.map(|(one, other)| (one - other).abs());
-        let norm = |v: &mut dyn Iterator<Item = f64>| v.map(|x| x * x).sum::<f64>().sqrt();
-        let gradients = std::iter::zip(&self.gradient, &other.gradient);
-        let off = norm(&mut gradients.map(|(one, other)| one - other));
+        let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let (gradient, reference) = (self.gradient(), other.gradient());
+        let off: Vec<f64> = std::iter::zip(&gradient, &reference)
+            .map(|(one, other)| one - other)
+            .collect();
         Difference {
-            shape: misfit(&self.corners, &other.corners) / other.panel,
+            shape: misfit(&self.corners(), &other.corners()) / other.panel,
             opening_deg: apart.fold(0.0, f64::max).to_degrees(),
-            gradient: off / norm(&mut other.gradient.iter().copied()),
+            gradient: norm(&off) / norm(&reference),
         }
     }
 }
@@ -297,6 +260,116 @@ fn misfit(one: &[[f64; 2]], other: &[[f64; 2]]) -> f64 {
     let squares = std::iter::zip(&one, &other)
         .map(|([x, y], [u, v])| (cos * x - sin * y - u).powi(2) + (sin * x + cos * y - v).powi(2));
     (squares.sum::<f64>() / one.len() as f64).sqrt()
+}
+
+/// The table of one kind, after the given first columns.
+fn columns<'a>(table: Table<'a, Row>) -> Table<'a, Row> {
+    table
+        .column("choice", |row| Cell::text(&row.name))
+        .column("equilibrium, ms", |row| {
+            Cell::fixed(1e3 * row.measured.seconds[0], 2)
+        })
+        .column("with gradient, ms", |row| {
+            Cell::fixed(1e3 * row.measured.seconds[1], 2)
+        })
+        .column("iterations", |row| Cell::text(row.measured.iterations))
+        .column("status", |row| {
+            Cell::text(format!("{:?}", row.measured.status))
+        })
+        .column("shape", |row| Cell::scientific(row.difference.shape, 1))
+        .column("opening, deg", |row| {
+            Cell::scientific(row.difference.opening_deg, 1)
+        })
+        .column("gradient", |row| {
+            Cell::scientific(row.difference.gradient, 1)
+        })
+}
+
+fn page(rows: &[Row], weights: &Surrogate) -> String {
+    let card = weights.card();
+    let mut text = format!(
+        "# Cost and error of the sheet's choices\n\n\
+         The scenes `a4-polyester` and `linear-7x7`, from a random start and without the damage term. The \
+         learned hinges are of the material {}, window tier {}, database {:.12}, error of W {:.1} % \
+         (root mean square, test rows). Differences are relative to the first row of each table: of the panel \
+         corners (root mean square after the best rigid motion, relative to the size of a panel), of the \
+         opening of a hinge (maximum) and of the gradient in the pattern (relative). Costs are \
+         CPU time of one thread. The kernels compute in float64 only, so there is \
+         no float32 row.\n",
+        card.material,
+        card.tier,
+        card.dataset_hash,
+        100.0 * card.test_errors.energy.relative_rmse
+    );
+    let table = columns(Table::new());
+    for (kind, about) in KINDS {
+        let of_kind: Vec<&Row> = rows.iter().filter(|row| row.kind == kind).collect();
+        for of_scene in of_kind.chunk_by(|one, other| one.scene == other.scene) {
+            let table = table.markdown(of_scene.iter().copied());
+            let scene = of_scene[0].scene;
+            text += &format!("\n## {kind}, {scene}\n\n{about}\n\n{table}");
+        }
+    }
+    text
+}
+
+/// One table for both scenes: cost, error, use.
+fn tradeoff(rows: &[Row]) -> String {
+    let table = Table::new()
+        .column("choice", |row: &&Row| {
+            Cell::text(format!("{} {}", row.kind, row.name))
+        })
+        .column("scene", |row| Cell::text(row.scene))
+        .column("cost with gradient, ms", |row| {
+            Cell::fixed(1e3 * row.measured.seconds[1], 2)
+        })
+        .column("shape", |row| Cell::scientific(row.difference.shape, 1))
+        .column("gradient", |row| {
+            Cell::scientific(row.difference.gradient, 1)
+        })
+        .column("good for", |row| {
+            Cell::text(good_for(row.kind, &row.name).unwrap_or_default())
+        });
+    let shown: Vec<&Row> = rows
+        .iter()
+        .filter(|row| good_for(row.kind, &row.name).is_some())
+        .collect();
+    format!(
+        "## The sheet's equilibrium\n\n\
+         Details: [sheet](results/sheet/sheet.md). Errors are differences from the first row of each kind: of the \
+         deployed corners, relative to the size of a panel, and of the gradient.\n\n{}",
+        table.markdown(&shown)
+    )
+}
+
+/// The recommended use of the choices in the short table.
+fn good_for(kind: &str, name: &str) -> Option<&'static str> {
+    Some(match (kind, name) {
+        ("tolerance", "1e-10") => "the default",
+        ("tolerance", "1e-4") => "a first look",
+        ("load steps", "20") => "path functionals",
+        ("load steps", "5") => "shape alone",
+        ("method", "Newton, 1e-8") => "every use",
+        ("method", "L-BFGS, 1e-8") => "comparison with the paper",
+        ("hinge law", "surrogate") => "the final design: folding, yielding, damage",
+        ("hinge law", "linear, secant at 20 deg") => "exploring with the weights' stiffness",
+        ("hinge law", "pin, mean opening") => "exploring patterns by kinematics",
+        ("hinge point", "corner") => "comparison with the paper",
+        _ => return None,
+    })
+}
+
+/// The error of the gradient against the cost.
+fn panel(kind: &'static str, rows: &[Row]) -> CostPanel {
+    let of_kind = rows.iter().filter(|row| row.kind == kind);
+    let points = of_kind.map(|row| {
+        let cost = 1e3 * row.measured.seconds[1];
+        (row.scene, row.name.clone(), cost, row.difference.gradient)
+    });
+    CostPanel {
+        title: kind,
+        points: points.collect(),
+    }
 }
 
 #[cfg(test)]

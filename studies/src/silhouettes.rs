@@ -12,8 +12,8 @@ use design::scene::{Scene, SceneConfig};
 use kirigami::ui::progress::Progress;
 use kirigami::ui::{picture, run_folder};
 use std::collections::BTreeSet;
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use support::table::{Cell, Table};
 
 /// Design one sheet for several silhouettes, and measure the match and the shape of the panels
 ///
@@ -92,9 +92,9 @@ impl SilhouetteStudy {
             })?);
         }
         bar.finish();
-        let page = page(&fitted)?;
+        let page = page(&fitted);
         run_folder::write(&self.out, "silhouettes.md", &page)?;
-        run_folder::write(&self.out, "silhouettes.csv", &csv(&fitted)?)?;
+        run_folder::write(&self.out, "silhouettes.csv", &columns().csv(&fitted))?;
         let limited = fitted.iter().filter(|it| it.aim.min_panel_width > 0.0);
         let titles: Vec<String> = limited.clone().map(Fitted::title).collect();
         let columns: Vec<_> = std::iter::zip(limited, &titles)
@@ -185,76 +185,59 @@ fn corners(outline: OutlinePoints) -> &'static str {
     }
 }
 
-fn page(fitted: &[Fitted]) -> Result<String> {
-    let mut text = "# Silhouettes\n\n\
+fn columns<'a>() -> Table<'a, Fitted> {
+    let percent_of_height = |value: fn(&Fitted) -> f64| {
+        move |fitted: &Fitted| Cell::fixed(100.0 * value(fitted) / fitted.height, 3)
+    };
+    Table::new()
+        .column(
+            "silhouette, corners, minimum width in mm",
+            |fitted: &Fitted| {
+                let (name, corners) = (&fitted.name, corners(fitted.aim.outline));
+                Cell::text(match fitted.aim.min_panel_width {
+                    0.0 => format!("{name}, {corners}, none"),
+                    width => format!("{name}, {corners}, {width}"),
+                })
+            },
+        )
+        .column(
+            "mean distance free, %",
+            percent_of_height(|it| it.fit.free.mean),
+        )
+        .column(
+            "mean distance all, %",
+            percent_of_height(|it| it.fit.all.mean),
+        )
+        .column("union free", |fitted| {
+            Cell::fixed(fitted.fit.free.shared, 4)
+        })
+        .column("union all", |fitted| Cell::fixed(fitted.fit.all.shared, 4))
+        .column("opening, deg", |fitted| Cell::fixed(fitted.opening_deg, 1))
+        .column("sharpest corner, deg", |fitted| {
+            Cell::fixed(fitted.worst.sharpest_deg, 1)
+        })
+        .column("thinnest panel, mm", |fitted| {
+            Cell::fixed(fitted.worst.thinnest, 2)
+        })
+        .column("minimum area", |fitted| Cell::fixed(fitted.worst.least, 3))
+        .column("overlap", |fitted| {
+            let overlap = fitted.tessellation.defects().overlap;
+            Cell::scientific(overlap.iter().sum(), 0)
+        })
+        .column("s", |fitted| Cell::fixed(fitted.seconds, 0))
+}
+
+fn page(fitted: &[Fitted]) -> String {
+    format!(
+        "# Silhouettes\n\n\
         One sheet designed for drawn targets of one height. The corners are those compared with the \
         target: those that belong to no hinge (free), the paper's point set, or all outline corners. Every match is \
         measured through both: the mean distance of the corners from the target, in % of its height, and the \
         intersection over union of the polygon through them with the target. The thinnest panel is the minimum distance \
         of a corner from an edge of its panel that does not end at it; the minimum area is relative to the mean. The \
         seconds are those of this run; steps made by an earlier run are not included. `kirigami-studies \
-        silhouettes`.\n\n\
-        | silhouette, corners, minimum width in mm | mean distance free, % | mean distance all, % | union free | union all | opening, deg | sharpest corner, deg | thinnest panel, mm | minimum area | overlap | s |\n\
-        |---|---|---|---|---|---|---|---|---|---|---|\n"
-        .to_owned();
-    for it in fitted {
-        let OutlineMatch { free, all } = it.fit;
-        let limit = match it.aim.min_panel_width {
-            0.0 => "none".to_owned(),
-            width => width.to_string(),
-        };
-        writeln!(
-            text,
-            "| {}, {}, {limit} | {:.3} | {:.3} | {:.4} | {:.4} | {:.1} | {:.1} | {:.2} | {:.3} | {:.0e} | {:.0} |",
-            it.name,
-            corners(it.aim.outline),
-            100.0 * free.mean / it.height,
-            100.0 * all.mean / it.height,
-            free.shared,
-            all.shared,
-            it.opening_deg,
-            it.worst.sharpest_deg,
-            it.worst.thinnest,
-            it.worst.least,
-            it.tessellation.defects().overlap.iter().sum::<f64>(),
-            it.seconds,
-        )?;
-    }
-    writeln!(
-        text,
-        "| the paper's seal, not stated | 0.7 | | 0.967 | | 90 | | | | | |"
-    )?;
-    Ok(text)
-}
-
-fn csv(fitted: &[Fitted]) -> Result<String> {
-    let mut text =
-        "silhouette,corners,min_panel_width_mm,mean_free_over_height,rms_free_over_height,mean_all_over_height,\
-         rms_all_over_height,union_free,union_all,opening_deg,sharpest_corner_deg,thinnest_panel_mm,minimum_area,seconds\n"
-            .to_owned();
-    for it in fitted {
-        let OutlineMatch { free, all } = it.fit;
-        write!(
-            text,
-            "{},{},{}",
-            it.name,
-            corners(it.aim.outline),
-            it.aim.min_panel_width
-        )?;
-        for distance in [free.mean, free.rms, all.mean, all.rms] {
-            write!(text, ",{:.6}", distance / it.height)?;
-        }
-        writeln!(
-            text,
-            ",{:.5},{:.5},{:.3},{:.2},{:.3},{:.4},{:.1}",
-            free.shared,
-            all.shared,
-            it.opening_deg,
-            it.worst.sharpest_deg,
-            it.worst.thinnest,
-            it.worst.least,
-            it.seconds,
-        )?;
-    }
-    Ok(text)
+        silhouettes`.\n\n{}\
+        | the paper's seal, not stated | 0.7 | | 0.967 | | 90 | | | | | |\n",
+        columns().markdown(fitted)
+    )
 }

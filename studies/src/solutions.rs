@@ -93,9 +93,9 @@ impl SolutionStudy {
             config.objective.outline = outline;
             sets.push(self.set(&config)?);
         }
-        let page = solutions_page::page(&sets)?;
+        let page = solutions_page::page(&sets);
         run_folder::write(&self.out, "solutions.md", &page)?;
-        run_folder::write(&self.out, "solutions.csv", &solutions_page::csv(&sets)?)?;
+        run_folder::write(&self.out, "solutions.csv", &solutions_page::csv(&sets))?;
         let rows: Vec<_> = sets.iter().map(SolutionSet::chart).collect();
         picture::save(
             &charts::solutions(&rows)?,

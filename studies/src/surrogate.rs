@@ -8,10 +8,10 @@ use dataset::{Database, Part};
 use hinge::{HingeDeformation, HingeDesign};
 use kirigami::commands::train::kept_fit;
 use kirigami::ui::{picture, run_folder};
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use surrogate::{Order, Surrogate, TestErrors, number_or_dash};
+use support::table::{Cell, Table};
+use surrogate::{Order, Surrogate, TestErrors};
 
 /// Measure the accuracy of the surrogate against its cost: rays, network size, epochs, precision
 ///
@@ -120,9 +120,9 @@ impl SurrogateStudy {
 
     fn write(&self, fits: &[Fit]) -> Result<()> {
         let write = |name: &str, text: &str| run_folder::write(&self.out, name, text);
-        write("surrogate.csv", &csv(fits)?)?;
-        write("surrogate.md", &markdown(fits)?)?;
-        write("tradeoff.md", &tradeoff(fits)?)?;
+        write("surrogate.csv", &columns().csv(fits))?;
+        write("surrogate.md", &markdown(fits))?;
+        write("tradeoff.md", &tradeoff(fits))?;
         let chart = charts::against_rays(&curves(fits))?;
         picture::save(&chart, &self.out.join("surrogate"), 1600)?;
         Ok(())
@@ -187,108 +187,82 @@ fn kernel_us(surrogate: &Surrogate) -> Result<f64> {
     Ok(1e6 * fastest.as_secs_f64() / HINGES as f64)
 }
 
-fn csv(fits: &[Fit]) -> Result<String> {
-    let mut text = "size,precision,training_rays,epochs,test_rows,w_percent,w_median_percent,\
-        f_a_percent,f_s_percent,m_theta_percent,d_percent,d_peak_percent,training_s,kernel_us\n"
-        .to_owned();
-    for Fit {
-        case,
-        errors,
-        training_s,
-        kernel_us,
-    } in fits
-    {
-        let [w, f_a, f_s, m_theta, d, d_peak] = errors.percents();
-        let median = 100.0 * errors.energy.median;
-        writeln!(
-            text,
-            "{},{},{},{},{},{w:.4},{median:.4},{f_a:.4},{f_s:.4},{m_theta:.4},{d:.4},{d_peak:.4},\
-             {training_s:.1},{kernel_us:.2}",
-            case.size,
-            case.precision(),
-            case.rays,
-            case.config.epochs,
-            errors.rows
-        )?;
-    }
-    Ok(text)
+/// What both tables begin with.
+fn cases<'a>() -> Table<'a, Fit> {
+    Table::new()
+        .column("size", |fit: &Fit| Cell::text(&fit.case.size))
+        .column("precision", |fit| Cell::text(fit.case.precision()))
+        .column("rays", |fit| Cell::text(fit.case.rays))
+        .column("epochs", |fit| Cell::text(fit.case.config.epochs))
 }
 
-fn markdown(fits: &[Fit]) -> Result<String> {
-    let mut text = "# Accuracy of the surrogate against its cost\n\n\
-        Relative root mean square errors on geometries that no network was trained on, the same for every \
-        row; the kernel time is that of energy, forces and tangent.\n\n\
-        | size | precision | rays | epochs | W | median | F_a | F_s | M | D | D_peak | training | \
-        kernel |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
-        .to_owned();
-    for Fit {
-        case,
-        errors,
-        training_s,
-        kernel_us,
-    } in fits
-    {
-        let [w, f_a, f_s, m_theta, ..] = errors.percents();
-        let [.., d, d_peak] = errors.percents().map(|error| number_or_dash(error, 1));
-        writeln!(
-            text,
-            "| {} | {} | {} | {} | {w:.2} % | {:.2} % | {f_a:.1} % | {f_s:.1} % | {m_theta:.1} % | \
-             {d} % | {d_peak} % | {training_s:.0} s | {kernel_us:.1} us |",
-            case.size,
-            case.precision(),
-            case.rays,
-            case.config.epochs,
-            100.0 * errors.energy.median,
-        )?;
+/// An error (%), which is NaN if not known.
+fn error(percent: f64, decimals: usize) -> Cell {
+    if percent.is_nan() {
+        Cell::known(None, "- %")
+    } else {
+        Cell::percent(0.01 * percent, decimals)
     }
-    text += "\nThe error of the energy decreases with the number n of rays as n^-p:\n\n";
+}
+
+fn columns<'a>() -> Table<'a, Fit> {
+    let mut table = cases()
+        .column("W", |fit| error(fit.errors.percents()[0], 2))
+        .column("median", |fit| Cell::percent(fit.errors.energy.median, 2));
+    for (k, name) in ["F_a", "F_s", "M", "D", "D_peak"].into_iter().enumerate() {
+        table = table.column(name, move |fit| error(fit.errors.percents()[k + 1], 1));
+    }
+    let seconds = |value: f64| Cell::number(value, format!("{value:.0} s"));
+    let microseconds = |value: f64| Cell::number(value, format!("{value:.1} us"));
+    table
+        .column("training", move |fit| seconds(fit.training_s))
+        .column("kernel", move |fit| microseconds(fit.kernel_us))
+}
+
+fn markdown(fits: &[Fit]) -> String {
+    let mut text = format!(
+        "# Accuracy of the surrogate against its cost\n\n\
+         Relative root mean square errors on geometries that no network was trained on, the same for every \
+         row; the kernel time is that of energy, forces and tangent.\n\n{}\
+         \nThe error of the energy decreases with the number n of rays as n^-p:\n\n",
+        columns().markdown(fits)
+    );
     for curve in curves(fits) {
         if let [(first, error), .., (last, smallest)] = curve.energy[..] {
             let p = (error / smallest).ln() / (last / first).ln();
             let doubled = 100.0 * (1.0 - 2.0_f64.powf(-p));
-            writeln!(
-                text,
-                "* {}: p = {p:.2}; twice the rays would reduce the error by {doubled:.0} %",
+            text += &format!(
+                "* {}: p = {p:.2}; twice the rays would reduce the error by {doubled:.0} %\n",
                 curve.title
-            )?;
+            );
         }
     }
-    text += "\n![errors against rays](surrogate.png)\n";
-    Ok(text)
+    text + "\n![errors against rays](surrogate.png)\n"
 }
 
 /// One row per network: its cost, its errors and its use.
-fn tradeoff(fits: &[Fit]) -> Result<String> {
-    let mut text = "## Surrogate\n\n\
-        | network | rays | epochs | training | kernel, us per hinge | W | forces | damage | good for \
-        |\n|---|---|---|---|---|---|---|---|---|\n"
-        .to_owned();
-    for Fit {
-        case,
-        errors,
-        training_s,
-        kernel_us,
-    } in fits
-    {
-        let [w, .., d, _] = errors.percents();
-        let d = number_or_dash(d, 1);
-        writeln!(
-            text,
-            "| {} {} | {} | {} | {training_s:.0} s | {kernel_us:.1} | {w:.2} % | {:.1} % | \
-             {d} % | {} |",
-            case.size,
-            case.precision(),
-            case.rays,
-            case.config.epochs,
-            errors.forces_percent(),
-            match case.size.as_str() {
+fn tradeoff(fits: &[Fit]) -> String {
+    let table = Table::new()
+        .column("network", |fit: &Fit| {
+            Cell::text(format!("{} {}", fit.case.size, fit.case.precision()))
+        })
+        .column("rays", |fit| Cell::text(fit.case.rays))
+        .column("epochs", |fit| Cell::text(fit.case.config.epochs))
+        .column("training", |fit| {
+            Cell::text(format!("{:.0} s", fit.training_s))
+        })
+        .column("kernel, us per hinge", |fit| Cell::fixed(fit.kernel_us, 1))
+        .column("W", |fit| error(fit.errors.percents()[0], 2))
+        .column("forces", |fit| error(fit.errors.forces_percent(), 1))
+        .column("damage", |fit| error(fit.errors.percents()[4], 1))
+        .column("good for", |fit| {
+            Cell::text(match fit.case.size.as_str() {
                 "small" => "first designs, many seeds",
                 "medium" => "everyday design",
                 _ => "the last design before cutting",
-            }
-        )?;
-    }
-    Ok(text)
+            })
+        });
+    format!("## Surrogate\n\n{}", table.markdown(fits))
 }
 
 /// Errors against rays for each size at its own number of epochs.

@@ -13,6 +13,7 @@ pub mod regular_file;
 pub mod scratch;
 pub mod sealed_json;
 pub mod shard;
+pub mod table;
 pub mod toml_file;
 pub mod verbose;
 pub mod vtk;

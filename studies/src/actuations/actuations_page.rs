@@ -5,8 +5,8 @@ use super::{Case, boundary_error};
 use anyhow::{Context, Result};
 use design::analysis::void_families::VoidFamilies;
 use design::sheet::validity::total_overlap;
-use std::fmt::Write;
 use std::path::Path;
+use support::table::{Cell, Table};
 
 /// Table 1 of the paper: drive (N), rotational fraction of the energy, non-rotational fraction in the
 /// quarter of interfaces with the largest force, fraction of compression in the force (%).
@@ -18,7 +18,7 @@ const PAPER: [[f64; 4]; 5] = [
     [1723.0, 89.6, 22.4, 16.0],
 ];
 /// Minimum number of panels of the paths whose arc over chord is evaluated.
-const ROUTE: usize = 4;
+const PATH: usize = 4;
 
 /// The reported numbers of a case.
 struct Numbers {
@@ -38,7 +38,7 @@ struct Numbers {
     rank_correlation: f64,
     clustering: f64,
     /// Panels of the longest tension path, and the mean arc over chord of the longer paths.
-    longest_route: usize,
+    longest_path: usize,
     arc_over_chord: Option<f64>,
     /// Mean area of the panels that carry the largest moment, relative to the median: moment of interfaces, of springs
     /// and of forces.
@@ -50,7 +50,7 @@ struct Numbers {
 }
 
 impl Numbers {
-    fn of(case: &Case) -> Self {
+    fn new(case: &Case) -> Self {
         let (loads, deployment) = (&case.scene.config.loads, &case.designed.best.deployment);
         let last = deployment.final_step();
         let (mut by_forces, mut by_couples) = (0.0, 0.0);
@@ -68,7 +68,7 @@ impl Numbers {
         };
         // A ring has no chord.
         let bent: Vec<f64> = (case.routes.iter())
-            .filter(|route| route.panels.len() >= ROUTE)
+            .filter(|route| route.panels.len() >= PATH)
             .map(|route| route.arc_over_chord(&case.transmission))
             .filter(|ratio| ratio.is_finite())
             .collect();
@@ -93,7 +93,7 @@ impl Numbers {
             ],
             rank_correlation: case.transmission.rank_correlation(),
             clustering: case.transmission.clustering(),
-            longest_route: case.routes.first().map_or(0, |route| route.panels.len()),
+            longest_path: case.routes.first().map_or(0, |route| route.panels.len()),
             arc_over_chord: (!bent.is_empty())
                 .then(|| bent.iter().sum::<f64>() / bent.len() as f64),
             moment_panels: [
@@ -110,167 +110,170 @@ impl Numbers {
     }
 }
 
+/// A case, its numbers and those of the paper.
+type Row<'a> = (&'a Case, Numbers, [f64; 4]);
+
+fn rows(cases: &[Case]) -> Vec<Row<'_>> {
+    let cases = cases.iter().zip(PAPER);
+    cases
+        .map(|(case, paper)| (case, Numbers::new(case), paper))
+        .collect()
+}
+
+/// Table 1 of the paper, whose numbers stand in brackets.
+fn transmission_table<'a>() -> Table<'a, Row<'a>> {
+    let beside = |value: f64, decimals: usize, paper: f64| {
+        Cell::number(value, format!("{value:.decimals$} ({paper})"))
+    };
+    Table::new()
+        .column("case", |row: &Row| Cell::text(row.0.label))
+        .column("drive, N", move |row| beside(row.0.drives[0], 0, row.2[0]))
+        .column("rotational energy, %", move |row| {
+            beside(row.1.rotation, 1, row.2[1])
+        })
+        .column("non-rotational, %", move |row| {
+            beside(row.1.non_rotational, 1, row.2[2])
+        })
+        .column("compression, %", move |row| {
+            beside(row.1.compression, 0, row.2[3])
+        })
+        .column("tension, %", |row| Cell::fixed(row.1.tension, 0))
+        .column("shear, %", |row| Cell::fixed(row.1.shear, 0))
+        .column("boundary rms, %", move |row| beside(row.1.boundary, 2, 1.2))
+        .column("from", |row| Cell::fixed(row.1.boundary_start, 2))
+        .column("shape alone", |row| {
+            Cell::fixed(row.1.boundary_shape_alone, 2)
+        })
+        .column("overlap", |row| Cell::scientific(row.1.overlap, 1))
+        .column("mean opening, deg", |row| Cell::fixed(row.1.opening[0], 1))
+        .column("minimum", |row| Cell::fixed(row.1.opening[1], 1))
+}
+
+/// The table with the columns of paths, correlations and moments.
+fn with_paths<'a>(table: Table<'a, Row<'a>>) -> Table<'a, Row<'a>> {
+    table
+        .column("longest tension path, panels", |row| {
+            Cell::text(row.1.longest_path)
+        })
+        .column("arc over chord", |row| {
+            Cell::known(row.1.arc_over_chord.map(|ratio| Cell::fixed(ratio, 3)), "-")
+        })
+        .column("rank correlation", |row| {
+            let correlation = row.1.rank_correlation;
+            Cell::number(correlation, format!("{correlation:+.3}"))
+        })
+        .column("clustering", |row| Cell::fixed(row.1.clustering, 1))
+        .column("panels of moment", |row| {
+            Cell::fixed(row.1.moment_panels[0], 2)
+        })
+        .column("of springs", |row| Cell::fixed(row.1.moment_panels[1], 2))
+        .column("of forces", |row| Cell::fixed(row.1.moment_panels[2], 2))
+        .column("couple's work, %", |row| Cell::fixed(row.1.couple, 0))
+        .column("w_comp, mm^2", |row| Cell::scientific(row.1.weights[0], 2))
+        .column("w_shear, mm^2", |row| Cell::scientific(row.1.weights[1], 2))
+}
+
 pub fn page(cases: &[Case], families: &VoidFamilies, scenes: &Path) -> Result<String> {
-    let numbers: Vec<Numbers> = cases.iter().map(Numbers::of).collect();
+    let rows = rows(cases);
     let scene = &cases.first().context("no case")?.scene;
-    let ([columns, rows], [width, height]) = (
+    let ([columns, lines], [width, height]) = (
         scene.config.sheet.panels,
         scene.config.sheet.size.unwrap_or_default(),
     );
-    let mut text = format!(
+    let named = Table::new().column("case", |row: &Row| Cell::text(row.0.label));
+    let weights = |k: usize| rows.iter().map(move |row| row.1.weights[k]);
+    let spread =
+        |k: usize| weights(k).fold(0.0, f64::max) / weights(k).fold(f64::INFINITY, f64::min);
+    Ok(format!(
         "# One sheet, five actuations\n\n\
-        {columns} x {rows} panels of {}, {width:.0} x {height:.0} mm, designed for one target with the scenes \
+        {columns} x {lines} panels of {}, {width:.0} x {height:.0} mm, designed for one target with the scenes \
         `{}/actuation-1.toml` to `-5`, as in section 3.2 of the paper. The paper's numbers are in brackets. The load of \
         a case is the minimum with which the uniform sheet matches the target to 1.2 % of its width. \
         `kirigami-studies actuations`.\n\n\
-        ![the five designs](actuations.png)\n\n\
-        | case | drive, N | rotational energy, % | non-rotational, % | compression, % | tension, % | shear, % | \
-        boundary rms, % | from | shape alone | overlap | mean opening, deg | minimum \
-        |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-        scene.material.name,
-        scenes.display()
-    );
-    for ((case, n), paper) in cases.iter().zip(&numbers).zip(PAPER) {
-        let [drive, rotation, non_rotational, compression] = paper;
-        writeln!(
-            text,
-            "| {} | {:.0} ({drive:.0}) | {:.1} ({rotation}) | {:.1} ({non_rotational}) | {:.0} ({compression:.0}) | \
-             {:.0} | {:.0} | {:.2} (1.2) | {:.2} | {:.2} | {:.1e} | {:.1} | {:.1} |",
-            case.label,
-            case.drives[0],
-            n.rotation,
-            n.non_rotational,
-            n.compression,
-            n.tension,
-            n.shear,
-            n.boundary,
-            n.boundary_start,
-            n.boundary_shape_alone,
-            n.overlap,
-            n.opening[0],
-            n.opening[1],
-        )?;
-    }
-    text.push_str(
-        "\nThe boundary error is that of the free outline corners, relative to the width of the target; \"from\" is \
+        ![the five designs](actuations.png)\n\n{}\
+        \nThe boundary error is that of the free outline corners, relative to the width of the target; \"from\" is \
          that of the uniform sheet under the same load, \"shape alone\" that of the design without compression and shear \
          in its objective. The overlap is the sum over all neighbouring panels, relative \
-         to the area of the sheet (paper: below 3e-6).\n\n\
-         | case | longest tension path, panels | arc over chord | rank correlation | clustering | panels of moment | \
-         of springs | of forces | couple's work, % | w_comp, mm^2 | w_shear, mm^2 |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
-    );
-    for (case, n) in cases.iter().zip(&numbers) {
-        writeln!(
-            text,
-            "| {} | {} | {} | {:+.3} | {:.1} | {:.2} | {:.2} | {:.2} | {:.0} | {:.2e} | {:.2e} |",
-            case.label,
-            n.longest_route,
-            (n.arc_over_chord).map_or("-".into(), |ratio| format!("{ratio:.3}")),
-            n.rank_correlation,
-            n.clustering,
-            n.moment_panels[0],
-            n.moment_panels[1],
-            n.moment_panels[2],
-            n.couple,
-            n.weights[0],
-            n.weights[1],
-        )?;
-    }
-    let weights = |k: usize| numbers.iter().map(move |n| n.weights[k]);
-    let spread =
-        |k: usize| weights(k).fold(0.0, f64::max) / weights(k).fold(f64::INFINITY, f64::min);
-    write!(
-        text,
-        "\nThe paper: tension paths of up to 15 panels, 1.02 to 1.03 times as long as their chord; a rank correlation \
+         to the area of the sheet (paper: below 3e-6).\n\n{}\
+        \nThe paper: tension paths of up to 15 panels, 1.02 to 1.03 times as long as their chord; a rank correlation \
          of +0.99 between force and non-rotational fraction; next to a strongly loaded panel another one 1.9 to 2.8 \
          times more likely than by chance; the tenth of panels with the largest moment 1.61 times as large as the \
          median panel in case III and 1.00 times in case V; a couple with about 60 % of the drive; weights that span \
-         a factor of 3.5. Here that factor is {:.1} for compression and {:.1} for shear.\n\n",
+         a factor of 3.5. Here that factor is {:.1} for compression and {:.1} for shear.\n\n\
+         Drive over the paper's in several readings; the first is that of the designs:\n\n{}\n{}\
+         \nVoids of the {} disjoint unit cells of all designs (paper: 725 x 297, 491 x 360, 411 x 226 mm):\n\n{}",
+        scene.material.name,
+        scenes.display(),
+        transmission_table().markdown(&rows),
+        with_paths(named).markdown(&rows),
         spread(0),
-        spread(1)
-    )?;
-    drives(&mut text, cases)?;
-    distances(&mut text, cases)?;
-    write!(
-        text,
-        "\nVoids of the {} disjoint unit cells of all designs (paper: 725 x 297, 491 x 360, 411 x 226 mm):\n\n",
-        families.family.len() / cases.len()
-    )?;
-    text.push_str("| family | mean void, mm | cells | in I | II | III | IV | V |\n|---|---|---|---|---|---|---|---|\n");
-    for (k, [long, short]) in families.sides.iter().enumerate() {
-        let members: Vec<bool> = families.family.iter().map(|f| *f == k).collect();
-        write!(
-            text,
-            "| {} | {long:.0} x {short:.0} | {} |",
-            k + 1,
-            members.iter().filter(|member| **member).count()
-        )?;
-        for of_case in members.chunks(families.family.len() / cases.len().max(1)) {
-            write!(
-                text,
-                " {} |",
-                of_case.iter().filter(|member| **member).count()
-            )?;
-        }
-        text.push('\n');
-    }
-    Ok(text)
+        spread(1),
+        drives(cases),
+        distances(cases),
+        families.family.len() / cases.len(),
+        voids(families, cases),
+    ))
 }
 
-/// Writes the drives in all readings, relative to the paper's.
-fn drives(text: &mut String, cases: &[Case]) -> Result<()> {
-    writeln!(
-        text,
-        "Drive over the paper's in several readings; the first is that of the designs:\n\n\
-         | reading | I | II | III | IV | V |\n|---|---|---|---|---|---|"
-    )?;
-    for (k, reading) in READINGS.iter().enumerate() {
-        write!(text, "| {} |", reading.name)?;
-        for (case, [paper, ..]) in cases.iter().zip(PAPER) {
-            write!(text, " {:.2} |", case.drives[k] / paper)?;
-        }
-        text.push('\n');
+/// The drives in all readings, relative to the paper's.
+fn drives(cases: &[Case]) -> String {
+    let mut table = Table::new().column("reading", |k: &usize| Cell::text(READINGS[*k].name));
+    for (case, [paper, ..]) in cases.iter().zip(PAPER) {
+        table = table.column(case.label, move |k| Cell::fixed(case.drives[*k] / paper, 2));
     }
-    text.push('\n');
-    Ok(())
+    table.markdown(&Vec::from_iter(0..READINGS.len()))
 }
 
-/// Writes the distances of the designs from each other and from their common start, in the aspect ratios.
-fn distances(text: &mut String, cases: &[Case]) -> Result<()> {
-    let start = &cases
-        .first()
-        .context("no case")?
-        .designed
-        .start
-        .deployment
-        .pattern
-        .r;
+/// The distances of the designs from each other and from their common start, in the aspect ratios.
+fn distances(cases: &[Case]) -> String {
     let r = |case: &Case| case.designed.best.deployment.pattern.r.clone();
-    let from_start: Vec<f64> = cases.iter().map(|case| apart(&r(case), start)).collect();
-    writeln!(
-        text,
-        "Distance of two designs (root mean square over the aspect ratios r; last column: distance from the uniform start):\n\n\
-         | | I | II | III | IV | V | start |\n|---|---|---|---|---|---|---|"
-    )?;
+    let from_start = |case: &Case| apart(&r(case), &case.designed.start.deployment.pattern.r);
+    let mut table = Table::new().column("", |case: &Case| Cell::text(case.label));
+    for other in cases {
+        table = table.column(other.label, move |case| {
+            Cell::fixed(apart(&r(case), &r(other)), 4)
+        });
+    }
+    let table = table.column("start", move |case| Cell::fixed(from_start(case), 4));
     let (mut farther, mut pairs) = (0, 0);
     for (i, one) in cases.iter().enumerate() {
-        write!(text, "| {} |", one.label)?;
-        for (j, other) in cases.iter().enumerate() {
-            let distance = apart(&r(one), &r(other));
-            if j < i {
-                pairs += 1;
-                farther += usize::from(distance > from_start[i].max(from_start[j]));
-            }
-            write!(text, " {distance:.4} |")?;
+        for other in &cases[..i] {
+            let start = from_start(one).max(from_start(other));
+            pairs += 1;
+            farther += usize::from(apart(&r(one), &r(other)) > start);
         }
-        writeln!(text, " {:.4} |", from_start[i])?;
     }
-    writeln!(
-        text,
-        "\nIn {farther} of the {pairs} pairs the distance of the two designs is larger than the distance of each from \
-         the start (paper: in all ten)."
-    )?;
-    Ok(())
+    format!(
+        "Distance of two designs (root mean square over the aspect ratios r; last column: distance from the uniform start):\n\n{}\
+         \nIn {farther} of the {pairs} pairs the distance of the two designs is larger than the distance of each from \
+         the start (paper: in all ten).\n",
+        table.markdown(cases)
+    )
+}
+
+/// The families of voids, and how many cells of each case belong to them.
+fn voids(families: &VoidFamilies, cases: &[Case]) -> String {
+    let count = |cells: &[usize], family: usize| {
+        Cell::text(cells.iter().filter(|of_cell| **of_cell == family).count())
+    };
+    let mut table = Table::new()
+        .column("family", |family: &usize| Cell::text(family + 1))
+        .column("mean void, mm", |family| {
+            let [long, short] = families.sides[*family];
+            Cell::text(format!("{long:.0} x {short:.0}"))
+        })
+        .column("cells", |family| count(&families.family, *family));
+    let of_cases = families
+        .family
+        .chunks(families.family.len() / cases.len().max(1));
+    for (i, (case, cells)) in cases.iter().zip(of_cases).enumerate() {
+        let heading = match i {
+            0 => format!("in {}", case.label),
+            _ => case.label.to_string(),
+        };
+        table = table.column(heading, move |family| count(cells, *family));
+    }
+    table.markdown(&Vec::from_iter(0..families.sides.len()))
 }
 
 fn apart(one: &[f64], other: &[f64]) -> f64 {
@@ -281,40 +284,6 @@ fn apart(one: &[f64], other: &[f64]) -> f64 {
 }
 
 /// One row per case.
-pub fn csv(cases: &[Case]) -> Result<String> {
-    let mut text = "case,drive_n,rotation_percent,non_rotational_percent,tension_percent,compression_percent,shear_percent,\
-        boundary_percent,start_percent,shape_alone_percent,overlap,mean_opening_deg,least_opening_deg,longest_route,arc_over_chord,\
-        rank_correlation,clustering,panels_of_moment,of_springs,of_forces,couple_percent,w_comp_mm2,w_shear_mm2\n"
-        .to_owned();
-    for case in cases {
-        let n = Numbers::of(case);
-        writeln!(
-            text,
-            "{},{:.2},{:.4},{:.4},{:.4},{:.4},{:.4},{:.5},{:.5},{:.5},{:.4e},{:.4},{:.4},{},{},{:.5},{:.4},{:.4},{:.4},{:.4},{:.3},{:.6e},{:.6e}",
-            case.label,
-            case.drives[0],
-            n.rotation,
-            n.non_rotational,
-            n.tension,
-            n.compression,
-            n.shear,
-            n.boundary,
-            n.boundary_start,
-            n.boundary_shape_alone,
-            n.overlap,
-            n.opening[0],
-            n.opening[1],
-            n.longest_route,
-            (n.arc_over_chord).map_or(String::new(), |ratio| format!("{ratio:.5}")),
-            n.rank_correlation,
-            n.clustering,
-            n.moment_panels[0],
-            n.moment_panels[1],
-            n.moment_panels[2],
-            n.couple,
-            n.weights[0],
-            n.weights[1],
-        )?;
-    }
-    Ok(text)
+pub fn csv(cases: &[Case]) -> String {
+    with_paths(transmission_table()).csv(&rows(cases))
 }

@@ -11,6 +11,7 @@ use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use support::table::{Cell, Table};
 
 /// The scenes, their designs and the standard deviation of their coordinates.
 pub const SCENES: [&str; 4] = ["pet-3x3", "a4-polyester", "pet-7x7", "pet-bell-16x22"];
@@ -64,6 +65,18 @@ impl PreparedLaw for CountedHinges<'_> {
     }
 }
 
+/// What is counted along a path.
+const COUNTS: [&str; 8] = [
+    "corrections",
+    "factorisations",
+    "increments",
+    "rejected",
+    "jumps",
+    "forces",
+    "tangents",
+    "design gradients",
+];
+
 /// One row of the table.
 pub struct Row {
     name: String,
@@ -73,8 +86,8 @@ pub struct Row {
     pub near: bool,
     followed: bool,
     steps: usize,
-    /// As in the heading of the table.
-    counts: [usize; 8],
+    /// [`COUNTS`]
+    counts: [usize; COUNTS.len()],
     /// CPU time of path and gradient (s).
     pub seconds: f64,
     loss: f64,
@@ -149,22 +162,25 @@ fn problem(name: &str, seed: u64) -> Result<(DesignProblem, Arc<[AtomicUsize; 4]
 }
 
 pub fn table(rows: &[Row]) -> String {
-    let mut text = String::from(
-        "| scene | design | path | load steps | corrections | factorisations | increments | rejected | jumps | forces | tangents \
-         | design gradients | CPU s | loss, mm^2 |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-    );
-    for row in rows {
-        let near = if row.near { ", near" } else { "" };
-        let how = if row.followed {
-            "followed"
-        } else {
-            "corrected"
-        };
-        let counts = row.counts.map(|count| count.to_string()).join(" | ");
-        text += &format!(
-            "| {} | {}{near} | {how} | {} | {counts} | {:.4} | {:.10e} |\n",
-            row.name, row.seed, row.steps, row.seconds, row.loss
-        );
+    let mut table = Table::new()
+        .column("scene", |row: &Row| Cell::text(&row.name))
+        .column("design", |row| {
+            let near = if row.near { ", near" } else { "" };
+            Cell::text(format!("{}{near}", row.seed))
+        })
+        .column("path", |row| {
+            Cell::text(if row.followed {
+                "followed"
+            } else {
+                "corrected"
+            })
+        })
+        .column("load steps", |row| Cell::text(row.steps));
+    for (k, count) in COUNTS.into_iter().enumerate() {
+        table = table.column(count, move |row| Cell::text(row.counts[k]));
     }
-    text
+    table
+        .column("CPU s", |row| Cell::fixed(row.seconds, 4))
+        .column("loss, mm^2", |row| Cell::scientific(row.loss, 10))
+        .markdown(rows)
 }

@@ -1,0 +1,150 @@
+//! Tables as Markdown and CSV: a column is said once, as its heading and how a cell follows from a row.
+
+use std::fmt::Display;
+
+/// A cell: what a page shows, and what a CSV file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cell {
+    shown: String,
+    /// The unrounded number, if it is one; empty if it is not known.
+    stored: String,
+}
+
+impl Cell {
+    /// What a page and a file show alike.
+    pub fn text(text: impl Display) -> Self {
+        let shown = text.to_string();
+        let stored = shown.clone();
+        Self { shown, stored }
+    }
+
+    /// A number with a fixed number of decimals on a page.
+    pub fn fixed(value: f64, decimals: usize) -> Self {
+        Self::number(value, format!("{value:.decimals$}"))
+    }
+
+    /// A fraction, shown in per cent; a file holds the fraction.
+    pub fn percent(fraction: f64, decimals: usize) -> Self {
+        let percent = 100.0 * fraction;
+        Self::number(fraction, format!("{percent:.decimals$} %"))
+    }
+
+    /// A number as a power of ten with a fixed number of decimals.
+    pub fn scientific(value: f64, decimals: usize) -> Self {
+        Self::number(value, format!("{value:.decimals$e}"))
+    }
+
+    /// A number with its own text on a page.
+    pub fn number(value: f64, shown: impl Into<String>) -> Self {
+        let (shown, stored) = (shown.into(), value.to_string());
+        Self { shown, stored }
+    }
+
+    /// Shown as `absent` and stored as an empty cell if not known.
+    pub fn known(cell: Option<Self>, absent: &str) -> Self {
+        cell.unwrap_or_else(|| Self {
+            shown: absent.to_owned(),
+            stored: String::new(),
+        })
+    }
+}
+
+struct Column<'a, R> {
+    heading: String,
+    cell: Box<dyn Fn(&R) -> Cell + 'a>,
+}
+
+/// The columns of a table of rows `R`.
+pub struct Table<'a, R> {
+    columns: Vec<Column<'a, R>>,
+}
+
+impl<R> Default for Table<'_, R> {
+    fn default() -> Self {
+        Self {
+            columns: Vec::new(),
+        }
+    }
+}
+
+impl<'a, R> Table<'a, R> {
+    /// A table without columns.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The table with a further column on the right.
+    #[must_use]
+    pub fn column(mut self, heading: impl Into<String>, cell: impl Fn(&R) -> Cell + 'a) -> Self {
+        let (heading, cell) = (heading.into(), Box::new(cell));
+        self.columns.push(Column { heading, cell });
+        self
+    }
+
+    /// The table in Markdown, one line a row.
+    pub fn markdown<'r>(&self, rows: impl IntoIterator<Item = &'r R>) -> String
+    where
+        R: 'r,
+    {
+        let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+        let mut text = line(self.columns.iter().map(|it| it.heading.clone()).collect());
+        text += &format!("|{}\n", "---|".repeat(self.columns.len()));
+        for row in rows {
+            text += &line(self.cells(row).map(|cell| cell.shown).collect());
+        }
+        text
+    }
+
+    /// The table as CSV with one line of headings.
+    pub fn csv<'r>(&self, rows: impl IntoIterator<Item = &'r R>) -> String
+    where
+        R: 'r,
+    {
+        let mut text = csv_line(self.columns.iter().map(|column| column.heading.as_str()));
+        for row in rows {
+            let stored: Vec<String> = self.cells(row).map(|cell| cell.stored).collect();
+            text += &csv_line(stored.iter().map(String::as_str));
+        }
+        text
+    }
+
+    fn cells(&self, row: &R) -> impl Iterator<Item = Cell> {
+        self.columns.iter().map(|column| (column.cell)(row))
+    }
+}
+
+/// A line of CSV; cells with commas or quotes stand in quotes.
+fn csv_line<'c>(cells: impl Iterator<Item = &'c str>) -> String {
+    let quoted = cells.map(|cell| {
+        if cell.contains([',', '"', '\n']) {
+            format!("\"{}\"", cell.replace('"', "\"\""))
+        } else {
+            cell.to_owned()
+        }
+    });
+    quoted.collect::<Vec<_>>().join(",") + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_rounds_and_a_file_does_not() {
+        let table = Table::new()
+            .column("choice", |row: &(&str, f64)| Cell::text(row.0))
+            .column("W, N mm", |row| Cell::fixed(row.1, 1))
+            .column("error", |row| {
+                Cell::known((row.1 < 1.0).then(|| Cell::percent(row.1, 0)), "-")
+            });
+        let rows = [("a, b", 0.25), ("c", 2.0)];
+        assert_eq!(
+            table.markdown(&rows),
+            "| choice | W, N mm | error |\n|---|---|---|\n| a, b | 0.2 | 25 % |\n| c | 2.0 | - |\n"
+        );
+        assert_eq!(
+            table.csv(&rows),
+            "choice,\"W, N mm\",error\n\"a, b\",0.25,0.25\nc,2,\n"
+        );
+    }
+}
