@@ -1,11 +1,11 @@
 //! Charts of the studies, one file per kind.
 
+mod axes;
 mod capacity;
 mod contours;
 mod convergence;
 mod costs;
 mod growth;
-mod log_log;
 mod rays;
 mod routes;
 mod solutions;

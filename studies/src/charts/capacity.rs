@@ -1,5 +1,6 @@
 //! Charts of the load capacity: opening and boundary error against the transverse load; load against stroke.
 
+use super::axes::{Axis, axes, line, marks, names};
 use anyhow::Result;
 use kirigami::ui::charts::*;
 use plotters::prelude::*;
@@ -24,14 +25,8 @@ const RHO: &str = "transverse load / pull, rho";
 pub fn capacity(curves: &[CapacityCurve]) -> Result<String> {
     drawn((1100, 860), |root| {
         let areas = root.split_evenly((2, 2));
-        let swept = |points| Drawn {
-            points,
-            swept: true,
-        };
-        let led = |points| Drawn {
-            points,
-            swept: false,
-        };
+        let drawn = |swept| move |points| Drawn { points, swept };
+        let (swept, led) = (drawn(true), drawn(false));
         let openings = swept(|curve| &curve.openings);
         panel(
             &areas[0],
@@ -79,48 +74,27 @@ fn panel(
 ) -> ChartResult {
     let all: Vec<_> = curves.iter().flat_map(points).copied().collect();
     let up = padded(all.iter().map(|point| point.1));
-    let mut chart = ChartBuilder::on(area)
-        .margin(12)
-        .x_label_area_size(40)
-        .y_label_area_size(56)
-        .build_cartesian_2d(padded(all.iter().map(|point| point.0)), up.clone())?;
-    chart
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .label_style((FONT, 13))
-        .x_desc(abscissa)
-        .y_desc(ordinate)
-        .draw()?;
+    let across = padded(all.iter().map(|point| point.0));
+    let (across, ordinate) = (Axis::new(across, abscissa), Axis::new(up.clone(), ordinate));
+    let mut chart = axes(area, "", across, ordinate)?;
     for (curve, &colour) in curves.iter().zip(SLICES.iter().cycle()) {
         let points = points(curve);
-        let (marked, size) = match swept {
-            true => (&points[..], 2),
-            false => (&points[points.len().saturating_sub(1)..], 3),
-        };
-        chart.draw_series(
-            marked
-                .iter()
-                .map(|&at| Circle::new(at, size, colour.filled())),
+        if swept {
+            marks(&mut chart, points.iter().copied(), 2, colour)?;
+        } else {
+            marks(&mut chart, points.last().copied(), 3, colour)?;
+        }
+        line(
+            &mut chart,
+            curve.name,
+            points.iter().copied(),
+            colour.stroke_width(2),
         )?;
-        chart
-            .draw_series(LineSeries::new(
-                points.iter().copied(),
-                colour.stroke_width(2),
-            ))?
-            .label(curve.name)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
         for limit in curve.limits.iter().copied().filter(|_| swept) {
             let upright = [(limit, up.start), (limit, up.end)];
             let style = colour.mix(0.6).stroke_width(1);
             chart.draw_series(DashedLineSeries::new(upright, 4, 4, style))?;
         }
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::LowerRight)
-        .label_font((FONT, 12))
-        .border_style(GUIDE)
-        .background_style(WHITE.mix(0.85))
-        .draw()?;
-    Ok(())
+    names(&mut chart, SeriesLabelPosition::LowerRight)
 }

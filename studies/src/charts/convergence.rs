@@ -1,5 +1,6 @@
 //! Charts of the influence of the modelling choices of the window solve on the energy.
 
+use super::axes::{line, names};
 use anyhow::Result;
 use kirigami::ui::charts::*;
 use plotters::prelude::*;
@@ -49,18 +50,9 @@ fn study_chart(area: &Area, panel: &StudyPanel, y_label: &str) -> ChartResult {
         .label_style((FONT, 12))
         .y_desc(y_label)
         .draw()?;
-    for (i, (hinge, line)) in panel.lines.iter().enumerate() {
+    for (i, (hinge, points)) in panel.lines.iter().enumerate() {
         let colour = Palette99::pick(i).stroke_width(2);
-        chart
-            .draw_series(LineSeries::new(line.iter().copied(), colour))?
-            .label(hinge)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 14, y)], colour));
+        line(&mut chart, hinge, points.iter().copied(), colour)?;
     }
-    chart
-        .configure_series_labels()
-        .label_font((FONT, 10))
-        .border_style(GUIDE)
-        .background_style(WHITE.mix(0.8))
-        .draw()?;
-    Ok(())
+    names(&mut chart, SeriesLabelPosition::MiddleRight)
 }

@@ -1,5 +1,6 @@
 //! Charts of errors against costs.
 
+use super::axes::{Axis, axes, names};
 use anyhow::Result;
 use kirigami::ui::charts::*;
 use plotters::prelude::*;
@@ -27,24 +28,17 @@ pub fn costs(panels: &[CostPanel]) -> Result<String> {
 fn cost_chart(area: &Area, panel: &CostPanel) -> ChartResult {
     let decades = panel.points.iter().map(|(.., cost, _)| cost.log10());
     let (min, max) = decades.fold((0.0_f64, 1.0_f64), |(l, m), x| (l.min(x), m.max(x)));
-    let mut chart = ChartBuilder::on(area)
-        .caption(panel.title, (FONT, 15))
-        .margin(10)
-        .x_label_area_size(38)
-        .y_label_area_size(56)
-        .build_cartesian_2d(
-            (min.floor()..max.ceil() + 1.6).step(1.0),
-            (MIN_ERROR.log10()..0.6).step(2.0),
-        )?;
-    chart
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .x_label_formatter(&|x| 10_f64.powf(*x).to_string())
-        .y_label_formatter(&|y| format!("1e{y:.0}"))
-        .label_style((FONT, 12))
-        .x_desc("cost with gradient, ms")
-        .y_desc("error of the gradient")
-        .draw()?;
+    let across = Axis {
+        range: (min.floor()..max.ceil() + 1.6).step(1.0),
+        name: "cost with gradient, ms",
+        tick: |decade| 10_f64.powf(*decade).to_string(),
+    };
+    let up = Axis {
+        range: (MIN_ERROR.log10()..0.6).step(2.0),
+        name: "error of the gradient",
+        tick: |decade| format!("1e{decade:.0}"),
+    };
+    let mut chart = axes(area, panel.title, across, up)?;
     let mut scenes: Vec<&str> = panel.points.iter().map(|(scene, ..)| *scene).collect();
     scenes.dedup();
     for (scene, colour) in std::iter::zip(scenes, SLICES) {
@@ -68,12 +62,5 @@ fn cost_chart(area: &Area, panel: &CostPanel) -> ChartResult {
             .label(scene)
             .legend(move |(x, y)| Circle::new((x + 7, y), 3, colour.filled()));
     }
-    chart
-        .configure_series_labels()
-        .label_font((FONT, 10))
-        .position(SeriesLabelPosition::UpperRight)
-        .border_style(GUIDE)
-        .background_style(WHITE.mix(0.8))
-        .draw()?;
-    Ok(())
+    names(&mut chart, SeriesLabelPosition::UpperRight)
 }

@@ -1,5 +1,6 @@
 //! Charts of the errors of a surrogate against its number of training rays.
 
+use super::axes::{Axis, axes, line, marks};
 use anyhow::Result;
 use kirigami::ui::charts::*;
 use plotters::prelude::*;
@@ -55,40 +56,29 @@ fn rays_chart(area: &Area, title: &str, lines: &[&[(f64, f64)]]) -> ChartResult 
         let max = values.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         (0.8 * min.min(max)..1.25 * max).log_scale()
     };
-    let mut chart = ChartBuilder::on(area)
-        .caption(title, (FONT, 15))
-        .margin(10)
-        .x_label_area_size(38)
-        .y_label_area_size(56)
-        .build_cartesian_2d(
-            // Whole decades: an axis without a power of ten has no labels.
-            decades(all().map(|point| point.0)).log_scale(),
-            margin(all().map(|point| point.1).collect()),
-        )?;
-    chart
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .label_style((FONT, 12))
-        .x_label_formatter(&|rays| round_number(*rays))
-        .x_desc("training rays")
-        .y_desc("error on unseen geometries, %")
-        .draw()?;
+    let (rays, errors) = (all().map(|point| point.0), all().map(|point| point.1));
+    let across = Axis {
+        // Whole decades: an axis without a power of ten has no labels.
+        range: decades(rays).log_scale(),
+        name: "training rays",
+        tick: round_number,
+    };
+    let up = Axis::new(margin(errors.collect()), "error on unseen geometries, %");
+    let mut chart = axes(area, title, across, up)?;
     for (points, colour) in lines.iter().zip(colours()) {
-        chart.draw_series(LineSeries::new(
+        line(
+            &mut chart,
+            "",
             points.iter().copied(),
             colour.stroke_width(2),
-        ))?;
-        chart.draw_series(
-            points
-                .iter()
-                .map(|&point| Circle::new(point, 3, colour.filled())),
         )?;
+        marks(&mut chart, points.iter().copied(), 3, colour)?;
     }
     Ok(())
 }
 
 /// Labels of 1, 2 and 5 times a power of ten; other ticks, which are too close, have no label.
-fn round_number(value: f64) -> String {
+fn round_number(value: &f64) -> String {
     let digits = format!("{value:.0}");
     match digits.trim_end_matches('0') {
         "1" | "2" | "5" => digits,

@@ -1,5 +1,6 @@
 //! Charts of the set of designs that reach one shape.
 
+use super::axes::{Axis, axes, line, marks};
 use super::contours::{PlaneValues, contours};
 use anyhow::Result;
 use kirigami::ui::charts::*;
@@ -89,20 +90,15 @@ fn curvature_chart(area: &Area, chart: &SolutionChart) -> ChartResult {
         })
         .collect();
     let across = 0.0..points.len() as f64 + 1.0;
-    let mut context = ChartBuilder::on(area)
-        .caption("curvature (orange: negative)", (FONT, 15))
-        .margin(10)
-        .x_label_area_size(38)
-        .y_label_area_size(64)
-        .build_cartesian_2d(across.clone(), (MIN_RATIO / 10.0..10.0).log_scale())?;
-    context
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .label_style((FONT, 12))
-        .y_label_formatter(&|y| format!("{y:.0e}"))
-        .x_desc("direction")
-        .y_desc("|eigenvalue| / largest")
-        .draw()?;
+    let mut context = axes(
+        area,
+        "curvature (orange: negative)",
+        Axis::new(across.clone(), "direction"),
+        Axis::powers(
+            (MIN_RATIO / 10.0..10.0).log_scale(),
+            "|eigenvalue| / largest",
+        ),
+    )?;
     let limit = [across.start, across.end].map(|x| (x, chart.negligible));
     context.draw_series(DashedLineSeries::new(limit, 4, 4, GUIDE.into()))?;
     context.draw_series(points.iter().map(|&(k, ratio, negative)| {
@@ -114,53 +110,38 @@ fn curvature_chart(area: &Area, chart: &SolutionChart) -> ChartResult {
 
 fn profile_chart(area: &Area, chart: &SolutionChart) -> ChartResult {
     let points = || chart.profile.iter().map(|[x, y]| (*x, 100.0 * y));
-    let mut context = ChartBuilder::on(area)
-        .caption("minimum at a fixed opening", (FONT, 15))
-        .margin(10)
-        .x_label_area_size(38)
-        .y_label_area_size(56)
-        .build_cartesian_2d(padded(points().map(|p| p.0)), padded(points().map(|p| p.1)))?;
-    context
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .label_style((FONT, 12))
-        .x_desc("opening, deg")
-        .y_desc("root of the loss, % of the side")
-        .draw()?;
-    context.draw_series(LineSeries::new(points(), POINT.stroke_width(2)))?;
-    context.draw_series(points().map(|p| Circle::new(p, 3, POINT.filled())))?;
-    Ok(())
+    let mut context = axes(
+        area,
+        "minimum at a fixed opening",
+        Axis::new(padded(points().map(|p| p.0)), "opening, deg"),
+        Axis::new(
+            padded(points().map(|p| p.1)),
+            "root of the loss, % of the side",
+        ),
+    )?;
+    line(&mut context, "", points(), POINT.stroke_width(2))?;
+    marks(&mut context, points(), 3, POINT)
 }
 
 fn error_chart(area: &Area, errors: &[Vec<f64>]) -> ChartResult {
     let longest = errors.iter().map(Vec::len).max().unwrap_or(1).max(2);
-    let up = decades(
-        errors
-            .iter()
-            .flatten()
-            .copied()
-            .filter(|error| *error > 0.0),
-    );
-    let mut context = ChartBuilder::on(area)
-        .caption("outline error of each family's median run", (FONT, 15))
-        .margin(10)
-        .x_label_area_size(38)
-        .y_label_area_size(56)
-        .build_cartesian_2d(0.0..longest as f64, up.log_scale())?;
-    context
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .label_style((FONT, 12))
-        .x_desc("step")
-        .y_desc("outline error, % of the side")
-        .draw()?;
-    for (i, line) in errors.iter().enumerate() {
-        let points = line
-            .iter()
-            .enumerate()
-            .map(|(step, error)| (step as f64, *error));
-        let colour = SLICES[i % SLICES.len()].stroke_width(2);
-        context.draw_series(LineSeries::new(points, colour))?;
+    let positive = errors
+        .iter()
+        .flatten()
+        .copied()
+        .filter(|error| *error > 0.0);
+    let mut context = axes(
+        area,
+        "outline error of each family's median run",
+        Axis::new(0.0..longest as f64, "step"),
+        Axis::new(
+            decades(positive).log_scale(),
+            "outline error, % of the side",
+        ),
+    )?;
+    for (errors, colour) in errors.iter().zip(SLICES.into_iter().cycle()) {
+        let points = (0..).map(f64::from).zip(errors.iter().copied());
+        line(&mut context, "", points, colour.stroke_width(2))?;
     }
     Ok(())
 }
