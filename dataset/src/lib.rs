@@ -4,26 +4,6 @@
 //! rejected rows and the split. It is collected once with [`Database::collect`], which rejects invalid rows instead
 //! of repairing them. Rows of different materials, tiers or hinge constants are an error.
 //!
-//! | file | contents |
-//! |---|---|
-//! | `rows` | one row: design, sample, provenance |
-//! | `schema` | the columns |
-//! | `gates` | which rows are rejected, and why |
-//! | `split` | training, validation and test parts, split by geometry |
-//! | `mirror` | the mirror image of a row |
-//! | `manifest` | the manifest of a Parquet file |
-//! | `noise` | scatter of the increments of a ray |
-//! | `database` | consistent rows with their manifest: [`Database`] |
-//! | `database_files` | reading and writing a database |
-//! | `parquet` | rows as the bytes of a Parquet file |
-//! | `plain_table` | other tables as Parquet files |
-//! | `check` | what makes a consistent database unfit for training |
-//! | `compare` | comparison of rays that two databases contain |
-//! | `fidelity` | the mesh fidelity of the rows |
-//! | `fidelity_correction` | correction of the rows of a coarse mesh to a finer one |
-//! | `csv` | CSV export, and import of tables of other solvers |
-//! | `summary` | counts, ranges, histograms and coverage as text |
-//!
 //! Reading a database:
 //!
 //! ```

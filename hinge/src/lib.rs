@@ -19,6 +19,17 @@
 //! **Reference point.** O is the tip of the main cut, at the perpendicular distance w_lig from
 //! the secondary cut. The origin of the frame is the foot of that perpendicular. Both the window and
 //! the sheet measure (a, s, theta) at O, in the mean frame of the two panels.
+//!
+//! ```
+//! use hinge::{HingeConstants, HingeDeformation};
+//!
+//! // A ligament of 18 mm at 70 deg, opened by 30 deg, pulled by 0.9 mm and sheared by -1.8 mm.
+//! let hinge = HingeConstants::PAPER.hinge(18.0, 70f64.to_radians());
+//! hinge.validate()?;
+//! let state = HingeDeformation { a: 0.9, s: -1.8, theta: 30f64.to_radians() };
+//! assert_eq!(state.eta(hinge.w_lig), [0.05, -0.1]);
+//! # Ok::<_, hinge::InvalidDesign>(())
+//! ```
 
 #![warn(missing_docs)]
 

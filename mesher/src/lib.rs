@@ -4,6 +4,21 @@
 //! mesh from a script, either from transfinite patches that move smoothly with (w_lig, alpha), or from free
 //! triangles as in the paper. This crate extrudes the plane mesh to layers of solid elements, adds the
 //! imperfection that initiates buckling, and rejects a mesh that is unsuitable for the solver.
+//!
+//! ```no_run
+//! use hinge::HingeConstants;
+//! use mesher::{Gmsh, Tier, mesh_window};
+//! use std::path::Path;
+//! use std::sync::atomic::AtomicBool;
+//! use std::time::Duration;
+//!
+//! let hinge = HingeConstants::PAPER.hinge(18.0, 60f64.to_radians());
+//! let (thickness, recipe, gmsh) = (0.5, Tier::Default.recipe(), Gmsh::find()?);
+//! let (folder, limit, stop) = (Path::new("runs/mesh"), Duration::from_secs(60), AtomicBool::new(false));
+//! let mesh = mesh_window(&hinge, thickness, &recipe, folder, &gmsh, limit, &stop)?;
+//! println!("{} nodes", mesh.nodes.len());
+//! # Ok::<_, Box<dyn std::error::Error>>(())
+//! ```
 
 #![warn(missing_docs)]
 

@@ -1,6 +1,15 @@
 //! Domain-independent utilities: configuration files, misspelt names, input files, CSV tables, VTK files, atomic file writes,
 //! lock files, external programs, temporary folders, notes of what a command does, a pool of threads, shards of a list of
 //! jobs.
+//!
+//! ```
+//! use support::table::{Cell, Table};
+//!
+//! let table = Table::new()
+//!     .column("hinge", |row: &(&str, f64)| Cell::text(row.0))
+//!     .column("error of W", |row| Cell::percent(row.1, 1));
+//! assert_eq!(table.markdown(&[("18 mm", 0.012)]), "| hinge | error of W |\n|---|---|\n| 18 mm | 1.2 % |\n");
+//! ```
 
 #![warn(missing_docs)]
 

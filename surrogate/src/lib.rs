@@ -9,19 +9,6 @@
 //! The squared distance makes W >= 0, W(0) = 0 and grad W(0) = 0 for any weights. A surrogate is
 //! loaded from `X.safetensors` and its card `X.json`, and is evaluated in float64 for batches of hinges.
 //!
-//! | file | contents |
-//! |---|---|
-//! | `features` | the features (13) and their standardisation |
-//! | `network` | a tanh network with validated weights |
-//! | `passes` | batched value, tangents and reverse pass through a network |
-//! | `tanh` | a branch-free tanh that vectorises |
-//! | `energy` | W and its derivatives in deformation and design |
-//! | `damage` | D and D_peak with their gradients |
-//! | `model` | networks and card together: [`Surrogate`] |
-//! | `ensemble` | agreement of several networks |
-//! | `card` | metadata: training data, scaling, test errors |
-//! | `weights` | reading and writing the two files |
-//!
 //! Evaluating a thousand hinges:
 //!
 //! ```

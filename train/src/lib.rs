@@ -5,26 +5,17 @@
 //! no second-order differentiation: the three force tangents are propagated forwards through the network as
 //! tensor operations, followed by one reverse pass.
 //!
-//! | file | contents |
-//! |---|---|
-//! | `config` | the training configuration |
-//! | `backend` | Burn backends, chosen at run time |
-//! | `samples` | rows as inputs and targets of the network: standardised, scaled, batched |
-//! | `mirror` | mirror symmetry by construction |
-//! | `affine` | a layer, and tanh networks of layers |
-//! | `networks` | chi, chi_D and chi_P |
-//! | `force_tangents` | chi and its derivatives in (eta_a, eta_s, theta) |
-//! | `loss` | the loss (15) |
-//! | `optimiser` | Muon and Adam, learning rate |
-//! | `parent` | given weights, scaled to the rows, as the start of a training |
-//! | `epoch` | the record of one epoch |
-//! | `training` | the training loop: steps, best epoch |
-//! | `state` | the state of a training on disk, for resuming |
-//! | `validation` | errors on rows that are not used in training |
-//! | `bins` | these errors by compression, shear, rotation, width, angle and distance from the domain's edge |
-//! | `stiffness` | the learned tangent compared with the finite elements |
-//! | `ensemble` | the spread of networks with different seeds as a measure of error |
-//! | `export` | conversion of Burn networks to `surrogate` |
+//! ```no_run
+//! use dataset::Database;
+//! use std::path::Path;
+//! use train::{Backend, TrainingConfig, train};
+//!
+//! let database = Database::read(Path::new("data/pet-0.5mm/reference.parquet"))?;
+//! let config: TrainingConfig = support::toml_file::read(Path::new("configs/training/small.toml"))?;
+//! let trained = train(&database, &config, Backend::ALL[0], &mut |epoch| println!("{epoch:?}"))?;
+//! trained.surrogate.save(Path::new("runs/small.safetensors"))?;
+//! # Ok::<_, Box<dyn std::error::Error>>(())
+//! ```
 
 #![warn(missing_docs)]
 
