@@ -73,13 +73,8 @@ fn slips_of_units_and_signs_are_named() {
         ("r_win = 70.0", "r_win = 70000.0", "did you mean 70 mm"),
         (
             "[linear]",
-            "[solver]\nloose_tolerance = 2.0\n[linear]",
-            "solver.loose_tolerance",
-        ),
-        (
-            "[linear]",
-            "[solver]\nmax_increments = 0\n[linear]",
-            "1 <= solver.max_increments",
+            "[solver]\ntolerance = 2.0\n[linear]",
+            "solver.tolerance",
         ),
         (
             "[objective]",

@@ -281,7 +281,8 @@ impl<'a> Branch<'a> {
         None
     }
 
-    fn state(&self, place: &Place, order: Order) -> Option<State> {
+    /// The state at a place; `None` if its energy is not finite.
+    pub fn state(&self, place: &Place, order: Order) -> Option<State> {
         let configuration = place.configuration.clone();
         self.potential(place.at).state_up_to(configuration, order)
     }

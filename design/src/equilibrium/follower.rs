@@ -17,7 +17,6 @@ use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::newton::{Failure, Minimum};
 use crate::equilibrium::place::{Arc, Place, bisected};
 use crate::equilibrium::potential::{State, moved};
-use crate::equilibrium::settings::Method;
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::Order;
 use crate::sheet::kinematics::Configuration;
@@ -356,9 +355,9 @@ impl Branch<'_> {
         let potential = self.potential(start.at);
         let configuration = start.configuration.clone();
         let (settings, effort) = (&self.solver.settings, &mut self.effort);
-        match settings.method {
-            Method::Newton => potential.minimise(configuration, settings, effort),
-            Method::Lbfgs { max_iterations } => {
+        match self.solver.lbfgs {
+            None => potential.minimise(configuration, settings, effort),
+            Some(max_iterations) => {
                 potential.minimise_lbfgs(configuration, settings, max_iterations, effort)
             }
         }

@@ -54,12 +54,13 @@ impl Potential<'_> {
         }
         effort.iterations += iterations;
         effort.factorisations += 1;
-        if state.residual > settings.loose_tolerance {
+        if state.residual > settings.loose_tolerance() {
             return Err(Failure {
                 residual: state.residual,
-                end: match iterations < max_iterations {
-                    true => DescentEnd::Stagnated,
-                    false => DescentEnd::LbfgsIterations,
+                end: if iterations < max_iterations {
+                    DescentEnd::Stagnated
+                } else {
+                    DescentEnd::Iterations
                 },
             });
         }

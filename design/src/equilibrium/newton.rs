@@ -97,7 +97,7 @@ impl Potential<'_> {
                     state = next;
                 }
                 None if state.expected.is_some() => state.expected = None,
-                None if stationary || residual <= settings.loose_tolerance => {
+                None if stationary || residual <= settings.loose_tolerance() => {
                     return Ok(Minimum {
                         state,
                         tangent,
@@ -149,7 +149,7 @@ impl Potential<'_> {
                     *longest = if cut { reached } else { reached.max(*longest) };
                     // Near a saddle point the residual grows before it decreases.
                     let progress = factor.shifted
-                        || state.residual > settings.loose_tolerance
+                        || state.residual > settings.loose_tolerance()
                         || next.residual <= 0.5 * state.residual;
                     let rates = self.force_rates(state, &motion);
                     next.expected = Some(moved(&state.forces(), &rates, fraction));

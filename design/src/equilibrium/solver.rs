@@ -52,8 +52,8 @@ pub enum EquilibriumError {
     #[error("{0} load steps: use at least 1")]
     NoSteps(usize),
     #[error(
-        "solver settings {0:?} violate 0 < tolerance <= loose_tolerance < 1, max_iterations >= 1, \
-         max_increments >= 1, follow_every >= 1"
+        "solver settings {0:?} violate 0 < tolerance < 1, follow_every >= 1, max_iterations >= 1, \
+         max_increments >= 1"
     )]
     Settings(SolverSettings),
 }
@@ -64,6 +64,8 @@ pub struct EquilibriumSolver {
     pub(crate) grid: Grid,
     pub(crate) settings: SolverSettings,
     pub(crate) steps: usize,
+    /// The maximum number of iterations of L-BFGS per load step, if that replaces Newton's method.
+    pub(crate) lbfgs: Option<usize>,
     /// Indices of the free degrees of freedom, three entries per panel.
     pub(crate) free: Box<[Option<usize>]>,
     /// Prescribed motions at full load.
@@ -136,6 +138,7 @@ impl EquilibriumSolver {
             grid,
             settings,
             steps,
+            lbfgs: None,
             free: elimination.free.clone().into(),
             pattern: Box::new(TangentPattern::new(grid, elimination)),
             supports: supports.into(),
@@ -157,6 +160,12 @@ impl EquilibriumSolver {
         Ok(self)
     }
 
+    /// Minimises by L-BFGS as in the paper, the baseline for Newton's method: at most `max_iterations` iterations from
+    /// one load step to the next, without looking for limit points.
+    pub fn use_lbfgs(&mut self, max_iterations: usize) {
+        self.lbfgs = Some(max_iterations);
+    }
+
     /// The size of a factorisation of the tangent.
     pub fn factor_size(&self) -> FactorSize {
         let [entries, multiplications] = self.pattern.fronts.size();
@@ -168,9 +177,10 @@ impl EquilibriumSolver {
 
     /// An error if the supports leave a sheet free to move as a rigid body.
     pub fn check_supports(&self, sheet: &Sheet) -> Result<(), EquilibriumError> {
-        match hold_rigid_body(&self.supports, sheet) {
-            true => Ok(()),
-            false => Err(EquilibriumError::Unsupported),
+        if hold_rigid_body(&self.supports, sheet) {
+            Ok(())
+        } else {
+            Err(EquilibriumError::Unsupported)
         }
     }
 }

@@ -1,6 +1,5 @@
 //! From a scene to its design problem and its start design.
 
-use crate::equilibrium::settings::SolverSettings;
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
 use crate::geometry::chamfer::Chamfer;
 use crate::hinge_law::{Contact, HingeLaw};
@@ -141,11 +140,7 @@ impl Scene {
     }
 
     fn solver(&self) -> Result<EquilibriumSolver, EquilibriumError> {
-        let solver = self.config.solver;
-        let settings = SolverSettings {
-            loose_tolerance: solver.tolerance.max(solver.loose_tolerance),
-            ..solver
-        };
+        let settings = self.config.solver;
         let (supports, loads) = (self.supports(), self.loads());
         let steps = self.config.load_steps;
         let solver = EquilibriumSolver::new(self.grid(), &supports, &loads, steps, settings)?;

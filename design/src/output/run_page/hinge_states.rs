@@ -121,7 +121,7 @@ impl HingeStates {
 /// The forces of every support of the scene in every state.
 fn reactions(scene: &Scene, mechanics: &Mechanics, sheet: &Sheet, states: &[&LoadStep]) -> Packed {
     let of_state = |state: &&LoadStep| {
-        let forces = holding_forces(mechanics, sheet, state);
+        let forces = holding_forces(mechanics, sheet, &state.configuration);
         let supports = scene.config.supports.iter();
         supports.flat_map(move |support| {
             let [column, row] = support.panel;
