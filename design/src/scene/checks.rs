@@ -312,11 +312,6 @@ fn search(scene: &SceneConfig) -> Result<(), String> {
         [0.0, square / 3.0],
         "mm",
     )?;
-    if objective.domain > 0.0 && scene.hinge != HingeModel::Surrogate {
-        return Err(
-            "objective.domain needs hinge = \"surrogate\": no other law has a domain".into(),
-        );
-    }
     let tau = objective.temperatures;
     for (key, tau) in [
         ("objective.temperatures.damage", tau.damage),

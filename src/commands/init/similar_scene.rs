@@ -5,7 +5,7 @@ use anyhow::{Context, Result, bail, ensure};
 use design::equilibrium::load_step::LoadStep;
 use design::objective::target::TargetShape;
 use design::scene::run_inputs::scene_file;
-use design::scene::{HingeModel, Ratios, Scene, SceneConfig, rounded};
+use design::scene::{Ratios, Scene, SceneConfig, rounded};
 use hinge::SheetMaterial;
 use std::path::{Path, PathBuf, absolute};
 
@@ -137,7 +137,7 @@ impl SimilarScene {
         let free = self.config.loads.is_empty()
             && self.config.edge_loads.is_empty()
             && self.config.opening_couples.is_empty();
-        if free || self.config.drive.is_some() || self.config.hinge == HingeModel::Pin {
+        if free || self.config.drive.is_some() || !self.original.hinge.carries_load() {
             return Ok(());
         }
         let Some(meant) = rotation(&self.original)?.filter(|meant| *meant > 0.0) else {

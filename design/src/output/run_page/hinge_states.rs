@@ -102,7 +102,7 @@ impl HingeStates {
             }),
             damage: damage(DamageMeasure::Mean),
             damage_peak: damage(DamageMeasure::Peak),
-            spread: force_spreads(&scene.networks(), deployment).map(|spreads| {
+            spread: force_spreads(scene.networks(), deployment).map(|spreads| {
                 // The flat sheet has no forces.
                 by_hinge(&|i, h| {
                     i.checked_sub(1)

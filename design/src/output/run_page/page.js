@@ -5,13 +5,13 @@ const shownNow = { state: stateCount - 1, quantity: "rotation", hinge: run.hinge
 /** The name of a state of the path. */
 function stateName(i) {
   if (states.index[i] === 0) return "the flat sheet";
-  if (run.model === "pin") return `an opening of ${fixed(deformation(i, 0)[2] * DEG, 1)} deg`;
+  if (!run.carries_load) return `an opening of ${fixed(deformation(i, 0)[2] * DEG, 1)} deg`;
   return `load step ${states.index[i]} of ${states.of - 1}`;
 }
 
 function stateText(i) {
   const parts = [stateName(i)];
-  if (run.model !== "pin") parts.push(`load factor ${shown(states.load_factor[i])}`);
+  if (run.carries_load) parts.push(`load factor ${shown(states.load_factor[i])}`);
   if (states.curve) {
     const [displacement, load] = states.curve[states.index[i]];
     const [length, force] = run.stroke[1];
@@ -39,7 +39,7 @@ function writeTexts() {
     write(tr, "td", name);
     write(tr, "td", value);
   }
-  document.body.className = run.model;
+  document.body.className = run.carries_load ? "" : "pin";
   writeWarnings();
   byId("scene").textContent = run.scene;
   byId("legend").textContent = legend();
@@ -67,7 +67,7 @@ function writeWarnings() {
 
 function legend() {
   const parts = ["Dashed orange: target."];
-  if (run.model === "pin") parts.push("Pins carry no load; the sheet is centred on its target.");
+  if (!run.carries_load) parts.push("Pins carry no load; the sheet is centred on its target.");
   else parts.push("Fine dashes: flat sheet. Panels are held flat. Arrows: loads (orange) and reactions (teal) at the centroids of their panels. Square: clamp; triangle: pin; disc: roller, free along its line.");
   if (run.actuation.openings.length) parts.push("Curved orange arrows on panels: sums of the opening couples of their hinges.");
   parts.push("A panel has the fainter colour of its hinge with the largest value.");

@@ -7,8 +7,8 @@ use crate::output::report::{Report, Warning, worst_first};
 use crate::output::run_page::actuation_marks::ActuationMarks;
 use crate::output::run_page::hinge_states::HingeStates;
 use crate::output::run_page::packed::Packed;
+use crate::scene::Scene;
 use crate::scene::design_run::Designed;
-use crate::scene::{HingeModel, Scene};
 use crate::sheet::cut_sheet::Sheet;
 use hinge::TrainingDomain;
 use serde::Serialize;
@@ -22,7 +22,8 @@ const MOST_TEXT: usize = 20_000;
 #[derive(Serialize)]
 pub(super) struct PageData<'a> {
     title: &'a str,
-    model: HingeModel,
+    /// Whether the hinges carry load; otherwise they are pins.
+    carries_load: bool,
     about_cut_files: Option<&'static str>,
     end_of_search: String,
     facts: Vec<(&'static str, String)>,
@@ -87,7 +88,7 @@ impl<'a> PageData<'a> {
         let reached = report.facts.reached.as_ref();
         Self {
             title: &report.title,
-            model: scene.config.hinge,
+            carries_load: scene.hinge.carries_load(),
             about_cut_files: report.about_cut_files(),
             end_of_search: report.end_of_search(),
             facts: report.fact_rows(),

@@ -35,7 +35,7 @@ const extent = (() => {
   for (let i = 0; i < stateCount; i++)
     for (let k = 0; k < panelCount; k++) for (let c = 0; c < 4; c++) add(corner(i, k, c));
   for (let i = 0; i < run.target.length; i += 2) add([run.target[i], run.target[i + 1]]);
-  if (run.model !== "pin") run.outline.forEach(add);
+  if (run.carries_load) run.outline.forEach(add);
   return box;
 })();
 
@@ -140,7 +140,7 @@ function outlinePath(points) {
 
 function drawMarks(state, selected) {
   marks.textContent = "";
-  if (run.model !== "pin")
+  if (run.carries_load)
     draw(marks, "path", { d: outlinePath(run.outline), fill: "none", stroke: TICK, "stroke-dasharray": "3 3" });
   const target = Array.from({ length: run.target.length / 2 }, (_, i) => [run.target[2 * i], run.target[2 * i + 1]]);
   draw(marks, "path", { d: outlinePath(target), fill: "none", stroke: ACCENT, "stroke-width": 1.8, "stroke-dasharray": "9 6" });
