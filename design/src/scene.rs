@@ -25,6 +25,7 @@ pub use actuation::{
     DriveConfig, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SheetEdge, SupportConfig,
     SupportKind,
 };
+pub use boundary_values::{Actuation, AppliedLoad, SupportedPanel};
 pub use checked_scene::Scene;
 pub use cutting::CuttingConfig;
 pub use hinge_model::{

@@ -273,9 +273,12 @@ impl Deployed<'_> {
         let on_paper = |length: f64| (length / scale) as f32;
         content.set_line_width(on_paper(0.15));
         content.set_line_join(pdf_writer::types::LineJoinStyle::RoundJoin);
-        let supported = (self.scene.config.supports.iter())
-            .map(|support| self.sheet.grid.panel(support.panel[0], support.panel[1]));
-        let loaded = self.scene.loads().into_iter().map(|load| load.panel);
+        let actuation = self.scene.actuation();
+        let supported = actuation.supports.iter().map(|support| support.panel);
+        let loaded = actuation
+            .boundary_loads()
+            .into_iter()
+            .map(|load| load.panel);
         let marked: BTreeSet<usize> = supported.chain(loaded).collect();
         for (k, corners) in self.corners().iter().enumerate() {
             colour(content, PANELS[usize::from(!is_even(self.sheet.grid, k))]);

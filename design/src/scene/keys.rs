@@ -194,12 +194,15 @@ impl SceneConfig {
             .map_or(1.0, |thickness| thickness / material.thickness)
     }
 
+    /// Whether there is a load: on panels, on edges or on hinges.
+    pub fn has_loads(&self) -> bool {
+        !(self.loads.is_empty() && self.edge_loads.is_empty() && self.opening_couples.is_empty())
+    }
+
     /// Multiplies every load: on panels, on edges and on hinges.
     pub fn scale_loads(&mut self, factor: f64) {
         (self.loads.iter_mut()).for_each(|load| load.scale(factor));
-        for load in &mut self.edge_loads {
-            load.traction = load.traction.map(|traction| factor * traction);
-        }
+        (self.edge_loads.iter_mut()).for_each(|load| load.scale(factor));
         (self.opening_couples.iter_mut()).for_each(|load| load.couple *= factor);
     }
 }

@@ -269,10 +269,7 @@ fn same_training(networks: &[Surrogate]) -> Result<(), String> {
 
 fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, String> {
     within("pin.opening_deg", pin.opening_deg, [-180.0, 180.0], "deg")?;
-    let held_or_loaded = !config.supports.is_empty()
-        || !config.loads.is_empty()
-        || !config.edge_loads.is_empty()
-        || !config.opening_couples.is_empty();
+    let held_or_loaded = !config.supports.is_empty() || config.has_loads();
     if held_or_loaded || config.drive.is_some() || config.contact.is_some() {
         return Err(
             "supports, loads, edge_loads, opening_couples, drive, contact: hinge = \"pin\" has no equilibrium: \

@@ -134,7 +134,8 @@ impl Scene {
 
     fn solver(&self) -> Result<EquilibriumSolver, EquilibriumError> {
         let settings = self.config.solver;
-        let (supports, loads) = (self.supports(), self.loads());
+        let actuation = self.actuation();
+        let (supports, loads) = (actuation.boundary_supports(), actuation.boundary_loads());
         let steps = self.config.load_steps;
         let solver = EquilibriumSolver::new(self.grid(), &supports, &loads, steps, settings)?;
         match self.config.drive {

@@ -316,19 +316,20 @@ fn errors(percents: &[f64], states: usize, kind: &str) -> String {
 
 /// What moves the sheet, and what its displacement means.
 fn stroke_of(scene: &Scene, curve: &ActuationCurve) -> String {
-    let config = &scene.config;
-    let alone = config.edge_loads.is_empty() && config.opening_couples.is_empty();
     let [way, load] = match curve.translational {
         true => ["displacement", "force"],
         false => ["rotation", "couple"],
     };
-    match (curve.mover, config.loads.as_slice()) {
-        (Mover::Loads, [only]) if alone => {
-            let [column, row] = only.panel;
-            format!("{way} of panel [{column}, {row}] along its {load}")
-        }
-        (Mover::Loads, _) => format!("mean {way} along the loads, weighted by their {load}s"),
-        (Mover::Supports, _) => format!("{way} of the moved supports"),
+    if curve.mover == Mover::Supports {
+        return format!("{way} of the moved supports");
+    }
+    let place = match scene.actuation().loads.as_slice() {
+        [only] => only.place,
+        _ => None,
+    };
+    match place {
+        Some([column, row]) => format!("{way} of panel [{column}, {row}] along its {load}"),
+        None => format!("mean {way} along the loads, weighted by their {load}s"),
     }
 }
 

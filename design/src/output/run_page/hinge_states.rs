@@ -120,14 +120,13 @@ impl HingeStates {
 
 /// The forces of every support of the scene in every state.
 fn reactions(scene: &Scene, mechanics: &Mechanics, sheet: &Sheet, states: &[&LoadStep]) -> Packed {
+    let supports = &scene.actuation().supports;
     let of_state = |state: &&LoadStep| {
         let forces = holding_forces(mechanics, sheet, &state.configuration);
-        let supports = scene.config.supports.iter();
+        let supports = supports.iter();
         supports.flat_map(move |support| {
-            let [column, row] = support.panel;
-            let force = forces[sheet.grid.panel(column, row)];
-            let held = std::iter::zip(support.kind.holds(), force);
-            held.map(|(held, force)| if held { force } else { 0.0 })
+            let held = std::iter::zip(support.motion, forces[support.panel]);
+            held.map(|(motion, force)| motion.map_or(0.0, |_| force))
         })
     };
     states.iter().flat_map(of_state).collect()
