@@ -247,10 +247,12 @@ impl<'a> Branch<'a> {
             for _ in 0..CORRECTIONS {
                 // One more correction makes a balanced state as smooth in the design as rounding allows.
                 let ready = polished || next <= EXACT;
-                let order = match ready {
-                    true if self.sheet.damage_gradient => Order::Design,
-                    true => Order::Tangent,
-                    false => Order::Forces,
+                let order = if !ready {
+                    Order::Forces
+                } else if self.sheet.damage_gradient {
+                    Order::Design
+                } else {
+                    Order::Tangent
                 };
                 let mut state = self.state(&place, order)?;
                 state.rounding = state.rounding.max(near.state.rounding);

@@ -219,17 +219,14 @@ impl<'a> Follower<'a> {
     /// The arc from the last point to another, and the ratio of lengths by the rates at its two ends.
     fn arc_to(&self, point: &Point) -> (Arc, f64) {
         let last = &self.last;
-        let along = |place: &Place| {
-            let of = |place: &Place| {
-                self.branch
-                    .product(&last.rate.configuration, &place.configuration)
-            };
-            of(place) / of(&last.rate)
-        };
+        let product =
+            |place: &Place| (self.branch).product(&last.rate.configuration, &place.configuration);
+        let along = |place: &Place| product(place) / product(&last.rate);
         let change = Place::sum([(1.0, &point.place), (-1.0, &last.place)]);
-        let (length, stretch) = match last.is_still() {
-            true => (change.at, 1.0),
-            false => (along(&change), along(&point.rate)),
+        let (length, stretch) = if last.is_still() {
+            (change.at, 1.0)
+        } else {
+            (along(&change), along(&point.rate))
         };
         let arc = Arc {
             from: last.place.clone(),

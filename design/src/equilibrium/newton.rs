@@ -84,9 +84,12 @@ impl Potential<'_> {
                 Some(factor) => self.step(&state, factor, &mut longest, settings),
                 None => {
                     let shifted = self.shifted_factor(&tangent, scale, &mut shift, effort);
-                    shifted.and_then(|factor| match stationary {
-                        true => self.escape(&state, &tangent, scale, &factor),
-                        false => self.step(&state, &factor, &mut longest, settings),
+                    shifted.and_then(|factor| {
+                        if stationary {
+                            self.escape(&state, &tangent, scale, &factor)
+                        } else {
+                            self.step(&state, &factor, &mut longest, settings)
+                        }
                     })
                 }
             };

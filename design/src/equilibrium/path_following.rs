@@ -201,12 +201,13 @@ impl Follower<'_> {
             if self.advance().is_none() {
                 // Where the path cannot be followed, a minimum of the energy may be found nevertheless.
                 let found = self.minimised(to);
-                let (minimum, moved) = found.map_err(|failure| match self.is_exhausted() {
-                    true => Failure {
-                        end: DescentEnd::Increments,
-                        ..failure
-                    },
-                    false => failure,
+                let (minimum, moved) = found.map_err(|failure| {
+                    if self.is_exhausted() {
+                        let end = DescentEnd::Increments;
+                        Failure { end, ..failure }
+                    } else {
+                        failure
+                    }
                 })?;
                 self.jumps += usize::from(moved > LEAP);
                 return Ok(minimum);
