@@ -148,7 +148,7 @@ fn a_hinge_law_without_what_it_needs_is_refused() {
     let message = refusal(
         "pet-3x3.toml",
         "hinge = \"surrogate\"",
-        "hinge = \"linear\"",
+        "hinge = \"linear\"\nlinear = { k_a = 400.0, k_s = 250.0, k_theta = 300.0 }",
     );
     assert!(message.contains("objective.domain needs"), "{message}");
     let section = "[linear]\nk_a = 400.0                # N/mm\nk_s = 250.0                # N/mm\n\
