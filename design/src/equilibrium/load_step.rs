@@ -155,7 +155,7 @@ impl LoadStep {
     /// limit point of the load; `None` without loads, or if the tangent could not be factorised.
     pub fn stiffness(&self, solver: &EquilibriumSolver) -> Option<f64> {
         let held = self.tangent.as_ref()?.factor.as_ref()?;
-        let stroke = Stroke::new(&solver.loads, &gather(&solver.free, &solver.loads))?;
+        let stroke = Stroke::new(&solver.loads, &gather(&solver.pattern.free, &solver.loads))?;
         let mut response = stroke.direction().to_vec();
         solver.pattern.solve(&held.factor, &mut response);
         let stiffness = 1.0 / dot(stroke.direction(), &response);

@@ -133,7 +133,7 @@ impl Potential<'_> {
         let downhill: Vec<f64> = state.gradient.iter().map(|g| -g).collect();
         let direction = factor.solve(self.pattern, &downhill);
         let slope = dot(&state.gradient, &direction);
-        let motion = spread(self.free, &direction);
+        let motion = spread(&self.pattern.free, &direction);
         let length = self.length(state, &motion);
         // A shifted step is too short where the energy curves downwards.
         let reach = if factor.shifted { REACH / length } else { 1.0 };
@@ -227,7 +227,7 @@ impl Potential<'_> {
         if dot(&direction, &product) >= NEGATIVE_CURVATURE * size {
             return None;
         }
-        let motion = spread(self.free, &direction);
+        let motion = spread(&self.pattern.free, &direction);
         let mut fraction = 0.1 / self.length(state, &motion);
         for _ in 0..20 {
             let beside = [fraction, -fraction].map(|f| self.moved(state, &motion, f));

@@ -7,7 +7,6 @@
 //! If the path follows another, minus the work of the loads held constant.
 
 use crate::equilibrium::displacement_control::Stroke;
-use crate::equilibrium::elimination::Elimination;
 use crate::equilibrium::settings::SolverSettings;
 use crate::equilibrium::supports::{Dof, Load, Support, hold_rigid_body};
 use crate::equilibrium::tangent::TangentPattern;
@@ -66,8 +65,6 @@ pub struct EquilibriumSolver {
     pub(crate) steps: usize,
     /// The maximum number of iterations of L-BFGS per load step, if that replaces Newton's method.
     pub(crate) lbfgs: Option<usize>,
-    /// Indices of the free degrees of freedom, three entries per panel.
-    pub(crate) free: Box<[Option<usize>]>,
     /// Prescribed motions at full load.
     pub(crate) supports: Box<[Support]>,
     /// (F_x, F_y, M) per panel at full load.
@@ -78,15 +75,6 @@ pub struct EquilibriumSolver {
     pub(crate) drive: Option<(Box<Stroke>, f64)>,
     /// Boxed because it is much larger than the other fields.
     pub(crate) pattern: Box<TangentPattern>,
-}
-
-/// The size of the factors of a tangent, zeros of merged fronts included.
-#[derive(Clone, Copy, Debug)]
-pub struct FactorSize {
-    /// Number of entries of L and D.
-    pub entries: usize,
-    /// Number of multiplications of a factorisation.
-    pub multiplications: usize,
 }
 
 impl EquilibriumSolver {
@@ -133,14 +121,12 @@ impl EquilibriumSolver {
             }
             total[panel][dof.index()] += value;
         }
-        let elimination = Elimination::new(grid, supported.as_flattened());
         Ok(Self {
             grid,
             settings,
             steps,
             lbfgs: None,
-            free: elimination.free.clone().into(),
-            pattern: Box::new(TangentPattern::new(grid, elimination)),
+            pattern: Box::new(TangentPattern::new(grid, supported.as_flattened())),
             supports: supports.into(),
             held: vec![[0.0; 3]; total.len()].into(),
             loads: total.into(),
@@ -154,7 +140,7 @@ impl EquilibriumSolver {
         if !stroke.is_finite() {
             return Err(EquilibriumError::Stroke(stroke));
         }
-        let direction = Stroke::new(&self.loads, &gather(&self.free, &self.loads));
+        let direction = Stroke::new(&self.loads, &gather(&self.pattern.free, &self.loads));
         let direction = direction.ok_or(EquilibriumError::NothingDrives)?;
         self.drive = Some((Box::new(direction), stroke));
         Ok(self)
@@ -166,13 +152,9 @@ impl EquilibriumSolver {
         self.lbfgs = Some(max_iterations);
     }
 
-    /// The size of a factorisation of the tangent.
-    pub fn factor_size(&self) -> FactorSize {
-        let [entries, multiplications] = self.pattern.fronts.size();
-        FactorSize {
-            entries,
-            multiplications,
-        }
+    /// Number of stored entries of the factors of a tangent, zeros of merged columns included.
+    pub fn factor_entries(&self) -> usize {
+        self.pattern.factor_entries()
     }
 
     /// An error if the supports leave a sheet free to move as a rigid body.
