@@ -6,6 +6,7 @@ use crate::scene::actuation::{EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, S
 use crate::scene::checked_scene::Scene;
 use crate::sheet::topology::{HingeSite, hinge_sites};
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// Supports and loads at full load.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -14,7 +15,7 @@ pub struct Actuation {
     pub supports: Vec<SupportedPanel>,
     /// Loads on panels, on edges and on hinges.
     pub loads: Vec<AppliedLoad>,
-    /// What the marks in drawings mean.
+    /// What symbols and curved arrows mean.
     pub legend: String,
 }
 
@@ -48,6 +49,11 @@ pub struct AppliedLoad {
     pub label: Option<String>,
 }
 
+/// The symbols of the supports.
+const SYMBOLS: &str = "Square: clamp; triangle: pin; disc: roller, free along its line.";
+/// The couples of the loads on hinges.
+const SUMS: &str = "Curved arrows on panels: sums of the opening couples of their hinges.";
+
 impl Scene {
     /// Supports and loads on the panels of the sheet.
     pub fn actuation(&self) -> Actuation {
@@ -69,19 +75,14 @@ impl Scene {
             .map(|load| load.on(grid, turns));
         Actuation {
             loads: panels.chain(edges).chain(openings).collect(),
-            legend: legend(!config.opening_couples.is_empty()),
+            legend: if config.opening_couples.is_empty() {
+                SYMBOLS.to_owned()
+            } else {
+                format!("{SYMBOLS} {SUMS}")
+            },
             supports,
         }
     }
-}
-
-/// What the marks in drawings mean.
-fn legend(openings: bool) -> String {
-    let marks = "Arrows: loads (orange) and reactions (teal) at the centroids of their panels. Square: clamp; \
-                 triangle: pin; disc: roller, free along its line.";
-    let sums = " Curved orange arrows on panels: sums of the opening couples of their hinges.";
-    let sums = if openings { sums } else { "" };
-    format!("{marks}{sums}")
 }
 
 impl Actuation {
@@ -97,7 +98,7 @@ impl Actuation {
 
     /// The sum of all loads on free degrees of freedom, by panels.
     pub fn boundary_loads(&self) -> Vec<Load> {
-        let mut total: std::collections::BTreeMap<usize, [f64; 3]> = Default::default();
+        let mut total: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
         for (panel, load) in self.loads.iter().flat_map(|load| &load.on_panels) {
             let sum = total.entry(*panel).or_default();
             (0..3).for_each(|d| sum[d] += load[d]);

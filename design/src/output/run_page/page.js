@@ -68,7 +68,7 @@ function writeWarnings() {
 function legend() {
   const parts = ["Dashed orange: target."];
   if (!run.carries_load) parts.push("Pins carry no load; the sheet is centred on its target.");
-  else parts.push("Fine dashes: flat sheet. Panels are held flat.", run.actuation.legend);
+  else parts.push("Fine dashes: flat sheet. Panels are held flat. Arrows: loads (orange) and reactions (teal) at the centroids of their panels.", run.actuation.legend);
   parts.push("A panel has the fainter colour of its hinge with the largest value.");
   return parts.join(" ");
 }
