@@ -19,17 +19,20 @@ mod relative_path;
 pub mod run_inputs;
 mod scene_error;
 mod sheet_config;
+mod weights_files;
 
 pub use actuation::{
     DriveConfig, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SheetEdge, SupportConfig,
     SupportKind,
 };
+pub use boundary_values::{Actuation, AppliedLoad, SupportedPanel};
 pub use checked_scene::Scene;
 pub use cutting::CuttingConfig;
 pub use hinge_model::{
     CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
 };
 pub use keys::{ObjectiveConfig, OptimiserConfig, SceneConfig};
+pub use loaded_hinge::LoadedHinge;
 pub use ratios::{Ratios, rounded};
 pub use scene_error::SceneError;
 pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};

@@ -73,13 +73,8 @@ fn slips_of_units_and_signs_are_named() {
         ("r_win = 70.0", "r_win = 70000.0", "did you mean 70 mm"),
         (
             "[linear]",
-            "[solver]\nloose_tolerance = 2.0\n[linear]",
-            "solver.loose_tolerance",
-        ),
-        (
-            "[linear]",
-            "[solver]\nmax_increments = 0\n[linear]",
-            "1 <= solver.max_increments",
+            "[solver]\ntolerance = 2.0\n[linear]",
+            "solver.tolerance",
         ),
         (
             "[objective]",
@@ -153,7 +148,7 @@ fn a_hinge_law_without_what_it_needs_is_refused() {
     let message = refusal(
         "pet-3x3.toml",
         "hinge = \"surrogate\"",
-        "hinge = \"linear\"",
+        "hinge = \"linear\"\nlinear = { k_a = 400.0, k_s = 250.0, k_theta = 300.0 }",
     );
     assert!(message.contains("objective.domain needs"), "{message}");
     let section = "[linear]\nk_a = 400.0                # N/mm\nk_s = 250.0                # N/mm\n\

@@ -51,7 +51,7 @@ pub fn routes_of(deployment: &Deployment) -> Vec<HingeRoute> {
 /// the same data, or those that the scene names.
 pub fn ensemble(scene: &Scene, surrogate: &Surrogate, files: &[PathBuf]) -> Result<Vec<Surrogate>> {
     if files.is_empty() {
-        return Ok(scene.networks().into_iter().skip(1).cloned().collect());
+        return Ok(scene.networks().iter().skip(1).cloned().collect());
     }
     let load = |path: &PathBuf| {
         let network = scene.network(path)?;

@@ -260,7 +260,7 @@ impl CapacityStudy {
             let mut second = config.clone();
             second.loads.remove(0);
             second.scale_loads(sign);
-            let loads = self.scene_of(&second)?.loads();
+            let loads = self.scene_of(&second)?.actuation().boundary_loads();
             Ok(problem.further_load(&opened, &loads, way)?)
         };
         Ok([led(1.0)?, led(-1.0)?])

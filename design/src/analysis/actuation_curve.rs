@@ -13,12 +13,14 @@
 //! opens the sheet only as far as the first state that carries it.
 
 use crate::equilibrium::load_step::LoadStep;
+use crate::equilibrium::path_following::Increment;
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::Order;
 use crate::objective::design_problem::{Deployment, Mechanics};
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::kinematics::HingeMotion;
 use crate::sheet::panel_vectors::add_at_hinge;
+use hinge::HingeDeformation;
 use serde::Serialize;
 
 /// What moves the sheet.
@@ -44,7 +46,8 @@ pub struct ActuationCurve {
 impl ActuationCurve {
     /// The curve through the load steps of a deployment by `mechanics`; `None` if nothing moves the sheet.
     pub fn new(mechanics: &Mechanics, deployment: &Deployment) -> Option<Self> {
-        Self::through(mechanics, &deployment.sheet, &deployment.path)
+        let states = deployment.path.iter().map(load_and_state);
+        Self::through(mechanics, &deployment.sheet, states)
     }
 
     /// The curve through the load steps and the increments of the path, and through states close together about the maximum
@@ -53,13 +56,15 @@ impl ActuationCurve {
         let law = mechanics.law.prepare(&sheet.designs());
         let hinged = mechanics.hinged(sheet, &*law, false);
         let solver = &mechanics.solver;
-        let (ends, states): (Vec<f64>, Vec<LoadStep>) =
-            solver.increments(hinged).into_iter().unzip();
-        let coarse = Self::through(mechanics, sheet, &states)?.forwards();
+        let increments = solver.increments(hinged);
+        let states = increments
+            .iter()
+            .map(|end| (end.load_factor, &*end.configuration));
+        let coarse = Self::through(mechanics, sheet, states)?.forwards();
         let (top, reached) = (highest(&coarse), first_reached(&coarse));
         let mut readings = Vec::new();
         let mut from = 0.0;
-        for (i, to) in ends.into_iter().enumerate() {
+        for (i, Increment { at: to, .. }) in increments.into_iter().enumerate() {
             let fine = i + 1 == top || i == top || Some(i) == reached;
             let parts = if fine { READINGS } else { 1 };
             readings
@@ -71,32 +76,34 @@ impl ActuationCurve {
         readings.extend(solver.ends());
         readings.sort_by(f64::total_cmp);
         readings.dedup();
-        Self::through(mechanics, sheet, &solver.readings(hinged, &readings))
+        let steps = solver.readings(hinged, &readings);
+        Self::through(mechanics, sheet, steps.iter().map(load_and_state))
     }
 
-    /// The curve through states of the path.
-    fn through(mechanics: &Mechanics, sheet: &Sheet, path: &[LoadStep]) -> Option<Self> {
+    /// The curve through the load factors and configurations of states of the path.
+    fn through<'a>(
+        mechanics: &Mechanics,
+        sheet: &Sheet,
+        states: impl Iterator<Item = (f64, &'a [[f64; 3]])>,
+    ) -> Option<Self> {
         let solver = &mechanics.solver;
         let (mover, direction) = match magnitude(&solver.loads) {
             Some(_) => (Mover::Loads, solver.loads.to_vec()),
             None => (Mover::Supports, prescribed(solver)),
         };
         let (size, translational) = magnitude(&direction)?;
-        let point = |step: &LoadStep| {
-            let zeta = step.load_factor;
-            match mover {
-                Mover::Loads => [work(&direction, &step.configuration) / size, zeta * size],
-                Mover::Supports => {
-                    let forces = holding_forces(mechanics, sheet, step);
-                    [zeta * size, work(&direction, &forces) / size]
-                }
+        let point = |(zeta, configuration): (f64, &[[f64; 3]])| match mover {
+            Mover::Loads => [work(&direction, configuration) / size, zeta * size],
+            Mover::Supports => {
+                let forces = holding_forces(mechanics, sheet, configuration);
+                [zeta * size, work(&direction, &forces) / size]
             }
         };
         let flat = std::iter::once([0.0; 2]);
         Some(Self {
             mover,
             translational,
-            points: flat.chain(path.iter().map(point)).collect(),
+            points: flat.chain(states.map(point)).collect(),
         })
     }
 
@@ -186,15 +193,27 @@ fn vertex([x0, f0]: [f64; 2], [x1, f1]: [f64; 2], [x2, f2]: [f64; 2]) -> [f64; 2
     }
 }
 
-/// The forces and couples (F_x, F_y, M) on every panel that hold the sheet in a state: the loads on free degrees of
-/// freedom, the reactions at supported ones (N, N mm).
-pub fn holding_forces(mechanics: &Mechanics, sheet: &Sheet, step: &LoadStep) -> Vec<[f64; 3]> {
+/// Load factor and configuration of a load step.
+fn load_and_state(step: &LoadStep) -> (f64, &[[f64; 3]]) {
+    (step.load_factor, &step.configuration)
+}
+
+/// The forces and couples (F_x, F_y, M) on every panel that hold the sheet in a configuration: the loads on free degrees
+/// of freedom, the reactions at supported ones (N, N mm).
+pub fn holding_forces(
+    mechanics: &Mechanics,
+    sheet: &Sheet,
+    configuration: &[[f64; 3]],
+) -> Vec<[f64; 3]> {
     let law = mechanics.law.prepare(&sheet.designs());
     let hinged = mechanics.hinged(sheet, &*law, false);
-    let energies = hinged.energies(&step.deformations, Order::Forces);
+    let motion = |hinge| HingeMotion::new(sheet, hinge, configuration);
+    let motions: Vec<HingeMotion> = (0..sheet.hinges.len()).map(motion).collect();
+    let deformations: Vec<HingeDeformation> =
+        motions.iter().map(HingeMotion::deformation).collect();
+    let energies = hinged.energies(&deformations, Order::Forces);
     let mut forces = vec![[0.0; 3]; sheet.panels.len()];
-    for (h, (hinge, energy)) in std::iter::zip(&sheet.hinges, energies).enumerate() {
-        let motion = HingeMotion::new(sheet, h, &step.configuration);
+    for ((hinge, motion), energy) in sheet.hinges.iter().zip(&motions).zip(energies) {
         add_at_hinge(&mut forces, hinge, motion.forces(energy.forces));
     }
     forces

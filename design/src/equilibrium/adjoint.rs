@@ -74,7 +74,7 @@ pub(crate) fn adjoint(
             let [a, s, theta, ..] = by_path[h][i];
             add_at_hinge(&mut by_q, hinge, motions[h].forces([a, s, theta]));
         }
-        let rhs = gather(&solver.free, &by_q);
+        let rhs = gather(&solver.pattern.free, &by_q);
         let stroke = solver.drive.as_ref().map(|(stroke, _)| &**stroke);
         let solution = (step.tangent.as_ref())
             .and_then(|tangent| refined_solve(&solver.pattern, tangent, stroke, &rhs))
@@ -83,7 +83,7 @@ pub(crate) fn adjoint(
                 load_factor: step.load_factor,
             })?;
         sums.residual = sums.residual.max(solution.error);
-        let lambda = spread(&solver.free, &solution.x);
+        let lambda = spread(&solver.pattern.free, &solution.x);
         for (sum, lambda) in std::iter::zip(&mut sums.loads, &lambda) {
             (0..3).for_each(|d| sum[d] += step.load_factor * lambda[d]);
         }

@@ -137,7 +137,6 @@ impl<'a> Branch<'a> {
         Potential {
             sheet: self.sheet,
             pattern: &self.solver.pattern,
-            free: &self.solver.free,
             control: match &self.solver.drive {
                 None => Control::Load(at),
                 Some((stroke, _)) => Control::Stroke(stroke),
@@ -158,9 +157,10 @@ impl<'a> Branch<'a> {
                 known.configuration[panel][dof] + ahead * support.value;
         }
         if let Some((stroke, full)) = &self.solver.drive {
-            let of = |place: &Place| stroke.of(&gather(&self.solver.free, &place.configuration));
+            let of =
+                |place: &Place| stroke.of(&gather(&self.solver.pattern.free, &place.configuration));
             let short = of(known) + ahead * full - of(place);
-            let motion = spread(&self.solver.free, &stroke.motion(short));
+            let motion = spread(&self.solver.pattern.free, &stroke.motion(short));
             place.configuration = moved(&place.configuration, &motion, 1.0);
         }
     }
@@ -247,10 +247,12 @@ impl<'a> Branch<'a> {
             for _ in 0..CORRECTIONS {
                 // One more correction makes a balanced state as smooth in the design as rounding allows.
                 let ready = polished || next <= EXACT;
-                let order = match ready {
-                    true if self.sheet.damage_gradient => Order::Design,
-                    true => Order::Tangent,
-                    false => Order::Forces,
+                let order = if !ready {
+                    Order::Forces
+                } else if self.sheet.damage_gradient {
+                    Order::Design
+                } else {
+                    Order::Tangent
                 };
                 let mut state = self.state(&place, order)?;
                 state.rounding = state.rounding.max(near.state.rounding);
@@ -281,7 +283,8 @@ impl<'a> Branch<'a> {
         None
     }
 
-    fn state(&self, place: &Place, order: Order) -> Option<State> {
+    /// The state at a place; `None` if its energy is not finite.
+    pub fn state(&self, place: &Place, order: Order) -> Option<State> {
         let configuration = place.configuration.clone();
         self.potential(place.at).state_up_to(configuration, order)
     }
@@ -341,7 +344,7 @@ impl<'a> Branch<'a> {
     pub fn direct(&self, state: &State, factor: &HeldFactor) -> Vec<[f64; 3]> {
         let downhill: Vec<f64> = state.gradient.iter().map(|g| -g).collect();
         spread(
-            &self.solver.free,
+            &self.solver.pattern.free,
             &factor.solve(&self.solver.pattern, &downhill),
         )
     }
@@ -410,7 +413,7 @@ impl<'a> Branch<'a> {
         factor: &HeldFactor,
         mut rate: Vec<[f64; 3]>,
     ) -> Vec<[f64; 3]> {
-        let free = &self.solver.free;
+        let free = &self.solver.pattern.free;
         for _ in 0..RATE.1 {
             let resisted = potential.resistance(state, &rate);
             let missing: Vec<[f64; 3]> = match &self.solver.drive {
@@ -447,9 +450,9 @@ impl<'a> Branch<'a> {
         if solver.supports.iter().any(|support| support.value != 0.0) {
             b = moved(&b, &potential.resistance(state, &supports), -1.0);
         }
-        let b = gather(&solver.free, &b);
+        let b = gather(&solver.pattern.free, &b);
         let (free, _) = factor.solve_bordered(&solver.pattern, &b, stroke);
-        moved(&supports, &spread(&solver.free, &free), 1.0)
+        moved(&supports, &spread(&solver.pattern.free, &free), 1.0)
     }
 }
 

@@ -55,10 +55,12 @@ impl Stroke {
         let stroke = work / self.size;
         let by_load = |([x, y, m], q): (&[f64; 3], &[f64; 3])| {
             let force = x.hypot(*y);
-            let by_size = match self.of_forces {
-                true if force > 0.0 => [x / force, y / force, 0.0],
-                true => [0.0; 3],
-                false => [0.0, 0.0, m.signum()],
+            let by_size = if !self.of_forces {
+                [0.0, 0.0, m.signum()]
+            } else if force > 0.0 {
+                [x / force, y / force, 0.0]
+            } else {
+                [0.0; 3]
             };
             std::array::from_fn(|d| (q[d] - stroke * by_size[d]) / self.size)
         };

@@ -17,7 +17,6 @@ use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::newton::{Failure, Minimum};
 use crate::equilibrium::place::{Arc, Place, bisected};
 use crate::equilibrium::potential::{State, moved};
-use crate::equilibrium::settings::Method;
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::Order;
 use crate::sheet::kinematics::Configuration;
@@ -220,17 +219,14 @@ impl<'a> Follower<'a> {
     /// The arc from the last point to another, and the ratio of lengths by the rates at its two ends.
     fn arc_to(&self, point: &Point) -> (Arc, f64) {
         let last = &self.last;
-        let along = |place: &Place| {
-            let of = |place: &Place| {
-                self.branch
-                    .product(&last.rate.configuration, &place.configuration)
-            };
-            of(place) / of(&last.rate)
-        };
+        let product =
+            |place: &Place| (self.branch).product(&last.rate.configuration, &place.configuration);
+        let along = |place: &Place| product(place) / product(&last.rate);
         let change = Place::sum([(1.0, &point.place), (-1.0, &last.place)]);
-        let (length, stretch) = match last.is_still() {
-            true => (change.at, 1.0),
-            false => (along(&change), along(&point.rate)),
+        let (length, stretch) = if last.is_still() {
+            (change.at, 1.0)
+        } else {
+            (along(&change), along(&point.rate))
         };
         let arc = Arc {
             from: last.place.clone(),
@@ -356,9 +352,9 @@ impl Branch<'_> {
         let potential = self.potential(start.at);
         let configuration = start.configuration.clone();
         let (settings, effort) = (&self.solver.settings, &mut self.effort);
-        match settings.method {
-            Method::Newton => potential.minimise(configuration, settings, effort),
-            Method::Lbfgs { max_iterations } => {
+        match self.solver.lbfgs {
+            None => potential.minimise(configuration, settings, effort),
+            Some(max_iterations) => {
                 potential.minimise_lbfgs(configuration, settings, max_iterations, effort)
             }
         }

@@ -34,7 +34,7 @@ impl Potential<'_> {
     ) -> Result<Minimum, Failure> {
         let mut state = self.forces(start).ok_or(Failure::NOT_FINITE)?;
         let scale = vec![[1.0, 1.0, 1.0 / self.panel_size]; state.configuration.len()];
-        let scale = gather(self.free, &scale);
+        let scale = gather(&self.pattern.free, &scale);
         let mut gradient = self.scaled(&state, &scale);
         let mut memory = Memory::default();
         let mut iterations = 0;
@@ -54,12 +54,13 @@ impl Potential<'_> {
         }
         effort.iterations += iterations;
         effort.factorisations += 1;
-        if state.residual > settings.loose_tolerance {
+        if state.residual > settings.loose_tolerance() {
             return Err(Failure {
                 residual: state.residual,
-                end: match iterations < max_iterations {
-                    true => DescentEnd::Stagnated,
-                    false => DescentEnd::LbfgsIterations,
+                end: if iterations < max_iterations {
+                    DescentEnd::Stagnated
+                } else {
+                    DescentEnd::Iterations
                 },
             });
         }
@@ -103,7 +104,7 @@ impl Potential<'_> {
         let scaled: Vec<f64> = std::iter::zip(direction, scale)
             .map(|(d, s)| d * s)
             .collect();
-        let motion = spread(self.free, &scaled);
+        let motion = spread(&self.pattern.free, &scaled);
         let slope = dot(gradient, direction);
         let (mut near, mut far, mut fraction) = (0.0, f64::INFINITY, 1.0);
         for _ in 0..TRIALS {

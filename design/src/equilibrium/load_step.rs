@@ -1,8 +1,6 @@
 //! The state of the sheet at one step of the equilibrium path, and how it was found.
 
 use crate::equilibrium::displacement_control::{HeldFactor, Stroke, dot};
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::potential::State;
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::{HingeDamage, HingeEnergy, Order};
 use crate::sheet::cut_sheet::Sheet;
@@ -35,10 +33,8 @@ pub enum Status {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DescentEnd {
-    /// The maximum number of Newton iterations was made while the energy still decreased.
+    /// The maximum number of iterations was made while the energy still decreased.
     Iterations,
-    /// The maximum number of iterations of L-BFGS was made.
-    LbfgsIterations,
     /// The path has more increments than the maximum, and no equilibrium was found beyond them.
     Increments,
     /// No further step lowers the energy, but the residual is above the loose tolerance.
@@ -50,16 +46,9 @@ pub enum DescentEnd {
 impl fmt::Display for DescentEnd {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(match self {
-            Self::Iterations => {
-                "the energy still decreases at the last iteration: raise solver.max_iterations"
-            }
-            Self::LbfgsIterations => {
-                "L-BFGS is not at its end: raise max_iterations of solver.method.lbfgs"
-            }
-            Self::Increments => "the path is longer than solver.max_increments: raise that",
-            Self::Stagnated => {
-                "no step lowers the energy further, but the forces are not balanced to solver.loose_tolerance"
-            }
+            Self::Iterations => "the energy still decreases at the last iteration",
+            Self::Increments => "the path is longer than the maximum number of increments",
+            Self::Stagnated => "no step lowers the energy further, but the forces are not balanced",
             Self::NotFinite => "the energy is not a finite number",
         })
     }
@@ -166,7 +155,7 @@ impl LoadStep {
     /// limit point of the load; `None` without loads, or if the tangent could not be factorised.
     pub fn stiffness(&self, solver: &EquilibriumSolver) -> Option<f64> {
         let held = self.tangent.as_ref()?.factor.as_ref()?;
-        let stroke = Stroke::new(&solver.loads, &gather(&solver.free, &solver.loads))?;
+        let stroke = Stroke::new(&solver.loads, &gather(&solver.pattern.free, &solver.loads))?;
         let mut response = stroke.direction().to_vec();
         solver.pattern.solve(&held.factor, &mut response);
         let stiffness = 1.0 / dot(stroke.direction(), &response);
@@ -196,41 +185,6 @@ impl LoadStep {
             tangent: None,
             hinges: Vec::new(),
             order: Order::Value,
-        }
-    }
-
-    pub(crate) fn new(
-        sheet: HingedSheet,
-        state: State,
-        [work, held]: [f64; 2],
-        tangent: Option<StepTangent>,
-        status: Status,
-        effort: Effort,
-        jumps: usize,
-    ) -> Self {
-        let deformations = state.deformations();
-        let factor = tangent.as_ref().and_then(|tangent| tangent.factor.as_ref());
-        let factor = factor.map(|held| &held.factor);
-        Self {
-            load_factor: state.load_factor,
-            inside: sheet.law.inside(&deformations),
-            damage: sheet.law.damage(&deformations, sheet.damage_gradient),
-            deformations,
-            energies: state.energies.iter().map(|energy| energy.w).collect(),
-            potential: state.stored - held - state.load_factor * work,
-            status,
-            descent_end: None,
-            residual: state.residual,
-            rounding: state.rounding,
-            iterations: effort.iterations,
-            effort,
-            jumps,
-            negative_pivots: factor.map_or(0, |factor| factor.negative_pivots),
-            pivot_ratio: factor.map_or(0.0, |factor| factor.pivot_ratio),
-            configuration: state.configuration,
-            tangent,
-            hinges: state.energies,
-            order: state.order,
         }
     }
 }

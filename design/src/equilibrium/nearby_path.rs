@@ -16,7 +16,6 @@ use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{LoadStep, Status};
 use crate::equilibrium::place::Place;
-use crate::equilibrium::settings::Method;
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::{HingeEnergy, Order, PreparedLaw};
 use hinge::{HingeDeformation, HingeDesign};
@@ -72,7 +71,7 @@ impl EquilibriumSolver {
         };
         if known.steps.len() != self.steps
             || !known.steps.iter().all(smooth)
-            || self.settings.method != Method::Newton
+            || self.lbfgs.is_some()
         {
             return None;
         }
@@ -80,8 +79,7 @@ impl EquilibriumSolver {
             .map(|(to, from)| [to.w_lig - from.w_lig, to.alpha - from.alpha])
             .collect();
         let mut branch = Branch::new(self, sheet);
-        let ends = (1..=self.steps).map(|i| i as f64 / self.steps as f64);
-        std::iter::zip(ends, &known.steps)
+        std::iter::zip(self.ends(), &known.steps)
             .map(|(at, known)| branch.load_step_near(at, known, &changes))
             .collect()
     }

@@ -84,9 +84,12 @@ impl Potential<'_> {
                 Some(factor) => self.step(&state, factor, &mut longest, settings),
                 None => {
                     let shifted = self.shifted_factor(&tangent, scale, &mut shift, effort);
-                    shifted.and_then(|factor| match stationary {
-                        true => self.escape(&state, &tangent, scale, &factor),
-                        false => self.step(&state, &factor, &mut longest, settings),
+                    shifted.and_then(|factor| {
+                        if stationary {
+                            self.escape(&state, &tangent, scale, &factor)
+                        } else {
+                            self.step(&state, &factor, &mut longest, settings)
+                        }
                     })
                 }
             };
@@ -97,7 +100,7 @@ impl Potential<'_> {
                     state = next;
                 }
                 None if state.expected.is_some() => state.expected = None,
-                None if stationary || residual <= settings.loose_tolerance => {
+                None if stationary || residual <= settings.loose_tolerance() => {
                     return Ok(Minimum {
                         state,
                         tangent,
@@ -130,7 +133,7 @@ impl Potential<'_> {
         let downhill: Vec<f64> = state.gradient.iter().map(|g| -g).collect();
         let direction = factor.solve(self.pattern, &downhill);
         let slope = dot(&state.gradient, &direction);
-        let motion = spread(self.free, &direction);
+        let motion = spread(&self.pattern.free, &direction);
         let length = self.length(state, &motion);
         // A shifted step is too short where the energy curves downwards.
         let reach = if factor.shifted { REACH / length } else { 1.0 };
@@ -149,7 +152,7 @@ impl Potential<'_> {
                     *longest = if cut { reached } else { reached.max(*longest) };
                     // Near a saddle point the residual grows before it decreases.
                     let progress = factor.shifted
-                        || state.residual > settings.loose_tolerance
+                        || state.residual > settings.loose_tolerance()
                         || next.residual <= 0.5 * state.residual;
                     let rates = self.force_rates(state, &motion);
                     next.expected = Some(moved(&state.forces(), &rates, fraction));
@@ -224,7 +227,7 @@ impl Potential<'_> {
         if dot(&direction, &product) >= NEGATIVE_CURVATURE * size {
             return None;
         }
-        let motion = spread(self.free, &direction);
+        let motion = spread(&self.pattern.free, &direction);
         let mut fraction = 0.1 / self.length(state, &motion);
         for _ in 0..20 {
             let beside = [fraction, -fraction].map(|f| self.moved(state, &motion, f));

@@ -11,11 +11,22 @@ use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status, StepTangent};
 use crate::equilibrium::newton::{Failure, Minimum};
 use crate::equilibrium::place::Place;
-use crate::equilibrium::potential::moved;
-use crate::equilibrium::settings::{Method, SolverSettings};
+use crate::equilibrium::potential::{State, moved};
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
 use crate::equilibrium::supports::{Load, Support};
+use crate::hinge_law::Order;
 use crate::sheet::kinematics::Configuration;
+
+/// The end of an increment of a path.
+#[derive(Clone, Debug)]
+pub struct Increment {
+    /// Load parameter: the fraction of the loads or, if they are prescribed, of the stroke and the support motions.
+    pub at: f64,
+    /// zeta
+    pub load_factor: f64,
+    /// q: the motion of every panel.
+    pub configuration: Configuration,
+}
 
 impl EquilibriumSolver {
     /// The solver of a path that follows the state `last` of this solver's path: the supports remain where they are,
@@ -35,6 +46,7 @@ impl EquilibriumSolver {
         let next = Self::new(self.grid, &supports, loads, steps, self.settings)?;
         let held = std::iter::zip(&self.held, &self.loads);
         Ok(Self {
+            lbfgs: self.lbfgs,
             held: held
                 .map(|(held, load)| std::array::from_fn(|d| held[d] + last.load_factor * load[d]))
                 .collect(),
@@ -47,7 +59,7 @@ impl EquilibriumSolver {
     /// # Panics
     /// If the grids of sheet and solver differ.
     pub fn path(&self, sheet: HingedSheet) -> Vec<LoadStep> {
-        self.path_from(sheet, vec![[0.0; 3]; self.grid.panel_count()])
+        self.path_from(sheet, self.flat())
     }
 
     /// Follows the equilibrium path from a start that is an equilibrium without the loads of this solver; for a
@@ -70,8 +82,7 @@ impl EquilibriumSolver {
     /// # Panics
     /// If the grids of sheet and solver differ.
     pub fn readings(&self, sheet: HingedSheet, parameters: &[f64]) -> Vec<LoadStep> {
-        let flat = vec![[0.0; 3]; self.grid.panel_count()];
-        self.read(sheet, flat, parameters.iter().copied())
+        self.read(sheet, self.flat(), parameters.iter().copied())
     }
 
     /// The load steps that end at load parameters in ascending order. The path ends early if no equilibrium is found.
@@ -81,12 +92,7 @@ impl EquilibriumSolver {
         start: Configuration,
         ends: impl Iterator<Item = f64>,
     ) -> Vec<LoadStep> {
-        assert_eq!(
-            self.grid, sheet.sheet.grid,
-            "the grids of solver and sheet must be the same"
-        );
-        assert_eq!(start.len(), self.grid.panel_count(), "one motion per panel");
-        let Some(mut follower) = Follower::new(self, sheet, start.clone()) else {
+        let Some(mut follower) = self.follower(sheet, start.clone()) else {
             return vec![LoadStep {
                 load_factor: 0.0,
                 status: Status::Diverged,
@@ -107,26 +113,37 @@ impl EquilibriumSolver {
         path
     }
 
-    /// The load parameters and equilibria at the increments of the path from the flat sheet, which are close together
-    /// where it bends.
+    /// The ends of the increments of the path from the flat sheet, which are close together where it bends.
     ///
     /// # Panics
     /// If the grids of sheet and solver differ.
-    pub fn increments(&self, sheet: HingedSheet) -> Vec<(f64, LoadStep)> {
+    pub fn increments(&self, sheet: HingedSheet) -> Vec<Increment> {
+        let follower = self.follower(sheet, self.flat());
+        let ends = follower.into_iter().flat_map(|mut follower| {
+            std::iter::from_fn(move || {
+                let goes_on = follower.last.place.at < 1.0 && follower.advance().is_some();
+                goes_on.then(|| follower.end_of_increment())
+            })
+        });
+        ends.collect()
+    }
+
+    /// The beginning of the path from a start; `None` if the energy there is not finite.
+    fn follower<'a>(
+        &'a self,
+        sheet: HingedSheet<'a>,
+        start: Configuration,
+    ) -> Option<Follower<'a>> {
         assert_eq!(
             self.grid, sheet.sheet.grid,
             "the grids of solver and sheet must be the same"
         );
-        let start = vec![[0.0; 3]; self.grid.panel_count()];
-        let mut increments = Vec::new();
-        if let Some(mut follower) = Follower::new(self, sheet, start) {
-            while follower.last.place.at < 1.0 && follower.advance().is_some() {
-                let jumps = std::mem::take(&mut follower.jumps);
-                let at = follower.last.place.at;
-                increments.push((at, follower.last_point(Status::Converged, jumps)));
-            }
-        }
-        increments
+        assert_eq!(start.len(), self.grid.panel_count(), "one motion per panel");
+        Follower::new(self, sheet, start)
+    }
+
+    fn flat(&self) -> Configuration {
+        vec![[0.0; 3]; self.grid.panel_count()]
     }
 
     /// Work of the full loads and of the loads held constant (N mm).
@@ -142,9 +159,9 @@ impl EquilibriumSolver {
 impl Follower<'_> {
     /// The load step at the load parameter `to`.
     fn load_step(&mut self, to: f64) -> LoadStep {
-        let found = match self.branch.solver.settings.method {
-            Method::Newton => self.followed(to),
-            Method::Lbfgs { .. } => self.minimised(to).map(|(minimum, _)| minimum),
+        let found = match self.branch.solver.lbfgs {
+            None => self.followed(to),
+            Some(_) => self.minimised(to).map(|(minimum, _)| minimum),
         };
         let jumps = std::mem::take(&mut self.jumps);
         match found {
@@ -152,21 +169,30 @@ impl Follower<'_> {
             Err(Failure { residual, end }) => LoadStep {
                 residual,
                 descent_end: Some(end),
-                ..self.last_point(Status::Diverged, jumps)
+                ..self.last_point(jumps)
             },
         }
     }
 
-    /// The last point that was found, without a tangent.
-    fn last_point(&mut self, status: Status, jumps: usize) -> LoadStep {
-        let Place {
-            at, configuration, ..
-        } = self.last.place.clone();
-        let effort = std::mem::take(&mut self.branch.effort);
-        let works = self.branch.solver.works(&configuration);
-        let state = self.branch.potential(at).state(configuration);
-        let state = state.expect("this state was computed before");
-        LoadStep::new(self.branch.sheet, state, works, None, status, effort, jumps)
+    fn end_of_increment(&self) -> Increment {
+        let state = self.last_state(Order::Forces);
+        Increment {
+            at: self.last.place.at,
+            load_factor: state.load_factor,
+            configuration: state.configuration,
+        }
+    }
+
+    /// The state at the last point that was found.
+    fn last_state(&self, order: Order) -> State {
+        let state = self.branch.state(&self.last.place, order);
+        state.expect("this state was computed before")
+    }
+
+    /// The last point that was found, without a tangent: where the path ends.
+    fn last_point(&mut self, jumps: usize) -> LoadStep {
+        let state = self.last_state(Order::Tangent);
+        self.branch.reported(state, None, Status::Diverged, jumps)
     }
 
     /// The equilibrium at `to` on the path.
@@ -175,12 +201,13 @@ impl Follower<'_> {
             if self.advance().is_none() {
                 // Where the path cannot be followed, a minimum of the energy may be found nevertheless.
                 let found = self.minimised(to);
-                let (minimum, moved) = found.map_err(|failure| match self.is_exhausted() {
-                    true => Failure {
-                        end: DescentEnd::Increments,
-                        ..failure
-                    },
-                    false => failure,
+                let (minimum, moved) = found.map_err(|failure| {
+                    if self.is_exhausted() {
+                        let end = DescentEnd::Increments;
+                        Failure { end, ..failure }
+                    } else {
+                        failure
+                    }
                 })?;
                 self.jumps += usize::from(moved > LEAP);
                 return Ok(minimum);
@@ -228,16 +255,50 @@ impl Follower<'_> {
 impl Branch<'_> {
     /// The load step at a minimum, `jumps` jumps after the last.
     pub fn load_step(&mut self, minimum: Minimum, jumps: usize) -> LoadStep {
-        let effort = std::mem::take(&mut self.effort);
         let status = self.status(&minimum, jumps > 0);
-        let works = self.solver.works(&minimum.state.configuration);
         let tangent = StepTangent {
             values: minimum.tangent,
             factor: minimum.factor,
         };
         self.force = minimum.state.force;
-        let (sheet, state) = (self.sheet, minimum.state);
-        LoadStep::new(sheet, state, works, Some(tangent), status, effort, jumps)
+        self.reported(minimum.state, Some(tangent), status, jumps)
+    }
+
+    /// The load step in a state, with what it cost since the last.
+    fn reported(
+        &mut self,
+        state: State,
+        tangent: Option<StepTangent>,
+        status: Status,
+        jumps: usize,
+    ) -> LoadStep {
+        let effort = std::mem::take(&mut self.effort);
+        let [work, held] = self.solver.works(&state.configuration);
+        let deformations = state.deformations();
+        let factor = tangent.as_ref().and_then(|tangent| tangent.factor.as_ref());
+        let factor = factor.map(|held| &held.factor);
+        let (law, damage_gradient) = (self.sheet.law, self.sheet.damage_gradient);
+        LoadStep {
+            load_factor: state.load_factor,
+            inside: law.inside(&deformations),
+            damage: law.damage(&deformations, damage_gradient),
+            deformations,
+            energies: state.energies.iter().map(|energy| energy.w).collect(),
+            potential: state.stored - held - state.load_factor * work,
+            status,
+            descent_end: None,
+            residual: state.residual,
+            rounding: state.rounding,
+            iterations: effort.iterations,
+            effort,
+            jumps,
+            negative_pivots: factor.map_or(0, |factor| factor.negative_pivots),
+            pivot_ratio: factor.map_or(0.0, |factor| factor.pivot_ratio),
+            configuration: state.configuration,
+            tangent,
+            hinges: state.energies,
+            order: state.order,
+        }
     }
 
     /// The maximum rotation or hinge translation from a place to a minimum.
@@ -249,14 +310,10 @@ impl Branch<'_> {
 
     fn status(&self, minimum: &Minimum, jumped: bool) -> Status {
         let stable = (minimum.factor.as_ref()).is_some_and(|held| held.unstable_directions() == 0);
-        let SolverSettings {
-            tolerance,
-            loose_tolerance,
-            ..
-        } = self.solver.settings;
+        let settings = &self.solver.settings;
         // Rounding may explain a residual above the loose tolerance; it is no converged state nevertheless.
-        let balanced =
-            minimum.state.is_balanced(tolerance) && minimum.state.residual <= loose_tolerance;
+        let balanced = minimum.state.is_balanced(settings.tolerance)
+            && minimum.state.residual <= settings.loose_tolerance();
         let law = self.sheet.law;
         if !balanced || !stable {
             Status::Almost

@@ -22,8 +22,6 @@ use hinge::HingeDeformation;
 pub(crate) struct Potential<'a> {
     pub sheet: HingedSheet<'a>,
     pub pattern: &'a TangentPattern,
-    /// Indices of the free degrees of freedom.
-    pub free: &'a [Option<usize>],
     pub control: Control<'a>,
     /// Size of a panel, by which moments are divided (mm).
     pub panel_size: f64,
@@ -151,8 +149,8 @@ impl Potential<'_> {
             .zip(configuration.as_flattened())
             .map(|((load, held), u)| -(worked * load + held) * u);
         let terms = energies.iter().map(|energy| energy.w).chain(works);
-        let gradient = gather(self.free, &unbalanced);
-        let left = self.largest(spread(self.free, &gradient).into_iter());
+        let gradient = gather(&self.pattern.free, &unbalanced);
+        let left = self.largest(spread(&self.pattern.free, &gradient).into_iter());
         let held = self.largest(self.held.iter().copied());
         let loads = held + load_factor.abs() * self.largest(self.loads.iter().copied());
         let hinges = self.largest(energies.iter().map(|energy| energy.forces));

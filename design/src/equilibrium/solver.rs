@@ -7,7 +7,6 @@
 //! If the path follows another, minus the work of the loads held constant.
 
 use crate::equilibrium::displacement_control::Stroke;
-use crate::equilibrium::elimination::Elimination;
 use crate::equilibrium::settings::SolverSettings;
 use crate::equilibrium::supports::{Dof, Load, Support, hold_rigid_body};
 use crate::equilibrium::tangent::TangentPattern;
@@ -52,8 +51,8 @@ pub enum EquilibriumError {
     #[error("{0} load steps: use at least 1")]
     NoSteps(usize),
     #[error(
-        "solver settings {0:?} violate 0 < tolerance <= loose_tolerance < 1, max_iterations >= 1, \
-         max_increments >= 1, follow_every >= 1"
+        "solver settings {0:?} violate 0 < tolerance < 1, follow_every >= 1, max_iterations >= 1, \
+         max_increments >= 1"
     )]
     Settings(SolverSettings),
 }
@@ -64,8 +63,8 @@ pub struct EquilibriumSolver {
     pub(crate) grid: Grid,
     pub(crate) settings: SolverSettings,
     pub(crate) steps: usize,
-    /// Indices of the free degrees of freedom, three entries per panel.
-    pub(crate) free: Box<[Option<usize>]>,
+    /// The maximum number of iterations of L-BFGS per load step, if that replaces Newton's method.
+    pub(crate) lbfgs: Option<usize>,
     /// Prescribed motions at full load.
     pub(crate) supports: Box<[Support]>,
     /// (F_x, F_y, M) per panel at full load.
@@ -76,15 +75,6 @@ pub struct EquilibriumSolver {
     pub(crate) drive: Option<(Box<Stroke>, f64)>,
     /// Boxed because it is much larger than the other fields.
     pub(crate) pattern: Box<TangentPattern>,
-}
-
-/// The size of the factors of a tangent, zeros of merged fronts included.
-#[derive(Clone, Copy, Debug)]
-pub struct FactorSize {
-    /// Number of entries of L and D.
-    pub entries: usize,
-    /// Number of multiplications of a factorisation.
-    pub multiplications: usize,
 }
 
 impl EquilibriumSolver {
@@ -131,13 +121,12 @@ impl EquilibriumSolver {
             }
             total[panel][dof.index()] += value;
         }
-        let elimination = Elimination::new(grid, supported.as_flattened());
         Ok(Self {
             grid,
             settings,
             steps,
-            free: elimination.free.clone().into(),
-            pattern: Box::new(TangentPattern::new(grid, elimination)),
+            lbfgs: None,
+            pattern: Box::new(TangentPattern::new(grid, supported.as_flattened())),
             supports: supports.into(),
             held: vec![[0.0; 3]; total.len()].into(),
             loads: total.into(),
@@ -151,26 +140,29 @@ impl EquilibriumSolver {
         if !stroke.is_finite() {
             return Err(EquilibriumError::Stroke(stroke));
         }
-        let direction = Stroke::new(&self.loads, &gather(&self.free, &self.loads));
+        let direction = Stroke::new(&self.loads, &gather(&self.pattern.free, &self.loads));
         let direction = direction.ok_or(EquilibriumError::NothingDrives)?;
         self.drive = Some((Box::new(direction), stroke));
         Ok(self)
     }
 
-    /// The size of a factorisation of the tangent.
-    pub fn factor_size(&self) -> FactorSize {
-        let [entries, multiplications] = self.pattern.fronts.size();
-        FactorSize {
-            entries,
-            multiplications,
-        }
+    /// Minimises by L-BFGS as in the paper, the baseline for Newton's method: at most `max_iterations` iterations from
+    /// one load step to the next, without looking for limit points.
+    pub fn use_lbfgs(&mut self, max_iterations: usize) {
+        self.lbfgs = Some(max_iterations);
+    }
+
+    /// Number of stored entries of the factors of a tangent, zeros of merged columns included.
+    pub fn factor_entries(&self) -> usize {
+        self.pattern.factor_entries()
     }
 
     /// An error if the supports leave a sheet free to move as a rigid body.
     pub fn check_supports(&self, sheet: &Sheet) -> Result<(), EquilibriumError> {
-        match hold_rigid_body(&self.supports, sheet) {
-            true => Ok(()),
-            false => Err(EquilibriumError::Unsupported),
+        if hold_rigid_body(&self.supports, sheet) {
+            Ok(())
+        } else {
+            Err(EquilibriumError::Unsupported)
         }
     }
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// Lever of the supports about the centre of rotation, relative to the size of the sheet, below which they do not prevent
 /// the rotation.
-const LEAST_LEVER: f64 = 1e-6;
+const MIN_LEVER: f64 = 1e-6;
 
 /// A degree of freedom of a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -81,5 +81,5 @@ pub(crate) fn hold_rigid_body(supports: &[Support], sheet: &Sheet) -> bool {
         return false;
     }
     let left = turned[2] - turned[0] * turned[0] / along_x[0] - turned[1] * turned[1] / along_y[1];
-    left > LEAST_LEVER * LEAST_LEVER
+    left > MIN_LEVER * MIN_LEVER
 }

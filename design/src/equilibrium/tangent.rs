@@ -2,10 +2,11 @@
 //! done once per topology and set of supports; free degrees of freedom are numbered in elimination
 //! order.
 
-use crate::equilibrium::elimination::{Elimination, columns_of};
-use crate::equilibrium::multifrontal::Multifrontal;
+use crate::equilibrium::sparse_ldl::{SparseLdl, elimination_ranks};
 use crate::pattern::grid::Grid;
 use crate::sheet::topology::hinge_sites;
+use faer::sparse::SymbolicSparseColMat;
+use std::collections::BTreeSet;
 
 /// Maximum rounds of the condition estimate, which seldom needs more than three.
 const HAGER_ROUNDS: usize = 5;
@@ -16,10 +17,9 @@ pub(crate) const MIN_PIVOT_RATIO: f64 = 1e-13;
 /// Sparsity of the tangent in the free degrees of freedom, lower triangle by columns.
 #[derive(Debug)]
 pub(crate) struct TangentPattern {
-    /// Where the columns start, and the row of each entry.
-    starts: Vec<usize>,
-    rows: Vec<usize>,
-    pub fronts: Multifrontal,
+    ldl: SparseLdl,
+    /// Indices of the free degrees of freedom in the order of elimination, three entries per panel.
+    pub free: Box<[Option<usize>]>,
     /// Positions of the entries of each hinge's 6 x 6 block; `None` for supported or upper entries.
     slots: Vec<[[Option<u32>; 6]; 6]>,
 }
@@ -44,20 +44,36 @@ fn at_hinges(grid: Grid, free: &[Option<usize>]) -> Vec<[Option<usize>; 6]> {
         .collect()
 }
 
-impl TangentPattern {
-    /// The tangent of a grid whose degrees of freedom are numbered by an elimination.
-    pub fn new(grid: Grid, Elimination { free, fronts }: Elimination) -> Self {
-        let at_hinges = at_hinges(grid, &free);
-        // Always with the diagonal, for the shift.
-        let dimension = free.iter().flatten().count();
-        let mut columns: Vec<Vec<usize>> = (0..dimension).map(|i| vec![i]).collect();
-        for numbers in &at_hinges {
-            for &column in numbers.iter().flatten() {
-                let lower = numbers.iter().flatten().filter(|&&row| row > column);
-                columns[column].extend(lower);
-            }
+/// The sparsity of the lower triangle; it always contains the diagonal, for the shift.
+fn sparsity(at_hinges: &[[Option<usize>; 6]], dimension: usize) -> SymbolicSparseColMat<usize> {
+    let mut columns: Vec<BTreeSet<usize>> = (0..dimension).map(|i| [i].into()).collect();
+    for numbers in at_hinges {
+        for &column in numbers.iter().flatten() {
+            let lower = numbers.iter().flatten().filter(|&&row| row > column);
+            columns[column].extend(lower);
         }
-        let (starts, rows) = columns_of(columns);
+    }
+    let (mut starts, mut rows) = (vec![0], Vec::new());
+    for column in columns {
+        rows.extend(column);
+        starts.push(rows.len());
+    }
+    SymbolicSparseColMat::new_checked(dimension, dimension, starts, None, rows)
+}
+
+impl TangentPattern {
+    /// The tangent of a grid; `supported` has three entries per panel.
+    pub fn new(grid: Grid, supported: &[bool]) -> Self {
+        let mut numbers = 0..;
+        let mut free: Vec<Option<usize>> = (supported.iter())
+            .map(|&supported| if supported { None } else { numbers.next() })
+            .collect();
+        let dimension = free.iter().flatten().count();
+        let ranks = elimination_ranks(&sparsity(&at_hinges(grid, &free), dimension));
+        (free.iter_mut().flatten()).for_each(|number| *number = ranks[*number]);
+        let at_hinges = at_hinges(grid, &free);
+        let ldl = SparseLdl::new(sparsity(&at_hinges, dimension));
+        let (starts, rows) = ldl.entries();
         let slot = |row: usize, column: usize| {
             let range = starts[column]..starts[column + 1];
             let offset = rows[range.clone()].binary_search(&row).ok()?;
@@ -69,21 +85,21 @@ impl TangentPattern {
             })
             .collect();
         Self {
-            fronts: Multifrontal::new(fronts, &starts, &rows),
-            starts,
-            rows,
+            ldl,
+            free: free.into(),
             slots,
         }
     }
 
     /// Positions of the diagonal entries, the first of their columns.
     fn diagonal_slots(&self) -> &[usize] {
-        &self.starts[..self.starts.len() - 1]
+        let (starts, _) = self.ldl.entries();
+        &starts[..starts.len() - 1]
     }
 
     /// The lower triangle of H from the 6 x 6 blocks of the hinges.
     pub fn assemble(&self, blocks: impl Iterator<Item = [[f64; 6]; 6]>) -> Vec<f64> {
-        let mut values = vec![0.0; self.rows.len()];
+        let mut values = vec![0.0; self.ldl.entries().1.len()];
         for (slots, block) in std::iter::zip(&self.slots, blocks) {
             for (slots, entries) in std::iter::zip(slots, block) {
                 for (slot, entry) in std::iter::zip(slots, entries) {
@@ -132,7 +148,7 @@ impl TangentPattern {
             product[row] += term;
             bound[row] += term.abs();
         };
-        let (starts, rows) = (&self.starts, &self.rows);
+        let (starts, rows) = self.ldl.entries();
         for column in 0..x.len() {
             for slot in starts[column]..starts[column + 1] {
                 let row = rows[slot];
@@ -148,9 +164,9 @@ impl TangentPattern {
     /// LDL^T, stored in `memory` of an earlier factor; `None` if a pivot vanishes or is not finite.
     pub fn factorise(&self, values: &[f64], memory: Vec<f64>) -> Option<Factor> {
         let mut factor = memory;
-        self.fronts.factorise(values, &mut factor)?;
+        self.ldl.factorise(values, &mut factor)?;
         let (mut negative_pivots, mut pivot_ratio) = (0, 1.0_f64);
-        for (pivot, &slot) in std::iter::zip(self.fronts.pivots(&factor), self.diagonal_slots()) {
+        for (pivot, &slot) in std::iter::zip(self.ldl.pivots(&factor), self.diagonal_slots()) {
             // Relative to its original diagonal entry of H.
             let ratio = pivot / values[slot].abs();
             if !ratio.is_finite() || ratio == 0.0 {
@@ -177,7 +193,7 @@ impl TangentPattern {
         if n == 0 {
             return 1.0;
         }
-        let (starts, rows) = (&self.starts, &self.rows);
+        let (starts, rows) = self.ldl.entries();
         let mut sums = vec![0.0; n];
         for column in 0..n {
             for slot in starts[column]..starts[column + 1] {
@@ -211,9 +227,14 @@ impl TangentPattern {
         max * sums.into_iter().fold(0.0, f64::max)
     }
 
+    /// Number of stored entries of the factors.
+    pub fn factor_entries(&self) -> usize {
+        self.ldl.factor_entries()
+    }
+
     /// Solves with the factor, in place.
     pub fn solve(&self, factor: &Factor, rhs: &mut [f64]) {
-        self.fronts.solve(&factor.values, rhs);
+        self.ldl.solve(&factor.values, rhs);
     }
 }
 
@@ -232,7 +253,7 @@ mod tests {
     fn pattern(grid: Grid) -> TangentPattern {
         let supported = |i: usize| i < 3 || (i > 5 && i % 17 < 2);
         let supported: Vec<bool> = (0..3 * grid.panel_count()).map(supported).collect();
-        TangentPattern::new(grid, Elimination::new(grid, &supported))
+        TangentPattern::new(grid, &supported)
     }
 
     /// A positive definite matrix: a full block v v^T of each hinge plus a diagonal.

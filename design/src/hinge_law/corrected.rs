@@ -65,15 +65,18 @@ impl Correction {
     pub fn new(design: &HingeDesign, missing: &[MissingForces]) -> Self {
         let [of_a, of_s, of_theta] = LENGTHS;
         let lengths = [of_a * design.w_lig, of_s * design.w_lig, of_theta];
-        let scaled = |it: &MissingForces| scaled(&it.state, lengths);
-        let bent = |it: &&MissingForces| dot(scaled(it), scaled(it)) > NEARLY_FLAT * NEARLY_FLAT;
+        let scaled = |measured: &MissingForces| scaled(&measured.state, lengths);
+        let bent = |measured: &&MissingForces| {
+            let state = scaled(measured);
+            dot(state, state) > NEARLY_FLAT * NEARLY_FLAT
+        };
         let missing: Vec<&MissingForces> = missing.iter().filter(bent).collect();
         let flat = [0.0; 3];
-        let states: Vec<[f64; 3]> = (missing.iter().map(|it| scaled(it)))
+        let states: Vec<[f64; 3]> = (missing.iter().map(|measured| scaled(measured)))
             .chain([flat])
             .collect();
         let slopes: Vec<f64> = (missing.iter())
-            .flat_map(|it| from_fn::<_, 3, _>(|k| it.forces[k] * lengths[k]))
+            .flat_map(|measured| from_fn::<_, 3, _>(|k| measured.forces[k] * lengths[k]))
             .chain(flat)
             .collect();
         let size = slopes.len();

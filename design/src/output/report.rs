@@ -125,7 +125,7 @@ impl Report {
                 .count(),
             before: Scores::of(&designed.problem.objective, &designed.start),
             after,
-            estimate: Estimate::of(&scene.networks(), deployment),
+            estimate: Estimate::of(scene.networks(), deployment),
             facts,
             warnings,
             hinges,

@@ -8,9 +8,9 @@ use crate::output::drawing::load_marks::{Mark, marks};
 use crate::output::drawing::page::{bounds, round_below};
 use crate::output::pdf::{self, Font, colour, filled, line, page, polygon, polyline};
 use crate::output::report::Report;
+use crate::scene::Scene;
 use crate::scene::design_run::Designed;
 use crate::scene::placement::placed;
-use crate::scene::{HingeModel, Scene};
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::hinge_window::Window;
 use crate::sheet::kinematics::deployed_corners;
@@ -251,19 +251,19 @@ impl Deployed<'_> {
 
     /// What the drawings show besides the sheet.
     fn shown(&self) -> &'static str {
-        match self.scene.config.hinge {
-            HingeModel::Pin => "dashed: target",
-            _ => "dashed: target; loads and supports act at the centroids of their panels",
+        if self.scene.hinge.carries_load() {
+            "dashed: target; loads and supports act at the centroids of their panels"
+        } else {
+            "dashed: target"
         }
     }
 
     fn caption(&self) -> String {
-        match self.scene.config.hinge {
-            HingeModel::Pin => "Deployed".to_owned(),
-            _ => format!(
-                "Deployed, panels held flat, load factor {:.4}",
-                self.last.load_factor
-            ),
+        if self.scene.hinge.carries_load() {
+            let factor = self.last.load_factor;
+            format!("Deployed, panels held flat, load factor {factor:.4}")
+        } else {
+            "Deployed".to_owned()
         }
     }
 
@@ -273,9 +273,12 @@ impl Deployed<'_> {
         let on_paper = |length: f64| (length / scale) as f32;
         content.set_line_width(on_paper(0.15));
         content.set_line_join(pdf_writer::types::LineJoinStyle::RoundJoin);
-        let supported = (self.scene.config.supports.iter())
-            .map(|support| self.sheet.grid.panel(support.panel[0], support.panel[1]));
-        let loaded = self.scene.loads().into_iter().map(|load| load.panel);
+        let actuation = self.scene.actuation();
+        let supported = actuation.supports.iter().map(|support| support.panel);
+        let loaded = actuation
+            .boundary_loads()
+            .into_iter()
+            .map(|load| load.panel);
         let marked: BTreeSet<usize> = supported.chain(loaded).collect();
         for (k, corners) in self.corners().iter().enumerate() {
             colour(content, PANELS[usize::from(!is_even(self.sheet.grid, k))]);

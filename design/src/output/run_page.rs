@@ -4,7 +4,6 @@
 //! are base64 of little-endian 32-bit floats. The data are inserted as text that contains no `<`, so that no title
 //! can end the element that holds them.
 
-mod actuation_marks;
 mod hinge_states;
 mod packed;
 mod page_data;

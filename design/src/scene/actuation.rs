@@ -3,6 +3,7 @@
 use crate::pattern::grid::Grid;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// A supported panel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -103,11 +104,42 @@ impl SupportKind {
             Self::RollerY => [true, false, false],
         }
     }
+
+    /// The name in a scene.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Clamp => "clamp",
+            Self::Pin => "pin",
+            Self::RollerX => "roller-x",
+            Self::RollerY => "roller-y",
+        }
+    }
+
+    /// Outline of the symbol, in halves of its size: a square, a triangle or a disc.
+    pub(super) fn symbol(self) -> Vec<[f64; 2]> {
+        match self {
+            Self::Clamp => vec![[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]],
+            Self::Pin => vec![[-1.2, -1.4], [1.2, -1.4], [0.0, 0.6]],
+            Self::RollerX | Self::RollerY => {
+                let angles = (0..32).map(|i| f64::from(i) * TAU / 32.0);
+                angles.map(|angle| [angle.cos(), angle.sin()]).collect()
+            }
+        }
+    }
+
+    /// The direction in which a roller rolls.
+    pub(super) fn rail(self) -> Option<[f64; 2]> {
+        match self {
+            Self::Clamp | Self::Pin => None,
+            Self::RollerX => Some([1.0, 0.0]),
+            Self::RollerY => Some([0.0, 1.0]),
+        }
+    }
 }
 
 impl SupportConfig {
     /// (u_x, u_y, phi) at full load (mm, mm, rad).
-    pub fn motion(&self) -> [f64; 3] {
+    pub(super) fn motion(&self) -> [f64; 3] {
         let [x, y] = self.displacement;
         [x, y, self.rotation_deg.to_radians()]
     }
@@ -121,9 +153,26 @@ impl LoadConfig {
     }
 }
 
+impl EdgeLoadConfig {
+    /// Multiplies the traction.
+    pub fn scale(&mut self, factor: f64) {
+        self.traction = self.traction.map(|traction| factor * traction);
+    }
+}
+
 impl SheetEdge {
+    /// The name in a scene.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Bottom => "bottom",
+            Self::Right => "right",
+            Self::Top => "top",
+            Self::Left => "left",
+        }
+    }
+
     /// The panels along the edge.
-    pub(crate) fn panels(self, grid: Grid) -> Vec<usize> {
+    pub(super) fn panels(self, grid: Grid) -> Vec<usize> {
         let row = |q| (0..grid.m).map(|p| grid.panel(p, q)).collect();
         let column = |p| (0..grid.n).map(|q| grid.panel(p, q)).collect();
         match self {

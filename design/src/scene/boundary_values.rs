@@ -1,82 +1,192 @@
-//! Supports and loads of a scene for each panel.
+//! Supports and loads of a scene on the panels of its sheet: what solver, drawings, run page and report read.
 
 use crate::equilibrium::supports::{Dof, Load, Support};
-use crate::pattern::grid::EDGES;
-use crate::scene::actuation::{EdgeLoadConfig, OpeningCoupleConfig};
+use crate::pattern::grid::{EDGES, Grid};
+use crate::scene::actuation::{EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig};
 use crate::scene::checked_scene::Scene;
 use crate::sheet::topology::{HingeSite, hinge_sites};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Supports and loads at full load.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Actuation {
+    /// In the order of the scene.
+    pub supports: Vec<SupportedPanel>,
+    /// Loads on panels, on edges and on hinges.
+    pub loads: Vec<AppliedLoad>,
+    /// What symbols and curved arrows mean.
+    pub legend: String,
+}
+
+/// A supported panel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SupportedPanel {
+    /// Kind and panel.
+    pub name: String,
+    /// Index of the panel.
+    pub panel: usize,
+    /// The prescribed ones of (u_x, u_y, phi) (mm, mm, rad).
+    pub motion: [Option<f64>; 3],
+    /// Outline of its symbol about the centroid of the panel, in halves of the symbol's size.
+    pub symbol: Vec<[f64; 2]>,
+    /// The direction in which it rolls.
+    pub rail: Option<[f64; 2]>,
+}
+
+/// A load on one or several panels.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AppliedLoad {
+    /// What is loaded.
+    pub name: String,
+    /// The loaded panel [column, row], if it is a single one.
+    pub place: Option<[usize; 2]>,
+    /// (F_x, F_y, M) at the centroids of panels, by their indices (N, N, N mm).
+    pub on_panels: Vec<(usize, [f64; 3])>,
+    /// Resultant (N), and the couple of each loaded hinge or panel (N mm).
+    pub total: [f64; 3],
+    /// Text before the resultant in drawings, if it is shown instead of the forces on panels.
+    pub label: Option<String>,
+}
+
+/// The symbols of the supports.
+const SYMBOLS: &str = "Square: clamp; triangle: pin; disc: roller, free along its line.";
+/// The couples of the loads on hinges.
+const SUMS: &str = "Curved arrows on panels: sums of the opening couples of their hinges.";
 
 impl Scene {
-    pub(super) fn supports(&self) -> Vec<Support> {
-        let mut supports = Vec::new();
-        for config in &self.config.supports {
-            let panel = self.panel(config.panel);
-            let motion = config.motion();
-            for (dof, held) in Dof::ALL.into_iter().zip(config.kind.holds()) {
-                if held {
-                    let value = motion[dof.index()];
-                    supports.push(Support { panel, dof, value });
+    /// Supports and loads on the panels of the sheet.
+    pub fn actuation(&self) -> Actuation {
+        let (config, grid) = (&self.config, self.grid());
+        let supports: Vec<SupportedPanel> = (config.supports.iter())
+            .map(|support| support.on(grid))
+            .collect();
+        let turns = |panel: usize| {
+            let mut held = supports.iter().filter(|support| support.panel == panel);
+            held.all(|support| support.motion[2].is_none())
+        };
+        let corners = config.sheet.outline().corners;
+        let panels = config.loads.iter().map(|load| load.on(grid));
+        let edges = config.edge_loads.iter();
+        let edges = edges.map(|load| load.on(grid, EDGES[load.edge as usize].map(|k| corners[k])));
+        let openings = config
+            .opening_couples
+            .iter()
+            .map(|load| load.on(grid, turns));
+        Actuation {
+            loads: panels.chain(edges).chain(openings).collect(),
+            legend: if config.opening_couples.is_empty() {
+                SYMBOLS.to_owned()
+            } else {
+                format!("{SYMBOLS} {SUMS}")
+            },
+            supports,
+        }
+    }
+}
+
+impl Actuation {
+    /// Supports for the solver.
+    pub(super) fn boundary_supports(&self) -> Vec<Support> {
+        let supports = self.supports.iter().flat_map(|support| {
+            let panel = support.panel;
+            std::iter::zip(Dof::ALL, support.motion)
+                .filter_map(move |(dof, value)| value.map(|value| Support { panel, dof, value }))
+        });
+        supports.collect()
+    }
+
+    /// The sum of all loads on free degrees of freedom, by panels.
+    pub fn boundary_loads(&self) -> Vec<Load> {
+        let mut total: BTreeMap<usize, [f64; 3]> = BTreeMap::new();
+        for (panel, load) in self.loads.iter().flat_map(|load| &load.on_panels) {
+            let sum = total.entry(*panel).or_default();
+            (0..3).for_each(|d| sum[d] += load[d]);
+        }
+        for support in &self.supports {
+            for (d, value) in support.motion.iter().enumerate() {
+                if let (Some(_), Some(sum)) = (value, total.get_mut(&support.panel)) {
+                    sum[d] = 0.0;
                 }
             }
         }
-        supports
-    }
-
-    /// The sum of the loads on panels, edges and hinges.
-    pub fn loads(&self) -> Vec<Load> {
-        let mut total = vec![[0.0; 3]; self.grid().panel_count()];
-        for load in &self.config.loads {
-            let sum = &mut total[self.panel(load.panel)];
-            sum[0] += load.force[0];
-            sum[1] += load.force[1];
-            sum[2] += load.couple;
-        }
-        for load in &self.config.edge_loads {
-            let panels = load.edge.panels(self.grid());
-            let [x, y] = (self.edge_resultant(load)).map(|force| force / panels.len() as f64);
-            for panel in panels {
-                total[panel][0] += x;
-                total[panel][1] += y;
-            }
-        }
-        for load in &self.config.opening_couples {
-            for (panel, couple) in self.couples_on_panels(load).into_iter().enumerate() {
-                total[panel][2] += couple;
-            }
-        }
-        for support in self.supports() {
-            total[support.panel][support.dof.index()] = 0.0;
-        }
-        let loads = total.iter().enumerate().flat_map(|(panel, values)| {
-            let load = move |(dof, &value)| Load { panel, dof, value };
-            Dof::ALL.into_iter().zip(values).map(load)
+        let loads = total.into_iter().flat_map(|(panel, values)| {
+            let load = move |(dof, value)| Load { panel, dof, value };
+            std::iter::zip(Dof::ALL, values).map(load)
         });
         loads.filter(|load| load.value != 0.0).collect()
     }
+}
 
-    /// The couple (N mm) on every panel at full load, the sum over the hinges that the couples open.
-    pub(crate) fn couples_on_panels(&self, load: &OpeningCoupleConfig) -> Vec<f64> {
-        let mut couples = vec![0.0; self.grid().panel_count()];
-        let pair = load
-            .panels
-            .map(|panels| panels.map(|panel| self.panel(panel)));
-        for HingeSite { a, b, .. } in hinge_sites(self.grid()) {
+impl SupportConfig {
+    fn on(&self, grid: Grid) -> SupportedPanel {
+        let [column, row] = self.panel;
+        let (holds, motion) = (self.kind.holds(), self.motion());
+        SupportedPanel {
+            name: format!("{}, panel [{column},{row}]", self.kind.name()),
+            panel: grid.panel(column, row),
+            motion: std::array::from_fn(|d| holds[d].then_some(motion[d])),
+            symbol: self.kind.symbol(),
+            rail: self.kind.rail(),
+        }
+    }
+}
+
+impl LoadConfig {
+    fn on(&self, grid: Grid) -> AppliedLoad {
+        let ([column, row], [x, y]) = (self.panel, self.force);
+        let load = [x, y, self.couple];
+        AppliedLoad {
+            name: format!("load, panel [{column},{row}]"),
+            place: Some(self.panel),
+            on_panels: vec![(grid.panel(column, row), load)],
+            total: load,
+            label: None,
+        }
+    }
+}
+
+impl EdgeLoadConfig {
+    /// `ends` are those of the edge in the flat sheet.
+    fn on(&self, grid: Grid, [from, to]: [[f64; 2]; 2]) -> AppliedLoad {
+        let length = f64::hypot(to[0] - from[0], to[1] - from[1]);
+        let resultant = self.traction.map(|traction| traction * length);
+        let panels = self.edge.panels(grid);
+        let [x, y] = resultant.map(|force| force / panels.len() as f64);
+        let edge = format!("{} edge", self.edge.name());
+        AppliedLoad {
+            name: format!("load, {edge}"),
+            place: None,
+            on_panels: panels.into_iter().map(|k| (k, [x, y, 0.0])).collect(),
+            total: [resultant[0], resultant[1], 0.0],
+            label: Some(edge),
+        }
+    }
+}
+
+impl OpeningCoupleConfig {
+    /// The sums of the couples on panels that may turn.
+    fn on(&self, grid: Grid, turns: impl Fn(usize) -> bool) -> AppliedLoad {
+        let mut couples = vec![0.0; grid.panel_count()];
+        let pair = (self.panels).map(|pair| pair.map(|[column, row]| grid.panel(column, row)));
+        for HingeSite { a, b, .. } in hinge_sites(grid) {
             if pair.is_none_or(|pair| pair.contains(&a.0) && pair.contains(&b.0)) {
-                couples[a.0] -= load.couple;
-                couples[b.0] += load.couple;
+                couples[a.0] -= self.couple;
+                couples[b.0] += self.couple;
             }
         }
-        couples
-    }
-
-    /// The resultant (N) of a traction at full load.
-    pub(crate) fn edge_resultant(&self, load: &EdgeLoadConfig) -> [f64; 2] {
-        let [from, to] = EDGES[load.edge as usize].map(|k| self.config.sheet.outline().corners[k]);
-        let length = f64::hypot(to[0] - from[0], to[1] - from[1]);
-        load.traction.map(|traction| traction * length)
-    }
-
-    fn panel(&self, [column, row]: [usize; 2]) -> usize {
-        self.grid().panel(column, row)
+        let loaded = couples.into_iter().enumerate();
+        let loaded = loaded.filter(|(k, couple)| *couple != 0.0 && turns(*k));
+        let place = match self.panels {
+            Some([[a, b], [c, d]]) => format!("panels [{a},{b}] and [{c},{d}]"),
+            None => "every hinge".to_owned(),
+        };
+        AppliedLoad {
+            name: format!("opening couple, {place}"),
+            place: None,
+            on_panels: loaded.map(|(k, couple)| (k, [0.0, 0.0, couple])).collect(),
+            total: [0.0, 0.0, self.couple],
+            label: None,
+        }
     }
 }

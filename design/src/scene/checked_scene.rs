@@ -2,12 +2,11 @@
 
 use crate::objective::target::Target;
 use crate::scene::checks;
-use crate::scene::hinge_model::HingeModel;
 use crate::scene::keys::SceneConfig;
-use crate::scene::loaded_hinge::{LoadedHinge, learned};
+use crate::scene::loaded_hinge::{LoadedHinge, network};
 use crate::scene::relative_path::{beside, folder};
 use crate::scene::scene_error::SceneError;
-use crate::sheet::cut_sheet::{HingePoint, SheetOptions};
+use crate::sheet::cut_sheet::SheetOptions;
 use hinge::SheetMaterial;
 use std::path::{Path, PathBuf};
 use surrogate::Surrogate;
@@ -35,7 +34,8 @@ pub struct Scene {
     pub(super) measured: SheetMaterial,
     /// The target outline.
     pub target: Target,
-    pub(super) hinge: LoadedHinge,
+    /// The hinge law, with the files that it reads.
+    pub hinge: LoadedHinge,
     pub(super) path: PathBuf,
 }
 
@@ -83,25 +83,17 @@ impl Scene {
 
     /// The learned hinge law, if the scene uses one.
     pub fn surrogate(&self) -> Option<&Surrogate> {
-        match &self.hinge {
-            LoadedHinge::Surrogate { law, .. } => Some(law.surrogate()),
-            _ => None,
-        }
+        self.networks().first()
     }
 
     /// The learned hinge law and the other networks of its ensemble; empty if the scene uses none.
-    pub fn networks(&self) -> Vec<&Surrogate> {
-        match &self.hinge {
-            LoadedHinge::Surrogate { law, ensemble, .. } => {
-                std::iter::once(law.surrogate()).chain(ensemble).collect()
-            }
-            _ => Vec::new(),
-        }
+    pub fn networks(&self) -> &[Surrogate] {
+        self.hinge.predictors()
     }
 
     /// Further weights for the hinges of this scene, at the thickness of its sheet.
     pub fn network(&self, weights: &Path) -> Result<Surrogate, SceneError> {
-        learned(&self.config, &self.measured, &self.path, weights)
+        network(&self.config, &self.measured, &self.path, weights)
     }
 
     /// Thickness of the sheet over that of the material file, at which learned laws were trained.
@@ -111,11 +103,7 @@ impl Scene {
 
     /// The weights that the hinge law reads: those of the learned law, or those that linear constants are condensed from.
     pub fn weights(&self) -> Option<&Surrogate> {
-        match &self.hinge {
-            LoadedHinge::Pin { .. } | LoadedHinge::Linear { .. } => None,
-            LoadedHinge::Condensed { law, .. } => Some(law.surrogate()),
-            LoadedHinge::Surrogate { law, .. } => Some(law.surrogate()),
-        }
+        self.hinge.networks.first()
     }
 
     /// BLAKE3 hash of the keys of the scene without title and paths: neither the title nor the place of a file changes a
@@ -140,12 +128,8 @@ impl Scene {
 
     /// The options that turn a pattern into the sheet of this scene.
     pub fn sheet_options(&self) -> SheetOptions {
-        let measured_at = match self.config.hinge {
-            HingeModel::Pin | HingeModel::Linear => HingePoint::Corner,
-            HingeModel::Surrogate => HingePoint::CutTip,
-        };
         SheetOptions {
-            hinge_point: self.config.hinge_point.unwrap_or(measured_at),
+            hinge_point: (self.config.hinge_point).unwrap_or(self.hinge.hinge_point),
             centroid: self.config.centroid,
             process: self.config.process,
         }

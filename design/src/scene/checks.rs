@@ -2,7 +2,6 @@
 //!
 //! The ranges are wider than those of any real sheet, and narrower than an error by a factor of 1000.
 
-use crate::equilibrium::settings::Method;
 use crate::geometry::polygon::edges;
 use crate::objective::target::Target;
 use crate::pattern::cut_pattern::Outline;
@@ -313,11 +312,6 @@ fn search(scene: &SceneConfig) -> Result<(), String> {
         [0.0, square / 3.0],
         "mm",
     )?;
-    if objective.domain > 0.0 && scene.hinge != HingeModel::Surrogate {
-        return Err(
-            "objective.domain needs hinge = \"surrogate\": no other law has a domain".into(),
-        );
-    }
     let tau = objective.temperatures;
     for (key, tau) in [
         ("objective.temperatures.damage", tau.damage),
@@ -328,15 +322,7 @@ fn search(scene: &SceneConfig) -> Result<(), String> {
     }
     let solver = &scene.solver;
     within("solver.tolerance", solver.tolerance, [1e-14, 0.1], "")?;
-    let key = "solver.loose_tolerance";
-    within(key, solver.loose_tolerance, [1e-14, 0.5], "")?;
-    counted("solver.max_iterations", solver.max_iterations, 1_000_000)?;
-    counted("solver.max_increments", solver.max_increments, 10_000_000)?;
     counted("solver.follow_every", solver.follow_every, 10_000)?;
-    if let Method::Lbfgs { max_iterations } = solver.method {
-        let key = "solver.method.lbfgs.max_iterations";
-        counted(key, max_iterations, 10_000_000)?;
-    }
     let optimiser = &scene.optimiser;
     counted("optimiser.steps", optimiser.steps, 10_000_000)?;
     within(

@@ -19,7 +19,7 @@ use crate::sheet::cut_sheet::{Centroid, HingePoint};
 use hinge::{HingeConstants, SheetMaterial};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The keys of a scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -183,28 +183,6 @@ fn default_load_steps() -> usize {
 }
 
 impl SceneConfig {
-    /// Replaces the weights that the hinge law reads; the path is relative to the working folder. An ensemble, which
-    /// belongs to the replaced weights, is dropped. A law without weights is an error.
-    pub fn name_weights(&mut self, weights: &Path) -> std::io::Result<()> {
-        let weights = std::path::absolute(weights)?;
-        match (self.hinge, &mut self.condensed) {
-            (HingeModel::Surrogate, _) => {
-                self.surrogate = Some(SurrogateFile {
-                    weights,
-                    ensemble: Vec::new(),
-                });
-            }
-            (HingeModel::Linear, Some(condensed)) => condensed.weights = weights,
-            (HingeModel::Linear | HingeModel::Pin, _) => {
-                return Err(std::io::Error::new(
-                    std::io::ErrorKind::InvalidInput,
-                    "other weights were named, but the hinge law of the scene reads none: use hinge = \"surrogate\"",
-                ));
-            }
-        }
-        Ok(())
-    }
-
     /// The scene as a TOML file, without comments.
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
         toml::to_string(self)
@@ -216,12 +194,15 @@ impl SceneConfig {
             .map_or(1.0, |thickness| thickness / material.thickness)
     }
 
+    /// Whether there is a load: on panels, on edges or on hinges.
+    pub fn has_loads(&self) -> bool {
+        !(self.loads.is_empty() && self.edge_loads.is_empty() && self.opening_couples.is_empty())
+    }
+
     /// Multiplies every load: on panels, on edges and on hinges.
     pub fn scale_loads(&mut self, factor: f64) {
         (self.loads.iter_mut()).for_each(|load| load.scale(factor));
-        for load in &mut self.edge_loads {
-            load.traction = load.traction.map(|traction| factor * traction);
-        }
+        (self.edge_loads.iter_mut()).for_each(|load| load.scale(factor));
         (self.opening_couples.iter_mut()).for_each(|load| load.couple *= factor);
     }
 }

@@ -1,15 +1,17 @@
 //! The hinge law of a scene, loaded with the files it needs.
 
 use crate::equilibrium::tangent::MIN_PIVOT_RATIO;
-use crate::hinge_law::{CondensedLaw, Contact, DamageMeasure, LinearLaw, SurrogateLaw};
+use crate::hinge_law::{CondensedLaw, Contact, DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
 use crate::scene::checks::within;
-use crate::scene::hinge_model::{HingeModel, LinearConstants, PinConfig, SurrogateFile};
+use crate::scene::hinge_model::{CondensedConfig, HingeModel, LinearConstants, PinConfig};
 use crate::scene::keys::SceneConfig;
 use crate::scene::relative_path::beside;
 use crate::scene::scene_error::SceneError;
+use crate::sheet::cut_sheet::HingePoint;
 use hinge::SheetMaterial;
 use std::f64::consts::FRAC_PI_2;
-use std::path::Path;
+use std::fmt;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use surrogate::Surrogate;
 
@@ -21,24 +23,40 @@ const CONTACT_WALL: f64 = -0.1;
 /// Angle (rad) of the secant stiffness of a learned hinge: 20 deg, as for the linear law of section 3.
 const TYPICAL_SECANT: f64 = 0.35;
 
-/// A [`HingeModel`] with its constants or its weights.
-#[derive(Clone, Debug)]
-pub(super) enum LoadedHinge {
-    /// The opening angle at the start (rad).
-    Pin { opening: f64 },
-    Linear {
-        law: Arc<LinearLaw>,
+/// What a scene loads for its hinges: all that differs from law to law.
+#[derive(Clone)]
+pub struct LoadedHinge {
+    /// What the law is, for reports.
+    pub label: &'static str,
+    pub(super) behaviour: HingeBehaviour,
+    /// The point at which the deformation is measured unless the scene names another.
+    pub(super) hinge_point: HingePoint,
+    /// The networks that the law reads, its own first, then those of the ensemble.
+    pub(super) networks: Vec<Surrogate>,
+    /// The file of the first network, as the scene names it.
+    pub weights_file: Option<PathBuf>,
+}
+
+/// How hinges open.
+#[derive(Clone)]
+pub(super) enum HingeBehaviour {
+    /// Pins open by the same angle, without forces.
+    Pinned {
+        /// The angle at the start (rad).
+        opening: f64,
+    },
+    /// Forces follow from the energy of a law and from the contact of panel edges.
+    Elastic {
+        law: Arc<dyn HingeLaw>,
         contact: Contact,
     },
-    Condensed {
-        law: Arc<CondensedLaw>,
-        contact: Contact,
-    },
-    Surrogate {
-        law: Arc<SurrogateLaw>,
-        ensemble: Vec<Surrogate>,
-        contact: Contact,
-    },
+}
+
+/// A law without its numbers.
+impl fmt::Debug for LoadedHinge {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "LoadedHinge({})", self.label)
+    }
 }
 
 impl LoadedHinge {
@@ -52,23 +70,13 @@ impl LoadedHinge {
             path: path.to_owned(),
             reason,
         };
-        let load = |section: &str, weights: &Path| {
-            let weights = beside(path, weights);
-            if !weights.is_file() {
-                return Err(refuse(format!(
-                    "{section}.weights: there is no file {}: train it, or give the constants of \
-                     hinge = \"linear\"",
-                    weights.display()
-                )));
-            }
-            learned(config, measured, path, &weights)
-        };
         let missing = |section: &str| {
             refuse(format!(
                 "hinge = \"{section}\" needs the section [{section}]"
             ))
         };
-        match config.hinge {
+        let networks = |section| networks(config, section, measured, path);
+        let hinge = match config.hinge {
             HingeModel::Pin => {
                 let pin = config.pin.ok_or_else(|| missing("pin"))?;
                 pinned(config, pin).map_err(refuse)
@@ -76,16 +84,7 @@ impl LoadedHinge {
             HingeModel::Linear => match (config.linear, &config.condensed) {
                 (Some(constants), None) => linear(config, constants).map_err(refuse),
                 (None, Some(file)) => {
-                    no_damage(config).map_err(refuse)?;
-                    within(
-                        "condensed.secant_deg",
-                        file.secant_deg,
-                        [-180.0, 180.0],
-                        "deg",
-                    )
-                    .map_err(refuse)?;
-                    let surrogate = load("condensed", &file.weights)?;
-                    condensed(config, surrogate, file.secant_deg).map_err(refuse)
+                    condensed(config, networks("condensed")?, file).map_err(refuse)
                 }
                 (None, None) => Err(missing("linear")),
                 (Some(_), Some(_)) => {
@@ -94,24 +93,91 @@ impl LoadedHinge {
                 }
             },
             HingeModel::Surrogate => {
-                let file = config.surrogate.as_ref();
-                let SurrogateFile { weights, ensemble } =
-                    file.ok_or_else(|| missing("surrogate"))?;
-                let surrogate = load("surrogate", weights)?;
-                let ensemble: Vec<Surrogate> = (ensemble.iter())
-                    .map(|file| load("surrogate", file))
-                    .collect::<Result<_, _>>()?;
-                same_training(&surrogate, &ensemble).map_err(refuse)?;
-                peak_known(config, &surrogate).map_err(refuse)?;
-                learned_with_contact(config, surrogate, ensemble).map_err(refuse)
+                config
+                    .surrogate
+                    .as_ref()
+                    .ok_or_else(|| missing("surrogate"))?;
+                learned(config, networks("surrogate")?).map_err(refuse)
             }
+        }?;
+        hinge.check_objective(config).map_err(refuse)?;
+        Ok(hinge)
+    }
+
+    /// Whether the hinges carry load, so that the deployed state is an equilibrium.
+    pub fn carries_load(&self) -> bool {
+        matches!(self.behaviour, HingeBehaviour::Elastic { .. })
+    }
+
+    /// The opening angle of pins at the start (rad).
+    pub(super) fn opening(&self) -> Option<f64> {
+        match self.behaviour {
+            HingeBehaviour::Pinned { opening } => Some(opening),
+            HingeBehaviour::Elastic { .. } => None,
         }
     }
+
+    /// The networks, its own first, if they predict energy and damage of the hinges in their states.
+    pub(super) fn predictors(&self) -> &[Surrogate] {
+        match &self.behaviour {
+            HingeBehaviour::Elastic { law, .. } if law.domain().is_some() => &self.networks,
+            _ => &[],
+        }
+    }
+
+    /// An error if the objective needs a prediction that the law does not make.
+    fn check_objective(&self, config: &SceneConfig) -> Result<(), String> {
+        let objective = &config.objective;
+        if objective.domain > 0.0 && self.predictors().is_empty() {
+            return Err(
+                "objective.domain needs hinge = \"surrogate\": no other law has a domain".into(),
+            );
+        }
+        let predicts = |measure| match &self.behaviour {
+            HingeBehaviour::Pinned { .. } => false,
+            HingeBehaviour::Elastic { law, .. } => law.damage_scale(measure).is_some(),
+        };
+        if objective.damage == 0.0 || predicts(objective.damage_measure) {
+            return Ok(());
+        }
+        Err(if predicts(DamageMeasure::Mean) {
+            "objective.damage_measure = \"peak\": the weights do not predict D_peak: use \"mean\", or train \
+             on a database that contains it"
+        } else {
+            "objective.damage: only the learned hinge law predicts damage: use \
+             hinge = \"surrogate\" or damage = 0"
+        }
+        .into())
+    }
+}
+
+/// The networks that the hinge law reads, named in a section of the scene, at the thickness of the sheet.
+fn networks(
+    config: &SceneConfig,
+    section: &str,
+    measured: &SheetMaterial,
+    path: &Path,
+) -> Result<Vec<Surrogate>, SceneError> {
+    let load = |weights: PathBuf| {
+        let weights = beside(path, &weights);
+        if !weights.is_file() {
+            return Err(SceneError::Value {
+                path: path.to_owned(),
+                reason: format!(
+                    "{section}.weights: there is no file {}: train it, or give the constants of \
+                     hinge = \"linear\"",
+                    weights.display()
+                ),
+            });
+        }
+        network(config, measured, path, &weights)
+    };
+    config.weights_files().into_iter().map(load).collect()
 }
 
 /// Weights at the thickness of the sheet of the scene at `path`, or an error if they are not for its hinges. `measured`
 /// is the material in the thickness of its file.
-pub(super) fn learned(
+pub(super) fn network(
     config: &SceneConfig,
     measured: &SheetMaterial,
     path: &Path,
@@ -128,10 +194,12 @@ pub(super) fn learned(
 /// with given constants.
 fn condensed(
     config: &SceneConfig,
-    surrogate: Surrogate,
-    secant_deg: f64,
+    networks: Vec<Surrogate>,
+    file: &CondensedConfig,
 ) -> Result<LoadedHinge, String> {
-    let law = CondensedLaw::new(surrogate, secant_deg.to_radians());
+    let secant = file.secant_deg;
+    within("condensed.secant_deg", secant, [-180.0, 180.0], "deg")?;
+    let law = CondensedLaw::new(networks[0].clone(), secant.to_radians());
     let [k_a, k_s, k_theta] = constants_at_start(config, &law);
     if !(k_a > 0.0 && k_s > 0.0 && k_theta > 0.0) {
         return Err(format!(
@@ -140,26 +208,30 @@ fn condensed(
             config.ligament.start
         ));
     }
-    Ok(LoadedHinge::Condensed {
-        law: Arc::new(law),
-        contact: contact(config, k_theta, CONTACT_WALL)?,
+    Ok(LoadedHinge {
+        networks,
+        weights_file: Some(file.weights.clone()),
+        ..springs(Arc::new(law), contact(config, k_theta, CONTACT_WALL)?)
     })
 }
 
 /// The learned law; the contact stiffness is relative to the secant stiffness of a hinge of the start.
-fn learned_with_contact(
-    config: &SceneConfig,
-    surrogate: Surrogate,
-    ensemble: Vec<Surrogate>,
-) -> Result<LoadedHinge, String> {
+fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge, String> {
+    same_training(&networks)?;
+    let surrogate = &networks[0];
     let [_, _, [closed, _]] = surrogate.domain().bounds();
     let wall = if closed < 0.0 { closed } else { CONTACT_WALL };
     let secant = CondensedLaw::new(surrogate.clone(), TYPICAL_SECANT);
     let [.., k_theta] = constants_at_start(config, &secant);
-    Ok(LoadedHinge::Surrogate {
-        law: Arc::new(SurrogateLaw::new(surrogate)),
-        ensemble,
-        contact: contact(config, k_theta.abs().max(f64::MIN_POSITIVE), wall)?,
+    Ok(LoadedHinge {
+        label: "learned energy (14)",
+        behaviour: HingeBehaviour::Elastic {
+            law: Arc::new(SurrogateLaw::new(surrogate.clone())),
+            contact: contact(config, k_theta.abs().max(f64::MIN_POSITIVE), wall)?,
+        },
+        hinge_point: HingePoint::CutTip,
+        networks,
+        weights_file: config.weights_files().into_iter().next(),
     })
 }
 
@@ -181,50 +253,23 @@ fn contact(config: &SceneConfig, k_theta: f64, wall: f64) -> Result<Contact, Str
 }
 
 /// The spread of networks trained on different data estimates the error of neither.
-fn same_training(surrogate: &Surrogate, ensemble: &[Surrogate]) -> Result<(), String> {
-    let data = |it: &Surrogate| (it.card().dataset_hash.clone(), it.card().split_hash.clone());
-    match ensemble.iter().all(|other| data(other) == data(surrogate)) {
-        true => Ok(()),
-        false => Err(
-            "surrogate.ensemble: all networks must be trained on the data of surrogate.weights"
-                .into(),
-        ),
-    }
-}
-
-/// An objective on D_peak needs weights that predict it.
-fn peak_known(config: &SceneConfig, surrogate: &Surrogate) -> Result<(), String> {
-    let objective = &config.objective;
-    let needed = objective.damage > 0.0 && objective.damage_measure == DamageMeasure::Peak;
-    if needed && surrogate.card().peak_scale.is_none() {
-        return Err(
-            "objective.damage_measure = \"peak\": the weights do not predict D_peak: use \"mean\", or train \
-             on a database that contains it"
-                .into(),
-        );
-    }
-    Ok(())
-}
-
-/// Only the learned law predicts damage.
-fn no_damage(config: &SceneConfig) -> Result<(), String> {
-    if config.objective.damage == 0.0 {
+fn same_training(networks: &[Surrogate]) -> Result<(), String> {
+    let data = |network: &Surrogate| {
+        let card = network.card();
+        (card.dataset_hash.clone(), card.split_hash.clone())
+    };
+    if networks
+        .windows(2)
+        .all(|pair| data(&pair[0]) == data(&pair[1]))
+    {
         return Ok(());
     }
-    Err(
-        "objective.damage: only the learned hinge law predicts damage: use \
-         hinge = \"surrogate\" or damage = 0"
-            .into(),
-    )
+    Err("surrogate.ensemble: all networks must be trained on the data of surrogate.weights".into())
 }
 
 fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, String> {
-    no_damage(config)?;
     within("pin.opening_deg", pin.opening_deg, [-180.0, 180.0], "deg")?;
-    let held_or_loaded = !config.supports.is_empty()
-        || !config.loads.is_empty()
-        || !config.edge_loads.is_empty()
-        || !config.opening_couples.is_empty();
+    let held_or_loaded = !config.supports.is_empty() || config.has_loads();
     if held_or_loaded || config.drive.is_some() || config.contact.is_some() {
         return Err(
             "supports, loads, edge_loads, opening_couples, drive, contact: hinge = \"pin\" has no equilibrium: \
@@ -232,12 +277,29 @@ fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, String> {
                 .into(),
         );
     }
-    let opening = pin.opening_deg.to_radians();
-    Ok(LoadedHinge::Pin { opening })
+    Ok(LoadedHinge {
+        label: "pins: kinematics without forces",
+        behaviour: HingeBehaviour::Pinned {
+            opening: pin.opening_deg.to_radians(),
+        },
+        hinge_point: HingePoint::Corner,
+        networks: Vec::new(),
+        weights_file: None,
+    })
+}
+
+/// A law of springs (11).
+fn springs(law: Arc<dyn HingeLaw>, contact: Contact) -> LoadedHinge {
+    LoadedHinge {
+        label: "linear springs (11)",
+        behaviour: HingeBehaviour::Elastic { law, contact },
+        hinge_point: HingePoint::Corner,
+        networks: Vec::new(),
+        weights_file: None,
+    }
 }
 
 fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHinge, String> {
-    no_damage(config)?;
     let LinearConstants { k_a, k_s, k_theta } = constants;
     within("linear.k_a", k_a, [1e-3, 1e6], "N/mm")?;
     within("linear.k_s", k_s, [1e-3, 1e6], "N/mm")?;
@@ -255,10 +317,7 @@ fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHing
     let law = LinearLaw::uniform([k_a, k_s, k_theta], grid.hinge_count())
         .map_err(|error| error.to_string())?;
     let contact = contact(config, k_theta, CONTACT_WALL)?;
-    Ok(LoadedHinge::Linear {
-        law: Arc::new(law),
-        contact,
-    })
+    Ok(springs(Arc::new(law), contact))
 }
 
 /// Relative difference of r_win from that of the weights that rounding in a scene file may cause.
@@ -305,8 +364,9 @@ fn fitted(
             process.r_win
         ));
     }
-    Ok(match scale == 1.0 {
-        true => surrogate,
-        false => surrogate.scaled(scale),
+    Ok(if scale == 1.0 {
+        surrogate
+    } else {
+        surrogate.scaled(scale)
     })
 }

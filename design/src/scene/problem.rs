@@ -1,9 +1,7 @@
 //! From a scene to its design problem and its start design.
 
-use crate::equilibrium::settings::SolverSettings;
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
 use crate::geometry::chamfer::Chamfer;
-use crate::hinge_law::{Contact, HingeLaw};
 use crate::objective::design_problem::{DesignProblem, Mechanics, Model};
 use crate::objective::domain_penalty::DomainPenalty;
 use crate::objective::loss::Objective;
@@ -11,12 +9,11 @@ use crate::objective::path_functionals::PerFunctional;
 use crate::pattern::design_vector::{DesignVector, WidthChart};
 use crate::pattern::grid::Grid;
 use crate::scene::checked_scene::Scene;
-use crate::scene::loaded_hinge::LoadedHinge;
+use crate::scene::loaded_hinge::HingeBehaviour;
 use crate::scene::scene_error::SceneError;
 use hinge::TrainingDomain;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use std::sync::Arc;
 
 impl Scene {
     /// Numbers of panels.
@@ -58,11 +55,8 @@ impl Scene {
         let mut design = DesignVector {
             pattern: start.pattern(grid).expect("the scene has been checked"),
             omega: w_lig.iter().map(|w| widths.omega(*w)).collect(),
-            opening: None,
+            opening: self.hinge.opening(),
         };
-        if let LoadedHinge::Pin { opening } = self.hinge {
-            design.opening = Some(opening);
-        }
         let optimiser = &self.config.optimiser;
         let mut random = ChaCha8Rng::seed_from_u64(optimiser.seed);
         let pattern = &mut design.pattern;
@@ -87,7 +81,7 @@ impl Scene {
         } else {
             self.mean_panel_area()
         };
-        let ideal = matches!(self.hinge, LoadedHinge::Pin { .. });
+        let ideal = !self.hinge.carries_load();
         let centre = if ideal { self.target.mean() } else { [0.0; 2] };
         Objective {
             target: self
@@ -123,11 +117,9 @@ impl Scene {
     }
 
     fn model(&self) -> Result<Model, SceneError> {
-        let (law, contact): (Arc<dyn HingeLaw>, Contact) = match &self.hinge {
-            LoadedHinge::Pin { opening } => return Ok(Model::Ideal { opening: *opening }),
-            LoadedHinge::Linear { law, contact } => (law.clone(), *contact),
-            LoadedHinge::Condensed { law, contact } => (law.clone(), *contact),
-            LoadedHinge::Surrogate { law, contact, .. } => (law.clone(), *contact),
+        let (law, contact) = match &self.hinge.behaviour {
+            HingeBehaviour::Pinned { opening } => return Ok(Model::Ideal { opening: *opening }),
+            HingeBehaviour::Elastic { law, contact } => (law.clone(), *contact),
         };
         let solver = self.solver().map_err(|error| SceneError::Value {
             path: self.path.clone(),
@@ -141,12 +133,9 @@ impl Scene {
     }
 
     fn solver(&self) -> Result<EquilibriumSolver, EquilibriumError> {
-        let solver = self.config.solver;
-        let settings = SolverSettings {
-            loose_tolerance: solver.tolerance.max(solver.loose_tolerance),
-            ..solver
-        };
-        let (supports, loads) = (self.supports(), self.loads());
+        let settings = self.config.solver;
+        let actuation = self.actuation();
+        let (supports, loads) = (actuation.boundary_supports(), actuation.boundary_loads());
         let steps = self.config.load_steps;
         let solver = EquilibriumSolver::new(self.grid(), &supports, &loads, steps, settings)?;
         match self.config.drive {

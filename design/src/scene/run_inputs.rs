@@ -11,7 +11,6 @@
 //! The state of the run holds the BLAKE3 hash of each of them.
 
 use crate::scene::checked_scene::Scene;
-use crate::scene::hinge_model::HingeModel;
 use crate::scene::keys::SceneConfig;
 use crate::scene::relative_path::beside;
 use serde::{Deserialize, Serialize};
@@ -120,7 +119,7 @@ pub(super) fn keep(scene: &Scene) -> Result<InputHashes, RunInputsError> {
         let name = format!("{FOLDER}/target.{kind}");
         *file = kept.copy(&beside(&scene.path, file), &name)?;
     }
-    for (i, weights) in config.weights_mut().into_iter().enumerate() {
+    for (i, weights) in config.weights_files_mut().into_iter().enumerate() {
         let stem = match i {
             0 => format!("{FOLDER}/weights"),
             _ => format!("{FOLDER}/ensemble-{i}"),
@@ -164,7 +163,7 @@ impl SceneConfig {
         if let Some(learned) = &mut config.surrogate {
             learned.ensemble.clear();
         }
-        for path in config.weights_mut() {
+        for path in config.weights_files_mut() {
             *path = PathBuf::new();
         }
         if let Some((file, _)) = config.target.file_mut() {
@@ -173,27 +172,6 @@ impl SceneConfig {
         config.material = PathBuf::new();
         config.output = PathBuf::new();
         config
-    }
-
-    /// The same scene without the sections of weights that its hinge law does not read.
-    fn without_unread_weights(&self) -> Self {
-        let mut config = self.clone();
-        if config.hinge != HingeModel::Surrogate {
-            config.surrogate = None;
-        }
-        if config.hinge != HingeModel::Linear {
-            config.condensed = None;
-        }
-        config
-    }
-
-    /// The paths of all weights, those of the hinge law first.
-    fn weights_mut(&mut self) -> Vec<&mut PathBuf> {
-        let learned = self.surrogate.iter_mut();
-        let learned =
-            learned.flat_map(|file| std::iter::once(&mut file.weights).chain(&mut file.ensemble));
-        let condensed = self.condensed.iter_mut().map(|file| &mut file.weights);
-        learned.chain(condensed).collect()
     }
 }
 

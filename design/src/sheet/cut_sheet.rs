@@ -180,9 +180,10 @@ impl Sheet {
             .enumerate()
             .map(|(h, (site, &w_lig))| {
                 let [i, j] = site.vertex;
-                let half_kerf = match grid.is_interior(i, j) {
-                    true => 0.5 * options.process.kerf,
-                    false => 0.0,
+                let half_kerf = if grid.is_interior(i, j) {
+                    0.5 * options.process.kerf
+                } else {
+                    0.0
                 };
                 let widths = [w_lig, w_lig + half_kerf];
                 Hinge::new(h, site, &pattern.points, widths, options.hinge_point)

@@ -147,12 +147,13 @@ fn constants_are_condensed_from_weights() {
 #[test]
 fn both_methods_find_the_same_equilibria() {
     let folder = tempfile::tempdir().unwrap();
-    let by = |solver: &str| {
-        let section = format!("[solver]\n{solver}\n[objective]");
-        path(&read(folder.path(), &with(&[("[objective]", &section)])))
-    };
-    let newton = by("method = \"newton\"");
-    let lbfgs = by("method = { lbfgs = { max_iterations = 20000 } }");
+    let scene = read(folder.path(), &with(&[]));
+    let mut problem = scene.problem().unwrap();
+    let newton = problem.deploy(&scene.start()).unwrap().path;
+    if let Model::Equilibrium(mechanics) = &mut problem.model {
+        mechanics.solver.use_lbfgs(20_000);
+    }
+    let lbfgs = problem.deploy(&scene.start()).unwrap().path;
     let total = |path: &[LoadStep]| path.iter().map(|step| step.iterations).sum::<usize>();
     assert!(total(&lbfgs) > 5 * total(&newton));
     for (x, y) in std::iter::zip(&newton[3].configuration, &lbfgs[3].configuration) {

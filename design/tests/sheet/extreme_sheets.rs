@@ -156,7 +156,7 @@ fn a_learned_sheet_has_a_status_under_loads_of_any_size() {
     let compliance = |force: f64| {
         let path = deployed(force);
         // A load that rounding nearly hides leaves a residual above the loose tolerance.
-        let loose = SolverSettings::default().loose_tolerance;
+        let loose = SolverSettings::default().loose_tolerance();
         for step in &path {
             let expected = match step.residual <= loose {
                 true => Status::Converged,

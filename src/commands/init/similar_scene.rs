@@ -5,7 +5,7 @@ use anyhow::{Context, Result, bail, ensure};
 use design::equilibrium::load_step::LoadStep;
 use design::objective::target::TargetShape;
 use design::scene::run_inputs::scene_file;
-use design::scene::{HingeModel, Ratios, Scene, SceneConfig, rounded};
+use design::scene::{Ratios, Scene, SceneConfig, rounded};
 use hinge::SheetMaterial;
 use std::path::{Path, PathBuf, absolute};
 
@@ -134,10 +134,10 @@ impl SimilarScene {
     /// Multiplies the loads by the factor at which the root mean square of the rotations at full load is that of the
     /// original scene. Loads of which only the stroke counts are left as they are.
     fn fit_loads(&mut self) -> Result<()> {
-        let free = self.config.loads.is_empty()
-            && self.config.edge_loads.is_empty()
-            && self.config.opening_couples.is_empty();
-        if free || self.config.drive.is_some() || self.config.hinge == HingeModel::Pin {
+        if !self.config.has_loads()
+            || self.config.drive.is_some()
+            || !self.original.hinge.carries_load()
+        {
             return Ok(());
         }
         let Some(meant) = rotation(&self.original)?.filter(|meant| *meant > 0.0) else {

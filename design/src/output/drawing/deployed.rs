@@ -5,9 +5,9 @@ use crate::output::canvas::Anchor;
 use crate::output::deployment_states::{kept, states_before};
 use crate::output::drawing::load_marks::{self, Mark, marks};
 use crate::output::drawing::page::{ACCENT, ColourScale, INK, MUTED, PANELS, Page};
+use crate::scene::Scene;
 use crate::scene::design_run::Designed;
 use crate::scene::placement::placed;
-use crate::scene::{HingeModel, Scene};
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::hinge_window::Window;
 use crate::sheet::kinematics::{
@@ -24,9 +24,10 @@ pub fn deployed(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> String {
         .iter()
         .copied()
         .fold(f64::NEG_INFINITY, f64::max);
-    let actuation = match scene.config.hinge {
-        HingeModel::Pin => "",
-        _ => ". Panels held flat, loads and supports at their centroids",
+    let actuation = if scene.hinge.carries_load() {
+        ". Panels held flat, loads and supports at their centroids"
+    } else {
+        ""
     };
     let subtitle = format!(
         "Deployed: mean hinge opening {mean:.1}\u{b0}, maximum {max:.1}\u{b0}{actuation}. Target dashed"
@@ -51,13 +52,14 @@ pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec
         .flat_map(|state| state.openings_deg.iter().copied());
     let scale = ColourScale::covering(openings);
     let frame = |(&i, state): (&usize, &State)| {
-        let place = match scene.config.hinge {
-            HingeModel::Pin => format!("opening {:.1}\u{b0}", state.openings_deg[0]),
-            _ => format!(
+        let place = if scene.hinge.carries_load() {
+            format!(
                 "load step {i} of {}, load factor {:.2}",
                 all.len() - 1,
                 all[i].load_factor
-            ),
+            )
+        } else {
+            format!("opening {:.1}\u{b0}", state.openings_deg[0])
         };
         state.drawn(
             extent.clone(),

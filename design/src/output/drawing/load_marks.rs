@@ -4,10 +4,10 @@
 use crate::equilibrium::load_step::LoadStep;
 use crate::output::report::rounded;
 use crate::scene::placement::placed;
-use crate::scene::{Scene, SupportConfig, SupportKind};
+use crate::scene::{Scene, SupportedPanel};
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::kinematics::deployed as moved;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// A part of a symbol (mm).
 pub(crate) enum Mark {
@@ -43,10 +43,10 @@ struct PanelLoad {
 }
 
 impl PanelLoad {
-    fn of(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> Vec<Self> {
+    fn on_panels(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> Vec<Self> {
         let placed = placed(scene, sheet, &step.configuration);
         let mut sums = vec![[0.0; 3]; sheet.panels.len()];
-        for load in scene.loads() {
+        for load in scene.actuation().boundary_loads() {
             sums[load.panel][load.dof.index()] += step.load_factor * load.value;
         }
         let most = |of: fn(&[f64; 3]) -> f64| sums.iter().map(of).fold(0.0, f64::max);
@@ -54,14 +54,17 @@ impl PanelLoad {
             most(|[x, y, _]| x.hypot(*y)),
             most(|[.., moment]| moment.abs()),
         );
-        let kept = |value: f64, size: f64, largest: f64| match size > NEGLIGIBLE * largest {
-            true => value,
-            false => 0.0,
+        let kept = |value: f64, size: f64, largest: f64| {
+            if size > NEGLIGIBLE * largest {
+                value
+            } else {
+                0.0
+            }
         };
         (sums.iter().enumerate())
             .map(|(k, &[x, y, moment])| Self {
                 at: moved(&sheet.panels[k], placed[k], sheet.panels[k].centroid),
-                force: [x, y].map(|it| kept(it, x.hypot(y), force)),
+                force: [x, y].map(|component| kept(component, x.hypot(y), force)),
                 couple: kept(moment, moment.abs(), couple),
             })
             .filter(|load| load.force != [0.0; 2] || load.couple != 0.0)
@@ -76,7 +79,7 @@ impl PanelLoad {
 /// Points that enclose arrows and labels (mm).
 pub(super) fn extent(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> Vec<[f64; 2]> {
     let reach = REACH * sheet.outline.size();
-    (PanelLoad::of(scene, sheet, step).iter())
+    (PanelLoad::on_panels(scene, sheet, step).iter())
         .map(|load| {
             let size = f64::max(load.size(), f64::MIN_POSITIVE);
             [0, 1].map(|axis| load.at[axis] + reach * load.force[axis] / size)
@@ -87,7 +90,7 @@ pub(super) fn extent(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> Vec<[f64;
 /// The marks of a state; `unit` is the unit of the picture (mm). Of equal loads the first has a label.
 pub(crate) fn marks(scene: &Scene, sheet: &Sheet, step: &LoadStep, unit: f64) -> Vec<Mark> {
     let mut marks = supports(scene, sheet, step, unit);
-    let loads = PanelLoad::of(scene, sheet, step);
+    let loads = PanelLoad::on_panels(scene, sheet, step);
     let largest = loads.iter().map(PanelLoad::size).fold(0.0, f64::max);
     let mut labelled: Vec<String> = Vec::new();
     let mut label = |marks: &mut Vec<Mark>, key: String, at: [f64; 2], text: String| {
@@ -130,24 +133,16 @@ pub(crate) fn marks(scene: &Scene, sheet: &Sheet, step: &LoadStep, unit: f64) ->
     marks
 }
 
-/// A square on a clamped panel, a triangle on a pinned one, a disc on a roller.
+/// The symbols of the supports.
 fn supports(scene: &Scene, sheet: &Sheet, step: &LoadStep, unit: f64) -> Vec<Mark> {
     let placed = placed(scene, sheet, &step.configuration);
-    let symbol = |support: &SupportConfig| {
-        let k = sheet.grid.panel(support.panel[0], support.panel[1]);
+    let symbol = |support: &SupportedPanel| {
+        let k = support.panel;
         let [x, y] = moved(&sheet.panels[k], placed[k], sheet.panels[k].centroid);
-        let around = |[a, b]: [f64; 2]| [x + a * SUPPORT * unit, y + b * SUPPORT * unit];
-        let corners = match support.kind {
-            SupportKind::Clamp => vec![[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]],
-            SupportKind::Pin => vec![[-1.2, -1.4], [1.2, -1.4], [0.0, 0.6]],
-            SupportKind::RollerX | SupportKind::RollerY => {
-                let angles = (0..32).map(|i| f64::from(i) * TAU / 32.0);
-                angles.map(|angle| [angle.cos(), angle.sin()]).collect()
-            }
-        };
-        Mark::Support(corners.into_iter().map(around).collect())
+        let around = |[a, b]: &[f64; 2]| [x + a * SUPPORT * unit, y + b * SUPPORT * unit];
+        Mark::Support(support.symbol.iter().map(around).collect())
     };
-    scene.config.supports.iter().map(symbol).collect()
+    scene.actuation().supports.iter().map(symbol).collect()
 }
 
 /// A curved arrow about a point, counter-clockwise for the sense 1, clockwise for -1.

@@ -37,7 +37,7 @@ struct Spread {
 impl Estimate {
     /// The estimate for a path computed with the first of `networks`; `None` for a single network, or if no state is
     /// inside the training domain.
-    pub fn of(networks: &[&Surrogate], deployment: &Deployment) -> Option<Self> {
+    pub fn of(networks: &[Surrogate], deployment: &Deployment) -> Option<Self> {
         let [mut energy, mut forces, mut peak] = [(); 3].map(|()| Spread::default());
         let mut peak_known = true;
         for (step, answers) in std::iter::zip(&deployment.path, answers(networks, deployment)) {
@@ -62,7 +62,7 @@ impl Estimate {
 /// sigma of the forces of every hinge at every load step, relative to the root mean square of the forces over the
 /// path; NaN outside the training domain. `None` for a single network.
 pub(crate) fn force_spreads(
-    networks: &[&Surrogate],
+    networks: &[Surrogate],
     deployment: &Deployment,
 ) -> Option<Vec<Vec<f64>>> {
     if networks.len() < 2 {
@@ -95,7 +95,7 @@ pub(crate) fn force_spreads(
 
 /// At every load step and hinge: (W, w_lig F_a, w_lig F_s, M_theta, D_peak), each with one value for each network.
 fn answers(
-    networks: &[&Surrogate],
+    networks: &[Surrogate],
     deployment: &Deployment,
 ) -> impl Iterator<Item = Vec<[Vec<f64>; 5]>> {
     let designs = deployment.sheet.designs();

@@ -20,6 +20,14 @@ pub struct FactSheet {
     pub version: &'static str,
     /// The hinge law of the scene.
     pub hinge: HingeModel,
+    #[serde(skip)]
+    hinge_label: &'static str,
+    /// Whether the hinges carry load.
+    #[serde(skip)]
+    carries_load: bool,
+    /// Whether the hinge law has a training domain.
+    #[serde(skip)]
+    pub has_domain: bool,
     /// Name of the material.
     pub material: String,
     /// Thickness of the sheet (mm).
@@ -117,6 +125,9 @@ impl FactSheet {
         Self {
             version: env!("CARGO_PKG_VERSION"),
             hinge: scene.config.hinge,
+            hinge_label: scene.hinge.label,
+            carries_load: scene.hinge.carries_load(),
+            has_domain: scene.surrogate().is_some(),
             material: material.name.clone(),
             thickness: material.thickness,
             mass_kg,
@@ -141,11 +152,6 @@ impl FactSheet {
     pub fn rows(&self) -> Vec<(&'static str, String)> {
         let size = |[x, y]: [f64; 2]| format!("{} x {} mm", rounded(x, 5), rounded(y, 5));
         let [columns, rows] = self.panels;
-        let hinge = match self.hinge {
-            HingeModel::Pin => "pins: kinematics without forces",
-            HingeModel::Linear => "linear springs (11)",
-            HingeModel::Surrogate => "learned energy (14)",
-        };
         let short = |hash: &str| hash.chars().take(16).collect::<String>();
         let mut facts = vec![
             (
@@ -159,12 +165,12 @@ impl FactSheet {
                 "deployed size",
                 format!("{}, panels held flat", size(self.deployed_size)),
             ),
-            ("hinge law", hinge.to_owned()),
+            ("hinge law", self.hinge_label.to_owned()),
         ];
         if let Some(reached) = &self.reached {
             facts.extend(reached.rows());
         }
-        if self.hinge != HingeModel::Pin {
+        if self.carries_load {
             let weight = self.self_weight.beside_load();
             facts.push(("weight", format!("{weight}; neither is modelled")));
         }
@@ -175,7 +181,7 @@ impl FactSheet {
         ));
         if let Some(weights) = &self.weights {
             let inside = rounded(100.0 * self.share_inside, 4);
-            if self.hinge == HingeModel::Surrogate {
+            if self.has_domain {
                 facts.push(("inside domain", format!("{inside} % of the hinge states")));
             }
             facts.extend(weights.rows());
@@ -255,13 +261,7 @@ impl Reached {
 impl WeightFacts {
     fn of(scene: &Scene) -> Option<Self> {
         let surrogate = scene.weights()?;
-        let config = &scene.config;
-        let learned = config.surrogate.as_ref().map(|file| &file.weights);
-        let condensed = config.condensed.as_ref().map(|file| &file.weights);
-        let path = match config.hinge {
-            HingeModel::Surrogate => learned,
-            _ => condensed,
-        };
+        let path = scene.hinge.weights_file.as_ref();
         let card = surrogate.card();
         let predicted = if card.peak_scale.is_some() { 6 } else { 5 };
         let errors = |of: &TestErrors| of.percents()[..predicted].to_vec();
@@ -316,19 +316,20 @@ fn errors(percents: &[f64], states: usize, kind: &str) -> String {
 
 /// What moves the sheet, and what its displacement means.
 fn stroke_of(scene: &Scene, curve: &ActuationCurve) -> String {
-    let config = &scene.config;
-    let alone = config.edge_loads.is_empty() && config.opening_couples.is_empty();
     let [way, load] = match curve.translational {
         true => ["displacement", "force"],
         false => ["rotation", "couple"],
     };
-    match (curve.mover, config.loads.as_slice()) {
-        (Mover::Loads, [only]) if alone => {
-            let [column, row] = only.panel;
-            format!("{way} of panel [{column}, {row}] along its {load}")
-        }
-        (Mover::Loads, _) => format!("mean {way} along the loads, weighted by their {load}s"),
-        (Mover::Supports, _) => format!("{way} of the moved supports"),
+    if curve.mover == Mover::Supports {
+        return format!("{way} of the moved supports");
+    }
+    let place = match scene.actuation().loads.as_slice() {
+        [only] => only.place,
+        _ => None,
+    };
+    match place {
+        Some([column, row]) => format!("{way} of panel [{column}, {row}] along its {load}"),
+        None => format!("mean {way} along the loads, weighted by their {load}s"),
     }
 }
 

@@ -3,7 +3,6 @@
 use crate::objective::scores::{Scores, shown};
 use crate::output::report::columns::{columns, fixed};
 use crate::output::report::{HingeRow, Report, Severity};
-use crate::scene::HingeModel;
 use std::cmp::Ordering;
 use std::fmt;
 
@@ -78,7 +77,7 @@ impl Report {
             let mut rows = vec![("outline error (mm)", of.outline_error)];
             rows.extend(of.terms());
             rows.push(("loss (mm^2)", of.loss));
-            if self.facts.hinge == HingeModel::Surrogate {
+            if self.facts.has_domain {
                 rows.push(("inside domain (%)", 100.0 * of.share_inside));
             }
             rows

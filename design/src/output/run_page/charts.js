@@ -114,7 +114,7 @@ function drawCurve(state) {
   const named = { x: `${what.startsWith("rotation") || length === "rad" ? "rotation" : "displacement"} (${length})`, y: `${force === "N" ? "load" : "couple"} (${force})` };
   chart(byId("curve"), 250, named, [{ points: path, colour: TEAL }], marks);
   byId("curve-note").textContent =
-    `Displacement: ${what}. Load: ${run.actuation.loads.length + run.actuation.edges.length > 0 ? "sum of the magnitudes of all loads" : "its work-conjugate"}. ` +
+    `Displacement: ${what}. Load: ${run.actuation.loads.length ? "sum of the magnitudes of all loads" : "its work-conjugate"}. ` +
     `Points: load steps; large: the state shown.` +
     (peak ? ` Orange: the largest load, ${shown(peak[1])} ${force} at ${shown(peak[0])} ${length}.` : "") + (jumps.length ? " Hollow: the sheet jumped to this state past a limit point." : "");
 }

@@ -18,7 +18,7 @@ function hingeLines(state, h) {
     [["w_lig", `${fixed(w, 2)} mm`], ["\u03b1", `${fixed(run.hinges.alpha_deg[h], 1)} deg`]],
     [["\u03b8", `${fixed(theta * DEG, 2)} deg`], ["M_\u03b8", law(m, "N mm")]],
   ];
-  if (run.model !== "pin")
+  if (run.carries_load)
     lines.push(
       [["\u03b7_a", fixed(a / w, 4)], ["\u03b7_s", fixed(s / w, 4)]],
       [["a", `${fixed(a, 3)} mm`], ["F_a", law(fa, "N")]],
@@ -79,8 +79,8 @@ function section(h, axis, eta, theta) {
 }
 
 function drawDomain(state, h) {
-  byId("domain-plots").hidden = run.model === "pin";
-  if (run.model === "pin") return;
+  byId("domain-plots").hidden = !run.carries_load;
+  if (!run.carries_load) return;
   const w = run.hinges.w_lig[h];
   const all = states.index.map((_, i) => deformation(i, h)).map(([a, s, t]) => [a / w, s / w, t]);
   const [a, s, theta] = all[state];

@@ -102,7 +102,7 @@ impl HingeStates {
             }),
             damage: damage(DamageMeasure::Mean),
             damage_peak: damage(DamageMeasure::Peak),
-            spread: force_spreads(&scene.networks(), deployment).map(|spreads| {
+            spread: force_spreads(scene.networks(), deployment).map(|spreads| {
                 // The flat sheet has no forces.
                 by_hinge(&|i, h| {
                     i.checked_sub(1)
@@ -120,14 +120,13 @@ impl HingeStates {
 
 /// The forces of every support of the scene in every state.
 fn reactions(scene: &Scene, mechanics: &Mechanics, sheet: &Sheet, states: &[&LoadStep]) -> Packed {
+    let supports = &scene.actuation().supports;
     let of_state = |state: &&LoadStep| {
-        let forces = holding_forces(mechanics, sheet, state);
-        let supports = scene.config.supports.iter();
+        let forces = holding_forces(mechanics, sheet, &state.configuration);
+        let supports = supports.iter();
         supports.flat_map(move |support| {
-            let [column, row] = support.panel;
-            let force = forces[sheet.grid.panel(column, row)];
-            let held = std::iter::zip(support.kind.holds(), force);
-            held.map(|(held, force)| if held { force } else { 0.0 })
+            let held = std::iter::zip(support.motion, forces[support.panel]);
+            held.map(|(motion, force)| motion.map_or(0.0, |_| force))
         })
     };
     states.iter().flat_map(of_state).collect()

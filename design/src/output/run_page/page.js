@@ -5,13 +5,13 @@ const shownNow = { state: stateCount - 1, quantity: "rotation", hinge: run.hinge
 /** The name of a state of the path. */
 function stateName(i) {
   if (states.index[i] === 0) return "the flat sheet";
-  if (run.model === "pin") return `an opening of ${fixed(deformation(i, 0)[2] * DEG, 1)} deg`;
+  if (!run.carries_load) return `an opening of ${fixed(deformation(i, 0)[2] * DEG, 1)} deg`;
   return `load step ${states.index[i]} of ${states.of - 1}`;
 }
 
 function stateText(i) {
   const parts = [stateName(i)];
-  if (run.model !== "pin") parts.push(`load factor ${shown(states.load_factor[i])}`);
+  if (run.carries_load) parts.push(`load factor ${shown(states.load_factor[i])}`);
   if (states.curve) {
     const [displacement, load] = states.curve[states.index[i]];
     const [length, force] = run.stroke[1];
@@ -39,11 +39,11 @@ function writeTexts() {
     write(tr, "td", name);
     write(tr, "td", value);
   }
-  document.body.className = run.model;
+  document.body.className = run.carries_load ? "" : "pin";
   writeWarnings();
   byId("scene").textContent = run.scene;
   byId("legend").textContent = legend();
-  byId("forces-card").hidden = Object.values(run.actuation).every((list) => list.length === 0);
+  byId("forces-card").hidden = run.actuation.loads.length + run.actuation.supports.length === 0;
   byId("curve-card").hidden = !states.curve;
 }
 
@@ -67,9 +67,8 @@ function writeWarnings() {
 
 function legend() {
   const parts = ["Dashed orange: target."];
-  if (run.model === "pin") parts.push("Pins carry no load; the sheet is centred on its target.");
-  else parts.push("Fine dashes: flat sheet. Panels are held flat. Arrows: loads (orange) and reactions (teal) at the centroids of their panels. Square: clamp; triangle: pin; disc: roller, free along its line.");
-  if (run.actuation.openings.length) parts.push("Curved orange arrows on panels: sums of the opening couples of their hinges.");
+  if (!run.carries_load) parts.push("Pins carry no load; the sheet is centred on its target.");
+  else parts.push("Fine dashes: flat sheet. Panels are held flat. Arrows: loads (orange) and reactions (teal) at the centroids of their panels.", run.actuation.legend);
   parts.push("A panel has the fainter colour of its hinge with the largest value.");
   return parts.join(" ");
 }
@@ -80,20 +79,12 @@ function writeForces(state) {
   const MOST = 12;
   const head = write(table, "tr");
   for (const name of ["", "F_x (N)", "F_y (N)", "M (N mm)"]) write(head, "th", name);
-  const zeta = states.load_factor[state];
-  const rows = run.actuation.edges.map((edge) => ({
-    name: `load, ${edge.edge} edge`, force: edge.force.map((f) => f * zeta * edge.panels.length), couple: 0,
-  }));
-  for (const { places, couple } of run.actuation.openings) {
-    const where = places ? `panels [${places[0]}] and [${places[1]}]` : "every hinge";
-    rows.push({ name: `opening couple, ${where}`, force: [0, 0], couple: couple * zeta });
-  }
-  rows.push(...forcesOnPanels(state));
-  for (const { name, force, couple } of rows.slice(0, MOST)) {
+  const rows = forcesOnSheet(state);
+  for (const { name, total: [x, y, couple] } of rows.slice(0, MOST)) {
     const tr = write(table, "tr");
     write(tr, "td", name);
     const clean = (x, least) => (Math.abs(x) > least ? shown(x) : "0");
-    force.forEach((f) => write(tr, "td", clean(f, noticeable.force)));
+    [x, y].forEach((f) => write(tr, "td", clean(f, noticeable.force)));
     write(tr, "td", clean(couple, noticeable.couple));
   }
   if (rows.length > MOST) write(write(table, "tr"), "td", `and ${rows.length - MOST} more`).colSpan = 4;

@@ -4,11 +4,10 @@ use crate::objective::loss::Objective;
 use crate::optimise::outer_loop::StepRecord;
 use crate::output::deployment_states::kept;
 use crate::output::report::{Report, Warning, worst_first};
-use crate::output::run_page::actuation_marks::ActuationMarks;
 use crate::output::run_page::hinge_states::HingeStates;
 use crate::output::run_page::packed::Packed;
 use crate::scene::design_run::Designed;
-use crate::scene::{HingeModel, Scene};
+use crate::scene::{Actuation, Scene};
 use crate::sheet::cut_sheet::Sheet;
 use hinge::TrainingDomain;
 use serde::Serialize;
@@ -22,7 +21,8 @@ const MOST_TEXT: usize = 20_000;
 #[derive(Serialize)]
 pub(super) struct PageData<'a> {
     title: &'a str,
-    model: HingeModel,
+    /// Whether the hinges carry load; otherwise they are pins.
+    carries_load: bool,
     about_cut_files: Option<&'static str>,
     end_of_search: String,
     facts: Vec<(&'static str, String)>,
@@ -32,7 +32,7 @@ pub(super) struct PageData<'a> {
     panels: Panels,
     hinges: Hinges,
     states: HingeStates,
-    actuation: ActuationMarks,
+    actuation: Actuation,
     /// What moves the sheet, and the units of displacement and load.
     stroke: Option<(&'a str, [&'static str; 2])>,
     /// Displacement and load at the maximum of the load, if a displacement is prescribed.
@@ -87,7 +87,7 @@ impl<'a> PageData<'a> {
         let reached = report.facts.reached.as_ref();
         Self {
             title: &report.title,
-            model: scene.config.hinge,
+            carries_load: scene.hinge.carries_load(),
             about_cut_files: report.about_cut_files(),
             end_of_search: report.end_of_search(),
             facts: report.fact_rows(),
@@ -97,7 +97,7 @@ impl<'a> PageData<'a> {
             panels: Panels::of(sheet),
             hinges: Hinges::of(sheet, report),
             states: HingeStates::new(scene, designed),
-            actuation: ActuationMarks::of(scene),
+            actuation: scene.actuation(),
             stroke: reached.map(|reached| (reached.stroke_of.as_str(), reached.units)),
             peak: reached
                 .and_then(|reached| reached.peak)

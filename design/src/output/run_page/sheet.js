@@ -35,7 +35,7 @@ const extent = (() => {
   for (let i = 0; i < stateCount; i++)
     for (let k = 0; k < panelCount; k++) for (let c = 0; c < 4; c++) add(corner(i, k, c));
   for (let i = 0; i < run.target.length; i += 2) add([run.target[i], run.target[i + 1]]);
-  if (run.model !== "pin") run.outline.forEach(add);
+  if (run.carries_load) run.outline.forEach(add);
   return box;
 })();
 
@@ -44,8 +44,8 @@ const view = { width: 0, height: 0, scale: 1, x: 0, y: 0, zoom: 1 };
 
 /** Room around the sheet for arrows and labels (px). */
 function margin() {
-  const { loads, supports, edges, openings } = run.actuation;
-  const widest = edges.length ? 150 : loads.length + supports.length + openings.length ? 80 : 25;
+  const { loads, supports } = run.actuation;
+  const widest = loads.some((load) => load.label) ? 150 : loads.length + supports.length ? 80 : 25;
   return Math.min(widest, 0.14 * view.width);
 }
 
@@ -140,7 +140,7 @@ function outlinePath(points) {
 
 function drawMarks(state, selected) {
   marks.textContent = "";
-  if (run.model !== "pin")
+  if (run.carries_load)
     draw(marks, "path", { d: outlinePath(run.outline), fill: "none", stroke: TICK, "stroke-dasharray": "3 3" });
   const target = Array.from({ length: run.target.length / 2 }, (_, i) => [run.target[2 * i], run.target[2 * i + 1]]);
   draw(marks, "path", { d: outlinePath(target), fill: "none", stroke: ACCENT, "stroke-width": 1.8, "stroke-dasharray": "9 6" });
@@ -159,18 +159,16 @@ function drawMarks(state, selected) {
   placeLabels(marks, labels, obstacles, view.width, view.height);
 }
 
-/** A square on a clamped panel, a triangle on a pinned one, a disc on a roller with its rail. */
+/** The symbols of the supports, those that roll with their rails. */
 function drawSupports(state, obstacles) {
-  for (const support of run.actuation.supports) {
-    const [x, y] = toPixels(centroid(state, support.panel));
-    const style = { fill: INK, stroke: PAPER, "stroke-width": 1.5 };
-    if (support.kind === "clamp") draw(marks, "rect", { x: x - 7, y: y - 7, width: 14, height: 14, ...style });
-    else if (support.kind === "pin") draw(marks, "path", { d: `M${x} ${y - 8}l8 14h-16Z`, ...style });
-    else {
-      const [dx, dy] = support.kind === "roller-x" ? [14, 0] : [0, 14];
-      draw(marks, "line", { x1: x - dx, y1: y - dy, x2: x + dx, y2: y + dy, stroke: INK, "stroke-width": 2 });
-      draw(marks, "circle", { cx: x, cy: y, r: 6.5, ...style });
+  for (const { panel, symbol, rail } of run.actuation.supports) {
+    const [x, y] = toPixels(centroid(state, panel));
+    if (rail) {
+      const [dx, dy] = rail.map((part) => 14 * part);
+      draw(marks, "line", { x1: x - dx, y1: y + dy, x2: x + dx, y2: y - dy, stroke: INK, "stroke-width": 2 });
     }
+    const corners = symbol.map(([a, b]) => `${(x + 7 * a).toFixed(1)} ${(y - 7 * b).toFixed(1)}`);
+    draw(marks, "path", { d: `M${corners.join("L")}Z`, fill: INK, stroke: PAPER, "stroke-width": 1.5 });
     obstacles.push({ x0: x - 9, x1: x + 9, y0: y - 9, y1: y + 9 });
   }
 }
@@ -178,35 +176,28 @@ function drawSupports(state, obstacles) {
 /** Forces below this fraction of the largest one are rounding, and are not drawn. */
 const NEGLIGIBLE = 1e-6;
 
-/** The forces and couples on panels in a state: loads first, then reactions. */
-function forcesOnPanels(state) {
+/** Loads, then reactions in a state: on panels, with their total, and the radius of a couple on a single panel. */
+function forcesOnSheet(state) {
   const zeta = states.load_factor[state];
-  const list = run.actuation.loads.map((load) => ({
-    panel: load.panel, name: `load, panel [${load.place}]`, colour: ACCENT,
-    force: load.force.map((f) => f * zeta), couple: load.couple * zeta,
+  const scaled = (load) => load.map((f) => zeta * f);
+  const loads = run.actuation.loads.map((load) => ({
+    name: load.name, label: load.label, colour: ACCENT, radius: load.place && 26,
+    panels: load.on_panels.map(([panel, full]) => [panel, scaled(full)]), total: scaled(load.total),
   }));
-  run.actuation.supports.forEach((support, i) => {
+  const reactions = run.actuation.supports.map(({ name, panel }, i) => {
     const at = 3 * (state * run.actuation.supports.length + i);
-    list.push({
-      panel: support.panel, name: `${support.kind}, panel [${support.place}]`, colour: TEAL, reaction: true,
-      force: [states.reactions[at], states.reactions[at + 1]], couple: states.reactions[at + 2],
-    });
+    const force = [0, 1, 2].map((d) => states.reactions[at + d]);
+    return { name, colour: TEAL, radius: 20, panels: [[panel, force]], total: force };
   });
-  return list;
+  return [...loads, ...reactions];
 }
 
 /** The largest force and couple of the path. */
 const largest = (() => {
   let [force, couple] = [0, 0];
-  for (let i = 0; i < stateCount; i++) {
-    for (const item of forcesOnPanels(i)) {
-      force = Math.max(force, Math.hypot(...item.force));
-      couple = Math.max(couple, Math.abs(item.couple));
-    }
-    for (const { on_panels: panels } of run.actuation.openings)
-      for (const [, full] of panels) couple = Math.max(couple, Math.abs(states.load_factor[i] * full));
-    for (const edge of run.actuation.edges) force = Math.max(force, Math.abs(states.load_factor[i]) * Math.hypot(...edge.force));
-  }
+  for (let i = 0; i < stateCount; i++)
+    for (const { panels } of forcesOnSheet(i))
+      for (const [, [x, y, m]] of panels) [force, couple] = [Math.max(force, Math.hypot(x, y)), Math.max(couple, Math.abs(m))];
   return { force, couple };
 })();
 
@@ -219,52 +210,43 @@ const noticeable = (() => {
   };
 })();
 
+/** Arrows on the panels; of equal loads on several panels the first has a label, unless their total is shown. */
 function drawLoads(state, labels, obstacles) {
-  for (const item of forcesOnPanels(state)) {
-    const at = toPixels(centroid(state, item.panel));
-    const force = Math.hypot(...item.force);
-    if (force > noticeable.force) {
-      const end = drawArrow(at, item.force, item.colour, obstacles);
-      labels.push({ text: `${shown(force)} N`, colour: item.colour, ...end });
+  for (const { label, colour, radius, panels, total } of forcesOnSheet(state)) {
+    const ends = [];
+    const labelled = new Set();
+    const add = (value, text, end) => {
+      if (!labelled.has(value)) labels.push({ text, colour, ...end });
+      labelled.add(value);
+    };
+    for (const [panel, [fx, fy, couple]] of panels) {
+      const at = toPixels(centroid(state, panel));
+      const force = Math.hypot(fx, fy);
+      if (force > noticeable.force) {
+        ends.push(drawArrow(at, [fx, fy], colour, obstacles, radius ? 62 : 26));
+        if (!label) add(`${fx} ${fy}`, `${shown(force)} N`, ends[ends.length - 1]);
+      }
+      if (Math.abs(couple) > noticeable.couple) {
+        const r = radius || coupleRadius(panel);
+        drawCouple(at, couple, colour, r);
+        obstacles.push({ x0: at[0] - r - 3, x1: at[0] + r + 3, y0: at[1] - r - 3, y1: at[1] + r + 3 });
+        add(couple, `${shown(Math.abs(couple))} N mm`, { x: at[0], y: at[1] + r, dx: 0, dy: 1 });
+      }
     }
-    if (Math.abs(item.couple) > noticeable.couple) {
-      drawCouple(at, item.couple, item.colour, item.reaction ? 20 : 26);
-      labels.push({ text: `${shown(Math.abs(item.couple))} N mm`, colour: item.colour, x: at[0], y: at[1] + 26, dx: 0, dy: 1 });
-      obstacles.push({ x0: at[0] - 26, x1: at[0] + 26, y0: at[1] - 26, y1: at[1] + 26 });
-    }
-  }
-  const zeta = states.load_factor[state];
-  drawOpenings(state, labels, obstacles);
-  for (const edge of run.actuation.edges) {
-    const force = edge.force.map((f) => f * zeta);
-    const total = Math.hypot(...force) * edge.panels.length;
-    if (!(total > noticeable.force)) continue;
-    const ends = edge.panels.map((k) => drawArrow(toPixels(centroid(state, k)), force, ACCENT, obstacles, 26));
-    labels.push({ text: `${edge.edge} edge ${shown(total)} N`, colour: ACCENT, ...ends[Math.floor(ends.length / 2)] });
+    const middle = ends[Math.floor(ends.length / 2)];
+    if (label && middle) labels.push({ text: `${label} ${shown(Math.hypot(total[0], total[1]))} N`, colour, ...middle });
   }
 }
 
-/** Draws the sums of the opening couples on panels; of equal couples the first has a label. */
-function drawOpenings(state, labels, obstacles) {
-  const zeta = states.load_factor[state];
-  for (const opening of run.actuation.openings) {
-    const labelled = new Set();
-    for (const [panel, full] of opening.on_panels) {
-      const [couple, corners] = [zeta * full, cornersDrawn[panel]];
-      if (!(Math.abs(couple) > noticeable.couple)) continue;
-      const [x, y] = toPixels(centroid(state, panel));
-      const edge = Math.hypot(corners[2][0] - corners[0][0], corners[2][1] - corners[0][1]) / Math.SQRT2;
-      const r = Math.max(5, Math.min(16, 0.25 * edge));
-      drawCouple([x, y], couple, ACCENT, r);
-      obstacles.push({ x0: x - r - 3, x1: x + r + 3, y0: y - r - 3, y1: y + r + 3 });
-      if (!labelled.has(full)) labels.push({ text: `${shown(Math.abs(couple))} N mm`, colour: ACCENT, x, y: y + r, dx: 0, dy: 1 });
-      labelled.add(full);
-    }
-  }
+/** The radius of a curved arrow that fits on a panel (px). */
+function coupleRadius(panel) {
+  const corners = cornersDrawn[panel];
+  const edge = Math.hypot(corners[2][0] - corners[0][0], corners[2][1] - corners[0][1]) / Math.SQRT2;
+  return Math.max(5, Math.min(16, 0.25 * edge));
 }
 
 /** Draws an arrow along a force; its length grows with the force. Returns its tip and direction. */
-function drawArrow([x, y], force, colour, obstacles, longest = 62) {
+function drawArrow([x, y], force, colour, obstacles, longest) {
   const size = Math.hypot(...force);
   const [dx, dy] = [force[0] / size, -force[1] / size];
   const length = 12 + (longest - 12) * Math.min(size / largest.force, 1);

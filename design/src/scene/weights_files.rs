@@ -1,0 +1,68 @@
+//! The weights that the hinge law of a scene reads.
+
+use crate::scene::hinge_model::{HingeModel, SurrogateFile};
+use crate::scene::keys::SceneConfig;
+use std::path::{Path, PathBuf};
+
+impl SceneConfig {
+    /// Replaces the weights that the hinge law reads; the path is relative to the working folder. An ensemble, which
+    /// belongs to the replaced weights, is dropped. A law without weights is an error.
+    pub fn name_weights(&mut self, weights: &Path) -> std::io::Result<()> {
+        let weights = std::path::absolute(weights)?;
+        match (self.hinge, &mut self.condensed) {
+            (HingeModel::Surrogate, _) => {
+                self.surrogate = Some(SurrogateFile {
+                    weights,
+                    ensemble: Vec::new(),
+                });
+            }
+            (HingeModel::Linear, Some(condensed)) => condensed.weights = weights,
+            (HingeModel::Linear | HingeModel::Pin, _) => {
+                return Err(std::io::Error::new(
+                    std::io::ErrorKind::InvalidInput,
+                    "other weights were named, but the hinge law of the scene reads none: use hinge = \"surrogate\"",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// The weights that the hinge law reads: its own first, then those of the ensemble.
+    pub(super) fn weights_files(&self) -> Vec<PathBuf> {
+        let mut config = self.clone();
+        config
+            .weights_files_mut()
+            .into_iter()
+            .map(std::mem::take)
+            .collect()
+    }
+
+    /// The same, to be changed.
+    pub(super) fn weights_files_mut(&mut self) -> Vec<&mut PathBuf> {
+        match self.hinge {
+            HingeModel::Pin => Vec::new(),
+            HingeModel::Linear => {
+                let condensed = self.condensed.iter_mut();
+                condensed.map(|file| &mut file.weights).collect()
+            }
+            HingeModel::Surrogate => {
+                let learned = self.surrogate.iter_mut();
+                let files = learned
+                    .flat_map(|file| std::iter::once(&mut file.weights).chain(&mut file.ensemble));
+                files.collect()
+            }
+        }
+    }
+
+    /// The same scene without the sections of weights that its hinge law does not read.
+    pub(super) fn without_unread_weights(&self) -> Self {
+        let mut config = self.clone();
+        if config.hinge != HingeModel::Surrogate {
+            config.surrogate = None;
+        }
+        if config.hinge != HingeModel::Linear {
+            config.condensed = None;
+        }
+        config
+    }
+}
