@@ -42,7 +42,7 @@ fn together<'a>(to: f64) -> Table<'a, (&'a Capacity, f64)> {
     let failure = |row: &(&'a Capacity, f64)| row.0.carried.to.as_ref().map(|(_, above)| above);
     Table::new()
         .column("pattern", |(capacity, _): &(&Capacity, f64)| {
-            Cell::text(&capacity.name)
+            Cell::text(capacity.name)
         })
         .column("search steps", |(capacity, _)| Cell::text(capacity.steps))
         .column("minimum rho", |(capacity, _)| {
@@ -87,7 +87,7 @@ fn one_after_the_other<'a>() -> Table<'a, Capacity> {
         }
     };
     Table::new()
-        .column("pattern", |capacity: &Capacity| Cell::text(&capacity.name))
+        .column("pattern", |capacity: &Capacity| Cell::text(capacity.name))
         .column("maximum rho", maximum(0))
         .column("limit", limit(0))
         .column("opposite direction, maximum rho", maximum(1))
