@@ -31,7 +31,8 @@ pub use cutting::CuttingConfig;
 pub use hinge_model::{
     CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
 };
-pub use keys::{ObjectiveConfig, OptimiserConfig, SceneConfig};
+pub use crate::objective::terms::ObjectiveConfig;
+pub use keys::{OptimiserConfig, SceneConfig};
 pub use loaded_hinge::LoadedHinge;
 pub use ratios::{Ratios, rounded};
 pub use scene_error::SceneError;

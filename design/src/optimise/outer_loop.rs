@@ -311,7 +311,7 @@ impl SearchState {
         self.go_on(problem, design, evaluation);
         self.history.push(StepRecord {
             step: self.history.len(),
-            scores: Scores::of(&problem.objective, evaluation),
+            scores: Scores::new(&problem.objective, evaluation),
             followed,
             halvings: setback.halvings,
             setback: setback.reason,

@@ -312,14 +312,6 @@ fn search(scene: &SceneConfig) -> Result<(), String> {
         [0.0, square / 3.0],
         "mm",
     )?;
-    let tau = objective.temperatures;
-    for (key, tau) in [
-        ("objective.temperatures.damage", tau.damage),
-        ("objective.temperatures.compression", tau.compression),
-        ("objective.temperatures.shear", tau.shear),
-    ] {
-        within(key, tau, [1e-6, 10.0], "")?;
-    }
     let solver = &scene.solver;
     within("solver.tolerance", solver.tolerance, [1e-14, 0.1], "")?;
     counted("solver.follow_every", solver.follow_every, 10_000)?;

@@ -4,7 +4,7 @@
 //! from it.
 
 use crate::objective::design_problem::{DesignError, DesignProblem, Evaluation};
-use crate::objective::panel_width::thinnest_panel;
+use crate::objective::terms::panel_width::thinnest_panel;
 use crate::optimise::outer_loop::{Ended, SearchState, StepRecord, optimise};
 use crate::pattern::design_vector::DesignVector;
 use crate::scene::checked_scene::{MODEL_PARTS, Scene, WEIGHTS};
@@ -206,7 +206,7 @@ pub fn inverse_design(
     let start = problem
         .evaluate(&design)
         .map_err(InverseDesignError::Start)?;
-    wide_enough(&problem, &start)?;
+    wide_enough(scene, &start)?;
     let (optimiser, model) = (&scene.config.optimiser, scene.model_hash());
     let mut search = match State::read(&path, scene, &model, &start)? {
         Some(state) => state.search,
@@ -260,8 +260,8 @@ pub fn inverse_design(
 }
 
 /// An error if a panel of the start is so thin that the barrier of the minimum width is infinite.
-fn wide_enough(problem: &DesignProblem, start: &Evaluation) -> Result<(), InverseDesignError> {
-    let minimum = problem.objective.min_panel_width;
+fn wide_enough(scene: &Scene, start: &Evaluation) -> Result<(), InverseDesignError> {
+    let minimum = scene.config.objective.min_panel_width;
     let panels = start.deployment.sheet.panels.iter();
     let panels: Vec<_> = panels.map(|panel| panel.corners).collect();
     let thinnest = thinnest_panel(&panels);

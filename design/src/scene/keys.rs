@@ -1,11 +1,8 @@
 //! The keys of a scene file.
 
 use crate::equilibrium::settings::SolverSettings;
-use crate::geometry::chamfer::Precision;
-use crate::hinge_law::DamageMeasure;
-use crate::objective::loss::OutlinePoints;
-use crate::objective::path_functionals::PerFunctional;
 use crate::objective::target::TargetShape;
+use crate::objective::terms::ObjectiveConfig;
 use crate::optimise::search::SearchMethod;
 use crate::scene::actuation::{
     DriveConfig, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig,
@@ -93,64 +90,6 @@ pub struct SceneConfig {
     pub optimiser: OptimiserConfig,
 }
 
-/// The weights of (16)-(19), relative to the Chamfer distance divided by the mean panel area: at the
-/// weight 1 a functional with the value 1 costs as much as an outline error of one panel size. Every weight is 0 to
-/// 1e9.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ObjectiveConfig {
-    /// w_cov of the Chamfer distance.
-    pub coverage: f64,
-    /// Weight of (17); needs `hinge = "surrogate"`.
-    #[serde(default)]
-    pub damage: f64,
-    /// The damage measure of (17): `mean`, D as in the paper, or `peak`, D_peak, at which 1 means tearing.
-    #[serde(default)]
-    pub damage_measure: DamageMeasure,
-    /// Weight of (18).
-    #[serde(default)]
-    pub compression: f64,
-    /// Weight of (19).
-    #[serde(default)]
-    pub shear: f64,
-    /// Temperatures tau of the smooth extrema along the path in (17)-(19), 1e-6 to 10, in the units of D / D_s, eta_a and
-    /// eta_s: a tenth of typical values by default. A smaller one is closer to the extremum and less smooth.
-    #[serde(default = "default_temperatures")]
-    pub temperatures: PerFunctional,
-    /// Weight of the panel shape penalty: on panels stretched more than eight to one or with angles below 14 degrees,
-    /// which the outline alone does not prevent, and, with learned hinges, on corners of a panel closer than three
-    /// radii of their windows. Never relative to a gradient.
-    #[serde(default)]
-    pub panel_shape: f64,
-    /// No panel is thinner anywhere (mm), 0 to a third of the side of a square panel of the mean area: the minimum that
-    /// the cutter accepts. Distances of corners from the edges of their panel are kept above it by a barrier, which
-    /// begins at twice the value; use it with `method = "lbfgs"`, since Adam can get stuck at it. The panels of the
-    /// start must be wider. 0 sets no limit.
-    #[serde(default)]
-    pub min_panel_width: f64,
-    /// Weight of the penalty on states outside the training domain of the hinge law, in squared tenths of its range,
-    /// as a mean over hinges and load steps. Needs `hinge = "surrogate"`. Never relative to a gradient.
-    #[serde(default)]
-    pub domain: f64,
-    /// Whether the weights of (17)-(19) are instead relative to the gradient of the Chamfer distance at the
-    /// start: at the weight 1 the gradient of a functional has the same norm.
-    #[serde(default)]
-    pub balance: bool,
-    /// Temperature of the minima in the Chamfer distance (mm^2), 0 to 1e9; 0 is the hard minimum of the paper.
-    #[serde(default)]
-    pub smoothing: f64,
-    /// What the distance of the outline is measured to: the `samples` of the target, as in the paper, or the
-    /// `curve` through them.
-    #[serde(default)]
-    pub precision: Precision,
-    /// The panel corners on the outline that are compared with the target: `free`, those that belong
-    /// to no hinge, or `all`.
-    #[serde(default)]
-    pub outline: OutlinePoints,
-    /// Number of points on the target outline, 1 to 1 000 000.
-    pub target_points: usize,
-}
-
 /// The search of the outer loop.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -168,14 +107,6 @@ pub struct OptimiserConfig {
     /// Seed of the random start.
     #[serde(default)]
     pub seed: u64,
-}
-
-fn default_temperatures() -> PerFunctional {
-    PerFunctional {
-        damage: 0.1,
-        compression: 0.01,
-        shear: 0.01,
-    }
 }
 
 fn default_load_steps() -> usize {

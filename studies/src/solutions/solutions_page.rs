@@ -2,7 +2,7 @@
 
 use super::{CONVERGED, NEGLIGIBLE, Solution, SolutionSet};
 use anyhow::Result;
-use design::objective::loss::OutlinePoints;
+use design::objective::shape::OutlinePoints;
 use std::fmt::Write;
 
 /// The name of a point set P.
