@@ -142,7 +142,11 @@ impl ApproachStudy {
             rate,
             steps: self.steps,
             loss: found.losses.iter().copied().fold(f64::INFINITY, f64::min),
-            fit: OutlineMatch::of(&sheet, &tessellation.deployed, &problem.objective.shape.target),
+            fit: OutlineMatch::of(
+                &sheet,
+                &tessellation.deployed,
+                &problem.objective.shape.target,
+            ),
             defects: tessellation.defects_in(states),
             opening_deg: found.opening.to_degrees(),
             tessellation,

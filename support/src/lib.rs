@@ -5,6 +5,7 @@
 #![warn(missing_docs)]
 
 pub mod csv_table;
+pub mod key_limits;
 pub mod lock_file;
 pub mod nearest;
 pub mod processes;

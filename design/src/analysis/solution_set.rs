@@ -35,7 +35,10 @@ pub fn outline_rank(problem: &DesignProblem, design: &DesignVector) -> Result<us
     let columns = slopes(design, &coordinates(design), |beside| {
         let deployment = problem.deploy(beside)?;
         let corners = problem.objective.shape.outline.corners(&deployment.sheet);
-        let outline = problem.objective.shape.placed(&deployment.outline(&corners));
+        let outline = problem
+            .objective
+            .shape
+            .placed(&deployment.outline(&corners));
         Ok(outline.into_flattened())
     })?;
     let n = columns.len();

@@ -24,15 +24,16 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The weights of (16)-(19), relative to the Chamfer distance divided by the mean panel area: at the
-/// weight 1 a functional with the value 1 costs as much as an outline error of one panel size. Every weight is 0 to
-/// 1e9.
+/// weight 1 a functional with the value 1 costs as much as an outline error of one panel size.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectiveConfig {
     /// w_cov of the Chamfer distance.
+    #[schemars(range(min = 0.0, max = 1e9))]
     pub coverage: f64,
-    /// Temperature of the minima in the Chamfer distance (mm^2), 0 to 1e9; 0 is the hard minimum of the paper.
+    /// Temperature of the minima in the Chamfer distance (mm^2); 0 is the hard minimum of the paper.
     #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e9))]
     pub smoothing: f64,
     /// What the distance of the outline is measured to: the `samples` of the target, as in the paper, or the
     /// `curve` through them.
@@ -42,19 +43,23 @@ pub struct ObjectiveConfig {
     /// to no hinge, or `all`.
     #[serde(default)]
     pub outline: OutlinePoints,
-    /// Number of points on the target outline, 1 to 1 000 000.
+    /// Number of points on the target outline.
+    #[schemars(range(min = 1, max = 1_000_000))]
     pub target_points: usize,
     /// Weight of (17); needs `hinge = "surrogate"`.
     #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e9))]
     pub damage: f64,
     /// The damage measure of (17): `mean`, D as in the paper, or `peak`, D_peak, at which 1 means tearing.
     #[serde(default)]
     pub damage_measure: DamageMeasure,
     /// Weight of (18).
     #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e9))]
     pub compression: f64,
     /// Weight of (19).
     #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e9))]
     pub shear: f64,
     /// Whether the weights of (17)-(19) are instead relative to the gradient of the Chamfer distance at the
     /// start: at the weight 1 the gradient of a functional has the same norm.
@@ -64,16 +69,19 @@ pub struct ObjectiveConfig {
     /// which the outline alone does not prevent, and, with learned hinges, on corners of a panel closer than three
     /// radii of their windows. Never relative to a gradient.
     #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e9))]
     pub panel_shape: f64,
-    /// No panel is thinner anywhere (mm), 0 to a third of the side of a square panel of the mean area: the minimum that
-    /// the cutter accepts. Distances of corners from the edges of their panel are kept above it by a barrier, which
+    /// No panel is thinner anywhere (mm), at most a third of the side of a square panel of the mean area: the minimum
+    /// that the cutter accepts. Distances of corners from the edges of their panel are kept above it by a barrier, which
     /// begins at twice the value; use it with `method = "lbfgs"`, since Adam can get stuck at it. The panels of the
     /// start must be wider. 0 sets no limit.
     #[serde(default)]
+    #[schemars(range(min = 0.0))]
     pub min_panel_width: f64,
     /// Weight of the penalty on states outside the training domain of the hinge law, in squared tenths of its range,
     /// as a mean over hinges and load steps. Needs `hinge = "surrogate"`. Never relative to a gradient.
     #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e9))]
     pub domain: f64,
 }
 

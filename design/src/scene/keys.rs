@@ -26,8 +26,9 @@ pub struct SceneConfig {
     pub title: String,
     /// The TOML file of the sheet material, relative to the scene file. For a learned law, the file of the training.
     pub material: PathBuf,
-    /// Thickness of the sheet (mm), 0.02 to 10, instead of the material's: the same law in another thickness. Learned
-    /// energies are converted exactly, by similarity: ligament widths and r_win scale with the thickness.
+    /// Thickness of the sheet (mm), instead of the material's: the same law in another thickness. Learned energies are
+    /// converted exactly, by similarity: ligament widths and r_win scale with the thickness.
+    #[schemars(range(min = 0.02, max = 10.0))]
     pub thickness: Option<f64>,
     /// The hinge law: `pin`, `linear` or `surrogate`.
     pub hinge: HingeModel,
@@ -36,8 +37,9 @@ pub struct SceneConfig {
     /// The reference point of a panel's rotation: the `area` centroid or the mean of the `vertices`.
     #[serde(default)]
     pub centroid: Centroid,
-    /// N of the load steps zeta_i = i/N, 1 to 10 000: where the path is read for pictures and path functionals. The solver
-    /// chooses its own increments between them.
+    /// N of the load steps zeta_i = i/N, where the path is read for pictures and path functionals. The solver chooses its
+    /// own increments between them.
+    #[schemars(range(min = 1, max = 10_000))]
     #[serde(default = "default_load_steps")]
     pub load_steps: usize,
     /// The run folder, relative to the scene file.
@@ -58,7 +60,8 @@ pub struct SceneConfig {
     pub pin: Option<PinConfig>,
     /// Constants of (11); read if `hinge = "linear"`.
     pub linear: Option<LinearConstants>,
-    /// Constants of (11) from a learned energy, instead of `linear`.
+    /// Constants of (11) from a learned energy, instead of `linear`: a law of studies, not a key.
+    #[serde(skip)]
     pub condensed: Option<CondensedConfig>,
     /// Read if `hinge = "surrogate"`.
     pub surrogate: Option<SurrogateFile>,
@@ -94,15 +97,18 @@ pub struct SceneConfig {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OptimiserConfig {
-    /// Number of steps after the start, 1 to 10 000 000.
+    /// Number of steps after the start.
+    #[schemars(range(min = 1, max = 10_000_000))]
     pub steps: usize,
-    /// Length of the first step in every chart coordinate, 1e-9 to 10; for Adam also of the later steps.
+    /// Length of the first step in every chart coordinate; for Adam also of the later steps.
+    #[schemars(range(min = 1e-9, max = 10.0))]
     pub learning_rate: f64,
     /// `adam`, as in the paper, `lbfgs` or `gauss-newton`.
     #[serde(default)]
     pub method: SearchMethod,
-    /// Standard deviation of the random start about the uniform sheet, in the chart coordinates, 0 to 10.
+    /// Standard deviation of the random start about the uniform sheet, in the chart coordinates.
     #[serde(default)]
+    #[schemars(range(min = 0.0, max = 10.0))]
     pub start_noise: f64,
     /// Seed of the random start.
     #[serde(default)]

@@ -2,7 +2,6 @@
 
 use crate::equilibrium::tangent::MIN_PIVOT_RATIO;
 use crate::hinge_law::{CondensedLaw, Contact, DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
-use crate::scene::checks::within;
 use crate::scene::hinge_model::{CondensedConfig, HingeModel, LinearConstants, PinConfig};
 use crate::scene::keys::SceneConfig;
 use crate::scene::relative_path::beside;
@@ -66,7 +65,7 @@ impl LoadedHinge {
         measured: &SheetMaterial,
         path: &Path,
     ) -> Result<Self, SceneError> {
-        let refuse = |reason| SceneError::Value {
+        let refuse = |reason| SceneError::Hinge {
             path: path.to_owned(),
             reason,
         };
@@ -161,7 +160,7 @@ fn networks(
     let load = |weights: PathBuf| {
         let weights = beside(path, &weights);
         if !weights.is_file() {
-            return Err(SceneError::Value {
+            return Err(SceneError::Hinge {
                 path: path.to_owned(),
                 reason: format!(
                     "{section}.weights: there is no file {}: train it, or give the constants of \
@@ -184,7 +183,7 @@ pub(super) fn network(
     weights: &Path,
 ) -> Result<Surrogate, SceneError> {
     let surrogate = Surrogate::load(weights)?;
-    fitted(config, measured, surrogate).map_err(|reason| SceneError::Value {
+    fitted(config, measured, surrogate).map_err(|reason| SceneError::Hinge {
         path: path.to_owned(),
         reason: format!("the weights {} are for {reason}", weights.display()),
     })
@@ -198,7 +197,6 @@ fn condensed(
     file: &CondensedConfig,
 ) -> Result<LoadedHinge, String> {
     let secant = file.secant_deg;
-    within("condensed.secant_deg", secant, [-180.0, 180.0], "deg")?;
     let law = CondensedLaw::new(networks[0].clone(), secant.to_radians());
     let [k_a, k_s, k_theta] = constants_at_start(config, &law);
     if !(k_a > 0.0 && k_s > 0.0 && k_theta > 0.0) {
@@ -268,7 +266,6 @@ fn same_training(networks: &[Surrogate]) -> Result<(), String> {
 }
 
 fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, String> {
-    within("pin.opening_deg", pin.opening_deg, [-180.0, 180.0], "deg")?;
     let held_or_loaded = !config.supports.is_empty() || config.has_loads();
     if held_or_loaded || config.drive.is_some() || config.contact.is_some() {
         return Err(
@@ -301,9 +298,6 @@ fn springs(law: Arc<dyn HingeLaw>, contact: Contact) -> LoadedHinge {
 
 fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHinge, String> {
     let LinearConstants { k_a, k_s, k_theta } = constants;
-    within("linear.k_a", k_a, [1e-3, 1e6], "N/mm")?;
-    within("linear.k_s", k_s, [1e-3, 1e6], "N/mm")?;
-    within("linear.k_theta", k_theta, [1e-3, 1e9], "N mm/rad")?;
     let grid = config.sheet.grid();
     let panel = config.sheet.outline().area().abs() / grid.panel_count() as f64;
     let ratio = k_theta / (k_a.max(k_s) * panel);

@@ -68,7 +68,7 @@ impl Scene {
 
     /// Area of the sheet divided by the number of panels (mm^2); the weights of the objective are relative to it.
     pub fn mean_panel_area(&self) -> f64 {
-        self.config.sheet.outline().area() / self.grid().panel_count() as f64
+        self.config.sheet.mean_panel_area()
     }
 
     fn objective(&self, model: &Model) -> Objective {
@@ -89,9 +89,9 @@ impl Scene {
             HingeBehaviour::Pinned { opening } => return Ok(Model::Ideal { opening: *opening }),
             HingeBehaviour::Elastic { law, contact } => (law.clone(), *contact),
         };
-        let solver = self.solver().map_err(|error| SceneError::Value {
+        let solver = self.solver().map_err(|source| SceneError::Equilibrium {
             path: self.path.clone(),
-            reason: error.to_string(),
+            source,
         })?;
         Ok(Model::Equilibrium(Box::new(Mechanics {
             law,

@@ -217,7 +217,10 @@ fn the_curvature_of_the_shape_is_that_of_its_points() {
         let direction = Random::new(17).numbers(x.len(), 1.0);
         let placed = |deployment: &Deployment| {
             let corners = problem.objective.shape.outline.corners(&deployment.sheet);
-            problem.objective.shape.placed(&deployment.outline(&corners))
+            problem
+                .objective
+                .shape
+                .placed(&deployment.outline(&corners))
         };
         let moved = |step: f64| {
             let x = std::iter::zip(&x, &direction).map(|(x, d)| x + step * d);
