@@ -6,7 +6,7 @@ use design::scene::SceneConfig;
 use fe_driver::Campaign;
 use hinge::SheetMaterial;
 use schemars::{Schema, schema_for};
-use serde_json::{Map, Value};
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -45,98 +45,61 @@ fn page() -> Result<String> {
         ),
         ("Training", "configs/training", schema_for!(TrainingConfig)),
     ];
-    let mut page = Page {
-        text: HEADING.to_owned(),
-        described: BTreeMap::new(),
-    };
+    let (mut page, mut described) = (HEADING.to_owned(), Described::new());
     for (title, folder, schema) in files {
-        writeln!(page.text, "\n## {title} ({folder})")?;
-        let none = Map::new();
-        let schema = schema.as_value();
-        let definitions = schema["$defs"].as_object().unwrap_or(&none);
-        page.file(title, schema, definitions)?;
+        writeln!(page, "\n## {title} ({folder})")?;
+        file(&mut page, &mut described, title, schema.as_value())?;
     }
-    Ok(page.text)
+    Ok(page)
 }
 
-/// The page, and the types that it describes so far with the titles of their descriptions.
-struct Page {
-    text: String,
-    described: BTreeMap<String, (Value, String)>,
+/// The titles under which the page describes types so far.
+type Described = BTreeMap<String, String>;
+
+/// The keys of a file, its sections, and the values of its enumerations.
+fn file(page: &mut String, described: &mut Described, title: &str, schema: &Value) -> Result<()> {
+    let types = &schema["$defs"];
+    let (sections, keys): (Vec<_>, Vec<_>) = properties(schema)
+        .partition(|(_, property)| type_name(property).is_some_and(|name| has_keys(&types[name])));
+    table(page, keys.into_iter(), schema)?;
+    for (key, property) in sections {
+        let name = type_name(property).unwrap_or_default();
+        let section = match property["type"].as_str() {
+            Some("array") => format!("`[[{key}]]` of a {title}"),
+            _ => format!("`[{key}]` of a {title}"),
+        }
+        .to_lowercase();
+        let need = if required(schema, key) {
+            ", required"
+        } else {
+            ""
+        };
+        writeln!(page, "\n### {section}{need}\n\n{}", text(property))?;
+        if let Some(earlier) = described.get(name) {
+            writeln!(page, "The keys are those of {earlier}.")?;
+            continue;
+        }
+        describe(page, &types[name])?;
+        described.insert(name.to_owned(), section);
+    }
+    for (name, definition) in types.as_object().into_iter().flatten() {
+        if !described.contains_key(name) {
+            writeln!(page, "\n### {name}\n")?;
+            describe(page, definition)?;
+            described.insert(name.clone(), name.clone());
+        }
+    }
+    Ok(())
 }
 
-impl Page {
-    /// The keys of a file, its sections, and the values of its enumerations.
-    fn file(&mut self, title: &str, schema: &Value, types: &Map<String, Value>) -> Result<()> {
-        let mut titles = BTreeMap::new();
-        let mut described = Vec::new();
-        for (name, definition) in types {
-            let heading = match self.described.get(name) {
-                Some((known, heading)) if known == definition => heading.clone(),
-                Some(_) => format!("{title} {name}"),
-                None => name.clone(),
-            };
-            titles.insert(name.as_str(), heading);
-        }
-        let (sections, keys): (Vec<_>, Vec<_>) = properties(schema).partition(|(_, property)| {
-            section(property).is_some_and(|name| is_section(&types[name]))
-        });
-        table(&mut self.text, &titles, keys.into_iter(), schema)?;
-        for (key, property) in sections {
-            let name = section(property).unwrap_or_default();
-            let heading = match property["type"] == "array" {
-                true => format!("`[[{key}]]`"),
-                false => format!("`[{key}]`"),
-            };
-            let need = if required(schema, key) {
-                ", required"
-            } else {
-                ""
-            };
-            writeln!(self.text, "\n### {title}: {heading}{need}\n")?;
-            let (meaning, definition) = (text(property), &types[name]);
-            let of_type = text(definition);
-            if !of_type.starts_with(meaning.trim_end_matches('.')) {
-                writeln!(self.text, "{meaning}")?;
-            }
-            if let Some((known, heading)) = self.described.get(name)
-                && known == definition
-            {
-                writeln!(self.text, "The keys are those of {heading}.")?;
-                continue;
-            }
-            described.push((name, format!("{title}: {heading}")));
-            writeln!(self.text, "{of_type}")?;
-            match definition.get("properties") {
-                Some(_) => table(&mut self.text, &titles, properties(definition), definition)?,
-                None => choices(&mut self.text, &titles, definition)?,
-            }
-        }
-        for (name, definition) in types
-            .iter()
-            .filter(|(_, definition)| !is_section(definition))
-        {
-            if self
-                .described
-                .get(name)
-                .is_none_or(|(known, _)| known != definition)
-            {
-                let heading = &titles[name.as_str()];
-                writeln!(self.text, "\n### {heading}\n\n{}", text(definition))?;
-                choices(&mut self.text, &titles, definition)?;
-                described.push((name, heading.clone()));
-            }
-        }
-        for (name, heading) in described {
-            let described = (types[name].clone(), heading);
-            self.described.insert(name.to_owned(), described);
-        }
-        Ok(())
+/// What a type is, with its keys or values.
+fn describe(page: &mut String, definition: &Value) -> Result<()> {
+    writeln!(page, "{}", text(definition))?;
+    match definition.get("properties") {
+        Some(_) => table(page, properties(definition), definition),
+        None => choices(page, definition),
     }
 }
-
-/// The title of the description of each type.
-type Titles<'a> = BTreeMap<&'a str, String>;
 
 fn properties(schema: &Value) -> impl Iterator<Item = (&String, &Value)> {
     schema["properties"].as_object().into_iter().flatten()
@@ -147,8 +110,8 @@ fn required(schema: &Value, key: &str) -> bool {
     required.into_iter().any(|name| name == key)
 }
 
-/// The type that a key refers to, alone or in a list.
-fn section(property: &Value) -> Option<&str> {
+/// The name of the type of a key, or of the items of its list, if that is not a number or text.
+fn type_name(property: &Value) -> Option<&str> {
     let alternatives = property["anyOf"].as_array().into_iter().flatten();
     let mut places = [property, &property["items"]]
         .into_iter()
@@ -158,7 +121,7 @@ fn section(property: &Value) -> Option<&str> {
 }
 
 /// Whether a type has keys of its own.
-fn is_section(definition: &Value) -> bool {
+fn has_keys(definition: &Value) -> bool {
     let alternatives = definition["oneOf"].as_array().into_iter().flatten();
     let mut all = std::iter::once(definition).chain(alternatives);
     all.any(|schema| schema.get("properties").is_some())
@@ -167,7 +130,6 @@ fn is_section(definition: &Value) -> bool {
 /// One row a key: its type, its range, its default or whether it must be given, its meaning.
 fn table<'a>(
     page: &mut String,
-    titles: &Titles,
     keys: impl Iterator<Item = (&'a String, &'a Value)>,
     schema: &Value,
 ) -> Result<()> {
@@ -181,7 +143,7 @@ fn table<'a>(
             None | Some(Value::Null) => String::new(),
             Some(default) => format!("`{default}`"),
         };
-        let (kind, range, meaning) = (kind(titles, property), range(property), text(property));
+        let (kind, range, meaning) = (kind(property), range(property), text(property));
         writeln!(
             page,
             "| `{key}` | {kind} | {range} | {default} | {meaning} |"
@@ -196,19 +158,11 @@ fn range(property: &Value) -> String {
     if range.is_empty() && property.get("items").is_some() {
         return self::range(&property["items"]);
     }
-    // Every integer that is no count of something may be zero.
-    if range == "at least 0"
-        && property["format"]
-            .as_str()
-            .is_some_and(|f| f.starts_with("uint"))
-    {
-        return String::new();
-    }
     range
 }
 
 /// The alternatives of an enumeration.
-fn choices(page: &mut String, titles: &Titles, schema: &Value) -> Result<()> {
+fn choices(page: &mut String, schema: &Value) -> Result<()> {
     let alternatives = ["oneOf", "anyOf"]
         .iter()
         .find_map(|key| schema[key].as_array());
@@ -224,7 +178,7 @@ fn choices(page: &mut String, titles: &Titles, schema: &Value) -> Result<()> {
         for (key, value) in properties(alternative) {
             writeln!(page, "- `{key}`: {}", text(alternative))?;
             if value.get("properties").is_some() {
-                table(page, titles, properties(value), value)?;
+                table(page, properties(value), value)?;
                 writeln!(page)?;
             }
         }
@@ -249,15 +203,14 @@ fn text(schema: &Value) -> String {
 }
 
 /// The type of a value in words.
-fn kind(titles: &Titles, schema: &Value) -> String {
-    if let Some(name) = schema["$ref"].as_str() {
-        let name = name.rsplit('/').next().unwrap_or(name);
-        let anchor = titles[name].to_lowercase().replace(' ', "-");
-        return format!("[{name}](#{anchor})");
+fn kind(schema: &Value) -> String {
+    if schema.get("$ref").is_some() {
+        let name = type_name(schema).unwrap_or_default();
+        return format!("[{name}](#{})", name.to_lowercase());
     }
     if let Some(all) = schema["anyOf"].as_array() {
         let not_null = all.iter().filter(|schema| schema["type"] != "null");
-        let kinds: Vec<String> = not_null.map(|schema| kind(titles, schema)).collect();
+        let kinds: Vec<String> = not_null.map(|schema| kind(schema)).collect();
         return kinds.join(" or ");
     }
     let mut names = match &schema["type"] {
@@ -272,7 +225,7 @@ fn kind(titles: &Titles, schema: &Value) -> String {
                 Some(count) => format!("{count} of "),
                 None => "list of ".to_owned(),
             };
-            many + &kind(titles, &schema["items"])
+            many + &kind(&schema["items"])
         }
         name => name.to_owned(),
     }

@@ -5,34 +5,28 @@ use schemars::{JsonSchema, schema_for};
 use serde::Serialize;
 use serde_json::Value;
 use std::fmt;
-use std::ops::{Bound, RangeBounds};
 
 /// A number outside the range of its key. The message names both and, if a factor of 1000 would correct the number, the
 /// probable one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{key} = {value}{}{}", with_space(.unit), self.violation())]
+#[error("{key} = {value}{unit} violates {}{}", self.rule(), self.hint())]
 pub struct OutOfRange {
     /// The path of the key, as in `loads[0].force`.
     pub key: String,
     /// The number.
     pub value: f64,
-    /// Its unit; empty if it has none.
-    pub unit: String,
-    /// The admissible numbers.
-    pub range: Range,
+    /// A blank and its unit; empty if it has none.
+    unit: String,
+    range: Range,
 }
 
-/// The admissible values of a number.
+/// The smallest and the largest admissible number; infinite without a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
-    /// The smallest one.
-    pub min: Bound<f64>,
-    /// The largest one.
-    pub max: Bound<f64>,
-}
+pub struct Range(f64, f64);
 
-/// Checks all numbers of a configuration against the ranges of its type; numbers must be finite.
-pub fn check<T: JsonSchema + Serialize>(config: &T) -> Result<(), OutOfRange> {
+/// Checks all numbers of a configuration against the ranges of the type `T`, which has the same keys; numbers must be
+/// finite.
+pub fn check<T: JsonSchema>(config: &impl Serialize) -> Result<(), OutOfRange> {
     let schema = schema_for!(T);
     let checker = Checker(schema.as_value());
     // A configuration that is no TOML, such as one with an integer above 2^63, was not read from a file.
@@ -42,8 +36,17 @@ pub fn check<T: JsonSchema + Serialize>(config: &T) -> Result<(), OutOfRange> {
 
 /// Checks a number whose range depends on other keys.
 pub fn within(key: &str, value: f64, [min, max]: [f64; 2], unit: &str) -> Result<(), OutOfRange> {
-    let [min, max] = [min, max].map(|bound| Bound::Included(without_rounding(bound)));
-    Range { min, max }.check(key, value, unit)
+    let range = Range(without_rounding(min), without_rounding(max));
+    if value.is_finite() && range.contains(value) {
+        return Ok(());
+    }
+    let gap = if unit.is_empty() { "" } else { " " };
+    Err(OutOfRange {
+        key: key.to_owned(),
+        value,
+        unit: format!("{gap}{unit}"),
+        range,
+    })
 }
 
 /// The unit that a description states in its first parentheses; empty if there is none.
@@ -102,11 +105,11 @@ impl Checker<'_> {
                     self.check(&schema["items"], item, &key, description)?;
                 }
             }
-            toml::Value::Integer(number) => {
-                Range::of_schema(schema).check(key, *number as f64, unit(description))?;
-            }
-            toml::Value::Float(number) => {
-                Range::of_schema(schema).check(key, *number, unit(description))?;
+            toml::Value::Integer(_) | toml::Value::Float(_) => {
+                let Range(min, max) = Range::of_schema(schema);
+                let number = value.as_integer().map(|number| number as f64);
+                let number = number.or(value.as_float()).unwrap_or(f64::NAN);
+                within(key, number, [min, max], unit(description))?;
             }
             _ => {}
         }
@@ -117,49 +120,15 @@ impl Checker<'_> {
 impl Range {
     /// The range that a schema states.
     pub fn of_schema(schema: &Value) -> Self {
-        let bound = |included: &str, excluded: &str| {
-            let [included, excluded] = [included, excluded].map(|name| schema[name].as_f64());
-            let excluded = excluded.map(Bound::Excluded);
-            excluded
-                .or(included.map(Bound::Included))
-                .unwrap_or(Bound::Unbounded)
-        };
-        Self {
-            min: bound("minimum", "exclusiveMinimum"),
-            max: bound("maximum", "exclusiveMaximum"),
-        }
+        let limit = |name: &str| schema[name].as_f64();
+        Self(
+            limit("minimum").unwrap_or(f64::NEG_INFINITY),
+            limit("maximum").unwrap_or(f64::INFINITY),
+        )
     }
 
-    fn check(self, key: &str, value: f64, unit: &str) -> Result<(), OutOfRange> {
-        if value.is_finite() && self.contains(value) {
-            return Ok(());
-        }
-        Err(OutOfRange {
-            key: key.to_owned(),
-            value,
-            unit: unit.to_owned(),
-            range: self,
-        })
-    }
-
-    /// Whether a number is admissible.
     fn contains(self, value: f64) -> bool {
-        (self.min, self.max).contains(&value)
-    }
-
-    /// The inequality of a key, as in `0 < kerf <= 2 mm`.
-    fn around(self, key: &str, unit: &str) -> String {
-        let min = match self.min {
-            Bound::Included(min) => format!("{min} <= "),
-            Bound::Excluded(min) => format!("{min} < "),
-            Bound::Unbounded => String::new(),
-        };
-        let max = match self.max {
-            Bound::Included(max) => format!(" <= {max}"),
-            Bound::Excluded(max) => format!(" < {max}"),
-            Bound::Unbounded => String::new(),
-        };
-        format!("{min}{key}{max}{}", with_space(unit))
+        (self.0..=self.1).contains(&value)
     }
 }
 
@@ -167,43 +136,32 @@ impl fmt::Display for Range {
     /// In words, as in `0.02 to 10`; empty without limits.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let short = |x: f64| {
-            if x != 0.0 && !(1e-3..1e5).contains(&x.abs()) {
-                format!("{x:e}")
-            } else {
+            if x == 0.0 || (1e-3..1e5).contains(&x.abs()) {
                 x.to_string()
+            } else {
+                format!("{x:e}")
             }
         };
-        match (self.min, self.max) {
-            (Bound::Included(min), Bound::Included(max)) => {
-                write!(f, "{} to {}", short(min), short(max))
-            }
-            (Bound::Excluded(min), Bound::Included(max)) => {
-                write!(f, "above {} to {}", short(min), short(max))
-            }
-            (Bound::Included(min), Bound::Excluded(max)) => {
-                write!(f, "{} to below {}", short(min), short(max))
-            }
-            (Bound::Excluded(min), Bound::Excluded(max)) => {
-                write!(f, "above {}, below {}", short(min), short(max))
-            }
-            (Bound::Included(min), Bound::Unbounded) => write!(f, "at least {}", short(min)),
-            (Bound::Excluded(min), Bound::Unbounded) => write!(f, "above {}", short(min)),
-            (Bound::Unbounded, Bound::Included(max)) => write!(f, "at most {}", short(max)),
-            (Bound::Unbounded, Bound::Excluded(max)) => write!(f, "below {}", short(max)),
-            (Bound::Unbounded, Bound::Unbounded) => Ok(()),
+        match (self.0.is_finite(), self.1.is_finite()) {
+            (true, true) => write!(f, "{} to {}", short(self.0), short(self.1)),
+            (true, false) => write!(f, "at least {}", short(self.0)),
+            (false, true) => write!(f, "at most {}", short(self.1)),
+            (false, false) => Ok(()),
         }
     }
 }
 
 impl OutOfRange {
-    fn violation(&self) -> String {
+    fn rule(&self) -> String {
         let Self {
-            key, unit, range, ..
+            key, range, unit, ..
         } = self;
-        if range.contains(self.value) {
-            return " is not a finite number".to_owned();
+        match (range.0.is_finite(), range.1.is_finite()) {
+            (true, true) => format!("{} <= {key} <= {}{unit}", range.0, range.1),
+            (true, false) => format!("{key} >= {}{unit}", range.0),
+            (false, true) => format!("{key} <= {}{unit}", range.1),
+            (false, false) => format!("{key} is finite"),
         }
-        format!(" violates {}{}", range.around(key, unit), self.hint())
     }
 
     fn hint(&self) -> String {
@@ -211,16 +169,8 @@ impl OutOfRange {
         let meant = slips.into_iter().find(|meant| self.range.contains(*meant));
         let meant = meant.filter(|_| !self.unit.is_empty());
         meant.map_or(String::new(), |meant| {
-            format!("; did you mean {meant} {}?", self.unit)
+            format!("; did you mean {meant}{}?", self.unit)
         })
-    }
-}
-
-fn with_space(unit: &str) -> String {
-    if unit.is_empty() {
-        String::new()
-    } else {
-        format!(" {unit}")
     }
 }
 
@@ -257,7 +207,7 @@ mod tests {
         None,
         Circle {
             /// The radius (mm); see (17).
-            #[schemars(extend("exclusiveMinimum" = 0))]
+            #[schemars(range(min = 0.1))]
             radius: f64,
         },
     }
@@ -270,7 +220,7 @@ mod tests {
             shape: Shape::None,
         };
         change(&mut sheet);
-        check(&sheet).err().map(|error| error.to_string())
+        check::<Sheet>(&sheet).err().map(|error| error.to_string())
     }
 
     #[test]
@@ -287,11 +237,11 @@ mod tests {
         );
         assert_eq!(
             message(|sheet| sheet.loads[0].force[1] = f64::NAN).unwrap(),
-            "loads[0].force = NaN N is not a finite number"
+            "loads[0].force = NaN N violates loads[0].force is finite"
         );
         assert_eq!(
             message(|sheet| sheet.shape = Shape::Circle { radius: 0.0 }).unwrap(),
-            "shape.circle.radius = 0 mm violates 0 < shape.circle.radius mm"
+            "shape.circle.radius = 0 mm violates shape.circle.radius >= 0.1 mm"
         );
         let error = within("width", 5e3, [0.0, 10.0], "mm").unwrap_err();
         assert!(error.to_string().ends_with("did you mean 5 mm?"), "{error}");

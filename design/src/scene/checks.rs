@@ -15,7 +15,7 @@ use support::key_limits::{self, within};
 
 /// Checks everything that needs no other file.
 pub(super) fn config(scene: &SceneConfig) -> Result<(), InvalidScene> {
-    key_limits::check(scene)?;
+    key_limits::check::<SceneConfig>(scene)?;
     title(scene)?;
     sheet(scene)?;
     ligament(scene)?;
