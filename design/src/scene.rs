@@ -10,6 +10,7 @@ mod checks;
 mod cutting;
 pub mod design_run;
 mod hinge_model;
+mod invalid_hinge;
 mod invalid_scene;
 mod keys;
 mod loaded_hinge;
@@ -33,6 +34,7 @@ pub use cutting::CuttingConfig;
 pub use hinge_model::{
     CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
 };
+pub use invalid_hinge::{InvalidHinge, WeightsMismatch};
 pub use invalid_scene::InvalidScene;
 pub use keys::{OptimiserConfig, SceneConfig};
 pub use loaded_hinge::LoadedHinge;

@@ -1,6 +1,6 @@
 //! The hinge law as written in a scene.
 
-use crate::hinge_law::Contact;
+use crate::hinge_law::{Contact, InvalidContact};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -54,9 +54,9 @@ pub struct ContactConfig {
 }
 
 impl ContactConfig {
-    pub(super) fn contact(self) -> Result<Contact, String> {
+    pub(super) fn contact(self) -> Result<Contact, InvalidContact> {
         let [phi_min, phi_cut] = [self.phi_min_deg, self.phi_cut_deg].map(f64::to_radians);
-        Contact::new(self.stiffness, phi_min, phi_cut).map_err(|error| error.to_string())
+        Contact::new(self.stiffness, phi_min, phi_cut)
     }
 }
 

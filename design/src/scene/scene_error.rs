@@ -3,6 +3,7 @@
 use crate::equilibrium::solver::EquilibriumError;
 use crate::objective::design_problem::DesignError;
 use crate::objective::target::TargetError;
+use crate::scene::invalid_hinge::InvalidHinge;
 use crate::scene::invalid_scene::InvalidScene;
 use hinge::MaterialError;
 use std::path::PathBuf;
@@ -22,8 +23,8 @@ pub enum SceneError {
     Material(#[from] MaterialError),
     #[error("{path}: {source}", path = .path.display())]
     Value { path: PathBuf, source: InvalidScene },
-    #[error("{path}: {reason}", path = .path.display())]
-    Hinge { path: PathBuf, reason: String },
+    #[error("{path}: {source}", path = .path.display())]
+    Hinge { path: PathBuf, source: InvalidHinge },
     #[error("{path}: {source}", path = .path.display())]
     Target { path: PathBuf, source: TargetError },
     #[error(transparent)]
