@@ -94,7 +94,11 @@ fn slips_of_units_and_signs_are_named() {
             "loads[0].force",
         ),
         ("radius = 2268.0", "radius = 2.268", "did you mean 14250"),
-        ("radius = 2268.0", "radius = -2268.0", "0 < circle.radius"),
+        (
+            "radius = 2268.0",
+            "radius = -2268.0",
+            "target.circle.radius = -2268 mm",
+        ),
         (
             "learning_rate = 0.05",
             "learning_rate = 0.0",

@@ -74,7 +74,11 @@ fn file(page: &mut String, described: &mut Described, title: &str, schema: &Valu
         } else {
             ""
         };
-        writeln!(page, "\n### {section}{need}\n\n{}", text(property))?;
+        writeln!(page, "\n### {section}{need}\n")?;
+        let meaning = text(property);
+        if !text(&types[name]).starts_with(meaning.trim_end_matches('.')) {
+            writeln!(page, "{meaning}")?;
+        }
         if let Some(earlier) = described.get(name) {
             writeln!(page, "The keys are those of {earlier}.")?;
             continue;

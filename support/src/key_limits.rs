@@ -36,7 +36,7 @@ pub fn check<T: JsonSchema>(config: &impl Serialize) -> Result<(), OutOfRange> {
 
 /// Checks a number whose range depends on other keys.
 pub fn within(key: &str, value: f64, [min, max]: [f64; 2], unit: &str) -> Result<(), OutOfRange> {
-    let range = Range(without_rounding(min), without_rounding(max));
+    let range = Range(min, max);
     if value.is_finite() && range.contains(value) {
         return Ok(());
     }
@@ -59,7 +59,7 @@ pub fn unit(description: &str) -> &str {
     if is_unit { unit } else { "" }
 }
 
-/// The factors of units.
+/// The factors of the units of keys.
 const UNITS: [&str; 12] = [
     "mm", "mm^2", "N", "N/mm", "mm/rad", "MPa", "deg", "rad", "s", "kg/m^3", "1/mm", "h",
 ];
@@ -153,13 +153,12 @@ impl fmt::Display for Range {
 
 impl OutOfRange {
     fn rule(&self) -> String {
-        let Self {
-            key, range, unit, ..
-        } = self;
-        match (range.0.is_finite(), range.1.is_finite()) {
-            (true, true) => format!("{} <= {key} <= {}{unit}", range.0, range.1),
-            (true, false) => format!("{key} >= {}{unit}", range.0),
-            (false, true) => format!("{key} <= {}{unit}", range.1),
+        let Self { key, unit, .. } = self;
+        let [min, max] = [self.range.0, self.range.1].map(without_rounding);
+        match (min.is_finite(), max.is_finite()) {
+            (true, true) => format!("{min} <= {key} <= {max}{unit}"),
+            (true, false) => format!("{key} >= {min}{unit}"),
+            (false, true) => format!("{key} <= {max}{unit}"),
             (false, false) => format!("{key} is finite"),
         }
     }
