@@ -214,7 +214,7 @@ fn kind(schema: &Value) -> String {
     }
     if let Some(all) = schema["anyOf"].as_array() {
         let not_null = all.iter().filter(|schema| schema["type"] != "null");
-        let kinds: Vec<String> = not_null.map(|schema| kind(schema)).collect();
+        let kinds: Vec<String> = not_null.map(kind).collect();
         return kinds.join(" or ");
     }
     let mut names = match &schema["type"] {

@@ -51,7 +51,7 @@ impl Scene {
     pub fn new(config: SceneConfig, path: &Path) -> Result<Self, SceneError> {
         let refuse = |source| SceneError::Value {
             path: path.to_owned(),
-            source,
+            source: Box::new(source),
         };
         checks::config(&config).map_err(refuse)?;
         let material_path = beside(path, &config.material);

@@ -68,7 +68,7 @@ impl LoadedHinge {
     ) -> Result<Self, SceneError> {
         let refuse = |source| SceneError::Hinge {
             path: path.to_owned(),
-            source,
+            source: Box::new(source),
         };
         let missing = |section| refuse(InvalidHinge::NoSection(section));
         let networks = |section| networks(config, section, measured, path);
@@ -147,7 +147,7 @@ fn networks(
         let file = beside(path, &weights);
         if !file.is_file() {
             let path = path.to_owned();
-            let source = InvalidHinge::NoWeights { section, file };
+            let source = Box::new(InvalidHinge::NoWeights { section, file });
             return Err(SceneError::Hinge { path, source });
         }
         network(config, measured, path, &file)
@@ -167,7 +167,7 @@ pub(super) fn network(
     fitted(config, measured, surrogate).map_err(|source| {
         let file = weights.to_owned();
         let path = path.to_owned();
-        let source = InvalidHinge::OtherHinges { file, source };
+        let source = Box::new(InvalidHinge::OtherHinges { file, source });
         SceneError::Hinge { path, source }
     })
 }

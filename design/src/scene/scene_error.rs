@@ -22,9 +22,15 @@ pub enum SceneError {
     #[error(transparent)]
     Material(#[from] MaterialError),
     #[error("{path}: {source}", path = .path.display())]
-    Value { path: PathBuf, source: InvalidScene },
+    Value {
+        path: PathBuf,
+        source: Box<InvalidScene>,
+    },
     #[error("{path}: {source}", path = .path.display())]
-    Hinge { path: PathBuf, source: InvalidHinge },
+    Hinge {
+        path: PathBuf,
+        source: Box<InvalidHinge>,
+    },
     #[error("{path}: {source}", path = .path.display())]
     Target { path: PathBuf, source: TargetError },
     #[error(transparent)]
