@@ -157,7 +157,7 @@ impl OutOfRange {
         let [min, max] = [self.range.0, self.range.1].map(without_rounding);
         match (min.is_finite(), max.is_finite()) {
             (true, true) => format!("{min} <= {key} <= {max}{unit}"),
-            (true, false) => format!("{key} >= {min}{unit}"),
+            (true, false) => format!("{min} <= {key}{unit}"),
             (false, true) => format!("{key} <= {max}{unit}"),
             (false, false) => format!("{key} is finite"),
         }
@@ -240,7 +240,7 @@ mod tests {
         );
         assert_eq!(
             message(|sheet| sheet.shape = Shape::Circle { radius: 0.0 }).unwrap(),
-            "shape.circle.radius = 0 mm violates shape.circle.radius >= 0.1 mm"
+            "shape.circle.radius = 0 mm violates 0.1 <= shape.circle.radius mm"
         );
         let error = within("width", 5e3, [0.0, 10.0], "mm").unwrap_err();
         assert!(error.to_string().ends_with("did you mean 5 mm?"), "{error}");
