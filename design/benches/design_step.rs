@@ -11,8 +11,10 @@ use design::equilibrium::supports::{Dof, Load, Support};
 use design::geometry::chamfer::{Chamfer, Precision};
 use design::hinge_law::{DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
 use design::objective::design_problem::{DesignProblem, Mechanics, Model};
-use design::objective::loss::{Objective, OutlinePoints};
-use design::objective::path_functionals::PerFunctional;
+use design::objective::loss::Objective;
+use design::objective::shape::{OutlinePoints, Shape};
+use design::objective::term::Weighted;
+use design::objective::terms::{Compression, Damage, Shear};
 use design::pattern::cut_pattern::Outline;
 use design::pattern::design_vector::{DesignVector, WidthChart};
 use design::pattern::grid::Grid;
@@ -74,6 +76,7 @@ fn problem(
         let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 500.0).sin_cos();
         [pitch * grid.m as f64 * cos, pitch * grid.n as f64 * sin]
     });
+    let scale = law.damage_scale(DamageMeasure::Mean);
     let problem = DesignProblem {
         grid,
         outline,
@@ -96,29 +99,22 @@ fn problem(
             solver: EquilibriumSolver::new(grid, &supports, &[load], STEPS, settings).unwrap(),
         })),
         objective: Objective {
-            target: target.collect(),
-            chamfer: Chamfer {
-                coverage_weight: 0.5,
-                smoothing: 0.0,
-                precision: Precision::Samples,
+            shape: Shape {
+                target: target.collect(),
+                chamfer: Chamfer {
+                    coverage_weight: 0.5,
+                    smoothing: 0.0,
+                    precision: Precision::Samples,
+                },
+                outline: OutlinePoints::Free,
+                centred: true,
             },
-            outline: OutlinePoints::Free,
-            centred: true,
-            panel_shape: 0.0,
-            least_distance: 0.0,
-            min_panel_width: 0.0,
-            domain: None,
-            weights: PerFunctional {
-                damage: 1.0,
-                compression: 0.1,
-                shear: 0.1,
-            },
-            damage_measure: DamageMeasure::Mean,
-            temperatures: PerFunctional {
-                damage: 0.1,
-                compression: 0.02,
-                shear: 0.02,
-            },
+            functionals: vec![
+                Weighted::new(1.0, Damage::new(DamageMeasure::Mean, scale.unwrap_or(1.0))),
+                Weighted::new(0.1, Compression { temperature: 0.02 }),
+                Weighted::new(0.1, Shear { temperature: 0.02 }),
+            ],
+            penalties: Vec::new(),
         },
     };
     // Perturbs the symmetric pattern, whose hinges are all equal.

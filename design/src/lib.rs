@@ -59,7 +59,7 @@
 //!         contact: None,
 //!         solver,
 //!     })),
-//!     objective: Objective::of_shape(circle.collect()),
+//!     objective: Objective::from_shape(Shape::new(circle.collect())),
 //! };
 //!
 //! // Deploy the uniform sheet; its loss and the gradient.
@@ -98,6 +98,7 @@ pub use objective::design_problem::{
     Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Model,
 };
 pub use objective::loss::Objective;
+pub use objective::shape::Shape;
 pub use optimise::outer_loop::{Ended, SearchState, optimise};
 pub use optimise::search::SearchMethod;
 pub use pattern::cut_pattern::Outline;

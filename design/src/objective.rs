@@ -1,11 +1,13 @@
 //! The design objective and its gradient through the equilibria; equations (16) to (20).
 
+mod balance;
+mod design_gradient;
 pub mod design_problem;
-pub mod domain_penalty;
+pub mod hinge_measures;
 pub mod loss;
 pub mod outline_error;
-pub mod panel_shape;
-pub mod panel_width;
-pub mod path_functionals;
 pub mod scores;
+pub mod shape;
 pub mod target;
+pub mod term;
+pub mod terms;

@@ -1,7 +1,7 @@
 //! The scene: all input of a design run, read from one TOML file.
 //!
 //! A scene selects the hinge model, and only that model is loaded: `hinge = "linear"` reads no
-//! weights. Paths are relative to the scene file. The admissible values are checked in `checks.rs`.
+//! weights. Paths are relative to the scene file. The admissible values stand with their keys.
 
 mod actuation;
 mod boundary_values;
@@ -10,6 +10,8 @@ mod checks;
 mod cutting;
 pub mod design_run;
 mod hinge_model;
+mod invalid_hinge;
+mod invalid_scene;
 mod keys;
 mod loaded_hinge;
 pub mod placement;
@@ -21,6 +23,7 @@ mod scene_error;
 mod sheet_config;
 mod weights_files;
 
+pub use crate::objective::terms::ObjectiveConfig;
 pub use actuation::{
     DriveConfig, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SheetEdge, SupportConfig,
     SupportKind,
@@ -31,7 +34,9 @@ pub use cutting::CuttingConfig;
 pub use hinge_model::{
     CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
 };
-pub use keys::{ObjectiveConfig, OptimiserConfig, SceneConfig};
+pub use invalid_hinge::{InvalidHinge, WeightsMismatch};
+pub use invalid_scene::InvalidScene;
+pub use keys::{OptimiserConfig, SceneConfig};
 pub use loaded_hinge::LoadedHinge;
 pub use ratios::{Ratios, rounded};
 pub use scene_error::SceneError;

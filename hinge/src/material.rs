@@ -4,6 +4,7 @@ use crate::tensile::{TensileError, read_tensile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
+use support::key_limits;
 use support::toml_file::{self, ConfigError};
 
 /// A uniform sheet: thickness, isotropic elasticity, tabulated J2 hardening, fracture strain.
@@ -32,15 +33,20 @@ pub struct SheetMaterial {
 struct MaterialFile {
     /// Name of the material; it is stored in databases and weights.
     name: String,
-    /// Thickness of the sheet (mm), 0.02 to 10.
+    /// Thickness of the sheet (mm).
+    #[schemars(range(min = 0.02, max = 10.0))]
     thickness: f64,
-    /// Young's modulus (MPa), 10 to 500 000: tungsten has 411 000.
+    /// Young's modulus (MPa): tungsten has 411 000.
+    #[schemars(range(min = 10.0, max = 5e5))]
     young: f64,
-    /// Poisson's ratio, 0 to 0.499.
+    /// Poisson's ratio.
+    #[schemars(range(min = 0.0, max = 0.499))]
     poisson: f64,
-    /// Density (kg/m^3), 50 to 25 000; used only in (21)-(22).
+    /// Density (kg/m^3); used only in (21)-(22).
+    #[schemars(range(min = 50.0, max = 25e3))]
     density_kg_m3: f64,
-    /// Equivalent plastic strain at fracture, eps_f of (12), 0.001 to 10.
+    /// Equivalent plastic strain at fracture, eps_f of (12).
+    #[schemars(range(min = 1e-3, max = 10.0))]
     fracture_strain: f64,
     /// Rows [true stress (MPa), true plastic strain]; the stress is above 0 and below `young`, the strain starts at
     /// zero and increases.
@@ -138,38 +144,8 @@ impl SheetMaterial {
                 reason,
             })
         };
-        let limits = [
-            ("thickness", self.thickness, 0.02, 10.0, "mm", 1e3),
-            ("young", self.young, 10.0, 5e5, "MPa", 1e3),
-            ("poisson", self.poisson, 0.0, 0.499, "", f64::NAN),
-            (
-                "density_kg_m3",
-                self.density_kg_m3,
-                50.0,
-                25e3,
-                "kg/m^3",
-                1e3,
-            ),
-            (
-                "fracture_strain",
-                self.fracture_strain,
-                1e-3,
-                10.0,
-                "",
-                f64::NAN,
-            ),
-        ];
-        for (name, value, minimum, maximum, unit, slip) in limits {
-            if !(minimum..=maximum).contains(&value) {
-                let hint = if (minimum..=maximum).contains(&(slip * value)) {
-                    format!("; did you mean {} {unit}?", slip * value)
-                } else {
-                    String::new()
-                };
-                return refuse(format!(
-                    "{name} = {value} violates {minimum} <= {name} <= {maximum} {unit}{hint}"
-                ));
-            }
+        if let Err(error) = key_limits::check::<MaterialFile>(self) {
+            return refuse(error.to_string());
         }
         match self.plastic.first() {
             None => return refuse("the table `plastic` is empty".into()),
@@ -249,7 +225,7 @@ mod tests {
                     young: 660e3,
                     ..film()
                 },
-                "young = 660000 violates 10 <= young <= 500000 MPa",
+                "young = 660000 MPa violates 10 <= young <= 500000 MPa",
             ),
             (
                 SheetMaterial {

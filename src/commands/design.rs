@@ -9,6 +9,7 @@ use crate::ui::{animation, interrupt, picture, run_folder};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use design::objective::scores::shown;
+use design::objective::term::in_words;
 use design::optimise::outer_loop::{Ended, StepRecord};
 use design::output::drawing::deployment_frames;
 use design::output::report::{Report, Warning};
@@ -244,9 +245,9 @@ fn judge(scene: &Scene, report: &Report, ended: &Ended) -> Result<()> {
 /// domain.
 fn progress_line(step: &StepRecord, learned: bool) -> String {
     let scores = &step.scores;
-    let terms: Vec<String> = (scores.terms().iter())
-        .filter(|(_, value)| *value != 0.0)
-        .map(|(name, value)| format!("{name} {}", shown(*value)))
+    let terms: Vec<String> = (scores.terms.iter())
+        .filter(|(_, value)| **value != 0.0)
+        .map(|(name, value)| format!("{} {}", in_words(name), shown(*value)))
         .collect();
     let inside = match learned {
         true => format!(", {:.0} % inside the domain", 100.0 * scores.share_inside),

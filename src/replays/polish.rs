@@ -83,7 +83,7 @@ pub fn polish(
     let found = search.best.clone();
     let (after, problem) = balanced(scene, &found, windows, rounds)?;
     let best = problem.evaluate(&found)?;
-    let scores = |evaluation: &Evaluation| Scores::of(&law.objective, evaluation);
+    let scores = |evaluation: &Evaluation| Scores::new(&law.objective, evaluation);
     let gain = PolishGain {
         given: name.to_owned(),
         by_law: [
@@ -147,7 +147,7 @@ impl fmt::Display for PolishGain {
             };
             row("outline error (mm)", |scores| scores.outline_error)?;
             row("loss", |scores| scores.loss)?;
-            row("damage functional", |scores| scores.damage)?;
+            row("damage functional", |scores| scores.terms["damage"])?;
             row("fraction inside the domain", |scores| scores.share_inside)?;
         }
         if let Ended::Stuck { reason } = &self.ended {

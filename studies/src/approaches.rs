@@ -146,11 +146,15 @@ impl ApproachStudy {
             rate,
             steps: self.steps,
             loss: found.losses.iter().copied().fold(f64::INFINITY, f64::min),
-            fit: OutlineMatch::of(&sheet, &tessellation.deployed, &problem.objective.target),
+            fit: OutlineMatch::of(
+                &sheet,
+                &tessellation.deployed,
+                &problem.objective.shape.target,
+            ),
             defects: tessellation.defects_in(states),
             opening_deg: found.opening.to_degrees(),
             tessellation,
-            target: problem.objective.target.clone(),
+            target: problem.objective.shape.target.clone(),
             seconds: began.elapsed().as_secs_f64(),
         })
     }

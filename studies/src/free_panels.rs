@@ -75,7 +75,7 @@ impl<'a> FreePanels<'a> {
         enforcement: Enforcement,
     ) -> Result<Self, DesignError> {
         let (_, sheet) = problem.cut(start)?;
-        if problem.objective.target.is_empty() {
+        if problem.objective.shape.target.is_empty() {
             return Err(DesignError::EmptyTarget);
         }
         let side = sheet.outline.area().sqrt();
@@ -92,7 +92,7 @@ impl<'a> FreePanels<'a> {
             enforcement,
             side,
             objective: &problem.objective,
-            outline_points: problem.objective.outline.of(&sheet),
+            outline_points: problem.objective.shape.outline.corners(&sheet),
             laplacian: laplacian(&sheet),
             samples: samples(&sheet.outline, sheet.panels.len(), side),
             start,
@@ -174,7 +174,7 @@ impl<'a> FreePanels<'a> {
         let outline: Vec<_> = (self.outline_points.iter())
             .map(|&(k, corner)| point(scale * deployed[k][corner]))
             .collect();
-        let (chamfer, by_outline) = self.objective.shape(&outline);
+        let (chamfer, by_outline) = self.objective.shape.distance(&outline);
         let mut loss = chamfer / self.side.powi(2);
         for (&(k, corner), &gradient) in std::iter::zip(&self.outline_points, &by_outline) {
             by_deployed[k][corner] += complex(gradient) / self.side;

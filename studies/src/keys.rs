@@ -6,9 +6,11 @@ use design::scene::SceneConfig;
 use fe_driver::Campaign;
 use hinge::SheetMaterial;
 use schemars::{Schema, schema_for};
-use serde_json::{Map, Value};
+use serde_json::Value;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
+use support::key_limits::Range;
 use train::TrainingConfig;
 
 /// Write the reference of all keys of scenes, campaigns, materials and trainings
@@ -43,54 +45,128 @@ fn page() -> Result<String> {
         ),
         ("Training", "configs/training", schema_for!(TrainingConfig)),
     ];
-    let mut page = HEADING.to_owned();
+    let (mut page, mut described) = (HEADING.to_owned(), Described::new());
     for (title, folder, schema) in files {
         writeln!(page, "\n## {title} ({folder})")?;
-        let schema = schema.as_value();
-        let none = Map::new();
-        let definitions = schema["$defs"].as_object().unwrap_or(&none);
-        table(&mut page, title, schema)?;
-        for (name, definition) in definitions {
-            writeln!(page, "\n### {title}: {name}\n\n{}", text(definition))?;
-            match definition.get("properties") {
-                Some(_) => table(&mut page, title, definition)?,
-                None => choices(&mut page, title, definition)?,
-            }
-        }
+        file(&mut page, &mut described, title, schema.as_value())?;
     }
     Ok(page)
 }
 
-/// One row a key: whether it must be given, its type, its meaning.
-fn table(page: &mut String, title: &str, schema: &Value) -> Result<()> {
-    let none = Map::new();
-    let properties = schema["properties"].as_object().unwrap_or(&none);
-    let required = schema["required"].as_array().cloned().unwrap_or_default();
+/// The titles under which the page describes types so far.
+type Described = BTreeMap<String, String>;
+
+/// The keys of a file, its sections, and the values of its enumerations.
+fn file(page: &mut String, described: &mut Described, title: &str, schema: &Value) -> Result<()> {
+    let types = &schema["$defs"];
+    let (sections, keys): (Vec<_>, Vec<_>) = properties(schema)
+        .partition(|(_, property)| type_name(property).is_some_and(|name| has_keys(&types[name])));
+    table(page, keys.into_iter(), schema)?;
+    for (key, property) in sections {
+        let name = type_name(property).unwrap_or_default();
+        let section = match property["type"].as_str() {
+            Some("array") => format!("`[[{key}]]` of a {title}"),
+            _ => format!("`[{key}]` of a {title}"),
+        }
+        .to_lowercase();
+        let need = if required(schema, key) {
+            ", required"
+        } else {
+            ""
+        };
+        writeln!(page, "\n### {section}{need}\n")?;
+        let meaning = text(property);
+        if !text(&types[name]).starts_with(meaning.trim_end_matches('.')) {
+            writeln!(page, "{meaning}")?;
+        }
+        if let Some(earlier) = described.get(name) {
+            writeln!(page, "The keys are those of {earlier}.")?;
+            continue;
+        }
+        describe(page, &types[name])?;
+        described.insert(name.to_owned(), section);
+    }
+    for (name, definition) in types.as_object().into_iter().flatten() {
+        if !described.contains_key(name) {
+            writeln!(page, "\n### {name}\n")?;
+            describe(page, definition)?;
+            described.insert(name.clone(), name.clone());
+        }
+    }
+    Ok(())
+}
+
+/// What a type is, with its keys or values.
+fn describe(page: &mut String, definition: &Value) -> Result<()> {
+    writeln!(page, "{}", text(definition))?;
+    match definition.get("properties") {
+        Some(_) => table(page, properties(definition), definition),
+        None => choices(page, definition),
+    }
+}
+
+fn properties(schema: &Value) -> impl Iterator<Item = (&String, &Value)> {
+    schema["properties"].as_object().into_iter().flatten()
+}
+
+fn required(schema: &Value, key: &str) -> bool {
+    let required = schema["required"].as_array().into_iter().flatten();
+    required.into_iter().any(|name| name == key)
+}
+
+/// The name of the type of a key, or of the items of its list, if that is not a number or text.
+fn type_name(property: &Value) -> Option<&str> {
+    let alternatives = property["anyOf"].as_array().into_iter().flatten();
+    let mut places = [property, &property["items"]]
+        .into_iter()
+        .chain(alternatives);
+    let name = places.find_map(|place| place["$ref"].as_str())?;
+    name.rsplit('/').next()
+}
+
+/// Whether a type has keys of its own.
+fn has_keys(definition: &Value) -> bool {
+    let alternatives = definition["oneOf"].as_array().into_iter().flatten();
+    let mut all = std::iter::once(definition).chain(alternatives);
+    all.any(|schema| schema.get("properties").is_some())
+}
+
+/// One row a key: its type, its range, its default or whether it must be given, its meaning.
+fn table<'a>(
+    page: &mut String,
+    keys: impl Iterator<Item = (&'a String, &'a Value)>,
+    schema: &Value,
+) -> Result<()> {
     writeln!(
         page,
-        "\n| key | type | default | meaning |\n|---|---|---|---|"
+        "\n| key | type | range | default | meaning |\n|---|---|---|---|---|"
     )?;
-    for (key, property) in properties {
-        let default = match (
-            required.contains(&key.as_str().into()),
-            property.get("default"),
-        ) {
-            (true, _) => "required".to_owned(),
-            (false, None | Some(Value::Null)) => String::new(),
-            (false, Some(default)) => format!("`{default}`"),
+    for (key, property) in keys {
+        let default = match property.get("default") {
+            _ if required(schema, key) => "required".to_owned(),
+            None | Some(Value::Null) => String::new(),
+            Some(default) => format!("`{default}`"),
         };
-        let meaning = text(property);
+        let (kind, range, meaning) = (kind(property), range(property), text(property));
         writeln!(
             page,
-            "| `{key}` | {} | {default} | {meaning} |",
-            kind(title, property)
+            "| `{key}` | {kind} | {range} | {default} | {meaning} |"
         )?;
     }
     Ok(())
 }
 
+/// The range of a number, or of the numbers of a list.
+fn range(property: &Value) -> String {
+    let range = Range::of_schema(property).to_string();
+    if range.is_empty() && property.get("items").is_some() {
+        return self::range(&property["items"]);
+    }
+    range
+}
+
 /// The alternatives of an enumeration.
-fn choices(page: &mut String, title: &str, schema: &Value) -> Result<()> {
+fn choices(page: &mut String, schema: &Value) -> Result<()> {
     let alternatives = ["oneOf", "anyOf"]
         .iter()
         .find_map(|key| schema[key].as_array());
@@ -103,10 +179,10 @@ fn choices(page: &mut String, title: &str, schema: &Value) -> Result<()> {
         } else if let Some(names) = alternative["enum"].as_array() {
             writeln!(page, "- one of {}", quoted(names))?;
         }
-        for (key, value) in alternative["properties"].as_object().into_iter().flatten() {
+        for (key, value) in properties(alternative) {
             writeln!(page, "- `{key}`: {}", text(alternative))?;
             if value.get("properties").is_some() {
-                table(page, title, value)?;
+                table(page, properties(value), value)?;
                 writeln!(page)?;
             }
         }
@@ -131,35 +207,29 @@ fn text(schema: &Value) -> String {
 }
 
 /// The type of a value in words.
-fn kind(title: &str, schema: &Value) -> String {
-    if let Some(name) = schema["$ref"].as_str() {
-        let name = name.rsplit('/').next().unwrap_or(name);
-        let anchor = format!("{title}-{name}").to_lowercase();
-        return format!("[{name}](#{anchor})");
+fn kind(schema: &Value) -> String {
+    if schema.get("$ref").is_some() {
+        let name = type_name(schema).unwrap_or_default();
+        return format!("[{name}](#{})", name.to_lowercase());
     }
     if let Some(all) = schema["anyOf"].as_array() {
-        let not_null = all.iter().filter(|it| it["type"] != "null");
-        return not_null
-            .map(|it| kind(title, it))
-            .collect::<Vec<_>>()
-            .join(" or ");
+        let not_null = all.iter().filter(|schema| schema["type"] != "null");
+        let kinds: Vec<String> = not_null.map(kind).collect();
+        return kinds.join(" or ");
     }
     let mut names = match &schema["type"] {
         Value::Array(names) => names.clone(),
         name => vec![name.clone()],
     };
     names.retain(|name| name != "null");
-    let name = names.first().and_then(Value::as_str).unwrap_or("any");
-    match name {
+    match names.first().and_then(Value::as_str).unwrap_or("any") {
         "array" => {
-            let many = match schema
-                .get("minItems")
-                .filter(|n| schema.get("maxItems") == Some(n))
-            {
+            let count = schema.get("minItems");
+            let many = match count.filter(|n| schema.get("maxItems") == Some(n)) {
                 Some(count) => format!("{count} of "),
                 None => "list of ".to_owned(),
             };
-            many + &kind(title, &schema["items"])
+            many + &kind(&schema["items"])
         }
         name => name.to_owned(),
     }

@@ -3,7 +3,7 @@
 
 use design::geometry::intersection_over_union::intersection_over_union;
 use design::geometry::polygon::nearest_on_outline;
-use design::objective::loss::OutlinePoints;
+use design::objective::shape::OutlinePoints;
 use design::sheet::cut_sheet::Sheet;
 
 /// The match of one outline, first through its free corners, then through all.
@@ -30,7 +30,7 @@ impl OutlineMatch {
     /// For the deployed corners of the panels of a sheet, in the position of the target.
     pub fn of(sheet: &Sheet, deployed: &[[[f64; 2]; 4]], target: &[[f64; 2]]) -> Self {
         let [free, all] = [OutlinePoints::Free, OutlinePoints::All].map(|points| {
-            let corners = points.of(sheet).into_iter();
+            let corners = points.corners(sheet).into_iter();
             let outline: Vec<_> = corners.map(|(k, corner)| deployed[k][corner]).collect();
             Match::of(&outline, target)
         });

@@ -6,7 +6,7 @@ use crate::outline_match::{Match, OutlineMatch};
 use crate::tessellation::{Tessellation, WorstPanels};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
-use design::objective::loss::OutlinePoints;
+use design::objective::shape::OutlinePoints;
 use design::objective::target::TargetShape;
 use design::scene::{Scene, SceneConfig};
 use kirigami::ui::progress::Progress;

@@ -10,7 +10,7 @@ use anyhow::{Context, Result, ensure};
 use clap::Args;
 use design::analysis::solution_set::{PrincipalPlane, curvatures, outline_rank};
 use design::objective::design_problem::Evaluation;
-use design::objective::loss::OutlinePoints;
+use design::objective::shape::OutlinePoints;
 use design::optimise::outer_loop::Ended;
 use design::scene::design_run::{Designed, inverse_design};
 use design::scene::{Scene, SceneConfig};

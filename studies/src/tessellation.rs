@@ -7,7 +7,7 @@ use design::geometry::intersection_over_union::{LINES, crossings, length};
 use design::geometry::plane::{complex, cross, dot};
 use design::geometry::polygon::area;
 use design::objective::design_problem::Deployment;
-use design::objective::panel_width::thinnest_panel;
+use design::objective::terms::panel_width::thinnest_panel;
 use design::pattern::cut_pattern::Outline;
 use design::pattern::grid::Grid;
 use design::scene::Scene;

@@ -1,6 +1,6 @@
-//! Domain-independent utilities: configuration files, misspelt names, input files, CSV tables, VTK files, atomic file writes,
-//! lock files, external programs, temporary folders, notes of what a command does, a pool of threads, shards of a list of
-//! jobs.
+//! Domain-independent utilities: configuration files, ranges of their keys, misspelt names, input files, CSV tables, VTK
+//! files, atomic file writes, lock files, external programs, temporary folders, notes of what a command does, a pool of
+//! threads, shards of a list of jobs.
 //!
 //! ```
 //! use support::table::{Cell, Table};
@@ -14,6 +14,7 @@
 #![warn(missing_docs)]
 
 pub mod csv_table;
+pub mod key_limits;
 pub mod lock_file;
 pub mod nearest;
 pub mod processes;

@@ -3,6 +3,7 @@
 use crate::networks::widths;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use support::key_limits::{self, OutOfRange};
 use surrogate::Surrogate;
 
 /// Sizes, loss weights and optimiser of one training.
@@ -12,38 +13,47 @@ pub struct TrainingConfig {
     /// Seed of the initial weights and of the order of the rows.
     pub seed: u64,
     /// Number of units of each layer of chi after the five features; the last layer, the embedding, is linear.
-    /// At least one layer, each of 1 to 4096 units, an even number if `mirror`. In a fine-tuning, the sizes of both networks
-    /// are those of the given weights.
+    /// At least one layer, each with an even number of units if `mirror`. In a fine-tuning, the sizes of both networks are
+    /// those of the given weights.
+    #[schemars(inner(range(min = 1, max = 4096)))]
     pub embedding: Vec<usize>,
-    /// Number of units of each hidden layer of the damage heads of D and D_peak, each 1 to 4096. If `mirror`, at least
-    /// one layer, each with an even number of units.
+    /// Number of units of each hidden layer of the damage heads of D and D_peak. If `mirror`, at least one layer,
+    /// each with an even number of units.
+    #[schemars(inner(range(min = 1, max = 4096)))]
     pub damage: Vec<usize>,
     /// Whether the networks have the mirror symmetry of hinges by construction; a row then also represents
     /// its mirror image.
     pub mirror: bool,
-    /// Maximum number of passes over the training rows, at least 1.
+    /// Maximum number of passes over the training rows.
+    #[schemars(range(min = 1))]
     pub epochs: usize,
-    /// Number of epochs without a smaller validation error after which the training stops, at least 1; unlimited if
-    /// absent.
+    /// Number of epochs without a smaller validation error after which the training stops; unlimited if absent.
+    #[schemars(range(min = 1))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub patience: Option<usize>,
     /// Number type of the training; exported weights and their evaluation are always float64.
     #[serde(default)]
     pub precision: Precision,
-    /// Number of rows in one optimiser step, at least 1.
+    /// Number of rows in one optimiser step.
+    #[schemars(range(min = 1))]
     pub batch_size: usize,
-    /// The learning rate at the first step, above 0 and at most 1.
+    /// The learning rate at the first step.
+    #[schemars(range(min = 1e-9, max = 1.0))]
     pub learning_rate: f64,
-    /// The learning rate at the end of the cosine schedule, 0 to `learning_rate`.
+    /// The learning rate at the end of the cosine schedule, at most `learning_rate`.
+    #[schemars(range(min = 0.0))]
     pub learning_rate_end: f64,
     /// Maximum norm of the gradient of one weight matrix or bias; larger gradients are scaled down to it.
-    /// Positive.
+    #[schemars(range(min = 1e-9))]
     pub gradient_norm_max: f64,
-    /// gamma of (15): the weight of the energy relative to the forces, in [0, 1].
+    /// gamma of (15): the weight of the energy relative to the forces.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub energy_weight: f64,
-    /// w_D of (15): the weight of the damage, at least 0.
+    /// w_D of (15): the weight of the damage.
+    #[schemars(range(min = 0.0))]
     pub damage_weight: f64,
-    /// beta of the damage heads, D = D_s softplus(beta y) / beta; from 1 to 1000.
+    /// beta of the damage heads, D = D_s softplus(beta y) / beta.
+    #[schemars(range(min = 1.0, max = 1000.0))]
     pub damage_sharpness: f64,
     /// Number of first layers of each network that are not trained, for fine-tuning; at most the number of hidden layers
     /// of each network.
@@ -62,6 +72,7 @@ fn is_zero(count: &usize) -> bool {
 /// Number type of a training.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
+#[schemars(rename = "NumberType")]
 pub enum Precision {
     /// Single precision.
     #[default]
@@ -72,14 +83,19 @@ pub enum Precision {
 
 /// A value that violates a rule of the configuration.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("`{key}` = {value} violates {rule}")]
-pub struct InvalidConfig {
-    /// The key.
-    pub key: &'static str,
-    /// Its value.
-    pub value: String,
-    /// The violated rule.
-    pub rule: &'static str,
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
+pub enum InvalidConfig {
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+    #[error("{key} = {value} violates {rule}")]
+    Rule {
+        key: &'static str,
+        value: String,
+        rule: &'static str,
+    },
 }
 
 impl TrainingConfig {
@@ -95,24 +111,15 @@ impl TrainingConfig {
 
     /// Rejects impossible values; the error names the key and the rule.
     pub fn validate(&self) -> Result<(), InvalidConfig> {
-        let sizes = |widths: &[usize]| widths.iter().all(|width| (1..=4096).contains(width));
+        key_limits::check::<Self>(self)?;
         let mut units = self.embedding.iter().chain(&self.damage);
         let pairs = units.all(|units| units % 2 == 0) && !self.damage.is_empty();
-        let rates = 0.0 < self.learning_rate && self.learning_rate <= 1.0;
-        let rate_end =
-            0.0 <= self.learning_rate_end && self.learning_rate_end <= self.learning_rate;
         let checks = [
             (
                 "embedding",
                 format!("{:?}", self.embedding),
-                "at least one layer, each of 1 to 4096 units",
-                !self.embedding.is_empty() && sizes(&self.embedding),
-            ),
-            (
-                "damage",
-                format!("{:?}", self.damage),
-                "each layer of 1 to 4096 units",
-                sizes(&self.damage),
+                "at least one layer",
+                !self.embedding.is_empty(),
             ),
             (
                 "mirror",
@@ -122,58 +129,10 @@ impl TrainingConfig {
                 !self.mirror || pairs,
             ),
             (
-                "epochs",
-                self.epochs.to_string(),
-                "epochs >= 1",
-                self.epochs >= 1,
-            ),
-            (
-                "patience",
-                format!("{:?}", self.patience),
-                "patience >= 1",
-                self.patience != Some(0),
-            ),
-            (
-                "batch_size",
-                self.batch_size.to_string(),
-                "batch_size >= 1",
-                self.batch_size >= 1,
-            ),
-            (
-                "learning_rate",
-                self.learning_rate.to_string(),
-                "0 < learning_rate <= 1",
-                rates,
-            ),
-            (
                 "learning_rate_end",
                 self.learning_rate_end.to_string(),
-                "0 <= learning_rate_end <= learning_rate",
-                rate_end,
-            ),
-            (
-                "gradient_norm_max",
-                self.gradient_norm_max.to_string(),
-                "0 < gradient_norm_max",
-                self.gradient_norm_max > 0.0,
-            ),
-            (
-                "energy_weight",
-                self.energy_weight.to_string(),
-                "0 <= energy_weight <= 1",
-                (0.0..=1.0).contains(&self.energy_weight),
-            ),
-            (
-                "damage_weight",
-                self.damage_weight.to_string(),
-                "0 <= damage_weight < infinity",
-                0.0 <= self.damage_weight && self.damage_weight.is_finite(),
-            ),
-            (
-                "damage_sharpness",
-                self.damage_sharpness.to_string(),
-                "1 <= damage_sharpness <= 1000",
-                (1.0..=1000.0).contains(&self.damage_sharpness),
+                "learning_rate_end <= learning_rate",
+                self.learning_rate_end <= self.learning_rate,
             ),
             (
                 "frozen_layers",
@@ -184,7 +143,7 @@ impl TrainingConfig {
             ),
         ];
         match checks.into_iter().find(|(.., holds)| !holds) {
-            Some((key, value, rule, _)) => Err(InvalidConfig { key, value, rule }),
+            Some((key, value, rule, _)) => Err(InvalidConfig::Rule { key, value, rule }),
             None => Ok(()),
         }
     }
@@ -231,7 +190,8 @@ mod tests {
         for (change, key) in changes {
             let mut config = demo.clone();
             change(&mut config);
-            assert_eq!(config.validate().unwrap_err().key, key);
+            let message = config.validate().unwrap_err().to_string();
+            assert!(message.starts_with(&format!("{key} = ")), "{message}");
         }
     }
 }

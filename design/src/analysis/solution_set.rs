@@ -34,8 +34,11 @@ pub fn curvatures(problem: &DesignProblem, design: &DesignVector) -> Result<Vec<
 pub fn outline_rank(problem: &DesignProblem, design: &DesignVector) -> Result<usize, DesignError> {
     let columns = slopes(design, &coordinates(design), |beside| {
         let deployment = problem.deploy(beside)?;
-        let corners = problem.objective.outline.of(&deployment.sheet);
-        let outline = problem.objective.placed(&deployment.outline(&corners));
+        let corners = problem.objective.shape.outline.corners(&deployment.sheet);
+        let outline = problem
+            .objective
+            .shape
+            .placed(&deployment.outline(&corners));
         Ok(outline.into_flattened())
     })?;
     let n = columns.len();

@@ -18,16 +18,6 @@ pub enum DamageMeasure {
 }
 
 impl DamageMeasure {
-    /// The damage of a hinge by this measure and its gradient in (a, s, theta, w_lig, alpha); zero if the
-    /// law does not predict it.
-    pub fn of(self, damage: &HingeDamage) -> (f64, [f64; 5]) {
-        let gradient = match self {
-            Self::Mean => damage.gradient,
-            Self::Peak => damage.peak_gradient,
-        };
-        (self.known(damage).unwrap_or(0.0), gradient)
-    }
-
     /// The damage of a hinge by this measure, if the law predicts it.
     pub fn known(self, damage: &HingeDamage) -> Option<f64> {
         match self {

@@ -1,22 +1,21 @@
 //! The forward chain theta -> pattern -> sheet -> equilibria -> objective, and its gradient by the same chain
 //! in reverse: lines 2-7 of Algorithm 1.
 
-use crate::equilibrium::adjoint::{SingularTangent, adjoint};
+use crate::equilibrium::adjoint::SingularTangent;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status};
 use crate::equilibrium::nearby_path::KnownPath;
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
-use crate::geometry::plane::add;
-use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, Order, PreparedLaw};
-use crate::objective::loss::{Judgement, Objective, Terms};
-use crate::objective::path_functionals::PerFunctional;
+use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, PreparedLaw};
+use crate::objective::loss::{Judgement, Objective, TermValues};
+use crate::objective::term::Deployed;
 use crate::pattern::cut_pattern::{CutPattern, Outline};
 use crate::pattern::design_vector::{DesignVector, WidthChart};
 use crate::pattern::grid::Grid;
 use crate::pattern::pattern_error::PatternError;
-use crate::sheet::cut_sheet::{Sheet, SheetError, SheetGradient, SheetOptions};
-use crate::sheet::ideal_deployment::{ideal_deployment, ideal_deployment_pullback};
-use crate::sheet::kinematics::{deployed, deployed_pullback};
+use crate::sheet::cut_sheet::{Sheet, SheetError, SheetOptions};
+use crate::sheet::ideal_deployment::ideal_deployment;
+use crate::sheet::kinematics::deployed;
 use crate::sheet::topology::PanelCorner;
 use hinge::TrainingDomain;
 use serde::Serialize;
@@ -132,7 +131,7 @@ pub struct Evaluation {
     /// L of (16).
     pub loss: f64,
     /// The unweighted terms of L.
-    pub terms: Terms,
+    pub terms: TermValues,
     /// dL/dtheta
     pub gradient: DesignVector,
     /// The gradient with respect to the constants of the design problem.
@@ -141,26 +140,6 @@ pub struct Evaluation {
     pub deployment: Deployment,
     /// Maximum componentwise backward error of the adjoint solves.
     pub adjoint_residual: f64,
-}
-
-/// The partial derivatives of a function of a deployment.
-struct Partials<'a> {
-    /// The load steps on which the function depends, the last one among them.
-    path: &'a [LoadStep],
-    /// In the deployed positions of the outline points.
-    by_outline: &'a [[f64; 2]],
-    /// In (a, s, theta, w_lig, alpha) per hinge and step of `path`.
-    by_path: &'a [Vec<[f64; 5]>],
-    /// In the flat corners of every panel; `None` if all are zero.
-    by_corners: Option<&'a [[[f64; 2]; 4]]>,
-}
-
-/// The gradient of a function of a deployment in the design and in the constants of the problem.
-struct Pulled {
-    gradient: DesignVector,
-    sensitivities: Sensitivities,
-    /// See [`Evaluation::adjoint_residual`].
-    adjoint_residual: f64,
 }
 
 impl Deployment {
@@ -238,7 +217,7 @@ impl DesignProblem {
 
     /// The deployment, its damage with or without `gradient`, and the hinge law prepared for its sheet. The path is
     /// corrected from the `known` one of another design if that is near enough.
-    fn deploy_prepared(
+    pub(super) fn deploy_prepared(
         &self,
         design: &DesignVector,
         gradient: bool,
@@ -275,210 +254,27 @@ impl DesignProblem {
         Ok((deployment, law))
     }
 
-    /// L(theta) and its gradient.
-    pub fn evaluate(&self, design: &DesignVector) -> Result<Evaluation, DesignError> {
-        self.evaluate_near(design, None)
-    }
-
-    /// L(theta) and its gradient, with the path corrected from the `known` path of another design if that is near
-    /// enough; otherwise it is followed from the flat sheet, as in [`evaluate`](Self::evaluate).
-    pub fn evaluate_near(
-        &self,
-        design: &DesignVector,
-        known: Option<&KnownPath>,
-    ) -> Result<Evaluation, DesignError> {
-        let by_damage = self.objective.weights.damage != 0.0;
-        let (deployment, law) = self.deploy_prepared(design, by_damage, known)?;
-        let outline = self.objective.outline.of(&deployment.sheet);
-        let judgement = self.judge(&deployment, &outline)?;
-        let partials = Partials {
-            path: &deployment.path,
-            by_outline: &judgement.by_outline,
-            by_path: &judgement.by_path,
-            by_corners: Some(&judgement.by_corners),
-        };
-        let pulled = self.pull_back(design, &deployment, law.as_deref(), &outline, &partials)?;
-        Ok(Evaluation {
-            loss: judgement.loss,
-            terms: judgement.terms,
-            gradient: pulled.gradient,
-            sensitivities: pulled.sensitivities,
-            deployment,
-            adjoint_residual: pulled.adjoint_residual,
-        })
-    }
-
-    /// Gradients in the design whose products with themselves, v v^T, add up to the second derivative of the Chamfer
-    /// distance at a deployment, but for the curvature of the deployment itself (Gauss-Newton).
-    pub fn shape_curvature(
-        &self,
-        design: &DesignVector,
-        deployment: &Deployment,
-    ) -> Result<Vec<Vec<f64>>, DesignError> {
-        let sheet = &deployment.sheet;
-        let outline = self.objective.outline.of(sheet);
-        let mut last = deployment.final_step().clone();
-        let mut law = None;
-        if let Model::Equilibrium(mechanics) = &self.model {
-            let prepared = mechanics.law.prepare(&sheet.designs());
-            if last.order != Order::Design {
-                // Evaluated here once, and not by the adjoint of every vector.
-                let hinged = mechanics.hinged(sheet, &*prepared, true);
-                last.hinges = hinged.energies(&last.deformations, Order::Design);
-                last.order = Order::Design;
-            }
-            law = Some(prepared);
-        }
-        let by_path = vec![vec![[0.0; 5]]; sheet.hinges.len()];
-        let vectors = (self.objective).shape_curvature(&deployment.outline(&outline));
-        let pulled = vectors.iter().map(|by_outline| {
-            let partials = Partials {
-                path: std::slice::from_ref(&last),
-                by_outline,
-                by_path: &by_path,
-                by_corners: None,
-            };
-            let pulled = self.pull_back(design, deployment, law.as_deref(), &outline, &partials)?;
-            Ok(pulled.gradient.to_flat())
-        });
-        pulled.collect()
-    }
-
-    /// The gradient in the design, and in the constants of the problem, of a function of the deployment.
-    fn pull_back(
-        &self,
-        design: &DesignVector,
-        deployment: &Deployment,
-        law: Option<&dyn PreparedLaw>,
-        outline: &[PanelCorner],
-        partials: &Partials,
-    ) -> Result<Pulled, DesignError> {
-        let (sheet, last) = (&deployment.sheet, deployment.final_step());
-        let mut by_sheet = SheetGradient::zeros(self.grid);
-        if let Some(by_corners) = partials.by_corners {
-            by_sheet.corners.copy_from_slice(by_corners);
-        }
-        let by_last = outline_pullback(sheet, last, outline, partials.by_outline, &mut by_sheet);
-        let (mut by_opening, mut adjoint_residual) = (None, 0.0);
-        let mut sensitivities = Sensitivities::default();
-        match &self.model {
-            Model::Ideal { opening } => {
-                let theta = design.opening.unwrap_or(*opening);
-                let slope = ideal_deployment_pullback(sheet, theta, &by_last, &mut by_sheet);
-                by_opening = design.opening.map(|_| slope);
-            }
-            Model::Equilibrium(mechanics) => {
-                let law = law.ok_or(DesignError::NoMechanics)?;
-                let sums = adjoint(
-                    &mechanics.solver,
-                    mechanics.hinged(sheet, law, true),
-                    partials.path,
-                    partials.by_path,
-                    by_last,
-                    &mut by_sheet,
-                )?;
-                adjoint_residual = sums.residual;
-                sensitivities.loads = sums.loads;
-                sensitivities.constants = sums.constants;
-            }
-        }
-        let (by_points, by_width) = sheet.pullback(&by_sheet);
-        let (by_pattern, by_outline) = deployment.pattern.pullback(&by_points);
-        sensitivities.outline = by_outline;
-        let gradient = DesignVector {
-            pattern: by_pattern,
-            omega: std::iter::zip(&design.omega, by_width)
-                .map(|(&omega, by_width)| by_width * self.widths.slope(omega))
-                .collect(),
-            opening: by_opening,
-        };
-        Ok(Pulled {
-            gradient,
-            sensitivities,
-            adjoint_residual,
-        })
-    }
-
     /// L(theta) without its gradient.
     pub fn loss(&self, design: &DesignVector) -> Result<f64, DesignError> {
         let deployment = self.deploy(design)?;
-        let outline = self.objective.outline.of(&deployment.sheet);
+        let outline = self.objective.shape.outline.corners(&deployment.sheet);
         Ok(self.judge(&deployment, &outline)?.loss)
     }
 
-    /// Scales the weight of each path functional by the gradient of the Chamfer distance at `start`, so
-    /// that at the weight 1 both gradients have the same norm. A functional with zero gradient there keeps
-    /// its weight.
-    pub fn balanced(mut self, start: &DesignVector) -> Result<Self, DesignError> {
-        let relative = self.objective.weights;
-        let panel_shape = std::mem::take(&mut self.objective.panel_shape);
-        let min_panel_width = std::mem::take(&mut self.objective.min_panel_width);
-        let domain = self.objective.domain.take();
-        let mut gradient = |weights: PerFunctional| {
-            self.objective.weights = weights;
-            Ok::<_, DesignError>(self.evaluate(start)?.gradient.to_flat())
-        };
-        let none = PerFunctional::default();
-        let shape = gradient(none)?;
-        let mut balanced = |weight: f64, alone: PerFunctional| {
-            if weight == 0.0 {
-                return Ok(0.0);
-            }
-            let both = gradient(alone)?;
-            let functional: Vec<f64> = std::iter::zip(both, &shape).map(|(b, s)| b - s).collect();
-            let norm = norm(&functional);
-            let ratio = if norm > 0.0 {
-                self::norm(&shape) / norm
-            } else {
-                1.0
-            };
-            Ok::<_, DesignError>(weight * ratio)
-        };
-        let weights = PerFunctional {
-            damage: balanced(
-                relative.damage,
-                PerFunctional {
-                    damage: 1.0,
-                    ..none
-                },
-            )?,
-            compression: balanced(
-                relative.compression,
-                PerFunctional {
-                    compression: 1.0,
-                    ..none
-                },
-            )?,
-            shear: balanced(relative.shear, PerFunctional { shear: 1.0, ..none })?,
-        };
-        self.objective.weights = weights;
-        self.objective.panel_shape = panel_shape;
-        self.objective.min_panel_width = min_panel_width;
-        self.objective.domain = domain;
-        Ok(self)
-    }
-
-    fn judge(
+    pub(super) fn judge(
         &self,
         deployment: &Deployment,
         outline: &[PanelCorner],
     ) -> Result<Judgement, DesignError> {
-        if self.objective.target.is_empty() {
+        if self.objective.shape.target.is_empty() {
             return Err(DesignError::EmptyTarget);
         }
         deployment.at_full_load()?;
-        let points = deployment.outline(outline);
-        let damage_scale = match &self.model {
-            Model::Ideal { .. } => None,
-            Model::Equilibrium(mechanics) => {
-                mechanics.law.damage_scale(self.objective.damage_measure)
-            }
-        };
-        // No scale is needed without damage.
-        let scale = damage_scale.unwrap_or(1.0);
-        Ok(self
-            .objective
-            .judge(&points, &deployment.sheet, &deployment.path, scale))
+        Ok(self.objective.judge(&Deployed {
+            sheet: &deployment.sheet,
+            path: &deployment.path,
+            outline: &deployment.outline(outline),
+        }))
     }
 }
 
@@ -496,33 +292,4 @@ impl Mechanics {
             damage_gradient,
         }
     }
-}
-
-/// The gradient, in the last configuration, of a function of the deployed outline points; its gradient
-/// with respect to the flat sheet is added to `by_sheet`.
-fn outline_pullback(
-    sheet: &Sheet,
-    last: &LoadStep,
-    outline: &[PanelCorner],
-    by_outline: &[[f64; 2]],
-    by_sheet: &mut SheetGradient,
-) -> Vec<[f64; 3]> {
-    let mut by_last = vec![[0.0; 3]; sheet.panels.len()];
-    for (&(panel, corner), &gradient) in std::iter::zip(outline, by_outline) {
-        let flat = sheet.panels[panel].corners[corner];
-        let (by_motion, by_flat, by_centroid) = deployed_pullback(
-            &sheet.panels[panel],
-            last.configuration[panel],
-            flat,
-            gradient,
-        );
-        (0..3).for_each(|c| by_last[panel][c] += by_motion[c]);
-        add(&mut by_sheet.corners[panel][corner], by_flat);
-        add(&mut by_sheet.centroids[panel], by_centroid);
-    }
-    by_last
-}
-
-fn norm(vector: &[f64]) -> f64 {
-    vector.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
 }

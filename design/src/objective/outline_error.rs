@@ -10,13 +10,14 @@ use crate::objective::loss::Objective;
 /// It is the square root of the first sum of the Chamfer distance to the curve. The second sum, coverage, also
 /// depends on the spacing of the points P, and stays large for a coarse sheet that matches its target.
 pub fn outline_error(objective: &Objective, deployment: &Deployment) -> f64 {
-    let points = objective.outline.of(&deployment.sheet);
-    let outline = objective.placed(&deployment.outline(&points));
+    let shape = &objective.shape;
+    let points = shape.outline.corners(&deployment.sheet);
+    let outline = shape.placed(&deployment.outline(&points));
     let precision = Chamfer {
         coverage_weight: 0.0,
         smoothing: 0.0,
         precision: Precision::Curve,
     };
-    let (squared, _) = precision.evaluate(&outline, &objective.target);
+    let (squared, _) = precision.evaluate(&outline, &shape.target);
     squared.sqrt()
 }

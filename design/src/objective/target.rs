@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
+use support::key_limits::{self, OutOfRange};
 use support::regular_file;
 
 /// A target as written in a scene; lengths in mm, in the coordinates of the flat sheet.
@@ -16,14 +17,16 @@ pub enum TargetShape {
     Circle {
         /// Centre (mm).
         centre: [f64; 2],
-        /// Radius (mm), positive.
+        /// Radius (mm).
+        #[schemars(range(min = 1e-3))]
         radius: f64,
     },
     /// A rectangle, rotated about its centre.
     Rectangle {
         /// Centre (mm).
         centre: [f64; 2],
-        /// Side lengths [along x, along y] before the rotation (mm), positive.
+        /// Side lengths [along x, along y] before the rotation (mm).
+        #[schemars(inner(range(min = 1e-3)))]
         size: [f64; 2],
         /// Rotation about the centre, counter-clockwise (deg).
         rotation_deg: f64,
@@ -45,7 +48,8 @@ pub enum TargetShape {
         file: PathBuf,
         /// Centre of the bounding box of the outline (mm).
         centre: [f64; 2],
-        /// Height of the bounding box (mm), positive; the width follows from the drawing.
+        /// Height of the bounding box (mm); the width follows from the drawing.
+        #[schemars(range(min = 1e-3))]
         height: f64,
     },
 }
@@ -81,10 +85,8 @@ pub enum TargetError {
     },
     #[error("{path}: {source}", path = .path.display())]
     Svg { path: PathBuf, source: SvgPathError },
-    #[error("target.{key} = {value} violates 0 < {key} (mm)")]
-    Size { key: &'static str, value: f64 },
-    #[error("target.{key} contains a number that is not finite")]
-    NotFinite { key: &'static str },
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
     #[error("the target outline encloses no area: give at least three corners in order")]
     NoArea,
 }
@@ -100,10 +102,9 @@ pub struct Target {
 impl Target {
     /// Samples a shape at `count` points; file names are relative to `folder`.
     pub fn sample(shape: &TargetShape, folder: &Path, count: usize) -> Result<Self, TargetError> {
+        key_limits::check::<TargetShape>(shape)?;
         match shape {
             TargetShape::Circle { centre, radius } => {
-                finite("circle.centre", centre)?;
-                positive("circle.radius", *radius)?;
                 let points = (0..count)
                     .map(|i| {
                         let (sin, cos) = (TAU * i as f64 / count as f64).sin_cos();
@@ -121,10 +122,6 @@ impl Target {
                 size,
                 rotation_deg,
             } => {
-                finite("rectangle.centre", centre)?;
-                finite("rectangle.rotation_deg", &[*rotation_deg])?;
-                positive("rectangle.size", size[0])?;
-                positive("rectangle.size", size[1])?;
                 let (sin, cos) = rotation_deg.to_radians().sin_cos();
                 let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)].map(|(a, b)| {
                     let [x, y] = [a * size[0], b * size[1]];
@@ -132,18 +129,13 @@ impl Target {
                 });
                 along_polygon(&corners, count)
             }
-            TargetShape::Polygon { vertices } => {
-                finite("polygon.vertices", vertices.as_flattened())?;
-                along_polygon(vertices, count)
-            }
+            TargetShape::Polygon { vertices } => along_polygon(vertices, count),
             TargetShape::Csv { file } => along_polygon(&read_points(&folder.join(file))?, count),
             TargetShape::Svg {
                 file,
                 centre,
                 height,
             } => {
-                finite("svg.centre", centre)?;
-                positive("svg.height", *height)?;
                 let path = folder.join(file);
                 let svg = read(&path)?;
                 let drawn =
@@ -199,32 +191,14 @@ impl Target {
     }
 }
 
-fn finite(key: &'static str, values: &[f64]) -> Result<(), TargetError> {
-    if values.iter().all(|value| value.is_finite()) {
-        Ok(())
-    } else {
-        Err(TargetError::NotFinite { key })
-    }
-}
-
-fn positive(key: &'static str, value: f64) -> Result<(), TargetError> {
-    finite(key, &[value])?;
-    if value > 0.0 {
-        Ok(())
-    } else {
-        Err(TargetError::Size { key, value })
-    }
-}
-
 /// `count` points at equal arc lengths along a closed polygon.
 fn along_polygon(vertices: &[[f64; 2]], count: usize) -> Result<Target, TargetError> {
-    let edges = || (0..vertices.len()).map(|i| (vertices[i], vertices[(i + 1) % vertices.len()]));
+    let edges = || polygon::edges(vertices);
     let lengths: Vec<f64> = edges()
         .map(|(p, q)| f64::hypot(q[0] - p[0], q[1] - p[1]))
         .collect();
     let length: f64 = lengths.iter().sum();
-    let area: f64 = edges().map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum::<f64>() / 2.0;
-    if area.abs() <= 1e-9 * length * length {
+    if polygon::area(vertices).abs() <= 1e-9 * length * length {
         return Err(TargetError::NoArea);
     }
     let mut points = Vec::with_capacity(count);

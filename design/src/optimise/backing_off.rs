@@ -60,6 +60,7 @@ mod tests {
     use super::*;
     use crate::objective::design_problem::Model;
     use crate::objective::loss::Objective;
+    use crate::objective::shape::Shape;
     use crate::optimise::adam::Adam;
     use crate::pattern::cut_pattern::Outline;
     use crate::pattern::design_vector::WidthChart;
@@ -85,7 +86,7 @@ mod tests {
                 },
             },
             model: Model::Ideal { opening: 0.5 },
-            objective: Objective::of_shape(vec![[3.0, 3.0]]),
+            objective: Objective::from_shape(Shape::new(vec![[3.0, 3.0]])),
         }
     }
 

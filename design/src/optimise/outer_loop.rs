@@ -29,7 +29,6 @@ pub struct StepRecord {
     #[serde(flatten)]
     pub scores: Scores,
     /// Whether the path was followed from the flat sheet; `false` if it was corrected from that of an earlier design.
-    #[serde(default)]
     pub followed: bool,
     /// Number of halvings, including those of a step that was given up.
     pub halvings: u32,
@@ -311,7 +310,7 @@ impl SearchState {
         self.go_on(problem, design, evaluation);
         self.history.push(StepRecord {
             step: self.history.len(),
-            scores: Scores::of(&problem.objective, evaluation),
+            scores: Scores::new(&problem.objective, evaluation),
             followed,
             halvings: setback.halvings,
             setback: setback.reason,

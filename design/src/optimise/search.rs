@@ -46,7 +46,6 @@ pub(crate) struct Lbfgs {
     /// Length per coordinate of a step without curvature memory.
     learning_rate: f64,
     /// Whether steps use the Gauss-Newton matrix of the shape.
-    #[serde(default)]
     gauss_newton: bool,
     memory: Memory,
     /// The point of the last proposal; `None` before the first.

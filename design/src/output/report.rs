@@ -38,6 +38,9 @@ pub struct Report {
     pub steps: usize,
     /// Number of steps that were halved because a design had no objective value.
     pub setbacks: usize,
+    /// The terms of the scores in words, with their units.
+    #[serde(skip)]
+    pub terms: Vec<String>,
     /// Scores of the start.
     pub before: Scores,
     /// Scores of the best design.
@@ -109,7 +112,7 @@ impl Report {
             .map(|h| HingeRow::new(scene, deployment, h))
             .collect();
         let facts = FactSheet::new(scene, &designed.problem, deployment, &hinges);
-        let after = Scores::of(&designed.problem.objective, &designed.best);
+        let after = Scores::new(&designed.problem.objective, &designed.best);
         let mut warnings = warning::all(scene, deployment, cuts, &hinges);
         warnings.extend(finding::of_run(scene, designed, &facts, &after));
         warnings.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
@@ -123,7 +126,8 @@ impl Report {
                 .iter()
                 .filter(|record| record.setback.is_some())
                 .count(),
-            before: Scores::of(&designed.problem.objective, &designed.start),
+            terms: designed.problem.objective.labels(),
+            before: Scores::new(&designed.problem.objective, &designed.start),
             after,
             estimate: Estimate::of(scene.networks(), deployment),
             facts,

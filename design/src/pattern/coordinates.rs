@@ -35,7 +35,7 @@ impl PatternCoordinates {
     }
 
     /// Coordinates of the pattern with given [`values`](Self::values).
-    pub fn of_values(grid: Grid, values: &[f64]) -> Result<Self, PatternError> {
+    pub fn from_values(grid: Grid, values: &[f64]) -> Result<Self, PatternError> {
         let (r, mut rest) = values.split_at(grid.aspect_ratio_count().min(values.len()));
         let tau = grid.edge_cut_counts().map(|count| {
             let (edge, others) = rest.split_at(count.min(rest.len()));

@@ -13,11 +13,13 @@ pub struct SupportConfig {
     pub panel: [usize; 2],
     /// Which motions of the panel's centroid are prescribed.
     pub kind: SupportKind,
-    /// Displacement [x, y] of the supported translations at full load (mm), each -1e5 to 1e5; zero for free ones.
+    /// Displacement [x, y] of the supported translations at full load (mm); zero for free ones.
     #[serde(default)]
+    #[schemars(inner(range(min = -1e5, max = 1e5)))]
     pub displacement: [f64; 2],
-    /// Rotation at full load, counter-clockwise (deg), -720 to 720; zero unless the rotation is supported.
+    /// Rotation at full load, counter-clockwise (deg); zero unless the rotation is supported.
     #[serde(default)]
+    #[schemars(range(min = -720.0, max = 720.0))]
     pub rotation_deg: f64,
 }
 
@@ -41,11 +43,13 @@ pub enum SupportKind {
 pub struct LoadConfig {
     /// The panel [column, row], counted from [0, 0] at the lower left.
     pub panel: [usize; 2],
-    /// Force [x, y] at full load (N), each -1e5 to 1e5; zero along supported translations.
+    /// Force [x, y] at full load (N); zero along supported translations.
     #[serde(default)]
+    #[schemars(inner(range(min = -1e5, max = 1e5)))]
     pub force: [f64; 2],
-    /// Couple at full load, counter-clockwise (N mm), -1e8 to 1e8; zero if the rotation is supported.
+    /// Couple at full load, counter-clockwise (N mm); zero if the rotation is supported.
     #[serde(default)]
+    #[schemars(range(min = -1e8, max = 1e8))]
     pub couple: f64,
 }
 
@@ -56,7 +60,8 @@ pub struct LoadConfig {
 pub struct EdgeLoadConfig {
     /// The loaded edge.
     pub edge: SheetEdge,
-    /// Traction [x, y] at full load (N/mm), each -1e3 to 1e3.
+    /// Traction [x, y] at full load (N/mm).
+    #[schemars(inner(range(min = -1e3, max = 1e3)))]
     pub traction: [f64; 2],
 }
 
@@ -81,7 +86,8 @@ pub enum SheetEdge {
 pub struct OpeningCoupleConfig {
     /// Two neighbouring panels [column, row]; by default every hinge of the sheet.
     pub panels: Option<[[usize; 2]; 2]>,
-    /// Couple at full load (N mm), positive to open, -1e8 to 1e8.
+    /// Couple at full load (N mm), positive to open.
+    #[schemars(range(min = -1e8, max = 1e8))]
     pub couple: f64,
 }
 
@@ -89,8 +95,8 @@ pub struct OpeningCoupleConfig {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DriveConfig {
-    /// Stroke at the end of the path: work of the full loads divided by the sum of their magnitudes (mm),
-    /// -1e5 to 1e5.
+    /// Stroke at the end of the path: work of the full loads divided by the sum of their magnitudes (mm).
+    #[schemars(range(min = -1e5, max = 1e5))]
     pub stroke: f64,
 }
 

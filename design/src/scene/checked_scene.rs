@@ -2,6 +2,7 @@
 
 use crate::objective::target::Target;
 use crate::scene::checks;
+use crate::scene::invalid_scene::InvalidScene;
 use crate::scene::keys::SceneConfig;
 use crate::scene::loaded_hinge::{LoadedHinge, network};
 use crate::scene::relative_path::{beside, folder};
@@ -48,9 +49,9 @@ impl Scene {
     /// Reads the material, the target and the weights of a scene whose paths are relative to the
     /// file at `path`, and checks all values.
     pub fn new(config: SceneConfig, path: &Path) -> Result<Self, SceneError> {
-        let refuse = |reason| SceneError::Value {
+        let refuse = |source| SceneError::Value {
             path: path.to_owned(),
-            reason,
+            source: Box::new(source),
         };
         checks::config(&config).map_err(refuse)?;
         let material_path = beside(path, &config.material);
@@ -59,9 +60,7 @@ impl Scene {
             thickness: config.thickness.unwrap_or(measured.thickness),
             ..measured.clone()
         };
-        material
-            .validate()
-            .map_err(|error| refuse(error.to_string()))?;
+        (material.validate()).map_err(|error| refuse(InvalidScene::Material(error)))?;
         let points = config.objective.target_points;
         let target = Target::sample(&config.target, folder(path), points).map_err(|source| {
             SceneError::Target {

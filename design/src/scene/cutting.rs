@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct CuttingConfig {
-    /// Length by which a slit that is open on the outline is cut beyond the finished edge (mm), 0 to 50.
+    /// Length by which a slit that is open on the outline is cut beyond the finished edge (mm).
+    #[schemars(range(min = 0.0, max = 50.0))]
     pub over_run: f64,
     /// Whether registration marks are drawn outside of the outline, on a layer of their own.
     pub registration_marks: bool,

@@ -4,7 +4,7 @@
 //! from it.
 
 use crate::objective::design_problem::{DesignError, DesignProblem, Evaluation};
-use crate::objective::panel_width::thinnest_panel;
+use crate::objective::terms::panel_width::thinnest_panel;
 use crate::optimise::outer_loop::{Ended, SearchState, StepRecord, optimise};
 use crate::pattern::design_vector::DesignVector;
 use crate::scene::checked_scene::{MODEL_PARTS, Scene, WEIGHTS};
@@ -29,8 +29,6 @@ pub const CUT_FILES: [&str; 5] = [
     "cut-summary.csv",
     "deployed.dxf",
 ];
-/// Relative tolerance of the loss at the start between two machines; used only for states without a hash.
-const SAME_LOSS: f64 = 1e-9;
 
 /// A finished run.
 pub struct Designed {
@@ -120,10 +118,10 @@ impl InverseDesignError {
 #[derive(Debug, Serialize, Deserialize)]
 struct State {
     scene: SceneConfig,
-    /// [`Scene::model_hash`]; absent in states of older versions.
-    model: Option<String>,
-    /// The copies in the run folder of what the run depends on; absent in states of older versions.
-    inputs: Option<InputHashes>,
+    /// [`Scene::model_hash`].
+    model: String,
+    /// The copies in the run folder of what the run depends on.
+    inputs: InputHashes,
     #[serde(flatten)]
     search: SearchState,
 }
@@ -177,9 +175,10 @@ pub fn design_of_run(
         let changed = changed.join(", ");
         return Err(InverseDesignError::Outdated { path, changed });
     }
-    match state.search.fits(&scene.start()) {
-        true => Ok(Some(state.search.best)),
-        false => Err(InverseDesignError::OtherSize { path }),
+    if state.search.fits(&scene.start()) {
+        Ok(Some(state.search.best))
+    } else {
+        Err(InverseDesignError::OtherSize { path })
     }
 }
 
@@ -206,9 +205,9 @@ pub fn inverse_design(
     let start = problem
         .evaluate(&design)
         .map_err(InverseDesignError::Start)?;
-    wide_enough(&problem, &start)?;
+    wide_enough(scene, &start)?;
     let (optimiser, model) = (&scene.config.optimiser, scene.model_hash());
-    let mut search = match State::read(&path, scene, &model, &start)? {
+    let mut search = match State::read(&path, scene)? {
         Some(state) => state.search,
         None => {
             let (method, rate) = (optimiser.method, optimiser.learning_rate);
@@ -221,8 +220,8 @@ pub fn inverse_design(
     let save = |search: &SearchState| {
         let state = State {
             scene: scene.config.clone(),
-            model: Some(model.clone()),
-            inputs: Some(inputs.clone()),
+            model: model.clone(),
+            inputs: inputs.clone(),
             search: search.clone(),
         };
         state.write(&path)
@@ -260,8 +259,8 @@ pub fn inverse_design(
 }
 
 /// An error if a panel of the start is so thin that the barrier of the minimum width is infinite.
-fn wide_enough(problem: &DesignProblem, start: &Evaluation) -> Result<(), InverseDesignError> {
-    let minimum = problem.objective.min_panel_width;
+fn wide_enough(scene: &Scene, start: &Evaluation) -> Result<(), InverseDesignError> {
+    let minimum = scene.config.objective.min_panel_width;
     let panels = start.deployment.sheet.panels.iter();
     let panels: Vec<_> = panels.map(|panel| panel.corners).collect();
     let thinnest = thinnest_panel(&panels);
@@ -332,13 +331,10 @@ impl State {
             .collect()
     }
 
-    /// The inputs besides the keys of the scene that changed since the run; none if the state is of a version that did
-    /// not identify them.
+    /// The inputs besides the keys of the scene that changed since the run.
     fn changed_inputs(&self, scene: &Scene) -> Vec<&'static str> {
-        let (Some(before), now) = (&self.model, scene.model_hash()) else {
-            return Vec::new();
-        };
-        let hashes = before.split('-').zip(now.split('-'));
+        let now = scene.model_hash();
+        let hashes = self.model.split('-').zip(now.split('-'));
         let parts = MODEL_PARTS.into_iter().zip(hashes);
         parts
             .filter(|(_, (before, now))| before != now)
@@ -347,12 +343,7 @@ impl State {
     }
 
     /// The state of an earlier run of the same scene; only the number of steps may differ.
-    fn read(
-        path: &Path,
-        scene: &Scene,
-        model: &str,
-        start: &Evaluation,
-    ) -> Result<Option<Self>, InverseDesignError> {
+    fn read(path: &Path, scene: &Scene) -> Result<Option<Self>, InverseDesignError> {
         let Some(state) = Self::load(path)? else {
             return Ok(None);
         };
@@ -363,12 +354,7 @@ impl State {
         if !state.search.fits(&scene.start()) {
             return Err(InverseDesignError::OtherSize { path });
         }
-        let found = state.search.history[0].scores.loss;
-        let same_model = match &state.model {
-            Some(earlier) => earlier == model,
-            None => (found - start.loss).abs() <= SAME_LOSS * start.loss.abs(),
-        };
-        if !same_model {
+        if state.model != scene.model_hash() {
             return Err(InverseDesignError::OtherModel { path });
         }
         Ok(Some(state))

@@ -1,6 +1,6 @@
 //! The hinge law as written in a scene.
 
-use crate::hinge_law::Contact;
+use crate::hinge_law::{Contact, InvalidContact};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -21,7 +21,8 @@ pub enum HingeModel {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PinConfig {
-    /// The opening angle at the start of the search (deg), -180 to 180; it is a design variable.
+    /// The opening angle at the start of the search (deg); it is a design variable.
+    #[schemars(range(min = -180.0, max = 180.0))]
     pub opening_deg: f64,
 }
 
@@ -29,11 +30,14 @@ pub struct PinConfig {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LinearConstants {
-    /// Stiffness of the axial opening a (N/mm), 1e-3 to 1e6.
+    /// Stiffness of the axial opening a (N/mm).
+    #[schemars(range(min = 1e-3, max = 1e6))]
     pub k_a: f64,
-    /// Stiffness of the shear s (N/mm), 1e-3 to 1e6.
+    /// Stiffness of the shear s (N/mm).
+    #[schemars(range(min = 1e-3, max = 1e6))]
     pub k_s: f64,
-    /// Stiffness of the rotation theta (N mm/rad), 1e-3 to 1e9.
+    /// Stiffness of the rotation theta (N mm/rad).
+    #[schemars(range(min = 1e-3, max = 1e9))]
     pub k_theta: f64,
 }
 
@@ -50,9 +54,9 @@ pub struct ContactConfig {
 }
 
 impl ContactConfig {
-    pub(super) fn contact(self) -> Result<Contact, String> {
+    pub(super) fn contact(self) -> Result<Contact, InvalidContact> {
         let [phi_min, phi_cut] = [self.phi_min_deg, self.phi_cut_deg].map(f64::to_radians);
-        Contact::new(self.stiffness, phi_min, phi_cut).map_err(|error| error.to_string())
+        Contact::new(self.stiffness, phi_min, phi_cut)
     }
 }
 
@@ -69,13 +73,10 @@ pub struct SurrogateFile {
 }
 
 /// The constants of (11), derived from a learned energy for each hinge.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CondensedConfig {
-    /// Path of the weights `X.safetensors`, relative to the scene file; their card `X.json` is read from the same
-    /// folder.
+    /// Path of the weights `X.safetensors`, relative to the scene file.
     pub weights: PathBuf,
-    /// Angle of the rotational secant stiffness (deg), -180 to 180; 0 uses the Hessian at the undeformed state.
-    #[serde(default)]
+    /// Angle of the rotational secant stiffness (deg); 0 uses the Hessian at the undeformed state.
     pub secant_deg: f64,
 }

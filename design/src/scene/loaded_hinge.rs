@@ -2,8 +2,8 @@
 
 use crate::equilibrium::tangent::MIN_PIVOT_RATIO;
 use crate::hinge_law::{CondensedLaw, Contact, DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
-use crate::scene::checks::within;
 use crate::scene::hinge_model::{CondensedConfig, HingeModel, LinearConstants, PinConfig};
+use crate::scene::invalid_hinge::{InvalidHinge, WeightsMismatch};
 use crate::scene::keys::SceneConfig;
 use crate::scene::relative_path::beside;
 use crate::scene::scene_error::SceneError;
@@ -66,31 +66,21 @@ impl LoadedHinge {
         measured: &SheetMaterial,
         path: &Path,
     ) -> Result<Self, SceneError> {
-        let refuse = |reason| SceneError::Value {
+        let refuse = |source| SceneError::Hinge {
             path: path.to_owned(),
-            reason,
+            source: Box::new(source),
         };
-        let missing = |section: &str| {
-            refuse(format!(
-                "hinge = \"{section}\" needs the section [{section}]"
-            ))
-        };
+        let missing = |section| refuse(InvalidHinge::NoSection(section));
         let networks = |section| networks(config, section, measured, path);
         let hinge = match config.hinge {
             HingeModel::Pin => {
                 let pin = config.pin.ok_or_else(|| missing("pin"))?;
                 pinned(config, pin).map_err(refuse)
             }
-            HingeModel::Linear => match (config.linear, &config.condensed) {
-                (Some(constants), None) => linear(config, constants).map_err(refuse),
-                (None, Some(file)) => {
-                    condensed(config, networks("condensed")?, file).map_err(refuse)
-                }
+            HingeModel::Linear => match (&config.condensed, config.linear) {
+                (Some(file), _) => condensed(config, networks("condensed")?, file).map_err(refuse),
+                (None, Some(constants)) => linear(config, constants).map_err(refuse),
                 (None, None) => Err(missing("linear")),
-                (Some(_), Some(_)) => {
-                    let reason = "hinge = \"linear\" takes either [linear] or [condensed]";
-                    Err(refuse(reason.into()))
-                }
             },
             HingeModel::Surrogate => {
                 config
@@ -126,12 +116,10 @@ impl LoadedHinge {
     }
 
     /// An error if the objective needs a prediction that the law does not make.
-    fn check_objective(&self, config: &SceneConfig) -> Result<(), String> {
+    fn check_objective(&self, config: &SceneConfig) -> Result<(), InvalidHinge> {
         let objective = &config.objective;
         if objective.domain > 0.0 && self.predictors().is_empty() {
-            return Err(
-                "objective.domain needs hinge = \"surrogate\": no other law has a domain".into(),
-            );
+            return Err(InvalidHinge::NoDomain);
         }
         let predicts = |measure| match &self.behaviour {
             HingeBehaviour::Pinned { .. } => false,
@@ -141,36 +129,28 @@ impl LoadedHinge {
             return Ok(());
         }
         Err(if predicts(DamageMeasure::Mean) {
-            "objective.damage_measure = \"peak\": the weights do not predict D_peak: use \"mean\", or train \
-             on a database that contains it"
+            InvalidHinge::NoPeakDamage
         } else {
-            "objective.damage: only the learned hinge law predicts damage: use \
-             hinge = \"surrogate\" or damage = 0"
-        }
-        .into())
+            InvalidHinge::NoDamage
+        })
     }
 }
 
 /// The networks that the hinge law reads, named in a section of the scene, at the thickness of the sheet.
 fn networks(
     config: &SceneConfig,
-    section: &str,
+    section: &'static str,
     measured: &SheetMaterial,
     path: &Path,
 ) -> Result<Vec<Surrogate>, SceneError> {
     let load = |weights: PathBuf| {
-        let weights = beside(path, &weights);
-        if !weights.is_file() {
-            return Err(SceneError::Value {
-                path: path.to_owned(),
-                reason: format!(
-                    "{section}.weights: there is no file {}: train it, or give the constants of \
-                     hinge = \"linear\"",
-                    weights.display()
-                ),
-            });
+        let file = beside(path, &weights);
+        if !file.is_file() {
+            let path = path.to_owned();
+            let source = Box::new(InvalidHinge::NoWeights { section, file });
+            return Err(SceneError::Hinge { path, source });
         }
-        network(config, measured, path, &weights)
+        network(config, measured, path, &file)
     };
     config.weights_files().into_iter().map(load).collect()
 }
@@ -184,9 +164,11 @@ pub(super) fn network(
     weights: &Path,
 ) -> Result<Surrogate, SceneError> {
     let surrogate = Surrogate::load(weights)?;
-    fitted(config, measured, surrogate).map_err(|reason| SceneError::Value {
-        path: path.to_owned(),
-        reason: format!("the weights {} are for {reason}", weights.display()),
+    fitted(config, measured, surrogate).map_err(|source| {
+        let file = weights.to_owned();
+        let path = path.to_owned();
+        let source = Box::new(InvalidHinge::OtherHinges { file, source });
+        SceneError::Hinge { path, source }
     })
 }
 
@@ -196,17 +178,14 @@ fn condensed(
     config: &SceneConfig,
     networks: Vec<Surrogate>,
     file: &CondensedConfig,
-) -> Result<LoadedHinge, String> {
+) -> Result<LoadedHinge, InvalidHinge> {
     let secant = file.secant_deg;
-    within("condensed.secant_deg", secant, [-180.0, 180.0], "deg")?;
     let law = CondensedLaw::new(networks[0].clone(), secant.to_radians());
-    let [k_a, k_s, k_theta] = constants_at_start(config, &law);
-    if !(k_a > 0.0 && k_s > 0.0 && k_theta > 0.0) {
-        return Err(format!(
-            "condensed: at w_lig = {} mm the weights have k_a = {k_a} N/mm, k_s = {k_s} N/mm, \
-             k_theta = {k_theta} N mm, which must all be positive: use hinge = \"surrogate\" or other weights",
-            config.ligament.start
-        ));
+    let constants = constants_at_start(config, &law);
+    let [_, _, k_theta] = constants;
+    if !constants.iter().all(|constant| *constant > 0.0) {
+        let w_lig = config.ligament.start;
+        return Err(InvalidHinge::Condensed { w_lig, constants });
     }
     Ok(LoadedHinge {
         networks,
@@ -216,7 +195,7 @@ fn condensed(
 }
 
 /// The learned law; the contact stiffness is relative to the secant stiffness of a hinge of the start.
-fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge, String> {
+fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge, InvalidHinge> {
     same_training(&networks)?;
     let surrogate = &networks[0];
     let [_, _, [closed, _]] = surrogate.domain().bounds();
@@ -243,17 +222,16 @@ fn constants_at_start(config: &SceneConfig, law: &CondensedLaw) -> [f64; 3] {
 
 /// The contact of a scene, or by default one for hinges with the stiffness `k_theta` that becomes infinite at the
 /// void angle `wall` (rad).
-fn contact(config: &SceneConfig, k_theta: f64, wall: f64) -> Result<Contact, String> {
-    match config.contact {
+fn contact(config: &SceneConfig, k_theta: f64, wall: f64) -> Result<Contact, InvalidHinge> {
+    let contact = match config.contact {
         Some(contact) => contact.contact(),
-        None => {
-            Contact::new(CONTACT_STIFFNESS * k_theta, wall, 0.0).map_err(|error| error.to_string())
-        }
-    }
+        None => Contact::new(CONTACT_STIFFNESS * k_theta, wall, 0.0),
+    };
+    Ok(contact?)
 }
 
 /// The spread of networks trained on different data estimates the error of neither.
-fn same_training(networks: &[Surrogate]) -> Result<(), String> {
+fn same_training(networks: &[Surrogate]) -> Result<(), InvalidHinge> {
     let data = |network: &Surrogate| {
         let card = network.card();
         (card.dataset_hash.clone(), card.split_hash.clone())
@@ -264,18 +242,13 @@ fn same_training(networks: &[Surrogate]) -> Result<(), String> {
     {
         return Ok(());
     }
-    Err("surrogate.ensemble: all networks must be trained on the data of surrogate.weights".into())
+    Err(InvalidHinge::OtherTraining)
 }
 
-fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, String> {
-    within("pin.opening_deg", pin.opening_deg, [-180.0, 180.0], "deg")?;
+fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, InvalidHinge> {
     let held_or_loaded = !config.supports.is_empty() || config.has_loads();
     if held_or_loaded || config.drive.is_some() || config.contact.is_some() {
-        return Err(
-            "supports, loads, edge_loads, opening_couples, drive, contact: hinge = \"pin\" has no equilibrium: \
-             remove these sections, or use hinge = \"linear\""
-                .into(),
-        );
+        return Err(InvalidHinge::HeldPins);
     }
     Ok(LoadedHinge {
         label: "pins: kinematics without forces",
@@ -299,23 +272,15 @@ fn springs(law: Arc<dyn HingeLaw>, contact: Contact) -> LoadedHinge {
     }
 }
 
-fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHinge, String> {
+fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHinge, InvalidHinge> {
     let LinearConstants { k_a, k_s, k_theta } = constants;
-    within("linear.k_a", k_a, [1e-3, 1e6], "N/mm")?;
-    within("linear.k_s", k_s, [1e-3, 1e6], "N/mm")?;
-    within("linear.k_theta", k_theta, [1e-3, 1e9], "N mm/rad")?;
     let grid = config.sheet.grid();
     let panel = config.sheet.outline().area().abs() / grid.panel_count() as f64;
     let ratio = k_theta / (k_a.max(k_s) * panel);
     if ratio < MIN_PIVOT_RATIO {
-        return Err(format!(
-            "linear.k_theta is {ratio:.0e} times the greater of linear.k_a and linear.k_s times the area of a panel: below \
-             {MIN_PIVOT_RATIO:.0e} rotations are lost in the rounding of the translations. Raise k_theta, or lower k_a \
-             and k_s"
-        ));
+        return Err(InvalidHinge::Soft { ratio });
     }
-    let law = LinearLaw::uniform([k_a, k_s, k_theta], grid.hinge_count())
-        .map_err(|error| error.to_string())?;
+    let law = LinearLaw::uniform([k_a, k_s, k_theta], grid.hinge_count())?;
     let contact = contact(config, k_theta, CONTACT_WALL)?;
     Ok(springs(Arc::new(law), contact))
 }
@@ -329,40 +294,35 @@ fn fitted(
     config: &SceneConfig,
     material: &SheetMaterial,
     surrogate: Surrogate,
-) -> Result<Surrogate, String> {
+) -> Result<Surrogate, WeightsMismatch> {
     let (card, process) = (surrogate.card(), config.process);
     let law = material.law_hash();
     match &card.material_hash {
         Some(trained) if *trained == law => {}
-        Some(trained) => {
-            return Err(format!(
-                "another material law than that of the scene: `{}` ({trained}, that of the file `{}` is {law}). Name the \
-                 material file of the training, with its thickness; the key `thickness` of the scene gives that of \
-                 the sheet. If its numbers have changed, train again",
-                card.material, material.name
-            ));
+        Some(trained_law) => {
+            return Err(WeightsMismatch::Law {
+                trained: card.material.clone(),
+                trained_law: trained_law.clone(),
+                file: material.name.clone(),
+                law,
+            });
         }
         None if card.material == material.name => {}
         None => {
-            return Err(format!(
-                "the material `{}`, the scene's is `{}`",
-                card.material, material.name
-            ));
+            return Err(WeightsMismatch::Material {
+                trained: card.material.clone(),
+                file: material.name.clone(),
+            });
         }
     }
     let scale = config.scale(material);
-    if card.hinge.fillet_ratio != process.fillet_ratio {
-        return Err(format!(
-            "fillet_ratio = {}, but the scene has process.fillet_ratio = {}",
-            card.hinge.fillet_ratio, process.fillet_ratio
-        ));
+    let (trained, scene) = (card.hinge.fillet_ratio, process.fillet_ratio);
+    if trained != scene {
+        return Err(WeightsMismatch::FilletRatio { trained, scene });
     }
-    let r_win = scale * card.hinge.r_win;
-    if (process.r_win / r_win - 1.0).abs() > ROUNDED {
-        return Err(format!(
-            "windows of r_win = {r_win} mm in a sheet of this thickness, but the scene has process.r_win = {}",
-            process.r_win
-        ));
+    let (trained, scene) = (scale * card.hinge.r_win, process.r_win);
+    if (scene / trained - 1.0).abs() > ROUNDED {
+        return Err(WeightsMismatch::Window { trained, scene });
     }
     Ok(if scale == 1.0 {
         surrogate

@@ -1,7 +1,7 @@
 //! The deployed sheet in the position in which the objective compares it with the target.
 
 use crate::objective::design_problem::Deployment;
-use crate::objective::loss::OutlinePoints;
+use crate::objective::shape::OutlinePoints;
 use crate::scene::checked_scene::Scene;
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::kinematics::{Configuration, deployed};
@@ -12,7 +12,7 @@ use crate::sheet::topology::PanelCorner;
 pub fn placed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> Configuration {
     let mut placed = configuration.to_vec();
     if scene.config.supports.is_empty() {
-        let points = scene.config.objective.outline.of(sheet);
+        let points = scene.config.objective.outline.corners(sheet);
         let points = corners(sheet, points, configuration);
         for axis in 0..2 {
             let sum: f64 = points.iter().map(|point| point[axis]).sum();
@@ -31,7 +31,7 @@ pub fn deployed_outline(
 ) -> Vec<[f64; 2]> {
     let sheet = &deployment.sheet;
     let configuration = placed(scene, sheet, &deployment.final_step().configuration);
-    corners(sheet, points.of(sheet), &configuration)
+    corners(sheet, points.corners(sheet), &configuration)
 }
 
 fn corners(sheet: &Sheet, corners: Vec<PanelCorner>, configuration: &[[f64; 3]]) -> Vec<[f64; 2]> {

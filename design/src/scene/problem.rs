@@ -1,17 +1,14 @@
 //! From a scene to its design problem and its start design.
 
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
-use crate::geometry::chamfer::Chamfer;
 use crate::objective::design_problem::{DesignProblem, Mechanics, Model};
-use crate::objective::domain_penalty::DomainPenalty;
 use crate::objective::loss::Objective;
-use crate::objective::path_functionals::PerFunctional;
+use crate::objective::terms::Setting;
 use crate::pattern::design_vector::{DesignVector, WidthChart};
 use crate::pattern::grid::Grid;
 use crate::scene::checked_scene::Scene;
 use crate::scene::loaded_hinge::HingeBehaviour;
 use crate::scene::scene_error::SceneError;
-use hinge::TrainingDomain;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -29,7 +26,7 @@ impl Scene {
             outline: self.config.sheet.outline(),
             widths: self.width_chart(),
             options: self.sheet_options(),
-            objective: self.objective(model.domain()),
+            objective: self.objective(&model),
             model,
         };
         if !self.config.objective.balance {
@@ -71,49 +68,20 @@ impl Scene {
 
     /// Area of the sheet divided by the number of panels (mm^2); the weights of the objective are relative to it.
     pub fn mean_panel_area(&self) -> f64 {
-        self.config.sheet.outline().area() / self.grid().panel_count() as f64
+        self.config.sheet.mean_panel_area()
     }
 
-    fn objective(&self, domain: Option<&TrainingDomain>) -> Objective {
-        let config = &self.config.objective;
-        let unit = if config.balance {
-            1.0
-        } else {
-            self.mean_panel_area()
+    fn objective(&self, model: &Model) -> Objective {
+        let law = match model {
+            Model::Ideal { .. } => None,
+            Model::Equilibrium(mechanics) => Some(&*mechanics.law),
         };
-        let ideal = !self.hinge.carries_load();
-        let centre = if ideal { self.target.mean() } else { [0.0; 2] };
-        Objective {
-            target: self
-                .target
-                .points()
-                .iter()
-                .map(|[x, y]| [x - centre[0], y - centre[1]])
-                .collect(),
-            chamfer: Chamfer {
-                coverage_weight: config.coverage,
-                smoothing: config.smoothing,
-                precision: config.precision,
-            },
-            outline: config.outline,
-            // A sheet on pins has no supports.
-            centred: ideal,
-            weights: PerFunctional {
-                damage: config.damage * unit,
-                compression: config.compression * unit,
-                shear: config.shear * unit,
-            },
-            damage_measure: config.damage_measure,
-            temperatures: config.temperatures,
-            panel_shape: config.panel_shape * self.mean_panel_area(),
-            // Only a learned hinge has a window. Two window radii and a gap: the windows do not lie on one line.
-            least_distance: domain.map_or(0.0, |_| 3.0 * self.config.process.r_win),
-            min_panel_width: config.min_panel_width,
-            domain: (domain.filter(|_| config.domain > 0.0)).map(|domain| DomainPenalty {
-                domain: domain.clone(),
-                weight: config.domain * self.mean_panel_area(),
-            }),
-        }
+        self.config.objective.objective(&Setting {
+            target: &self.target,
+            law,
+            mean_panel_area: self.mean_panel_area(),
+            r_win: self.config.process.r_win,
+        })
     }
 
     fn model(&self) -> Result<Model, SceneError> {
@@ -121,9 +89,9 @@ impl Scene {
             HingeBehaviour::Pinned { opening } => return Ok(Model::Ideal { opening: *opening }),
             HingeBehaviour::Elastic { law, contact } => (law.clone(), *contact),
         };
-        let solver = self.solver().map_err(|error| SceneError::Value {
+        let solver = self.solver().map_err(|source| SceneError::Equilibrium {
             path: self.path.clone(),
-            reason: error.to_string(),
+            source,
         })?;
         Ok(Model::Equilibrium(Box::new(Mechanics {
             law,

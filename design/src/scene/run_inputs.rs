@@ -43,12 +43,6 @@ pub enum RunInputsError {
     #[error("{path} is not the state of a run: {source}", path = .path.display())]
     State { path: PathBuf, source: SealError },
     #[error(
-        "{path} names no copies of its inputs, because the run was made by an earlier version of kirigami: name its \
-         scene, and the state with --design; or run its scene again",
-        path = .path.display()
-    )]
-    Earlier { path: PathBuf },
-    #[error(
         "{path} is not the file that the run was made with (BLAKE3 {found}, not {expected}): copy the whole run folder \
          again, or run `kirigami design` with the scene again",
         path = .path.display()
@@ -66,7 +60,7 @@ pub fn scene_file(path: &Path) -> Result<PathBuf, RunInputsError> {
     /// The part of a run's state that names its inputs.
     #[derive(Deserialize)]
     struct Named {
-        inputs: Option<InputHashes>,
+        inputs: InputHashes,
     }
     if !path.is_dir() {
         return Ok(path.to_owned());
@@ -84,10 +78,7 @@ pub fn scene_file(path: &Path) -> Result<PathBuf, RunInputsError> {
             return Err(RunInputsError::State { path, source });
         }
     };
-    let Some(hashes) = named.inputs else {
-        return Err(RunInputsError::Earlier { path: state });
-    };
-    for (name, expected) in hashes {
+    for (name, expected) in named.inputs {
         let path = path.join(name);
         let found = blake3::hash(&read(&path)?).to_hex().to_string();
         if found != expected {

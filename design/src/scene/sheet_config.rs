@@ -12,11 +12,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SheetConfig {
-    /// Sides [along x, along y] of a rectangle (mm), each 20 to 20 000.
+    /// Sides [along x, along y] of a rectangle (mm).
+    #[schemars(inner(range(min = 20.0, max = 2e4)))]
     pub size: Option<[f64; 2]>,
     /// Corners SW, SE, NE, NW of a convex quadrilateral (mm), instead of `size`.
     pub corners: Option<[[f64; 2]; 4]>,
-    /// [columns M, rows N], each at least 2; at most 100 000 panels.
+    /// [columns M, rows N]; at most 100 000 panels.
+    #[schemars(inner(range(min = 2)))]
     pub panels: [usize; 2],
 }
 
@@ -30,8 +32,7 @@ pub struct LigamentConfig {
     pub range: [f64; 2],
 }
 
-/// The start of the search: r and tau or their logits, and a width per hinge. Omitted values are
-/// uniform.
+/// The start of the search. Omitted values are uniform.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct StartConfig {
@@ -39,10 +40,6 @@ pub struct StartConfig {
     pub r: Option<Vec<f64>>,
     /// Boundary positions on the edges bottom, right, top, left, increasing in (0, 1).
     pub tau: Option<[Vec<f64>; 4]>,
-    /// Logits of r, instead of `r`.
-    pub z: Option<Vec<f64>>,
-    /// Logits of the intervals of tau, instead of `tau`.
-    pub ell: Option<[Vec<f64>; 4]>,
     /// Width of each hinge (mm), strictly inside `ligament.range`, instead of `ligament.start`.
     pub w_lig: Option<Vec<f64>>,
 }
@@ -62,6 +59,11 @@ impl SheetConfig {
                 corners,
             })
     }
+
+    /// Area of the sheet divided by the number of panels (mm^2).
+    pub fn mean_panel_area(&self) -> f64 {
+        self.outline().area() / self.grid().panel_count() as f64
+    }
 }
 
 impl StartConfig {
@@ -69,13 +71,13 @@ impl StartConfig {
     pub fn pattern(&self, grid: Grid) -> Result<PatternCoordinates, PatternError> {
         let uniform = PatternCoordinates::uniform(grid);
         let start = PatternCoordinates {
-            z: match (&self.r, &self.z) {
-                (Some(r), _) => PatternCoordinates::z_of(r)?,
-                (None, z) => z.clone().unwrap_or(uniform.z),
+            z: match &self.r {
+                Some(r) => PatternCoordinates::z_of(r)?,
+                None => uniform.z,
             },
-            ell: match (&self.tau, &self.ell) {
-                (Some(tau), _) => PatternCoordinates::ell_of(tau)?,
-                (None, ell) => ell.clone().unwrap_or(uniform.ell),
+            ell: match &self.tau {
+                Some(tau) => PatternCoordinates::ell_of(tau)?,
+                None => uniform.ell,
             },
         };
         start.check(grid)?;

@@ -58,7 +58,7 @@ fn deployed() -> (DesignProblem, Deployment) {
             contact: None,
             solver,
         })),
-        objective: Objective::of_shape(vec![[0.0, 0.0]]),
+        objective: Objective::from_shape(Shape::new(vec![[0.0, 0.0]])),
     };
     let mut design = DesignVector::uniform(GRID);
     for (i, z) in design.pattern.z.iter_mut().enumerate() {

@@ -4,7 +4,7 @@ use super::{read, with};
 use design::equilibrium::load_step::LoadStep;
 use design::hinge_law::{CondensedLaw, HingeLaw, Order};
 use design::objective::design_problem::Model;
-use design::scene::Scene;
+use design::scene::{CondensedConfig, Scene};
 use hinge::HingeDeformation;
 use std::path::Path;
 use surrogate::Surrogate;
@@ -58,7 +58,7 @@ fn opening_couples_open_a_hinge() {
 }
 
 #[test]
-fn a_start_is_given_by_values_or_by_logits() {
+fn a_start_is_given_by_values() {
     let folder = tempfile::tempdir().unwrap();
     let start = |section: &str| {
         let changes = [("start_noise = 0.05\n", ""), ("[process]", section)];
@@ -68,30 +68,26 @@ fn a_start_is_given_by_values_or_by_logits() {
         "[start]\nr = [0.3, 0.5, 0.6, 0.9]\ntau = [[0.2, 0.6], [0.3, 0.7], [0.5, 0.6], [0.1, 0.2]]\n\
          w_lig = [12.0, 13.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0, 20.0, 21.0, 22.0, 23.0]\n[process]",
     );
-    let logits: Vec<String> = [0.3_f64, 0.5, 0.6, 0.9]
-        .map(|r| (r / (1.0 - r)).ln().to_string())
-        .to_vec();
-    let ell = [
+    let logits = [0.3_f64, 0.5, 0.6, 0.9].map(|r| (r / (1.0 - r)).ln());
+    let ell: [[f64; 3]; 4] = [
         [0.2, 0.4, 0.4],
         [0.3, 0.4, 0.3],
         [0.5, 0.1, 0.4],
         [0.1, 0.1, 0.8],
     ];
-    let ell = ell.map(|edge: [f64; 3]| edge.map(f64::ln));
-    let from_logits = start(&format!(
-        "[start]\nz = [{}]\nell = {ell:?}\n[process]",
-        logits.join(", ")
-    ));
-    let pattern = |design: &design::pattern::design_vector::DesignVector| {
-        let pattern = &design.pattern;
-        [pattern.z.as_slice(), &pattern.ell.concat()].concat()
-    };
-    for (one, other) in std::iter::zip(pattern(&values), pattern(&from_logits)) {
-        assert!((one - other).abs() < 1e-12);
+    let ell = ell.as_flattened().iter().map(|length| length.ln());
+    let found = values
+        .pattern
+        .z
+        .iter()
+        .chain(values.pattern.ell.iter().flatten());
+    for (logit, expected) in found.zip(logits.into_iter().chain(ell)) {
+        assert!((logit - expected).abs() < 1e-12);
     }
     // Widths increase with the hinge index; omitted values are uniform.
     assert!(values.omega.windows(2).all(|pair| pair[0] < pair[1]));
-    assert!(from_logits.omega.windows(2).all(|pair| pair[0] == pair[1]));
+    let uniform = start("[process]");
+    assert!(uniform.omega.windows(2).all(|pair| pair[0] == pair[1]));
     let refused = with(&[("[process]", "[start]\nr = [0.3, 0.5, 1.6, 0.9]\n[process]")]);
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, refused).unwrap();
@@ -122,13 +118,13 @@ fn a_target_is_drawn_in_an_svg_file() {
 fn constants_are_condensed_from_weights() {
     let folder = tempfile::tempdir().unwrap();
     super::learned::weights(folder.path(), &[]);
-    let scene = read(
-        folder.path(),
-        &with(&[(
-            "[linear]\nk_a = 400.0\nk_s = 250.0\nk_theta = 300.0",
-            "[condensed]\nweights = \"tiny.safetensors\"\nsecant_deg = 20.0",
-        )]),
-    );
+    let mut config = read(folder.path(), &with(&[])).config;
+    config.linear = None;
+    config.condensed = Some(CondensedConfig {
+        weights: "tiny.safetensors".into(),
+        secant_deg: 20.0,
+    });
+    let scene = Scene::new(config, &folder.path().join("scene.toml")).unwrap();
     let problem = scene.problem().unwrap();
     let (_, sheet) = problem.cut(&scene.start()).unwrap();
     let Model::Equilibrium(mechanics) = &problem.model else {

@@ -6,18 +6,28 @@ use design::equilibrium::solver::EquilibriumSolver;
 use design::geometry::chamfer::{Chamfer, Precision};
 use design::hinge_law::{DamageMeasure, LinearLaw};
 use design::objective::design_problem::{DesignProblem, Mechanics, Model};
-use design::objective::loss::{Objective, OutlinePoints};
-use design::objective::path_functionals::PerFunctional;
+use design::objective::loss::Objective;
+use design::objective::shape::{OutlinePoints, Shape};
+use design::objective::term::Weighted;
+use design::objective::terms::{Compression, Damage, Shear};
 use design::pattern::design_vector::{DesignVector, WidthChart};
 use serde_json::Value;
 use std::sync::Arc;
 
-fn per_functional(value: &Value) -> PerFunctional {
-    PerFunctional {
-        damage: get(value, "damage"),
-        compression: get(value, "comp"),
-        shear: get(value, "shear"),
-    }
+fn functionals(case: &Value) -> Vec<Weighted> {
+    let weight = |name: &str| get(&case["weights"], name);
+    let temperature = |name: &str| get(&case["softmax_temperature"], name);
+    let compression = Compression {
+        temperature: temperature("comp"),
+    };
+    let shear = Shear {
+        temperature: temperature("shear"),
+    };
+    vec![
+        Weighted::new(weight("damage"), Damage::new(DamageMeasure::Mean, 1.0)),
+        Weighted::new(weight("comp"), compression),
+        Weighted::new(weight("shear"), shear),
+    ]
 }
 
 #[test]
@@ -50,21 +60,18 @@ fn a_pulled_sheet_with_path_functionals() {
             .unwrap(),
         })),
         objective: Objective {
-            target: get(&case, "target"),
-            chamfer: Chamfer {
-                coverage_weight: get(&case, "w_cov"),
-                smoothing: 0.0,
-                precision: Precision::Samples,
+            shape: Shape {
+                target: get(&case, "target"),
+                chamfer: Chamfer {
+                    coverage_weight: get(&case, "w_cov"),
+                    smoothing: 0.0,
+                    precision: Precision::Samples,
+                },
+                outline: OutlinePoints::All,
+                centred: false,
             },
-            outline: OutlinePoints::All,
-            centred: false,
-            panel_shape: 0.0,
-            least_distance: 0.0,
-            min_panel_width: 0.0,
-            domain: None,
-            weights: per_functional(&case["weights"]),
-            damage_measure: DamageMeasure::Mean,
-            temperatures: per_functional(&case["softmax_temperature"]),
+            functionals: functionals(&case),
+            penalties: Vec::new(),
         },
     };
     let evaluation = problem.evaluate(&design).unwrap();
@@ -82,10 +89,10 @@ fn a_pulled_sheet_with_path_functionals() {
     let close = |found: f64, expected: f64| (found - expected).abs() <= 1e-6 * expected.abs();
     assert!(close(evaluation.loss, get(&case, "loss")));
     let terms = &case["terms"];
-    assert!(close(evaluation.terms.chamfer, get(terms, "chamfer")));
-    assert!(close(evaluation.terms.path.compression, get(terms, "comp")));
-    assert!(close(evaluation.terms.path.shear, get(terms, "shear")));
-    assert_eq!(evaluation.terms.path.damage, 0.0);
+    assert!(close(evaluation.terms["chamfer"], get(terms, "chamfer")));
+    assert!(close(evaluation.terms["compression"], get(terms, "comp")));
+    assert!(close(evaluation.terms["shear"], get(terms, "shear")));
+    assert_eq!(evaluation.terms["damage"], 0.0);
 
     let expected = DesignVector {
         pattern: cases::coordinates(&case["grad"]),

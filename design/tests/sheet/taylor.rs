@@ -10,9 +10,10 @@ use design::equilibrium::supports::{Dof, Load, Support};
 use design::geometry::chamfer::{Chamfer, Precision};
 use design::hinge_law::{CondensedLaw, Contact, DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
 use design::objective::design_problem::{Deployment, DesignProblem, Mechanics, Model};
-use design::objective::domain_penalty::DomainPenalty;
-use design::objective::loss::{Objective, OutlinePoints};
-use design::objective::path_functionals::PerFunctional;
+use design::objective::loss::Objective;
+use design::objective::shape::{OutlinePoints, Shape};
+use design::objective::term::Weighted;
+use design::objective::terms::{Compression, Damage, DomainPenalty, PanelShape, Shear};
 use design::pattern::coordinates::PatternCoordinates;
 use design::pattern::cut_pattern::Outline;
 use design::pattern::design_vector::{DesignVector, WidthChart};
@@ -74,15 +75,20 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
         [0.6 * SIDE * cos, 0.45 * SIDE * sin]
     });
     // A domain that most states are outside of; for pins there is none.
-    let domain = DomainPenalty {
-        domain: TrainingDomain::of_box(
-            [[-0.02, 0.0], [-0.01, 0.01], [0.0, 0.02]],
-            [15.0, 17.0],
-            [1.5, 1.6],
-        ),
-        weight: 1.0,
+    let law = match &model {
+        Model::Ideal { .. } => None,
+        Model::Equilibrium(mechanics) => Some(&mechanics.law),
     };
-    let domain = matches!(model, Model::Equilibrium(_)).then_some(domain);
+    let domain = DomainPenalty {
+        domain: law.map(|_| {
+            TrainingDomain::of_box(
+                [[-0.02, 0.0], [-0.01, 0.01], [0.0, 0.02]],
+                [15.0, 17.0],
+                [1.5, 1.6],
+            )
+        }),
+    };
+    let scale = law.and_then(|law| law.damage_scale(DamageMeasure::Mean));
     DesignProblem {
         grid: GRID,
         outline: Outline::rectangle(SIDE, SIDE),
@@ -97,29 +103,33 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
         },
         model,
         objective: Objective {
-            target: target.collect(),
-            chamfer: Chamfer {
-                coverage_weight: 0.5,
-                smoothing: 500.0,
-                precision: Precision::Samples,
+            shape: Shape {
+                target: target.collect(),
+                chamfer: Chamfer {
+                    coverage_weight: 0.5,
+                    smoothing: 500.0,
+                    precision: Precision::Samples,
+                },
+                outline: OutlinePoints::Free,
+                centred: true,
             },
-            outline: OutlinePoints::Free,
-            centred: true,
-            panel_shape: 200.0,
-            least_distance: 200.0,
-            min_panel_width: 0.0,
-            domain,
-            weights: PerFunctional {
-                damage: 300.0,
-                compression: 1e4,
-                shear: 1e4,
-            },
-            damage_measure: DamageMeasure::Mean,
-            temperatures: PerFunctional {
-                damage: 0.1,
-                compression: 0.02,
-                shear: 0.02,
-            },
+            functionals: vec![
+                Weighted::new(
+                    300.0,
+                    Damage::new(DamageMeasure::Mean, scale.unwrap_or(1.0)),
+                ),
+                Weighted::new(1e4, Compression { temperature: 0.02 }),
+                Weighted::new(1e4, Shear { temperature: 0.02 }),
+            ],
+            penalties: vec![
+                Weighted::new(
+                    200.0,
+                    PanelShape {
+                        min_distance: 200.0,
+                    },
+                ),
+                Weighted::new(1.0, domain),
+            ],
         },
     }
 }
@@ -206,8 +216,11 @@ fn the_curvature_of_the_shape_is_that_of_its_points() {
         let x = design.to_flat();
         let direction = Random::new(17).numbers(x.len(), 1.0);
         let placed = |deployment: &Deployment| {
-            let corners = problem.objective.outline.of(&deployment.sheet);
-            problem.objective.placed(&deployment.outline(&corners))
+            let corners = problem.objective.shape.outline.corners(&deployment.sheet);
+            problem
+                .objective
+                .shape
+                .placed(&deployment.outline(&corners))
         };
         let moved = |step: f64| {
             let x = std::iter::zip(&x, &direction).map(|(x, d)| x + step * d);
@@ -218,8 +231,8 @@ fn the_curvature_of_the_shape_is_that_of_its_points() {
             )
         };
         let (ahead, behind) = (moved(1e-4), moved(-1e-4));
-        let chamfer = &problem.objective.chamfer;
-        let factors = chamfer.curvature_factors(&placed(&deployment), &problem.objective.target);
+        let shape = &problem.objective.shape;
+        let factors = (shape.chamfer).curvature_factors(&placed(&deployment), &shape.target);
         let by_points: f64 = (0..factors.len())
             .flat_map(|k| {
                 let motion = [0, 1].map(|axis| (ahead[k][axis] - behind[k][axis]) / 2e-4);

@@ -111,9 +111,6 @@ impl SimilarScene {
                 learned.ensemble.clear();
             }
         }
-        if let Some(condensed) = &mut self.config.condensed {
-            condensed.weights = weights.to_owned();
-        }
         if let Some(material) = material {
             self.config.material = absolute(material)?;
             if !(self.same_sheet && same_law) {

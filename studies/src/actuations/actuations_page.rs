@@ -102,10 +102,7 @@ impl Numbers {
                 case.transmission.moment_panels(|moment| moment.forces),
             ],
             couple: 100.0 * by_couples / (by_forces + by_couples),
-            weights: [
-                case.objective.weights.compression,
-                case.objective.weights.shear,
-            ],
+            weights: ["compression", "shear"].map(|name| case.objective.weight(name)),
         }
     }
 }

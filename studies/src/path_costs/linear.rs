@@ -10,6 +10,7 @@ use design::equilibrium::solver::EquilibriumSolver;
 use design::equilibrium::supports::{Dof, Load, Support};
 use design::objective::design_problem::{DesignProblem, Mechanics, Model};
 use design::objective::loss::Objective;
+use design::objective::shape::Shape;
 use design::pattern::coordinates::logit;
 use design::pattern::cut_pattern::Outline;
 use design::pattern::design_vector::{DesignVector, WidthChart};
@@ -90,12 +91,12 @@ fn problem(grid: Grid, load: f64) -> Result<(DesignProblem, usize)> {
             contact: None,
             solver,
         })),
-        objective: Objective::of_shape(vec![
+        objective: Objective::from_shape(Shape::new(vec![
             [0.0, 0.0],
             [1.1 * width, 0.0],
             [1.1 * width, 1.1 * height],
             [0.0, 1.1 * height],
-        ]),
+        ])),
     };
     Ok((problem, factor_entries))
 }

@@ -32,7 +32,7 @@ pub fn losses(
     });
     let value = |x: f64, y: f64| {
         let values = plane.point([x, y]);
-        let Ok(pattern) = PatternCoordinates::of_values(problem.grid, &values) else {
+        let Ok(pattern) = PatternCoordinates::from_values(problem.grid, &values) else {
             return f64::NAN;
         };
         let design = DesignVector {

@@ -1,7 +1,7 @@
 //! The tables of the solution set.
 
 use super::{CONVERGED, NEGLIGIBLE, Solution, SolutionSet};
-use design::objective::loss::OutlinePoints;
+use design::objective::shape::OutlinePoints;
 use support::table::{Cell, Table};
 
 /// The name of a point set P.

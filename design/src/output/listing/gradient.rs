@@ -2,9 +2,9 @@
 
 use crate::geometry::intersection_over_union::intersection_over_union;
 use crate::objective::design_problem::{DesignError, Evaluation, Sensitivities};
-use crate::objective::loss::OutlinePoints;
+use crate::objective::loss::TermValues;
 use crate::objective::outline_error::outline_error;
-use crate::objective::path_functionals::PerFunctional;
+use crate::objective::shape::OutlinePoints;
 use crate::pattern::design_vector::DesignVector;
 use crate::scene::placement::deployed_outline;
 use crate::scene::{Scene, SceneError};
@@ -17,9 +17,12 @@ pub struct GradientListing {
     /// L of (16) (mm^2).
     pub loss: f64,
     /// The unweighted terms of L.
-    pub terms: TermsListing,
-    /// w_j; that of the Chamfer distance is 1.
-    pub weights: PerFunctional,
+    pub terms: TermValues,
+    /// Their weights.
+    pub weights: TermValues,
+    /// The terms in words, with their units.
+    #[serde(skip)]
+    pub labels: Vec<String>,
     /// dL/dtheta.
     pub grad: DesignVector,
     /// The gradient with respect to the constants of the design problem.
@@ -30,16 +33,6 @@ pub struct GradientListing {
     pub outline_error: f64,
     /// Intersection over union of the areas inside the deployed outline and inside the target.
     pub intersection_over_union: f64,
-}
-
-/// The unweighted terms.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct TermsListing {
-    /// mm^2
-    pub chamfer: f64,
-    /// The path functionals (17)-(19).
-    #[serde(flatten)]
-    pub path: PerFunctional,
 }
 
 /// Why there is no gradient.
@@ -72,11 +65,11 @@ impl GradientListing {
         } = evaluation;
         Ok(Self {
             loss,
-            terms: TermsListing {
-                chamfer: terms.chamfer,
-                path: terms.path,
-            },
-            weights: problem.objective.weights,
+            terms,
+            weights: (problem.objective.terms())
+                .map(|(term, weight)| (term.name().to_owned(), weight))
+                .collect(),
+            labels: problem.objective.labels(),
             grad: gradient,
             sensitivities,
             adjoint_residual,
@@ -88,15 +81,10 @@ impl GradientListing {
 
 impl fmt::Display for GradientListing {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let (terms, weights) = (&self.terms, &self.weights);
         writeln!(f, "{:<24}{:>14}{:>14}", "", "value", "weight")?;
-        for (name, value, weight) in [
-            ("Chamfer (mm^2)", terms.chamfer, 1.0),
-            ("damage", terms.path.damage, weights.damage),
-            ("compression", terms.path.compression, weights.compression),
-            ("shear", terms.path.shear, weights.shear),
-        ] {
-            writeln!(f, "{name:<24}{value:>14.6e}{weight:>14.6e}")?;
+        let rows = std::iter::zip(self.terms.values(), self.weights.values());
+        for (label, (value, weight)) in std::iter::zip(&self.labels, rows) {
+            writeln!(f, "{label:<24}{value:>14.6e}{weight:>14.6e}")?;
         }
         let norm = |block: &[f64]| block.iter().map(|g| g * g).sum::<f64>().sqrt();
         let gradient = &self.grad;

@@ -73,12 +73,13 @@ impl Report {
 
     /// The objective at the start and at the best design.
     fn objective(&self) -> String {
-        let rows = |of: &Scores| {
-            let mut rows = vec![("outline error (mm)", of.outline_error)];
-            rows.extend(of.terms());
-            rows.push(("loss (mm^2)", of.loss));
+        let rows = |scores: &Scores| {
+            let mut rows = vec![("outline error (mm)".to_owned(), scores.outline_error)];
+            let values = scores.terms.values().copied();
+            rows.extend(self.terms.iter().cloned().zip(values));
+            rows.push(("loss (mm^2)".to_owned(), scores.loss));
             if self.facts.has_domain {
-                rows.push(("inside domain (%)", 100.0 * of.share_inside));
+                rows.push(("inside domain (%)".to_owned(), 100.0 * scores.share_inside));
             }
             rows
         };

@@ -1,6 +1,7 @@
 //! The data of the page.
 
 use crate::objective::loss::Objective;
+use crate::objective::term::in_words;
 use crate::optimise::outer_loop::StepRecord;
 use crate::output::deployment_states::kept;
 use crate::output::report::{Report, Warning, worst_first};
@@ -50,7 +51,7 @@ struct History {
     step: Vec<usize>,
     loss: Vec<f64>,
     outline_error: Vec<f64>,
-    terms: Vec<(&'static str, Vec<f64>)>,
+    terms: Vec<(String, Vec<f64>)>,
 }
 
 #[derive(Serialize)]
@@ -130,31 +131,16 @@ impl History {
         let of = |value: &dyn Fn(&StepRecord) -> f64| -> Vec<f64> {
             index.iter().map(|&i| value(&records[i])).collect()
         };
-        let (weights, domain) = (objective.weights, objective.domain.as_ref());
-        let term = |name, weight: f64, value: &dyn Fn(&StepRecord) -> f64| {
-            (weight != 0.0).then(|| (name, of(&|record| weight * value(record))))
-        };
-        let terms = [
-            term("shape", 1.0, &|it| it.scores.chamfer),
-            term("damage", weights.damage, &|it| it.scores.damage),
-            term("compression", weights.compression, &|it| {
-                it.scores.compression
-            }),
-            term("shear", weights.shear, &|it| it.scores.shear),
-            term("panel shape", objective.panel_shape, &|it| {
-                it.scores.panel_shape
-            }),
-            (objective.min_panel_width > 0.0)
-                .then(|| ("panel width", of(&|it| it.scores.panel_width))),
-            term("domain", domain.map_or(0.0, |it| it.weight), &|it| {
-                it.scores.domain
-            }),
-        ];
+        let terms = objective.terms().filter(|(_, weight)| *weight != 0.0);
+        let terms = terms.map(|(term, weight)| {
+            let value = |record: &StepRecord| weight * record.scores.terms[term.name()];
+            (in_words(term.name()), of(&value))
+        });
         Self {
             step: index.iter().map(|&i| records[i].step).collect(),
             loss: of(&|record| record.scores.loss),
             outline_error: of(&|record| record.scores.outline_error),
-            terms: terms.into_iter().flatten().collect(),
+            terms: terms.collect(),
         }
     }
 }

@@ -9,8 +9,7 @@
 //! A state beyond the domain by a tenth of the range costs 1. The penalty begins at 98 % of the domain, because
 //! otherwise a minimum would lie just outside.
 
-use crate::equilibrium::load_step::LoadStep;
-use crate::sheet::cut_sheet::Sheet;
+use crate::objective::term::{Deployed, Term, TermGradient};
 use hinge::{HingeDeformation, TrainingDomain};
 
 /// Gauge above which a state is penalised.
@@ -24,49 +23,59 @@ const PER_INTERVAL: f64 = 10.0;
 /// Lower bound of the interval length; shorter intervals (a single training row, say) are widened to it.
 const NARROWEST_INTERVAL: f64 = 0.01;
 
-/// The training domain and the weight of the penalty.
+/// The penalty on states outside a training domain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DomainPenalty {
-    /// The training domain of the hinge law.
-    pub domain: TrainingDomain,
-    /// mm^2
-    pub weight: f64,
+    /// The training domain of the hinge law; without one the penalty is zero.
+    pub domain: Option<TrainingDomain>,
 }
 
-impl DomainPenalty {
-    /// The penalty along a path. The gradient of `weight` times the penalty, in (a, s, theta, w_lig, alpha) of
-    /// each hinge and load step, is added to `by_path`.
-    pub fn evaluate(&self, sheet: &Sheet, path: &[LoadStep], by_path: &mut [Vec<[f64; 5]>]) -> f64 {
-        let per_state = 1.0 / (sheet.hinges.len() * path.len()) as f64;
+impl Term for DomainPenalty {
+    fn name(&self) -> &'static str {
+        "domain"
+    }
+
+    fn evaluate(&self, at: &Deployed, weight: f64, gradient: &mut TermGradient) -> f64 {
+        let Some(domain) = &self.domain else {
+            return 0.0;
+        };
+        let per_state = 1.0 / (at.sheet.hinges.len() * at.path.len()) as f64;
         let mut value = 0.0;
-        for (h, (hinge, by_hinge)) in std::iter::zip(&sheet.hinges, by_path).enumerate() {
-            for (step, slopes) in std::iter::zip(path, by_hinge) {
-                let (excess, by) = self.of_state(hinge.w_lig, hinge.alpha, &step.deformations[h]);
+        let hinges = std::iter::zip(&at.sheet.hinges, &mut gradient.by_states);
+        for (h, (hinge, by_hinge)) in hinges.enumerate() {
+            for (step, slopes) in std::iter::zip(at.path, by_hinge) {
+                let state = &step.deformations[h];
+                let (excess, by) = excess_of_state(domain, hinge.w_lig, hinge.alpha, state);
                 value += per_state * excess;
                 for (slope, by) in std::iter::zip(slopes, by) {
-                    *slope += self.weight * per_state * by;
+                    *slope += weight * per_state * by;
                 }
             }
         }
         value
     }
+}
 
-    /// The contribution of one state, and its gradient in (a, s, theta, w_lig, alpha).
-    fn of_state(&self, w_lig: f64, alpha: f64, state: &HingeDeformation) -> (f64, [f64; 5]) {
-        let width = excess(self.domain.w_lig, w_lig);
-        let angle = excess(self.domain.alpha, alpha);
-        let mut value = width.0 + angle.0;
-        let mut gradient = [0.0, 0.0, 0.0, width.1, angle.1];
-        if self.domain.gauge(w_lig, state) > EDGE {
-            let gauge = self.domain.gauge_jet(w_lig, state);
-            let scaled = PER_HALF_RANGE * (gauge.value - EDGE);
-            value += scaled * scaled;
-            for (by, slope) in std::iter::zip(&mut gradient, gauge.gradient) {
-                *by += 2.0 * PER_HALF_RANGE * scaled * slope;
-            }
+/// The contribution of one state, and its gradient in (a, s, theta, w_lig, alpha).
+fn excess_of_state(
+    domain: &TrainingDomain,
+    w_lig: f64,
+    alpha: f64,
+    state: &HingeDeformation,
+) -> (f64, [f64; 5]) {
+    let width = excess(domain.w_lig, w_lig);
+    let angle = excess(domain.alpha, alpha);
+    let mut value = width.0 + angle.0;
+    let mut gradient = [0.0, 0.0, 0.0, width.1, angle.1];
+    if domain.gauge(w_lig, state) > EDGE {
+        let gauge = domain.gauge_jet(w_lig, state);
+        let scaled = PER_HALF_RANGE * (gauge.value - EDGE);
+        value += scaled * scaled;
+        for (by, slope) in std::iter::zip(&mut gradient, gauge.gradient) {
+            *by += 2.0 * PER_HALF_RANGE * scaled * slope;
         }
-        (value, gradient)
     }
+    (value, gradient)
 }
 
 /// (10 e / l)^2 of one interval, and its derivative.
@@ -83,17 +92,14 @@ mod tests {
     use super::*;
     use crate::analysis::taylor::central_slope;
 
-    fn penalty() -> DomainPenalty {
+    fn domain() -> TrainingDomain {
         let state = [[-0.8, 0.2], [-0.4, 0.4], [-0.1, 1.3]];
-        DomainPenalty {
-            domain: TrainingDomain::of_box(state, [5.0, 25.0], [0.8, 2.3]),
-            weight: 1.0,
-        }
+        TrainingDomain::of_box(state, [5.0, 25.0], [0.8, 2.3])
     }
 
     fn value(x: &[f64]) -> f64 {
         let state = [x[0], x[1], x[2]].into();
-        penalty().of_state(x[3], x[4], &state).0
+        excess_of_state(&domain(), x[3], x[4], &state).0
     }
 
     #[test]
@@ -119,7 +125,8 @@ mod tests {
             [1.0, 0.5, 0.3, 4.0, 1.5],
         ];
         for x in outside {
-            let (_, gradient) = penalty().of_state(x[3], x[4], &[x[0], x[1], x[2]].into());
+            let state = [x[0], x[1], x[2]].into();
+            let (_, gradient) = excess_of_state(&domain(), x[3], x[4], &state);
             for (i, found) in gradient.into_iter().enumerate() {
                 let unit: Vec<f64> = (0..5).map(|j| f64::from(i == j)).collect();
                 let slope = central_slope(value, &x, &unit, 1e-6);

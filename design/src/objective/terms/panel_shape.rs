@@ -16,6 +16,7 @@
 //! leave no room for the windows of their hinges.
 
 use crate::geometry::plane::{I, add, complex, cross};
+use crate::objective::term::{Deployed, Term, TermGradient};
 use crate::sheet::cut_sheet::Panel;
 
 /// Largest rho that is not penalised.
@@ -23,9 +24,28 @@ const WELL_SHAPED: f64 = 4.0;
 /// All pairs of corners of a panel.
 const PAIRS: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2], [1, 3]];
 
+/// The panel shape penalty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PanelShape {
+    /// l_min (mm): 0 does not limit the distances.
+    pub min_distance: f64,
+}
+
+impl Term for PanelShape {
+    fn name(&self) -> &'static str {
+        "panel_shape"
+    }
+
+    fn evaluate(&self, at: &Deployed, weight: f64, gradient: &mut TermGradient) -> f64 {
+        let (value, by_corners) = panel_shape(&at.sheet.panels, self.min_distance);
+        gradient.add_by_corners(weight, &by_corners);
+        value
+    }
+}
+
 /// The penalty with the minimum corner distance `min_distance` (mm), and its gradient in the corners of
 /// every panel (1/mm); infinite if a panel is not convex.
-pub fn panel_shape(panels: &[Panel], min_distance: f64) -> (f64, Vec<[[f64; 2]; 4]>) {
+fn panel_shape(panels: &[Panel], min_distance: f64) -> (f64, Vec<[[f64; 2]; 4]>) {
     let (mut value, mut gradient) = (0.0, vec![[[0.0; 2]; 4]; panels.len()]);
     for (panel, gradient) in std::iter::zip(panels, &mut gradient) {
         value += stretched(panel, gradient) + crowded(panel, min_distance, gradient);

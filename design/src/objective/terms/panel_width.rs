@@ -10,14 +10,38 @@
 //! steps to an infinite loss are halved.
 
 use crate::geometry::plane::{I, add, complex, cross};
+use crate::objective::term::{Deployed, Term, TermGradient};
 use crate::sheet::cut_sheet::Panel;
 use faer::c64;
 
 /// Weight of the barrier relative to d_min^2, and to the area of a square of this side.
 const WEIGHT: f64 = 0.01;
 
+/// The barrier at the minimum panel width.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PanelWidth {
+    /// d_min (mm), positive.
+    pub minimum: f64,
+}
+
+impl Term for PanelWidth {
+    fn name(&self) -> &'static str {
+        "panel_width"
+    }
+
+    fn unit(&self) -> Option<&'static str> {
+        Some("mm^2")
+    }
+
+    fn evaluate(&self, at: &Deployed, weight: f64, gradient: &mut TermGradient) -> f64 {
+        let (value, by_corners) = panel_width(&at.sheet.panels, self.minimum);
+        gradient.add_by_corners(weight, &by_corners);
+        value
+    }
+}
+
 /// The barrier for the minimum width `min_width` (mm), in mm^2, and its gradient in the corners of every panel (mm).
-pub fn panel_width(panels: &[Panel], min_width: f64) -> (f64, Vec<[[f64; 2]; 4]>) {
+fn panel_width(panels: &[Panel], min_width: f64) -> (f64, Vec<[[f64; 2]; 4]>) {
     let weight = WEIGHT * min_width.powi(2) / panels.len() as f64;
     let (mut value, mut gradient) = (0.0, vec![[[0.0; 2]; 4]; panels.len()]);
     for (panel, gradient) in std::iter::zip(panels, &mut gradient) {

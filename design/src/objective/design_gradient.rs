@@ -1,0 +1,189 @@
+//! The objective and its gradient in the design by the forward chain in reverse: lines 6-7 of Algorithm 1.
+
+use crate::equilibrium::adjoint::adjoint;
+use crate::equilibrium::load_step::LoadStep;
+use crate::equilibrium::nearby_path::KnownPath;
+use crate::geometry::plane::add;
+use crate::hinge_law::{Order, PreparedLaw};
+use crate::objective::design_problem::{
+    Deployment, DesignError, DesignProblem, Evaluation, Model, Sensitivities,
+};
+use crate::pattern::design_vector::DesignVector;
+use crate::sheet::cut_sheet::{Sheet, SheetGradient};
+use crate::sheet::ideal_deployment::ideal_deployment_pullback;
+use crate::sheet::kinematics::deployed_pullback;
+use crate::sheet::topology::PanelCorner;
+
+/// The partial derivatives of a function of a deployment.
+struct Partials<'a> {
+    /// The load steps on which the function depends, the last one among them.
+    path: &'a [LoadStep],
+    /// The outline points.
+    outline: &'a [PanelCorner],
+    /// In their deployed positions.
+    by_outline: &'a [[f64; 2]],
+    /// In (a, s, theta, w_lig, alpha) per hinge and step of `path`.
+    by_path: &'a [Vec<[f64; 5]>],
+    /// In the flat corners of every panel; `None` if all are zero.
+    by_corners: Option<&'a [[[f64; 2]; 4]]>,
+}
+
+/// The gradient of a function of a deployment in the design and in the constants of the problem.
+struct DesignGradient {
+    gradient: DesignVector,
+    sensitivities: Sensitivities,
+    /// See [`Evaluation::adjoint_residual`].
+    adjoint_residual: f64,
+}
+
+impl DesignProblem {
+    /// L(theta) and its gradient.
+    pub fn evaluate(&self, design: &DesignVector) -> Result<Evaluation, DesignError> {
+        self.evaluate_near(design, None)
+    }
+
+    /// L(theta) and its gradient, with the path corrected from the `known` path of another design if that is near
+    /// enough; otherwise it is followed from the flat sheet, as in [`evaluate`](Self::evaluate).
+    pub fn evaluate_near(
+        &self,
+        design: &DesignVector,
+        known: Option<&KnownPath>,
+    ) -> Result<Evaluation, DesignError> {
+        let by_damage = self.objective.needs_damage_gradient();
+        let (deployment, law) = self.deploy_prepared(design, by_damage, known)?;
+        let outline = self.objective.shape.outline.corners(&deployment.sheet);
+        let judgement = self.judge(&deployment, &outline)?;
+        let partials = Partials {
+            path: &deployment.path,
+            outline: &outline,
+            by_outline: &judgement.gradient.by_outline,
+            by_path: &judgement.gradient.by_states,
+            by_corners: Some(&judgement.gradient.by_corners),
+        };
+        let by_design = self.design_gradient(design, &deployment, law.as_deref(), &partials)?;
+        Ok(Evaluation {
+            loss: judgement.loss,
+            terms: judgement.terms,
+            gradient: by_design.gradient,
+            sensitivities: by_design.sensitivities,
+            deployment,
+            adjoint_residual: by_design.adjoint_residual,
+        })
+    }
+
+    /// Gradients in the design whose products with themselves, v v^T, add up to the second derivative of the Chamfer
+    /// distance at a deployment, but for the curvature of the deployment itself (Gauss-Newton).
+    pub fn shape_curvature(
+        &self,
+        design: &DesignVector,
+        deployment: &Deployment,
+    ) -> Result<Vec<Vec<f64>>, DesignError> {
+        let sheet = &deployment.sheet;
+        let shape = &self.objective.shape;
+        let outline = shape.outline.corners(sheet);
+        let mut last = deployment.final_step().clone();
+        let mut law = None;
+        if let Model::Equilibrium(mechanics) = &self.model {
+            let prepared = mechanics.law.prepare(&sheet.designs());
+            if last.order != Order::Design {
+                // Evaluated here once, and not by the adjoint of every vector.
+                let hinged = mechanics.hinged(sheet, &*prepared, true);
+                last.hinges = hinged.energies(&last.deformations, Order::Design);
+                last.order = Order::Design;
+            }
+            law = Some(prepared);
+        }
+        let by_path = vec![vec![[0.0; 5]]; sheet.hinges.len()];
+        let vectors = shape.curvature(&deployment.outline(&outline));
+        let gradients = vectors.iter().map(|by_outline| {
+            let partials = Partials {
+                path: std::slice::from_ref(&last),
+                outline: &outline,
+                by_outline,
+                by_path: &by_path,
+                by_corners: None,
+            };
+            let curved = self.design_gradient(design, deployment, law.as_deref(), &partials)?;
+            Ok(curved.gradient.to_flat())
+        });
+        gradients.collect()
+    }
+
+    /// The gradient in the design, and in the constants of the problem, of a function of the deployment.
+    fn design_gradient(
+        &self,
+        design: &DesignVector,
+        deployment: &Deployment,
+        law: Option<&dyn PreparedLaw>,
+        partials: &Partials,
+    ) -> Result<DesignGradient, DesignError> {
+        let (sheet, last) = (&deployment.sheet, deployment.final_step());
+        let mut by_sheet = SheetGradient::zeros(self.grid);
+        if let Some(by_corners) = partials.by_corners {
+            by_sheet.corners.copy_from_slice(by_corners);
+        }
+        let by_last = outline_pullback(sheet, last, partials, &mut by_sheet);
+        let (mut by_opening, mut adjoint_residual) = (None, 0.0);
+        let mut sensitivities = Sensitivities::default();
+        match &self.model {
+            Model::Ideal { opening } => {
+                let theta = design.opening.unwrap_or(*opening);
+                let slope = ideal_deployment_pullback(sheet, theta, &by_last, &mut by_sheet);
+                by_opening = design.opening.map(|_| slope);
+            }
+            Model::Equilibrium(mechanics) => {
+                let law = law.ok_or(DesignError::NoMechanics)?;
+                let sums = adjoint(
+                    &mechanics.solver,
+                    mechanics.hinged(sheet, law, true),
+                    partials.path,
+                    partials.by_path,
+                    by_last,
+                    &mut by_sheet,
+                )?;
+                adjoint_residual = sums.residual;
+                sensitivities.loads = sums.loads;
+                sensitivities.constants = sums.constants;
+            }
+        }
+        let (by_points, by_width) = sheet.pullback(&by_sheet);
+        let (by_pattern, by_outline) = deployment.pattern.pullback(&by_points);
+        sensitivities.outline = by_outline;
+        let gradient = DesignVector {
+            pattern: by_pattern,
+            omega: std::iter::zip(&design.omega, by_width)
+                .map(|(&omega, by_width)| by_width * self.widths.slope(omega))
+                .collect(),
+            opening: by_opening,
+        };
+        Ok(DesignGradient {
+            gradient,
+            sensitivities,
+            adjoint_residual,
+        })
+    }
+}
+
+/// The gradient, in the last configuration, of a function of the deployed outline points; its gradient
+/// with respect to the flat sheet is added to `by_sheet`.
+fn outline_pullback(
+    sheet: &Sheet,
+    last: &LoadStep,
+    partials: &Partials,
+    by_sheet: &mut SheetGradient,
+) -> Vec<[f64; 3]> {
+    let mut by_last = vec![[0.0; 3]; sheet.panels.len()];
+    for (&(panel, corner), &gradient) in std::iter::zip(partials.outline, partials.by_outline) {
+        let flat = sheet.panels[panel].corners[corner];
+        let (by_motion, by_flat, by_centroid) = deployed_pullback(
+            &sheet.panels[panel],
+            last.configuration[panel],
+            flat,
+            gradient,
+        );
+        (0..3).for_each(|c| by_last[panel][c] += by_motion[c]);
+        add(&mut by_sheet.corners[panel][corner], by_flat);
+        add(&mut by_sheet.centroids[panel], by_centroid);
+    }
+    by_last
+}

@@ -1,0 +1,129 @@
+//! The shape term of the objective: the Chamfer distance of the deployed outline to the target.
+
+use crate::geometry::chamfer::{Chamfer, Precision};
+use crate::objective::term::{Deployed, Term, TermGradient};
+use crate::sheet::cut_sheet::Sheet;
+use crate::sheet::topology::PanelCorner;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The panel corners on the outline that form the point set P of (16).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum OutlinePoints {
+    /// Corners that belong to no hinge.
+    #[default]
+    Free,
+    /// All corners on the outline.
+    All,
+}
+
+impl OutlinePoints {
+    /// P, counter-clockwise from the south-west.
+    pub fn corners(self, sheet: &Sheet) -> Vec<PanelCorner> {
+        match self {
+            Self::Free => sheet.free_outline_corners(),
+            Self::All => sheet.outline_corners(),
+        }
+    }
+}
+
+/// The distance of the deployed outline to a target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    /// T (mm); not empty.
+    pub target: Vec<[f64; 2]>,
+    /// Coverage weight and smoothness of the distance.
+    pub chamfer: Chamfer,
+    /// The panel corners that form P.
+    pub outline: OutlinePoints,
+    /// Whether P is translated so that its mean is the origin; the target should then be centred too.
+    pub centred: bool,
+}
+
+impl Term for Shape {
+    fn name(&self) -> &'static str {
+        "chamfer"
+    }
+
+    fn unit(&self) -> Option<&'static str> {
+        Some("mm^2")
+    }
+
+    fn evaluate(&self, at: &Deployed, weight: f64, gradient: &mut TermGradient) -> f64 {
+        let (chamfer, by_outline) = self.distance(at.outline);
+        let sums = gradient.by_outline.as_flattened_mut();
+        for (sum, slope) in std::iter::zip(sums, by_outline.as_flattened()) {
+            *sum += weight * slope;
+        }
+        chamfer
+    }
+}
+
+impl Shape {
+    /// With the paper's hard minima and coverage weight 1/2, of the free corners on the outline, to the points `target`
+    /// (mm).
+    pub fn new(target: Vec<[f64; 2]>) -> Self {
+        Self {
+            target,
+            chamfer: Chamfer {
+                coverage_weight: 0.5,
+                smoothing: 0.0,
+                precision: Precision::Samples,
+            },
+            outline: OutlinePoints::Free,
+            centred: false,
+        }
+    }
+
+    /// The points P in the position in which they are compared with the target (mm).
+    pub fn placed(&self, outline: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let origin = if self.centred {
+            mean(outline)
+        } else {
+            [0.0; 2]
+        };
+        let moved = |point: &[f64; 2]| [point[0] - origin[0], point[1] - origin[1]];
+        outline.iter().map(moved).collect()
+    }
+
+    /// The Chamfer distance of the points P to the target (mm^2), and its gradient in P.
+    pub fn distance(&self, outline: &[[f64; 2]]) -> (f64, Vec<[f64; 2]>) {
+        let (chamfer, mut by_outline) =
+            (self.chamfer).evaluate(&self.placed(outline), &self.target);
+        if self.centred {
+            let [x, y] = mean(&by_outline);
+            for gradient in &mut by_outline {
+                gradient[0] -= x;
+                gradient[1] -= y;
+            }
+        }
+        (chamfer, by_outline)
+    }
+
+    /// Vectors v in P whose sum of v v^T approximates the second derivative of the Chamfer distance (Gauss-Newton).
+    pub(crate) fn curvature(&self, outline: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+        let factors = (self.chamfer).curvature_factors(&self.placed(outline), &self.target);
+        let share = if self.centred {
+            1.0 / outline.len() as f64
+        } else {
+            0.0
+        };
+        let mut vectors = Vec::new();
+        for (k, columns) in factors.into_iter().enumerate() {
+            for column in columns.into_iter().filter(|column| *column != [0.0; 2]) {
+                let mut vector = vec![column.map(|entry| -share * entry); outline.len()];
+                (0..2).for_each(|axis| vector[k][axis] += column[axis]);
+                vectors.push(vector);
+            }
+        }
+        vectors
+    }
+}
+
+fn mean(points: &[[f64; 2]]) -> [f64; 2] {
+    let sum = points.iter().fold([0.0; 2], |sum, point| {
+        [sum[0] + point[0], sum[1] + point[1]]
+    });
+    sum.map(|component| component / points.len() as f64)
+}

@@ -1,0 +1,357 @@
+//! The terms of the objective, a file each; their keys, and their list.
+
+mod compression;
+mod damage;
+mod domain;
+mod panel_shape;
+pub mod panel_width;
+mod shear;
+
+pub use compression::Compression;
+pub use damage::Damage;
+pub use domain::DomainPenalty;
+pub use panel_shape::PanelShape;
+pub use panel_width::PanelWidth;
+pub use shear::Shear;
+
+use crate::geometry::chamfer::{Chamfer, Precision};
+use crate::hinge_law::{DamageMeasure, HingeLaw};
+use crate::objective::loss::Objective;
+use crate::objective::shape::{OutlinePoints, Shape};
+use crate::objective::target::Target;
+use crate::objective::term::Weighted;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The weights of (16)-(19), relative to the Chamfer distance divided by the mean panel area: at the
+/// weight 1 a functional with the value 1 costs as much as an outline error of one panel size.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectiveConfig {
+    /// w_cov of the Chamfer distance.
+    #[schemars(range(min = 0.0, max = 1e9))]
+    pub coverage: f64,
+    /// Temperature of the minima in the Chamfer distance (mm^2); 0 is the hard minimum of the paper.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e9))]
+    pub smoothing: f64,
+    /// What the distance of the outline is measured to: the `samples` of the target, as in the paper, or the
+    /// `curve` through them.
+    #[serde(default)]
+    pub precision: Precision,
+    /// The panel corners on the outline that are compared with the target: `free`, those that belong
+    /// to no hinge, or `all`.
+    #[serde(default)]
+    pub outline: OutlinePoints,
+    /// Number of points on the target outline.
+    #[schemars(range(min = 1, max = 1_000_000))]
+    pub target_points: usize,
+    /// Weight of (17); needs `hinge = "surrogate"`.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e9))]
+    pub damage: f64,
+    /// The damage measure of (17): `mean`, D as in the paper, or `peak`, D_peak, at which 1 means tearing.
+    #[serde(default)]
+    pub damage_measure: DamageMeasure,
+    /// Weight of (18).
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e9))]
+    pub compression: f64,
+    /// Weight of (19).
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e9))]
+    pub shear: f64,
+    /// Whether the weights of (17)-(19) are instead relative to the gradient of the Chamfer distance at the
+    /// start: at the weight 1 the gradient of a functional has the same norm.
+    #[serde(default)]
+    pub balance: bool,
+    /// Weight of the panel shape penalty: on panels stretched more than eight to one or with angles below 14 degrees,
+    /// which the outline alone does not prevent, and, with learned hinges, on corners of a panel closer than three
+    /// radii of their windows. Never relative to a gradient.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e9))]
+    pub panel_shape: f64,
+    /// No panel is thinner anywhere (mm), at most a third of the side of a square panel of the mean area: the minimum
+    /// that the cutter accepts. Distances of corners from the edges of their panel are kept above it by a barrier, which
+    /// begins at twice the value; use it with `method = "lbfgs"`, since Adam can get stuck at it. The panels of the
+    /// start must be wider. 0 sets no limit.
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub min_panel_width: f64,
+    /// Weight of the penalty on states outside the training domain of the hinge law, in squared tenths of its range,
+    /// as a mean over hinges and load steps. Needs `hinge = "surrogate"`. Never relative to a gradient.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e9))]
+    pub domain: f64,
+}
+
+/// The sheet that an objective is for.
+pub struct Setting<'a> {
+    /// The sampled target.
+    pub target: &'a Target,
+    /// `None` for a sheet on pins, which has no supports and is centred on its target.
+    pub law: Option<&'a dyn HingeLaw>,
+    /// Area of the sheet divided by the number of panels (mm^2).
+    pub mean_panel_area: f64,
+    /// Radius of the windows of the hinges (mm).
+    pub r_win: f64,
+}
+
+impl ObjectiveConfig {
+    /// The objective for a sheet, before its weights are balanced.
+    pub fn objective(&self, setting: &Setting) -> Objective {
+        let area = setting.mean_panel_area;
+        let unit = if self.balance { 1.0 } else { area };
+        let scale = (setting.law).and_then(|law| law.damage_scale(self.damage_measure));
+        let domain = setting.law.and_then(|law| law.domain());
+        // Only a learned hinge has a window. Two window radii and a gap: the windows do not lie on one line.
+        let min_distance = domain.map_or(0.0, |_| 3.0 * setting.r_win);
+        let limited = f64::from(self.min_panel_width > 0.0);
+        Objective {
+            shape: self.shape(setting),
+            functionals: vec![
+                // No scale is needed without damage.
+                Weighted::new(
+                    self.damage * unit,
+                    Damage::new(self.damage_measure, scale.unwrap_or(1.0)),
+                ),
+                Weighted::new(self.compression * unit, Compression::default()),
+                Weighted::new(self.shear * unit, Shear::default()),
+            ],
+            penalties: vec![
+                Weighted::new(self.panel_shape * area, PanelShape { min_distance }),
+                Weighted::new(
+                    limited,
+                    PanelWidth {
+                        minimum: self.min_panel_width,
+                    },
+                ),
+                Weighted::new(
+                    self.domain * area,
+                    DomainPenalty {
+                        domain: domain.cloned(),
+                    },
+                ),
+            ],
+        }
+    }
+
+    fn shape(&self, setting: &Setting) -> Shape {
+        let centred = setting.law.is_none();
+        let [x, y] = if centred {
+            setting.target.mean()
+        } else {
+            [0.0; 2]
+        };
+        let points = setting.target.points().iter();
+        Shape {
+            target: points.map(|point| [point[0] - x, point[1] - y]).collect(),
+            chamfer: Chamfer {
+                coverage_weight: self.coverage,
+                smoothing: self.smoothing,
+                precision: self.precision,
+            },
+            outline: self.outline,
+            centred,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::taylor::central_slope;
+    use crate::equilibrium::load_step::LoadStep;
+    use crate::hinge_law::{HingeDamage, PreparedLaw};
+    use crate::objective::hinge_measures::add_by_states;
+    use crate::objective::target::TargetShape;
+    use crate::objective::term::{Deployed, Term, TermGradient};
+    use crate::pattern::coordinates::PatternCoordinates;
+    use crate::pattern::cut_pattern::{CutPattern, Outline};
+    use crate::pattern::grid::Grid;
+    use crate::sheet::cut_sheet::{Centroid, HingePoint, Sheet, SheetOptions};
+    use hinge::{HingeConstants, HingeDeformation, HingeDesign, TrainingDomain};
+    use std::path::Path;
+
+    const GRID: Grid = Grid { m: 2, n: 2 };
+    const STEPS: usize = 3;
+    /// w_lig and alpha, then (a, s, theta) per load step.
+    const PER_HINGE: usize = 2 + 3 * STEPS;
+
+    /// A law with a training domain and with damage.
+    struct Law(TrainingDomain);
+
+    impl HingeLaw for Law {
+        fn prepare<'a>(&'a self, _designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a> {
+            unreachable!("no state is computed")
+        }
+
+        fn damage_scale(&self, _measure: DamageMeasure) -> Option<f64> {
+            Some(0.5)
+        }
+
+        fn domain(&self) -> Option<&TrainingDomain> {
+            Some(&self.0)
+        }
+    }
+
+    /// The objective with all terms.
+    fn objective(damage_measure: DamageMeasure) -> Objective {
+        let config = ObjectiveConfig {
+            coverage: 0.5,
+            smoothing: 10.0,
+            precision: Precision::Samples,
+            outline: OutlinePoints::All,
+            target_points: 20,
+            damage: 0.7,
+            damage_measure,
+            compression: 0.3,
+            shear: 0.2,
+            balance: false,
+            panel_shape: 0.4,
+            min_panel_width: 6.0,
+            domain: 0.6,
+        };
+        let circle = TargetShape::Circle {
+            centre: [90.0, 10.0],
+            radius: 60.0,
+        };
+        let state = [[-0.02, 0.03], [-0.02, 0.02], [0.0, 0.1]];
+        config.objective(&Setting {
+            target: &Target::sample(&circle, Path::new(""), config.target_points).unwrap(),
+            law: Some(&Law(TrainingDomain::of_box(state, [1.0, 2.5], [0.8, 1.5]))),
+            mean_panel_area: 10.0,
+            r_win: 10.0,
+        })
+    }
+
+    /// A sheet of slender panels.
+    fn sheet() -> Sheet {
+        let outline = Outline::rectangle(200.0, 20.0);
+        let pattern = CutPattern::new(GRID, outline, &PatternCoordinates::uniform(GRID)).unwrap();
+        let options = SheetOptions {
+            hinge_point: HingePoint::Corner,
+            centroid: Centroid::Area,
+            process: HingeConstants::PAPER,
+        };
+        Sheet::new(&pattern, &vec![2.0; GRID.hinge_count()], options).unwrap()
+    }
+
+    /// D = w_lig theta^2 (1 + a), D_peak = 3 D
+    fn damage(w_lig: f64, state: &HingeDeformation) -> HingeDamage {
+        let HingeDeformation { a, theta, .. } = *state;
+        let per_width = theta * theta * (1.0 + a);
+        let by_a = w_lig * theta * theta;
+        let gradient = [by_a, 0.0, 2.0 * w_lig * theta * (1.0 + a), per_width, 0.0];
+        HingeDamage {
+            d: w_lig * per_width,
+            gradient,
+            d_peak: Some(3.0 * w_lig * per_width),
+            peak_gradient: gradient.map(|slope| 3.0 * slope),
+        }
+    }
+
+    /// The value of a term and its gradient in the outline points, the corners of the panels, and the hinges with their
+    /// states.
+    fn evaluate(term: &dyn Term, x: &[f64]) -> (f64, Vec<f64>) {
+        let mut sheet = sheet();
+        let (hinges, rest) = x.split_at(PER_HINGE * sheet.hinges.len());
+        let (corners, outline) = rest.split_at(8 * sheet.panels.len());
+        for (panel, corners) in sheet.panels.iter_mut().zip(corners.chunks(8)) {
+            let flat = panel.corners.as_flattened_mut();
+            flat.copy_from_slice(corners);
+        }
+        for (hinge, numbers) in sheet.hinges.iter_mut().zip(hinges.chunks(PER_HINGE)) {
+            [hinge.w_lig, hinge.alpha] = [numbers[0], numbers[1]];
+        }
+        let step = |i: usize| {
+            let mut step = LoadStep::ideal(&sheet, vec![[0.0; 3]; sheet.panels.len()]);
+            let at = |numbers: &[f64]| [0, 1, 2].map(|c| numbers[2 + 3 * i + c]).into();
+            step.deformations = hinges.chunks(PER_HINGE).map(at).collect();
+            let states = sheet.hinges.iter().zip(&step.deformations);
+            step.damage = states.map(|(h, state)| damage(h.w_lig, state)).collect();
+            step
+        };
+        let path: Vec<LoadStep> = (0..STEPS).map(step).collect();
+        let at = Deployed {
+            sheet: &sheet,
+            path: &path,
+            outline: outline.as_chunks().0,
+        };
+        let mut gradient = TermGradient::zeros(&at);
+        let value = term.evaluate(&at, 1.0, &mut gradient);
+        add_by_states(&at, &mut gradient);
+        let by_hinges = gradient.by_states.iter().flat_map(|steps| {
+            let sum = |c: usize| steps.iter().map(|step| step[c]).sum::<f64>();
+            let states = steps.iter().flat_map(|step| step[..3].to_vec());
+            [sum(3), sum(4)].into_iter().chain(states)
+        });
+        let by_corners = gradient.by_corners.into_flattened().into_flattened();
+        let by_outline = gradient.by_outline.into_flattened();
+        let slopes = by_hinges.chain(by_corners).chain(by_outline).collect();
+        (value, slopes)
+    }
+
+    /// A point at which every term counts.
+    fn point() -> Vec<f64> {
+        let sheet = sheet();
+        let mut wave = (1..).map(|i: i32| f64::from(i * i).sin());
+        let mut next = |middle: f64, width: f64| middle + width * wave.next().unwrap();
+        let mut x = Vec::new();
+        for _ in &sheet.hinges {
+            x.extend([next(2.0, 1.0), next(1.2, 0.5)]);
+            for i in 1..=STEPS {
+                let far = i as f64;
+                x.extend([next(0.0, 0.1 * far), next(0.0, 0.1 * far), 0.2 * far]);
+            }
+        }
+        let corners = sheet.panels.iter().flat_map(|panel| panel.corners);
+        x.extend(corners.flatten().map(|corner| next(corner, 0.5)));
+        let outline = sheet.outline_corners().into_iter();
+        let outline = outline.flat_map(|(panel, corner)| sheet.panels[panel].corners[corner]);
+        x.extend(outline.map(|corner| next(1.2 * corner, 2.0)));
+        x
+    }
+
+    #[test]
+    fn gradients_of_all_terms_agree_with_differences() {
+        let x = point();
+        for measure in [DamageMeasure::Mean, DamageMeasure::Peak] {
+            for (term, _) in objective(measure).terms() {
+                let (value, gradient) = evaluate(term, &x);
+                let largest = gradient.iter().fold(0.0, |max, slope| slope.abs().max(max));
+                assert!(value > 0.0 && largest > 0.0, "{}: {value}", term.name());
+                for (i, found) in gradient.into_iter().enumerate() {
+                    let unit: Vec<f64> = (0..x.len()).map(|j| f64::from(i == j)).collect();
+                    let slope = central_slope(|x| evaluate(term, x).0, &x, &unit, 1e-6);
+                    let name = term.name();
+                    assert!(
+                        (found - slope).abs() < 1e-7 * largest.max(value),
+                        "{name}, {i}: {found} {slope}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn peak_damage_costs_more_and_a_path_without_compression_nothing() {
+        let values = |measure, x: &[f64]| {
+            let objective = objective(measure);
+            ["damage", "compression"].map(|name| {
+                let mut terms = objective.terms();
+                let (term, _) = terms.find(|(term, _)| term.name() == name).unwrap();
+                evaluate(term, x).0
+            })
+        };
+        let mut x = point();
+        let [mean, _] = values(DamageMeasure::Mean, &x);
+        let [peak, compression] = values(DamageMeasure::Peak, &x);
+        assert!(peak > 2.0 * mean, "{mean} {peak}");
+        assert!(compression > 0.0);
+        for numbers in x[..PER_HINGE * GRID.hinge_count()].chunks_mut(PER_HINGE) {
+            (0..STEPS).for_each(|i| numbers[2 + 3 * i] = numbers[2 + 3 * i].abs());
+        }
+        assert_eq!(values(DamageMeasure::Mean, &x)[1], 0.0);
+    }
+}
