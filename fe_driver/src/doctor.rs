@@ -1,6 +1,6 @@
 //! Checks whether the programs that a campaign needs are installed.
 
-use crate::window::ccx::CCX;
+use crate::calculix::ccx::CCX;
 use mesher::GMSH;
 use support::program::{Tool, ToolError};
 

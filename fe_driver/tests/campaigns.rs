@@ -4,12 +4,13 @@ mod common;
 
 use common::{TWO_WORKERS, campaign, fake_ccx, history, job_folder, jobs, run_with};
 use fe_driver::{
-    Campaign, CampaignError, Ccx, FailureKind, ToolVersions, Tools, plan, run, status,
+    CalculiX, Campaign, CampaignError, Ccx, FailureKind, SolveListError, WindowSolver, plan, run,
+    status,
 };
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-fn run_to_end(campaign: &Campaign, folder: &Path, tools: &Tools) {
+fn run_to_end(campaign: &Campaign, folder: &Path, tools: &CalculiX) {
     let tally = run_with(&TWO_WORKERS, campaign, folder, tools).unwrap();
     assert_eq!(tally.to_run(), 0);
 }
@@ -18,7 +19,7 @@ fn run_to_end(campaign: &Campaign, folder: &Path, tools: &Tools) {
 fn an_interrupted_campaign_is_resumed_to_the_same_rows() {
     let (whole, parts) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let campaign = campaign(3);
-    let tools = Tools::find().unwrap();
+    let tools = CalculiX::find().unwrap();
     run_to_end(&campaign, whole.path(), &tools);
 
     // Stopped as soon as one job is closed, with another in flight.
@@ -35,7 +36,7 @@ fn an_interrupted_campaign_is_resumed_to_the_same_rows() {
     );
     let closed = progress.unwrap().tally.closed();
     assert!((1..3).contains(&closed), "{closed}");
-    let versions = ToolVersions::of(&tools);
+    let versions = tools.versions();
     let left = plan(&campaign, parts.path(), &versions).unwrap();
     assert_eq!((left.tally.complete, left.tally.open), (closed, 3 - closed));
     assert_eq!(left.reasons.values().sum::<usize>(), 3 - closed);
@@ -45,7 +46,10 @@ fn an_interrupted_campaign_is_resumed_to_the_same_rows() {
     let resumed = jobs(parts.path());
     assert_eq!(resumed.len(), 3);
     for (a, b) in resumed.iter().zip(jobs(whole.path())) {
-        assert_eq!((&a.id, &a.samples, a.failure), (&b.id, &b.samples, None));
+        assert_eq!(
+            (&a.id, &a.samples, a.record.failure),
+            (&b.id, &b.samples, None)
+        );
         assert_eq!(a.samples.last().unwrap().lambda, 1.0);
     }
     // What was finished was not run again.
@@ -87,16 +91,16 @@ const GIVES_UP: &str = "echo '1 1 1U 4 0. 0. 0.005' > window.sta; echo '*ERROR: 
 fn a_failing_solver_is_retried_and_counted() {
     let folder = tempfile::tempdir().unwrap();
     let program = fake_ccx(folder.path(), &format!("{GIVES_UP}; exit 201"));
-    let tools = Tools {
+    let tools = CalculiX {
         ccx: Ccx::at(&program).unwrap(),
-        ..Tools::find().unwrap()
+        ..CalculiX::find().unwrap()
     };
     run_to_end(&campaign(1), folder.path(), &tools);
     let status = status(folder.path()).unwrap();
     assert_eq!(status.tally.failed, 1);
     assert_eq!(status.tally.failures[&FailureKind::Diverged], 1);
     assert!(jobs(folder.path()).is_empty());
-    // Three attempts: as asked, with shorter increments, on a finer mesh; each has a start and an end event.
+    // Three attempts: as requested, with shorter increments, on a finer mesh; each has a start and an end event.
     let events = std::fs::read_to_string(history(folder.path(), "events-1-of-1.jsonl")).unwrap();
     assert_eq!(events.lines().count(), 6);
     assert!(events.lines().next_back().unwrap().contains("finer-tier"));
@@ -106,20 +110,23 @@ fn a_failing_solver_is_retried_and_counted() {
 fn a_missing_solver_stops_the_run_immediately() {
     let folder = tempfile::tempdir().unwrap();
     let program = fake_ccx(folder.path(), "");
-    let tools = Tools {
+    let tools = CalculiX {
         ccx: Ccx::at(&program).unwrap(),
-        ..Tools::find().unwrap()
+        ..CalculiX::find().unwrap()
     };
     std::fs::remove_file(&program).unwrap();
     let error = run_with(&TWO_WORKERS, &campaign(5), folder.path(), &tools).unwrap_err();
-    assert!(matches!(error, CampaignError::Halted { .. }), "{error}");
+    assert!(
+        matches!(error, CampaignError::Solve(SolveListError::Halted { .. })),
+        "{error}"
+    );
     assert_eq!(status(folder.path()).unwrap().tally.open, 5);
 }
 
 #[test]
 fn edited_rows_are_rejected_and_solved_again() {
     let folder = tempfile::tempdir().unwrap();
-    let (campaign, tools) = (campaign(1), Tools::find().unwrap());
+    let (campaign, tools) = (campaign(1), CalculiX::find().unwrap());
     run_to_end(&campaign, folder.path(), &tools);
     let before = jobs(folder.path());
     let id = &before[0].id;

@@ -4,7 +4,9 @@
 mod common;
 
 use common::{fake_ccx, problem};
-use fe_driver::{Ccx, FailureKind, SolveError, Tools, WindowSolution, solve_window};
+use fe_driver::{
+    CalculiX, Ccx, FailureKind, SolveError, WindowSolution, WindowSolve, WindowSolver,
+};
 use mesher::Gmsh;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -12,12 +14,13 @@ use std::time::{Duration, Instant};
 use support::program::ToolError;
 
 fn solve(body: &str, folder: &Path, limit: Duration) -> Result<WindowSolution, SolveError> {
-    let tools = Tools {
+    let solver = CalculiX {
         gmsh: Gmsh::find().unwrap(),
         ccx: Ccx::at(&fake_ccx(folder, body)).unwrap(),
+        print_all: false,
     };
-    let problem = problem(90.0, [0.0, 0.0], 8.0);
-    solve_window(&problem, &tools, folder, limit, &AtomicBool::new(false))
+    let solve = WindowSolve::new(problem(90.0, [0.0, 0.0], 8.0), &solver.versions());
+    solver.attempt(&solve, folder, limit, &AtomicBool::new(false))
 }
 
 fn failure(body: &str) -> (SolveError, FailureKind) {
@@ -25,7 +28,7 @@ fn failure(body: &str) -> (SolveError, FailureKind) {
     let solution = solve(body, folder.path(), Duration::from_secs(60)).unwrap();
     assert!(solution.samples.is_empty());
     let error = solution.stopped.unwrap();
-    let kind = FailureKind::of(&error).unwrap();
+    let kind = FailureKind::from_error(&error).unwrap();
     (error, kind)
 }
 

@@ -6,7 +6,7 @@ mod common;
 use common::{design, film, rows, solved};
 use fe_driver::{DeformationPath, StepControl, WindowModel, deck};
 use hinge::HingeDeformation;
-use mesher::{ElementKind, Gmsh, Tier, WindowMesh, mesh_window};
+use mesher::{ElementKind, Gmsh, Tier, WindowMesh, WindowShape};
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 use std::sync::atomic::AtomicBool;
@@ -84,10 +84,12 @@ fn patch_test(tier: Tier) {
     let folder = tempfile::tempdir().unwrap();
     let material = film();
     let gmsh = Gmsh::find().unwrap();
-    let mesh = mesh_window(
-        &design(60.0),
-        0.5,
-        &tier.recipe(),
+    let mesh = WindowShape {
+        design: &design(60.0),
+        thickness: 0.5,
+        recipe: &tier.recipe(),
+    }
+    .mesh(
         folder.path(),
         &gmsh,
         Duration::from_secs(60),

@@ -6,8 +6,9 @@ mod common;
 use common::processes::left_running;
 use common::{TWO_WORKERS, campaign, fake_ccx, history, job_folder, jobs, run_with};
 use fe_driver::{
-    Campaign, CampaignError, Ccx, FailureKind, FinishedJob, Restored, RunOptions, Shard, Tally,
-    ToolVersions, Tools, plan, restore, retry, solve_again, status,
+    CalculiX, Campaign, CampaignError, Ccx, CollectedWindow, FailureKind, Restored, RunOptions,
+    Shard, SolveListError, SolveRecord, SolvedWindow, Tally, WindowSolver, plan, restore, retry,
+    solve_again, status,
 };
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -19,7 +20,7 @@ const RAYS: usize = 3;
 /// Real solves with their recorded output.
 struct Recording {
     outputs: PathBuf,
-    jobs: Vec<FinishedJob>,
+    jobs: Vec<SolvedWindow>,
 }
 
 /// Recorded once for all tests.
@@ -27,7 +28,7 @@ static RECORDING: LazyLock<Recording> = LazyLock::new(|| {
     let outputs = Path::new(env!("CARGO_TARGET_TMPDIR")).join("recording");
     let _ = std::fs::remove_dir_all(&outputs);
     std::fs::create_dir_all(&outputs).unwrap();
-    let tools = Tools::find().unwrap();
+    let tools = CalculiX::find().unwrap();
     let recorder = format!(
         "{} \"$@\" || exit\n{JOB_ID}; for kind in sta dat; do cp window.$kind {}/$id.$kind; done",
         tools.ccx.0.program.display(),
@@ -39,7 +40,7 @@ static RECORDING: LazyLock<Recording> = LazyLock::new(|| {
         &TWO_WORKERS,
         &campaign(RAYS),
         folder.path(),
-        &Tools { ccx, ..tools },
+        &CalculiX { ccx, ..tools },
     );
     assert_eq!(tally.unwrap().complete, RAYS);
     Recording {
@@ -52,29 +53,48 @@ static RECORDING: LazyLock<Recording> = LazyLock::new(|| {
 const JOB_ID: &str = "id=${PWD%/work-*}; id=${id##*/}";
 
 /// gmsh, and a fake ccx that runs `fault` before it replays the recorded output.
-fn replaying(folder: &Path, fault: &str) -> Tools {
+fn replaying(folder: &Path, fault: &str) -> CalculiX {
     let outputs = RECORDING.outputs.display();
     let body = format!(
         "{JOB_ID}; output={outputs}/$id.dat; cp {outputs}/$id.sta window.sta\n{fault}\n\
          echo 'Job finished'; exec cp $output window.dat"
     );
-    Tools {
+    CalculiX {
         ccx: Ccx::at(&fake_ccx(folder, &body)).unwrap(),
-        ..Tools::find().unwrap()
+        ..CalculiX::find().unwrap()
     }
 }
 
-fn run_whole(campaign: &Campaign, folder: &Path, tools: &Tools) -> Tally {
+fn run_whole(campaign: &Campaign, folder: &Path, tools: &CalculiX) -> Tally {
     run_with(&TWO_WORKERS, campaign, folder, tools).unwrap()
 }
 
-/// The jobs without their CPU times.
-fn timeless(jobs: &[FinishedJob]) -> Vec<FinishedJob> {
-    let timeless = |job: &FinishedJob| FinishedJob {
-        cpu_seconds: 0.0,
-        ..job.clone()
+/// The solves without their costs and their numbers of attempts.
+fn timeless(windows: &[SolvedWindow]) -> Vec<SolvedWindow> {
+    let timeless = |window: &SolvedWindow| {
+        let mut window = window.clone();
+        window.record = SolveRecord {
+            failure: window.record.failure,
+            tier: window.record.tier,
+            ..SolveRecord::default()
+        };
+        window.work = PathBuf::new();
+        window
     };
-    jobs.iter().map(timeless).collect()
+    windows.iter().map(timeless).collect()
+}
+
+/// What a database contains of the solves.
+fn in_database(windows: &[SolvedWindow]) -> Vec<CollectedWindow> {
+    let collected = |window: &SolvedWindow| CollectedWindow {
+        id: window.id.clone(),
+        tools: window.solve.tools.clone(),
+        solved_tier: window.record.tier,
+        samples: window.samples.clone(),
+        cpu_seconds: window.record.cpu_seconds,
+        failure: window.record.failure,
+    };
+    windows.iter().map(collected).collect()
 }
 
 /// A kind of failure, as a script, and the result if it is persistent.
@@ -178,7 +198,7 @@ fn a_persistent_fault_is_recorded_and_converged_increments_are_kept() {
                     (solved.lambda, solved.w, solved.forces())
                 );
             }
-            assert_eq!((&job.id, job.failure), (&whole.id, Some(kind)));
+            assert_eq!((&job.id, job.record.failure), (&whole.id, Some(kind)));
         }
         assert_eq!(
             left_running(folder.path()),
@@ -194,10 +214,10 @@ fn a_persistent_fault_is_recorded_and_converged_increments_are_kept() {
             0
         );
         assert_eq!(retry(folder.path(), Some(kind)).unwrap(), RAYS);
-        let why = plan(&campaign, folder.path(), &ToolVersions::of(&mended))
+        let why = plan(&campaign, folder.path(), &mended.versions())
             .unwrap()
             .reasons;
-        assert_eq!(why[&format!("{kind}, next as-asked")], RAYS);
+        assert_eq!(why[&format!("{kind}, next requested")], RAYS);
         assert_eq!(run_whole(&campaign, folder.path(), &mended).complete, RAYS);
         let mended: Vec<_> = timeless(&jobs(folder.path()));
         assert_eq!(mended, timeless(&RECORDING.jobs), "{script}");
@@ -213,7 +233,10 @@ fn a_full_disk_stops_the_run_without_losing_jobs() {
     let tools = replaying(folder.path(), full);
     for _ in 0..2 {
         let error = run_with(&TWO_WORKERS, &campaign(RAYS), folder.path(), &tools).unwrap_err();
-        assert!(matches!(error, CampaignError::Halted { .. }), "{error}");
+        assert!(
+            matches!(error, CampaignError::Solve(SolveListError::Halted { .. })),
+            "{error}"
+        );
         assert!(error.to_string().contains("No space left"), "{error}");
         assert_eq!(status(folder.path()).unwrap().tally.open, RAYS);
     }
@@ -290,39 +313,38 @@ fn after_the_time_limit_no_attempt_starts_and_no_result_is_lost() {
 
 #[test]
 fn collected_jobs_are_not_solved_again() {
-    let solved = &RECORDING.jobs;
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     // One of the rays ended early, on a finer tier.
-    let mut collected = solved.clone();
+    let mut collected = in_database(&RECORDING.jobs);
     collected[1].failure = Some(FailureKind::Diverged);
-    collected[1].solved_tier = collected[1].tier.finer().unwrap();
+    collected[1].solved_tier = collected[1].solved_tier.finer().unwrap();
     collected[1].samples.pop();
-    let restored = |jobs: &[_]| restore(&campaign(RAYS), folder, jobs).unwrap();
-    let expected = |written, there, strangers| Restored {
+    let restored = |windows: &[_]| restore(&campaign(RAYS), folder, windows).unwrap();
+    let expected = |written, there, foreign| Restored {
         written,
         there,
-        strangers,
+        foreign,
     };
     assert_eq!(restored(&collected[..2]), expected(2, 0, 0));
-    assert_eq!(jobs(folder), collected[..2]);
-    let mut stranger = collected[0].clone();
-    stranger.id = "of another campaign".into();
-    stranger.tools.ccx += " before";
+    assert_eq!(in_database(&jobs(folder)), collected[..2]);
+    let mut foreign = collected[0].clone();
+    foreign.id = "of another campaign".into();
+    foreign.tools.ccx += " before";
     let mut further = collected.clone();
-    further.insert(0, stranger);
+    further.insert(0, foreign);
     assert_eq!(restored(&further), expected(1, 2, 1));
-    assert_eq!(jobs(folder), collected);
+    assert_eq!(in_database(&jobs(folder)), collected);
 
     let broken = replaying(folder, "exit 1");
     let tally = run_whole(&campaign(RAYS), folder, &broken);
     assert_eq!((tally.complete, tally.partial), (2, 1));
-    assert_eq!(jobs(folder), collected);
+    assert_eq!(in_database(&jobs(folder)), collected);
 
     let mut other = campaign(RAYS);
     other.material.young += 1.0;
     let error = restore(&other, folder, &collected).unwrap_err();
-    assert!(matches!(error, CampaignError::Stranger(_)), "{error}");
+    assert!(matches!(error, CampaignError::Foreign(_)), "{error}");
 }
 
 #[test]
@@ -332,7 +354,7 @@ fn a_restored_ray_is_not_solved_again_to_compare() {
     let [here, restored] = [(); 2].map(|()| tempfile::tempdir().unwrap());
     let campaign = campaign(RAYS);
     run_whole(&campaign, here.path(), &tools);
-    restore(&campaign, restored.path(), &jobs(here.path())).unwrap();
+    restore(&campaign, restored.path(), &in_database(&jobs(here.path()))).unwrap();
     let stop = AtomicBool::new(true);
     // A stopped check names the number of rays to solve, and solves none.
     let chosen = |folder: &Path| {
@@ -373,7 +395,7 @@ fn a_damaged_job_is_open_and_is_solved_again() {
         damage();
         let tally = status(folder).unwrap().tally;
         assert_eq!((tally.damaged, tally.open), (1, 1), "damage {i}");
-        let planned = plan(&campaign(RAYS), folder, &ToolVersions::of(&tools)).unwrap();
+        let planned = plan(&campaign(RAYS), folder, &tools.versions()).unwrap();
         let reasons: Vec<&String> = planned.reasons.keys().collect();
         assert!(
             reasons.len() == 1 && reasons[0].starts_with("damaged: "),
@@ -382,30 +404,5 @@ fn a_damaged_job_is_open_and_is_solved_again() {
         assert_eq!(jobs(folder).len(), RAYS - 1, "damage {i}");
         assert_eq!(run_whole(&campaign(RAYS), folder, &tools).complete, RAYS);
         assert_eq!(timeless(&jobs(folder)), whole, "damage {i}");
-    }
-}
-
-/// Earlier versions wrote `jobs/<id>/`. A kill in the middle of their move leaves jobs in both places.
-#[test]
-fn jobs_in_the_folder_of_an_earlier_version_are_read_and_moved() {
-    let replay = tempfile::tempdir().unwrap();
-    let tools = replaying(replay.path(), "");
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    assert_eq!(run_whole(&campaign(RAYS), folder, &tools).complete, RAYS);
-    let whole = jobs(folder);
-    let broken = replaying(replay.path(), "exit 1");
-    for flat in 1..=RAYS {
-        for job in &whole[..flat] {
-            let home = job_folder(folder, &job.id);
-            std::fs::rename(home, folder.join("jobs").join(&job.id)).unwrap();
-        }
-        assert_eq!(jobs(folder), whole);
-        let planned = plan(&campaign(RAYS), folder, &ToolVersions::of(&tools)).unwrap();
-        assert_eq!((planned.tally.complete, planned.stale), (RAYS, 0));
-        // Nothing is solved again: the solver is broken.
-        assert_eq!(run_whole(&campaign(RAYS), folder, &broken).complete, RAYS);
-        assert!(whole.iter().all(|job| job_folder(folder, &job.id).exists()));
-        assert_eq!(jobs(folder), whole);
     }
 }

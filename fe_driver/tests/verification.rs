@@ -6,7 +6,7 @@ mod common;
 use common::{design, film, problem, rows, solved};
 use fe_driver::{DeformationPath, StepControl, WindowModel, deck};
 use hinge::{HingeDeformation, SheetMaterial};
-use mesher::{Gmsh, Tier, WindowMesh, mesh_window};
+use mesher::{Gmsh, Tier, WindowMesh, WindowShape};
 use std::fmt::Write;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -91,10 +91,12 @@ fn material_block(material: &SheetMaterial) -> String {
 fn window() -> WindowMesh {
     let folder = tempfile::tempdir().unwrap();
     let (gmsh, recipe) = (Gmsh::find().unwrap(), Tier::Tiny.recipe());
-    mesh_window(
-        &design(60.0),
-        0.5,
-        &recipe,
+    WindowShape {
+        design: &design(60.0),
+        thickness: 0.5,
+        recipe: &recipe,
+    }
+    .mesh(
         folder.path(),
         &gmsh,
         Duration::from_secs(60),
@@ -255,7 +257,7 @@ fn a_window_that_is_rotated_as_a_whole_stores_no_energy() {
 fn a_superposed_rotation_changes_neither_energy_nor_corotated_forces() {
     let mesh = window();
     let beta = 40.0_f64.to_radians();
-    let end = problem(60.0, [-0.1, 0.1], 30.0).ray.end;
+    let end = problem(60.0, [-0.1, 0.1], 30.0).hinge.path.at(1.0);
     let still = DeformationPath::straight(end);
     // The motion of B in the fixed frame: the rotation is theta + beta, and du is rotated by beta, which is
     // R(beta / 2) (a, s) in the mean frame of a fixed panel A.

@@ -4,25 +4,38 @@
 mod common;
 
 use common::problem;
-use fe_driver::{DeformationPath, Tools, WindowModel, WindowProblem, WindowSolution, solve_window};
-use mesher::{Tier, mesh_window};
+use fe_driver::{
+    CalculiX, DeformationPath, HingePath, WindowProblem, WindowSolution, WindowSolve, WindowSolver,
+};
+use mesher::{Tier, WindowShape};
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 fn solve(problem: &WindowProblem) -> WindowSolution {
-    let folder = tempfile::tempdir().unwrap();
-    let tools = Tools::find().unwrap();
-    let limit = Duration::from_secs(300);
-    let solution = solve_window(
+    solve_in(
+        tempfile::tempdir().unwrap().path(),
+        &CalculiX::find().unwrap(),
         problem,
-        &tools,
-        folder.path(),
-        limit,
-        &AtomicBool::new(false),
-    );
-    let solution = solution.unwrap();
+    )
+}
+
+fn solve_in(folder: &Path, solver: &CalculiX, problem: &WindowProblem) -> WindowSolution {
+    let solve = WindowSolve::new(problem.clone(), &solver.versions());
+    let limit = Duration::from_secs(300);
+    let solution = solver
+        .attempt(&solve, folder, limit, &AtomicBool::new(false))
+        .unwrap();
     assert!(solution.stopped.is_none(), "{:?}", solution.stopped);
     solution
+}
+
+/// The problem of the hinge and the path of another one.
+fn along(hinge: HingePath, asked: &WindowProblem) -> WindowProblem {
+    WindowProblem {
+        hinge,
+        ..asked.clone()
+    }
 }
 
 /// A pure rotation of the paper's hinge by 45 deg stores 90.6 N mm on the finest mesh; the coarsest mesh
@@ -65,10 +78,11 @@ fn a_pure_rotation_stores_the_work_done_on_it() {
 #[test]
 fn a_mirrored_window_gives_the_mirrored_sample() {
     let asked = problem(65.0, [-0.1, 0.12], 30.0);
-    let mirrored = WindowProblem {
-        ray: asked.ray.mirrored(),
-        ..asked.clone()
+    let mirrored = HingePath {
+        design: asked.hinge.design.mirrored(),
+        path: DeformationPath::straight(asked.hinge.path.at(1.0).mirrored()),
     };
+    let mirrored = along(mirrored, &asked);
     let here = *solve(&asked).samples.last().unwrap();
     let there = solve(&mirrored).samples.last().unwrap().mirrored();
     let close =
@@ -93,7 +107,7 @@ fn closing_and_compression_do_work_too() {
         let end = solution.samples.last().unwrap();
         assert_eq!(
             end.deformation(),
-            problem(75.0, [eta_a, 0.05], theta_deg).ray.end
+            problem(75.0, [eta_a, 0.05], theta_deg).hinge.path.at(1.0)
         );
         assert!(end.w > 1.0, "{end:?}");
         assert!(end.energy_residual < 2e-3, "{end:?}");
@@ -112,36 +126,13 @@ fn a_path_that_rotates_first_stores_more_energy_than_its_ray() {
         tier: Tier::Small,
         ..problem(90.0, [-0.1, 0.1], 60.0)
     };
-    let (folder, tools) = (tempfile::tempdir().unwrap(), Tools::find().unwrap());
-    let file = folder.path().join("route.csv");
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("path.csv");
     std::fs::write(&file, "eta_a,eta_s,theta_deg\n0,0,60\n-0.1,0.1,60\n").unwrap();
-    let path = DeformationPath::read(&file, asked.ray.design.w_lig).unwrap();
-    let recipe = asked.tier.recipe();
-    let (design, thickness) = (&asked.ray.design, asked.material.thickness);
-    let mesh = mesh_window(
-        design,
-        thickness,
-        &recipe,
-        folder.path(),
-        &tools.gmsh,
-        Duration::from_secs(60),
-        &AtomicBool::new(false),
-    )
-    .unwrap();
-    let model = WindowModel {
-        mesh: &mesh,
-        path: &path,
-        material: &asked.material,
-        step: &asked.step,
-        print_all: false,
-    };
-    let limit = Duration::from_secs(300);
-    let stop = AtomicBool::new(false);
-    let route = model
-        .solve(&tools.ccx, folder.path(), limit, &stop)
-        .unwrap();
-    assert!(route.stopped.is_none(), "{:?}", route.stopped);
-    let (bent, straight) = (route.samples.last().unwrap(), solve(&asked).samples);
+    let design = asked.hinge.design;
+    let path = DeformationPath::read(&file, design.w_lig).unwrap();
+    let bent = solve(&along(HingePath { design, path }, &asked));
+    let (bent, straight) = (bent.samples.last().unwrap(), solve(&asked).samples);
     let straight = straight.last().unwrap();
     assert_eq!(bent.deformation(), straight.deformation());
     assert!(bent.energy_residual < 5e-3, "{bent:?}");
@@ -172,8 +163,11 @@ fn windows_of_every_thickness_are_similar() {
         let factor = thickness / asked.material.thickness;
         let mut asked = asked.clone();
         asked.material.thickness = thickness;
-        asked.ray.design = asked.ray.design.scaled(factor);
-        asked.ray.end = asked.ray.end.scaled(factor);
+        let HingePath { design, path } = &asked.hinge;
+        asked.hinge = HingePath {
+            design: design.scaled(factor),
+            path: DeformationPath::straight(path.at(1.0).scaled(factor)),
+        };
         let end = *solve(&asked).samples.last().unwrap();
         let forces = [end.f_a, end.f_s, end.m_theta / factor].map(|f| f / factor.powi(2));
         let [f_a, f_s, m] = forces;
@@ -199,33 +193,25 @@ fn windows_of_every_thickness_are_similar() {
 #[test]
 fn the_fields_of_a_window_agree_with_its_last_sample() {
     let asked = problem(70.0, [0.1, -0.05], 40.0);
-    let (folder, tools) = (tempfile::tempdir().unwrap(), Tools::find().unwrap());
-    let (limit, stop) = (Duration::from_secs(300), AtomicBool::new(false));
-    let mesh = mesh_window(
-        &asked.ray.design,
-        asked.material.thickness,
-        &asked.tier.recipe(),
-        folder.path(),
-        &tools.gmsh,
-        limit,
-        &stop,
-    )
-    .unwrap();
-    let model = WindowModel {
-        mesh: &mesh,
-        path: &DeformationPath::straight(asked.ray.end),
-        material: &asked.material,
-        step: &asked.step,
+    let folder = tempfile::tempdir().unwrap();
+    let solver = CalculiX {
         print_all: true,
+        ..CalculiX::find().unwrap()
     };
-    assert!(model.fields(folder.path()).unwrap().is_none());
-    let solution = model
-        .solve(&tools.ccx, folder.path(), limit, &stop)
-        .unwrap();
+    let solution = solve_in(folder.path(), &solver, &asked);
     assert_eq!(solution.samples, solve(&asked).samples);
     let last = solution.samples.last().unwrap();
 
-    let grid = model.fields(folder.path()).unwrap().unwrap();
+    let (design, recipe) = (&asked.hinge.design, &asked.tier.recipe());
+    let shape = WindowShape {
+        design,
+        thickness: asked.material.thickness,
+        recipe,
+    };
+    let mesh = shape.read(folder.path()).unwrap();
+    let solve = WindowSolve::new(asked.clone(), &solver.versions());
+    let fields = || solver.fields(&solve, folder.path()).unwrap();
+    let grid = fields().unwrap();
     let field = |name: &str| {
         let mut fields = grid.point_data.iter().chain(&grid.cell_data);
         &fields.find(|field| field.name == name).unwrap().values
@@ -273,4 +259,6 @@ fn the_fields_of_a_window_agree_with_its_last_sample() {
         .copied()
         .fold(0.0, f64::max);
     assert_eq!(Some(maximum), last.strain_max);
+    std::fs::remove_file(folder.path().join("window.dat")).unwrap();
+    assert!(fields().is_none());
 }

@@ -37,7 +37,7 @@ mod window;
 pub use element::ElementKind;
 pub use gmsh::{GMSH, Gmsh};
 pub use mesh::WindowMesh;
-pub use meshing::{MeshError, mesh_window};
+pub use meshing::{MeshError, WindowShape};
 pub use msh::{Boundary, MshError, PlaneMesh, read_msh};
 pub use quality::{MeshDefect, MeshQuality};
 pub use svg::plane_mesh_svg;

@@ -45,49 +45,67 @@ pub enum MeshError {
     },
 }
 
-/// Meshes the window of `design`. The script, log and mesh of gmsh are written to `scratch`.
-///
-/// gmsh is terminated after `limit`, and soon after `stop` becomes true.
-pub fn mesh_window(
-    design: &HingeDesign,
-    thickness: f64,
-    recipe: &MeshRecipe,
-    scratch: &Path,
-    gmsh: &Gmsh,
-    limit: Duration,
-    stop: &AtomicBool,
-) -> Result<WindowMesh, MeshError> {
-    design.validate()?;
-    if !(thickness.is_finite() && thickness > 0.0) {
-        return Err(MeshError::Thickness(thickness));
+/// What determines the mesh of a window.
+#[derive(Clone, Copy, Debug)]
+pub struct WindowShape<'a> {
+    /// The hinge design.
+    pub design: &'a HingeDesign,
+    /// Sheet thickness (mm).
+    pub thickness: f64,
+    /// How the mesh is generated.
+    pub recipe: &'a MeshRecipe,
+}
+
+impl WindowShape<'_> {
+    /// Meshes the window. The script, log and mesh of gmsh are written to `folder`.
+    ///
+    /// gmsh is terminated after `limit`, and soon after `stop` becomes true.
+    pub fn mesh(
+        &self,
+        folder: &Path,
+        gmsh: &Gmsh,
+        limit: Duration,
+        stop: &AtomicBool,
+    ) -> Result<WindowMesh, MeshError> {
+        self.design.validate()?;
+        if !(self.thickness.is_finite() && self.thickness > 0.0) {
+            return Err(MeshError::Thickness(self.thickness));
+        }
+        let script = geo::script(&Window(self.design), &self.recipe.plane);
+        let geo = folder.join("window.geo");
+        std::fs::write(&geo, script).map_err(at(&geo))?;
+        let msh = folder.join(MESH_FILE);
+        program::remove_stale(&msh).map_err(at(&msh))?;
+        gmsh.mesh(folder, limit, stop)?;
+        self.read(folder)
     }
-    let script = geo::script(&Window(design), &recipe.plane);
-    let at = |path: &Path| {
-        let path = path.to_owned();
-        move |source| MeshError::File { path, source }
-    };
-    let geo = scratch.join("window.geo");
-    std::fs::write(&geo, script).map_err(at(&geo))?;
-    let msh = scratch.join("window.msh");
-    program::remove_stale(&msh).map_err(at(&msh))?;
-    gmsh.mesh(scratch, limit, stop)?;
-    let bytes = match std::fs::read(&msh) {
-        // gmsh exited with status zero but wrote no mesh: the reader reports what is missing.
-        Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
-        read => read.map_err(at(&msh))?,
-    };
-    let mesh = WindowMesh::extrude(
-        *design,
-        thickness,
-        *recipe,
-        read_msh(&bytes, recipe.element())?,
-    );
-    match mesh.quality() {
-        Ok(_) => Ok(mesh),
-        Err(defect) => Err(MeshError::Defect {
-            w_lig: design.w_lig,
-            alpha_deg: design.alpha.to_degrees(),
-            defect,
-        }),
+
+    /// Reads the mesh that gmsh has written to `folder`.
+    pub fn read(&self, folder: &Path) -> Result<WindowMesh, MeshError> {
+        let msh = folder.join(MESH_FILE);
+        let bytes = match std::fs::read(&msh) {
+            // gmsh exited with status zero but wrote no mesh: the reader reports what is missing.
+            Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
+            read => read.map_err(at(&msh))?,
+        };
+        let plane = read_msh(&bytes, self.recipe.element())?;
+        let mesh = WindowMesh::extrude(*self.design, self.thickness, *self.recipe, plane);
+        match mesh.quality() {
+            Ok(_) => Ok(mesh),
+            Err(defect) => Err(MeshError::Defect {
+                w_lig: self.design.w_lig,
+                alpha_deg: self.design.alpha.to_degrees(),
+                defect,
+            }),
+        }
     }
+}
+
+/// The file of gmsh's mesh.
+const MESH_FILE: &str = "window.msh";
+
+/// Maps the error of an operation on `path`, for use in `map_err`.
+fn at(path: &Path) -> impl FnOnce(std::io::Error) -> MeshError {
+    let path = path.to_owned();
+    move |source| MeshError::File { path, source }
 }

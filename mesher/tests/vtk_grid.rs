@@ -2,7 +2,7 @@
 //! vtkQuadraticWedge, and the polynomials that they interpolate.
 
 use hinge::HingeDesign;
-use mesher::{Gmsh, Tier, WindowMesh, mesh_window, vtk_grid};
+use mesher::{Gmsh, Tier, WindowMesh, WindowShape, vtk_grid};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use support::vtk::CellKind;
@@ -135,15 +135,12 @@ fn mesh(tier: Tier) -> WindowMesh {
     let scratch = tempfile::tempdir().unwrap();
     let (limit, stop) = (Duration::from_secs(60), AtomicBool::new(false));
     let gmsh = Gmsh::find().unwrap();
-    mesh_window(
-        &design,
-        0.5,
-        &tier.recipe(),
-        scratch.path(),
-        &gmsh,
-        limit,
-        &stop,
-    )
+    WindowShape {
+        design: &design,
+        thickness: 0.5,
+        recipe: &tier.recipe(),
+    }
+    .mesh(scratch.path(), &gmsh, limit, &stop)
     .unwrap()
 }
 

@@ -2,7 +2,7 @@
 
 use hinge::HingeDesign;
 use mesher::{
-    Boundary, Gmsh, MeshDefect, MeshError, Tier, Window, WindowMesh, mesh_window, plane_mesh_svg,
+    Boundary, Gmsh, MeshDefect, MeshError, Tier, Window, WindowMesh, WindowShape, plane_mesh_svg,
 };
 use std::io::ErrorKind;
 use std::os::unix::fs::PermissionsExt;
@@ -25,10 +25,12 @@ fn mesh(w_lig: f64, alpha_deg: f64, tier: Tier) -> WindowMesh {
     let design = design(w_lig, alpha_deg);
     let scratch = tempfile::tempdir().unwrap();
     let gmsh = Gmsh::find().unwrap();
-    mesh_window(
-        &design,
-        0.5,
-        &tier.recipe(),
+    WindowShape {
+        design: &design,
+        thickness: 0.5,
+        recipe: &tier.recipe(),
+    }
+    .mesh(
         scratch.path(),
         &gmsh,
         Duration::from_secs(60),
@@ -178,10 +180,12 @@ fn with_fake_gmsh(body: &str) -> MeshError {
         assert_eq!(error.kind(), ErrorKind::ExecutableFileBusy, "{error}");
     }
     let gmsh = Gmsh::at(&path).unwrap();
-    mesh_window(
-        &design(18.0, 90.0),
-        0.5,
-        &Tier::Tiny.recipe(),
+    WindowShape {
+        design: &design(18.0, 90.0),
+        thickness: 0.5,
+        recipe: &Tier::Tiny.recipe(),
+    }
+    .mesh(
         scratch.path(),
         &gmsh,
         Duration::from_secs(2),
@@ -226,10 +230,12 @@ fn the_picture_shows_every_element_and_the_named_boundaries() {
 fn a_design_that_cannot_be_cut_is_rejected_before_gmsh_runs() {
     let design = design(0.018, 57.3);
     let scratch = tempfile::tempdir().unwrap();
-    let error = mesh_window(
-        &design,
-        0.5,
-        &Tier::Tiny.recipe(),
+    let error = WindowShape {
+        design: &design,
+        thickness: 0.5,
+        recipe: &Tier::Tiny.recipe(),
+    }
+    .mesh(
         scratch.path(),
         &Gmsh::find().unwrap(),
         Duration::from_secs(60),

@@ -1,22 +1,19 @@
 //! The definition of a campaign: a material, a mesh tier and a box of rays, from which the list of jobs follows.
 
 use crate::campaign::extra_rays::{ExtraRaysError, read_extra_rays};
-use crate::campaign::job::JobSpec;
 use crate::campaign::sampling::RayBox;
 use crate::record_file::FileError;
-use crate::window::ray::Ray;
-use crate::window::solve::{SolveError, WindowProblem};
-use crate::window::step_control::StepControl;
-use crate::window::versions::ToolVersions;
+use crate::solve::attempts::SolveListError;
+use crate::solve::hinge_path::Ray;
+use crate::solve::tool_versions::ToolVersions;
+use crate::solve::window_solve::{WindowProblem, WindowSolve};
 use hinge::{HingeConstants, InvalidDesign, MaterialError, SheetMaterial};
 use mesher::Tier;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use support::program::ToolError;
 use support::toml_file::{self, ConfigError};
-use support::worker_pool::NoThread;
 
 /// A campaign as configured, with its material.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,19 +54,17 @@ pub enum CampaignError {
     #[error(transparent)]
     FurtherRays(#[from] ExtraRaysError),
     #[error(transparent)]
-    Tool(#[from] ToolError),
-    #[error(transparent)]
     File(#[from] FileError),
     #[error(transparent)]
-    Thread(#[from] NoThread),
+    Solve(#[from] SolveListError),
     #[error(
-        "{folder} contains the campaign `{found}`, not `{asked}`: choose another folder",
+        "{folder} contains the campaign `{found}`, not `{requested}`: choose another folder",
         folder = .folder.display()
     )]
     OtherCampaign {
         folder: PathBuf,
         found: String,
-        asked: String,
+        requested: String,
     },
     #[error(
         "the campaign has changed since it was run in {folder} ({changes}): run it again first",
@@ -96,12 +91,7 @@ pub enum CampaignError {
         "none of the jobs belongs to the campaign (the first is {0}): they were solved with other settings, \
          with another version of gmsh or ccx, or for another campaign"
     )]
-    Stranger(String),
-    #[error("the run was stopped by an error at job {job}: {source}")]
-    Halted {
-        job: String,
-        source: Box<SolveError>,
-    },
+    Foreign(String),
 }
 
 /// The TOML file; see `configs/campaigns/`.
@@ -121,7 +111,6 @@ struct CampaignFile {
     /// Time limit of one solve (s), 1 to 86 400.
     time_limit_s: f64,
     /// CSV file of rays in addition to the sampled ones, relative to this file; written by `kirigami campaign extend`.
-    #[serde(alias = "further_rays")]
     extra_rays: Option<PathBuf>,
     /// Constants of all hinges.
     design: HingeConstants,
@@ -211,23 +200,12 @@ impl Campaign {
         self.count + self.further.len()
     }
 
-    /// The jobs in the order in which they are run. Any prefix of them gives a usable database.
-    pub fn jobs(&self, tools: &ToolVersions) -> Vec<JobSpec> {
-        self.specs(tools).collect()
-    }
-
-    /// The jobs of [`Self::jobs`], one at a time.
-    pub(crate) fn specs(&self, tools: &ToolVersions) -> impl Iterator<Item = JobSpec> {
+    /// The solves in the order in which they are run. Any prefix of them gives a usable database.
+    pub fn solves(&self, tools: &ToolVersions) -> impl Iterator<Item = WindowSolve> {
         let boxed = self.rays.rays(&self.design, self.count, self.seed);
         let further = self.further.iter().copied();
         boxed.into_iter().chain(further).map(move |ray| {
-            let problem = WindowProblem {
-                ray,
-                material: self.material.clone(),
-                tier: self.tier,
-                step: StepControl::default(),
-            };
-            JobSpec::new(problem, tools)
+            WindowSolve::new(WindowProblem::new(ray, &self.material, self.tier), tools)
         })
     }
 }
@@ -253,15 +231,15 @@ mod tests {
     fn the_shipped_campaigns_are_read() {
         for (name, count) in [("demo.toml", 40), ("pet-0.5mm.toml", 1500)] {
             let campaign = Campaign::load(&shipped(name)).unwrap();
-            let jobs = campaign.jobs(&versions());
+            let jobs: Vec<_> = campaign.solves(&versions()).collect();
             assert_eq!(jobs.len(), count);
-            let mut ids: Vec<_> = jobs.iter().map(JobSpec::id).collect();
+            let mut ids: Vec<_> = jobs.iter().map(WindowSolve::id).collect();
             ids.sort_unstable();
             ids.dedup();
             assert_eq!(ids.len(), count);
             assert!(
                 jobs.iter()
-                    .all(|job| job.problem.ray.design.validate().is_ok())
+                    .all(|job| job.problem.hinge.design.validate().is_ok())
             );
         }
     }
@@ -270,20 +248,22 @@ mod tests {
     fn an_id_changes_with_every_input_of_the_result() {
         let mut campaign = Campaign::load(&shipped("demo.toml")).unwrap();
         campaign.count = 1;
-        let job = campaign.jobs(&versions()).remove(0);
+        let first =
+            |campaign: &Campaign, tools: &ToolVersions| campaign.solves(tools).next().unwrap();
+        let job = first(&campaign, &versions());
         assert_eq!(job.id(), job.clone().id());
         let newer = ToolVersions {
             ccx: "2.21".into(),
             ..versions()
         };
-        assert_ne!(campaign.jobs(&newer)[0].id(), job.id());
+        assert_ne!(first(&campaign, &newer).id(), job.id());
         assert_eq!(
-            campaign.jobs(&newer)[0].differences(&job),
+            first(&campaign, &newer).differences(&job),
             ["tool versions"]
         );
         campaign.material.plastic[1][0] += 1e-9;
         campaign.tier = Tier::Small;
-        let other = &campaign.jobs(&versions())[0];
+        let other = first(&campaign, &versions());
         assert_ne!(other.id(), job.id());
         assert_eq!(other.differences(&job), ["material", "mesh tier"]);
     }

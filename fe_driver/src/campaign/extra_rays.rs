@@ -3,7 +3,7 @@
 //! They are in a CSV file with the columns `w_lig` (mm), `alpha_deg`, `eta_a`, `eta_s`, `theta_deg`, one ray per
 //! row. The campaign's key `extra_rays` is the path of the file. Lines that start with `#` are comments.
 
-use crate::window::ray::Ray;
+use crate::solve::hinge_path::Ray;
 use hinge::{HingeConstants, HingeDeformation};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;

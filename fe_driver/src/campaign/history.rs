@@ -1,26 +1,27 @@
 //! The history of a shard: an append-only file of events, locked by the process that writes it.
 
 use crate::campaign::definition::CampaignError;
-use crate::campaign::job::JobRecord;
 use crate::record_file::FileError;
-use crate::window::failure::RetryStep;
+use crate::solve::attempts::now;
+use crate::solve::ladder::AttemptKind;
+use crate::solve::solve_folder::SolveRecord;
 use serde::Serialize;
 use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
 use support::lock_file;
+use support::shard::Shard;
 
 /// An event in the history of a job.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Event<'a> {
     Started {
-        rung: RetryStep,
+        attempt: AttemptKind,
     },
     Ended {
-        rung: RetryStep,
-        record: &'a JobRecord,
+        attempt: AttemptKind,
+        record: &'a SolveRecord,
     },
     Reopened,
     Restored,
@@ -75,9 +76,38 @@ impl Drop for History {
     }
 }
 
-/// Seconds since 1970.
-pub(crate) fn now() -> u64 {
-    SystemTime::now()
-        .duration_since(UNIX_EPOCH)
-        .map_or(0, |since| since.as_secs())
+/// File name prefix of the histories.
+const HISTORY: &str = "events-";
+
+/// File name of the shard's history in the folder of the campaign.
+pub(crate) fn history_name(shard: Shard) -> String {
+    format!("{HISTORY}{}.jsonl", shard.to_string().replace('/', "-of-"))
+}
+
+/// Whether a file is the history of a shard that may overlap with this one: of this shard itself, or of a division into
+/// another number of shards.
+pub(crate) fn overlaps(shard: Shard, file_name: &str) -> bool {
+    let own = history_name(shard);
+    // The end of the names of all shards of the same division.
+    let siblings = own.find("-of-").map_or("", |at| &own[at..]);
+    file_name.starts_with(HISTORY) && (!file_name.ends_with(siblings) || file_name == own)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shard_overlaps_itself_and_every_other_division() {
+        let shard: Shard = "2/4".parse().unwrap();
+        for (history, expected) in [
+            ("events-2-of-4.jsonl", true),
+            ("events-1-of-1.jsonl", true),
+            ("events-2-of-14.jsonl", true),
+            ("events-1-of-4.jsonl", false),
+            ("campaign.json", false),
+        ] {
+            assert_eq!(overlaps(shard, history), expected, "{history}");
+        }
+    }
 }

@@ -1,10 +1,12 @@
 //! The plan of a run: the jobs that it would solve, and why.
 
+use crate::campaign::campaign_folder::{CampaignFolder, Index};
 use crate::campaign::definition::{Campaign, CampaignError};
-use crate::campaign::job::{JobRecord, JobSpec, JobState};
-use crate::campaign::ledger::{CampaignFolder, Index, Tally};
+use crate::campaign::status::Tally;
 use crate::record_file::{or_damage, short_hash};
-use crate::window::versions::ToolVersions;
+use crate::solve::solve_folder::{SolveRecord, SolveState, SolveStore};
+use crate::solve::tool_versions::ToolVersions;
+use crate::solve::window_solve::WindowSolve;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
@@ -32,18 +34,18 @@ pub fn plan(
 ) -> Result<Plan, CampaignError> {
     let folder = CampaignFolder(folder.to_owned());
     folder.belongs_to(&campaign.name)?;
-    let specs = || campaign.specs(versions);
-    let stale = stale(&folder, &specs().map(|spec| spec.id()).collect())?;
+    let (store, solves) = (folder.store(), || campaign.solves(versions));
+    let stale = stale(&store, &solves().map(|solve| solve.id()).collect())?;
     let (mut tally, mut reasons) = (Tally::default(), BTreeMap::new());
-    for spec in specs() {
-        let id = spec.id();
-        let state = folder.job(&id).state()?;
+    for solve in solves() {
+        let id = solve.id();
+        let state = store.solve(&id).state()?;
         tally.add_state(&state);
         let reason = match state {
-            JobState::Ended(ended) => retry_reason(&ended.1),
-            JobState::Open { started: true } => Some("interrupted".to_owned()),
-            JobState::Open { started: false } => Some(new_reason(&spec, &stale)),
-            JobState::Damaged(reason) => Some(format!("damaged: {reason} (job {id})")),
+            SolveState::Ended(ended) => retry_reason(&ended.1),
+            SolveState::Open { started: true } => Some("interrupted".to_owned()),
+            SolveState::Open { started: false } => Some(new_reason(&solve, &stale)),
+            SolveState::Damaged(reason) => Some(format!("damaged: {reason} (job {id})")),
         };
         if let Some(reason) = reason {
             *reasons.entry(reason).or_default() += 1;
@@ -66,19 +68,27 @@ pub fn prepare(
     folder: &Path,
     versions: &ToolVersions,
 ) -> Result<(), CampaignError> {
-    let index = Index::of(&campaign.name, &campaign.jobs(versions));
+    let index = Index::new(
+        &campaign.name,
+        &campaign.solves(versions).collect::<Vec<_>>(),
+    );
     CampaignFolder(folder.to_owned()).enter(Shard::WHOLE, &index)?;
     Ok(())
 }
 
-/// The inputs of the jobs in the folder whose ids are not in `asked`.
-fn stale(folder: &CampaignFolder, asked: &HashSet<String>) -> Result<Stale, CampaignError> {
+/// The inputs of the jobs in the folder whose ids are not in `requested`.
+fn stale(store: &SolveStore, requested: &HashSet<String>) -> Result<Stale, CampaignError> {
     let mut stale = Stale::default();
-    for id in folder.ids()?.into_iter().filter(|id| !asked.contains(id)) {
+    for id in store
+        .ids()?
+        .into_iter()
+        .filter(|id| !requested.contains(id))
+    {
         // A damaged job of another campaign is ignored.
-        if let Ok(Some(spec)) = or_damage(folder.job(&id).spec())? {
+        if let Ok(Some(solve)) = or_damage(store.solve(&id).solve())? {
             stale.count += 1;
-            stale.rays.insert(short_hash(&spec.problem.ray), spec);
+            let ray = short_hash(&solve.problem.hinge);
+            stale.rays.insert(ray, solve);
         }
     }
     Ok(stale)
@@ -89,19 +99,19 @@ fn stale(folder: &CampaignFolder, asked: &HashSet<String>) -> Result<Stale, Camp
 struct Stale {
     count: usize,
     /// One job of each ray, by the hash of the ray.
-    rays: HashMap<String, JobSpec>,
+    rays: HashMap<String, WindowSolve>,
 }
 
 /// Why a job with a completed attempt is retried; `None` if it is not.
-fn retry_reason(record: &JobRecord) -> Option<String> {
+fn retry_reason(record: &SolveRecord) -> Option<String> {
     let (failure, next) = (record.failure?, record.next?);
-    Some(format!("{failure}, next {}", next.name()))
+    Some(format!("{failure}, next {next}"))
 }
 
 /// Why a job is solved for the first time; its ray may have been solved with other settings.
-fn new_reason(spec: &JobSpec, stale: &Stale) -> String {
-    match stale.rays.get(&short_hash(&spec.problem.ray)) {
-        Some(old) => format!("stale: {} changed", spec.differences(old).join(", ")),
+fn new_reason(solve: &WindowSolve, stale: &Stale) -> String {
+    match stale.rays.get(&short_hash(&solve.problem.hinge)) {
+        Some(old) => format!("stale: {} changed", solve.differences(old).join(", ")),
         None => "new".to_owned(),
     }
 }

@@ -1,14 +1,35 @@
 //! Recreates job folders from collected samples, so that collected jobs are not solved again.
 
+use crate::campaign::campaign_folder::{CampaignFolder, Index};
 use crate::campaign::definition::{Campaign, CampaignError};
-use crate::campaign::finished::FinishedJob;
-use crate::campaign::history::{Event, now};
-use crate::campaign::job::{JobRecord, JobState};
-use crate::campaign::ledger::{CampaignFolder, Index};
-use crate::window::versions::ToolVersions;
+use crate::campaign::history::Event;
+use crate::solve::attempts::now;
+use crate::solve::failure::FailureKind;
+use crate::solve::solve_folder::SolveRecord;
+use crate::solve::tool_versions::ToolVersions;
+use crate::solve::window_solve::WindowSolve;
+use hinge::HingeSample;
+use mesher::Tier;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 use support::shard::Shard;
+
+/// What a database contains of a solve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CollectedWindow {
+    /// Id of the solve.
+    pub id: String,
+    /// Versions of the programs that solved it.
+    pub tools: ToolVersions,
+    /// Tier on which the samples were solved.
+    pub solved_tier: Tier,
+    /// One sample per converged increment.
+    pub samples: Vec<HingeSample>,
+    /// Solver CPU time over all attempts (s).
+    pub cpu_seconds: f64,
+    /// Why the samples end before the end of the path; `None` for a complete path.
+    pub failure: Option<FailureKind>,
+}
 
 /// Numbers of jobs that were restored, already present, and foreign.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,7 +39,7 @@ pub struct Restored {
     /// Jobs that are already closed in the folder; they are not changed.
     pub there: usize,
     /// Jobs that do not belong to the campaign.
-    pub strangers: usize,
+    pub foreign: usize,
 }
 
 /// Recreates the folders of jobs that `campaign` finished in another place or earlier.
@@ -28,63 +49,63 @@ pub struct Restored {
 pub fn restore(
     campaign: &Campaign,
     folder: &Path,
-    finished: &[FinishedJob],
+    collected: &[CollectedWindow],
 ) -> Result<Restored, CampaignError> {
     let mut restored = Restored::default();
-    let Some(first) = finished.first() else {
+    let Some(first) = collected.first() else {
         return Ok(restored);
     };
     // Jobs of another campaign may have been solved with other versions of gmsh and ccx.
     let mut tools: Vec<&ToolVersions> = Vec::new();
-    for job in finished {
-        if !tools.contains(&&job.tools) {
-            tools.push(&job.tools);
+    for window in collected {
+        if !tools.contains(&&window.tools) {
+            tools.push(&window.tools);
         }
     }
-    let jobs_with = |tools| {
-        let specs = campaign.jobs(tools);
-        let index = Index::of(&campaign.name, &specs);
+    let solves_with = |tools| {
+        let solves: Vec<WindowSolve> = campaign.solves(tools).collect();
+        let index = Index::new(&campaign.name, &solves);
         let ids: HashSet<&String> = index.jobs.iter().collect();
-        let known = finished.iter().any(|job| ids.contains(&job.id));
-        known.then_some((index, specs))
+        let known = collected.iter().any(|window| ids.contains(&window.id));
+        known.then_some((index, solves))
     };
-    let Some((index, specs)) = tools.into_iter().find_map(jobs_with) else {
-        return Err(CampaignError::Stranger(first.id.clone()));
+    let Some((index, solves)) = tools.into_iter().find_map(solves_with) else {
+        return Err(CampaignError::Foreign(first.id.clone()));
     };
-    let specs: HashMap<_, _> = index.jobs.iter().zip(specs).collect();
-    let ours = || finished.iter().filter(|job| specs.contains_key(&job.id));
-    restored.strangers = finished.len() - ours().count();
+    let solves: HashMap<_, _> = index.jobs.iter().zip(solves).collect();
     let folder = CampaignFolder(folder.to_owned());
-    let mut history = folder.enter(Shard::WHOLE, &index)?;
-    for job in ours() {
-        let home = folder.job(&job.id);
-        if matches!(home.state()?, JobState::Ended(ended) if ended.1.is_closed()) {
+    let (store, mut history) = (folder.store(), folder.enter(Shard::WHOLE, &index)?);
+    for window in collected {
+        let Some(solve) = solves.get(&window.id) else {
+            restored.foreign += 1;
+            continue;
+        };
+        let home = store.solve(&window.id);
+        if home.ended()?.is_some_and(|record| record.is_closed()) {
             restored.there += 1;
             continue;
         }
-        home.write_spec(&specs[&job.id])?;
-        let rows_hash = home.write_samples(&job.samples)?;
-        home.write_record(&record(job, rows_hash))?;
-        history.note(&job.id, Event::Restored)?;
+        home.write_solve(solve)?;
+        let rows_hash = home.write_samples(&window.samples)?;
+        home.write_record(&record(window, rows_hash))?;
+        history.note(&window.id, Event::Restored)?;
         restored.written += 1;
     }
     Ok(restored)
 }
 
-/// The record of a job that was solved elsewhere.
-fn record(job: &FinishedJob, rows_hash: String) -> JobRecord {
-    JobRecord {
-        failure: job.failure,
-        message: job.failure.map(|_| "restored from a database".to_owned()),
-        next: None,
+/// The record of a solve that was made elsewhere. The database does not contain its wall time.
+fn record(window: &CollectedWindow, rows_hash: String) -> SolveRecord {
+    SolveRecord {
+        failure: window.failure,
+        message: (window.failure).map(|_| "restored from a database".to_owned()),
         attempts: 1,
-        tier: job.solved_tier,
-        rows: job.samples.len(),
+        tier: window.solved_tier,
+        rows: window.samples.len(),
         rows_hash,
-        lambda: job.samples.last().map_or(0.0, |last| last.lambda),
-        cpu_seconds: job.cpu_seconds,
-        // The database does not contain the wall time.
-        wall_seconds: 0.0,
+        lambda: window.samples.last().map_or(0.0, |last| last.lambda),
+        cpu_seconds: window.cpu_seconds,
         ended: now(),
+        ..SolveRecord::default()
     }
 }

@@ -19,7 +19,7 @@
 //! For the paper's film and w_full = 8 mm no ray end stores more than about 500 N mm, five times the energy of a
 //! deployed hinge.
 
-use crate::window::ray::Ray;
+use crate::solve::hinge_path::Ray;
 use hinge::{HingeConstants, HingeDeformation};
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};

@@ -1,12 +1,13 @@
 //! Solves some finished jobs of a campaign again. A difference shows that a solver or a machine is not deterministic, or
 //! that hosts of a cluster differ although their versions agree.
 
+use crate::campaign::campaign_folder::CampaignFolder;
 use crate::campaign::definition::{Campaign, CampaignError};
-use crate::campaign::job::{JobRecord, JobSpec, JobState};
-use crate::campaign::ledger::{CampaignFolder, refuse_changed};
+use crate::campaign::status::refuse_changed;
 use crate::record_file::FileError;
-use crate::window::solve::{Tools, solve_window};
-use crate::window::versions::ToolVersions;
+use crate::solve::attempts::SolveListError;
+use crate::solve::solved_window::SolvedWindow;
+use crate::solve::window_solver::WindowSolver;
 use hinge::HingeSample;
 use serde::Serialize;
 use std::path::Path;
@@ -47,13 +48,13 @@ impl Difference {
     }
 }
 
-/// Whether the samples are those of a complete first attempt, which is made as the job asks. A restored job may have been
-/// solved by a retry.
-fn is_of_first_attempt(spec: &JobSpec, record: &JobRecord) -> bool {
+/// Whether the samples are those of a complete first attempt. A restored job may have been solved by a later one.
+fn is_of_first_attempt(window: &SolvedWindow) -> bool {
+    let record = &window.record;
     record.failure.is_none()
         && record.attempts == 1
         && record.is_solved_here()
-        && record.tier == spec.problem.tier
+        && record.tier == window.solve.problem.tier
 }
 
 /// Solves every `every`-th job of `folder` again, among those that were complete here at the first attempt, and compares the
@@ -63,47 +64,44 @@ fn is_of_first_attempt(spec: &JobSpec, record: &JobRecord) -> bool {
 pub fn solve_again(
     campaign: &Campaign,
     folder: &Path,
-    tools: &Tools,
+    solver: &dyn WindowSolver,
     every: usize,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(usize, usize),
 ) -> Result<Vec<SolvedAgain>, CampaignError> {
     refuse_changed(campaign, folder)?;
-    let versions = ToolVersions::of(tools);
-    let folder = CampaignFolder(folder.to_owned());
+    let campaign_folder = CampaignFolder(folder.to_owned());
+    let store = campaign_folder.store();
     let mut complete = Vec::new();
-    for id in folder.index()?.jobs {
-        let job = folder.job(&id);
-        if let JobState::Ended(ended) = job.state()?
-            && is_of_first_attempt(&ended.0, &ended.1)
+    for id in campaign_folder.index()?.jobs {
+        if let Some(window) = store.solve(&id).result()?
+            && is_of_first_attempt(&window)
         {
-            complete.push((id, job, ended));
+            complete.push(window);
         }
     }
     let chosen: Vec<_> = complete.into_iter().step_by(every.max(1)).collect();
     let mut solved = Vec::new();
-    for (job, home, ended) in &chosen {
+    for window in &chosen {
         progress(solved.len(), chosen.len());
-        let (spec, record) = &**ended;
-        if spec.tools != versions {
-            let changes = "tool versions".to_owned();
-            let folder = folder.0;
+        if window.solve.tools != solver.versions() {
+            let (folder, changes) = (folder.to_owned(), "tool versions".to_owned());
             return Err(CampaignError::Changed { folder, changes });
         }
         let scratch = Scratch::new().map_err(FileError::at(&std::env::temp_dir()))?;
-        let work = scratch.path().join(job);
+        let work = scratch.path().join(&window.id);
         std::fs::create_dir(&work).map_err(FileError::at(&work))?;
-        let again = solve_window(&spec.problem, tools, &work, campaign.time_limit, stop);
+        let again = solver.attempt(&window.solve, &work, campaign.time_limit, stop);
         if stop.load(Ordering::Relaxed) {
             break;
         }
-        let again = again.map_err(|source| CampaignError::Halted {
-            job: job.clone(),
+        let again = again.map_err(|source| SolveListError::Halted {
+            job: window.id.clone(),
             source: Box::new(source),
         })?;
         solved.push(SolvedAgain {
-            job: job.clone(),
-            difference: Difference::between(&home.samples(record)?, &again.samples),
+            job: window.id.clone(),
+            difference: Difference::between(&window.samples, &again.samples),
         });
     }
     Ok(solved)

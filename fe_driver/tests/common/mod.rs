@@ -4,8 +4,8 @@
 pub mod processes;
 
 use fe_driver::{
-    Campaign, CampaignError, Ccx, FinishedJob, Ray, RunOptions, Shard, StepControl, Tally, Tools,
-    WindowProblem, finished_jobs, run,
+    CalculiX, Campaign, CampaignError, Ccx, Ray, RunOptions, Shard, SolvedWindow, Tally,
+    WindowProblem, finished_windows, run,
 };
 use hinge::{HingeDeformation, HingeDesign, SheetMaterial};
 use mesher::Tier;
@@ -37,15 +37,11 @@ pub fn design(alpha_deg: f64) -> HingeDesign {
 
 /// A ray of the paper's hinge on the coarsest mesh.
 pub fn problem(alpha_deg: f64, eta: [f64; 2], theta_deg: f64) -> WindowProblem {
-    WindowProblem {
-        ray: Ray {
-            design: design(alpha_deg),
-            end: HingeDeformation::from_eta(eta[0], eta[1], theta_deg.to_radians(), 18.0),
-        },
-        material: film(),
-        tier: Tier::Tiny,
-        step: StepControl::default(),
-    }
+    let ray = Ray {
+        design: design(alpha_deg),
+        end: HingeDeformation::from_eta(eta[0], eta[1], theta_deg.to_radians(), 18.0),
+    };
+    WindowProblem::new(ray, &film(), Tier::Tiny)
 }
 
 /// The first rays of the demo campaign, with small rotations only.
@@ -56,8 +52,8 @@ pub fn campaign(count: usize) -> Campaign {
     campaign
 }
 
-pub fn jobs(folder: &Path) -> Vec<FinishedJob> {
-    finished_jobs(folder)
+pub fn jobs(folder: &Path) -> Vec<SolvedWindow> {
+    finished_windows(folder)
         .unwrap()
         .collect::<Result<_, _>>()
         .unwrap()
@@ -88,10 +84,10 @@ pub fn run_with(
     options: &RunOptions,
     campaign: &Campaign,
     folder: &Path,
-    tools: &Tools,
+    solver: &CalculiX,
 ) -> Result<Tally, CampaignError> {
     let never = AtomicBool::new(false);
-    Ok(run(campaign, folder, tools, options, &never, &mut |_| {})?.tally)
+    Ok(run(campaign, folder, solver, options, &never, &mut |_| {})?.tally)
 }
 
 /// The output of ccx for a deck; panics if ccx does not finish.

@@ -3,24 +3,17 @@
 //! CalculiX prints strain and stress at the Gauss points. A cell of the grid has their means by volume, and the maximum
 //! of the plastic strain; nothing is extrapolated to the nodes.
 
-use crate::window::dat::Frame;
-use crate::window::model::WindowModel;
-use crate::window::solve::SolveError;
+use crate::calculix::dat::Frame;
+use crate::calculix::model::WindowModel;
 use mesher::vtk_grid;
-use std::path::Path;
 use support::vtk::{Field, UnstructuredGrid};
 
 /// Places of VTK's components XX, YY, ZZ, XY, YZ, XZ in a printed stress (xx, yy, zz, xy, xz, yz).
 const VTK_ORDER: [usize; 6] = [0, 1, 2, 3, 5, 4];
 
 impl WindowModel<'_> {
-    /// The undeformed window with the fields of the last converged increment of a solve in `folder`, which must have
-    /// printed the displacements of all nodes; `None` if no increment converged.
-    pub fn fields(&self, folder: &Path) -> Result<Option<UnstructuredGrid>, SolveError> {
-        Ok(self.last_frame(folder)?.map(|frame| self.grid(&frame)))
-    }
-
-    fn grid(&self, frame: &Frame) -> UnstructuredGrid {
+    /// The undeformed window with the fields of an increment that printed the displacements of all nodes.
+    pub(crate) fn grid(&self, frame: &Frame) -> UnstructuredGrid {
         let points = self.mesh.recipe.element().gauss_points();
         let strains = || frame.peeq.chunks(points);
         let volumes = || self.mesh.gauss_volumes.iter();

@@ -1,7 +1,7 @@
 //! A meshed window and all other data of its input deck.
 
-use crate::window::deformation_path::DeformationPath;
-use crate::window::step_control::StepControl;
+use crate::solve::deformation_path::DeformationPath;
+use crate::solve::step_control::StepControl;
 use hinge::SheetMaterial;
 use mesher::WindowMesh;
 

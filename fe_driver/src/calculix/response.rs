@@ -1,8 +1,8 @@
 //! Converts printed frames to hinge samples: energy, work, forces, damage.
 
-use crate::window::dat::Frame;
-use crate::window::model::WindowModel;
-use crate::window::ray::{PanelMotion, rotated};
+use crate::calculix::dat::Frame;
+use crate::calculix::model::WindowModel;
+use crate::calculix::panel_motion::{PanelMotion, rotated};
 use hinge::{HingeDeformation, HingeForces, HingeSample, SheetMaterial, StrainVolumes};
 use mesher::WindowMesh;
 use std::f64::consts::PI;
@@ -25,7 +25,7 @@ pub(crate) fn samples(model: &WindowModel, frames: &[Frame]) -> Vec<HingeSample>
             let forces = arc_forces(mesh, &deformation, &frame.reactions);
             w_work += trapezoid(before, (deformation, forces));
             before = (deformation, forces);
-            let damage = Damage::of(mesh, material, &frame.peeq);
+            let damage = Damage::new(mesh, material, &frame.peeq);
             HingeSample {
                 lambda: frame.lambda,
                 a: deformation.a,
@@ -67,7 +67,7 @@ fn arc_forces(
         force[1] += fy;
         moment += arm[0] * fy - arm[1] * fx;
     }
-    PanelMotion::of(deformation).forces(force, moment)
+    PanelMotion::new(deformation).forces(force, moment)
 }
 
 /// Work between two states: mean force times change of deformation.
@@ -106,7 +106,7 @@ struct Damage {
 }
 
 impl Damage {
-    fn of(mesh: &WindowMesh, material: &SheetMaterial, peeq: &[f64]) -> Self {
+    fn new(mesh: &WindowMesh, material: &SheetMaterial, peeq: &[f64]) -> Self {
         let volumes = mesh.gauss_volumes.iter().flatten().copied();
         let mut points: Vec<_> = peeq.iter().copied().zip(volumes).collect();
         points.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));

@@ -1,4 +1,4 @@
-//! Hinge rays, and the prescribed motion of arc B along them.
+//! The prescribed motion of arc B along a path.
 //!
 //! Panel A is fixed. Panel B rotates by theta about O, and O on B moves by du = R(theta/2) (a, s), so
 //! that (a, s, theta) are measured in the mean frame of (8). A point of arc B at the position (X, Y) relative to O
@@ -8,27 +8,7 @@
 //!
 //! which is linear in the four numbers q at any rotation. These depend only on lambda.
 
-use hinge::{HingeDeformation, HingeDesign, HingeForces};
-use serde::{Deserialize, Serialize};
-
-/// One design driven along the straight line from the undeformed state to `end`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Ray {
-    /// The hinge design.
-    pub design: HingeDesign,
-    /// The deformation at lambda = 1.
-    pub end: HingeDeformation,
-}
-
-impl Ray {
-    /// The ray of the mirrored design; see [`HingeDeformation::mirrored`].
-    pub fn mirrored(&self) -> Self {
-        Self {
-            design: self.design.mirrored(),
-            end: self.end.mirrored(),
-        }
-    }
-}
+use hinge::{HingeDeformation, HingeForces};
 
 /// The motion of panel B relative to A that corresponds to a deformation in the mean frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +21,7 @@ pub struct PanelMotion {
 
 impl PanelMotion {
     /// du = R(theta/2) (a, s).
-    pub fn of(deformation: &HingeDeformation) -> Self {
+    pub fn new(deformation: &HingeDeformation) -> Self {
         Self {
             theta: deformation.theta,
             du: rotated([deformation.a, deformation.s], 0.5 * deformation.theta),
@@ -81,7 +61,7 @@ mod tests {
 
     /// The displaced position of a point at `x` relative to O.
     fn moved(deformation: [f64; 3], x: [f64; 2]) -> [f64; 2] {
-        let [q1, q2, q3, q4] = PanelMotion::of(&deformation.into()).amplitudes();
+        let [q1, q2, q3, q4] = PanelMotion::new(&deformation.into()).amplitudes();
         [
             x[0] + x[0] * q1 - x[1] * q2 + q3,
             x[1] + x[1] * q1 + x[0] * q2 + q4,
@@ -104,7 +84,7 @@ mod tests {
             fx in -1.0..1.0f64, fy in -1.0..1.0f64
         ) {
             let x = [80.0, -30.0];
-            let motion = PanelMotion::of(&HingeDeformation { a, s, theta });
+            let motion = PanelMotion::new(&HingeDeformation { a, s, theta });
             let arm = rotated(x, theta);
             let forces = motion.forces([fx, fy], arm[0] * fy - arm[1] * fx);
             let expected = [forces.f_a, forces.f_s, forces.m_theta];

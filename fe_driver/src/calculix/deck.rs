@@ -4,10 +4,10 @@
 //! equations couple arc B to them. All output is printed in every increment, because CalculiX accumulates the
 //! total internal energy between *printed* increments and it would otherwise be wrong.
 
-use crate::window::deformation_path::DeformationPath;
-use crate::window::model::WindowModel;
-use crate::window::ray::PanelMotion;
-use crate::window::step_control::StepControl;
+use crate::calculix::model::WindowModel;
+use crate::calculix::panel_motion::PanelMotion;
+use crate::solve::deformation_path::DeformationPath;
+use crate::solve::step_control::StepControl;
 use hinge::SheetMaterial;
 use mesher::WindowMesh;
 use std::fmt::{self, Write};
@@ -132,7 +132,7 @@ fn write_amplitudes(d: &mut String, path: &DeformationPath) -> fmt::Result {
         let pairs: Vec<_> = lambdas
             .iter()
             .map(|lambda| {
-                let q = PanelMotion::of(&path.at(*lambda)).amplitudes()[i];
+                let q = PanelMotion::new(&path.at(*lambda)).amplitudes()[i];
                 format!("{},{}", real(*lambda), real(q))
             })
             .collect();
@@ -177,7 +177,7 @@ mod tests {
                 fields.map(|field| field.parse().unwrap()).collect()
             })
             .collect();
-        let end = PanelMotion::of(&end).amplitudes();
+        let end = PanelMotion::new(&end).amplitudes();
         assert_eq!(tables.len(), 4);
         for (table, end) in tables.iter().zip(end) {
             assert_eq!(table.len(), 2 * (AMPLITUDE_INTERVALS + 1));

@@ -1,127 +1,12 @@
-//! The folder of a campaign, and the state of its jobs.
-//!
-//! `campaign.json` contains the name of the campaign, the versions of gmsh and ccx, and the ids of its jobs as last
-//! run. `jobs/<2 digits>/<id>/` contains one job. `hosts/<host>/` contains what only the runs on one host write: the append-only
-//! history `events-<i>-of-<n>.jsonl` of each shard, which is also its lock file.
-//!
-//! Hosts may share the folder, also on a file system whose locks do not work across hosts: locks only prevent that
-//! two runs on one host do the same work. Runs on different hosts may solve the same job twice; it is counted once.
+//! The state of a campaign: counts, costs, throughput.
 
+use crate::campaign::campaign_folder::{CampaignFolder, Index};
 use crate::campaign::definition::{Campaign, CampaignError};
-use crate::campaign::history::History;
-use crate::campaign::host::host;
-use crate::campaign::job::{JobFolder, JobRecord, JobSpec, JobState};
-use crate::campaign::job_folders::{gather, ids, job_folder};
-use crate::campaign::shard_history::{history_name, overlaps};
-use crate::record_file::{FileError, entries, read_json, write_json};
-use crate::window::failure::FailureKind;
-use crate::window::versions::ToolVersions;
-use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
-use support::shard::Shard;
-use support::{lock_file, whole_file};
-
-/// The folder of a campaign.
-#[derive(Clone, Debug)]
-pub(crate) struct CampaignFolder(pub PathBuf);
-
-/// The contents of `campaign.json`.
-#[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct Index {
-    pub name: String,
-    /// Versions of the programs that solve the jobs; `None` in folders of earlier versions.
-    #[serde(default)]
-    pub tools: Option<ToolVersions>,
-    /// Ids of the jobs of the campaign as last run, in order.
-    pub jobs: Vec<String>,
-}
-
-impl Index {
-    pub fn of(name: &str, specs: &[JobSpec]) -> Self {
-        Self {
-            name: name.to_owned(),
-            tools: specs.first().map(|spec| spec.tools.clone()),
-            jobs: specs.iter().map(JobSpec::id).collect(),
-        }
-    }
-}
-
-impl CampaignFolder {
-    pub fn job(&self, id: &str) -> JobFolder {
-        job_folder(&self.jobs(), id)
-    }
-
-    fn jobs(&self) -> PathBuf {
-        self.0.join("jobs")
-    }
-
-    fn index_path(&self) -> PathBuf {
-        self.0.join("campaign.json")
-    }
-
-    /// Reads `campaign.json`.
-    pub fn index(&self) -> Result<Index, CampaignError> {
-        read_json(&self.index_path())?.ok_or_else(|| CampaignError::NoCampaign(self.0.clone()))
-    }
-
-    /// Rejects a folder that belongs to a campaign with another name.
-    pub fn belongs_to(&self, name: &str) -> Result<(), CampaignError> {
-        match read_json::<Index>(&self.index_path())? {
-            Some(index) if index.name != name => Err(CampaignError::OtherCampaign {
-                folder: self.0.clone(),
-                found: index.name,
-                asked: name.to_owned(),
-            }),
-            _ => Ok(()),
-        }
-    }
-
-    /// Writes `index` to the folder and locks one shard of it on this host until the returned history is dropped.
-    ///
-    /// It is an error if a shard that may overlap with this one is locked on this host, or if this is a part of a
-    /// campaign whose other parts are solved with other versions of gmsh and ccx.
-    pub fn enter(&self, shard: Shard, index: &Index) -> Result<History, CampaignError> {
-        let home = self.0.join("hosts").join(host());
-        whole_file::create_folder(&home).map_err(FileError::at(&home))?;
-        // Shards that start at the same time enter one after the other. Otherwise each would find the lock of the
-        // other.
-        let door = home.join("lock");
-        let _held = lock_file::hold(&door).map_err(FileError::at(&door))?;
-        self.belongs_to(&index.name)?;
-        if shard != Shard::WHOLE {
-            self.refuse_other_versions(index)?;
-        }
-        for entry in entries(&home)? {
-            if overlaps(shard, &entry.file_name().to_string_lossy()) {
-                History::open(&entry.path())?;
-            }
-        }
-        gather(&self.jobs())?;
-        write_json(&self.index_path(), index)?;
-        History::open(&home.join(history_name(shard)))
-    }
-
-    /// Rejects versions of gmsh and ccx other than those with which the campaign was last run. Only the rows of one
-    /// pair of versions are collected.
-    fn refuse_other_versions(&self, index: &Index) -> Result<(), CampaignError> {
-        let known = read_json::<Index>(&self.index_path())?.and_then(|known| known.tools);
-        match (known, &index.tools) {
-            (Some(known), Some(here)) if known != *here => Err(CampaignError::OtherVersions {
-                index: self.index_path(),
-                host: host(),
-                here: Box::new(here.clone()),
-                known: Box::new(known),
-            }),
-            _ => Ok(()),
-        }
-    }
-
-    /// Ids of all jobs that were ever started here.
-    pub fn ids(&self) -> Result<BTreeSet<String>, FileError> {
-        ids(&self.jobs())
-    }
-}
+use crate::solve::failure::FailureKind;
+use crate::solve::solve_folder::{SolveRecord, SolveState};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::Path;
 
 /// Numbers of jobs in each state, with their total cost.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -160,7 +45,7 @@ pub struct Tally {
 
 impl Tally {
     /// Counts the jobs with these records; a job without one is open.
-    pub(crate) fn of<'a>(records: impl IntoIterator<Item = &'a Option<JobRecord>>) -> Self {
+    pub(crate) fn new<'a>(records: impl IntoIterator<Item = &'a Option<SolveRecord>>) -> Self {
         let mut tally = Self::default();
         for record in records {
             match record {
@@ -172,18 +57,18 @@ impl Tally {
     }
 
     /// Counts a job in this state.
-    pub(crate) fn add_state(&mut self, state: &JobState) {
+    pub(crate) fn add_state(&mut self, state: &SolveState) {
         match state {
-            JobState::Open { .. } => self.open += 1,
-            JobState::Ended(ended) => self.add(&ended.1),
-            JobState::Damaged(_) => {
+            SolveState::Open { .. } => self.open += 1,
+            SolveState::Ended(ended) => self.add(&ended.1),
+            SolveState::Damaged(_) => {
                 self.open += 1;
                 self.damaged += 1;
             }
         }
     }
 
-    fn add(&mut self, record: &JobRecord) {
+    fn add(&mut self, record: &SolveRecord) {
         *match (record.is_closed(), record.failure, record.rows) {
             (false, ..) => &mut self.retry,
             (true, None, _) => &mut self.complete,
@@ -198,9 +83,10 @@ impl Tally {
         }
         self.cpu_seconds += record.cpu_seconds;
         self.wall_seconds += record.wall_seconds;
-        let seconds = match record.is_solved_here() {
-            true => record.wall_seconds,
-            false => record.cpu_seconds,
+        let seconds = if record.is_solved_here() {
+            record.wall_seconds
+        } else {
+            record.cpu_seconds
         };
         if seconds > 0.0 {
             self.timed_seconds += seconds;
@@ -274,17 +160,17 @@ pub fn refuse_changed(campaign: &Campaign, folder: &Path) -> Result<(), Campaign
     let folder = CampaignFolder(folder.to_owned());
     folder.belongs_to(&campaign.name)?;
     let ids = folder.index()?.jobs;
-    let mut specs = ids.iter().map(|id| folder.job(id).spec());
-    let Some(solved) = specs.find_map(Result::transpose).transpose()? else {
+    let store = folder.store();
+    let mut known = ids.iter().map(|id| store.solve(id).solve());
+    let Some(known) = known.find_map(Result::transpose).transpose()? else {
         return Ok(());
     };
-    let asked = || campaign.specs(&solved.tools);
-    if asked().map(|spec| spec.id()).eq(ids) {
+    let requested = || campaign.solves(&known.tools);
+    if requested().map(|solve| solve.id()).eq(ids) {
         return Ok(());
     }
-    let changes = asked()
-        .next()
-        .map_or(Vec::new(), |first| first.differences(&solved));
+    let first = requested().next();
+    let changes = first.map_or(Vec::new(), |first| first.differences(&known));
     Err(CampaignError::Changed {
         folder: folder.0,
         changes: match changes.as_slice() {
@@ -298,9 +184,9 @@ pub fn refuse_changed(campaign: &Campaign, folder: &Path) -> Result<(), Campaign
 pub fn status(folder: &Path) -> Result<Status, CampaignError> {
     let folder = CampaignFolder(folder.to_owned());
     let Index { name, jobs, .. } = folder.index()?;
-    let mut tally = Tally::default();
+    let (store, mut tally) = (folder.store(), Tally::default());
     for id in jobs {
-        tally.add_state(&folder.job(&id).state()?);
+        tally.add_state(&store.solve(&id).state()?);
     }
     Ok(Status {
         name,
@@ -313,23 +199,23 @@ pub fn status(folder: &Path) -> Result<Status, CampaignError> {
 mod tests {
     use super::*;
 
-    fn solved(cpu_seconds: f64, wall_seconds: f64) -> Option<JobRecord> {
-        Some(JobRecord {
+    fn solved(cpu_seconds: f64, wall_seconds: f64) -> Option<SolveRecord> {
+        Some(SolveRecord {
             rows: 20,
             cpu_seconds,
             wall_seconds,
-            ..JobRecord::default()
+            ..SolveRecord::default()
         })
     }
 
     /// Restored jobs have no wall time, but their CPU time is that of the material.
     #[test]
     fn the_time_of_a_job_is_also_that_of_restored_ones() {
-        assert_eq!(Tally::of(&[None]).seconds_a_job(), None);
-        let restored = Tally::of(&[solved(60.0, 0.0), solved(80.0, 0.0), None]);
+        assert_eq!(Tally::new(&[None]).seconds_a_job(), None);
+        let restored = Tally::new(&[solved(60.0, 0.0), solved(80.0, 0.0), None]);
         assert_eq!((restored.timed, restored.seconds_a_job()), (2, Some(70.0)));
         assert_eq!((restored.solved_here, restored.throughput()), (0, None));
-        let mixed = Tally::of(&[solved(60.0, 0.0), solved(75.0, 80.0), None]);
+        let mixed = Tally::new(&[solved(60.0, 0.0), solved(75.0, 80.0), None]);
         assert_eq!((mixed.timed, mixed.seconds_a_job()), (2, Some(70.0)));
     }
 }

@@ -4,9 +4,9 @@
 //! iterations, and the increments that the output must contain. Reading never fails: a line that is not an
 //! attempt, or that was truncated, is skipped.
 
-/// One attempt at an increment.
+/// One attempted increment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Attempt {
+pub struct Increment {
     /// Step time (lambda): at the end of the increment if it converged, otherwise at its start.
     pub lambda: f64,
     /// Newton iterations of the attempt.
@@ -15,15 +15,15 @@ pub struct Attempt {
     pub converged: bool,
 }
 
-/// Reads the attempts, in the order they were made.
-pub fn read_sta(bytes: &[u8]) -> Vec<Attempt> {
+/// Reads the attempted increments in their order.
+pub fn read_sta(bytes: &[u8]) -> Vec<Increment> {
     let end = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
     let text = String::from_utf8_lossy(&bytes[..end]);
     text.lines().filter_map(attempt).collect()
 }
 
 /// Parses STEP INC ATT ITRS TOT-TIME STEP-TIME INC-TIME; a U after ATT means that the attempt diverged.
-fn attempt(line: &str) -> Option<Attempt> {
+fn attempt(line: &str) -> Option<Increment> {
     let fields: Vec<_> = line.split_whitespace().collect();
     let [step, increment, attempt, iterations, total, lambda, length] = fields[..] else {
         return None;
@@ -36,7 +36,7 @@ fn attempt(line: &str) -> Option<Attempt> {
         let time = time.parse::<f64>().ok();
         time.filter(|time| time.is_finite() && *time >= 0.0)
     });
-    Some(Attempt {
+    Some(Increment {
         lambda: lambda?,
         iterations: iterations.parse().ok()?,
         converged: number == attempt,
@@ -57,7 +57,7 @@ mod tests {
 
     #[test]
     fn attempts_are_read_with_their_outcome() {
-        let attempt = |lambda, iterations, converged| Attempt {
+        let attempt = |lambda, iterations, converged| Increment {
             lambda,
             iterations,
             converged,

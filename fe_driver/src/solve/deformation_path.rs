@@ -14,11 +14,30 @@ use std::path::{Path, PathBuf};
 use support::csv_table;
 
 /// A piecewise linear path from the undeformed state at lambda = 0 to its end at lambda = 1.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(transparent)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<Knot>", into = "Vec<Knot>")]
 pub struct DeformationPath {
     /// (lambda, state), with lambda increasing from 0 to 1.
-    knots: Vec<(f64, HingeDeformation)>,
+    knots: Vec<Knot>,
+}
+
+type Knot = (f64, HingeDeformation);
+
+impl From<DeformationPath> for Vec<Knot> {
+    fn from(path: DeformationPath) -> Self {
+        path.knots
+    }
+}
+
+impl TryFrom<Vec<Knot>> for DeformationPath {
+    type Error = &'static str;
+
+    fn try_from(knots: Vec<Knot>) -> Result<Self, Self::Error> {
+        match &knots[..] {
+            [first, .., last] if first.0 == 0.0 && last.0 == 1.0 => Ok(Self { knots }),
+            _ => Err("a path leads from lambda = 0 to lambda = 1"),
+        }
+    }
 }
 
 /// Why a file is not a valid deformation path.

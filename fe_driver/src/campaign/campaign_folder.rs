@@ -1,0 +1,111 @@
+//! The folder of a campaign.
+//!
+//! `campaign.json` contains the name of the campaign, the versions of gmsh and ccx, and the ids of its jobs as last
+//! run. `jobs/` is the store of their solves. `hosts/<host>/` contains what only the runs on one host write: the append-only
+//! history `events-<i>-of-<n>.jsonl` of each shard, which is also its lock file.
+//!
+//! Hosts may share the folder, also on a file system whose locks do not work across hosts: locks only prevent that
+//! two runs on one host do the same work. Runs on different hosts may solve the same job twice; it is counted once.
+
+use crate::campaign::definition::CampaignError;
+use crate::campaign::history::{History, history_name, overlaps};
+use crate::record_file::{FileError, entries, read_json, write_json};
+use crate::solve::host::host;
+use crate::solve::solve_folder::SolveStore;
+use crate::solve::tool_versions::ToolVersions;
+use crate::solve::window_solve::WindowSolve;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use support::shard::Shard;
+use support::{lock_file, whole_file};
+
+/// The folder of a campaign.
+#[derive(Clone, Debug)]
+pub(crate) struct CampaignFolder(pub PathBuf);
+
+/// The contents of `campaign.json`.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct Index {
+    pub name: String,
+    /// Versions of the programs that solve the jobs; `None` without a job.
+    pub tools: Option<ToolVersions>,
+    /// Ids of the jobs of the campaign as last run, in order.
+    pub jobs: Vec<String>,
+}
+
+impl Index {
+    pub fn new(name: &str, solves: &[WindowSolve]) -> Self {
+        Self {
+            name: name.to_owned(),
+            tools: solves.first().map(|solve| solve.tools.clone()),
+            jobs: solves.iter().map(WindowSolve::id).collect(),
+        }
+    }
+}
+
+impl CampaignFolder {
+    /// The solves of the jobs.
+    pub fn store(&self) -> SolveStore {
+        SolveStore(self.0.join("jobs"))
+    }
+
+    fn index_path(&self) -> PathBuf {
+        self.0.join("campaign.json")
+    }
+
+    /// Reads `campaign.json`.
+    pub fn index(&self) -> Result<Index, CampaignError> {
+        read_json(&self.index_path())?.ok_or_else(|| CampaignError::NoCampaign(self.0.clone()))
+    }
+
+    /// Rejects a folder that belongs to a campaign with another name.
+    pub fn belongs_to(&self, name: &str) -> Result<(), CampaignError> {
+        match read_json::<Index>(&self.index_path())? {
+            Some(index) if index.name != name => Err(CampaignError::OtherCampaign {
+                folder: self.0.clone(),
+                found: index.name,
+                requested: name.to_owned(),
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes `index` to the folder and locks one shard of it on this host until the returned history is dropped.
+    ///
+    /// It is an error if a shard that may overlap with this one is locked on this host, or if this is a part of a
+    /// campaign whose other parts are solved with other versions of gmsh and ccx.
+    pub fn enter(&self, shard: Shard, index: &Index) -> Result<History, CampaignError> {
+        let home = self.0.join("hosts").join(host());
+        whole_file::create_folder(&home).map_err(FileError::at(&home))?;
+        // Shards that start at the same time enter one after the other. Otherwise each would find the lock of the
+        // other.
+        let door = home.join("lock");
+        let _held = lock_file::hold(&door).map_err(FileError::at(&door))?;
+        self.belongs_to(&index.name)?;
+        if shard != Shard::WHOLE {
+            self.refuse_other_versions(index)?;
+        }
+        for entry in entries(&home)? {
+            if overlaps(shard, &entry.file_name().to_string_lossy()) {
+                History::open(&entry.path())?;
+            }
+        }
+        write_json(&self.index_path(), index)?;
+        History::open(&home.join(history_name(shard)))
+    }
+
+    /// Rejects versions of gmsh and ccx other than those with which the campaign was last run. Only the rows of one
+    /// pair of versions are collected.
+    fn refuse_other_versions(&self, index: &Index) -> Result<(), CampaignError> {
+        let known = read_json::<Index>(&self.index_path())?.and_then(|known| known.tools);
+        match (known, &index.tools) {
+            (Some(known), Some(here)) if known != *here => Err(CampaignError::OtherVersions {
+                index: self.index_path(),
+                host: host(),
+                here: Box::new(here.clone()),
+                known: Box::new(known),
+            }),
+            _ => Ok(()),
+        }
+    }
+}

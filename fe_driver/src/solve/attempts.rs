@@ -1,0 +1,198 @@
+//! Works through a list of solves: workers make the attempts, and one thread hears of them.
+//!
+//! A solve is done when its `result.json` exists. A run can therefore be killed at any time; at most the attempts in
+//! flight are lost. A missing tool or a full disk ends the run immediately, because every other solve would fail too.
+
+use crate::record_file::FileError;
+use crate::solve::failure::FailureKind;
+use crate::solve::ladder::AttemptKind;
+use crate::solve::solve_folder::{SolveFolder, SolveRecord};
+use crate::solve::window_solve::WindowSolve;
+use crate::solve::window_solver::{SolveError, WindowSolution, WindowSolver};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use support::worker_pool::{NoThread, Reports, work_through};
+
+/// Why a list of solves ended before its last solve. What was solved until then is kept.
+#[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
+pub enum SolveListError {
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Thread(#[from] NoThread),
+    #[error("the run was stopped by an error at job {job}: {source}")]
+    Halted {
+        job: String,
+        source: Box<SolveError>,
+    },
+    #[error("stopped with {left} solves left")]
+    Stopped { left: usize },
+}
+
+/// One solve of a list.
+#[derive(Clone, Debug)]
+pub(crate) struct Job {
+    pub id: String,
+    pub solve: WindowSolve,
+    pub folder: SolveFolder,
+}
+
+/// How a list is worked through.
+#[derive(Clone, Copy)]
+pub(crate) struct Workers<'a> {
+    pub solver: &'a dyn WindowSolver,
+    /// Number of solves that run in parallel.
+    pub count: usize,
+    /// Time limit of one attempt.
+    pub limit: Duration,
+    /// Time after which no attempt is started.
+    pub deadline: Option<Instant>,
+}
+
+/// What happened to a solve of a list.
+pub(crate) enum SolveEvent {
+    /// Its record when a worker takes it up; another process may have changed it since the list was made.
+    Found(Option<SolveRecord>),
+    Started(AttemptKind),
+    Ended(AttemptKind, SolveRecord),
+}
+
+impl Workers<'_> {
+    /// Makes the attempts that are left at every job, each until it is closed. `note` hears of every event at a job, by
+    /// its place in the list.
+    ///
+    /// When `stop` becomes true, the attempts in flight are terminated and not counted. A later run continues from there.
+    pub fn work_through(
+        &self,
+        jobs: &[Job],
+        stop: &AtomicBool,
+        note: &mut dyn FnMut(usize, SolveEvent) -> Result<(), FileError>,
+    ) -> Result<(), SolveListError> {
+        let work = |place: usize, reports: &Reports<_>| {
+            let report = |event| reports.send((place, Ok(event)));
+            if let Err(error) = self.solve(&jobs[place], reports.halt(), &report) {
+                reports.send((place, Err(error)));
+            }
+        };
+        work_through(jobs.len(), self.count, stop, &work, &mut |(
+            place,
+            event,
+        )| {
+            Ok(note(place, event?)?)
+        })
+    }
+
+    /// Makes the attempts at one job until it is closed or the run ends.
+    fn solve(
+        &self,
+        job: &Job,
+        halt: &AtomicBool,
+        report: &dyn Fn(SolveEvent),
+    ) -> Result<(), SolveListError> {
+        let may_start = || {
+            let in_time = |deadline| Instant::now() < deadline;
+            !halt.load(Ordering::Relaxed) && self.deadline.is_none_or(in_time)
+        };
+        if !may_start() {
+            return Ok(());
+        }
+        let mut record = job.folder.ended()?;
+        report(SolveEvent::Found(record.clone()));
+        while may_start()
+            && let Some(attempt) =
+                (record.as_ref()).map_or(Some(AttemptKind::Requested), |record| record.next)
+        {
+            report(SolveEvent::Started(attempt));
+            let Some(ended) = self.attempt(job, attempt, record, halt)? else {
+                return Ok(());
+            };
+            report(SolveEvent::Ended(attempt, ended.clone()));
+            record = Some(ended);
+        }
+        Ok(())
+    }
+
+    /// Makes one attempt at a job and records its result; `None` if it was stopped on request.
+    ///
+    /// The rows of the attempt that reached the largest lambda are kept. If another host has recorded an attempt in the
+    /// meantime, its record is returned, and that of this attempt is dropped.
+    fn attempt(
+        &self,
+        job: &Job,
+        attempt: AttemptKind,
+        before: Option<SolveRecord>,
+        halt: &AtomicBool,
+    ) -> Result<Option<SolveRecord>, SolveListError> {
+        let start = Instant::now();
+        let solve = attempt.solve(&job.solve);
+        job.folder.write_solve(&job.solve)?;
+        let work = job.folder.fresh_work()?;
+        let (solution, error) = match self.solver.attempt(&solve, &work, self.limit, halt) {
+            Ok(mut solution) => {
+                let stopped = solution.stopped.take();
+                (solution, stopped)
+            }
+            Err(error) => (WindowSolution::default(), Some(error)),
+        };
+        let failure = match error {
+            None => None,
+            Some(error) if error.is_stop() => return Ok(None),
+            Some(error) => match FailureKind::from_error(&error) {
+                Some(kind) => Some((kind, error.to_string())),
+                None => {
+                    let (job, source) = (job.id.clone(), Box::new(error));
+                    return Err(SolveListError::Halted { job, source });
+                }
+            },
+        };
+        let now = job.folder.ended()?;
+        if let Some(theirs) = now.filter(|now| before.as_ref() != Some(now)) {
+            job.folder.remove_work()?;
+            return Ok(Some(theirs));
+        }
+        let mut record = before.unwrap_or_default();
+        if let Some(last) = solution.samples.last()
+            && last.lambda > record.lambda
+        {
+            record.rows_hash = job.folder.write_samples(&solution.samples)?;
+            record.rows = solution.samples.len();
+            record.lambda = last.lambda;
+            record.tier = solve.problem.tier;
+            record.elements = solution.elements;
+        }
+        record.next =
+            (failure.as_ref()).and_then(|(kind, _)| attempt.next(*kind, &job.solve, record.lambda));
+        (record.failure, record.message) = failure.unzip();
+        record.attempts += 1;
+        record.add_cost(&solution, start.elapsed());
+        if record.failure.is_none() {
+            job.folder.remove_work()?;
+        }
+        job.folder.write_record(&record)?;
+        Ok(Some(record))
+    }
+}
+
+impl SolveRecord {
+    /// Adds what an attempt that has just ended has cost.
+    fn add_cost(&mut self, solution: &WindowSolution, wall: Duration) {
+        self.iterations += solution.iterations;
+        self.cpu_seconds += solution.cpu_seconds.unwrap_or(0.0);
+        self.wall_seconds += wall.as_secs_f64();
+        self.solver_seconds += solution.solver_seconds;
+        let memories = [self.peak_memory_mib, solution.peak_memory_mib];
+        self.peak_memory_mib = memories.into_iter().flatten().reduce(f64::max);
+        self.ended = now();
+    }
+}
+
+/// Seconds since 1970.
+pub(crate) fn now() -> u64 {
+    SystemTime::now()
+        .duration_since(UNIX_EPOCH)
+        .map_or(0, |since| since.as_secs())
+}

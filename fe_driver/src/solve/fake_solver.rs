@@ -1,0 +1,215 @@
+//! A deterministic solver without a program: a hinge of known stiffness, and failures on request. For tests.
+//!
+//! W = (k_a a^2 + k_s s^2 + k_theta theta^2) / 2, D = theta^2 / 100, D_peak = 10 D, in ten equal increments. Nothing is
+//! written to the folder of an attempt.
+
+use crate::solve::tool_versions::ToolVersions;
+use crate::solve::window_solve::WindowSolve;
+use crate::solve::window_solver::{SolveError, WindowSolution, WindowSolver};
+use hinge::{HingeDeformation, HingeSample};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+use support::program::ToolError;
+
+/// Number of increments of a path.
+const INCREMENTS: u32 = 10;
+
+/// What goes wrong in an attempt of a [`FakeSolver`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fault {
+    /// The increments end at this lambda.
+    Diverges(f64),
+    /// The attempt ends at its time limit or on request.
+    Hangs,
+    /// There is no solver: no other attempt would succeed either.
+    Missing,
+}
+
+/// A solver of hinges with a closed-form energy.
+pub struct FakeSolver<F> {
+    /// (k_a, k_s) (N/mm) and k_theta (N mm/rad).
+    stiffness: [f64; 3],
+    /// The fault of an attempt at a solve.
+    fault: F,
+    /// Number of attempts so far.
+    attempts: AtomicUsize,
+}
+
+impl<F: Fn(&WindowSolve) -> Option<Fault>> FakeSolver<F> {
+    /// Hinges with the stiffness (k_a, k_s) (N/mm) and k_theta (N mm/rad); `fault` is asked at every attempt.
+    pub fn new(stiffness: [f64; 3], fault: F) -> Self {
+        Self {
+            stiffness,
+            fault,
+            attempts: AtomicUsize::new(0),
+        }
+    }
+
+    /// Number of attempts so far.
+    pub fn attempts(&self) -> usize {
+        self.attempts.load(Ordering::Relaxed)
+    }
+
+    fn sample(&self, lambda: f64, state: HingeDeformation) -> HingeSample {
+        let ([k_a, k_s, k_theta], [a, s, theta]) = (self.stiffness, state.to_array());
+        let w = 0.5 * (k_a * a * a + k_s * s * s + k_theta * theta * theta);
+        let d = 0.01 * theta * theta;
+        HingeSample {
+            lambda,
+            a,
+            s,
+            theta,
+            w,
+            w_work: w,
+            w_elastic: w,
+            f_a: k_a * a,
+            f_s: k_s * s,
+            m_theta: k_theta * theta,
+            d,
+            d_peak: Some(10.0 * d),
+            ..HingeSample::default()
+        }
+    }
+}
+
+impl<F: Fn(&WindowSolve) -> Option<Fault> + Sync> WindowSolver for FakeSolver<F> {
+    fn versions(&self) -> ToolVersions {
+        let [gmsh, ccx] = ["none", "fake"].map(str::to_owned);
+        ToolVersions { gmsh, ccx }
+    }
+
+    fn attempt(
+        &self,
+        solve: &WindowSolve,
+        _work: &Path,
+        limit: Duration,
+        stop: &AtomicBool,
+    ) -> Result<WindowSolution, SolveError> {
+        let start = Instant::now();
+        self.attempts.fetch_add(1, Ordering::Relaxed);
+        let (end, stopped) = match (self.fault)(solve) {
+            None => (1.0, None),
+            Some(Fault::Diverges(lambda)) => {
+                let tail = "the increment is too small".to_owned();
+                (lambda, Some(SolveError::Diverged { lambda, tail }))
+            }
+            Some(Fault::Hangs) => {
+                while start.elapsed() < limit {
+                    if stop.load(Ordering::Relaxed) {
+                        return Err(ToolError::Stopped { name: "fake" }.into());
+                    }
+                    std::thread::sleep(Duration::from_millis(1));
+                }
+                let timed_out = ToolError::TimedOut {
+                    name: "fake",
+                    limit,
+                    cpu_seconds: None,
+                };
+                (0.0, Some(timed_out.into()))
+            }
+            Some(Fault::Missing) => {
+                let (kind, program) = (&crate::CCX, None);
+                return Err(ToolError::NotFound { kind, program }.into());
+            }
+        };
+        let lambdas = (1..=INCREMENTS).map(|k| f64::from(k) / f64::from(INCREMENTS));
+        let samples = lambdas.take_while(|lambda| *lambda <= end);
+        let path = &solve.problem.hinge.path;
+        Ok(WindowSolution {
+            samples: samples
+                .map(|lambda| self.sample(lambda, path.at(lambda)))
+                .collect(),
+            stopped,
+            elements: 1,
+            cpu_seconds: Some(1.0),
+            wall_seconds: start.elapsed().as_secs_f64(),
+            ..WindowSolution::default()
+        })
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::solve::hinge_path::Ray;
+    use crate::solve::window_solve::WindowProblem;
+    use hinge::{HingeConstants, SheetMaterial};
+    use mesher::Tier;
+
+    /// A ray of the paper's hinge that ends at the rotation `theta` (rad).
+    pub fn ray_to(theta: f64) -> Ray {
+        let design = HingeConstants::PAPER.hinge(18.0, 1.5);
+        let end = HingeDeformation::from_eta(-0.1, 0.05, theta, 18.0);
+        Ray { design, end }
+    }
+
+    /// The solve of a ray with the fake solver.
+    pub fn solve_to(theta: f64) -> WindowSolve {
+        let film = "name = \"film\"\nthickness = 0.5\nyoung = 3000.0\npoisson = 0.4\n\
+            density_kg_m3 = 1390.0\nfracture_strain = 1.784\nplastic = [[44.0, 0.0]]\n";
+        let film: SheetMaterial = support::toml_file::parse(film, Path::new("film.toml")).unwrap();
+        let problem = WindowProblem::new(ray_to(theta), &film, Tier::Default);
+        WindowSolve::new(problem, &healthy().versions())
+    }
+
+    /// The solve of a ray on the mesh of a tier.
+    pub fn solve_on(tier: Tier) -> WindowSolve {
+        let solve = solve_to(0.5);
+        let problem = WindowProblem {
+            tier,
+            ..solve.problem
+        };
+        WindowSolve::new(problem, &solve.tools)
+    }
+
+    pub const STIFFNESS: [f64; 3] = [3.0, 5.0, 200.0];
+
+    /// A solver without faults.
+    pub fn healthy() -> FakeSolver<fn(&WindowSolve) -> Option<Fault>> {
+        FakeSolver::new(STIFFNESS, |_| None)
+    }
+
+    #[test]
+    fn the_forces_are_the_gradient_of_the_energy() {
+        let (solver, h) = (healthy(), 1e-5);
+        let state = [0.3, -0.2, 0.7];
+        let forces = solver.sample(1.0, state.into()).forces().to_array();
+        for (i, force) in forces.into_iter().enumerate() {
+            let w = |step: f64| {
+                let mut moved = state;
+                moved[i] += step;
+                solver.sample(1.0, moved.into()).w
+            };
+            assert!((force - (w(h) - w(-h)) / (2.0 * h)).abs() < 1e-8 * (1.0 + force.abs()));
+        }
+    }
+
+    #[test]
+    fn the_identity_depends_on_every_input() {
+        let solve = solve_to(0.5);
+        assert_eq!(solve.id(), solve_to(0.5).id());
+        let newer = |gmsh: &str, ccx: &str| ToolVersions {
+            gmsh: gmsh.to_owned(),
+            ccx: ccx.to_owned(),
+        };
+        let mut others = vec![solve_to(0.6), solve_on(Tier::Tiny)];
+        others.extend(
+            [newer("none", "faker"), newer("other", "fake")].map(|tools| {
+                let problem = solve.problem.clone();
+                WindowSolve::new(problem, &tools)
+            }),
+        );
+        let vary = |change: &dyn Fn(&mut WindowSolve)| {
+            let mut other = solve.clone();
+            change(&mut other);
+            other
+        };
+        others.push(vary(&|solve| solve.mesh.layers += 1));
+        others.push(vary(&|solve| solve.problem.step.greatest *= 2.0));
+        others.push(vary(&|solve| solve.problem.material.young += 1.0));
+        let ids: std::collections::BTreeSet<String> =
+            others.iter().chain([&solve]).map(WindowSolve::id).collect();
+        assert_eq!(ids.len(), 1 + others.len());
+    }
+}

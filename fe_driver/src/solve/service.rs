@@ -1,0 +1,240 @@
+//! Lists of solves whose results are needed at once: a replay, a spot check, a round of an equilibrium, a study.
+
+use crate::solve::attempts::{Job, SolveEvent, SolveListError, Workers};
+use crate::solve::solve_folder::SolveStore;
+use crate::solve::solved_window::SolvedWindow;
+use crate::solve::tool_versions::ToolVersions;
+use crate::solve::window_solve::WindowSolve;
+use crate::solve::window_solver::WindowSolver;
+use std::collections::HashMap;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+/// Solves lists of windows and keeps every result in a store: what is in the store is not solved again.
+pub struct WindowService<'a> {
+    /// What solves the windows.
+    pub solver: Box<dyn WindowSolver + 'a>,
+    /// Where solves are kept.
+    pub store: SolveStore,
+    /// Number of solves that run in parallel.
+    pub workers: usize,
+    /// Time limit of one attempt.
+    pub limit: Duration,
+    /// Terminates the attempts in flight when set.
+    pub stop: &'a AtomicBool,
+    /// Receives the numbers of solves done and of all.
+    pub progress: Box<dyn Fn(usize, usize) + 'a>,
+}
+
+impl WindowService<'_> {
+    /// The versions that the solves of this service must have.
+    pub fn versions(&self) -> ToolVersions {
+        self.solver.versions()
+    }
+
+    /// The results of `solves`, in the same order; equal solves are made once. A window that fails is a result too, after
+    /// all attempts of the ladder.
+    ///
+    /// A result of an earlier list is read from the store. A failure that the mechanics did not cause, as a time limit, is
+    /// tried again.
+    ///
+    /// # Errors
+    /// [`SolveListError::Stopped`] if `stop` becomes true before the last solve is done.
+    pub fn solve(&self, solves: &[WindowSolve]) -> Result<Vec<SolvedWindow>, SolveListError> {
+        let mut places = HashMap::new();
+        let mut jobs: Vec<Job> = Vec::new();
+        let mut order = Vec::with_capacity(solves.len());
+        for solve in solves {
+            let id = solve.id();
+            let place = *places.entry(id.clone()).or_insert(jobs.len());
+            order.push(place);
+            if place == jobs.len() {
+                let folder = self.store.solve(&id);
+                folder.reopen(|failure| !failure.is_repeatable())?;
+                let solve = solve.clone();
+                jobs.push(Job { id, solve, folder });
+            }
+        }
+        let workers = Workers {
+            solver: &*self.solver,
+            count: self.workers,
+            limit: self.limit,
+            deadline: None,
+        };
+        let (mut done, all) = (0, jobs.len());
+        (self.progress)(done, all);
+        workers.work_through(&jobs, self.stop, &mut |_, event| {
+            if let SolveEvent::Found(Some(record)) | SolveEvent::Ended(_, record) = event
+                && record.is_closed()
+            {
+                done += 1;
+                (self.progress)(done, all);
+            }
+            Ok(())
+        })?;
+        let solved = jobs.iter().map(|job| job.folder.result());
+        let solved: Vec<Option<SolvedWindow>> = solved.collect::<Result<_, _>>()?;
+        let left = solved.iter().filter(|result| result.is_none()).count();
+        if left > 0 {
+            return Err(SolveListError::Stopped { left });
+        }
+        Ok((order.into_iter())
+            .filter_map(|place| solved[place].clone())
+            .collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::failure::FailureKind;
+    use crate::solve::fake_solver::tests::{STIFFNESS, healthy, solve_to};
+    use crate::solve::fake_solver::{FakeSolver, Fault};
+    use crate::solve::step_control::StepControl;
+    use std::sync::atomic::Ordering;
+    use tempfile::TempDir;
+
+    /// Three rays.
+    fn solves() -> Vec<WindowSolve> {
+        [0.2, 0.4, 0.6].map(solve_to).to_vec()
+    }
+
+    /// Whether a solve is the second of the three.
+    fn is_second(solve: &WindowSolve) -> bool {
+        solve.problem.hinge == solves()[1].problem.hinge
+    }
+
+    fn service<'a>(
+        solver: &'a (dyn WindowSolver + 'a),
+        folder: &TempDir,
+        stop: &'a AtomicBool,
+    ) -> WindowService<'a> {
+        WindowService {
+            solver: Box::new(solver),
+            store: SolveStore(folder.path().join("solves")),
+            workers: 1,
+            limit: Duration::from_millis(5),
+            stop,
+            progress: Box::new(|_, _| {}),
+        }
+    }
+
+    fn solve(
+        solver: &dyn WindowSolver,
+        folder: &TempDir,
+    ) -> Result<Vec<SolvedWindow>, SolveListError> {
+        service(solver, folder, &AtomicBool::new(false)).solve(&solves())
+    }
+
+    #[test]
+    fn a_window_that_fails_is_named_and_the_others_are_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let diverges = FakeSolver::new(STIFFNESS, |solve| {
+            is_second(solve).then_some(Fault::Diverges(0.35))
+        });
+        let windows = solve(&diverges, &folder).unwrap();
+        let complete: Vec<bool> = windows.iter().map(|it| it.complete().is_ok()).collect();
+        assert_eq!(complete, [true, false, true]);
+        assert_eq!(windows[0].samples.len(), 10);
+        // As requested, with shorter increments, on a finer mesh; the increments that converged are kept.
+        let failed = windows[1].complete().unwrap_err();
+        assert_eq!((failed.attempts, windows[1].samples.len()), (3, 3));
+        let message = failed.to_string();
+        for part in [
+            "w_lig 18.00 mm",
+            "22.92 deg",
+            "diverged at lambda = 0.35",
+            &windows[1].id,
+        ] {
+            assert!(message.contains(part), "{message}");
+        }
+        assert!(failed.work.is_dir() && !windows[0].work.exists());
+        // The mechanics would fail again: nothing is solved twice.
+        assert_eq!(solve(&diverges, &folder).unwrap(), windows);
+        assert_eq!(diverges.attempts(), 5);
+    }
+
+    #[test]
+    fn a_failure_that_another_attempt_avoids_leaves_no_trace_but_its_cost() {
+        let folder = tempfile::tempdir().unwrap();
+        let needs_short = FakeSolver::new(STIFFNESS, |solve| {
+            let usual = solve.problem.step == StepControl::default();
+            usual.then_some(Fault::Diverges(0.0))
+        });
+        for (window, expected) in std::iter::zip(
+            solve(&needs_short, &folder).unwrap(),
+            solve(&healthy(), &tempfile::tempdir().unwrap()).unwrap(),
+        ) {
+            assert_eq!(window.samples, expected.samples);
+            assert_eq!(
+                (window.record.attempts, window.record.cpu_seconds),
+                (2, 2.0)
+            );
+            assert_eq!(window.record.failure, None);
+        }
+    }
+
+    #[test]
+    fn a_list_that_is_stopped_continues_where_it_ended() {
+        let folder = tempfile::tempdir().unwrap();
+        let stop = AtomicBool::new(false);
+        let hangs = FakeSolver::new(STIFFNESS, |solve| is_second(solve).then_some(Fault::Hangs));
+        let stopped = WindowService {
+            limit: Duration::from_secs(60),
+            progress: Box::new(|done, _| stop.store(done == 1, Ordering::Relaxed)),
+            ..service(&hangs, &folder, &stop)
+        };
+        let error = stopped.solve(&solves()).unwrap_err();
+        assert!(
+            matches!(error, SolveListError::Stopped { left: 2 }),
+            "{error}"
+        );
+        let rest = healthy();
+        assert_eq!(solve(&rest, &folder).unwrap().len(), 3);
+        assert_eq!(rest.attempts(), 2);
+    }
+
+    #[test]
+    fn a_time_limit_is_tried_again_by_the_next_list() {
+        let folder = tempfile::tempdir().unwrap();
+        let hangs = FakeSolver::new(STIFFNESS, |solve| is_second(solve).then_some(Fault::Hangs));
+        let windows = solve(&hangs, &folder).unwrap();
+        assert_eq!(windows[1].record.failure, Some(FailureKind::TimedOut));
+        let mended = healthy();
+        let windows = solve(&mended, &folder).unwrap();
+        assert!(windows.iter().all(|it| it.complete().is_ok()));
+        assert_eq!(mended.attempts(), 1);
+    }
+
+    #[test]
+    fn a_missing_solver_halts_the_list_and_what_is_done_is_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let lost = FakeSolver::new(STIFFNESS, |solve| {
+            is_second(solve).then_some(Fault::Missing)
+        });
+        let error = solve(&lost, &folder).unwrap_err();
+        assert!(matches!(error, SolveListError::Halted { .. }), "{error}");
+        assert!(error.to_string().contains("not found"), "{error}");
+        let mended = healthy();
+        solve(&mended, &folder).unwrap();
+        assert!(mended.attempts() < 3);
+    }
+
+    #[test]
+    fn equal_solves_are_made_once_and_damaged_ones_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let (solver, stop) = (healthy(), AtomicBool::new(false));
+        let service = service(&solver, &folder, &stop);
+        let twice = [solve_to(0.2), solve_to(0.4), solve_to(0.2)];
+        let windows = service.solve(&twice).unwrap();
+        assert_eq!((windows.len(), solver.attempts()), (3, 2));
+        assert_eq!(windows[0], windows[2]);
+        let rows = service.store.solve(&windows[0].id).0.join("rows.csv");
+        std::fs::write(rows, "edited").unwrap();
+        let again = service.solve(&twice).unwrap();
+        assert_eq!(
+            (&again[0].samples, solver.attempts()),
+            (&windows[0].samples, 3)
+        );
+    }
+}

@@ -1,0 +1,295 @@
+//! The store of solves on disk: one folder a solve, whole or open.
+//!
+//! The folder of a solve is `<first two digits of its id>/<id>/`, so that no folder has 10^5 entries. It contains `job.json`
+//! (all inputs of the result; its hash is the id), `rows.csv` (the samples) and `result.json`. `result.json` is written
+//! last: a solve without it is not done. These files are written atomically. Deck and log of an attempt remain only if it
+//! failed: the deck follows from `job.json`.
+
+use crate::record_file::{FileError, entries, or_damage, read_json, write_json};
+use crate::solve::failure::FailureKind;
+use crate::solve::host::host;
+use crate::solve::ladder::AttemptKind;
+use crate::solve::window_solve::WindowSolve;
+use hinge::HingeSample;
+use mesher::Tier;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use std::io;
+use std::path::{Path, PathBuf};
+use support::{regular_file, whole_file};
+
+/// The state of a solve after its last attempt.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SolveRecord {
+    /// Why there are no samples, or only samples of a part of the path; `None` for a complete path.
+    pub failure: Option<FailureKind>,
+    /// The error message of the failure.
+    pub message: Option<String>,
+    /// The next attempt; `None` closes the solve.
+    pub next: Option<AttemptKind>,
+    /// Number of attempts.
+    pub attempts: u32,
+    /// Tier of the attempt that produced the rows.
+    pub tier: Tier,
+    /// Number of elements of its mesh.
+    pub elements: usize,
+    /// Number of rows in `rows.csv`.
+    pub rows: usize,
+    /// Hash of `rows.csv`.
+    pub rows_hash: String,
+    /// Lambda of the last row; 1 for a complete path.
+    pub lambda: f64,
+    /// Newton iterations over all attempts.
+    pub iterations: usize,
+    /// Solver CPU time over all attempts (s), as far as the operating system reports it.
+    pub cpu_seconds: f64,
+    /// Wall time over all attempts (s).
+    pub wall_seconds: f64,
+    /// Wall time of the solver over all attempts that it ended by itself (s), a part of `wall_seconds`.
+    pub solver_seconds: f64,
+    /// Maximum resident memory of the solver (MiB), if the operating system reports it.
+    pub peak_memory_mib: Option<f64>,
+    /// Time at which the last attempt ended, in seconds since 1970.
+    pub ended: u64,
+}
+
+impl SolveRecord {
+    /// Whether no attempt is left.
+    pub fn is_closed(&self) -> bool {
+        self.next.is_none()
+    }
+
+    /// Whether it was solved in this folder, not restored from a database, which has no wall times.
+    pub(crate) fn is_solved_here(&self) -> bool {
+        self.wall_seconds > 0.0
+    }
+}
+
+/// The state of a solve in its folder.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum SolveState {
+    /// No attempt has ended; `started` if an attempt was started.
+    Open { started: bool },
+    /// An attempt has ended.
+    Ended(Box<(WindowSolve, SolveRecord)>),
+    /// The files of the folder are damaged or inconsistent, with the reason. The solve counts as open: the next run
+    /// solves it again.
+    Damaged(String),
+}
+
+/// A folder of solves.
+#[derive(Clone, Debug)]
+pub struct SolveStore(pub PathBuf);
+
+/// Number of digits in the name of a folder of solves.
+const DIGITS: usize = 2;
+
+impl SolveStore {
+    /// The folder of a solve, which may not exist yet.
+    pub fn solve(&self, id: &str) -> SolveFolder {
+        let digits = id.get(..DIGITS).unwrap_or(id);
+        SolveFolder(self.0.join(digits).join(id))
+    }
+
+    /// The ids of all solves that were ever started here.
+    pub(crate) fn ids(&self) -> Result<BTreeSet<String>, FileError> {
+        let mut ids = BTreeSet::new();
+        for digits in folders(&self.0)? {
+            ids.extend(folders(&self.0.join(digits))?);
+        }
+        Ok(ids)
+    }
+}
+
+/// The names of the folders below a folder; none if it does not exist.
+fn folders(folder: &Path) -> Result<Vec<String>, FileError> {
+    if !folder.exists() {
+        return Ok(Vec::new());
+    }
+    let entries = entries(folder)?.into_iter();
+    let folders = entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir()));
+    let names = folders.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    Ok(names.collect())
+}
+
+/// The folder of one solve.
+#[derive(Clone, Debug)]
+pub struct SolveFolder(pub PathBuf);
+
+impl SolveFolder {
+    /// The state of the solve. The consistency of its files is checked: the name of the folder must be the hash of
+    /// `job.json`, and `result.json` contains the hash of `rows.csv`.
+    pub(crate) fn state(&self) -> Result<SolveState, FileError> {
+        let damaged = |reason: &str| Ok(SolveState::Damaged(reason.to_owned()));
+        let solve = match or_damage(self.solve())? {
+            Ok(solve) => solve,
+            Err(_) => return damaged("job.json cannot be read"),
+        };
+        let record = match or_damage(self.record())? {
+            Ok(record) => record,
+            Err(_) => return damaged("result.json cannot be read"),
+        };
+        let id = self.0.file_name().unwrap_or_default();
+        if solve.as_ref().is_some_and(|solve| *solve.id() != *id) {
+            return damaged("job.json has changed: its hash is not the name of its folder");
+        }
+        match (solve, record) {
+            (solve, None) => Ok(SolveState::Open {
+                started: solve.is_some(),
+            }),
+            (None, Some(_)) => damaged("job.json is missing"),
+            (Some(solve), Some(record)) => {
+                let rows = self.0.join("rows.csv");
+                if record.rows > 0 && !rows.exists() {
+                    return damaged("rows.csv is missing");
+                }
+                if record.rows > 0 && or_damage(self.rows(&record))?.is_err() {
+                    return damaged("rows.csv does not match result.json");
+                }
+                Ok(SolveState::Ended(Box::new((solve, record))))
+            }
+        }
+    }
+
+    /// Reads the inputs of the solve; `None` if it was never started.
+    pub fn solve(&self) -> Result<Option<WindowSolve>, FileError> {
+        read_json(&self.0.join("job.json"))
+    }
+
+    /// Reads the record of the solve; `None` before the first attempt has ended.
+    pub fn record(&self) -> Result<Option<SolveRecord>, FileError> {
+        read_json(&self.0.join("result.json"))
+    }
+
+    /// Reads the samples; an error if their hash is not the one in `record`.
+    pub fn samples(&self, record: &SolveRecord) -> Result<Vec<HingeSample>, FileError> {
+        let bytes = self.rows(record)?;
+        let rows = csv::Reader::from_reader(&bytes[..]).into_deserialize();
+        rows.collect::<Result<_, csv::Error>>().map_err(|error| {
+            let damage = io::Error::new(io::ErrorKind::InvalidData, error);
+            FileError::at(&self.0.join("rows.csv"))(damage)
+        })
+    }
+
+    /// The bytes of `rows.csv`, which must have the hash in `record`.
+    fn rows(&self, record: &SolveRecord) -> Result<Vec<u8>, FileError> {
+        let path = self.0.join("rows.csv");
+        let bytes = regular_file::read(&path).map_err(FileError::at(&path))?;
+        if blake3::hash(&bytes).to_hex().as_str() != record.rows_hash {
+            let changed =
+                "the rows do not match the hash in result.json: run the same command again";
+            let damage = io::Error::new(io::ErrorKind::InvalidData, changed);
+            return Err(FileError::at(&path)(damage));
+        }
+        Ok(bytes)
+    }
+
+    pub(crate) fn write_solve(&self, solve: &WindowSolve) -> Result<(), FileError> {
+        whole_file::create_folder(&self.0).map_err(FileError::at(&self.0))?;
+        write_json(&self.0.join("job.json"), solve)
+    }
+
+    /// Writes the samples so that every number is read back exactly; returns the hash of the file.
+    pub(crate) fn write_samples(&self, samples: &[HingeSample]) -> Result<String, FileError> {
+        let path = self.0.join("rows.csv");
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        samples
+            .iter()
+            .try_for_each(|sample| writer.serialize(sample))
+            .map_err(FileError::at(&path))?;
+        let bytes = writer.into_inner().expect("a vector takes every byte");
+        whole_file::write(&path, &bytes).map_err(FileError::at(&path))?;
+        Ok(blake3::hash(&bytes).to_hex().to_string())
+    }
+
+    pub(crate) fn write_record(&self, record: &SolveRecord) -> Result<(), FileError> {
+        write_json(&self.0.join("result.json"), record)
+    }
+
+    /// The record of the solve if its files are consistent; `None` if no attempt has ended, or if the files are damaged.
+    pub(crate) fn ended(&self) -> Result<Option<SolveRecord>, FileError> {
+        Ok(match self.state()? {
+            SolveState::Ended(ended) => Some(ended.1),
+            SolveState::Open { .. } | SolveState::Damaged(_) => None,
+        })
+    }
+
+    /// Starts the ladder of a closed solve again if it failed in one of the ways that `may` accepts; returns whether it did.
+    /// Its samples are kept until an attempt reaches a larger lambda.
+    pub(crate) fn reopen(&self, may: impl Fn(FailureKind) -> bool) -> Result<bool, FileError> {
+        let Some(mut record) = self.ended()? else {
+            return Ok(false);
+        };
+        let reopened = record.is_closed() && record.failure.is_some_and(may);
+        if reopened {
+            record.next = Some(AttemptKind::Requested);
+            self.write_record(&record)?;
+        }
+        Ok(reopened)
+    }
+
+    /// The work folder of attempts on this host; another host may try the same solve at the same time.
+    pub fn work(&self) -> PathBuf {
+        self.0.join(format!("work-{}", host()))
+    }
+
+    /// Creates an empty work folder for an attempt.
+    pub(crate) fn fresh_work(&self) -> Result<PathBuf, FileError> {
+        self.remove_work()?;
+        let work = self.work();
+        std::fs::create_dir_all(&work).map_err(FileError::at(&work))?;
+        Ok(work)
+    }
+
+    /// Removes the work folder, if there is one.
+    pub(crate) fn remove_work(&self) -> Result<(), FileError> {
+        let work = self.work();
+        match std::fs::remove_dir_all(&work) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                Err(FileError::at(&work)(error))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn folder() -> (tempfile::TempDir, SolveFolder) {
+        let root = tempfile::tempdir().unwrap();
+        let folder = SolveFolder(root.path().to_owned());
+        (root, folder)
+    }
+
+    proptest! {
+        #[test]
+        fn rows_are_read_back_bit_exactly(
+            numbers in proptest::array::uniform4(proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL)
+        ) {
+            let [w, f_a, f_s, m_theta] = numbers;
+            let rows = [HingeSample { w, f_a, f_s, m_theta, ..HingeSample::default() }; 2];
+            let (_root, folder) = folder();
+            let rows_hash = folder.write_samples(&rows).unwrap();
+            let record = SolveRecord { rows_hash, ..SolveRecord::default() };
+            prop_assert_eq!(&folder.samples(&record).unwrap()[..], &rows[..]);
+        }
+    }
+
+    #[test]
+    fn the_error_for_a_damaged_record_says_what_to_do() {
+        let (_root, folder) = folder();
+        assert!(folder.record().unwrap().is_none());
+        folder.write_record(&SolveRecord::default()).unwrap();
+        assert_eq!(folder.record().unwrap(), Some(SolveRecord::default()));
+        let path = folder.0.join("result.json");
+        std::fs::write(&path, "{\"failure\": nu").unwrap();
+        let message = folder.record().unwrap_err().to_string();
+        assert!(
+            message.contains("result.json") && message.contains("delete it"),
+            "{message}"
+        );
+    }
+}
