@@ -3,6 +3,8 @@
 #[cfg(feature = "pipeline")]
 pub mod campaign;
 pub mod compare;
+#[cfg(feature = "pipeline")]
+mod compared_states;
 pub mod completions;
 pub mod cut;
 #[cfg(feature = "pipeline")]
@@ -26,6 +28,8 @@ pub mod mesh;
 pub(crate) mod pipeline;
 #[cfg(feature = "pipeline")]
 pub mod solve;
+#[cfg(feature = "pipeline")]
+pub mod solve_args;
 #[cfg(feature = "pipeline")]
 pub mod surrogate;
 #[cfg(feature = "pipeline")]

@@ -4,6 +4,4 @@
 
 pub mod cli;
 pub mod commands;
-#[cfg(feature = "pipeline")]
-pub mod replays;
 pub mod ui;

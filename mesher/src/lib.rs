@@ -41,6 +41,8 @@ pub use meshing::{MeshError, WindowShape};
 pub use msh::{Boundary, MshError, PlaneMesh, read_msh};
 pub use quality::{MeshDefect, MeshQuality};
 pub use svg::plane_mesh_svg;
-pub use tier::{Imperfection, MeshRecipe, PlaneRecipe, Structured, Tier, Unstructured};
+pub use tier::{
+    Imperfection, MeshRecipe, PlaneRecipe, Structured, Tier, UnknownTier, Unstructured,
+};
 pub use vtk_cells::vtk_grid;
 pub use window::{Side, Window};

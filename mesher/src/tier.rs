@@ -27,9 +27,24 @@ use serde::{Deserialize, Serialize};
 /// 0.8 w_lig on the free edge. A hinge in compression bends its panels; therefore the rings around O are as fine
 /// as the columns. The number of rings determines the error of the energy before yield.
 #[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    JsonSchema,
+    strum::Display,
+    strum::EnumString,
+    strum::IntoStaticStr,
 )]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
+#[strum(parse_err_ty = UnknownTier, parse_err_fn = UnknownTier::new)]
 pub enum Tier {
     /// 36 bricks in one layer; 2.5 CPU seconds a ray.
     Tiny,
@@ -164,20 +179,7 @@ impl Tier {
 
     /// The name used in configurations and on the command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Tier::Tiny => "tiny",
-            Tier::Small => "small",
-            Tier::Default => "default",
-            Tier::Fine => "fine",
-            Tier::Reference => "reference",
-            Tier::Paper => "paper",
-        }
-    }
-}
-
-impl std::fmt::Display for Tier {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        f.pad(self.name())
+        self.into()
     }
 }
 
@@ -186,14 +188,9 @@ impl std::fmt::Display for Tier {
 #[error("unknown mesh tier `{0}`; choose tiny, small, default, fine, reference or paper")]
 pub struct UnknownTier(String);
 
-impl std::str::FromStr for Tier {
-    type Err = UnknownTier;
-
-    fn from_str(name: &str) -> Result<Self, UnknownTier> {
-        Self::ALL
-            .into_iter()
-            .find(|tier| tier.name() == name)
-            .ok_or_else(|| UnknownTier(name.to_owned()))
+impl UnknownTier {
+    fn new(name: &str) -> Self {
+        Self(name.to_owned())
     }
 }
 

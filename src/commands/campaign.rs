@@ -7,13 +7,13 @@ mod extend;
 mod plan;
 mod restore;
 mod retry;
-mod rows;
 mod run;
 mod status;
 mod submit;
 
-pub use collect::{CollectCommand, collected};
-pub use run::{RunCommand, refuse_unfinished, solve_rays};
+pub use collect::CollectCommand;
+pub(crate) use run::RayProgress;
+pub use run::RunCommand;
 
 use anyhow::Result;
 use clap::{Args, Subcommand};

@@ -4,7 +4,7 @@ use crate::commands::window_args::WindowArgs;
 use crate::ui::{interrupt, picture, run_folder};
 use anyhow::Result;
 use clap::Args;
-use mesher::{Gmsh, Tier, mesh_window, plane_mesh_svg, vtk_grid};
+use mesher::{Gmsh, Tier, WindowShape, plane_mesh_svg, vtk_grid};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -40,15 +40,12 @@ impl MeshCommand {
         let design = self.window.design()?;
         let _held = run_folder::hold(&self.out)?;
         let gmsh = Gmsh::find()?;
-        let mesh = mesh_window(
-            &design,
-            self.thickness,
-            &self.tier.recipe(),
-            &self.out,
-            &gmsh,
-            Duration::MAX,
-            interrupt::stop_flag()?,
-        )?;
+        let shape = WindowShape {
+            design: &design,
+            thickness: self.thickness,
+            recipe: &self.tier.recipe(),
+        };
+        let mesh = shape.mesh(&self.out, &gmsh, Duration::MAX, interrupt::stop_flag()?)?;
         let quality = mesh.quality()?;
         let pictures = picture::save(&plane_mesh_svg(&mesh), &self.out.join("mesh"), 1600)?;
         if self.vtu {

@@ -8,9 +8,11 @@ use crate::ui::{interrupt, run_folder};
 use anyhow::{Result, bail};
 use clap::Args;
 use comfy_table::Table;
-use fe_driver::{DeformationPath, StepControl, Tools, WindowModel, reached};
+use fe_driver::{
+    CalculiX, DeformationPath, HingePath, WindowProblem, WindowSolve, WindowSolver, reached,
+};
 use hinge::{HingeDeformation, HingeDesign, HingeSample, SheetMaterial};
-use mesher::{Tier, mesh_window};
+use mesher::Tier;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -81,30 +83,23 @@ impl SolveCommand {
         let _held = run_folder::hold(&self.out)?;
         let limit = Duration::from_secs(self.time_limit_s);
         let stop = interrupt::stop_flag()?;
-        let tools = Tools::find()?;
-        let recipe = self.tier.recipe();
-        let (thickness, gmsh) = (material.thickness, &tools.gmsh);
-        let mesh = mesh_window(&design, thickness, &recipe, &self.out, gmsh, limit, stop)?;
-        let model = WindowModel {
-            mesh: &mesh,
-            path: &path,
-            material: &material,
-            step: &StepControl::default(),
+        let solver = CalculiX {
             print_all: self.vtu,
+            ..CalculiX::find()?
         };
         warn_of_contact(&design, &path);
-        let solution = watched(&self.out, || {
-            model.solve(&tools.ccx, &self.out, limit, stop)
-        })?;
+        let problem = WindowProblem::new(HingePath { design, path }, &material, self.tier);
+        let solve = WindowSolve::new(problem, &solver.versions());
+        let solution = watched(&self.out, || solver.attempt(&solve, &self.out, limit, stop))?;
         if self.vtu
-            && let Some(grid) = model.fields(&self.out)?
+            && let Some(grid) = solver.fields(&solve, &self.out)?
         {
             run_folder::write(&self.out, "window.vtu", &grid.to_vtu())?;
         }
         if self.json {
             let description = json!({
                 "design": design,
-                "path": path,
+                "path": solve.problem.hinge.path,
                 "material": material,
                 "tier": self.tier,
                 "samples": solution.samples,

@@ -3,13 +3,10 @@
 mod polished;
 mod sheet_errors;
 
+use crate::commands::compared_states::{self, SCALE, spread_table};
 use crate::commands::inspect::judged_design::DESIGN_TO_JUDGE;
 use crate::commands::inspect::scene_args::Inspected;
-use crate::replays::balanced_sheet::{WindowSolves, balanced};
-use crate::replays::comparison;
-use crate::replays::comparison::{SCALE, spread_table};
-use crate::replays::kept_solves::{Outcome, SolveArgs};
-use crate::replays::routes::{HingeRoute, ensemble, hinge_routes, judging_tier};
+use crate::commands::solve_args::{SolveArgs, task_error};
 use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -17,15 +14,17 @@ use dataset::{COMPARED, ComparedState};
 use design::output::drawing;
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
-use fe_driver::KeptSolve;
-use hinge::{HingeDeformation, HingeSample};
 use mesher::Tier;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::fmt::{Display, Write};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use surrogate::{Surrogate, mean_and_variance};
+use surrogate::Surrogate;
+use verification::{
+    ElementWindows, PolishTask, ReplayedHinge, UnsolvedHinge, balanced, ensemble, judging_tier,
+    recorded_paths, replay,
+};
 
 /// Solve the hinges of a design by finite elements, along their paths in the sheet
 ///
@@ -74,16 +73,6 @@ pub struct VerifyCommand {
     solve: SolveArgs,
 }
 
-/// One hinge, by the surrogate and by finite elements.
-struct Replayed {
-    route: HingeRoute,
-    states: Vec<ComparedState>,
-    /// Standard deviation over the ensemble, in the order of [`COMPARED`]; empty without one.
-    spread: Vec<[f64; 6]>,
-    /// Fraction of the states inside the training domain.
-    inside: f64,
-}
-
 impl VerifyCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let (scene, design, name) = self.judged.read_judged()?;
@@ -91,9 +80,10 @@ impl VerifyCommand {
             .surrogate()
             .context("only a surrogate can be verified: set hinge = \"surrogate\" in the scene")?;
         let tier = judging_tier(self.tier, surrogate)?;
-        match self.equilibrium {
-            true => self.balance(scene, &design, name, tier),
-            false => self.replay(&scene, &design, &name, surrogate, tier),
+        if self.equilibrium {
+            self.balance(scene, &design, name, tier)
+        } else {
+            self.replay(&scene, &design, &name, surrogate, tier)
         }
     }
 
@@ -106,32 +96,36 @@ impl VerifyCommand {
         tier: Tier,
     ) -> Result<()> {
         let _held = run_folder::hold(&self.out)?;
-        let windows = WindowSolves {
-            tier,
-            args: &self.solve,
-            folder: &self.out,
-        };
+        let service = &self.solve.service(&self.out)?;
+        let windows = ElementWindows { tier, service };
         match self.polish {
             None => {
-                let (found, _) = balanced(&scene, design, &windows, self.rounds)?;
+                let found = balanced(&scene, design, &windows, self.rounds);
+                let (found, _) = found.map_err(task_error)?;
                 let end = found.by_elements();
                 let picture = drawing::deployed(&scene, &end.sheet, end.final_step());
                 run_folder::write(&self.out, "deployed.svg", &picture)?;
-                self.print(&sheet_errors::write(&found, name, &windows)?)
+                self.print(&sheet_errors::write(&found, name, tier, &self.out)?)
             }
             Some(steps) => {
                 scene.config.output = std::path::absolute(&self.out)?;
-                let given = (design, name);
-                let gain = polished::run(&scene, given, &windows, self.rounds, steps, self.force)?;
-                self.print(&gain)
+                let task = PolishTask {
+                    scene: &scene,
+                    design,
+                    name: &name,
+                    rounds: self.rounds,
+                    steps: steps.get(),
+                };
+                self.print(&polished::run(task, &windows, &self.out, self.force)?)
             }
         }
     }
 
     fn print(&self, found: &(impl Serialize + Display)) -> Result<()> {
-        match self.json {
-            true => println!("{}", serde_json::to_string_pretty(found)?),
-            false => println!("{found}\nwritten to {}", self.out.display()),
+        if self.json {
+            println!("{}", serde_json::to_string_pretty(found)?);
+        } else {
+            println!("{found}\nwritten to {}", self.out.display());
         }
         Ok(())
     }
@@ -146,106 +140,39 @@ impl VerifyCommand {
         tier: Tier,
     ) -> Result<()> {
         let networks = ensemble(scene, surrogate, &self.ensemble)?;
-        let mut routes = hinge_routes(scene, design)?;
+        let mut paths = recorded_paths(scene, design)?;
         if let Some(sample) = self.sample {
-            let (all, sample) = (routes.len(), sample.get());
+            let (all, sample) = (paths.len(), sample.get());
             let chosen: BTreeSet<usize> = (0..sample).map(|i| i * all / sample).collect();
-            routes.retain(|route| chosen.contains(&route.hinge));
+            paths.retain(|path| chosen.contains(&path.hinge));
         }
-        let solves: Vec<KeptSolve> = routes
-            .iter()
-            .map(|route| route.recorded(&scene.material, tier))
-            .collect::<Result<_>>()?;
         let _held = run_folder::hold(&self.out)?;
-        let outcomes = self
-            .solve
-            .solve(&solves.iter().collect::<Vec<_>>(), &self.out)?;
-        let (mut replayed, mut failures) = (Vec::new(), String::new());
-        for (route, outcome) in routes.into_iter().zip(outcomes) {
-            let hinge = route.hinge;
-            match Replayed::new(route, outcome, surrogate, &networks) {
-                Ok(hinge) => replayed.push(hinge),
-                Err(reason) => writeln!(failures, "* hinge {hinge}: {reason}")?,
-            }
-        }
+        let windows = self.solve.service(&self.out)?;
+        let judge = (&scene.material, tier);
+        let outcome = replay(&windows, paths, judge, surrogate, &networks);
+        let (replayed, unsolved) = outcome.map_err(task_error)?;
+        let failures = failures(&unsolved);
         ensure!(!replayed.is_empty(), "no hinge was solved:\n{failures}");
         let page = page(name, &replayed, tier, &failures)?;
         run_folder::write(&self.out, "replay.md", &page)?;
         run_folder::write(&self.out, "replay.csv", &csv(&replayed)?)?;
         let groups: Vec<_> = replayed.iter().map(|hinge| &hinge.states[..]).collect();
         let axes = ["finite elements", "surrogate"];
-        comparison::draw(&groups, axes, &self.out.join("replay"))?;
+        compared_states::draw(&groups, axes, &self.out.join("replay"))?;
         println!("{page}\nwritten to {}", self.out.display());
         Ok(())
     }
 }
 
-impl Replayed {
-    fn new(
-        route: HingeRoute,
-        outcome: Outcome,
-        surrogate: &Surrogate,
-        networks: &[Surrogate],
-    ) -> Result<Self, String> {
-        let solved = outcome?;
-        let count = route.states.len();
-        let computed =
-            (1..=count).map(|k| HingeSample::at(&solved.samples, k as f64 / count as f64));
-        let predicted = predicted(surrogate, &route);
-        let domain = surrogate.domain();
-        let inside = |state: &HingeDeformation| domain.contains(&route.design, state);
-        // Damage grows along the path: it is not known once a state was outside the training domain.
-        let left = route.states.iter().position(|state| !inside(state));
-        let known = |(k, value): (usize, &HingeSample)| match left {
-            Some(left) if k >= left => HingeSample {
-                d: f64::NAN,
-                d_peak: None,
-                ..*value
-            },
-            _ => *value,
-        };
-        let states: Vec<_> = (predicted.iter().enumerate().map(known))
-            .zip(computed)
-            .filter_map(|(value, reference)| Some(ComparedState::new(&value, &reference?)))
-            .collect();
-        let others: Vec<_> = networks
-            .iter()
-            .map(|it| self::predicted(it, &route))
-            .collect();
-        let spread = match others.is_empty() {
-            true => Vec::new(),
-            false => (0..states.len())
-                .map(|k| deviation(&predicted, &others, k))
-                .collect(),
-        };
-        Ok(Self {
-            inside: route.states.iter().filter(|state| inside(state)).count() as f64 / count as f64,
-            route,
-            states,
-            spread,
-        })
-    }
+/// One line for every hinge that was not solved.
+fn failures(unsolved: &[UnsolvedHinge]) -> String {
+    unsolved
+        .iter()
+        .map(|hinge| format!("* {hinge}\n"))
+        .collect()
 }
 
-/// The predictions of a surrogate at every state of a path.
-fn predicted(surrogate: &Surrogate, route: &HingeRoute) -> Vec<HingeSample> {
-    let designs = vec![route.design; route.states.len()];
-    surrogate.samples(&designs, &route.states)
-}
-
-/// Standard deviation over all networks at the state `k`.
-fn deviation(first: &[HingeSample], others: &[Vec<HingeSample>], k: usize) -> [f64; 6] {
-    let all = std::iter::once(first).chain(others.iter().map(Vec::as_slice));
-    let values: Vec<_> = all
-        .map(|it| ComparedState::new(&it[k], &it[k]).value)
-        .collect();
-    std::array::from_fn(|i| {
-        let [_, variance] = mean_and_variance(values.iter().map(|value| value[i]));
-        variance.sqrt()
-    })
-}
-
-fn page(name: &str, replayed: &[Replayed], tier: Tier, failures: &str) -> Result<String> {
+fn page(name: &str, replayed: &[ReplayedHinge], tier: Tier, failures: &str) -> Result<String> {
     let states = replayed
         .iter()
         .map(|hinge| hinge.states.len())
@@ -281,38 +208,42 @@ fn page(name: &str, replayed: &[Replayed], tier: Tier, failures: &str) -> Result
     text += "\nAt full load:\n\n| hinge | w_lig, mm | alpha, deg | eta_a | eta_s | theta, deg | inside \
              | W, N mm | by FE | M, N mm | by FE | D | by FE |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
     for hinge in replayed {
-        let (route, end) = (&hinge.route, hinge.route.end());
+        let (path, end) = (&hinge.path, hinge.path.end());
         let Some(ComparedState { value, reference }) = hinge.states.last() else {
             continue;
         };
-        let [eta_a, eta_s] = end.eta(route.design.w_lig);
+        let [eta_a, eta_s] = end.eta(path.design.w_lig);
         writeln!(
             text,
             "| {} | {:.1} | {:.0} | {eta_a:.3} | {eta_s:.3} | {:.1} | {:.0} % | {:.2} | {:.2} | {:.1} | {:.1} | {} | {:.5} |",
-            route.hinge,
-            route.design.w_lig,
-            route.design.alpha.to_degrees(),
+            path.hinge,
+            path.design.w_lig,
+            path.design.alpha.to_degrees(),
             end.theta.to_degrees(),
             100.0 * hinge.inside,
             value[0],
             reference[0],
             value[3],
             reference[3],
-            match value[4].is_nan() {
-                true => "-".to_owned(),
-                false => format!("{:.5}", value[4]),
+            if value[4].is_nan() {
+                "-".to_owned()
+            } else {
+                format!("{:.5}", value[4])
             },
             reference[4],
         )?;
     }
     if !failures.is_empty() {
-        write!(text, "\nNot solved:\n\n{failures}")?;
+        write!(
+            text,
+            "\nNot solved, so that the errors at these hinges are not known and count nowhere above:\n\n{failures}"
+        )?;
     }
     Ok(text)
 }
 
 /// How often the error is within one, two and three standard deviations of the ensemble.
-fn estimate(replayed: &[Replayed]) -> Result<String> {
+fn estimate(replayed: &[ReplayedHinge]) -> Result<String> {
     let mut text = "Fraction of the states with an error within so many standard deviations of the ensemble:\n\n\
         | quantity | one | two | three |\n|---|---|---|---|\n"
         .to_owned();
@@ -344,7 +275,7 @@ fn estimate(replayed: &[Replayed]) -> Result<String> {
 }
 
 /// One row per state; a cell is empty if its value is not known.
-fn csv(replayed: &[Replayed]) -> Result<String> {
+fn csv(replayed: &[ReplayedHinge]) -> Result<String> {
     let columns = |prefix: &str| COMPARED.map(|name| format!("{prefix}_{name}")).join(",");
     let mut text = format!(
         "hinge,w_lig_mm,alpha_deg,step,eta_a,eta_s,theta_deg,{},{}\n",
@@ -352,23 +283,24 @@ fn csv(replayed: &[Replayed]) -> Result<String> {
         columns("fe")
     );
     for hinge in replayed {
-        let design = &hinge.route.design;
-        let states = hinge.route.states.iter().zip(&hinge.states);
+        let design = &hinge.path.design;
+        let states = hinge.path.states.iter().zip(&hinge.states);
         for (step, (state, ComparedState { value, reference })) in states.enumerate() {
             let [eta_a, eta_s] = state.eta(design.w_lig);
             write!(
                 text,
                 "{},{:.4},{:.4},{},{eta_a:.6},{eta_s:.6},{:.4}",
-                hinge.route.hinge,
+                hinge.path.hinge,
                 design.w_lig,
                 design.alpha.to_degrees(),
                 step + 1,
                 state.theta.to_degrees(),
             )?;
             for number in value.iter().chain(reference) {
-                match number.is_nan() {
-                    true => text.push(','),
-                    false => write!(text, ",{number:.6}")?,
+                if number.is_nan() {
+                    text.push(',');
+                } else {
+                    write!(text, ",{number:.6}")?;
                 }
             }
             writeln!(text)?;

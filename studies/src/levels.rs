@@ -12,12 +12,12 @@ use design::objective::design_problem::{Deployment, DesignProblem};
 use design::pattern::design_vector::DesignVector;
 use design::scene::{HingeModel, Scene, SceneConfig};
 use design::sheet::cut_sheet::HingePoint;
-use kirigami::replays::balanced_sheet::{Balanced, WindowSolves, balanced, movements, size};
-use kirigami::replays::kept_solves::SolveArgs;
+use kirigami::commands::solve_args::{SolveArgs, task_error};
 use kirigami::ui::run_folder;
 use mesher::Tier;
 use std::path::{Path, PathBuf};
 use support::table::{Cell, Table};
+use verification::{Balanced, ElementWindows, balanced, movements, size};
 
 /// Measure cost and error of the levels draft, everyday and final, and of every choice, on designed sheets
 ///
@@ -99,12 +99,12 @@ impl LevelsStudy {
         };
         let own = scene(base.clone())?;
         let design = designed(&own, &mut |_| ())?.design;
-        let windows = WindowSolves {
+        let windows = ElementWindows {
             tier: self.tier,
-            args: &self.solve,
-            folder: &folder,
+            service: &self.solve.service(&folder)?,
         };
-        let (truth, _) = balanced(&own, &design, &windows, self.rounds)?;
+        let truth = balanced(&own, &design, &windows, self.rounds);
+        let (truth, _) = truth.map_err(task_error)?;
         let mut rows = Vec::new();
         for choice in self.choices(&base, path)? {
             let problem = scene(choice.config)?.problem()?;
@@ -191,9 +191,7 @@ fn section(title: &str, truth: &Balanced, rows: &[Row]) -> String {
     let moved = truth.rounds.last().map_or(0.0, |round| round.movement);
     let warning = truth.ended.warning();
     let warning = warning.map_or(String::new(), |why| format!(" NOT BALANCED: {why}."));
-    let minutes = truth
-        .cpu_seconds
-        .map_or("?".into(), |seconds| format!("{:.0}", seconds / 60.0));
+    let minutes = truth.cpu_seconds / 60.0;
     let table = Table::new()
         .column("choice", |row: &Row| Cell::text(&row.choice))
         .column("step, ms", |row| Cell::fixed(1e3 * row.step_s, 2))
@@ -205,7 +203,7 @@ fn section(title: &str, truth: &Balanced, rows: &[Row]) -> String {
         });
     format!(
         "### {title}\n\n\
-         {} hinges by finite elements in {in_rounds}, {minutes} CPU minutes; no corner moved by more than {moved:.2} mm in the \
+         {} hinges by finite elements in {in_rounds}, {minutes:.0} CPU minutes; no corner moved by more than {moved:.2} mm in the \
          last.{warning} Step: CPU time of equilibrium and gradient. Effect: movement of the panel corners from the scene as \
          it is; error: from finite elements; both root mean squares. `kirigami-studies levels`.\n\n{}\n",
         truth.hinges.len(),

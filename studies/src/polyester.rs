@@ -16,14 +16,15 @@ use design::output::run_results::write_results;
 use design::scene::design_run::Designed;
 use design::scene::{HingeModel, Scene, SceneConfig};
 use design::sheet::cut_sheet::{HingePoint, Panel};
+use fe_driver::{SolvedWindow, WindowSolve};
 use hinge::HingeSample;
-use kirigami::replays::kept_solves::{Outcome, SolveArgs};
-use kirigami::replays::routes::{HingeRoute, judging_tier, routes_of};
+use kirigami::commands::solve_args::{SolveArgs, task_error};
 use kirigami::ui::run_folder;
 use mesher::Tier;
 use std::cmp::Ordering;
 use std::path::PathBuf;
 use surrogate::Surrogate;
+use verification::{RecordedPath, judging_tier, paths_of};
 
 /// Design one sheet for its shape alone, and with objectives on damage and compression of its hinges
 ///
@@ -64,7 +65,7 @@ struct Row {
     folder: PathBuf,
     /// Factor on all loads of the scene.
     load: f64,
-    routes: Vec<HingeRoute>,
+    paths: Vec<RecordedPath>,
     /// Outline error before and after the design (mm).
     outline: [f64; 2],
     /// Areas of the panels relative to those of the start.
@@ -179,16 +180,18 @@ impl PolyesterStudy {
         tier: Tier,
     ) -> Result<()> {
         let material = Scene::new(base.clone(), &self.scene)?.material;
-        let solves: Vec<_> = rows
-            .iter()
-            .map(|row| row.routes[row.monitored].recorded(&material, tier))
-            .collect::<Result<_>>()?;
-        let outcomes = self
-            .solve
-            .solve(&solves.iter().collect::<Vec<_>>(), &self.out)?;
-        for (row, outcome) in rows.iter_mut().zip(outcomes) {
-            row.learned = learned(surrogate, &row.routes[row.monitored]);
-            row.replayed = replayed(&outcome);
+        let windows = self.solve.service(&self.out)?;
+        let versions = windows.versions();
+        let solve = |row: &Row| {
+            let problem = row.paths[row.monitored].problem(&material, tier)?;
+            Ok(WindowSolve::new(problem, &versions))
+        };
+        let solves: Vec<_> = rows.iter().map(solve).collect::<Result<_>>()?;
+        let solved = windows.solve(&solves);
+        let solved = solved.map_err(|error| task_error(error.into()))?;
+        for (row, window) in rows.iter_mut().zip(&solved) {
+            row.learned = learned(surrogate, &row.paths[row.monitored]);
+            row.replayed = replayed(window);
         }
         Ok(())
     }
@@ -217,7 +220,7 @@ impl Row {
             objective,
             folder: scene.output(),
             load,
-            routes: routes_of(best),
+            paths: paths_of(best),
             outline: [start, best].map(|deployment| outline_error(&problem.objective, deployment)),
             areas: std::iter::zip(areas(best), areas(start))
                 .map(|(area, before)| area / before)
@@ -248,12 +251,12 @@ fn worst(damage: &[Option<f64>]) -> usize {
 }
 
 /// The prediction of the surrogate at the end of the path.
-fn learned(surrogate: &Surrogate, route: &HingeRoute) -> [f64; 4] {
-    figures(&surrogate.samples(&[route.design], &[route.end()])[0])
+fn learned(surrogate: &Surrogate, path: &RecordedPath) -> [f64; 4] {
+    figures(&surrogate.samples(&[path.design], &[path.end()])[0])
 }
 
-fn replayed(outcome: &Outcome) -> Option<[f64; 4]> {
-    outcome.as_ref().ok()?.samples.last().map(figures)
+fn replayed(window: &SolvedWindow) -> Option<[f64; 4]> {
+    window.complete().ok()?.last().map(figures)
 }
 
 /// W, M_theta, D and D_peak.

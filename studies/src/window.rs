@@ -1,13 +1,16 @@
 //! `kirigami-studies window`: the influence of the modelling choices of the window solve.
 
+mod convergence;
+
 use crate::charts::{self, StudyPanel};
+use crate::window::convergence::{
+    Richardson, StudyCase, richardson, study_cases, study_difference, study_state,
+};
 use anyhow::{Result, ensure};
 use clap::Args;
-use fe_driver::{
-    KeptSolution, Richardson, StudyCase, richardson, study_cases, study_difference, study_state,
-};
+use fe_driver::SolvedWindow;
 use hinge::{HingeConstants, HingeDesign, SheetMaterial};
-use kirigami::replays::kept_solves::SolveArgs;
+use kirigami::commands::solve_args::{SolveArgs, task_error};
 use kirigami::ui::{picture, run_folder};
 use mesher::{MeshRecipe, PlaneRecipe, Tier};
 use std::collections::BTreeMap;
@@ -40,27 +43,31 @@ pub struct WindowStudy {
 }
 
 /// A case with its solution.
-type Row = (StudyCase, KeptSolution);
+type Row = (StudyCase, SolvedWindow);
 
 impl WindowStudy {
     pub fn run(&self) -> Result<()> {
         let material = SheetMaterial::load(&self.material)?;
         let _held = run_folder::hold(&self.out)?;
         let hinges = self.hinges().into_iter();
+        let windows = self.solve.service(&self.out)?;
+        let versions = windows.versions();
         let cases: Vec<_> = hinges
-            .flat_map(|design| study_cases(design, &material, self.quick))
+            .flat_map(|design| study_cases(design, &material, &versions, self.quick))
             .collect();
-        let solves: Vec<_> = cases.iter().map(|case| &case.solve).collect();
-        let outcomes = self.solve.solve(&solves, &self.out)?;
+        let solves: Vec<_> = cases.iter().map(|case| case.solve.clone()).collect();
+        let solved = windows.solve(&solves);
+        let solved = solved.map_err(|error| task_error(error.into()))?;
         let (mut rows, mut failures): (Vec<Row>, _) = (Vec::new(), String::new());
-        for (case, outcome) in cases.into_iter().zip(outcomes) {
-            match outcome {
-                Ok(solution) => rows.push((case, solution)),
-                Err(reason) => {
-                    // Only the first line: the rest quotes the end of the solver's log.
-                    let reason = reason.lines().next().unwrap_or_default();
-                    writeln!(failures, "* {}: {reason}", title(&case))?;
+        for (case, window) in cases.into_iter().zip(solved) {
+            match window.complete() {
+                Err(unsolved) => writeln!(failures, "* {}: {unsolved}", title(&case))?,
+                // The ladder ended on a finer mesh: nothing is known of that of the case.
+                Ok(_) if window.record.tier != case.solve.problem.tier => {
+                    let tier = window.record.tier;
+                    writeln!(failures, "* {}: solved only on {tier}", title(&case))?;
                 }
+                Ok(_) => rows.push((case, window)),
             }
         }
         ensure!(
@@ -101,7 +108,7 @@ impl WindowStudy {
 fn title(case: &StudyCase) -> String {
     format!(
         "{}, {}, {}",
-        hinge_name(&case.solve.design),
+        hinge_name(&case.solve.problem.hinge.design),
         case.study,
         case.value
     )
@@ -112,9 +119,9 @@ fn hinge_name(design: &HingeDesign) -> String {
     format!("{} mm, {alpha_deg:.0} deg", design.w_lig)
 }
 
-/// CPU time of the solver (s); NaN if the system does not report it.
-fn cpu_seconds(solution: &KeptSolution) -> f64 {
-    solution.cpu_seconds.unwrap_or(f64::NAN)
+/// CPU time of the solver (s).
+fn cpu_seconds(solution: &SolvedWindow) -> f64 {
+    solution.record.cpu_seconds
 }
 
 /// One row per solve.
@@ -127,10 +134,10 @@ fn csv(rows: &[Row]) -> String {
         let [w, f_a, m, d, _] = study_state(solution, 45.0);
         let [.., uz] = study_state(solution, 50.0);
         let [dw, df, dm, dd, _] = difference(row, rows);
-        let (design, study, value) = (&case.solve.design, case.study, &case.value);
+        let (design, study, value) = (&case.solve.problem.hinge.design, case.study, &case.value);
         let alpha_deg = design.alpha.to_degrees();
-        let (elements, cpu) = (solution.elements, cpu_seconds(solution));
-        let (w_lig, iterations) = (design.w_lig, solution.iterations);
+        let (elements, cpu) = (solution.record.elements, cpu_seconds(solution));
+        let (w_lig, iterations) = (design.w_lig, solution.record.iterations);
         text += &format!(
             "{study},{value},{w_lig},{alpha_deg:.0},{elements},{cpu:.1},{iterations},\
              {w:.4},{f_a:.4},{m:.4},{d:.6},{uz:.3},{dw:.5},{df:.5},{dm:.5},{dd:.5}\n"
@@ -156,7 +163,7 @@ fn markdown(rows: &[Row], failures: &str) -> Result<String> {
     for row @ (case, solution) in rows {
         let own = format!(
             "{}: {} against {}",
-            hinge_name(&case.solve.design),
+            hinge_name(&case.solve.problem.hinge.design),
             case.study,
             case.against
         );
@@ -174,12 +181,12 @@ fn markdown(rows: &[Row], failures: &str) -> Result<String> {
             text,
             "| {} | {} | {:.1} | {w:.2} | {uz:.2} | {dw:.2} % | {df:.2} % | {dm:.2} % | {dd:.2} % |",
             case.value,
-            solution.elements,
+            solution.record.elements,
             cpu_seconds(solution)
         )?;
     }
     text += &extrapolation(rows)?;
-    let is_paper = |row: &Row| row.0.solve.material.name == "pet-0.5mm";
+    let is_paper = |row: &Row| row.0.solve.problem.material.name == "pet-0.5mm";
     if rows.iter().all(is_paper) {
         text += &paper_comparison(rows)?;
     }
@@ -231,24 +238,25 @@ fn extrapolation(rows: &[Row]) -> Result<String> {
 
 /// The solved two-layer tiers of a hinge with the element size relative to that of the default
 /// tier, in descending order of size.
-fn similar_meshes<'a>(rows: &'a [Row], hinge: &str) -> Vec<(f64, &'a KeptSolution)> {
+fn similar_meshes<'a>(rows: &'a [Row], hinge: &str) -> Vec<(f64, &'a SolvedWindow)> {
     let fold_size = |recipe: MeshRecipe| match recipe.plane {
         PlaneRecipe::Structured(plane) if recipe.layers == 2 => Some(plane.fold_size),
         _ => None,
     };
     let unit = fold_size(Tier::Default.recipe()).unwrap_or(1.0);
     of_tiers(rows, hinge)
-        .filter_map(|(case, solution)| Some((fold_size(case.solve.recipe)? / unit, solution)))
+        .filter_map(|(case, solution)| Some((fold_size(case.solve.mesh)? / unit, solution)))
         .collect()
 }
 
 /// The rows of the mesh study of one hinge.
 fn of_tiers<'a>(rows: &'a [Row], hinge: &str) -> impl Iterator<Item = &'a Row> {
-    rows.iter()
-        .filter(move |(case, _)| case.study == "mesh" && hinge_name(&case.solve.design) == hinge)
+    rows.iter().filter(move |(case, _)| {
+        case.study == "mesh" && hinge_name(&case.solve.problem.hinge.design) == hinge
+    })
 }
 
-fn tier<'a>(rows: &'a [Row], hinge: &str, name: &str) -> Option<&'a KeptSolution> {
+fn tier<'a>(rows: &'a [Row], hinge: &str, name: &str) -> Option<&'a SolvedWindow> {
     let mut found = of_tiers(rows, hinge).filter(|(case, _)| case.value == name);
     found.next().map(|(_, solution)| solution)
 }
@@ -257,7 +265,7 @@ fn tier<'a>(rows: &'a [Row], hinge: &str, name: &str) -> Option<&'a KeptSolution
 fn hinges(rows: &[Row]) -> Vec<String> {
     let mut names: Vec<_> = rows
         .iter()
-        .map(|(case, _)| hinge_name(&case.solve.design))
+        .map(|(case, _)| hinge_name(&case.solve.problem.hinge.design))
         .collect();
     names.dedup();
     names
@@ -284,13 +292,13 @@ fn tradeoff(rows: &[Row]) -> Result<String> {
         let Some((_, first)) = solved.first() else {
             continue;
         };
-        let sum = |of: fn(&KeptSolution) -> f64| solved.iter().map(|(_, s)| of(s)).sum::<f64>();
+        let sum = |of: fn(&SolvedWindow) -> f64| solved.iter().map(|(_, s)| of(s)).sum::<f64>();
         let cpu = sum(cpu_seconds);
         let ray = cpu / solved.len() as f64;
         let row = cpu / sum(|s| s.samples.len() as f64);
-        let memory = solved.iter().filter_map(|(_, s)| s.peak_memory_mib);
+        let memory = solved.iter().filter_map(|(_, s)| s.record.peak_memory_mib);
         let memory = memory.fold(0.0, f64::max);
-        let mut overheads: Vec<_> = solved.iter().map(|(_, s)| 100.0 * s.overhead).collect();
+        let mut overheads: Vec<_> = solved.iter().map(|(_, s)| 100.0 * s.overhead()).collect();
         overheads.sort_by(f64::total_cmp);
         let overhead = overheads[overheads.len() / 2];
         let mut worst = [f64::NEG_INFINITY; 5];
@@ -308,7 +316,7 @@ fn tradeoff(rows: &[Row]) -> Result<String> {
             "| {name} | {} | {} | {ray:.1} | {row:.2} | {:.0} | {memory:.0} | {overhead:.1} % \
              | {w:.1} % | {f_a:.1} % | {m:.1} % | {d:.1} % |",
             solved.len(),
-            first.elements,
+            first.record.elements,
             7200.0 / ray,
         )?;
     }
@@ -322,7 +330,7 @@ fn at_equal_error(rows: &[Row]) -> Result<String> {
         .to_owned();
     let is_paper = |row: &Row| row.0.study == "mesh" && row.0.value == Tier::Paper.name();
     for paper in rows.iter().filter(|row| is_paper(row)) {
-        let hinge = hinge_name(&paper.0.solve.design);
+        let hinge = hinge_name(&paper.0.solve.problem.hinge.design);
         let off = |row: &Row| difference(row, rows)[0];
         let others = of_tiers(rows, &hinge).filter(|row| !is_paper(row) && off(row) <= off(paper));
         let cheapest = others.min_by(|x, y| cpu_seconds(&x.1).total_cmp(&cpu_seconds(&y.1)));
@@ -349,8 +357,8 @@ fn paper_comparison(rows: &[Row]) -> Result<String> {
         let found = rows.iter().find(|(case, _)| {
             case.study == "mesh"
                 && case.value == "default"
-                && case.solve.design.w_lig == w_lig
-                && (case.solve.design.alpha.to_degrees() - 90.0).abs() < 1e-9
+                && case.solve.problem.hinge.design.w_lig == w_lig
+                && (case.solve.problem.hinge.design.alpha.to_degrees() - 90.0).abs() < 1e-9
         });
         found.map(|(_, solution)| (study_state(solution, 45.0), study_state(solution, 50.0)[4]))
     };
@@ -365,7 +373,7 @@ fn paper_comparison(rows: &[Row]) -> Result<String> {
     }
     let thickness = rows
         .first()
-        .map_or(f64::NAN, |(case, _)| case.solve.material.thickness);
+        .map_or(f64::NAN, |(case, _)| case.solve.problem.material.thickness);
     if let (Some((narrow, uz_narrow)), Some((wide, uz_wide))) = (at(5.0), at(25.0)) {
         let middle = |from: f64, to: f64, w_lig: f64| {
             from * (to / from).powf((w_lig / 5.0).ln() / 5.0_f64.ln())
@@ -407,7 +415,7 @@ fn panels(rows: &[Row]) -> Vec<StudyPanel> {
             100.0 * (study_state(solution, 45.0)[0] / study_state(against, 45.0)[0] - 1.0);
         let line = panel
             .lines
-            .entry(hinge_name(&case.solve.design))
+            .entry(hinge_name(&case.solve.problem.hinge.design))
             .or_default();
         line.push((value as f64, percent));
     }
@@ -418,5 +426,6 @@ fn panels(rows: &[Row]) -> Vec<StudyPanel> {
 fn is_compared(case: &StudyCase, other: &StudyCase) -> bool {
     other.study == case.study
         && other.value == case.against
-        && hinge_name(&other.solve.design) == hinge_name(&case.solve.design)
+        && hinge_name(&other.solve.problem.hinge.design)
+            == hinge_name(&case.solve.problem.hinge.design)
 }

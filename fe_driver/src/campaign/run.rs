@@ -51,7 +51,7 @@ pub fn run(
         solver,
         count: options.workers,
         limit: campaign.time_limit,
-        deadline: options.time_limit.map(|limit| Instant::now() + limit),
+        deadline: (options.time_limit).and_then(|limit| Instant::now().checked_add(limit)),
     };
     let folder = CampaignFolder(folder.to_owned());
     let solves: Vec<WindowSolve> = campaign.solves(&solver.versions()).collect();

@@ -130,7 +130,7 @@ impl<F: Fn(&WindowSolve) -> Option<Fault> + Sync> WindowSolver for FakeSolver<F>
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+pub mod tests {
     use super::*;
     use crate::solve::hinge_path::Ray;
     use crate::solve::window_solve::WindowProblem;

@@ -6,7 +6,7 @@ use crate::ui::progress::Progress;
 use crate::ui::table::table;
 use anyhow::{Result, ensure};
 use clap::Args;
-use fe_driver::{ToolVersions, Tools, solve_again};
+use fe_driver::{CalculiX, WindowSolver, solve_again};
 use std::num::NonZeroUsize;
 use std::sync::atomic::Ordering;
 
@@ -27,14 +27,14 @@ pub struct CheckCommand {
 impl CheckCommand {
     pub fn run(&self) -> Result<()> {
         let (campaign, folder) = (self.campaign.load()?, self.campaign.folder());
-        let (tools, stop) = (Tools::find()?, interrupt::stop_flag()?);
+        let (solver, stop) = (CalculiX::find()?, interrupt::stop_flag()?);
         let bar = Progress::new(0, "rays");
         let mut show = |done, all| {
             bar.set_total(all);
             bar.show(done, None, "");
         };
         let every = self.every.get();
-        let solved = solve_again(&campaign, &folder, &tools, every, stop, &mut show)?;
+        let solved = solve_again(&campaign, &folder, &solver, every, stop, &mut show)?;
         bar.finish();
         let mut rows = table(["ray", "samples before", "now", "difference in W"]);
         let differing = solved
@@ -45,7 +45,7 @@ impl CheckCommand {
             let [before, now] = difference.samples.map(|n| n.to_string());
             rows.add_row([job.clone(), before, now, format!("{:.1e}", difference.w)]);
         }
-        let (all, versions) = (solved.len(), ToolVersions::of(&tools));
+        let (all, versions) = (solved.len(), solver.versions());
         ensure!(
             all > 0 || stop.load(Ordering::Relaxed),
             "no ray of {} was solved there to its end at the first attempt: nothing to compare with. Restored rays may be \

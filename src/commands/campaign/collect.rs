@@ -1,12 +1,12 @@
 //! `kirigami campaign collect`
 
 use crate::commands::campaign::campaign_args::CampaignArgs;
-use crate::commands::campaign::rows::rows_of;
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use dataset::{Collected, Database, Gates, SplitPlan};
-use fe_driver::{Tally, finished_jobs};
-use std::path::{Path, PathBuf};
+use dataset::{Collected, Gates, SplitPlan};
+use fe_driver::{Tally, finished_windows};
+use std::path::PathBuf;
+use verification::rows;
 
 /// Collect the samples of all finished jobs in a Parquet file with its manifest
 #[derive(Args)]
@@ -57,25 +57,15 @@ impl CollectCommand {
             std::fs::create_dir_all(parent)
                 .with_context(|| format!("cannot create the folder {}", parent.display()))?;
         }
-        let rays = finished_jobs(&folder)?.map(|job| anyhow::Ok(rows_of(&job?).collect()));
+        let rays = finished_windows(&folder)?.map(|window| {
+            let window = window?;
+            anyhow::Ok(rows(&window, window.samples.iter().copied()).collect())
+        });
         let (gates, plan) = (Gates::default(), SplitPlan::default());
         let collected = Collected::write(rays, &gates, &plan, &out, self.replace)?;
         println!("{collected}\n{missing}\nwritten to {}", out.display());
         Ok(())
     }
-}
-
-/// The samples of the finished rays of the campaign that was last run in a folder.
-pub fn collected(folder: &Path) -> Result<Database> {
-    let mut rows = Vec::new();
-    for job in finished_jobs(folder)? {
-        rows.extend(rows_of(&job?));
-    }
-    Ok(Database::collect(
-        rows,
-        &Gates::default(),
-        &SplitPlan::default(),
-    )?)
 }
 
 /// The counts of rays that the collected database lacks.

@@ -1,14 +1,14 @@
 //! `kirigami campaign extend`: new rays for hinge states that the training data does not cover.
 
 use crate::commands::inspect::scene_args::Inspected;
-use crate::replays::doubtful_states::{doubtful_states, rays_through};
-use crate::replays::routes::{HingeRoute, ensemble, hinge_routes};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use fe_driver::{Added, Ray, add_extra_rays};
-use hinge::HingeDeformation;
 use std::path::PathBuf;
-use surrogate::{Order, Surrogate, mean_and_variance};
+use surrogate::Surrogate;
+use verification::{
+    RecordedPath, doubtful_states, ensemble, rays_on_paths, rays_through, recorded_paths,
+};
 
 /// Add rays to a campaign where a design leaves the training domain or the ensemble disagrees
 ///
@@ -51,7 +51,7 @@ impl ExtendCommand {
         networks.extend(ensemble(&scene, surrogate, &self.ensemble)?);
         let (rays, found) = match self.anywhere {
             Some(count) => self.in_the_domain(count, &networks)?,
-            None => self.on_paths(&hinge_routes(&scene, &design)?, &networks)?,
+            None => self.on_paths(&recorded_paths(&scene, &design)?, &networks)?,
         };
         // The campaign solves sheets of the thickness of the material file.
         let of_the_file = |ray: Ray| Ray {
@@ -75,34 +75,18 @@ impl ExtendCommand {
     /// Rays of the hinges of a sheet, and what was found.
     fn on_paths(
         &self,
-        routes: &[HingeRoute],
+        paths: &[RecordedPath],
         networks: &[Surrogate],
     ) -> Result<(Vec<Ray>, String)> {
-        ensure!(!routes.is_empty(), "the sheet has no hinges");
-        let domain = networks[0].domain();
-        let (mut outside, mut doubted, mut rays) = (0, 0, Vec::new());
-        for (route, doubt) in routes.iter().zip(doubts(networks, routes)) {
-            let leaves = |state: &&HingeDeformation| !domain.contains(&route.design, state);
-            let left: Vec<_> = route.states.iter().filter(leaves).copied().collect();
-            let through = if !left.is_empty() {
-                outside += 1;
-                furthest(&left, route.design.w_lig)
-            } else if doubt > self.doubt {
-                doubted += 1;
-                furthest(&route.states, route.design.w_lig)
-            } else {
-                continue;
-            };
-            rays.push(Ray {
-                design: route.design,
-                end: through.at(BEYOND),
-            });
-        }
-        let found = format!(
-            "of {} hinges {outside} leave the training domain and {doubted} exceed --doubt",
-            routes.len()
+        ensure!(!paths.is_empty(), "the sheet has no hinges");
+        let found = rays_on_paths(paths, networks, self.doubt, BEYOND);
+        let text = format!(
+            "of {} hinges {} leave the training domain and {} exceed --doubt",
+            paths.len(),
+            found.outside,
+            found.doubted
         );
-        Ok((rays, found))
+        Ok((found.rays, text))
     }
 
     /// Rays through states of the training domain, and what was found.
@@ -124,59 +108,4 @@ impl ExtendCommand {
         );
         Ok((rays, found))
     }
-}
-
-/// The state that is furthest from the undeformed one.
-fn furthest(states: &[HingeDeformation], w_lig: f64) -> HingeDeformation {
-    let size = |state: &HingeDeformation| {
-        let [eta_a, eta_s] = state.eta(w_lig);
-        eta_a * eta_a + eta_s * eta_s + state.theta * state.theta
-    };
-    let furthest = states.iter().max_by(|x, y| size(x).total_cmp(&size(y)));
-    furthest.copied().unwrap_or_default()
-}
-
-/// For each path, the maximum standard deviation of (w_lig F_a, w_lig F_s, M) over the networks,
-/// relative to the root mean square of all; zero with one network.
-fn doubts(networks: &[Surrogate], routes: &[HingeRoute]) -> Vec<f64> {
-    let (mut squares, mut count) = (0.0, 0.0);
-    let deviations: Vec<f64> = routes
-        .iter()
-        .map(|route| {
-            let designs = vec![route.design; route.states.len()];
-            let w_lig = route.design.w_lig;
-            let forces: Vec<Vec<[f64; 3]>> = networks
-                .iter()
-                .map(|network| {
-                    let prepared = network.prepare(&designs);
-                    let energies = network.evaluate(&prepared, &route.states, Order::Forces);
-                    let moments = energies.iter().map(|energy| {
-                        let [f_a, f_s, m] = energy.forces;
-                        [w_lig * f_a, w_lig * f_s, m]
-                    });
-                    moments.collect()
-                })
-                .collect();
-            let mut greatest = 0.0_f64;
-            for k in 0..route.states.len() {
-                let mut variance = 0.0;
-                for c in 0..3 {
-                    let values = forces.iter().map(|network| network[k][c]);
-                    let [mean, of_component] = mean_and_variance(values);
-                    variance += of_component;
-                    squares += mean * mean;
-                }
-                count += 1.0;
-                greatest = greatest.max(variance.sqrt());
-            }
-            greatest
-        })
-        .collect();
-    let scale = (squares / f64::max(count, 1.0))
-        .sqrt()
-        .max(f64::MIN_POSITIVE);
-    deviations
-        .iter()
-        .map(|deviation| deviation / scale)
-        .collect()
 }

@@ -6,7 +6,7 @@ use crate::ui::progress::duration;
 use crate::ui::table::table;
 use anyhow::Result;
 use clap::Args;
-use fe_driver::{ToolVersions, Tools};
+use fe_driver::{CalculiX, WindowSolver};
 
 /// Print what a run would solve, why, and the estimated time
 #[derive(Args)]
@@ -21,7 +21,7 @@ pub struct PlanCommand {
 impl PlanCommand {
     pub fn run(&self) -> Result<()> {
         let folder = self.campaign.folder();
-        let versions = ToolVersions::of(&Tools::find()?);
+        let versions = CalculiX::find()?.versions();
         let plan = fe_driver::plan(&self.campaign.load()?, &folder, &versions)?;
         if self.json {
             println!("{}", serde_json::to_string_pretty(&plan)?);

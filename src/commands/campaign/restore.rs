@@ -1,11 +1,11 @@
 //! `kirigami campaign restore`
 
 use crate::commands::campaign::campaign_args::CampaignArgs;
-use crate::commands::campaign::rows::jobs_of;
 use anyhow::{Result, ensure};
 use clap::Args;
 use dataset::Database;
 use std::path::PathBuf;
+use verification::collected_windows;
 
 /// Restore the job folders of a campaign from the database that was collected from them
 ///
@@ -32,17 +32,17 @@ impl RestoreCommand {
             database.manifest().tier,
             campaign.tier
         );
-        let jobs = jobs_of(database.rows())?;
+        let windows = collected_windows(database.rows())?;
         let folder = self.campaign.folder();
-        let restored = fe_driver::restore(&campaign, &folder, &jobs)?;
+        let restored = fe_driver::restore(&campaign, &folder, &windows)?;
         println!(
             "{} rays restored to {}; {} existed already",
             restored.written,
             folder.display(),
             restored.there
         );
-        if restored.strangers > 0 {
-            println!("{} rays do not belong to this campaign", restored.strangers);
+        if restored.foreign > 0 {
+            println!("{} rays do not belong to this campaign", restored.foreign);
         }
         Ok(())
     }

@@ -7,10 +7,11 @@ use crate::ui::processors;
 use crate::ui::progress::Progress;
 use anyhow::{Result, bail, ensure};
 use clap::Args;
-use fe_driver::{Campaign, RunOptions, Shard, Tally, Tools};
+use fe_driver::{CalculiX, RunOptions, Shard, Tally};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use verification::VerificationError;
 
 /// Solve all rays that are not solved yet
 ///
@@ -52,37 +53,40 @@ impl RunCommand {
             workers: self.jobs.map_or_else(processors, NonZeroUsize::get),
             time_limit: self.time_limit,
         };
-        let tally = solve_rays(&self.campaign.load()?, &folder, &options)?;
+        let (campaign, solver) = (self.campaign.load()?, CalculiX::find()?);
+        let (stop, bar) = (interrupt::stop_flag()?, RayProgress::new(campaign.size()));
+        let show = &mut |now: &fe_driver::Progress| bar.show(now);
+        let tally = fe_driver::run(&campaign, &folder, &solver, &options, stop, show)?.tally;
+        bar.0.finish();
         print_tally(&tally);
         refuse_unfinished(&tally, &folder)
     }
 }
 
-/// Solves the open rays of a campaign, with progress.
-pub fn solve_rays(campaign: &Campaign, folder: &Path, options: &RunOptions) -> Result<Tally> {
-    let tools = Tools::find()?;
-    let stop = interrupt::stop_flag()?;
-    let bar = Progress::new(campaign.size(), "rays");
-    let end = fe_driver::run(campaign, folder, &tools, options, stop, &mut |now| {
+/// The progress of the rays of a campaign.
+pub(crate) struct RayProgress(pub Progress);
+
+impl RayProgress {
+    pub(crate) fn new(rays: usize) -> Self {
+        Self(Progress::new(rays, "rays"))
+    }
+
+    pub(crate) fn show(&self, now: &fe_driver::Progress) {
         let tally = &now.tally;
         let message = format!("{} samples, {} failed", tally.rows, tally.failed);
-        bar.set_total(tally.closed() + tally.to_run());
-        bar.show(tally.closed(), now.seconds_left, &message);
-    })?;
-    bar.finish();
-    Ok(end.tally)
+        self.0.set_total(tally.closed() + tally.to_run());
+        self.0.show(tally.closed(), now.seconds_left, &message);
+    }
 }
 
 /// An error if rays are left to solve, or if every ray failed.
-pub fn refuse_unfinished(tally: &Tally, folder: &Path) -> Result<()> {
+fn refuse_unfinished(tally: &Tally, folder: &Path) -> Result<()> {
     if tally.to_run() > 0 {
-        let (left, what) = (tally.to_run(), "rays");
-        bail!(Unfinished::new(left, what));
+        bail!(Unfinished::new(tally.to_run(), "rays"));
     }
     ensure!(
         tally.failed == 0 || tally.complete + tally.partial > 0,
-        "every ray failed: read a job's log in {}, fix the cause, then run `kirigami campaign retry`",
-        folder.join("jobs").display()
+        VerificationError::EveryRayFailed(folder.join("jobs"))
     );
     Ok(())
 }

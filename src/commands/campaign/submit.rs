@@ -4,7 +4,7 @@ use crate::commands::campaign::campaign_args::CampaignArgs;
 use crate::ui::progress::duration;
 use anyhow::{Context, Result};
 use clap::Args;
-use fe_driver::{ArrayScript, SLURM, ToolVersions, Tools, slurm_folder, submit_array};
+use fe_driver::{ArrayScript, CalculiX, SLURM, WindowSolver, slurm_folder, submit_array};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf, absolute};
 use support::regular_file;
@@ -50,7 +50,7 @@ impl SubmitCommand {
             print!("{script}");
             return Ok(());
         }
-        let versions = ToolVersions::of(&Tools::find()?);
+        let versions = CalculiX::find()?.versions();
         let plan = fe_driver::plan(&campaign, &folder, &versions)?;
         let rays = plan.tally.to_run();
         if rays == 0 {

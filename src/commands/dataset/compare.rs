@@ -1,7 +1,6 @@
 //! `kirigami dataset compare`: differences of a database from a finer one of the same rays.
 
-use crate::replays::comparison;
-use crate::replays::comparison::{SCALE, each_relative, spread_table};
+use crate::commands::compared_states::{self, SCALE, each_relative, spread_table};
 use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -61,7 +60,7 @@ impl CompareCommand {
         )?;
         run_folder::write(&self.out, "tradeoff.md", &summary)?;
         let axes = [tiers[1].as_str(), &tiers[0]];
-        comparison::draw(&groups(&states), axes, &self.out.join("compare"))?;
+        compared_states::draw(&groups(&states), axes, &self.out.join("compare"))?;
         println!("{summary}\nwritten to {}", self.out.display());
         Ok(())
     }

@@ -6,31 +6,33 @@
 
 mod fine_tuning;
 mod options;
-mod region;
-mod round;
+mod round_table;
 
-use crate::commands::campaign::{collected, refuse_unfinished, solve_rays};
+use crate::commands::campaign::RayProgress;
 use crate::commands::init;
 use crate::commands::material::learn::fine_tuning::FineTuning;
 use crate::commands::material::learn::options::{percent, time};
-use crate::commands::material::learn::region::{region, taught};
-use crate::commands::material::learn::round::{HEADING, Round, csv};
-use crate::replays::kept_solves::SolveArgs;
-use crate::replays::spot_states::{self, Solved};
+use crate::commands::material::learn::round_table::{HEADING, csv, line};
+use crate::commands::solve_args::{SolveArgs, task_error};
 use crate::ui::exit::Unfinished;
+use crate::ui::interrupt;
 use crate::ui::progress::duration;
 use crate::ui::run_folder;
 use ::train::{Backend, TrainingConfig, check_parent};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use dataset::{Database, Gates, SplitPlan};
-use fe_driver::{Campaign, RunOptions, Shard};
+use fe_driver::{CalculiX, Campaign, Progress};
 use hinge::{SheetMaterial, TrainingDomain};
 use mesher::Tier;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use surrogate::Surrogate;
+use verification::{
+    Accuracy, LearningEnd, LearningRound, LearningSteps, LearningTask, VerificationError,
+    distillation_states, learn, random_paths, region, spot_check,
+};
 
 /// Solve hinge windows of a material and train its weights until they are accurate enough
 ///
@@ -113,68 +115,52 @@ impl LearnCommand {
                 .with_context(|| format!("{}", file.display()))?;
         }
         let campaign = self.campaign(&material)?;
-        let fits = self.out.join("fits");
-        let region = region(&campaign).context("the campaign has no region of rays")?;
+        let region = region(&campaign).ok_or(VerificationError::NoRegion)?;
         let fine_tuning = FineTuning {
             parents,
             config,
-            taught: taught(&region, &campaign.design),
-            fits,
+            distillation: distillation_states(&region, &campaign.design),
+            fits: self.out.join("fits"),
         };
         let spot = self.spot_check(&campaign, &region)?;
-        let solved = self.solved_before()?;
         println!("{HEADING}");
-        let mut rounds: Vec<Round> = Vec::new();
-        let mut counts = counts(usize::from(self.rays), campaign.count).peekable();
-        while let Some(rays) = counts.next() {
-            let left = self.time.saturating_sub(began.elapsed());
-            let (round, weights) = self.round(rays, &campaign, &fine_tuning, &spot, left)?;
-            println!("{round}");
-            rounds.push(round);
-            run_folder::write(&self.out, "learn.csv", &csv(&rounds)?)?;
-            // The weights are those of all rays that an earlier command has solved.
-            if counts.peek().is_some_and(|next| *next <= solved) {
-                continue;
-            }
-            weights.save(&self.weights())?;
-            if round.is_within(self.accuracy, self.forces) {
+        let task = LearningTask {
+            campaign: &campaign,
+            folder: &self.out.join("campaign"),
+            solver: &CalculiX::find()?,
+            workers: self.solve_args(&campaign).workers(),
+            first_rays: usize::from(self.rays),
+            spot: spot.rows(),
+            accuracy: Accuracy {
+                energy: self.accuracy,
+                forces: self.forces,
+            },
+            deadline: began.checked_add(self.time),
+            stop: interrupt::stop_flag()?,
+        };
+        let mut steps = Steps {
+            out: &self.out,
+            fine_tuning,
+            rounds: Vec::new(),
+            progress: None,
+        };
+        match learn(task, &mut steps)? {
+            LearningEnd::Accurate => {
                 println!(
                     "accurate enough after {}; weights written to {}",
                     duration(began.elapsed().as_secs_f64()),
-                    self.weights().display()
+                    weights_file(&self.out).display()
                 );
-                return Ok(());
+                Ok(())
             }
-            if let Some(next) = counts.peek()
-                && began.elapsed() >= self.time
-            {
-                bail!(Unfinished::new(next - rays, "rays of the next round"));
-            }
+            LearningEnd::Unfinished { left, what } => bail!(Unfinished::new(left, what)),
+            LearningEnd::AllRays => bail!(
+                "all {} rays of {} are solved, and the errors are above --accuracy or --forces: increase `count` there, \
+                 or choose a finer tier",
+                campaign.count,
+                self.out.join("campaign.toml").display()
+            ),
         }
-        bail!(
-            "all {} rays of {} are solved, and the errors are above --accuracy or --forces: increase `count` there, \
-             or choose a finer tier",
-            campaign.count,
-            self.out.join("campaign.toml").display()
-        )
-    }
-
-    /// Number of rays that earlier commands have solved.
-    fn solved_before(&self) -> Result<usize> {
-        let jobs = self.jobs();
-        match jobs.exists() {
-            true => Ok(fe_driver::status(&jobs)?.tally.closed()),
-            false => Ok(0),
-        }
-    }
-
-    /// The folder of the rays.
-    fn jobs(&self) -> PathBuf {
-        self.out.join("campaign")
-    }
-
-    fn weights(&self) -> PathBuf {
-        self.out.join("weights.safetensors")
     }
 
     /// Writes material, campaign and training to a new folder. Those of a folder that is continued are kept.
@@ -213,73 +199,70 @@ impl LearnCommand {
     fn spot_check(&self, campaign: &Campaign, region: &TrainingDomain) -> Result<Database> {
         let count = STATES_PER_RAY * usize::from(self.spot_rays);
         let (design, seed) = (&campaign.design, self.spot_seed);
-        let probes = spot_states::drawn(region, design, count, STATES_PER_RAY, seed);
-        let solve = SolveArgs::new(self.jobs, campaign.time_limit);
-        let folder = self.out.join("spot-check");
-        let Solved {
-            rows, cpu_seconds, ..
-        } = spot_states::solve(&probes, &campaign.material, campaign.tier, &solve, &folder)?;
-        let states = rows.len();
-        let database = Database::collect(rows, &Gates::default(), &SplitPlan::default())
+        let paths = random_paths(region, design, count, STATES_PER_RAY, seed);
+        let windows = self
+            .solve_args(campaign)
+            .service(&self.out.join("spot-check"))?;
+        let check = spot_check(&windows, &paths, &campaign.material, campaign.tier);
+        let check = check.map_err(task_error)?;
+        for unsolved in &check.unsolved {
+            println!("not solved: {unsolved}");
+        }
+        let states = check.rows.len();
+        let database = Database::collect(check.rows, &Gates::default(), &SplitPlan::default())
             .context("the solver followed too few rays of the spot check: increase --spot-rays")?;
         database.write(&self.out.join("spot-check.parquet"), true)?;
         println!(
-            "spot check: {} rays, {states} of {count} states on rays followed to their end, {cpu_seconds:.0} s of CPU time",
-            probes.len()
+            "spot check: {} rays, {states} of {count} states on rays followed to their end, {:.0} s of CPU time",
+            paths.len(),
+            check.cpu_seconds
         );
         Ok(database)
     }
 
-    /// Solves the first `rays` rays of the campaign, fine-tunes and tests; the round and its weights.
-    fn round(
-        &self,
-        rays: usize,
-        campaign: &Campaign,
-        fine_tuning: &FineTuning,
-        spot: &Database,
-        time_limit: Duration,
-    ) -> Result<(Round, Surrogate)> {
-        let jobs = self.jobs();
-        let options = RunOptions {
-            shard: Shard::WHOLE,
-            workers: SolveArgs::new(self.jobs, campaign.time_limit).workers(),
-            time_limit: Some(time_limit),
-        };
-        let first = Campaign {
-            count: rays,
-            ..campaign.clone()
-        };
-        let tally = solve_rays(&first, &jobs, &options)?;
-        refuse_unfinished(&tally, &jobs).map_err(|error| match error.downcast::<Unfinished>() {
-            Ok(Unfinished { left, .. }) => Unfinished::new(left, "rays of this round").into(),
-            Err(error) => error,
-        })?;
-        let database = collected(&jobs)?;
-        database.write(&self.out.join("hinges.parquet"), true)?;
-        let (weights, training_s) = fine_tuning.network(rays, &database)?;
-        let round = Round::new(&tally, &weights, training_s, spot.rows());
-        let weights = weights.with_spot_check(round.errors(), round.inside());
-        Ok((round, weights))
+    fn solve_args(&self, campaign: &Campaign) -> SolveArgs {
+        SolveArgs::new(self.jobs, campaign.time_limit)
     }
 }
 
-/// Numbers of rays of the rounds: each twice the one before, the last with all.
-fn counts(first: usize, all: usize) -> impl Iterator<Item = usize> {
-    let doubled = std::iter::successors(Some(first), |count| Some(2 * count));
-    doubled
-        .take_while(move |count| *count < all)
-        .chain(std::iter::once(all))
+fn weights_file(out: &Path) -> PathBuf {
+    out.join("weights.safetensors")
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// What the command does in every round.
+struct Steps<'a> {
+    out: &'a Path,
+    fine_tuning: FineTuning,
+    rounds: Vec<LearningRound>,
+    /// Progress of the rays of the round.
+    progress: Option<RayProgress>,
+}
 
-    #[test]
-    fn rounds_double_and_end_with_all_rays() {
-        let all = |first, all| counts(first, all).collect::<Vec<_>>();
-        assert_eq!(all(25, 160), [25, 50, 100, 160]);
-        assert_eq!(all(25, 50), [25, 50]);
-        assert_eq!(all(25, 6), [6]);
+impl LearningSteps for Steps<'_> {
+    type Error = anyhow::Error;
+
+    fn solving(&mut self, now: &Progress) {
+        let rays = now.tally.closed() + now.tally.to_run();
+        let bar = self.progress.get_or_insert_with(|| RayProgress::new(rays));
+        bar.show(now);
+    }
+
+    fn train(&mut self, rays: usize, database: &Database) -> Result<(Surrogate, f64)> {
+        if let Some(bar) = self.progress.take() {
+            bar.0.finish();
+        }
+        database.write(&self.out.join("hinges.parquet"), true)?;
+        self.fine_tuning.network(rays, database)
+    }
+
+    fn round(&mut self, round: &LearningRound, weights: Surrogate, is_latest: bool) -> Result<()> {
+        println!("{}", line(round));
+        self.rounds.push(*round);
+        run_folder::write(self.out, "learn.csv", &csv(&self.rounds)?)?;
+        // The weights are those of all rays that an earlier command has solved.
+        if is_latest {
+            weights.save(&weights_file(self.out))?;
+        }
+        Ok(())
     }
 }

@@ -3,19 +3,17 @@
 use crate::commands::input_file;
 use crate::commands::inspect::judged_design::DESIGN_TO_JUDGE;
 use crate::commands::inspect::scene_args::Inspected;
+use crate::commands::solve_args::{SolveArgs, task_error};
 use crate::commands::surrogate::errors::StateErrors;
-use crate::replays::kept_solves::SolveArgs;
-use crate::replays::routes::{hinge_routes, judging_tier};
-use crate::replays::spot_states::{self, Probe, Solved};
 use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use dataset::{Database, Gates, SplitPlan};
-use fe_driver::DeformationPath;
 use hinge::SheetMaterial;
 use mesher::Tier;
 use std::path::PathBuf;
 use surrogate::Surrogate;
+use verification::{SpotPath, judging_tier, random_paths, recorded_paths, spot_check};
 
 /// Minimum number of rays of a database, which is split in three parts.
 const MIN_RAYS: usize = 3;
@@ -88,59 +86,60 @@ impl SpotCheckCommand {
             self.material.display()
         );
         let tier = judging_tier(self.tier, &surrogate)?;
-        let probes = match &self.paths.scene {
+        let paths = match &self.paths.scene {
             Some(_) => self.on_paths()?,
-            None => self.drawn(&surrogate),
+            None => self.random(&surrogate),
         };
         ensure!(
-            probes.len() >= MIN_RAYS,
+            paths.len() >= MIN_RAYS,
             "{} rays are too few for a database: increase --count or decrease --states-per-ray",
-            probes.len()
+            paths.len()
         );
         let _held = run_folder::hold(&self.out)?;
-        let Solved { rows, failed, .. } =
-            spot_states::solve(&probes, &material, tier, &self.solve, &self.out)?;
+        let windows = self.solve.service(&self.out)?;
+        let check = spot_check(&windows, &paths, &material, tier).map_err(task_error)?;
+        for unsolved in &check.unsolved {
+            println!("not solved: {unsolved}");
+        }
         ensure!(
-            !rows.is_empty(),
+            !check.rows.is_empty(),
             "no state was solved; see {}",
             self.out.display()
         );
-        let database = Database::collect(rows, &Gates::default(), &SplitPlan::default())?;
+        let database = Database::collect(check.rows, &Gates::default(), &SplitPlan::default())?;
         let path = self.out.join("spot-check.parquet");
         database.write(&path, true)?;
         println!(
-            "{} states of {} rays on tier {tier}; {failed} states on rays that the solver did not follow to their end",
+            "{} states of {} rays on tier {tier}; {} states on rays that the solver did not follow to their end",
             database.rows().len(),
-            probes.len()
+            paths.len(),
+            check.unknown_states
         );
         println!("{}", StateErrors::new(&surrogate, database.rows()));
         println!("written to {}", path.display());
         Ok(())
     }
 
-    fn drawn(&self, surrogate: &Surrogate) -> Vec<Probe> {
+    fn random(&self, surrogate: &Surrogate) -> Vec<SpotPath> {
         let (domain, hinge) = (surrogate.domain(), &surrogate.card().hinge);
         let each = usize::from(self.states_per_ray);
-        spot_states::drawn(domain, hinge, self.count, each, self.seed)
+        random_paths(domain, hinge, self.count, each, self.seed)
     }
 
-    fn on_paths(&self) -> Result<Vec<Probe>> {
+    fn on_paths(&self) -> Result<Vec<SpotPath>> {
         let PathArgs { scene, design } = &self.paths;
         let scene = scene.clone().context("no scene")?;
         let (scene, design, name) = Inspected::new(scene, design.clone()).read_judged()?;
         println!("{name}");
-        let routes = hinge_routes(&scene, &design)?;
-        let states = routes.first().map_or(1, |route| route.states.len());
-        let wanted = self.count.div_ceil(states).max(MIN_RAYS).min(routes.len());
+        let recorded = recorded_paths(&scene, &design)?;
+        let states = recorded.first().map_or(1, |path| path.states.len());
+        let wanted = (self.count.div_ceil(states).max(MIN_RAYS)).min(recorded.len());
         (0..wanted)
             .map(|i| {
-                let route = routes[i * routes.len() / wanted].scaled(scene.scale().recip());
-                let path = DeformationPath::through(&route.states)
-                    .with_context(|| format!("hinge {} has no states", route.hinge))?;
-                let count = route.states.len();
-                Ok(Probe {
-                    design: route.design,
-                    path,
+                let path = recorded[i * recorded.len() / wanted].scaled(scene.scale().recip());
+                let count = path.states.len();
+                Ok(SpotPath {
+                    hinge: path.hinge_path()?,
                     fractions: (1..=count).map(|k| k as f64 / count as f64).collect(),
                 })
             })

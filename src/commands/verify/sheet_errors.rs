@@ -1,14 +1,13 @@
 //! `kirigami verify --equilibrium`: the error of a deployed sheet, judged by finite elements for its hinges.
 
-use crate::replays::balanced_sheet::{
-    BALANCED, BalanceEnd, Balanced, Round, WindowSolves, movements, size,
-};
 use crate::ui::run_folder;
 use anyhow::Result;
 use design::objective::design_problem::Deployment;
 use mesher::Tier;
 use serde::Serialize;
 use std::fmt;
+use std::path::Path;
+use verification::{BALANCED, BalanceEnd, Balanced, Round, movements, size};
 
 /// The equilibrium by the hinge law compared with that by finite elements.
 #[derive(Debug, Serialize)]
@@ -20,8 +19,8 @@ pub(super) struct SheetErrors {
     rounds: Vec<Round>,
     /// Why no further round was made.
     ended: BalanceEnd,
-    /// CPU time of all window solves (s), if the operating system reports it.
-    cpu_seconds: Option<f64>,
+    /// CPU time of all window solves (s).
+    cpu_seconds: f64,
     /// Diagonal of the deployed sheet (mm).
     size: f64,
     /// Distance of the panel corners (mm): root mean square and maximum.
@@ -49,10 +48,11 @@ struct HingeErrors {
 pub(super) fn write(
     found: &Balanced,
     design: String,
-    windows: &WindowSolves,
+    tier: Tier,
+    folder: &Path,
 ) -> Result<SheetErrors> {
-    let errors = SheetErrors::new(found, design, windows.tier);
-    run_folder::write(windows.folder, "equilibrium.md", &errors.to_string())?;
+    let errors = SheetErrors::new(found, design, tier);
+    run_folder::write(folder, "equilibrium.md", &errors.to_string())?;
     Ok(errors)
 }
 
@@ -72,7 +72,10 @@ impl SheetErrors {
             .map(|hinge| HingeErrors {
                 hinge,
                 theta_deg: ends.map(|end| end.deformations[hinge].theta.to_degrees()),
-                damage_peak: [peak_by_law(hinge), found.hinges[hinge].d_peak],
+                damage_peak: [
+                    peak_by_law(hinge),
+                    found.hinges[hinge].and_then(|end| end.d_peak),
+                ],
             })
             .collect();
         let leaves = |hinge: &usize| {
@@ -116,26 +119,16 @@ impl fmt::Display for SheetErrors {
             f,
             "# The deployed sheet, by finite elements\n\n\
              Equilibrium of the {} with finite elements for all {} hinges, windows of tier {}, panels held flat. Every round solves \
-             the hinges along their paths, corrects the hinge law to their forces and deploys the sheet again{}.\n\n\
+             the hinges along their paths, corrects the hinge law to their forces and deploys the sheet again; {:.0} CPU minutes in all.\n\n\
              | round | force error | movement, mm |\n|---|---|---|",
             self.design,
             self.hinges.len(),
             self.tier,
-            self.cpu_seconds.map_or(String::new(), |seconds| format!(
-                "; {:.0} CPU minutes in all",
-                seconds / 60.0
-            )),
+            self.cpu_seconds / 60.0,
         )?;
-        for (
-            round,
-            Round {
-                force_error,
-                movement,
-            },
-        ) in self.rounds.iter().enumerate()
-        {
-            let percent = 100.0 * force_error;
-            writeln!(f, "| {} | {percent:.2} % | {movement:.3} |", round + 1)?;
+        for (i, round) in self.rounds.iter().enumerate() {
+            let (percent, movement) = (100.0 * round.force_error, round.movement);
+            writeln!(f, "| {} | {percent:.2} % | {movement:.3} |", i + 1)?;
         }
         let ended = match self.ended.warning() {
             None => "The panels stay where they are within".into(),
@@ -160,6 +153,7 @@ impl fmt::Display for SheetErrors {
             f,
             "Load factor {by_law:.4} by the law, {by_elements:.4} by finite elements.\n"
         )?;
+        self.write_unsolved(f)?;
         if !self.outside.is_empty() {
             let hinges: Vec<String> = self.outside.iter().map(usize::to_string).collect();
             writeln!(
@@ -184,5 +178,27 @@ impl fmt::Display for SheetErrors {
             )?;
         }
         Ok(())
+    }
+}
+
+impl SheetErrors {
+    /// The hinges that were not solved, round by round, and what is not known for it.
+    fn write_unsolved(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let rounds = self.rounds.iter().enumerate();
+        let unsolved: Vec<_> = rounds
+            .flat_map(|(i, round)| round.unsolved.iter().map(move |hinge| (i + 1, hinge)))
+            .collect();
+        if unsolved.is_empty() {
+            return Ok(());
+        }
+        writeln!(
+            f,
+            "NOT SOLVED: in these rounds the hinge law, as corrected in the rounds before, stands for the hinge. The force \
+             error leaves it out, and what finite elements would change there is not known.\n"
+        )?;
+        for (round, hinge) in unsolved {
+            writeln!(f, "* round {round}, {hinge}")?;
+        }
+        writeln!(f)
     }
 }

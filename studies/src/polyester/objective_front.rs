@@ -90,7 +90,7 @@ pub(super) fn table(study: &PolyesterStudy, config: &SceneConfig, load: f64) -> 
 }
 
 fn of(row: &Row) -> [Option<f64>; COLUMNS.len()] {
-    let states = row.routes.iter().flat_map(|route| {
+    let states = row.paths.iter().flat_map(|route| {
         let w_lig = route.design.w_lig;
         route.states.iter().map(move |state| state.eta(w_lig)[0])
     });

@@ -9,6 +9,7 @@ use mesher::Tier;
 use std::fmt::Write;
 use std::path::Path;
 use surrogate::Surrogate;
+use verification::RecordedPath;
 
 /// The paper's numbers for the same sheet: shape alone, and with both functionals.
 const PAPER: [(&str, &str, &str); 11] = [
@@ -47,7 +48,7 @@ pub(super) fn write(
         .iter()
         .map(|row| RoutePanel {
             title: format!("{}, {}", name(row.point), row.objective),
-            routes: row.routes.iter().map(eta).collect(),
+            routes: row.paths.iter().map(eta).collect(),
             monitored: row.monitored,
             domain: domain_slice(surrogate, row),
             damage: damage_plane(surrogate, row),
@@ -70,14 +71,14 @@ fn name(point: HingePoint) -> &'static str {
 }
 
 /// (eta_a, eta_s) of every state.
-fn eta(route: &kirigami::replays::routes::HingeRoute) -> Vec<[f64; 2]> {
+fn eta(route: &RecordedPath) -> Vec<[f64; 2]> {
     let states = route.states.iter();
     states.map(|state| state.eta(route.design.w_lig)).collect()
 }
 
 /// D / D_s over (eta_a, eta_s) for the design and the final opening of the monitored hinge.
 fn damage_plane(surrogate: &Surrogate, row: &Row) -> Box<dyn Fn([f64; 2]) -> f64> {
-    let (surrogate, route) = (surrogate.clone(), row.routes[row.monitored].clone());
+    let (surrogate, route) = (surrogate.clone(), row.paths[row.monitored].clone());
     Box::new(move |[eta_a, eta_s]| {
         let (design, theta) = (route.design, route.end().theta);
         let state = hinge::HingeDeformation::from_eta(eta_a, eta_s, theta, design.w_lig);
@@ -87,7 +88,7 @@ fn damage_plane(surrogate: &Surrogate, row: &Row) -> Box<dyn Fn([f64; 2]) -> f64
 
 /// The boundary of the training domain for the design and the final opening of the monitored hinge.
 fn domain_slice(surrogate: &Surrogate, row: &Row) -> Vec<[f64; 2]> {
-    let route = &row.routes[row.monitored];
+    let route = &row.paths[row.monitored];
     surrogate
         .domain()
         .slice(route.design.w_lig, route.end().theta)
@@ -102,7 +103,7 @@ fn quantities(row: &Row) -> [String; 11] {
     let max = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::NEG_INFINITY, f64::max);
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     let tension = row.forces.iter().filter(|[normal, _]| *normal > 0.0);
-    let etas = row.routes.iter().flat_map(eta).map(|[eta_a, _]| eta_a);
+    let etas = row.paths.iter().flat_map(eta).map(|[eta_a, _]| eta_a);
     [
         format!("{mean:.1} +- {:.1}", (squares / count).sqrt()),
         format!(
@@ -163,10 +164,7 @@ fn markdown(rows: &[Row], tier: Tier, front: &str) -> Result<String> {
     }
     text += " | |\n| maximum opening, deg |";
     for row in rows {
-        let openings = row
-            .routes
-            .iter()
-            .map(|route| route.end().theta.to_degrees());
+        let openings = row.paths.iter().map(|route| route.end().theta.to_degrees());
         write!(text, " {:.1} |", openings.fold(0.0, f64::max))?;
     }
     text += " | |\n";
@@ -185,7 +183,7 @@ fn markdown(rows: &[Row], tier: Tier, front: &str) -> Result<String> {
          mm | M, N mm | D | D_peak |\n|---|---|---|---|---|---|---|---|"
     )?;
     for row in rows {
-        let opening = row.routes[row.monitored].end().theta.to_degrees();
+        let opening = row.paths[row.monitored].end().theta.to_degrees();
         let design = format!("{}, {}", name(row.point), row.objective);
         let mut line = |by: &str, [w, m, d, peak]: [f64; 4]| {
             writeln!(
@@ -222,7 +220,7 @@ fn csv(rows: &[Row]) -> Result<String> {
         "point,objective,hinge,w_lig_mm,theta_deg,eta_a,eta_s,f_n,force,damage_over_ds\n"
             .to_owned();
     for row in rows {
-        for (hinge, route) in row.routes.iter().enumerate() {
+        for (hinge, route) in row.paths.iter().enumerate() {
             let end = route.end();
             let [eta_a, eta_s] = end.eta(route.design.w_lig);
             let [normal, force] = row.forces[hinge];

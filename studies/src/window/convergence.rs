@@ -3,9 +3,7 @@
 //! The error of a choice is the root mean square, over the ray, of the difference that it makes
 //! to W, F_a, M_theta and D, divided by the root mean square of the reference solution.
 
-use crate::window::deformation_path::DeformationPath;
-use crate::window::solve_cache::{KeptSolution, KeptSolve};
-use crate::window::step_control::StepControl;
+use fe_driver::{Ray, SolvedWindow, ToolVersions, WindowProblem, WindowSolve};
 use hinge::{HingeDeformation, HingeDesign, HingeSample, SheetMaterial};
 use mesher::Tier;
 use std::f64::consts::FRAC_PI_2;
@@ -23,25 +21,28 @@ pub struct StudyCase {
     /// The reference value of the same study.
     pub against: &'static str,
     /// The window solve of the case.
-    pub solve: KeptSolve,
+    pub solve: WindowSolve,
 }
 
 /// All cases for one hinge. `quick` omits the meshes that take minutes. The paper's mesh is included for
 /// comparison, only at the paper's right angle.
-pub fn study_cases(design: HingeDesign, material: &SheetMaterial, quick: bool) -> Vec<StudyCase> {
+pub fn study_cases(
+    design: HingeDesign,
+    material: &SheetMaterial,
+    versions: &ToolVersions,
+    quick: bool,
+) -> Vec<StudyCase> {
     let end = HingeDeformation {
         theta: STUDY_THETA_DEG.to_radians(),
         ..HingeDeformation::default()
     };
-    let usual = KeptSolve {
-        design,
-        path: DeformationPath::straight(end),
-        material: material.clone(),
-        recipe: Tier::Default.recipe(),
-        step: StepControl::default(),
+    let of_tier = |tier| {
+        let problem = WindowProblem::new(Ray { design, end }, material, tier);
+        WindowSolve::new(problem, versions)
     };
+    let usual = of_tier(Tier::Default);
     let mut cases = Vec::new();
-    let mut add = |study, value: String, against, vary: &dyn Fn(&mut KeptSolve)| {
+    let mut add = |study, value: String, against, vary: &dyn Fn(&mut WindowSolve)| {
         let mut solve = usual.clone();
         vary(&mut solve);
         cases.push(StudyCase {
@@ -51,10 +52,7 @@ pub fn study_cases(design: HingeDesign, material: &SheetMaterial, quick: bool) -
             solve,
         });
     };
-    let finest = match quick {
-        true => Tier::Fine,
-        false => Tier::Reference,
-    };
+    let finest = if quick { Tier::Fine } else { Tier::Reference };
     let square = (design.alpha - FRAC_PI_2).abs() < 1e-9;
     for tier in Tier::ALL {
         let wanted = if quick {
@@ -64,35 +62,35 @@ pub fn study_cases(design: HingeDesign, material: &SheetMaterial, quick: bool) -
         };
         if wanted {
             add("mesh", tier.to_string(), finest.name(), &|solve| {
-                solve.recipe = tier.recipe();
+                *solve = of_tier(tier);
             });
         }
     }
     for maximum in [0.07, 0.035, 0.0175] {
         add("increments", maximum.to_string(), "0.0175", &|solve| {
-            solve.step.greatest = maximum;
+            solve.problem.step.greatest = maximum;
         });
     }
     for amplitude in [0.1, 0.5, 1.0, 2.0] {
         let value = format!("{amplitude} t");
         add("imperfection amplitude", value, "1 t", &|solve| {
-            solve.recipe.imperfection.amplitude = amplitude;
+            solve.mesh.imperfection.amplitude = amplitude;
         });
     }
     for widths in [[0.5, 0.5], [1.0, 1.0], [2.0, 1.4]] {
         let value = format!("{} x {}", widths[0], widths[1]);
         add("imperfection widths", value, "1 x 1", &|solve| {
-            solve.recipe.imperfection.widths = widths;
+            solve.mesh.imperfection.widths = widths;
         });
     }
     for r_win in [70.0, 100.0, 140.0] {
         add("window radius", format!("{r_win} mm"), "140 mm", &|solve| {
-            solve.design.r_win = r_win;
+            solve.problem.hinge.design.r_win = r_win;
         });
     }
     for layers in [1, 2, 3] {
         add("layers", layers.to_string(), "3", &|solve| {
-            solve.recipe.layers = layers;
+            solve.mesh.layers = layers;
         });
     }
     cases
@@ -102,17 +100,17 @@ pub fn study_cases(design: HingeDesign, material: &SheetMaterial, quick: bool) -
 pub type StudyState = [f64; 5];
 
 /// The state of a complete ray of the study at the rotation `theta_deg`.
-pub fn study_state(solution: &KeptSolution, theta_deg: f64) -> StudyState {
+pub fn study_state(solution: &SolvedWindow, theta_deg: f64) -> StudyState {
     let x = HingeSample::at(&solution.samples, theta_deg / STUDY_THETA_DEG).unwrap_or_default();
     [x.w, x.f_a, x.m_theta, x.d, x.uz_max]
 }
 
 /// Relative difference of two solutions in each component of the state: the root mean square of the difference
 /// over the ray from 3 deg on, divided by the root mean square of `against`.
-pub fn study_difference(solution: &KeptSolution, against: &KeptSolution) -> StudyState {
+pub fn study_difference(solution: &SolvedWindow, against: &SolvedWindow) -> StudyState {
     let (mut off, mut all) = ([0.0; 5], [0.0; 5]);
     for degrees in 3..=STUDY_THETA_DEG as u32 {
-        let [x, y] = [solution, against].map(|it| study_state(it, degrees.into()));
+        let [x, y] = [solution, against].map(|window| study_state(window, degrees.into()));
         for i in 0..5 {
             off[i] += (x[i] - y[i]).powi(2);
             all[i] += y[i].powi(2);
@@ -145,9 +143,10 @@ pub fn richardson([h1, h2, h3]: [f64; 3], [f1, f2, f3]: [f64; 3]) -> Richardson 
     let observed = ratio(low) <= seen && seen <= ratio(high);
     while observed && high - low > 1e-9 {
         let middle = 0.5 * (low + high);
-        match ratio(middle) < seen {
-            true => low = middle,
-            false => high = middle,
+        if ratio(middle) < seen {
+            low = middle;
+        } else {
+            high = middle;
         }
     }
     let order = if observed { low } else { 2.0 };
@@ -161,6 +160,8 @@ pub fn richardson([h1, h2, h3]: [f64; 3], [f1, f2, f3]: [f64; 3]) -> Richardson 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fe_driver::SolveRecord;
+    use std::path::PathBuf;
 
     fn design() -> HingeDesign {
         HingeDesign {
@@ -180,7 +181,12 @@ mod tests {
         SheetMaterial::load(std::path::Path::new(film)).unwrap()
     }
 
-    fn solution(scale: f64) -> KeptSolution {
+    fn versions() -> ToolVersions {
+        let [gmsh, ccx] = ["4.8.4", "2.20"].map(str::to_owned);
+        ToolVersions { gmsh, ccx }
+    }
+
+    fn solution(scale: f64) -> SolvedWindow {
         let sample = |lambda: f64| HingeSample {
             lambda,
             w: scale * lambda * lambda,
@@ -190,14 +196,14 @@ mod tests {
             uz_max: scale,
             ..HingeSample::default()
         };
-        KeptSolution {
-            elements: 1,
-            cpu_seconds: Some(1.0),
-            overhead: 0.01,
-            peak_memory_mib: Some(100.0),
-            iterations: 1,
+        SolvedWindow {
+            id: String::new(),
+            solve: study_cases(design(), &film(), &versions(), true)
+                .remove(0)
+                .solve,
+            record: SolveRecord::default(),
             samples: [0.25, 0.5, 1.0].map(sample).to_vec(),
-            stopped: None,
+            work: PathBuf::new(),
         }
     }
 
@@ -230,7 +236,7 @@ mod tests {
     #[test]
     fn the_reference_of_every_case_is_itself_a_case() {
         for quick in [false, true] {
-            let cases = study_cases(design(), &film(), quick);
+            let cases = study_cases(design(), &film(), &versions(), quick);
             for case in &cases {
                 let mut same = cases.iter().filter(|c| c.study == case.study);
                 assert!(same.any(|c| c.value == case.against), "{case:?}");

@@ -14,7 +14,7 @@ pub(super) struct FineTuning {
     pub parents: Vec<Surrogate>,
     pub config: TrainingConfig,
     /// States at which the network learns the median of the fine-tuned ones.
-    pub taught: Vec<(HingeDesign, HingeDeformation)>,
+    pub distillation: Vec<(HingeDesign, HingeDeformation)>,
     /// Folder of the trained networks.
     pub fits: PathBuf,
 }
@@ -31,13 +31,16 @@ impl FineTuning {
         if networks.len() > 1 {
             let data = TrainingData {
                 database,
-                lesson: Some(&Lesson::new(&networks, &self.taught)),
+                lesson: Some(&Lesson::new(&networks, &self.distillation)),
             };
             // Any of the networks can be the start.
             let (name, first) = (format!("{rays}-rays"), Some(&networks[0]));
             networks.push(kept_fit(&self.fits, &name, data, &self.config, first)?);
         }
-        let training_s = networks.iter().filter_map(|it| it.card().training_s).sum();
+        let training_s = networks
+            .iter()
+            .filter_map(|network| network.card().training_s)
+            .sum();
         let last = networks
             .pop()
             .context("fine-tuning needs weights to start from")?;

@@ -1,6 +1,6 @@
 //! States of a training domain at which the networks of an ensemble disagree, and rays through them.
 
-use crate::replays::spot_states;
+use crate::spot_check::random_paths;
 use fe_driver::Ray;
 use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
 use surrogate::{Order, Surrogate, mean_and_variance};
@@ -8,7 +8,7 @@ use surrogate::{Order, Surrogate, mean_and_variance};
 /// Number of states drawn: a part of a thousandth of the domain has fifty.
 const DRAWN: usize = 50_000;
 /// Energies below this fraction of their median count as that fraction: their relative deviation has no effect on sheets.
-const LEAST_ENERGY: f64 = 0.01;
+const MIN_ENERGY: f64 = 0.01;
 /// Minimum distance of two rays' states, where every coordinate has the range 1 over the domain.
 const APART: f64 = 0.15;
 
@@ -27,9 +27,9 @@ pub struct DoubtfulState {
 /// Random states of the training domain that the networks share, those with the largest doubt first.
 pub fn doubtful_states(networks: &[Surrogate]) -> Vec<DoubtfulState> {
     let shared = &networks[0];
-    let probes = spot_states::drawn(shared.domain(), &shared.card().hinge, DRAWN, 1, 0);
-    let designs: Vec<HingeDesign> = probes.iter().map(|probe| probe.design).collect();
-    let states: Vec<HingeDeformation> = probes.iter().map(|probe| probe.path.at(1.0)).collect();
+    let paths = random_paths(shared.domain(), &shared.card().hinge, DRAWN, 1, 0);
+    let designs: Vec<HingeDesign> = paths.iter().map(|path| path.hinge.design).collect();
+    let states: Vec<HingeDeformation> = paths.iter().map(|path| path.hinge.path.at(1.0)).collect();
     let energies: Vec<Vec<f64>> = networks
         .iter()
         .map(|network| {
@@ -40,22 +40,22 @@ pub fn doubtful_states(networks: &[Surrogate]) -> Vec<DoubtfulState> {
         .collect();
     let mut sizes: Vec<f64> = energies[0].iter().map(|w| w.abs()).collect();
     sizes.sort_by(f64::total_cmp);
-    let least = LEAST_ENERGY * sizes[DRAWN / 2];
+    let min_energy = MIN_ENERGY * sizes[DRAWN / 2];
     let mut found: Vec<DoubtfulState> = (0..DRAWN)
         .map(|k| DoubtfulState {
             design: designs[k],
             state: states[k],
-            doubt: deviation(energies.iter().map(|of| of[k]), least),
+            doubt: deviation(energies.iter().map(|network| network[k]), min_energy),
         })
         .collect();
     found.sort_by(|a, b| b.doubt.total_cmp(&a.doubt));
     found
 }
 
-/// Standard deviation of energies relative to their mean, or to `least` if that is larger.
-fn deviation(energies: impl Iterator<Item = f64> + Clone, least: f64) -> f64 {
+/// Standard deviation of energies relative to their mean, or to `min_energy` if that is larger.
+fn deviation(energies: impl Iterator<Item = f64> + Clone, min_energy: f64) -> f64 {
     let [mean, variance] = mean_and_variance(energies);
-    let deviation = variance.sqrt() / mean.abs().max(least);
+    let deviation = variance.sqrt() / mean.abs().max(min_energy);
     if deviation.is_nan() {
         return f64::INFINITY;
     }
@@ -128,11 +128,11 @@ mod tests {
     }
 
     #[test]
-    fn deviations_are_relative_to_the_mean_or_the_least_energy() {
-        let of = |energies: [f64; 2], least| deviation(energies.into_iter(), least);
-        assert!((of([9.0, 11.0], 1.0) - 0.02f64.sqrt()).abs() < 1e-15);
-        assert!((of([0.0, 0.2], 1.0) - 0.02f64.sqrt()).abs() < 1e-15);
-        assert_eq!(of([1.0, f64::NAN], 1.0), f64::INFINITY);
+    fn deviations_are_relative_to_the_mean_or_the_minimum_energy() {
+        let relative = |energies: [f64; 2], min| deviation(energies.into_iter(), min);
+        assert!((relative([9.0, 11.0], 1.0) - 0.02f64.sqrt()).abs() < 1e-15);
+        assert!((relative([0.0, 0.2], 1.0) - 0.02f64.sqrt()).abs() < 1e-15);
+        assert_eq!(relative([1.0, f64::NAN], 1.0), f64::INFINITY);
     }
 
     #[test]

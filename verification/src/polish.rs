@@ -3,9 +3,8 @@
 //! The sheet is balanced with finite elements for its hinges, the search continues from the design with the corrected
 //! law, and the sheet that it finds is balanced again: both designs are judged by finite elements at their own hinges.
 
-use crate::replays::balanced_sheet::{BalanceEnd, Balanced, WindowSolves, balanced};
-use crate::ui::exit::Unfinished;
-use anyhow::{Result, bail};
+use crate::balanced_sheet::{BalanceEnd, Balanced, ElementWindows, balanced};
+use crate::error::VerificationError;
 use design::objective::design_problem::Evaluation;
 use design::objective::scores::Scores;
 use design::optimise::outer_loop::{Ended, SearchState, StepRecord, optimise};
@@ -42,24 +41,42 @@ pub struct PolishGain {
     ended: Ended,
     /// Why the rounds of both sheets ended.
     ended_rounds: [BalanceEnd; 2],
-    /// CPU time of all window solves (s), if the operating system reports it.
-    cpu_seconds: Option<f64>,
+    /// CPU time of all window solves (s).
+    cpu_seconds: f64,
 }
 
-/// Balances a design, which has a name for a person, in at most `rounds` rounds, searches for `steps` steps, and
-/// balances the design that was found.
+/// A design to be polished.
+#[derive(Clone, Copy)]
+pub struct PolishTask<'a> {
+    /// The scene of the design.
+    pub scene: &'a Scene,
+    /// The design.
+    pub design: &'a DesignVector,
+    /// Its name for a person.
+    pub name: &'a str,
+    /// Maximum number of rounds in which a sheet is balanced.
+    pub rounds: usize,
+    /// Number of steps of the search.
+    pub steps: usize,
+}
+
+/// Balances a design, searches on from it, and balances the design that was found.
 ///
 /// # Errors
-/// [`Unfinished`] if `stop` becomes true during the search; windows that were solved are kept.
+/// [`VerificationError::Stopped`] if `stop` becomes true during the search; windows that were solved are kept.
 pub fn polish(
-    scene: &Scene,
-    (design, name): (&DesignVector, &str),
-    windows: &WindowSolves,
-    rounds: usize,
-    steps: usize,
+    task: PolishTask,
+    windows: &ElementWindows,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(&StepRecord),
-) -> Result<Polished> {
+) -> Result<Polished, VerificationError> {
+    let PolishTask {
+        scene,
+        design,
+        rounds,
+        steps,
+        ..
+    } = task;
     let law = scene.problem()?;
     let (before, corrected) = balanced(scene, design, windows, rounds)?;
     let start = corrected.evaluate(design)?;
@@ -76,7 +93,10 @@ pub fn polish(
         Ok::<_, Infallible>(())
     };
     let ended = match optimise(&corrected, &mut search, steps, stop, show) {
-        Ok(Ended::Stopped) => bail!(Unfinished::new(steps + 1 - search.history.len(), "steps")),
+        Ok(Ended::Stopped) => {
+            let left = steps + 1 - search.history.len();
+            return Err(VerificationError::Stopped { left });
+        }
         Ok(ended) => ended,
         Err(never) => match never {},
     };
@@ -85,7 +105,7 @@ pub fn polish(
     let best = problem.evaluate(&found)?;
     let scores = |evaluation: &Evaluation| Scores::new(&law.objective, evaluation);
     let gain = PolishGain {
-        given: name.to_owned(),
+        given: task.name.to_owned(),
         by_law: [
             scores(&law.evaluate(design)?),
             scores(&law.evaluate(&found)?),
@@ -94,10 +114,7 @@ pub fn polish(
         steps: search.history.len() - 1,
         ended: ended.clone(),
         ended_rounds: [before.ended, after.ended.clone()],
-        cpu_seconds: before
-            .cpu_seconds
-            .zip(after.cpu_seconds)
-            .map(|(x, y)| x + y),
+        cpu_seconds: before.cpu_seconds + after.cpu_seconds,
     };
     let designed = Designed {
         problem,
@@ -125,17 +142,16 @@ impl PolishGain {
 
 impl fmt::Display for PolishGain {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let minutes = self.cpu_seconds.map_or(String::new(), |seconds| {
-            format!(", {:.0} CPU minutes of windows", seconds / 60.0)
-        });
         writeln!(
             f,
             "# The design, polished\n\n\
              Given: {}. Searched for {} steps with the hinge law corrected to finite elements at the hinges of the given \
-             design{minutes}. \"By finite elements\" is the equilibrium with finite elements for all hinges of the design \
+             design, {:.0} CPU minutes of windows. \"By finite elements\" is the equilibrium with finite elements for all hinges of the design \
              of that column.\n\n\
              | | given design | polished design |\n|---|---|---|",
-            self.given, self.steps,
+            self.given,
+            self.steps,
+            self.cpu_seconds / 60.0,
         )?;
         for (name, [before, after]) in [
             ("by the hinge law", &self.by_law),

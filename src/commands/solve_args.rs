@@ -1,0 +1,73 @@
+//! Options of window solves, and the service that they describe.
+
+use crate::ui::exit::Unfinished;
+use crate::ui::interrupt;
+use crate::ui::processors;
+use crate::ui::progress::Progress;
+use anyhow::Result;
+use clap::Args;
+use fe_driver::{CalculiX, SolveListError, SolveStore, WindowService};
+use std::cell::RefCell;
+use std::num::NonZeroUsize;
+use std::path::Path;
+use std::time::Duration;
+use verification::VerificationError;
+
+/// Options of window solves.
+#[derive(Args)]
+pub struct SolveArgs {
+    /// Number of solves in parallel [default: one per processor]
+    #[arg(long, value_name = "N")]
+    jobs: Option<NonZeroUsize>,
+    /// Time limit of each solve (s)
+    #[arg(long, value_name = "SECONDS", default_value_t = 3600)]
+    time_limit_s: u64,
+}
+
+impl SolveArgs {
+    /// With one processor for each of `jobs` solves, each limited to `time_limit`.
+    pub fn new(jobs: Option<NonZeroUsize>, time_limit: Duration) -> Self {
+        Self {
+            jobs,
+            time_limit_s: time_limit.as_secs(),
+        }
+    }
+
+    /// Number of solves in parallel.
+    pub fn workers(&self) -> usize {
+        self.jobs.map_or_else(processors, NonZeroUsize::get)
+    }
+
+    /// Solves windows with CalculiX, shows their progress, and keeps them in the folder `solves` of `folder`.
+    pub fn service(&self, folder: &Path) -> Result<WindowService<'static>> {
+        let bar = RefCell::new(None);
+        let progress = move |done: usize, all: usize| {
+            let mut bar = bar.borrow_mut();
+            if done < all {
+                let bar = bar.get_or_insert_with(|| Progress::new(all, "solves"));
+                bar.show(done, None, "");
+            } else if let Some(bar) = bar.take() {
+                bar.finish();
+            }
+        };
+        Ok(WindowService {
+            solver: Box::new(CalculiX::find()?),
+            store: SolveStore(folder.join("solves")),
+            workers: self.workers(),
+            limit: Duration::from_secs(self.time_limit_s),
+            stop: interrupt::stop_flag()?,
+            progress: Box::new(progress),
+        })
+    }
+}
+
+/// The error of a task for the command line: a task that was stopped is unfinished.
+pub fn task_error(error: VerificationError) -> anyhow::Error {
+    match error {
+        VerificationError::Solve(SolveListError::Stopped { left }) => {
+            Unfinished::new(left, "solves").into()
+        }
+        VerificationError::Stopped { left } => Unfinished::new(left, "steps").into(),
+        error => error.into(),
+    }
+}

@@ -1,0 +1,288 @@
+//! The equilibrium of a sheet with finite elements for its hinges.
+//!
+//! Every hinge is solved along its path in the sheet. The hinge law is corrected to the forces of the finite elements at
+//! full load, of this round and of those before ([`CorrectedLaw`]), and the sheet is deployed again; hinges then have other
+//! states, and this is repeated until the panels stay where they are. It is a quasi-Newton iteration for the equilibrium of
+//! the finite-element hinges: the tangent is that of the hinge law in the first round, and learns from each further one.
+
+use crate::error::VerificationError;
+use crate::recorded_path::paths_of;
+use crate::replay::{UnsolvedHinge, solved};
+use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
+use design::objective::design_problem::{Deployment, DesignError, DesignProblem, Model};
+use design::pattern::design_vector::DesignVector;
+use design::scene::Scene;
+use design::sheet::kinematics::deployed_corners;
+use fe_driver::WindowService;
+use hinge::HingeSample;
+use mesher::Tier;
+use serde::Serialize;
+use std::sync::Arc;
+
+/// Largest movement of a panel corner in a round, relative to the size of the deployed sheet, at which the iteration
+/// ends: a tenth of a millimetre in a metre.
+pub const BALANCED: f64 = 1e-4;
+
+/// One round: the hinges are solved, and the sheet is deployed with their forces.
+#[derive(Clone, Debug, Serialize)]
+pub struct Round {
+    /// Root mean square difference of (F_a, F_s, M_theta / w_lig) of the solved hinges between finite elements and
+    /// corrected law, relative to the root mean square of the former.
+    pub force_error: f64,
+    /// Largest movement of a panel corner (mm).
+    pub movement: f64,
+    /// Hinges that were not solved: in this round the law stands for them, as corrected in the rounds before.
+    pub unsolved: Vec<UnsolvedHinge>,
+}
+
+/// A sheet in equilibrium with the forces of finite elements.
+pub struct Balanced {
+    /// By the hinge law alone, followed by the deployment with the corrected law of each round.
+    deployments: Vec<Deployment>,
+    /// The last state of each hinge by finite elements, in the last round that solved it; `None` if no round did.
+    pub hinges: Vec<Option<HingeSample>>,
+    /// All rounds in their order.
+    pub rounds: Vec<Round>,
+    /// CPU time of all window solves (s).
+    pub cpu_seconds: f64,
+    /// Why no further round was made.
+    pub ended: BalanceEnd,
+}
+
+/// Why the rounds ended.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BalanceEnd {
+    /// The last round moved the panels by less than [`BALANCED`]. Forces at the new states are not solved; the force error of
+    /// the round is that of the states before.
+    Converged,
+    /// All rounds were made, and the panels still move.
+    RoundsMade,
+    /// A round after the first failed. The results are those of the rounds before.
+    Failed(String),
+}
+
+impl BalanceEnd {
+    /// What a person should know if the sheet is not balanced, with what to do.
+    pub fn warning(&self) -> Option<String> {
+        match self {
+            Self::Converged => None,
+            Self::RoundsMade => Some("the panels still move: use more --rounds".into()),
+            Self::Failed(reason) => Some(format!("a further round failed: {reason}")),
+        }
+    }
+}
+
+/// Finite elements for the hinges of sheets.
+#[derive(Clone, Copy)]
+pub struct ElementWindows<'a> {
+    /// Tier of the meshes.
+    pub tier: Tier,
+    /// Solves the windows.
+    pub service: &'a WindowService<'a>,
+}
+
+/// Deploys a design with finite elements for its hinges, in at most `rounds` rounds. Also returns the problem of the
+/// scene with the hinge law corrected to the finite elements of all rounds.
+///
+/// A hinge that is not solved ends no round unless it is the only one: see [`Round::unsolved`].
+pub fn balanced(
+    scene: &Scene,
+    design: &DesignVector,
+    windows: &ElementWindows,
+    rounds: usize,
+) -> Result<(Balanced, DesignProblem), VerificationError> {
+    if rounds == 0 {
+        return Err(VerificationError::NoRounds);
+    }
+    let mut problem = scene.problem()?;
+    let law = law_of(&mut problem)?.clone();
+    let deployed = problem.deploy(design)?;
+    deployed.at_full_load()?;
+    let count = deployed.sheet.designs().len();
+    let mut iteration = Iteration {
+        scene,
+        design,
+        windows,
+        law,
+        missing: vec![Vec::new(); count],
+        problem,
+    };
+    let mut found = Balanced {
+        deployments: vec![deployed],
+        hinges: vec![None; count],
+        rounds: Vec::new(),
+        cpu_seconds: 0.0,
+        ended: BalanceEnd::RoundsMade,
+    };
+    while found.rounds.len() < rounds && found.ended != BalanceEnd::Converged {
+        match iteration.round(&mut found) {
+            Ok(()) => {}
+            Err(
+                error @ (VerificationError::NoHinge(_)
+                | VerificationError::Design(DesignError::NoEquilibrium { .. })),
+            ) if !found.rounds.is_empty() => {
+                found.ended = BalanceEnd::Failed(error.to_string());
+                break;
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Ok((found, iteration.problem))
+}
+
+/// The quasi-Newton iteration between two rounds.
+struct Iteration<'a> {
+    scene: &'a Scene,
+    design: &'a DesignVector,
+    windows: &'a ElementWindows<'a>,
+    /// The law of the scene.
+    law: Arc<dyn HingeLaw>,
+    /// What it lacks of the forces of each hinge, round by round.
+    missing: Vec<Vec<MissingForces>>,
+    /// The problem with the corrected law of the last round.
+    problem: DesignProblem,
+}
+
+impl Iteration<'_> {
+    /// Solves the hinges along their paths in the last deployment, and deploys the sheet with the law corrected to them.
+    /// After an error the problem has the law that it had before.
+    fn round(&mut self, found: &mut Balanced) -> Result<(), VerificationError> {
+        let deployed = found.by_elements();
+        let (ends, unsolved, cpu_seconds) = self.ends(deployed)?;
+        let force_error = force_error(&self.problem.model, deployed, &ends);
+        self.add_missing_forces(deployed, &ends);
+        let designs = deployed.sheet.designs();
+        let corrections = (designs.iter().zip(&self.missing))
+            .map(|(design, missing)| Correction::new(design, missing))
+            .collect();
+        let corrected = Arc::new(CorrectedLaw::new(self.law.clone(), corrections));
+        let before = std::mem::replace(law_of(&mut self.problem)?, corrected);
+        let next = self.problem.deploy(self.design)?;
+        if let Err(error) = next.at_full_load() {
+            *law_of(&mut self.problem)? = before;
+            return Err(error.into());
+        }
+        let movement = movements(deployed, &next).into_iter().fold(0.0, f64::max);
+        if movement <= BALANCED * size(&next) {
+            found.ended = BalanceEnd::Converged;
+        }
+        for (known, end) in found.hinges.iter_mut().zip(ends) {
+            *known = end.or(*known);
+        }
+        found.cpu_seconds += cpu_seconds;
+        found.deployments.push(next);
+        found.rounds.push(Round {
+            force_error,
+            movement,
+            unsolved,
+        });
+        Ok(())
+    }
+
+    /// The last state of every hinge along its path in the sheet, the hinges that were not solved, and the CPU time (s).
+    fn ends(
+        &self,
+        deployed: &Deployment,
+    ) -> Result<(Vec<Option<HingeSample>>, Vec<UnsolvedHinge>, f64), VerificationError> {
+        let ElementWindows { tier, service } = *self.windows;
+        let windows = solved(service, &paths_of(deployed), &self.scene.material, tier)?;
+        let cpu_seconds = windows.iter().map(|window| window.record.cpu_seconds).sum();
+        let (mut ends, mut unsolved) = (Vec::new(), Vec::new());
+        for (hinge, window) in windows.iter().enumerate() {
+            ends.push(match window.complete() {
+                Ok(samples) => samples.last().copied(),
+                Err(failed) => {
+                    let reason = failed.to_string();
+                    unsolved.push(UnsolvedHinge { hinge, reason });
+                    None
+                }
+            });
+        }
+        if let Some(first) = unsolved.first()
+            && unsolved.len() == ends.len()
+        {
+            return Err(VerificationError::NoHinge(first.to_string()));
+        }
+        Ok((ends, unsolved, cpu_seconds))
+    }
+
+    /// Adds what the law lacks of the forces of finite elements at the last states of the solved hinges.
+    fn add_missing_forces(&mut self, deployed: &Deployment, ends: &[Option<HingeSample>]) {
+        let states = &deployed.final_step().deformations;
+        let prepared = self.law.prepare(&deployed.sheet.designs());
+        let own = prepared.energies(states, Order::Forces);
+        for (h, end) in ends.iter().enumerate() {
+            if let Some(end) = end {
+                let measured = end.forces().to_array();
+                self.missing[h].push(MissingForces {
+                    state: states[h],
+                    forces: std::array::from_fn(|i| measured[i] - own[h].forces[i]),
+                });
+            }
+        }
+    }
+}
+
+/// The hinge law of a problem.
+fn law_of(problem: &mut DesignProblem) -> Result<&mut Arc<dyn HingeLaw>, VerificationError> {
+    match &mut problem.model {
+        Model::Equilibrium(mechanics) => Ok(&mut mechanics.law),
+        Model::Ideal { .. } => Err(VerificationError::NoStiffness),
+    }
+}
+
+impl Balanced {
+    /// The deployment by the hinge law alone.
+    pub fn by_law(&self) -> &Deployment {
+        &self.deployments[0]
+    }
+
+    /// The deployment with the corrected law of the last round.
+    pub fn by_elements(&self) -> &Deployment {
+        &self.deployments[self.deployments.len() - 1]
+    }
+}
+
+/// See [`Round::force_error`].
+fn force_error(model: &Model, deployment: &Deployment, ends: &[Option<HingeSample>]) -> f64 {
+    let Model::Equilibrium(mechanics) = model else {
+        return 0.0;
+    };
+    let designs = deployment.sheet.designs();
+    let states = &deployment.final_step().deformations;
+    let prepared = mechanics.law.prepare(&designs);
+    let own = prepared.energies(states, Order::Forces);
+    let (mut errors, mut squares) = (0.0, 0.0);
+    for (h, design) in designs.iter().enumerate() {
+        let Some(end) = &ends[h] else {
+            continue;
+        };
+        let measured = end.forces().to_array();
+        for (i, arm) in [1.0, 1.0, design.w_lig].into_iter().enumerate() {
+            errors += ((measured[i] - own[h].forces[i]) / arm).powi(2);
+            squares += (measured[i] / arm).powi(2);
+        }
+    }
+    (errors / squares.max(f64::MIN_POSITIVE)).sqrt()
+}
+
+/// Distance of each panel corner between the last states of two deployments of one sheet (mm).
+pub fn movements(from: &Deployment, to: &Deployment) -> Vec<f64> {
+    let corners =
+        |of: &Deployment| deployed_corners(&of.sheet, &of.final_step().configuration).concat();
+    std::iter::zip(corners(from), corners(to))
+        .map(|([x, y], [x2, y2])| f64::hypot(x2 - x, y2 - y))
+        .collect()
+}
+
+/// Diagonal of the deployed sheet's bounding box (mm).
+pub fn size(deployment: &Deployment) -> f64 {
+    let corners =
+        deployed_corners(&deployment.sheet, &deployment.final_step().configuration).concat();
+    let extent = |i: usize| {
+        let along = corners.iter().map(|corner| corner[i]);
+        along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+    };
+    f64::hypot(extent(0), extent(1))
+}

@@ -1,0 +1,53 @@
+//! Errors of this crate.
+
+use dataset::DatasetError;
+use design::objective::design_problem::DesignError;
+use design::scene::SceneError;
+use fe_driver::{CampaignError, SolveListError};
+use std::path::PathBuf;
+
+/// Why a task has no result.
+#[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
+pub enum VerificationError {
+    #[error(transparent)]
+    Solve(#[from] SolveListError),
+    #[error(transparent)]
+    Campaign(#[from] CampaignError),
+    #[error(transparent)]
+    Dataset(#[from] DatasetError),
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    #[error(transparent)]
+    Design(#[from] DesignError),
+    #[error("hinge paths need a hinge law with stiffness: the scene has hinge = \"pin\"")]
+    NoStiffness,
+    #[error("hinge {0} has no states")]
+    NoStates(usize),
+    #[error("at least one round is needed")]
+    NoRounds,
+    #[error(
+        "the equilibrium needs the forces of the hinges, and none is solved: {0}. Try another mesh with --tier"
+    )]
+    NoHinge(String),
+    #[error("stopped with {left} steps left")]
+    Stopped { left: usize },
+    #[error(
+        "{0} was not trained on the data of the scene's weights and cannot be in an ensemble with them"
+    )]
+    OtherData(PathBuf),
+    #[error(
+        "the weights were trained on the tier `{trained_on}`, which is no mesh tier: pass the \
+         tier to compare with as --tier"
+    )]
+    NoTier { trained_on: String },
+    #[error("the campaign has no region of rays")]
+    NoRegion,
+    #[error(
+        "every ray failed: read a job's log in {0}, fix the cause, then run `kirigami campaign retry`"
+    )]
+    EveryRayFailed(PathBuf),
+}

@@ -1,0 +1,225 @@
+//! Rays of a campaign solved in rounds, each with twice the rays of the one before, until weights are accurate.
+//!
+//! After each round weights are trained on all rays so far, and tested at random states of rays that no training contains.
+
+use crate::error::VerificationError;
+use crate::rows::collected;
+use dataset::{Database, Row};
+use fe_driver::{Campaign, Progress, RunOptions, Shard, WindowSolver, run, status};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+use surrogate::{Surrogate, TestErrors};
+use train::Parity;
+
+/// What is solved, and when it is enough.
+#[derive(Clone, Copy)]
+pub struct LearningTask<'a> {
+    /// All rays; a round solves the first of them.
+    pub campaign: &'a Campaign,
+    /// Folder of the campaign.
+    pub folder: &'a Path,
+    /// What solves the rays.
+    pub solver: &'a dyn WindowSolver,
+    /// Number of solves that run in parallel.
+    pub workers: usize,
+    /// Number of rays of the first round.
+    pub first_rays: usize,
+    /// States at which the weights of every round are tested.
+    pub spot: &'a [Row],
+    /// The errors that are small enough.
+    pub accuracy: Accuracy,
+    /// No ray is started after this time.
+    pub deadline: Option<Instant>,
+    /// Terminates the solves in flight when set.
+    pub stop: &'a AtomicBool,
+}
+
+/// Root mean square errors, relative to the root mean square of the quantity (%).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Of W.
+    pub energy: f64,
+    /// Of F_a, F_s and M together.
+    pub forces: f64,
+}
+
+/// One round.
+#[derive(Clone, Copy, Debug)]
+pub struct LearningRound {
+    /// Number of rays of all rounds so far.
+    pub rays: usize,
+    /// Number of rays that the solver followed to their end.
+    pub complete: usize,
+    /// Solver CPU time of all rays so far (s).
+    pub cpu_s: f64,
+    /// Time of all trainings of the round (s).
+    pub training_s: f64,
+    /// Number of states of the spot check that lie inside the training domain of the weights.
+    pub inside: usize,
+    /// Errors at all states of the spot check.
+    pub errors: TestErrors,
+}
+
+/// What a caller does in every round.
+pub trait LearningSteps {
+    /// Its error.
+    type Error: From<VerificationError>;
+
+    /// Shows the progress of the rays.
+    fn solving(&mut self, progress: &Progress);
+
+    /// Trains weights on the rows of the first `rays` rays; also returns the time that it took (s).
+    fn train(&mut self, rays: usize, database: &Database) -> Result<(Surrogate, f64), Self::Error>;
+
+    /// Takes a finished round with its weights. `is_latest` is false while the rays of the next round are known from an
+    /// earlier run.
+    fn round(
+        &mut self,
+        round: &LearningRound,
+        weights: Surrogate,
+        is_latest: bool,
+    ) -> Result<(), Self::Error>;
+}
+
+/// Why the rounds ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LearningEnd {
+    /// The weights of the last round are accurate enough.
+    Accurate,
+    /// Stopped, or at the deadline, with so many rays left.
+    Unfinished {
+        /// Number of rays.
+        left: usize,
+        /// Which rays.
+        what: &'static str,
+    },
+    /// All rays are solved, and the errors are too large.
+    AllRays,
+}
+
+/// Makes rounds until the weights are accurate enough, all rays are solved, or the time is over.
+pub fn learn<S: LearningSteps>(task: LearningTask, steps: &mut S) -> Result<LearningEnd, S::Error> {
+    let solved = closed_before(task.folder)?;
+    let mut counts = counts(task.first_rays, task.campaign.count).peekable();
+    while let Some(rays) = counts.next() {
+        if let Some(end) = solve_first(rays, task, steps)? {
+            return Ok(end);
+        }
+        let database = collected(task.folder)?;
+        let (weights, training_s) = steps.train(rays, &database)?;
+        let round = LearningRound::new(task, &weights, training_s)?;
+        let weights = weights.with_spot_check(round.errors, round.inside);
+        let is_latest = counts.peek().is_none_or(|next| *next > solved);
+        steps.round(&round, weights, is_latest)?;
+        if !is_latest {
+            continue;
+        }
+        if round.is_within(task.accuracy) {
+            return Ok(LearningEnd::Accurate);
+        }
+        if let Some(next) = counts.peek()
+            && task
+                .deadline
+                .is_some_and(|deadline| Instant::now() >= deadline)
+        {
+            let (left, what) = (next - rays, "rays of the next round");
+            return Ok(LearningEnd::Unfinished { left, what });
+        }
+    }
+    Ok(LearningEnd::AllRays)
+}
+
+/// Number of rays that earlier runs have solved.
+fn closed_before(folder: &Path) -> Result<usize, VerificationError> {
+    if !folder.exists() {
+        return Ok(0);
+    }
+    Ok(status(folder)?.tally.closed())
+}
+
+/// Solves the first `rays` rays of the campaign; the end of the rounds if some of them are left.
+fn solve_first<S: LearningSteps>(
+    rays: usize,
+    task: LearningTask,
+    steps: &mut S,
+) -> Result<Option<LearningEnd>, VerificationError> {
+    let options = RunOptions {
+        shard: Shard::WHOLE,
+        workers: task.workers,
+        time_limit: (task.deadline)
+            .map(|deadline| deadline.saturating_duration_since(Instant::now())),
+    };
+    let first = Campaign {
+        count: rays,
+        ..task.campaign.clone()
+    };
+    let progress = &mut |progress: &Progress| steps.solving(progress);
+    let tally = run(
+        &first,
+        task.folder,
+        task.solver,
+        &options,
+        task.stop,
+        progress,
+    )?
+    .tally;
+    if tally.to_run() > 0 {
+        let (left, what) = (tally.to_run(), "rays of this round");
+        return Ok(Some(LearningEnd::Unfinished { left, what }));
+    }
+    if tally.failed > 0 && tally.complete + tally.partial == 0 {
+        let jobs = task.folder.join("jobs");
+        return Err(VerificationError::EveryRayFailed(jobs));
+    }
+    Ok(None)
+}
+
+impl LearningRound {
+    fn new(
+        task: LearningTask,
+        weights: &Surrogate,
+        training_s: f64,
+    ) -> Result<Self, VerificationError> {
+        let tally = status(task.folder)?.tally;
+        let domain = weights.domain();
+        let inside = task.spot.iter().filter(|row| {
+            let state = row.sample.deformation();
+            domain.contains(&row.design, &state)
+        });
+        Ok(Self {
+            rays: tally.closed(),
+            complete: tally.complete,
+            cpu_s: tally.cpu_seconds,
+            training_s,
+            inside: inside.count(),
+            errors: Parity::of(weights, task.spot).errors(),
+        })
+    }
+
+    fn is_within(&self, accuracy: Accuracy) -> bool {
+        let [energy, ..] = self.errors.percents();
+        energy <= accuracy.energy && self.errors.forces_percent() <= accuracy.forces
+    }
+}
+
+/// Numbers of rays of the rounds: each twice the one before, the last with all.
+fn counts(first: usize, all: usize) -> impl Iterator<Item = usize> {
+    let doubled = std::iter::successors(Some(first), |count| Some(2 * count));
+    doubled
+        .take_while(move |count| *count < all)
+        .chain(std::iter::once(all))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounds_double_and_end_with_all_rays() {
+        let all = |first, all| counts(first, all).collect::<Vec<_>>();
+        assert_eq!(all(25, 160), [25, 50, 100, 160]);
+        assert_eq!(all(25, 50), [25, 50]);
+        assert_eq!(all(25, 6), [6]);
+    }
+}

@@ -1,0 +1,140 @@
+//! The hinges of a sheet solved along their paths in it, and compared with a surrogate at every load step.
+
+use crate::error::VerificationError;
+use crate::recorded_path::RecordedPath;
+use dataset::ComparedState;
+use fe_driver::{SolvedWindow, WindowService, WindowSolve};
+use hinge::{HingeDeformation, HingeSample, SheetMaterial};
+use mesher::Tier;
+use serde::Serialize;
+use std::fmt;
+use surrogate::{Surrogate, mean_and_variance};
+
+/// One hinge, by the surrogate and by finite elements.
+pub struct ReplayedHinge {
+    /// The hinge with its path.
+    pub path: RecordedPath,
+    /// Its states, in the order of the load steps.
+    pub states: Vec<ComparedState>,
+    /// Standard deviation over the ensemble at every state, in the order of [`dataset::COMPARED`]; empty without one.
+    pub spread: Vec<[f64; 6]>,
+    /// Fraction of the states inside the training domain.
+    pub inside: f64,
+}
+
+/// A hinge of a sheet that finite elements did not follow along its path.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct UnsolvedHinge {
+    /// Number of the hinge.
+    pub hinge: usize,
+    /// Its window, why it was not solved, and the folder of its last attempt.
+    pub reason: String,
+}
+
+impl fmt::Display for UnsolvedHinge {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "hinge {}: {}", self.hinge, self.reason)
+    }
+}
+
+/// The windows of hinges solved along their paths, in the same order.
+pub(crate) fn solved(
+    windows: &WindowService,
+    paths: &[RecordedPath],
+    material: &SheetMaterial,
+    tier: Tier,
+) -> Result<Vec<SolvedWindow>, VerificationError> {
+    let versions = windows.versions();
+    let solve = |path: &RecordedPath| {
+        let problem = path.problem(material, tier)?;
+        Ok::<_, VerificationError>(WindowSolve::new(problem, &versions))
+    };
+    let solves: Vec<WindowSolve> = paths.iter().map(solve).collect::<Result<_, _>>()?;
+    Ok(windows.solve(&solves)?)
+}
+
+/// Compares a surrogate with the solved windows of hinges along their paths. `networks` are the others of its ensemble.
+/// Also returns the hinges that were not solved.
+pub fn replay(
+    windows: &WindowService,
+    paths: Vec<RecordedPath>,
+    (material, tier): (&SheetMaterial, Tier),
+    surrogate: &Surrogate,
+    networks: &[Surrogate],
+) -> Result<(Vec<ReplayedHinge>, Vec<UnsolvedHinge>), VerificationError> {
+    let solved = solved(windows, &paths, material, tier)?;
+    let (mut replayed, mut unsolved) = (Vec::new(), Vec::new());
+    for (path, window) in paths.into_iter().zip(&solved) {
+        match window.complete() {
+            Ok(samples) => replayed.push(ReplayedHinge::new(path, samples, surrogate, networks)),
+            Err(failed) => unsolved.push(UnsolvedHinge {
+                hinge: path.hinge,
+                reason: failed.to_string(),
+            }),
+        }
+    }
+    Ok((replayed, unsolved))
+}
+
+impl ReplayedHinge {
+    fn new(
+        path: RecordedPath,
+        solved: &[HingeSample],
+        surrogate: &Surrogate,
+        networks: &[Surrogate],
+    ) -> Self {
+        let count = path.states.len();
+        let computed = (1..=count).map(|k| HingeSample::at(solved, k as f64 / count as f64));
+        let predicted = predicted(surrogate, &path);
+        let domain = surrogate.domain();
+        let inside = |state: &HingeDeformation| domain.contains(&path.design, state);
+        // Damage grows along the path: it is not known once a state was outside the training domain.
+        let left = path.states.iter().position(|state| !inside(state));
+        let known = |(k, value): (usize, &HingeSample)| match left {
+            Some(left) if k >= left => HingeSample {
+                d: f64::NAN,
+                d_peak: None,
+                ..*value
+            },
+            _ => *value,
+        };
+        let states: Vec<_> = (predicted.iter().enumerate().map(known))
+            .zip(computed)
+            .filter_map(|(value, reference)| Some(ComparedState::new(&value, &reference?)))
+            .collect();
+        let others: Vec<_> = networks
+            .iter()
+            .map(|network| self::predicted(network, &path))
+            .collect();
+        let spread = if others.is_empty() {
+            Vec::new()
+        } else {
+            let states = 0..states.len();
+            states.map(|k| deviation(&predicted, &others, k)).collect()
+        };
+        Self {
+            inside: path.states.iter().filter(|state| inside(state)).count() as f64 / count as f64,
+            path,
+            states,
+            spread,
+        }
+    }
+}
+
+/// The predictions of a surrogate at every state of a path.
+fn predicted(surrogate: &Surrogate, path: &RecordedPath) -> Vec<HingeSample> {
+    let designs = vec![path.design; path.states.len()];
+    surrogate.samples(&designs, &path.states)
+}
+
+/// Standard deviation over all networks at the state `k`.
+fn deviation(first: &[HingeSample], others: &[Vec<HingeSample>], k: usize) -> [f64; 6] {
+    let all = std::iter::once(first).chain(others.iter().map(Vec::as_slice));
+    let values: Vec<_> = all
+        .map(|samples| ComparedState::new(&samples[k], &samples[k]).value)
+        .collect();
+    std::array::from_fn(|i| {
+        let [_, variance] = mean_and_variance(values.iter().map(|value| value[i]));
+        variance.sqrt()
+    })
+}
