@@ -47,18 +47,26 @@ fn spot_check(work: &Workplace) -> (String, String) {
 }
 
 /// Makes the damage at the end of every solved window negative.
-fn spoil_last_states(folder: &Path) {
-    for file in std::fs::read_dir(folder).unwrap() {
-        let path = file.unwrap().path();
-        if path.extension().is_none_or(|kind| kind != "json") {
-            continue;
-        }
-        let text = std::fs::read_to_string(&path).unwrap();
-        let mut solution: serde_json::Value = serde_json::from_str(&text).unwrap();
-        solution.as_object_mut().unwrap().remove("checksum");
-        let samples = solution["samples"].as_array_mut().unwrap();
-        samples.last_mut().unwrap()["d"] = (-1.0).into();
-        std::fs::write(&path, solution.to_string()).unwrap();
+fn spoil_last_states(solves: &Path) {
+    let below = |folder: &Path| -> Vec<_> {
+        let entries = std::fs::read_dir(folder).unwrap();
+        entries.map(|entry| entry.unwrap().path()).collect()
+    };
+    for solve in below(solves).iter().flat_map(|digits| below(digits)) {
+        let text = std::fs::read_to_string(solve.join("rows.csv")).unwrap();
+        let (before, last) = text.trim_end().rsplit_once('\n').unwrap();
+        let damage = text.lines().next().unwrap().split(',');
+        let damage = damage.clone().position(|column| column == "d").unwrap();
+        let mut cells: Vec<&str> = last.split(',').collect();
+        cells[damage] = "-1.0";
+        let text = format!("{before}\n{}\n", cells.join(","));
+        let path = solve.join("result.json");
+        let record = std::fs::read(&path).unwrap();
+        let mut record: serde_json::Value = serde_json::from_slice(&record).unwrap();
+        record.as_object_mut().unwrap().remove("checksum");
+        record["rows_hash"] = blake3::hash(text.as_bytes()).to_hex().to_string().into();
+        std::fs::write(solve.join("rows.csv"), text).unwrap();
+        std::fs::write(path, record.to_string()).unwrap();
     }
 }
 
@@ -111,7 +119,7 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
     let (summary, states) = spot_check(&work);
     assert!(summary.contains("12 rows of 3 rays"), "{summary}");
     assert_eq!(states, "12");
-    spoil_last_states(&work.path("learned/spot-check/solutions"));
+    spoil_last_states(&work.path("learned/spot-check/solves"));
     work.output(&learn(
         POLYPROPYLENE,
         &format!("{OPTIONS} --accuracy 100% --forces 100%"),

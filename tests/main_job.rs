@@ -266,14 +266,14 @@ fn rays_are_proposed_where_hinges_leave_the_domain(work: &Workplace) {
     assert!((1..=12).contains(&rays), "{further}");
     work.edit(
         CAMPAIGN,
-        &[("seed = 1", "seed = 1\nfurther_rays = \"further.csv\"")],
+        &[("seed = 1", "seed = 1\nextra_rays = \"further.csv\"")],
     );
     let plan = json(&work.output(&format!(
         "campaign plan {CAMPAIGN} --folder runs/demo/campaign --json"
     )));
     let open = plan["tally"]["open"].as_u64().unwrap() as usize;
     assert_eq!(open, rays, "{plan}");
-    work.edit(CAMPAIGN, &[("\nfurther_rays = \"further.csv\"", "")]);
+    work.edit(CAMPAIGN, &[("\nextra_rays = \"further.csv\"", "")]);
 }
 
 fn a_folder_keeps_its_campaign_and_its_scene(work: &Workplace) {

@@ -6,7 +6,7 @@ mod common;
 
 use common::Workplace;
 use dataset::Database;
-use fe_driver::{Campaign, FinishedJob, ToolVersions, restore};
+use fe_driver::{Campaign, CollectedWindow, ToolVersions, WindowSolve, restore};
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -36,28 +36,23 @@ fn the_cost_of_many_rays() {
     let rays: Vec<_> = database.rows().chunk_by(|a, b| a.job == b.job).collect();
     let (gmsh, ccx) = ("4.8.4".to_owned(), "2.20".to_owned());
     let tools = ToolVersions { gmsh, ccx };
-    let jobs = campaign.jobs(&tools).into_iter().zip(rays.iter().cycle());
-    let finished = |(spec, rows): (fe_driver::JobSpec, &&[dataset::Row])| FinishedJob {
-        id: spec.id(),
-        design: spec.problem.ray.design,
-        material: spec.problem.material.name.clone(),
-        material_hash: spec.problem.material.law_hash(),
-        settings_hash: String::new(),
-        tier: spec.problem.tier,
-        solved_tier: spec.problem.tier,
-        tools: spec.tools.clone(),
+    let collected = |(solve, rows): (WindowSolve, &&[dataset::Row])| CollectedWindow {
+        id: solve.id(),
+        tools: solve.tools,
+        solved_tier: solve.problem.tier,
         samples: rows.iter().map(|row| row.sample).collect(),
         cpu_seconds: 1.0,
         failure: None,
     };
-    let jobs: Vec<FinishedJob> = jobs.map(finished).collect();
+    let solves = campaign.solves(&tools).zip(rays.iter().cycle());
+    let windows: Vec<CollectedWindow> = solves.map(collected).collect();
     let start = Instant::now();
-    restore(&campaign, &folder, &jobs).unwrap();
+    restore(&campaign, &folder, &windows).unwrap();
     println!(
         "{count} rays written in {:.1} s",
         start.elapsed().as_secs_f64()
     );
-    drop(jobs);
+    drop(windows);
     let (files, bytes) = size(&folder);
     println!("{files} files and folders, {:.1} MB", bytes as f64 / 1e6);
     for command in ["plan", "status", "collect"] {

@@ -9,8 +9,8 @@
 //! **Solver.** A [`WindowSolver`] makes one attempt at a solve. [`CalculiX`] is one, the deterministic [`FakeSolver`] of the
 //! tests another; a further program is one more implementation.
 //!
-//! **Attempts.** A solve that fails climbs a ladder of attempts ([`AttemptKind`]) that depends on the [`FailureKind`]: the
-//! same again, shorter increments, a finer mesh. The samples of the attempt that reaches furthest are kept.
+//! **Attempts.** A solve that fails is attempted again, at most three times ([`AttemptKind`]) and depending on the
+//! [`FailureKind`]: the same again, shorter increments, a finer mesh. The samples of the attempt that reaches furthest are kept.
 //!
 //! **Store.** Every solve has one folder in a [`SolveStore`], named by its id, whose files appear whole or not at all. A
 //! solve without its result is not done. What is done is not solved again.
@@ -52,7 +52,6 @@
 
 mod calculix;
 mod campaign;
-mod doctor;
 mod record_file;
 mod solve;
 
@@ -76,8 +75,6 @@ pub use campaign::slurm::{
 };
 pub use campaign::solve_again::{Difference, SolvedAgain, solve_again};
 pub use campaign::status::{Status, Tally, Throughput, refuse_changed, status};
-pub use doctor::{Diagnosis, doctor};
-pub use record_file::FileError;
 pub use solve::attempts::SolveListError;
 pub use solve::deformation_path::{DeformationPath, PathError};
 pub use solve::failure::{FailureKind, UnknownFailure};
@@ -91,4 +88,5 @@ pub use solve::step_control::StepControl;
 pub use solve::tool_versions::ToolVersions;
 pub use solve::window_solve::{WindowProblem, WindowSolve};
 pub use solve::window_solver::{SolveError, WindowSolution, WindowSolver};
+pub use support::file_error::FileError;
 pub use support::shard::Shard;

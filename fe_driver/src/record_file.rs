@@ -4,29 +4,9 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs::DirEntry;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use support::file_error::FileError;
 use support::{regular_file, sealed_json, whole_file};
-
-/// A file of a campaign that cannot be read, written or parsed.
-#[derive(Debug, thiserror::Error)]
-#[error("{path}: {source}", path = .path.display())]
-pub struct FileError {
-    /// The file.
-    pub path: PathBuf,
-    /// Why the operation on the file failed.
-    pub source: io::Error,
-}
-
-impl FileError {
-    /// Maps the error of an operation on `path`, for use in `map_err`.
-    pub(crate) fn at<E: Into<io::Error>>(path: &Path) -> impl FnOnce(E) -> Self {
-        let path = path.to_owned();
-        move |source| Self {
-            path,
-            source: source.into(),
-        }
-    }
-}
 
 /// Separates damage from other errors of reading a file: `Ok(Err(reason))` if the contents are damaged.
 pub(crate) fn or_damage<T>(read: Result<T, FileError>) -> Result<Result<T, String>, FileError> {

@@ -9,9 +9,10 @@ use crate::tier::MeshRecipe;
 use crate::window::Window;
 use hinge::{HingeDesign, InvalidDesign};
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
+use support::file_error::FileError;
 use support::program::{self, ToolError};
 
 /// Why no mesh was generated.
@@ -38,11 +39,8 @@ pub enum MeshError {
         alpha_deg: f64,
         defect: MeshDefect,
     },
-    #[error("{path}: {source}", path = .path.display())]
-    File {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    File(#[from] FileError),
 }
 
 /// What determines the mesh of a window.
@@ -73,9 +71,9 @@ impl WindowShape<'_> {
         }
         let script = geo::script(&Window(self.design), &self.recipe.plane);
         let geo = folder.join("window.geo");
-        std::fs::write(&geo, script).map_err(at(&geo))?;
+        std::fs::write(&geo, script).map_err(FileError::at(&geo))?;
         let msh = folder.join(MESH_FILE);
-        program::remove_stale(&msh).map_err(at(&msh))?;
+        program::remove_stale(&msh).map_err(FileError::at(&msh))?;
         gmsh.mesh(folder, limit, stop)?;
         self.read(folder)
     }
@@ -86,7 +84,7 @@ impl WindowShape<'_> {
         let bytes = match std::fs::read(&msh) {
             // gmsh exited with status zero but wrote no mesh: the reader reports what is missing.
             Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
-            read => read.map_err(at(&msh))?,
+            read => read.map_err(FileError::at(&msh))?,
         };
         let plane = read_msh(&bytes, self.recipe.element())?;
         let mesh = WindowMesh::extrude(*self.design, self.thickness, *self.recipe, plane);
@@ -103,9 +101,3 @@ impl WindowShape<'_> {
 
 /// The file of gmsh's mesh.
 const MESH_FILE: &str = "window.msh";
-
-/// Maps the error of an operation on `path`, for use in `map_err`.
-fn at(path: &Path) -> impl FnOnce(std::io::Error) -> MeshError {
-    let path = path.to_owned();
-    move |source| MeshError::File { path, source }
-}

@@ -1,6 +1,9 @@
 //! CSV files that people write: cells may stand between spaces, and lines that start with `#` are comments.
 
+use crate::file_error::FileError;
 use crate::regular_file;
+use csv::StringRecord;
+use serde::de::DeserializeOwned;
 use std::io::{self, Cursor};
 use std::path::Path;
 
@@ -13,6 +16,22 @@ pub fn open(path: &Path) -> io::Result<csv::Reader<Cursor<Vec<u8>>>> {
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
         .from_reader(Cursor::new(bytes)))
+}
+
+/// The header of the file, and its rows, each with the number of its line.
+pub fn read<T: DeserializeOwned>(path: &Path) -> Result<(StringRecord, Vec<(u64, T)>), FileError> {
+    let rows = || -> Result<_, csv::Error> {
+        let mut reader = open(path)?;
+        let header = reader.headers()?.clone();
+        let rows = reader.into_records().map(|record| {
+            let record = record?;
+            let line = record.position().map_or(0, csv::Position::line);
+            Ok((line, record.deserialize(Some(&header))?))
+        });
+        let rows = rows.collect::<Result<_, csv::Error>>()?;
+        Ok((header, rows))
+    };
+    rows().map_err(FileError::at(path))
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@
 #![warn(missing_docs)]
 
 pub mod csv_table;
+pub mod file_error;
 pub mod key_limits;
 pub mod lock_file;
 pub mod nearest;

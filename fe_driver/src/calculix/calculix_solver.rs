@@ -19,6 +19,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
+use support::file_error::FileError;
 use support::program::{ToolError, remove_stale, tail};
 use support::vtk::UnstructuredGrid;
 
@@ -130,9 +131,9 @@ impl WindowModel<'_> {
         }
         let [input, output, status, log] =
             ["inp", "dat", "sta", "log"].map(|kind| folder.join(JOB).with_extension(kind));
-        std::fs::write(&input, deck(self)).map_err(at(&input))?;
+        std::fs::write(&input, deck(self)).map_err(FileError::at(&input))?;
         for stale in [&output, &status] {
-            remove_stale(stale).map_err(at(stale))?;
+            remove_stale(stale).map_err(FileError::at(stale))?;
         }
 
         let run = match ccx.run(folder, JOB, limit, stop) {
@@ -235,17 +236,11 @@ fn skipped(frames: &[Frame], increments: &[Increment]) -> Option<f64> {
     found.map(|(printed, expected)| printed.min(expected))
 }
 
-/// Maps the error of an operation on `path`, for use in `map_err`.
-fn at(path: &Path) -> impl FnOnce(std::io::Error) -> SolveError {
-    let path = path.to_owned();
-    move |source| SolveError::File { path, source }
-}
-
 /// The bytes of a file; empty if ccx did not write it.
-fn read_if_there(path: &Path) -> Result<Vec<u8>, SolveError> {
+fn read_if_there(path: &Path) -> Result<Vec<u8>, FileError> {
     match std::fs::read(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(Vec::new()),
-        read => read.map_err(at(path)),
+        read => read.map_err(FileError::at(path)),
     }
 }
 

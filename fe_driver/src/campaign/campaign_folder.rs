@@ -9,13 +9,14 @@
 
 use crate::campaign::definition::CampaignError;
 use crate::campaign::history::{History, history_name, overlaps};
-use crate::record_file::{FileError, entries, read_json, write_json};
+use crate::record_file::{entries, read_json, write_json};
 use crate::solve::host::host;
 use crate::solve::solve_folder::SolveStore;
 use crate::solve::tool_versions::ToolVersions;
 use crate::solve::window_solve::WindowSolve;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
+use support::file_error::FileError;
 use support::shard::Shard;
 use support::{lock_file, whole_file};
 

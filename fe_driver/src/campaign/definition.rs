@@ -2,7 +2,6 @@
 
 use crate::campaign::extra_rays::{ExtraRaysError, read_extra_rays};
 use crate::campaign::sampling::RayBox;
-use crate::record_file::FileError;
 use crate::solve::attempts::SolveListError;
 use crate::solve::hinge_path::Ray;
 use crate::solve::tool_versions::ToolVersions;
@@ -13,6 +12,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use support::file_error::FileError;
 use support::toml_file::{self, ConfigError};
 
 /// A campaign as configured, with its material.

@@ -8,7 +8,8 @@ use hinge::{HingeConstants, HingeDeformation};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
-use support::csv_table;
+use support::file_error::FileError;
+use support::{csv_table, regular_file, whole_file};
 
 /// A file that is not a valid list of rays, or that cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -17,8 +18,8 @@ use support::csv_table;
     reason = "the message of each variant is its documentation"
 )]
 pub enum ExtraRaysError {
-    #[error("{path}: {source}", path = .path.display())]
-    Csv { path: PathBuf, source: csv::Error },
+    #[error(transparent)]
+    File(#[from] FileError),
     #[error(
         "{path} has its columns in another order: rays are appended below `{header}`",
         path = .path.display(), header = COLUMNS.join(",")
@@ -29,11 +30,6 @@ pub enum ExtraRaysError {
         path: PathBuf,
         row: usize,
         reason: String,
-    },
-    #[error("cannot write {path}: {source}", path = .path.display())]
-    Write {
-        path: PathBuf,
-        source: std::io::Error,
     },
 }
 
@@ -54,7 +50,8 @@ struct Row {
 /// Reads the rays of hinges with the constants `common`.
 pub fn read_extra_rays(path: &Path, common: &HingeConstants) -> Result<Vec<Ray>, ExtraRaysError> {
     let mut rays = Vec::new();
-    for (i, row) in read_rows(path)?.1.into_iter().enumerate() {
+    let (_, rows) = csv_table::read::<Row>(path)?;
+    for (i, (_, row)) in rows.into_iter().enumerate() {
         let ray = row.ray(common);
         if let Some(reason) = row.defect(&ray) {
             return Err(ExtraRaysError::Ray {
@@ -84,71 +81,49 @@ pub struct Added {
 
 /// Appends rays to the file, which is created if it does not exist.
 pub fn add_extra_rays(path: &Path, rays: &[Ray]) -> Result<Added, ExtraRaysError> {
-    let (header, mut rows) = match path.exists() {
-        true => read_rows(path)?,
-        false => Default::default(),
+    let (header, rows) = if path.exists() {
+        csv_table::read(path)?
+    } else {
+        Default::default()
     };
     if !header.is_empty() && header != COLUMNS[..] {
         let path = path.to_owned();
         return Err(ExtraRaysError::Order { path });
     }
+    let mut rows: Vec<Row> = rows.into_iter().map(|(_, row)| row).collect();
     let mut count = Added::default();
     let mut writer = csv::WriterBuilder::new()
         .has_headers(header.is_empty())
         .from_writer(Vec::new());
     for ray in rays {
-        let row = Row::of(ray);
+        let row = Row::from_ray(ray);
         if row.defect(ray).is_some() {
             count.refused += 1;
         } else if rows.contains(&row) {
             count.known += 1;
         } else {
             count.added += 1;
-            let unwritable = |source| ExtraRaysError::Csv {
-                path: path.to_owned(),
-                source,
-            };
-            writer.serialize(row).map_err(unwritable)?;
+            writer.serialize(row).map_err(FileError::at(path))?;
             rows.push(row);
         }
     }
-    let lines = writer.into_inner().unwrap_or_default();
-    let unwritable = |source| ExtraRaysError::Write {
-        path: path.to_owned(),
-        source,
-    };
-    let mut bytes = match path.exists() {
-        true => support::regular_file::read(path).map_err(unwritable)?,
-        false => Vec::new(),
+    let mut bytes = if path.exists() {
+        regular_file::read(path).map_err(FileError::at(path))?
+    } else {
+        Vec::new()
     };
     if bytes.last().is_some_and(|last| *last != b'\n') {
         bytes.push(b'\n');
     }
-    bytes.extend(lines);
-    support::whole_file::write(path, &bytes).map_err(unwritable)?;
+    bytes.extend(writer.into_inner().unwrap_or_default());
+    whole_file::write(path, &bytes).map_err(FileError::at(path))?;
     Ok(count)
-}
-
-/// The header and the rows of the file.
-fn read_rows(path: &Path) -> Result<(csv::StringRecord, Vec<Row>), ExtraRaysError> {
-    let rows = || -> Result<_, csv::Error> {
-        let mut reader = csv_table::open(path)?;
-        let header = reader.headers()?.clone();
-        Ok((header, reader.deserialize().collect::<Result<_, _>>()?))
-    };
-    rows().map_err(|source| ExtraRaysError::Csv {
-        path: path.to_owned(),
-        source,
-    })
 }
 
 impl Row {
     /// The row of a ray. Numbers are rounded to four decimals, which is accurate enough and keeps the file readable.
-    fn of(ray: &Ray) -> Self {
-        let ray = match ray.design.alpha > FRAC_PI_2 {
-            true => ray.mirrored(),
-            false => *ray,
-        };
+    fn from_ray(ray: &Ray) -> Self {
+        let ray = acute(*ray);
         let [eta_a, eta_s] = ray.end.eta(ray.design.w_lig);
         let round = |x: f64| (1e4 * x).round() / 1e4;
         Self {
@@ -162,14 +137,10 @@ impl Row {
 
     fn ray(&self, common: &HingeConstants) -> Ray {
         let theta = self.theta_deg.to_radians();
-        let ray = Ray {
+        acute(Ray {
             design: common.hinge(self.w_lig, self.alpha_deg.to_radians()),
             end: HingeDeformation::from_eta(self.eta_a, self.eta_s, theta, self.w_lig),
-        };
-        match ray.design.alpha > FRAC_PI_2 {
-            true => ray.mirrored(),
-            false => ray,
-        }
+        })
     }
 
     /// The defect of the ray; `None` if it is valid.
@@ -190,6 +161,15 @@ impl Row {
             return Some("violates -30 <= theta_deg <= 120".to_owned());
         }
         ray.design.validate().err().map(|error| error.to_string())
+    }
+}
+
+/// The ray or its mirror image, whichever has the acute cut angle.
+fn acute(ray: Ray) -> Ray {
+    if ray.design.alpha > FRAC_PI_2 {
+        ray.mirrored()
+    } else {
+        ray
     }
 }
 

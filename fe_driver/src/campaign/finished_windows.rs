@@ -2,9 +2,9 @@
 
 use crate::campaign::campaign_folder::CampaignFolder;
 use crate::campaign::definition::CampaignError;
-use crate::record_file::FileError;
 use crate::solve::solved_window::SolvedWindow;
 use std::path::Path;
+use support::file_error::FileError;
 
 /// The solves of the campaign in `folder` that are closed and have samples, in the order of their ids, as in a
 /// database.

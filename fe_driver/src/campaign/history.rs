@@ -1,7 +1,6 @@
 //! The history of a shard: an append-only file of events, locked by the process that writes it.
 
 use crate::campaign::definition::CampaignError;
-use crate::record_file::FileError;
 use crate::solve::attempts::now;
 use crate::solve::ladder::AttemptKind;
 use crate::solve::solve_folder::SolveRecord;
@@ -9,6 +8,7 @@ use serde::Serialize;
 use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use support::file_error::FileError;
 use support::lock_file;
 use support::shard::Shard;
 

@@ -4,7 +4,6 @@ use crate::campaign::campaign_folder::{CampaignFolder, Index};
 use crate::campaign::definition::{Campaign, CampaignError};
 use crate::campaign::history::{Event, History};
 use crate::campaign::status::Tally;
-use crate::record_file::FileError;
 use crate::solve::attempts::{Job, SolveEvent, Workers};
 use crate::solve::solve_folder::SolveRecord;
 use crate::solve::window_solve::WindowSolve;
@@ -12,6 +11,7 @@ use crate::solve::window_solver::WindowSolver;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
+use support::file_error::FileError;
 use support::shard::Shard;
 
 /// Which jobs a run works on, and how.

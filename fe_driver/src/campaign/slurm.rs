@@ -1,11 +1,12 @@
 //! Slurm: submits the array of a campaign with the job that collects it, and reports the states of both.
 
-use crate::record_file::{FileError, read_json, write_json};
+use crate::record_file::{read_json, write_json};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use support::file_error::FileError;
 use support::{verbose, whole_file};
 
 /// Why an array was not submitted.

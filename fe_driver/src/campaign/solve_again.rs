@@ -4,7 +4,6 @@
 use crate::campaign::campaign_folder::CampaignFolder;
 use crate::campaign::definition::{Campaign, CampaignError};
 use crate::campaign::status::refuse_changed;
-use crate::record_file::FileError;
 use crate::solve::attempts::SolveListError;
 use crate::solve::solved_window::SolvedWindow;
 use crate::solve::window_solver::WindowSolver;
@@ -12,6 +11,7 @@ use hinge::HingeSample;
 use serde::Serialize;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
+use support::file_error::FileError;
 use support::scratch::Scratch;
 
 /// A job that was solved again.

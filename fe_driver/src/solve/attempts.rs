@@ -3,7 +3,6 @@
 //! A solve is done when its `result.json` exists. A run can therefore be killed at any time; at most the attempts in
 //! flight are lost. A missing tool or a full disk ends the run immediately, because every other solve would fail too.
 
-use crate::record_file::FileError;
 use crate::solve::failure::FailureKind;
 use crate::solve::ladder::AttemptKind;
 use crate::solve::solve_folder::{SolveFolder, SolveRecord};
@@ -11,6 +10,7 @@ use crate::solve::window_solve::WindowSolve;
 use crate::solve::window_solver::{SolveError, WindowSolution, WindowSolver};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use support::file_error::FileError;
 use support::worker_pool::{NoThread, Reports, work_through};
 
 /// Why a list of solves ended before its last solve. What was solved until then is kept.

@@ -12,6 +12,7 @@ use hinge::HingeDeformation;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use support::csv_table;
+use support::file_error::FileError;
 
 /// A piecewise linear path from the undeformed state at lambda = 0 to its end at lambda = 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,8 +48,8 @@ impl TryFrom<Vec<Knot>> for DeformationPath {
     reason = "the message of each variant is its documentation"
 )]
 pub enum PathError {
-    #[error("{path}: {source}", path = .path.display())]
-    Read { path: PathBuf, source: csv::Error },
+    #[error(transparent)]
+    Read(#[from] FileError),
     #[error("{path}:{line}: {what}", path = .path.display())]
     Row {
         path: PathBuf,
@@ -88,10 +89,7 @@ impl DeformationPath {
 
     /// Reads a recorded path of a hinge with the ligament width `w_lig` (mm).
     pub fn read(path: &Path, w_lig: f64) -> Result<Self, PathError> {
-        let rows = read_rows(path).map_err(|source| PathError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+        let (_, rows) = csv_table::read(path)?;
         // The undeformed state is knot 0, whether the file contains it or not.
         let undeformed = |row: &Row| [row.eta_a, row.eta_s, row.theta_deg] == [0.0; 3];
         let skipped = usize::from(rows.first().is_some_and(|(_, row)| undeformed(row)));
@@ -150,20 +148,6 @@ impl Row {
             None
         }
     }
-}
-
-/// The rows of the file, each with its line number.
-fn read_rows(path: &Path) -> Result<Vec<(u64, Row)>, csv::Error> {
-    let mut reader = csv_table::open(path)?;
-    let headers = reader.headers()?.clone();
-    reader
-        .into_records()
-        .map(|record| {
-            let record = record?;
-            let line = record.position().map_or(0, csv::Position::line);
-            Ok((line, record.deserialize(Some(&headers))?))
-        })
-        .collect()
 }
 
 #[cfg(test)]

@@ -92,7 +92,7 @@ impl FailureKind {
                 Some(Self::OutputTruncated)
             }
             SolveError::EnergyImbalance { .. } => Some(Self::EnergyImbalance),
-            SolveError::Mesh(_) | SolveError::File { .. } => None,
+            SolveError::Mesh(_) | SolveError::File(_) => None,
         }
     }
 

@@ -5,7 +5,7 @@
 //! last: a solve without it is not done. These files are written atomically. Deck and log of an attempt remain only if it
 //! failed: the deck follows from `job.json`.
 
-use crate::record_file::{FileError, entries, or_damage, read_json, write_json};
+use crate::record_file::{entries, or_damage, read_json, write_json};
 use crate::solve::failure::FailureKind;
 use crate::solve::host::host;
 use crate::solve::ladder::AttemptKind;
@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
+use support::file_error::FileError;
 use support::{regular_file, whole_file};
 
 /// The state of a solve after its last attempt.

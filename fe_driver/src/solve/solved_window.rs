@@ -1,12 +1,12 @@
 //! The result of a window solve: its samples, or why and where it failed.
 
-use crate::record_file::FileError;
 use crate::solve::hinge_path::HingePath;
 use crate::solve::solve_folder::{SolveFolder, SolveRecord, SolveState};
 use crate::solve::window_solve::WindowSolve;
 use hinge::HingeSample;
 use std::fmt;
 use std::path::PathBuf;
+use support::file_error::FileError;
 
 /// A solve with its record and its samples.
 #[derive(Clone, Debug, PartialEq)]

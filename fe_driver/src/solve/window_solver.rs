@@ -5,10 +5,11 @@ use crate::solve::tool_versions::ToolVersions;
 use crate::solve::window_solve::WindowSolve;
 use hinge::{HingeSample, InvalidMaterial};
 use mesher::MeshError;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitStatus;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
+use support::file_error::FileError;
 use support::program::ToolError;
 
 /// A program that solves windows. Attempts run in parallel.
@@ -101,11 +102,8 @@ pub enum SolveError {
          (limit {MAX_ENERGY_RESIDUAL})"
     )]
     EnergyImbalance { residual: f64 },
-    #[error("{path}: {source}", path = .path.display())]
-    File {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    File(#[from] FileError),
 }
 
 /// Maximum |W - work| / W accepted at the end of a complete path. A partial path is not checked; its samples contain
