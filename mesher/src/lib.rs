@@ -7,15 +7,15 @@
 //!
 //! ```no_run
 //! use hinge::HingeConstants;
-//! use mesher::{Gmsh, Tier, mesh_window};
+//! use mesher::{Gmsh, Tier, WindowShape};
 //! use std::path::Path;
 //! use std::sync::atomic::AtomicBool;
 //! use std::time::Duration;
 //!
 //! let hinge = HingeConstants::PAPER.hinge(18.0, 60f64.to_radians());
-//! let (thickness, recipe, gmsh) = (0.5, Tier::Default.recipe(), Gmsh::find()?);
-//! let (folder, limit, stop) = (Path::new("runs/mesh"), Duration::from_secs(60), AtomicBool::new(false));
-//! let mesh = mesh_window(&hinge, thickness, &recipe, folder, &gmsh, limit, &stop)?;
+//! let shape = WindowShape { design: &hinge, thickness: 0.5, recipe: &Tier::Default.recipe() };
+//! let (limit, stop) = (Duration::from_secs(60), AtomicBool::new(false));
+//! let mesh = shape.mesh(Path::new("runs/mesh"), &Gmsh::find()?, limit, &stop)?;
 //! println!("{} nodes", mesh.nodes.len());
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```

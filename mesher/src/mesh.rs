@@ -43,7 +43,7 @@ impl WindowMesh {
         plane: PlaneMesh,
     ) -> Self {
         let layers = recipe.layers;
-        let levels = Levels::of(&plane, layers);
+        let levels = Levels::new(&plane, layers);
         let nodes: Vec<_> = levels
             .nodes
             .iter()
@@ -98,7 +98,7 @@ struct Levels {
 }
 
 impl Levels {
-    fn of(plane: &PlaneMesh, layers: usize) -> Self {
+    fn new(plane: &PlaneMesh, layers: usize) -> Self {
         let mut is_corner = vec![false; plane.nodes.len()];
         for face in &plane.faces {
             let corners = face.len() / 2;

@@ -58,9 +58,10 @@ pub fn spread_table(groups: &[&[ComparedState]], group: &str) -> Result<String> 
 
 /// Cuts off at 1000 %: if the reference is almost zero (damage of hinges that do not yield), the ratio is meaningless.
 fn percent(relative: f64) -> String {
-    match relative < 10.0 {
-        true => format!("{:.2} %", 100.0 * relative),
-        false => "over 1000 %".into(),
+    if relative < 10.0 {
+        format!("{:.2} %", 100.0 * relative)
+    } else {
+        "over 1000 %".into()
     }
 }
 

@@ -190,7 +190,10 @@ fn section(title: &str, truth: &Balanced, rows: &[Row]) -> String {
     };
     let moved = truth.rounds.last().map_or(0.0, |round| round.movement);
     let warning = truth.ended.warning();
-    let warning = warning.map_or(String::new(), |why| format!(" NOT BALANCED: {why}."));
+    let mut warning = warning.map_or(String::new(), |why| format!(" NOT BALANCED: {why}."));
+    for hinge in truth.unsolved() {
+        warning += &format!(" NOT SOLVED: {hinge}.");
+    }
     let minutes = truth.cpu_seconds / 60.0;
     let table = Table::new()
         .column("choice", |row: &Row| Cell::text(&row.choice))

@@ -238,6 +238,11 @@ impl Balanced {
         &self.deployments[0]
     }
 
+    /// The hinges for which the law stands in the last round: what finite elements would change there is not known.
+    pub fn unsolved(&self) -> &[UnsolvedHinge] {
+        self.rounds.last().map_or(&[], |round| &round.unsolved)
+    }
+
     /// The deployment with the corrected law of the last round.
     pub fn by_elements(&self) -> &Deployment {
         &self.deployments[self.deployments.len() - 1]

@@ -11,7 +11,35 @@
 //! | rays of a campaign solved in rounds until weights are accurate | [`learn`] |
 //!
 //! Windows are solved by a [`WindowService`](fe_driver::WindowService). One that fails ends no task: it is named in the
-//! result, which says what it leaves unknown.
+//! result, which says what it leaves unknown. The example checks weights at eight states, by a solver without a program:
+//!
+//! ```
+//! use fe_driver::{FakeSolver, SolveStore, WindowService};
+//! use hinge::SheetMaterial;
+//! use mesher::Tier;
+//! use std::path::Path;
+//! use std::sync::atomic::AtomicBool;
+//! use std::time::Duration;
+//! use surrogate::Surrogate;
+//! use verification::{random_paths, spot_check};
+//!
+//! # let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+//! # let folder = tempfile::tempdir()?;
+//! let weights = Surrogate::load(&repository.join("data/pet-0.5mm/small.safetensors"))?;
+//! let film = SheetMaterial::load(&repository.join("configs/materials/pet-0.5mm.toml"))?;
+//! let windows = WindowService {
+//!     solver: Box::new(FakeSolver::new([6.0, 12.0, 120.0], |_| None)),
+//!     store: SolveStore(folder.path().to_owned()),
+//!     workers: 2,
+//!     limit: Duration::from_secs(60),
+//!     stop: &AtomicBool::new(false),
+//!     progress: Box::new(|done, all| println!("{done} of {all}")),
+//! };
+//! let paths = random_paths(weights.domain(), &weights.card().hinge, 8, 4, 0);
+//! let check = spot_check(&windows, &paths, &film, Tier::Tiny)?;
+//! assert_eq!((check.rows.len(), check.unsolved.len()), (8, 0));
+//! # Ok::<_, Box<dyn std::error::Error>>(())
+//! ```
 
 #![warn(missing_docs)]
 

@@ -15,7 +15,7 @@ pub fn ensemble(
     files: &[PathBuf],
 ) -> Result<Vec<Surrogate>, VerificationError> {
     if files.is_empty() {
-        return Ok(scene.networks().into_iter().skip(1).cloned().collect());
+        return Ok(scene.networks().iter().skip(1).cloned().collect());
     }
     let load = |path: &PathBuf| {
         let network = scene.network(path)?;

@@ -5,6 +5,7 @@
 
 use crate::balanced_sheet::{BalanceEnd, Balanced, ElementWindows, balanced};
 use crate::error::VerificationError;
+use crate::replay::UnsolvedHinge;
 use design::objective::design_problem::Evaluation;
 use design::objective::scores::Scores;
 use design::optimise::outer_loop::{Ended, SearchState, StepRecord, optimise};
@@ -41,6 +42,8 @@ pub struct PolishGain {
     ended: Ended,
     /// Why the rounds of both sheets ended.
     ended_rounds: [BalanceEnd; 2],
+    /// The hinges of both sheets that were not solved in the last round: the law stands for them.
+    unsolved: [Vec<UnsolvedHinge>; 2],
     /// CPU time of all window solves (s).
     cpu_seconds: f64,
 }
@@ -113,6 +116,7 @@ pub fn polish(
         by_elements: [scores(&start), scores(&best)],
         steps: search.history.len() - 1,
         ended: ended.clone(),
+        unsolved: [&before, &after].map(|sheet| sheet.unsolved().to_vec()),
         ended_rounds: [before.ended, after.ended.clone()],
         cpu_seconds: before.cpu_seconds + after.cpu_seconds,
     };
@@ -157,8 +161,8 @@ impl fmt::Display for PolishGain {
             ("by the hinge law", &self.by_law),
             ("by finite elements", &self.by_elements),
         ] {
-            let mut row = |quantity: &str, of: fn(&Scores) -> f64| {
-                let [before, after] = [before, after].map(of);
+            let mut row = |quantity: &str, value: fn(&Scores) -> f64| {
+                let [before, after] = [before, after].map(value);
                 writeln!(f, "| {quantity}, {name} | {before:.4} | {after:.4} |")
             };
             row("outline error (mm)", |scores| scores.outline_error)?;
@@ -175,9 +179,12 @@ impl fmt::Display for PolishGain {
                 "\nNOT IMPROVED: by finite elements the given design has the lower loss. Use that one."
             )?;
         }
-        for (sheet, ended) in std::iter::zip(["given", "polished"], &self.ended_rounds) {
-            if let Some(warning) = ended.warning() {
+        for (i, sheet) in ["given", "polished"].into_iter().enumerate() {
+            if let Some(warning) = self.ended_rounds[i].warning() {
                 writeln!(f, "\nNOT BALANCED, {sheet} design: {warning}.")?;
+            }
+            for hinge in &self.unsolved[i] {
+                writeln!(f, "\nNOT SOLVED, {sheet} design: {hinge}")?;
             }
         }
         Ok(())

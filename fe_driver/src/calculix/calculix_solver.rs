@@ -210,9 +210,10 @@ impl WindowModel<'_> {
         Layout {
             nodes: self.mesh.nodes.len(),
             arc_nodes: self.mesh.arc_b.len(),
-            displaced_nodes: match self.print_all {
-                true => self.mesh.nodes.len(),
-                false => self.mesh.bottom.len(),
+            displaced_nodes: if self.print_all {
+                self.mesh.nodes.len()
+            } else {
+                self.mesh.bottom.len()
             },
             elements: self.mesh.elements.len(),
             points: self.mesh.recipe.element().gauss_points(),

@@ -243,11 +243,9 @@ fn output(program: &'static str, command: &mut Command) -> Result<String, SlurmE
     let output = command
         .output()
         .map_err(|source| SlurmError::NotFound { program, source })?;
-    match output.status.success() {
-        true => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
-        false => Err(SlurmError::Refused {
-            program,
-            message: String::from_utf8_lossy(&output.stderr).trim().to_owned(),
-        }),
+    if !output.status.success() {
+        let message = String::from_utf8_lossy(&output.stderr).trim().to_owned();
+        return Err(SlurmError::Refused { program, message });
     }
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }

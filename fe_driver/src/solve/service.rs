@@ -133,7 +133,10 @@ mod tests {
             is_second(solve).then_some(Fault::Diverges(0.35))
         });
         let windows = solve(&diverges, &folder).unwrap();
-        let complete: Vec<bool> = windows.iter().map(|it| it.complete().is_ok()).collect();
+        let complete: Vec<bool> = windows
+            .iter()
+            .map(|window| window.complete().is_ok())
+            .collect();
         assert_eq!(complete, [true, false, true]);
         assert_eq!(windows[0].samples.len(), 10);
         // As requested, with shorter increments, on a finer mesh; the increments that converged are kept.
@@ -202,7 +205,7 @@ mod tests {
         assert_eq!(windows[1].record.failure, Some(FailureKind::TimedOut));
         let mended = healthy();
         let windows = solve(&mended, &folder).unwrap();
-        assert!(windows.iter().all(|it| it.complete().is_ok()));
+        assert!(windows.iter().all(|window| window.complete().is_ok()));
         assert_eq!(mended.attempts(), 1);
     }
 

@@ -4,7 +4,9 @@ use std::time::Duration;
 
 /// A percentage such as `1%`, as a percentage.
 pub(super) fn percent(text: &str) -> Result<f64, String> {
-    let number = text.strip_suffix('%').map(|it| it.trim().parse::<f64>());
+    let number = text
+        .strip_suffix('%')
+        .map(|number| number.trim().parse::<f64>());
     match number {
         Some(Ok(value)) if value > 0.0 && value <= 100.0 => Ok(value),
         _ => Err("expected a percentage above 0 and at most 100, for example 1%".into()),
