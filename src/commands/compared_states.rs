@@ -1,69 +1,12 @@
-//! Differences of values from finer reference values, group by group: a table of their distribution, parity charts.
+//! Parity charts of values and their finer reference values.
 
 use crate::ui::charts;
 use crate::ui::charts::ParityChart;
 use crate::ui::picture;
 use anyhow::Result;
-use dataset::{COMPARED, ComparedState, reference_rms, relative_rms};
-use std::fmt::Write;
+use dataset::{COMPARED, ComparedState};
 use std::path::Path;
 use train::ParityPoint;
-
-/// Lower bound of the scale of a group's difference, relative to the reference of all groups.
-const MIN_SCALE: f64 = 0.1;
-
-/// The definition of the scale of the differences, for the text of pages.
-pub const SCALE: &str = "for all states together and for each group alone, the latter relative to at \
-                         least a tenth of the value over all";
-
-/// The difference of each group, relative to its own reference or to a tenth of that of all groups, if larger.
-pub fn each_relative(groups: &[&[ComparedState]]) -> Vec<[f64; 6]> {
-    let min_scale = reference_rms(groups.iter().copied().flatten()).map(|rms| MIN_SCALE * rms);
-    groups
-        .iter()
-        .map(|states| relative_rms(states, min_scale))
-        .collect()
-}
-
-/// One row per quantity: the difference over all states, and its distribution over the groups.
-pub fn spread_table(groups: &[&[ComparedState]], group: &str) -> Result<String> {
-    let mut text = format!(
-        "| quantity | all states | median {group} | 90 % of {group}s | worst {group} |\n\
-         |---|---|---|---|---|\n"
-    );
-    let all = relative_rms(&groups.concat(), [0.0; 6]);
-    let each = each_relative(groups);
-    for (i, name) in COMPARED.iter().enumerate() {
-        let known = std::iter::zip(groups, &each)
-            .filter(|(states, _)| states.iter().any(|state| state.is_known(i)));
-        let mut sorted: Vec<_> = known.map(|(_, rms)| rms[i]).collect();
-        if sorted.is_empty() {
-            writeln!(text, "| {name} | not known | | | |")?;
-            continue;
-        }
-        sorted.sort_by(f64::total_cmp);
-        let quantile =
-            |fraction: f64| sorted[(fraction * (sorted.len() - 1) as f64).round() as usize];
-        writeln!(
-            text,
-            "| {name} | {} | {} | {} | {} |",
-            percent(all[i]),
-            percent(quantile(0.5)),
-            percent(quantile(0.9)),
-            percent(quantile(1.0))
-        )?;
-    }
-    Ok(text)
-}
-
-/// Cuts off at 1000 %: if the reference is almost zero (damage of hinges that do not yield), the ratio is meaningless.
-fn percent(relative: f64) -> String {
-    if relative < 10.0 {
-        format!("{:.2} %", 100.0 * relative)
-    } else {
-        "over 1000 %".into()
-    }
-}
 
 /// Draws every state, one chart per quantity; `axes` names the reference and the evaluated values.
 pub fn draw(groups: &[&[ComparedState]], axes: [&str; 2], stem: &Path) -> Result<()> {
@@ -87,16 +30,4 @@ pub fn draw(groups: &[&[ComparedState]], axes: [&str; 2], stem: &Path) -> Result
         .collect();
     picture::save(&charts::parity(&charts, axes)?, stem, 2000)?;
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ratios_to_an_almost_zero_reference_are_cut_off() {
-        assert_eq!(percent(0.01234), "1.23 %");
-        assert_eq!(percent(5e286), "over 1000 %");
-        assert_eq!(percent(f64::NAN), "over 1000 %");
-    }
 }

@@ -1,29 +1,27 @@
 //! `kirigami verify`: the hinges of a designed sheet solved by finite elements, compared with the surrogate.
 
 mod polished;
-mod sheet_errors;
 
-use crate::commands::compared_states::{self, SCALE, spread_table};
+use crate::commands::compared_states;
 use crate::commands::inspect::judged_design::DESIGN_TO_JUDGE;
 use crate::commands::inspect::scene_args::Inspected;
 use crate::commands::solve_args::{SolveArgs, task_error};
 use crate::ui::run_folder;
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use clap::Args;
-use dataset::{COMPARED, ComparedState};
 use design::output::drawing;
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
 use mesher::Tier;
 use serde::Serialize;
 use std::collections::BTreeSet;
-use std::fmt::{Display, Write};
+use std::fmt::Display;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use surrogate::Surrogate;
 use verification::{
-    ElementWindows, PolishTask, ReplayedHinge, UnsolvedHinge, balanced, ensemble, judging_tier,
-    recorded_paths, replay,
+    ElementWindows, PolishTask, Replay, SheetErrors, balanced, ensemble, judging_tier,
+    recorded_paths,
 };
 
 /// Solve the hinges of a design by finite elements, along their paths in the sheet
@@ -105,7 +103,9 @@ impl VerifyCommand {
                 let end = found.by_elements();
                 let picture = drawing::deployed(&scene, &end.sheet, end.final_step());
                 run_folder::write(&self.out, "deployed.svg", &picture)?;
-                self.print(&sheet_errors::write(&found, name, tier, &self.out)?)
+                let errors = SheetErrors::new(&found, name, tier);
+                run_folder::write(&self.out, "equilibrium.md", &errors.to_string())?;
+                self.print(&errors)
             }
             Some(steps) => {
                 scene.config.output = std::path::absolute(&self.out)?;
@@ -125,7 +125,7 @@ impl VerifyCommand {
         if self.json {
             println!("{}", serde_json::to_string_pretty(found)?);
         } else {
-            println!("{found}\nwritten to {}", self.out.display());
+            self.print_text(found);
         }
         Ok(())
     }
@@ -147,164 +147,20 @@ impl VerifyCommand {
             paths.retain(|path| chosen.contains(&path.hinge));
         }
         let _held = run_folder::hold(&self.out)?;
-        let windows = self.solve.service(&self.out)?;
-        let judge = (&scene.material, tier);
-        let outcome = replay(&windows, paths, judge, surrogate, &networks);
-        let (replayed, unsolved) = outcome.map_err(task_error)?;
-        let failures = failures(&unsolved);
-        ensure!(!replayed.is_empty(), "no hinge was solved:\n{failures}");
-        let page = page(name, &replayed, tier, &failures)?;
-        run_folder::write(&self.out, "replay.md", &page)?;
-        run_folder::write(&self.out, "replay.csv", &csv(&replayed)?)?;
-        let groups: Vec<_> = replayed.iter().map(|hinge| &hinge.states[..]).collect();
+        let service = &self.solve.service(&self.out)?;
+        let windows = ElementWindows { tier, service };
+        let of_design = (paths, name);
+        let replay = Replay::new(&windows, of_design, &scene.material, surrogate, &networks);
+        let replay = replay.map_err(task_error)?;
+        run_folder::write(&self.out, "replay.md", &replay.to_string())?;
+        run_folder::write(&self.out, "replay.csv", &replay.csv())?;
         let axes = ["finite elements", "surrogate"];
-        compared_states::draw(&groups, axes, &self.out.join("replay"))?;
-        println!("{page}\nwritten to {}", self.out.display());
+        compared_states::draw(&replay.groups(), axes, &self.out.join("replay"))?;
+        self.print_text(&replay);
         Ok(())
     }
-}
 
-/// One line for every hinge that was not solved.
-fn failures(unsolved: &[UnsolvedHinge]) -> String {
-    unsolved
-        .iter()
-        .map(|hinge| format!("* {hinge}\n"))
-        .collect()
-}
-
-fn page(name: &str, replayed: &[ReplayedHinge], tier: Tier, failures: &str) -> Result<String> {
-    let states = replayed
-        .iter()
-        .map(|hinge| hinge.states.len())
-        .sum::<usize>();
-    let inside = replayed.iter().map(|hinge| hinge.inside).sum::<f64>() / replayed.len() as f64;
-    let total = |of: fn(&ComparedState) -> f64| -> f64 {
-        let ends = replayed.iter().filter_map(|hinge| hinge.states.last());
-        ends.map(of).sum()
-    };
-    let (learned, solved) = (total(|end| end.value[0]), total(|end| end.reference[0]));
-    let mut text = format!(
-        "# The hinges of a sheet, replayed\n\n\
-         The {name}: {states} states of {} hinges on their paths in the sheet, windows of tier {tier}; {:.0} % of the \
-         states inside the training domain. Differences of the surrogate from the finite elements are root mean \
-         squares, relative to the root mean square of the finite elements: {SCALE}. D and D_peak of a hinge are known, \
-         and compared, until it leaves the domain.\n\n{}\n\
-         Energy of these hinges at full load: {learned:.1} N mm by the surrogate, {solved:.1} N mm by finite \
-         elements ({:+.2} %).\n",
-        replayed.len(),
-        100.0 * inside,
-        spread_table(
-            &replayed
-                .iter()
-                .map(|hinge| &hinge.states[..])
-                .collect::<Vec<_>>(),
-            "hinge"
-        )?,
-        100.0 * (learned / solved - 1.0),
-    );
-    if replayed.iter().any(|hinge| !hinge.spread.is_empty()) {
-        write!(text, "\n{}", estimate(replayed)?)?;
+    fn print_text(&self, found: &impl Display) {
+        println!("{found}\nwritten to {}", self.out.display());
     }
-    text += "\nAt full load:\n\n| hinge | w_lig, mm | alpha, deg | eta_a | eta_s | theta, deg | inside \
-             | W, N mm | by FE | M, N mm | by FE | D | by FE |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
-    for hinge in replayed {
-        let (path, end) = (&hinge.path, hinge.path.end());
-        let Some(ComparedState { value, reference }) = hinge.states.last() else {
-            continue;
-        };
-        let [eta_a, eta_s] = end.eta(path.design.w_lig);
-        writeln!(
-            text,
-            "| {} | {:.1} | {:.0} | {eta_a:.3} | {eta_s:.3} | {:.1} | {:.0} % | {:.2} | {:.2} | {:.1} | {:.1} | {} | {:.5} |",
-            path.hinge,
-            path.design.w_lig,
-            path.design.alpha.to_degrees(),
-            end.theta.to_degrees(),
-            100.0 * hinge.inside,
-            value[0],
-            reference[0],
-            value[3],
-            reference[3],
-            if value[4].is_nan() {
-                "-".to_owned()
-            } else {
-                format!("{:.5}", value[4])
-            },
-            reference[4],
-        )?;
-    }
-    if !failures.is_empty() {
-        write!(
-            text,
-            "\nNot solved, so that the errors at these hinges are not known and count nowhere above:\n\n{failures}"
-        )?;
-    }
-    Ok(text)
-}
-
-/// How often the error is within one, two and three standard deviations of the ensemble.
-fn estimate(replayed: &[ReplayedHinge]) -> Result<String> {
-    let mut text = "Fraction of the states with an error within so many standard deviations of the ensemble:\n\n\
-        | quantity | one | two | three |\n|---|---|---|---|\n"
-        .to_owned();
-    let pairs = || {
-        replayed
-            .iter()
-            .flat_map(|hinge| hinge.states.iter().zip(&hinge.spread))
-    };
-    for (i, name) in COMPARED.iter().enumerate() {
-        if pairs().any(|(_, spread)| spread[i].is_nan()) {
-            writeln!(text, "| {name} | not predicted by all | | |")?;
-            continue;
-        }
-        let known = || pairs().filter(|(state, _)| state.is_known(i));
-        if known().next().is_none() {
-            writeln!(text, "| {name} | not known | | |")?;
-            continue;
-        }
-        let within = |count: f64| {
-            let met = known().filter(|(state, spread)| {
-                (state.value[i] - state.reference[i]).abs() <= count * spread[i]
-            });
-            100.0 * met.count() as f64 / known().count() as f64
-        };
-        let [one, two, three] = [1.0, 2.0, 3.0].map(within);
-        writeln!(text, "| {name} | {one:.0} % | {two:.0} % | {three:.0} % |")?;
-    }
-    Ok(text)
-}
-
-/// One row per state; a cell is empty if its value is not known.
-fn csv(replayed: &[ReplayedHinge]) -> Result<String> {
-    let columns = |prefix: &str| COMPARED.map(|name| format!("{prefix}_{name}")).join(",");
-    let mut text = format!(
-        "hinge,w_lig_mm,alpha_deg,step,eta_a,eta_s,theta_deg,{},{}\n",
-        columns("surrogate"),
-        columns("fe")
-    );
-    for hinge in replayed {
-        let design = &hinge.path.design;
-        let states = hinge.path.states.iter().zip(&hinge.states);
-        for (step, (state, ComparedState { value, reference })) in states.enumerate() {
-            let [eta_a, eta_s] = state.eta(design.w_lig);
-            write!(
-                text,
-                "{},{:.4},{:.4},{},{eta_a:.6},{eta_s:.6},{:.4}",
-                hinge.path.hinge,
-                design.w_lig,
-                design.alpha.to_degrees(),
-                step + 1,
-                state.theta.to_degrees(),
-            )?;
-            for number in value.iter().chain(reference) {
-                if number.is_nan() {
-                    text.push(',');
-                } else {
-                    write!(text, ",{number:.6}")?;
-                }
-            }
-            writeln!(text)?;
-        }
-    }
-    Ok(text)
 }

@@ -7,15 +7,13 @@
 
 use crate::error::VerificationError;
 use crate::recorded_path::paths_of;
-use crate::replay::{UnsolvedHinge, solved};
+use crate::replay::{ElementWindows, UnsolvedHinge};
 use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
 use design::objective::design_problem::{Deployment, DesignError, DesignProblem, Model};
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
 use design::sheet::kinematics::deployed_corners;
-use fe_driver::WindowService;
 use hinge::HingeSample;
-use mesher::Tier;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -71,15 +69,6 @@ impl BalanceEnd {
             Self::Failed(reason) => Some(format!("a further round failed: {reason}")),
         }
     }
-}
-
-/// Finite elements for the hinges of sheets.
-#[derive(Clone, Copy)]
-pub struct ElementWindows<'a> {
-    /// Tier of the meshes.
-    pub tier: Tier,
-    /// Solves the windows.
-    pub service: &'a WindowService<'a>,
 }
 
 /// Deploys a design with finite elements for its hinges, in at most `rounds` rounds. Also returns the problem of the
@@ -185,8 +174,7 @@ impl Iteration<'_> {
         &self,
         deployed: &Deployment,
     ) -> Result<(Vec<Option<HingeSample>>, Vec<UnsolvedHinge>, f64), VerificationError> {
-        let ElementWindows { tier, service } = *self.windows;
-        let windows = solved(service, &paths_of(deployed), &self.scene.material, tier)?;
+        let windows = (self.windows).solve(&paths_of(deployed), &self.scene.material)?;
         let cpu_seconds = windows.iter().map(|window| window.record.cpu_seconds).sum();
         let (mut ends, mut unsolved) = (Vec::new(), Vec::new());
         for (hinge, window) in windows.iter().enumerate() {

@@ -33,6 +33,8 @@ pub enum VerificationError {
         "the equilibrium needs the forces of the hinges, and none is solved: {0}. Try another mesh with --tier"
     )]
     NoHinge(String),
+    #[error("no hinge was solved: {0}")]
+    NoHingeReplayed(String),
     #[error("stopped with {left} steps left")]
     Stopped { left: usize },
     #[error(

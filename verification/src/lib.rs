@@ -3,8 +3,8 @@
 //! | task | entry point |
 //! |---|---|
 //! | rows of a database from solved windows, and back | [`rows`], [`collected`], [`collected_windows`] |
-//! | the hinges of a sheet solved along their paths, against a surrogate | [`recorded_paths`], [`replay`] |
-//! | a sheet in equilibrium with the forces of finite elements | [`balanced`] |
+//! | the hinges of a sheet solved along their paths, against a surrogate | [`recorded_paths`], [`Replay`] |
+//! | a sheet in equilibrium with the forces of finite elements | [`balanced`], [`SheetErrors`] |
 //! | a design searched on with these forces | [`polish`] |
 //! | errors of weights at random states | [`random_paths`], [`spot_check`] |
 //! | rays where the training data is thin | [`rays_on_paths`], [`doubtful_states`], [`rays_through`] |
@@ -44,6 +44,7 @@
 #![warn(missing_docs)]
 
 mod balanced_sheet;
+mod compared_states;
 mod doubtful_states;
 mod error;
 mod extension;
@@ -53,12 +54,14 @@ mod polish;
 mod recorded_path;
 mod region;
 mod replay;
+mod replay_page;
+mod round_table;
 mod rows;
+mod sheet_errors;
 mod spot_check;
 
-pub use balanced_sheet::{
-    BALANCED, BalanceEnd, Balanced, ElementWindows, Round, balanced, movements, size,
-};
+pub use balanced_sheet::{BALANCED, BalanceEnd, Balanced, Round, balanced, movements, size};
+pub use compared_states::{SCALE, each_relative, spread_table};
 pub use doubtful_states::{DoubtfulState, doubtful_states, rays_through};
 pub use error::VerificationError;
 pub use extension::{PathRays, rays_on_paths};
@@ -67,6 +70,7 @@ pub use networks::{ensemble, judging_tier};
 pub use polish::{PolishGain, PolishTask, Polished, polish};
 pub use recorded_path::{RecordedPath, paths_of, recorded_paths};
 pub use region::{distillation_states, region};
-pub use replay::{ReplayedHinge, UnsolvedHinge, replay};
+pub use replay::{ElementWindows, Replay, ReplayedHinge, UnsolvedHinge};
 pub use rows::{InvalidRow, collected, collected_windows, rows};
+pub use sheet_errors::SheetErrors;
 pub use spot_check::{SpotCheck, SpotPath, random_paths, spot_check};

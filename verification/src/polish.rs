@@ -3,9 +3,9 @@
 //! The sheet is balanced with finite elements for its hinges, the search continues from the design with the corrected
 //! law, and the sheet that it finds is balanced again: both designs are judged by finite elements at their own hinges.
 
-use crate::balanced_sheet::{BalanceEnd, Balanced, ElementWindows, balanced};
+use crate::balanced_sheet::{BalanceEnd, Balanced, balanced};
 use crate::error::VerificationError;
-use crate::replay::UnsolvedHinge;
+use crate::replay::{ElementWindows, UnsolvedHinge};
 use design::objective::design_problem::Evaluation;
 use design::objective::scores::Scores;
 use design::optimise::outer_loop::{Ended, SearchState, StepRecord, optimise};

@@ -22,6 +22,18 @@ pub struct ReplayedHinge {
     pub inside: f64,
 }
 
+/// The hinges of a sheet, by a surrogate and by finite elements.
+pub struct Replay {
+    /// The design, for a person.
+    pub name: String,
+    /// Mesh tier of the windows.
+    pub tier: Tier,
+    /// The hinges that finite elements followed along their paths.
+    pub hinges: Vec<ReplayedHinge>,
+    /// The others.
+    pub unsolved: Vec<UnsolvedHinge>,
+}
+
 /// A hinge of a sheet that finite elements did not follow along its path.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct UnsolvedHinge {
@@ -37,43 +49,70 @@ impl fmt::Display for UnsolvedHinge {
     }
 }
 
-/// The windows of hinges solved along their paths, in the same order.
-pub(crate) fn solved(
-    windows: &WindowService,
-    paths: &[RecordedPath],
-    material: &SheetMaterial,
-    tier: Tier,
-) -> Result<Vec<SolvedWindow>, VerificationError> {
-    let versions = windows.versions();
-    let solve = |path: &RecordedPath| {
-        let problem = path.problem(material, tier)?;
-        Ok::<_, VerificationError>(WindowSolve::new(problem, &versions))
-    };
-    let solves: Vec<WindowSolve> = paths.iter().map(solve).collect::<Result<_, _>>()?;
-    Ok(windows.solve(&solves)?)
+/// Finite elements for the hinges of sheets.
+#[derive(Clone, Copy)]
+pub struct ElementWindows<'a> {
+    /// Tier of the meshes.
+    pub tier: Tier,
+    /// Solves the windows.
+    pub service: &'a WindowService<'a>,
 }
 
-/// Compares a surrogate with the solved windows of hinges along their paths. `networks` are the others of its ensemble.
-/// Also returns the hinges that were not solved.
-pub fn replay(
-    windows: &WindowService,
-    paths: Vec<RecordedPath>,
-    (material, tier): (&SheetMaterial, Tier),
-    surrogate: &Surrogate,
-    networks: &[Surrogate],
-) -> Result<(Vec<ReplayedHinge>, Vec<UnsolvedHinge>), VerificationError> {
-    let solved = solved(windows, &paths, material, tier)?;
-    let (mut replayed, mut unsolved) = (Vec::new(), Vec::new());
-    for (path, window) in paths.into_iter().zip(&solved) {
-        match window.complete() {
-            Ok(samples) => replayed.push(ReplayedHinge::new(path, samples, surrogate, networks)),
-            Err(failed) => unsolved.push(UnsolvedHinge {
-                hinge: path.hinge,
-                reason: failed.to_string(),
-            }),
-        }
+impl ElementWindows<'_> {
+    /// The windows of hinges solved along their paths, in the same order.
+    pub(crate) fn solve(
+        &self,
+        paths: &[RecordedPath],
+        material: &SheetMaterial,
+    ) -> Result<Vec<SolvedWindow>, VerificationError> {
+        let versions = self.service.versions();
+        let solve = |path: &RecordedPath| {
+            let problem = path.problem(material, self.tier)?;
+            Ok::<_, VerificationError>(WindowSolve::new(problem, &versions))
+        };
+        let solves: Vec<WindowSolve> = paths.iter().map(solve).collect::<Result<_, _>>()?;
+        Ok(self.service.solve(&solves)?)
     }
-    Ok((replayed, unsolved))
+}
+
+impl Replay {
+    /// Compares a surrogate with the solved windows of hinges of the scene along their paths in the design, which has a
+    /// name for a person. `networks` are the others of the surrogate's ensemble.
+    pub fn new(
+        windows: &ElementWindows,
+        (paths, name): (Vec<RecordedPath>, &str),
+        material: &SheetMaterial,
+        surrogate: &Surrogate,
+        networks: &[Surrogate],
+    ) -> Result<Self, VerificationError> {
+        let solved = windows.solve(&paths, material)?;
+        let (mut hinges, mut unsolved) = (Vec::new(), Vec::new());
+        for (path, window) in paths.into_iter().zip(&solved) {
+            match window.complete() {
+                Ok(samples) => hinges.push(ReplayedHinge::new(path, samples, surrogate, networks)),
+                Err(failed) => unsolved.push(UnsolvedHinge {
+                    hinge: path.hinge,
+                    reason: failed.to_string(),
+                }),
+            }
+        }
+        if let [failed, ..] = &unsolved[..]
+            && hinges.is_empty()
+        {
+            return Err(VerificationError::NoHingeReplayed(failed.to_string()));
+        }
+        Ok(Self {
+            name: name.to_owned(),
+            tier: windows.tier,
+            hinges,
+            unsolved,
+        })
+    }
+
+    /// The states of each hinge.
+    pub fn groups(&self) -> Vec<&[ComparedState]> {
+        self.hinges.iter().map(|hinge| &hinge.states[..]).collect()
+    }
 }
 
 impl ReplayedHinge {

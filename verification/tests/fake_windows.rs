@@ -13,8 +13,8 @@ use surrogate::Surrogate;
 use tempfile::TempDir;
 use verification::{
     Accuracy, BALANCED, BalanceEnd, Balanced, ElementWindows, LearningEnd, LearningRound,
-    LearningSteps, LearningTask, VerificationError, balanced, distillation_states, learn,
-    movements, random_paths, recorded_paths, region, replay, size, spot_check,
+    LearningSteps, LearningTask, Replay, VerificationError, balanced, distillation_states, learn,
+    movements, random_paths, recorded_paths, region, size, spot_check,
 };
 
 /// (k_a, k_s) (N/mm) and k_theta (N mm/rad) of the hinges of film.
@@ -164,16 +164,19 @@ fn a_replay_compares_every_state_and_names_what_failed() {
         (solve.problem.hinge.path.at(1.0) == lost).then_some(Fault::Hangs)
     });
     let replayed = |solver: &dyn WindowSolver| {
-        let judge = (&scene.material, mesher::Tier::Tiny);
-        let networks = [surrogate.clone()];
-        replay(
-            &service(solver, &folder),
-            paths.clone(),
-            judge,
-            surrogate,
-            &networks,
-        )
-        .unwrap()
+        let (tier, networks) = (mesher::Tier::Tiny, [surrogate.clone()]);
+        let service = &service(solver, &folder);
+        let windows = ElementWindows { tier, service };
+        let design = (paths.clone(), "sheet");
+        let replay = Replay::new(&windows, design, &scene.material, surrogate, &networks);
+        let replay = replay.unwrap();
+        let page = replay.to_string();
+        assert_eq!(
+            page.contains("Not solved, so that"),
+            !replay.unsolved.is_empty(),
+            "{page}"
+        );
+        (replay.hinges, replay.unsolved)
     };
     let (hinges, unsolved) = replayed(&hangs);
     assert_eq!((hinges.len(), unsolved.len()), (paths.len() - 1, 1));

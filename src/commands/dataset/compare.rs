@@ -1,12 +1,13 @@
 //! `kirigami dataset compare`: differences of a database from a finer one of the same rays.
 
-use crate::commands::compared_states::{self, SCALE, each_relative, spread_table};
+use crate::commands::compared_states;
 use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use dataset::{COMPARED, ComparedRay, ComparedState, Database, LeftOut, compare, left_out};
 use std::fmt::Write;
 use std::path::PathBuf;
+use verification::{SCALE, each_relative, spread_table};
 
 /// Compare a database with a finer one of the same rays
 ///
@@ -83,12 +84,12 @@ fn summary(
         cpu[0],
         cpu[1],
     );
-    Ok(heading + &spread_table(&groups(states), "ray")?)
+    Ok(heading + &spread_table(&groups(states), "ray"))
 }
 
 /// The remaining differences when every ray is corrected by the others.
 pub fn correction(judged: &LeftOut) -> Result<String> {
-    let table = spread_table(&groups(&judged.states), "ray")?;
+    let table = spread_table(&groups(&judged.states), "ray");
     let note = match &judged.uncorrected()[..] {
         [] => String::new(),
         left => format!(

@@ -6,13 +6,11 @@
 
 mod fine_tuning;
 mod options;
-mod round_table;
 
 use crate::commands::campaign::RayProgress;
 use crate::commands::init;
 use crate::commands::material::learn::fine_tuning::FineTuning;
 use crate::commands::material::learn::options::{percent, time};
-use crate::commands::material::learn::round_table::{HEADING, csv, line};
 use crate::commands::solve_args::{SolveArgs, task_error};
 use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
@@ -123,7 +121,7 @@ impl LearnCommand {
             fits: self.out.join("fits"),
         };
         let spot = self.spot_check(&campaign, &region)?;
-        println!("{HEADING}");
+        println!("{}", LearningRound::HEADING);
         let task = LearningTask {
             campaign: &campaign,
             folder: &self.out.join("campaign"),
@@ -256,9 +254,9 @@ impl LearningSteps for Steps<'_> {
     }
 
     fn round(&mut self, round: &LearningRound, weights: Surrogate, is_latest: bool) -> Result<()> {
-        println!("{}", line(round));
+        println!("{round}");
         self.rounds.push(*round);
-        run_folder::write(self.out, "learn.csv", &csv(&self.rounds)?)?;
+        run_folder::write(self.out, "learn.csv", &LearningRound::csv(&self.rounds))?;
         // The weights are those of all rays that an earlier command has solved.
         if is_latest {
             weights.save(&weights_file(self.out))?;

@@ -2,13 +2,12 @@
 
 use crate::commands::design::write_run;
 use crate::commands::solve_args::task_error;
-use crate::commands::verify::sheet_errors;
 use crate::ui::progress::Progress;
 use crate::ui::{interrupt, run_folder};
 use anyhow::Result;
 use design::optimise::outer_loop::StepRecord;
 use std::path::Path;
-use verification::{ElementWindows, PolishGain, PolishTask, polish};
+use verification::{ElementWindows, PolishGain, PolishTask, SheetErrors, polish};
 
 /// Polishes a design, and writes `polish.md`, `equilibrium.md`, `design.json` and the results of a run to the folder
 /// `out`, which is also the scene's.
@@ -27,7 +26,8 @@ pub(super) fn run(
     let polished = polish(task, windows, stop, show).map_err(task_error)?;
     bar.finish();
     let name = format!("polished {}", task.name);
-    sheet_errors::write(&polished.after, name, windows.tier, out)?;
+    let errors = SheetErrors::new(&polished.after, name, windows.tier);
+    run_folder::write(out, "equilibrium.md", &errors.to_string())?;
     let json = serde_json::to_string(&polished.designed.design)?;
     run_folder::write(out, "design.json", &json)?;
     write_run(task.scene, &polished.designed, force)?;

@@ -1,17 +1,14 @@
-//! `kirigami verify --equilibrium`: the error of a deployed sheet, judged by finite elements for its hinges.
+//! The error of a deployed sheet, judged by finite elements for its hinges.
 
-use crate::ui::run_folder;
-use anyhow::Result;
+use crate::balanced_sheet::{BALANCED, BalanceEnd, Balanced, Round, movements, size};
 use design::objective::design_problem::Deployment;
 use mesher::Tier;
 use serde::Serialize;
 use std::fmt;
-use std::path::Path;
-use verification::{BALANCED, BalanceEnd, Balanced, Round, movements, size};
 
 /// The equilibrium by the hinge law compared with that by finite elements.
 #[derive(Debug, Serialize)]
-pub(super) struct SheetErrors {
+pub struct SheetErrors {
     /// The design that is judged, for a person.
     design: String,
     /// Mesh tier of the windows.
@@ -44,20 +41,9 @@ struct HingeErrors {
     damage_peak: [Option<f64>; 2],
 }
 
-/// Writes `equilibrium.md` of a balanced sheet.
-pub(super) fn write(
-    found: &Balanced,
-    design: String,
-    tier: Tier,
-    folder: &Path,
-) -> Result<SheetErrors> {
-    let errors = SheetErrors::new(found, design, tier);
-    run_folder::write(folder, "equilibrium.md", &errors.to_string())?;
-    Ok(errors)
-}
-
 impl SheetErrors {
-    fn new(found: &Balanced, design: String, tier: Tier) -> Self {
+    /// The errors of a design, which has a name for a person, with windows of `tier`.
+    pub fn new(found: &Balanced, design: String, tier: Tier) -> Self {
         let (by_law, by_elements) = (found.by_law(), found.by_elements());
         let ends = [by_law, by_elements].map(Deployment::final_step);
         let peak_by_law = |hinge: usize| {

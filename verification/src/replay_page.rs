@@ -1,0 +1,145 @@
+//! The page of a replay, and its table of states.
+
+use crate::compared_states::{SCALE, spread_table};
+use crate::replay::{Replay, ReplayedHinge};
+use dataset::{COMPARED, ComparedState};
+use std::fmt;
+use support::table::{Cell, Table};
+
+impl fmt::Display for Replay {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let (groups, hinges) = (self.groups(), &self.hinges);
+        let states = groups.iter().map(|states| states.len()).sum::<usize>();
+        let inside = hinges.iter().map(|hinge| hinge.inside).sum::<f64>() / hinges.len() as f64;
+        let total = |energy: fn(&ComparedState) -> f64| -> f64 {
+            let ends = groups.iter().filter_map(|states| states.last());
+            ends.map(energy).sum()
+        };
+        let (learned, solved) = (total(|end| end.value[0]), total(|end| end.reference[0]));
+        writeln!(
+            f,
+            "# The hinges of a sheet, replayed\n\n\
+             The {}: {states} states of {} hinges on their paths in the sheet, windows of tier {}; {:.0} % of the \
+             states inside the training domain. Differences of the surrogate from the finite elements are root mean \
+             squares, relative to the root mean square of the finite elements: {SCALE}. D and D_peak of a hinge are known, \
+             and compared, until it leaves the domain.\n\n{}\n\
+             Energy of these hinges at full load: {learned:.1} N mm by the surrogate, {solved:.1} N mm by finite \
+             elements ({:+.2} %).",
+            self.name,
+            hinges.len(),
+            self.tier,
+            100.0 * inside,
+            spread_table(&groups, "hinge"),
+            100.0 * (learned / solved - 1.0),
+        )?;
+        if hinges.iter().any(|hinge| !hinge.spread.is_empty()) {
+            write!(f, "\n{}", estimate(hinges))?;
+        }
+        write!(f, "\nAt full load:\n\n{}", ends_table(hinges))?;
+        if !self.unsolved.is_empty() {
+            writeln!(
+                f,
+                "\nNot solved, so that the errors at these hinges are not known and count nowhere above:\n"
+            )?;
+        }
+        (self.unsolved.iter()).try_for_each(|hinge| writeln!(f, "* {hinge}"))
+    }
+}
+
+/// Every hinge at full load.
+fn ends_table(hinges: &[ReplayedHinge]) -> String {
+    let ends = hinges
+        .iter()
+        .filter_map(|hinge| Some((hinge, *hinge.states.last()?)));
+    let ends: Vec<(&ReplayedHinge, ComparedState)> = ends.collect();
+    let eta = |hinge: &ReplayedHinge| hinge.path.end().eta(hinge.path.design.w_lig);
+    let degrees = |angle: f64, decimals| Cell::fixed(angle.to_degrees(), decimals);
+    let damage = |d: f64| Cell::known((!d.is_nan()).then(|| Cell::fixed(d, 5)), "-");
+    type End<'a> = (&'a ReplayedHinge, ComparedState);
+    let table = Table::new()
+        .column("hinge", |(hinge, _): &End| Cell::text(hinge.path.hinge))
+        .column("w_lig, mm", |(hinge, _)| {
+            Cell::fixed(hinge.path.design.w_lig, 1)
+        })
+        .column("alpha, deg", |(hinge, _)| {
+            degrees(hinge.path.design.alpha, 0)
+        })
+        .column("eta_a", |(hinge, _)| Cell::fixed(eta(hinge)[0], 3))
+        .column("eta_s", |(hinge, _)| Cell::fixed(eta(hinge)[1], 3))
+        .column("theta, deg", |(hinge, _)| {
+            degrees(hinge.path.end().theta, 1)
+        })
+        .column("inside", |(hinge, _)| Cell::percent(hinge.inside, 0))
+        .column("W, N mm", |(_, end)| Cell::fixed(end.value[0], 2))
+        .column("by FE", |(_, end)| Cell::fixed(end.reference[0], 2))
+        .column("M, N mm", |(_, end)| Cell::fixed(end.value[3], 1))
+        .column("by FE", |(_, end)| Cell::fixed(end.reference[3], 1))
+        .column("D", |(_, end)| damage(end.value[4]))
+        .column("by FE", |(_, end)| Cell::fixed(end.reference[4], 5));
+    table.markdown(&ends)
+}
+
+/// How often the error is within one, two and three standard deviations of the ensemble.
+fn estimate(replayed: &[ReplayedHinge]) -> String {
+    let mut text = "Fraction of the states with an error within so many standard deviations of the ensemble:\n\n\
+        | quantity | one | two | three |\n|---|---|---|---|\n"
+        .to_owned();
+    let pairs = || {
+        replayed
+            .iter()
+            .flat_map(|hinge| hinge.states.iter().zip(&hinge.spread))
+    };
+    for (i, name) in COMPARED.iter().enumerate() {
+        if pairs().any(|(_, spread)| spread[i].is_nan()) {
+            text += &format!("| {name} | not predicted by all | | |\n");
+            continue;
+        }
+        let known = || pairs().filter(|(state, _)| state.is_known(i));
+        if known().next().is_none() {
+            text += &format!("| {name} | not known | | |\n");
+            continue;
+        }
+        let within = |count: f64| {
+            let met = known().filter(|(state, spread)| {
+                (state.value[i] - state.reference[i]).abs() <= count * spread[i]
+            });
+            100.0 * met.count() as f64 / known().count() as f64
+        };
+        let [one, two, three] = [1.0, 2.0, 3.0].map(within);
+        text += &format!("| {name} | {one:.0} % | {two:.0} % | {three:.0} % |\n");
+    }
+    text
+}
+
+impl Replay {
+    /// One row per state; a cell is empty if its value is not known.
+    pub fn csv(&self) -> String {
+        let columns = |prefix: &str| COMPARED.map(|name| format!("{prefix}_{name}")).join(",");
+        let mut text = format!(
+            "hinge,w_lig_mm,alpha_deg,step,eta_a,eta_s,theta_deg,{},{}\n",
+            columns("surrogate"),
+            columns("fe")
+        );
+        for hinge in &self.hinges {
+            let design = &hinge.path.design;
+            let states = hinge.path.states.iter().zip(&hinge.states);
+            for (step, (state, ComparedState { value, reference })) in states.enumerate() {
+                let [eta_a, eta_s] = state.eta(design.w_lig);
+                text += &format!(
+                    "{},{:.4},{:.4},{},{eta_a:.6},{eta_s:.6},{:.4}",
+                    hinge.path.hinge,
+                    design.w_lig,
+                    design.alpha.to_degrees(),
+                    step + 1,
+                    state.theta.to_degrees(),
+                );
+                for number in value.iter().chain(reference) {
+                    let known = !number.is_nan();
+                    text += &known.then(|| format!(",{number:.6}")).unwrap_or(",".into());
+                }
+                text += "\n";
+            }
+        }
+        text
+    }
+}
