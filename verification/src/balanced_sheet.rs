@@ -5,9 +5,9 @@
 //! states, and this is repeated until the panels stay where they are. It is a quasi-Newton iteration for the equilibrium of
 //! the finite-element hinges: the tangent is that of the hinge law in the first round, and learns from each further one.
 
-use crate::error::VerificationError;
 use crate::recorded_path::paths_of;
 use crate::replay::{ElementWindows, UnsolvedHinge};
+use crate::verification_error::VerificationError;
 use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
 use design::objective::design_problem::{Deployment, DesignError, DesignProblem, Model};
 use design::pattern::design_vector::DesignVector;
@@ -120,6 +120,17 @@ pub fn balanced(
     Ok((found, iteration.problem))
 }
 
+/// The hinges of a sheet by finite elements.
+#[derive(Default)]
+struct SolvedHinges {
+    /// The last state of every hinge along its path; `None` if it was not solved.
+    ends: Vec<Option<HingeSample>>,
+    /// The hinges that were not.
+    unsolved: Vec<UnsolvedHinge>,
+    /// CPU time of their windows (s).
+    cpu_seconds: f64,
+}
+
 /// The quasi-Newton iteration between two rounds.
 struct Iteration<'a> {
     scene: &'a Scene,
@@ -138,7 +149,11 @@ impl Iteration<'_> {
     /// After an error the problem has the law that it had before.
     fn round(&mut self, found: &mut Balanced) -> Result<(), VerificationError> {
         let deployed = found.by_elements();
-        let (ends, unsolved, cpu_seconds) = self.ends(deployed)?;
+        let SolvedHinges {
+            ends,
+            unsolved,
+            cpu_seconds,
+        } = self.solve(deployed)?;
         let force_error = force_error(&self.problem.model, deployed, &ends);
         self.add_missing_forces(deployed, &ends);
         let designs = deployed.sheet.designs();
@@ -169,30 +184,27 @@ impl Iteration<'_> {
         Ok(())
     }
 
-    /// The last state of every hinge along its path in the sheet, the hinges that were not solved, and the CPU time (s).
-    fn ends(
-        &self,
-        deployed: &Deployment,
-    ) -> Result<(Vec<Option<HingeSample>>, Vec<UnsolvedHinge>, f64), VerificationError> {
+    /// Solves every hinge along its path in the sheet.
+    fn solve(&self, deployed: &Deployment) -> Result<SolvedHinges, VerificationError> {
         let windows = (self.windows).solve(&paths_of(deployed), &self.scene.material)?;
-        let cpu_seconds = windows.iter().map(|window| window.record.cpu_seconds).sum();
-        let (mut ends, mut unsolved) = (Vec::new(), Vec::new());
+        let mut solved = SolvedHinges::default();
         for (hinge, window) in windows.iter().enumerate() {
-            ends.push(match window.complete() {
+            solved.cpu_seconds += window.record.cpu_seconds;
+            solved.ends.push(match window.complete() {
                 Ok(samples) => samples.last().copied(),
                 Err(failed) => {
                     let reason = failed.to_string();
-                    unsolved.push(UnsolvedHinge { hinge, reason });
+                    solved.unsolved.push(UnsolvedHinge { hinge, reason });
                     None
                 }
             });
         }
-        if let Some(first) = unsolved.first()
-            && unsolved.len() == ends.len()
+        if let Some(first) = solved.unsolved.first()
+            && solved.unsolved.len() == windows.len()
         {
             return Err(VerificationError::NoHinge(first.to_string()));
         }
-        Ok((ends, unsolved, cpu_seconds))
+        Ok(solved)
     }
 
     /// Adds what the law lacks of the forces of finite elements at the last states of the solved hinges.

@@ -2,8 +2,8 @@
 //!
 //! After each round weights are trained on all rays so far, and tested at random states of rays that no training contains.
 
-use crate::error::VerificationError;
 use crate::rows::collected;
+use crate::verification_error::VerificationError;
 use dataset::{Database, Row};
 use fe_driver::{Campaign, Progress, RunOptions, Shard, WindowSolver, run, status};
 use std::path::Path;

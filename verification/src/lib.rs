@@ -46,7 +46,6 @@
 mod balanced_sheet;
 mod compared_states;
 mod doubtful_states;
-mod error;
 mod extension;
 mod learning;
 mod networks;
@@ -59,11 +58,11 @@ mod round_table;
 mod rows;
 mod sheet_errors;
 mod spot_check;
+mod verification_error;
 
 pub use balanced_sheet::{BALANCED, BalanceEnd, Balanced, Round, balanced, movements, size};
 pub use compared_states::{SCALE, each_relative, spread_table};
 pub use doubtful_states::{DoubtfulState, doubtful_states, rays_through};
-pub use error::VerificationError;
 pub use extension::{PathRays, rays_on_paths};
 pub use learning::{Accuracy, LearningEnd, LearningRound, LearningSteps, LearningTask, learn};
 pub use networks::{ensemble, judging_tier};
@@ -74,3 +73,4 @@ pub use replay::{ElementWindows, Replay, ReplayedHinge, UnsolvedHinge};
 pub use rows::{InvalidRow, collected, collected_windows, rows};
 pub use sheet_errors::SheetErrors;
 pub use spot_check::{SpotCheck, SpotPath, random_paths, spot_check};
+pub use verification_error::VerificationError;

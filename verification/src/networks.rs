@@ -1,6 +1,6 @@
 //! The networks that are judged, and the mesh that judges them.
 
-use crate::error::VerificationError;
+use crate::verification_error::VerificationError;
 use dataset::Fidelity;
 use design::scene::Scene;
 use mesher::Tier;

@@ -4,8 +4,8 @@
 //! law, and the sheet that it finds is balanced again: both designs are judged by finite elements at their own hinges.
 
 use crate::balanced_sheet::{BalanceEnd, Balanced, balanced};
-use crate::error::VerificationError;
 use crate::replay::{ElementWindows, UnsolvedHinge};
+use crate::verification_error::VerificationError;
 use design::objective::design_problem::Evaluation;
 use design::objective::scores::Scores;
 use design::optimise::outer_loop::{Ended, SearchState, StepRecord, optimise};

@@ -1,6 +1,6 @@
 //! The paths of the hinges of a deployed sheet, as window problems.
 
-use crate::error::VerificationError;
+use crate::verification_error::VerificationError;
 use design::objective::design_problem::{Deployment, Model};
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;

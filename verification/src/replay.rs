@@ -1,7 +1,7 @@
 //! The hinges of a sheet solved along their paths in it, and compared with a surrogate at every load step.
 
-use crate::error::VerificationError;
 use crate::recorded_path::RecordedPath;
+use crate::verification_error::VerificationError;
 use dataset::ComparedState;
 use fe_driver::{SolvedWindow, WindowService, WindowSolve};
 use hinge::{HingeDeformation, HingeSample, SheetMaterial};

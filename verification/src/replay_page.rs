@@ -134,8 +134,11 @@ impl Replay {
                     state.theta.to_degrees(),
                 );
                 for number in value.iter().chain(reference) {
-                    let known = !number.is_nan();
-                    text += &known.then(|| format!(",{number:.6}")).unwrap_or(",".into());
+                    if number.is_nan() {
+                        text.push(',');
+                    } else {
+                        text += &format!(",{number:.6}");
+                    }
                 }
                 text += "\n";
             }

@@ -1,7 +1,7 @@
 //! Solved windows as rows of a database, and back. A database is a table of text and numbers; this is the only place where
 //! kinds of failure, tiers and versions are written to it and read from it.
 
-use crate::error::VerificationError;
+use crate::verification_error::VerificationError;
 use dataset::{Database, Gates, Row, SplitPlan};
 use fe_driver::{
     CollectedWindow, FailureKind, SolvedWindow, ToolVersions, UnknownFailure, finished_windows,

@@ -4,8 +4,8 @@
 //! direction with the density of uniform states. With R the distance to the boundary along it and u uniform in
 //! (0, 1), the state at the distance R u^(1/3) is again uniform. Several states can therefore lie on one ray.
 
-use crate::error::VerificationError;
 use crate::rows::rows;
+use crate::verification_error::VerificationError;
 use dataset::Row;
 use fe_driver::{
     HingePath, Ray, SolvedWindow, UnsolvedWindow, WindowProblem, WindowService, WindowSolve,
@@ -95,7 +95,7 @@ impl SpotCheck {
             }
             Err(unsolved) => {
                 self.unknown_states += path.fractions.len();
-                self.unsolved.push(unsolved);
+                self.unsolved.push(*unsolved);
             }
         }
     }

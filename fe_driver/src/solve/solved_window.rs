@@ -64,16 +64,16 @@ impl SolveFolder {
 
 impl SolvedWindow {
     /// The samples, or why the path was not followed to its end.
-    pub fn complete(&self) -> Result<&[HingeSample], UnsolvedWindow> {
+    pub fn complete(&self) -> Result<&[HingeSample], Box<UnsolvedWindow>> {
         match self.record.failure {
             None => Ok(&self.samples),
-            Some(failure) => Err(UnsolvedWindow {
+            Some(failure) => Err(Box::new(UnsolvedWindow {
                 hinge: self.solve.problem.hinge.clone(),
                 attempts: self.record.attempts,
                 lambda: self.record.lambda,
                 reason: (self.record.message.clone()).unwrap_or_else(|| failure.to_string()),
                 work: self.work.clone(),
-            }),
+            })),
         }
     }
 
