@@ -5,13 +5,13 @@ use crate::ui::run_folder;
 use crate::ui::width_by_height::width_by_height;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use design::output::cut_file::{
+use design::pattern::design_vector::DesignVector;
+use design::scene::Scene;
+use output::cut_file::{
     CutDrawing, CutLines, OVERLAP, Paper, SheetDrawing, Split, Tiling, cut_list, cut_summary,
     mark_errors, split, write_dxf, write_pdf, write_svg,
 };
-use design::output::report::{Severity, Warning, warnings};
-use design::pattern::design_vector::DesignVector;
-use design::scene::Scene;
+use output::report::{Severity, Warning, warnings};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 

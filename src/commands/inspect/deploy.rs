@@ -3,7 +3,7 @@
 use crate::commands::inspect::scene_args::Listed;
 use anyhow::{Context, Result};
 use clap::Args;
-use design::output::listing::DeploymentListing;
+use output::listing::DeploymentListing;
 
 /// Print the kinematic deployment of a scene's sheet, with the same opening angle at every hinge
 ///

@@ -3,7 +3,7 @@
 use crate::commands::inspect::scene_args::Listed;
 use anyhow::Result;
 use clap::Args;
-use design::output::listing::EquilibriumListing;
+use output::listing::EquilibriumListing;
 
 /// Print the equilibria of a scene's sheet along its equilibrium path, and how each was solved
 ///

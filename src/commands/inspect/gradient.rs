@@ -3,7 +3,7 @@
 use crate::commands::inspect::scene_args::Listed;
 use anyhow::Result;
 use clap::Args;
-use design::output::listing::GradientListing;
+use output::listing::GradientListing;
 
 /// Print the objective of a scene's sheet, term by term, and its gradient
 ///

@@ -3,7 +3,7 @@
 use crate::commands::inspect::scene_args::Listed;
 use anyhow::Result;
 use clap::Args;
-use design::output::listing::PatternListing;
+use output::listing::PatternListing;
 
 /// Print cut endpoints, panels and hinges of a scene's sheet, and whether it is valid
 ///

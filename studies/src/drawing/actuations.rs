@@ -5,12 +5,12 @@
 use design::analysis::force_transmission::{ForceTransmission, Interface};
 use design::analysis::tension_routes::TensionRoute;
 use design::objective::design_problem::Deployment;
-use design::output::canvas::{Anchor, Canvas};
-use design::output::drawing::page::{ACCENT, INK, MUTED, PANELS, TEAL, bounds};
 use design::scene::{Scene, SupportKind};
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::deployed_corners;
 use design::sheet::topology::is_even;
+use output::canvas::{Anchor, Canvas};
+use output::drawing::page::{ACCENT, INK, MUTED, PANELS, TEAL, bounds};
 
 /// A row of the picture.
 pub struct ActuationRow<'a> {

@@ -2,10 +2,10 @@
 
 use crate::tessellation::{Defects, Tessellation};
 use design::geometry::polygon::{area, common};
-use design::output::canvas::{Anchor, Canvas};
-use design::output::drawing::page::{ACCENT, INK, MUTED, PANELS, bounds};
 use design::pattern::grid::Grid;
 use design::sheet::topology::is_even;
+use output::canvas::{Anchor, Canvas};
+use output::drawing::page::{ACCENT, INK, MUTED, PANELS, bounds};
 
 /// Colour of area that the flat panels do not cover.
 const VOID: &str = "#f6a55f";

@@ -1,0 +1,169 @@
+//! The deployed sheet with its target; the hinge windows are coloured by their opening angle.
+
+use crate::canvas::Anchor;
+use crate::deployment_states::{kept, states_before};
+use crate::drawing::load_marks::{self, Mark, marks};
+use crate::drawing::page::{ACCENT, ColourScale, INK, MUTED, PANELS, Page};
+use design::equilibrium::load_step::LoadStep;
+use design::scene::Scene;
+use design::scene::design_run::Designed;
+use design::scene::placement::placed;
+use design::sheet::cut_sheet::Sheet;
+use design::sheet::hinge_window::Window;
+use design::sheet::kinematics::{
+    Configuration, deployed as moved, deployed_corners, hinge_deformations,
+};
+use design::sheet::topology::is_even;
+
+/// The sheet of a scene in a state of its path, with the loads there.
+pub fn deployed(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> String {
+    let state = State::new(scene, sheet, step);
+    let openings_deg = &state.openings_deg;
+    let mean = openings_deg.iter().sum::<f64>() / openings_deg.len() as f64;
+    let max = openings_deg
+        .iter()
+        .copied()
+        .fold(f64::NEG_INFINITY, f64::max);
+    let actuation = if scene.hinge.carries_load() {
+        ". Panels held flat, loads and supports at their centroids"
+    } else {
+        ""
+    };
+    let subtitle = format!(
+        "Deployed: mean hinge opening {mean:.1}\u{b0}, maximum {max:.1}\u{b0}{actuation}. Target dashed"
+    );
+    let scale = ColourScale::covering(openings_deg.iter().copied());
+    state.drawn(state.extent(), &subtitle, &scale)
+}
+
+/// The frames of the deployment of a run: at most `most` states from the flat sheet to the last one, on the same page
+/// and in the same colours.
+pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec<String> {
+    let deployment = &designed.best.deployment;
+    let before = states_before(&designed.problem, deployment);
+    let all: Vec<&LoadStep> = before.iter().chain(&deployment.path).collect();
+    let index = kept(all.len(), most);
+    let states: Vec<State> = (index.iter())
+        .map(|&i| State::new(scene, &deployment.sheet, all[i]))
+        .collect();
+    let extent: Vec<[f64; 2]> = states.iter().flat_map(State::extent).collect();
+    let openings = states
+        .iter()
+        .flat_map(|state| state.openings_deg.iter().copied());
+    let scale = ColourScale::covering(openings);
+    let frame = |(&i, state): (&usize, &State)| {
+        let place = if scene.hinge.carries_load() {
+            format!(
+                "load step {i} of {}, load factor {:.2}",
+                all.len() - 1,
+                all[i].load_factor
+            )
+        } else {
+            format!("opening {:.1}\u{b0}", state.openings_deg[0])
+        };
+        state.drawn(
+            extent.clone(),
+            &format!("Deployment: {place}. Target dashed"),
+            &scale,
+        )
+    };
+    std::iter::zip(&index, &states).map(frame).collect()
+}
+
+/// The drawn state.
+struct State<'a> {
+    scene: &'a Scene,
+    sheet: &'a Sheet,
+    step: &'a LoadStep,
+    configuration: Configuration,
+    openings_deg: Vec<f64>,
+}
+
+impl<'a> State<'a> {
+    fn new(scene: &'a Scene, sheet: &'a Sheet, step: &'a LoadStep) -> Self {
+        let deformations = hinge_deformations(sheet, &step.configuration);
+        Self {
+            scene,
+            sheet,
+            step,
+            configuration: placed(scene, sheet, &step.configuration),
+            openings_deg: deformations
+                .iter()
+                .map(|it| it.theta.to_degrees())
+                .collect(),
+        }
+    }
+
+    /// The picture of the state on a page around the points `extent`.
+    fn drawn(&self, extent: Vec<[f64; 2]>, subtitle: &str, scale: &ColourScale) -> String {
+        let mut page = Page::around(extent, &self.scene.config.title, subtitle, true);
+        let ghost = page.dashed(MUTED, 0.8, 3.0);
+        page.canvas.polygon(&self.sheet.outline.corners, &ghost);
+        self.panels(&mut page);
+        self.windows(&mut page, scale);
+        let target = page.dashed(ACCENT, 2.2, 9.0);
+        page.canvas.polygon(self.scene.target.points(), &target);
+        self.loads(&mut page);
+        page.colour_scale(scale, "\u{3b8} (deg)");
+        page.finish()
+    }
+
+    /// The deployed position of a point of panel k.
+    fn moved(&self, k: usize, point: [f64; 2]) -> [f64; 2] {
+        moved(&self.sheet.panels[k], self.configuration[k], point)
+    }
+
+    /// Points that enclose everything drawn.
+    fn extent(&self) -> Vec<[f64; 2]> {
+        let mut points = deployed_corners(self.sheet, &self.configuration).concat();
+        points.extend(self.scene.target.points());
+        points.extend(load_marks::extent(self.scene, self.sheet, self.step));
+        points
+    }
+
+    fn panels(&self, page: &mut Page) {
+        let edge = 1.1 * page.unit;
+        let corners = deployed_corners(self.sheet, &self.configuration);
+        for (k, corners) in corners.iter().enumerate() {
+            let fill = PANELS[usize::from(!is_even(self.sheet.grid, k))];
+            let style = format!(
+                "fill=\"{fill}\" stroke=\"{INK}\" stroke-width=\"{edge:.4}\" \
+                 stroke-linejoin=\"round\""
+            );
+            page.canvas.polygon(corners, &style);
+        }
+    }
+
+    /// Draws each window in two parts, which move with their panels.
+    fn windows(&self, page: &mut Page, scale: &ColourScale) {
+        let hinges = self.sheet.hinges.iter().zip(Window::of_sheet(self.sheet));
+        for ((hinge, window), &opening_deg) in hinges.zip(&self.openings_deg) {
+            let style = format!(
+                "fill=\"{}\" fill-opacity=\"0.85\"",
+                scale.colour(opening_deg)
+            );
+            for k in [hinge.panel_a(), hinge.panel_b()] {
+                let part = window.inside(&self.sheet.panels[k]);
+                let part: Vec<_> = part.into_iter().map(|point| self.moved(k, point)).collect();
+                page.canvas.polygon(&part, &style);
+            }
+        }
+    }
+
+    /// Draws the symbols of the supports, and the loads with their magnitudes.
+    fn loads(&self, page: &mut Page) {
+        let (stroke, fill) = (page.stroke(ACCENT, 3.0), format!("fill=\"{ACCENT}\""));
+        let (support, label) = (format!("fill=\"{INK}\""), page.haloed(ACCENT));
+        for mark in marks(self.scene, self.sheet, self.step, page.unit) {
+            match mark {
+                Mark::Support(corners) => page.canvas.polygon(&corners, &support),
+                Mark::Shaft(points) => page.canvas.polyline(&points, &stroke),
+                Mark::Head(corners) => page.canvas.polygon(&corners, &fill),
+                Mark::Label([x, y], text) => {
+                    let (size, below) = (14.0 * page.unit, [x, y - 5.0 * page.unit]);
+                    (page.canvas).text(below, size, Anchor::Middle, &label, &text);
+                }
+            }
+        }
+    }
+}
