@@ -2,13 +2,15 @@
 
 mod chart;
 mod deployed;
-pub(crate) mod flat;
-pub(crate) mod load_marks;
+mod flat;
+mod load_marks;
 mod measured;
 mod numbering;
 pub mod page;
 
+pub(crate) use deployed::deployed_on_paper;
 pub use deployed::{deployed, deployment_frames};
 pub use flat::flat;
+pub(crate) use flat::flat_on_paper;
 pub use measured::measured;
 pub use numbering::numbering;

@@ -2,6 +2,7 @@
 //!
 //! | module | contents |
 //! |---|---|
+//! | [`display`] | the display list: shapes and styles, written as SVG and PDF |
 //! | [`cut_file`] | the lines that a machine cuts, checked in the file as written: SVG, DXF, PDF in tiles |
 //! | [`report`] | results, findings, warnings and estimates of a run: text, JSON, a printed sheet |
 //! | [`run_results`] | the files of a run |
@@ -13,15 +14,14 @@
 
 #![warn(missing_docs)]
 
-pub mod canvas;
 pub mod cut_file;
 mod deployment_states;
+pub mod display;
 pub mod drawing;
 pub mod hinge_states;
 pub mod listing;
 pub mod material_check;
 pub mod measurement;
-mod pdf;
 pub mod report;
 mod report_pdf;
 mod run_page;

@@ -1,8 +1,7 @@
 //! The results of a run, written to its folder besides its state: report, cut files, pictures.
 
 use crate::cut_file::{
-    CutLines, FabricationError, SheetDrawing, cut_list, cut_summary, deployed_panels, mark_errors,
-    write_dxf, write_svg,
+    CutLines, SheetDrawing, cut_list, cut_summary, deployed_panels, dxf, mark_errors, svg,
 };
 use crate::drawing;
 use crate::report::{Report, Warning};
@@ -23,8 +22,6 @@ use support::whole_file;
     reason = "the message of each variant is its documentation"
 )]
 pub enum ResultsError {
-    #[error(transparent)]
-    Fabrication(#[from] FabricationError),
     #[error("cannot write {path}: {source}", path = .path.display())]
     Write {
         path: PathBuf,
@@ -70,8 +67,8 @@ pub fn write_results(
             let mut annotated = drawing.annotated();
             let errors: Vec<String> = report.errors().map(Warning::to_string).collect();
             mark_errors(&mut annotated, &errors);
-            write_dxf(&folder.join("cut.dxf"), &annotated)?;
-            write_svg(&folder.join("cut.svg"), &annotated)?;
+            write("cut.dxf", dxf(&annotated).as_bytes())?;
+            write("cut.svg", svg(&annotated).as_bytes())?;
             write("cut-list.csv", cut_list(&best.sheet, cuts).as_bytes())?;
             write(
                 "cut-summary.csv",
@@ -79,7 +76,7 @@ pub fn write_results(
             )?;
             let configuration = placed(scene, &best.sheet, &best.final_step().configuration);
             let deployed = deployed_panels(&deployed_corners(&best.sheet, &configuration));
-            write_dxf(&folder.join("deployed.dxf"), &deployed)?;
+            write("deployed.dxf", dxf(&deployed).as_bytes())?;
         }
         _ => {
             for name in CUT_FILES {

@@ -16,9 +16,10 @@
 //! **Over-run.** A slit that is open on the outline is cut beyond the finished edge, so that no web is left between
 //! the two cuts.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer, Shape, distance};
+use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::fabrication_error::FabricationError;
 use crate::cut_file::written_check;
+use crate::display::{Shape, distance};
 use design::geometry::polygon::{distance_to_segment, edges};
 use design::pattern::cut_pattern::CutPattern;
 use design::scene::CuttingConfig;

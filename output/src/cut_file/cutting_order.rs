@@ -3,7 +3,8 @@
 //! Within a layer the tool moves on to the nearest cut, which it begins at the nearer end. The route is then shortened
 //! by 2-opt: a run of cuts is cut backwards wherever this reduces the travel between the cuts.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer, Shape, distance};
+use crate::cut_file::cut_drawing::{CutDrawing, Layer};
+use crate::display::{Shape, distance};
 
 /// Maximum number of cuts in a run that is reversed: it bounds the time of a sweep over large sheets.
 const RUN: usize = 1000;

@@ -1,6 +1,7 @@
 //! The panels of the deployed sheet, at 1:1.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer, Shape, Text};
+use crate::cut_file::cut_drawing::{CutDrawing, Layer};
+use crate::display::{Shape, Text};
 use design::geometry::polygon::area;
 
 /// The panels with the given corners (mm), and their numbers.
@@ -11,12 +12,8 @@ pub fn deployed_panels(panels: &[[[f64; 2]; 4]]) -> CutDrawing {
     }
     for (k, corners) in panels.iter().enumerate() {
         let middle = |axis: usize| 0.25 * corners.iter().map(|corner| corner[axis]).sum::<f64>();
-        let text = Text {
-            at: [middle(0), middle(1)],
-            centred: true,
-            height: 0.1 * area(corners).sqrt(),
-            text: format!("P{k}"),
-        };
+        let height = 0.1 * area(corners).sqrt();
+        let text = Text::centred([middle(0), middle(1)], height, format!("P{k}"));
         drawing.add(Layer::Annotation, Shape::Text(text));
     }
     drawing

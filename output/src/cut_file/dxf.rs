@@ -3,22 +3,12 @@
 //! A DXF file is a list of pairs, a group code and a value, in the sections HEADER, TABLES, BLOCKS, ENTITIES and OBJECTS.
 //! Every object has a hexadecimal handle and names its owner's. Reference: Autodesk, DXF Reference (AutoCAD 2000).
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer, Shape, Text};
-use crate::cut_file::fabrication_error::FabricationError;
+use crate::cut_file::cut_drawing::{CutDrawing, Layer};
+use crate::display::{Anchor, Shape, Text};
 use std::fmt::{Display, Write};
-use std::path::Path;
 
-/// Writes a drawing. The file is replaced atomically and is identical for identical drawings.
-pub fn write_dxf(path: &Path, drawing: &CutDrawing) -> Result<(), FabricationError> {
-    support::whole_file::write(path, dxf(drawing).as_bytes()).map_err(|source| {
-        FabricationError::Write {
-            path: path.to_owned(),
-            source,
-        }
-    })
-}
-
-fn dxf(drawing: &CutDrawing) -> String {
+/// The file of a drawing, identical for identical drawings.
+pub fn dxf(drawing: &CutDrawing) -> String {
     let extent = drawing.bounds();
     let mut body = Pairs::default();
     let model_space = body.tables(extent);
@@ -211,7 +201,7 @@ impl Pairs {
         let (kind, class) = match shape {
             Shape::Line(_) => ("LINE", "AcDbLine"),
             Shape::Circle { .. } => ("CIRCLE", "AcDbCircle"),
-            Shape::Polygon(_) => ("LWPOLYLINE", "AcDbPolyline"),
+            Shape::Polyline(_) | Shape::Polygon(_) => ("LWPOLYLINE", "AcDbPolyline"),
             Shape::Text(_) => ("TEXT", "AcDbText"),
         };
         self.object(kind, space, &["AcDbEntity"]);
@@ -226,11 +216,11 @@ impl Pairs {
                 self.point(10, *centre);
                 self.pair(40, radius);
             }
-            Shape::Polygon(corners) => {
-                self.pair(90, corners.len());
-                // Closed.
-                self.pair(70, 1);
-                for [x, y] in corners {
+            Shape::Polyline(points) | Shape::Polygon(points) => {
+                self.pair(90, points.len());
+                let closed = matches!(shape, Shape::Polygon(_));
+                self.pair(70, u8::from(closed));
+                for [x, y] in points {
                     self.pair(10, x);
                     self.pair(20, y);
                 }
@@ -243,10 +233,14 @@ impl Pairs {
         self.point(10, text.at);
         self.pair(40, text.height);
         self.pair(1, escaped(&text.text));
-        // Horizontally and vertically centred, or on the baseline from its left end.
-        let [horizontal, vertical] = if text.centred { [1, 2] } else { [0, 0] };
+        // Horizontally: from the left, or centred; vertically: on the baseline, or centred.
+        let [horizontal, vertical] = match text.anchor {
+            Anchor::Start => [0, 0],
+            Anchor::Middle => [1, 0],
+            Anchor::Centre => [1, 2],
+        };
         self.pair(72, horizontal);
-        if text.centred {
+        if text.anchor != Anchor::Start {
             self.point(11, text.at);
         }
         self.pair(100, class);

@@ -1,7 +1,5 @@
 //! Errors of cut files.
 
-use std::path::PathBuf;
-
 /// A sheet that cannot be cut, or a file that cannot be written.
 #[derive(Debug, thiserror::Error)]
 #[allow(
@@ -92,11 +90,6 @@ pub enum FabricationError {
     },
     #[error("the drawing takes {pages} pages, more than {limit}: choose a larger paper")]
     TooManyPages { pages: usize, limit: usize },
-    #[error("cannot write {path}: {source}", path = .path.display())]
-    Write {
-        path: PathBuf,
-        source: std::io::Error,
-    },
 }
 
 /// What to do where a panel is too small for a joint.

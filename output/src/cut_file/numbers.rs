@@ -3,8 +3,8 @@
 //! A panel is convex and no slit enters it: a text inside of it is clear of all slits. A hinge's number is inside one of
 //! its two panels, as near to its hole as the cuts allow.
 
-use crate::cut_file::cut_drawing::Text;
 use crate::cut_file::cut_lines::CutLines;
+use crate::display::{Text, rectangle};
 use design::geometry::polygon::edges;
 use design::sheet::cut_sheet::Sheet;
 
@@ -30,7 +30,7 @@ pub(super) fn numbers(cuts: &CutLines, sheet: &Sheet) -> (Vec<Text>, Vec<Text>) 
         .collect();
     let of_panels = std::iter::zip(0.., &sheet.panels).map(|(k, panel)| {
         let height = f64::min(PANEL_HEIGHT * panel.area().sqrt(), MAX_HEIGHT);
-        let at = |height| centred(panel.centroid, height, format!("P{k}"));
+        let at = |height| Text::centred(panel.centroid, height, format!("P{k}"));
         let free = |text: &Text| panels[k].clearance(text);
         widest(HEIGHTS.map(|scale| at(scale * height)), free)
     });
@@ -62,7 +62,7 @@ pub(super) fn numbers(cuts: &CutLines, sheet: &Sheet) -> (Vec<Text>, Vec<Text>) 
                 tip[0] + reach * (cos * x + sin * u),
                 tip[1] + reach * (cos * y + sin * v),
             ];
-            (k, centred(at, height, number.to_string()))
+            (k, Text::centred(at, height, number.to_string()))
         });
         let (k, text) = widest(candidates, |(k, text)| panels[*k].clearance(text));
         panels[k].texts.push(text.corners());
@@ -70,15 +70,6 @@ pub(super) fn numbers(cuts: &CutLines, sheet: &Sheet) -> (Vec<Text>, Vec<Text>) 
     });
     let of_hinges = of_hinges.collect();
     (of_panels, of_hinges)
-}
-
-fn centred(at: [f64; 2], height: f64, text: String) -> Text {
-    Text {
-        at,
-        centred: true,
-        height,
-        text,
-    }
 }
 
 /// What a number inside a panel has to keep clear of.
@@ -110,7 +101,7 @@ impl Taken {
     /// something.
     fn clearance(&self, text: &Text) -> f64 {
         let [low, high] = text.corners();
-        let box_corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
+        let box_corners = rectangle([low, high]);
         let to_edges = edges(&self.corners).flat_map(|(p, q)| {
             let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
             let inside = move |[x, y]: [f64; 2]| {

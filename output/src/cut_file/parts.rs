@@ -3,12 +3,13 @@
 //! The parts are blocks of panels, separated along panel edges: the sheet is halved until every part fits. Every two neighbouring panels are joined by a hinge,
 //! so that any such line crosses hinges. Their ligaments stay whole: see [`Seam`].
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer, Shape, Text, distance};
+use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::cut_lines::CutLines;
 use crate::cut_file::fabrication_error::FabricationError;
 use crate::cut_file::numbers::numbers;
 use crate::cut_file::seam::Seam;
 use crate::cut_file::sheet_drawing::note;
+use crate::display::{Shape, Text, distance};
 use design::geometry::polygon::{area, edges};
 use design::pattern::grid::Grid;
 use design::sheet::cut_sheet::Sheet;
@@ -187,7 +188,7 @@ impl Splitter<'_> {
     fn extent(&self, inside: impl Fn(usize) -> bool) -> Result<[[f64; 2]; 2], FabricationError> {
         let pieces = self.pieces(&self.seams(&inside)?, inside);
         let shapes: Vec<Shape> = pieces.into_iter().map(Shape::Polygon).collect();
-        let [low, high] = CutDrawing::extent(shapes.iter());
+        let [low, high] = Shape::extent(shapes.iter());
         let reach = f64::max(0.5 * self.cuts.kerf, self.cuts.cutting.over_run);
         Ok([low.map(|x| x - reach), high.map(|x| x + reach)])
     }
@@ -263,7 +264,7 @@ impl Splitter<'_> {
                 drawing.add(Layer::Outline, Shape::Line(piece));
             }
         }
-        let [low, high] = CutDrawing::extent(drawing.cuts());
+        let [low, high] = Shape::extent(drawing.cuts());
         let mut drawing = drawing.in_cutting_order(low);
         let (panels, hinges) = &self.numbers;
         let panels = panels.iter().enumerate().filter(|(k, _)| inside(*k));

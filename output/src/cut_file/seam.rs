@@ -11,8 +11,8 @@
 //!       |  main cut
 //! ```
 
-use crate::cut_file::cut_drawing::distance;
 use crate::cut_file::fabrication_error::FabricationError;
+use crate::display::distance;
 use design::sheet::cut_sheet::{Hinge, Sheet};
 use design::sheet::topology::PanelCorner;
 

@@ -1,9 +1,10 @@
 //! The drawing of a whole sheet: its cuts in cutting order, numbers, scale, instructions and registration marks.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer, Shape, Text};
+use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::cut_lines::CutLines;
 use crate::cut_file::numbers::numbers;
 use crate::cut_file::totals::Totals;
+use crate::display::{Shape, Text};
 use design::scene::CuttingConfig;
 use design::sheet::cut_sheet::Sheet;
 use hinge::SheetMaterial;
@@ -79,7 +80,7 @@ impl SheetDrawing {
 
 /// Three crosses in circles, at all corners of the bounding box but one, so that a turned sheet is noticed.
 fn registration_marks(drawing: &mut CutDrawing, over_run: f64) {
-    let [low, high] = CutDrawing::extent(drawing.on(Layer::Outline));
+    let [low, high] = Shape::extent(drawing.on(Layer::Outline));
     let size = f64::max(high[0] - low[0], high[1] - low[1]);
     let radius = (0.004 * size).clamp(1.0, 5.0);
     let off = over_run + 4.0 * radius;
@@ -96,30 +97,20 @@ fn registration_marks(drawing: &mut CutDrawing, over_run: f64) {
 
 /// The height of lines of text of which the longest is at most as wide as the cuts of a drawing (mm).
 pub(super) fn text_height(drawing: &CutDrawing, lines: &[String]) -> f64 {
-    let [left, right] = CutDrawing::extent(drawing.cuts()).map(|corner| corner[0]);
+    let [left, right] = Shape::extent(drawing.cuts()).map(|corner| corner[0]);
     let width = right - left;
     let widths = lines
         .iter()
-        .map(|line| text_line([0.0; 2], 1.0, line).size()[0]);
+        .map(|line| Text::line([0.0; 2], 1.0, line).size()[0]);
     let longest = widths.fold(0.0, f64::max);
     f64::min(NOTE_HEIGHT * width, width / longest).max(MIN_NOTE_HEIGHT)
 }
 
-/// A text that begins at the point `at`.
-pub(super) fn text_line(at: [f64; 2], height: f64, text: &str) -> Text {
-    Text {
-        at,
-        centred: false,
-        height,
-        text: text.to_owned(),
-    }
-}
-
 /// A scale bar and lines of text below the drawing.
 pub(super) fn note(drawing: &mut CutDrawing, lines: &[String]) {
-    let left = CutDrawing::extent(drawing.cuts())[0][0];
+    let left = Shape::extent(drawing.cuts())[0][0];
     let [[_, bottom], _] = drawing.bounds();
-    let text = |at, height, text: &str| Shape::Text(text_line(at, height, text));
+    let text = |at, height, text: &str| Shape::Text(Text::line(at, height, text));
     let height = text_height(drawing, lines);
 
     let mut y = bottom - 2.5 * height;

@@ -1,6 +1,7 @@
 //! The amount of cutting.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer, Shape};
+use crate::cut_file::cut_drawing::{CutDrawing, Layer};
+use crate::display::Shape;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;

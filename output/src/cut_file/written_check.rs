@@ -5,8 +5,9 @@
 //! * Two cuts leave at least the kerf between them, and so do cuts and outline. A slit then meets the outline at most
 //!   once and no other cut, so that the sheet stays in one piece.
 
-use crate::cut_file::cut_drawing::{CutDrawing, Layer, Shape, distance};
+use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::fabrication_error::FabricationError;
+use crate::display::{Shape, distance};
 use design::geometry::polygon::{
     area, distance_between_segments, distance_to_segment, edges, nearest_on_outline,
 };

@@ -1,7 +1,7 @@
 //! A small chart in a rectangle of a picture: axes with round ticks, and positions of values.
 
-use crate::canvas::Anchor;
-use crate::drawing::page::{INK, MUTED, Page, round_below};
+use crate::display::{Anchor, Style, trimmed};
+use crate::drawing::page::{INK, MUTED, Sketch, round_below};
 
 /// A rectangle of the page with one value range along x and one along y.
 pub(super) struct Chart {
@@ -14,38 +14,42 @@ impl Chart {
     /// Draws the frame, the ticks and the names of the axes of a chart between the corners `low` and `high` of the
     /// page (mm). `ticks` selects the axes that have ticks.
     pub fn new(
-        page: &mut Page,
+        sketch: &mut Sketch,
         [low, high]: [[f64; 2]; 2],
         ranges: [[f64; 2]; 2],
         names: [&str; 2],
         ticks: [bool; 2],
     ) -> Self {
         let chart = Self { low, high, ranges };
-        let u = page.unit;
-        let (axis, muted) = (page.stroke(MUTED, 1.0), format!("fill=\"{MUTED}\""));
-        page.canvas.line(low, [high[0], low[1]], &axis);
-        page.canvas.line(low, [low[0], high[1]], &axis);
+        let u = sketch.unit;
+        let (axis, muted) = (sketch.stroke(MUTED, 1.0), Style::fill(MUTED));
+        sketch.canvas.line(low, [high[0], low[1]], axis);
+        sketch.canvas.line(low, [low[0], high[1]], axis);
         for value in chart.ticks(0).into_iter().filter(|_| ticks[0]) {
             let [x, y] = chart.at([value, ranges[1][0]]);
-            page.canvas.line([x, y], [x, y - 4.0 * u], &axis);
+            sketch.canvas.line([x, y], [x, y - 4.0 * u], axis);
             let below = [x, y - 18.0 * u];
-            page.canvas
-                .text(below, 12.0 * u, Anchor::Middle, &muted, &shown(value));
+            sketch
+                .canvas
+                .text(below, 12.0 * u, Anchor::Middle, muted, &trimmed(value, 3));
         }
         for value in chart.ticks(1).into_iter().filter(|_| ticks[1]) {
             let [x, y] = chart.at([ranges[0][0], value]);
-            page.canvas.line([x, y], [x - 4.0 * u, y], &axis);
+            sketch.canvas.line([x, y], [x - 4.0 * u, y], axis);
             let left = [x - 20.0 * u, y - 4.0 * u];
-            page.canvas
-                .text(left, 12.0 * u, Anchor::Middle, &muted, &shown(value));
+            sketch
+                .canvas
+                .text(left, 12.0 * u, Anchor::Middle, muted, &trimmed(value, 3));
         }
-        let ink = format!("fill=\"{INK}\"");
+        let ink = Style::fill(INK);
         let middle = [(low[0] + high[0]) / 2.0, low[1] - 36.0 * u];
-        page.canvas
-            .text(middle, 13.0 * u, Anchor::Middle, &ink, names[0]);
+        sketch
+            .canvas
+            .text(middle, 13.0 * u, Anchor::Middle, ink, names[0]);
         let above = [low[0] - 30.0 * u, high[1] + 10.0 * u];
-        page.canvas
-            .text(above, 13.0 * u, Anchor::Start, &ink, names[1]);
+        sketch
+            .canvas
+            .text(above, 13.0 * u, Anchor::Start, ink, names[1]);
         chart
     }
 
@@ -65,11 +69,4 @@ impl Chart {
         let last = (to / step + 1e-9).floor() as i64;
         (first..=last).map(|i| i as f64 * step).collect()
     }
-}
-
-/// A tick without rounding errors.
-fn shown(value: f64) -> String {
-    let text = format!("{value:.3}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0" } else { text }.to_owned()
 }

@@ -1,9 +1,9 @@
 //! The deployed sheet with its target; the hinge windows are coloured by their opening angle.
 
-use crate::canvas::Anchor;
 use crate::deployment_states::{kept, states_before};
+use crate::display::{Anchor, Style};
 use crate::drawing::load_marks::{self, Mark, marks};
-use crate::drawing::page::{ACCENT, ColourScale, INK, MUTED, PANELS, Page};
+use crate::drawing::page::{ACCENT, ColourScale, INK, MUTED, PANELS, Page, Sketch};
 use design::equilibrium::load_step::LoadStep;
 use design::scene::Scene;
 use design::scene::design_run::Designed;
@@ -14,6 +14,7 @@ use design::sheet::kinematics::{
     Configuration, deployed as moved, deployed_corners, hinge_deformations,
 };
 use design::sheet::topology::is_even;
+use std::collections::BTreeSet;
 
 /// The sheet of a scene in a state of its path, with the loads there.
 pub fn deployed(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> String {
@@ -70,6 +71,33 @@ pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec
     std::iter::zip(&index, &states).map(frame).collect()
 }
 
+/// A state without its hinge windows, with the numbers of the panels that have no symbol, for paper; `unit` is in mm of the
+/// sheet.
+pub(crate) fn deployed_on_paper(
+    scene: &Scene,
+    sheet: &Sheet,
+    step: &LoadStep,
+    unit: f64,
+) -> Sketch {
+    let state = State::new(scene, sheet, step);
+    let mut sketch = Sketch::new(unit);
+    state.panels(&mut sketch);
+    let actuation = scene.actuation();
+    let supported = actuation.supports.iter().map(|support| support.panel);
+    let loads = actuation.boundary_loads().into_iter();
+    let loaded = loads.map(|load| load.panel);
+    let marked: BTreeSet<usize> = supported.chain(loaded).collect();
+    let corners = deployed_corners(sheet, &state.configuration);
+    for (k, corners) in corners.iter().enumerate() {
+        if !marked.contains(&k) {
+            sketch.panel_number(k, corners);
+        }
+    }
+    state.target(&mut sketch);
+    state.loads(&mut sketch);
+    sketch
+}
+
 /// The drawn state.
 struct State<'a> {
     scene: &'a Scene,
@@ -97,13 +125,13 @@ impl<'a> State<'a> {
     /// The picture of the state on a page around the points `extent`.
     fn drawn(&self, extent: Vec<[f64; 2]>, subtitle: &str, scale: &ColourScale) -> String {
         let mut page = Page::around(extent, &self.scene.config.title, subtitle, true);
-        let ghost = page.dashed(MUTED, 0.8, 3.0);
-        page.canvas.polygon(&self.sheet.outline.corners, &ghost);
-        self.panels(&mut page);
-        self.windows(&mut page, scale);
-        let target = page.dashed(ACCENT, 2.2, 9.0);
-        page.canvas.polygon(self.scene.target.points(), &target);
-        self.loads(&mut page);
+        let sketch = &mut page.sketch;
+        let ghost = sketch.dashed(MUTED, 0.8, 3.0);
+        sketch.canvas.polygon(&self.sheet.outline.corners, ghost);
+        self.panels(sketch);
+        self.windows(sketch, scale);
+        self.target(sketch);
+        self.loads(sketch);
         page.colour_scale(scale, "\u{3b8} (deg)");
         page.finish()
     }
@@ -121,47 +149,47 @@ impl<'a> State<'a> {
         points
     }
 
-    fn panels(&self, page: &mut Page) {
-        let edge = 1.1 * page.unit;
+    fn panels(&self, sketch: &mut Sketch) {
         let corners = deployed_corners(self.sheet, &self.configuration);
         for (k, corners) in corners.iter().enumerate() {
             let fill = PANELS[usize::from(!is_even(self.sheet.grid, k))];
-            let style = format!(
-                "fill=\"{fill}\" stroke=\"{INK}\" stroke-width=\"{edge:.4}\" \
-                 stroke-linejoin=\"round\""
-            );
-            page.canvas.polygon(corners, &style);
+            let style = sketch.stroke(INK, 1.1).filled(fill);
+            sketch.canvas.polygon(corners, style);
         }
     }
 
+    fn target(&self, sketch: &mut Sketch) {
+        let style = sketch.dashed(ACCENT, 2.2, 9.0);
+        sketch.canvas.polygon(self.scene.target.points(), style);
+    }
+
     /// Draws each window in two parts, which move with their panels.
-    fn windows(&self, page: &mut Page, scale: &ColourScale) {
+    fn windows(&self, sketch: &mut Sketch, scale: &ColourScale) {
         let hinges = self.sheet.hinges.iter().zip(Window::of_sheet(self.sheet));
         for ((hinge, window), &opening_deg) in hinges.zip(&self.openings_deg) {
-            let style = format!(
-                "fill=\"{}\" fill-opacity=\"0.85\"",
-                scale.colour(opening_deg)
-            );
+            let style = Style::fill(scale.colour(opening_deg)).opacity(0.85, 1.0);
             for k in [hinge.panel_a(), hinge.panel_b()] {
                 let part = window.inside(&self.sheet.panels[k]);
                 let part: Vec<_> = part.into_iter().map(|point| self.moved(k, point)).collect();
-                page.canvas.polygon(&part, &style);
+                sketch.canvas.polygon(&part, style);
             }
         }
     }
 
     /// Draws the symbols of the supports, and the loads with their magnitudes.
-    fn loads(&self, page: &mut Page) {
-        let (stroke, fill) = (page.stroke(ACCENT, 3.0), format!("fill=\"{ACCENT}\""));
-        let (support, label) = (format!("fill=\"{INK}\""), page.haloed(ACCENT));
-        for mark in marks(self.scene, self.sheet, self.step, page.unit) {
+    fn loads(&self, sketch: &mut Sketch) {
+        let (stroke, fill) = (sketch.stroke(ACCENT, 3.0), Style::fill(ACCENT));
+        let (support, label) = (Style::fill(INK), sketch.haloed(ACCENT));
+        for mark in marks(self.scene, self.sheet, self.step, sketch.unit) {
             match mark {
-                Mark::Support(corners) => page.canvas.polygon(&corners, &support),
-                Mark::Shaft(points) => page.canvas.polyline(&points, &stroke),
-                Mark::Head(corners) => page.canvas.polygon(&corners, &fill),
+                Mark::Support(corners) => sketch.canvas.polygon(&corners, support),
+                Mark::Shaft(points) => sketch.canvas.polyline(&points, stroke),
+                Mark::Head(corners) => sketch.canvas.polygon(&corners, fill),
                 Mark::Label([x, y], text) => {
-                    let (size, below) = (14.0 * page.unit, [x, y - 5.0 * page.unit]);
-                    (page.canvas).text(below, size, Anchor::Middle, &label, &text);
+                    let (size, below) = (14.0 * sketch.unit, [x, y - 5.0 * sketch.unit]);
+                    sketch
+                        .canvas
+                        .text(below, size, Anchor::Middle, label, &text);
                 }
             }
         }

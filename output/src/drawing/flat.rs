@@ -1,8 +1,8 @@
 //! The flat pattern: panels, cuts, holes, ligaments with their windows, hinge numbers.
 
-use crate::canvas::Anchor;
 use crate::cut_file::CutLines;
-use crate::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, TEAL};
+use crate::display::{Anchor, Style, Text};
+use crate::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, Sketch, TEAL};
 use design::sheet::cut_sheet::{Hinge, Sheet};
 use design::sheet::hinge_window::Window;
 use design::sheet::topology::is_even;
@@ -21,71 +21,86 @@ pub fn flat(title: &str, sheet: &Sheet, cuts: &CutLines) -> String {
         sheet.hinges.len()
     );
     let mut page = Page::around(sheet.outline.corners, title, &subtitle, false);
-    panels(&mut page, sheet);
-    windows(&mut page, sheet);
-    cut_lines(&mut page, cuts);
-    ligaments(&mut page, sheet);
+    panels(&mut page.sketch, sheet);
+    windows(&mut page.sketch, sheet);
+    cut_lines(&mut page.sketch, cuts);
+    ligaments(&mut page.sketch, sheet);
     page.finish()
 }
 
-fn panels(page: &mut Page, sheet: &Sheet) {
-    let muted = format!("fill=\"{MUTED}\" fill-opacity=\"0.6\"");
+/// The paths of the tool, with the numbers of panels and hinges, for paper; `unit` is in mm of the sheet.
+pub(crate) fn flat_on_paper(sheet: &Sheet, cuts: &CutLines, unit: f64) -> Sketch {
+    let mut sketch = Sketch::new(unit);
+    sketch.cut_drawing(&cuts.drawing());
+    for (k, panel) in sheet.panels.iter().enumerate() {
+        sketch.panel_number(k, &panel.corners);
+    }
+    for (number, (hinge, window)) in sheet.hinges.iter().zip(Window::of_sheet(sheet)).enumerate() {
+        let height = sketch.number_height(sheet.panels[hinge.panel_b()].area());
+        let reach = f64::max(0.55 * window.radius, 1.3 * height);
+        let at = number_place(hinge, &window, reach);
+        let text = Text::centred(at, height, number.to_string());
+        sketch.canvas.add(Style::fill(TEAL), text);
+    }
+    sketch
+}
+
+fn panels(sketch: &mut Sketch, sheet: &Sheet) {
+    let muted = Style::fill(MUTED).opacity(0.6, 1.0);
     for (k, panel) in sheet.panels.iter().enumerate() {
         let parity = usize::from(!is_even(sheet.grid, k));
-        let fill = format!("fill=\"{}\"", PANELS[parity]);
-        page.canvas.polygon(&panel.corners, &fill);
-        let height = f64::min(16.0 * page.unit, 0.1 * panel.area().sqrt());
+        let fill = Style::fill(PANELS[parity]);
+        sketch.canvas.polygon(&panel.corners, fill);
+        let height = f64::min(16.0 * sketch.unit, 0.1 * panel.area().sqrt());
         let [x, y] = panel.centroid;
         let at = [x, y - 0.35 * height];
-        page.canvas
-            .text(at, height, Anchor::Middle, &muted, &format!("P{k}"));
+        sketch
+            .canvas
+            .text(at, height, Anchor::Middle, muted, &format!("P{k}"));
     }
 }
 
-fn windows(page: &mut Page, sheet: &Sheet) {
-    let style = format!(
-        "fill=\"{TEAL}\" fill-opacity=\"0.12\" stroke=\"{TEAL}\" stroke-opacity=\"0.45\" \
-         stroke-width=\"{:.4}\"",
-        0.8 * page.unit
-    );
+fn windows(sketch: &mut Sketch, sheet: &Sheet) {
+    let style = Style::stroke(TEAL, 0.8 * sketch.unit)
+        .filled(TEAL)
+        .opacity(0.12, 0.45);
     for (hinge, window) in sheet.hinges.iter().zip(Window::of_sheet(sheet)) {
         for panel in [hinge.panel_a(), hinge.panel_b()] {
-            page.canvas
-                .polygon(&window.inside(&sheet.panels[panel]), &style);
+            sketch
+                .canvas
+                .polygon(&window.inside(&sheet.panels[panel]), style);
         }
     }
 }
 
-fn cut_lines(page: &mut Page, cuts: &CutLines) {
-    let stroke = page.stroke(INK, 2.0);
+fn cut_lines(sketch: &mut Sketch, cuts: &CutLines) {
+    let stroke = sketch.stroke(INK, 2.0);
     for slit in &cuts.slits {
-        page.canvas.line(slit.ends[0], slit.ends[1], &stroke);
+        sketch.canvas.line(slit.ends[0], slit.ends[1], stroke);
     }
-    page.canvas.polygon(&cuts.outline, &stroke);
-    let hole = format!(
-        "fill=\"#ffffff\" stroke=\"{INK}\" stroke-width=\"{:.4}\"",
-        0.9 * page.unit
-    );
+    sketch.canvas.polygon(&cuts.outline, stroke);
+    let hole = Style::stroke(INK, 0.9 * sketch.unit).filled([255; 3]);
     for drilled in &cuts.holes {
-        page.canvas.circle(drilled.centre, drilled.radius, &hole);
+        sketch.canvas.circle(drilled.centre, drilled.radius, hole);
     }
 }
 
-fn ligaments(page: &mut Page, sheet: &Sheet) {
-    let stroke = page.stroke(ACCENT, 3.2);
-    let ink = format!("{} font-weight=\"bold\"", page.haloed(TEAL));
+fn ligaments(sketch: &mut Sketch, sheet: &Sheet) {
+    let stroke = sketch.stroke(ACCENT, 3.2);
+    let ink = sketch.haloed(TEAL).bold();
     for (number, (hinge, window)) in sheet.hinges.iter().zip(Window::of_sheet(sheet)).enumerate() {
-        page.canvas.line(hinge.tip, window.foot, &stroke);
-        let height = f64::min(15.0 * page.unit, 0.3 * window.radius);
+        sketch.canvas.line(hinge.tip, window.foot, stroke);
+        let height = f64::min(15.0 * sketch.unit, 0.3 * window.radius);
         let [x, y] = number_place(hinge, &window, 0.55 * window.radius);
         let at = [x, y - 0.35 * height];
-        page.canvas
-            .text(at, height, Anchor::Middle, &ink, &number.to_string());
+        sketch
+            .canvas
+            .text(at, height, Anchor::Middle, ink, &number.to_string());
     }
 }
 
 /// The middle of the number of a hinge, on panel B beside the main cut, at the distance `reach` from the hinge (mm).
-pub(crate) fn number_place(hinge: &Hinge, window: &Window, reach: f64) -> [f64; 2] {
+fn number_place(hinge: &Hinge, window: &Window, reach: f64) -> [f64; 2] {
     let along = hinge.alpha / 2.0;
     window.point(reach * along.cos(), -reach * along.sin())
 }

@@ -1,9 +1,9 @@
 //! A measured sheet beside its prediction, after Fig. 10 (d)-(h) of the paper: outlines superposed with magnified
 //! residuals, hinge openings measured against predicted, errors of the panel centres against the floor.
 
-use crate::canvas::Anchor;
+use crate::display::{Anchor, Style, bounds};
 use crate::drawing::chart::Chart;
-use crate::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, TEAL, bounds};
+use crate::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, Sketch, TEAL};
 use crate::measurement::MeasurementReport;
 use design::analysis::marks::FittedPoint;
 use design::analysis::measured_openings::MeasuredOpening;
@@ -51,26 +51,24 @@ pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String 
         "Measured (teal) on predicted (grey) {state}; residuals magnified {factor} times{rms}"
     );
     let mut page = Page::around(whole, &report.title, &subtitle, false);
+    let sketch = &mut page.sketch;
     for (k, corners) in corners.iter().enumerate() {
         let fill = PANELS[usize::from(!is_even(sheet.grid, k))];
-        let style = format!(
-            "fill=\"{fill}\" stroke=\"{MUTED}\" stroke-width=\"{:.4}\" stroke-linejoin=\"round\"",
-            1.2 * page.unit
-        );
-        page.canvas.polygon(corners, &style);
+        let style = sketch.stroke(MUTED, 1.2).filled(fill);
+        sketch.canvas.polygon(corners, style);
     }
-    outlines(&mut page, sheet, fit);
-    residuals(&mut page, fit, factor, panel_size);
+    outlines(sketch, sheet, fit);
+    residuals(sketch, fit, factor, panel_size);
     let margin = 0.2 * panel_size;
     let around = [low.map(|x| x - margin), high.map(|x| x + margin)];
-    outliers(&mut page, fit, around);
+    outliers(sketch, fit, around);
     openings(
-        &mut page,
+        sketch,
         [[left, top - 1.05 * side], [left + side, top - 0.05 * side]],
         report,
     );
     centres(
-        &mut page,
+        sketch,
         [[left, top - 2.55 * side], [left + side, top - 1.55 * side]],
         report,
     );
@@ -85,31 +83,31 @@ fn magnification(fit: &Fit, panel_size: f64) -> f64 {
 }
 
 /// Draws the edges of the panels whose two corners are measured.
-fn outlines(page: &mut Page, sheet: &Sheet, fit: &Fit) {
+fn outlines(sketch: &mut Sketch, sheet: &Sheet, fit: &Fit) {
     let mut measured = vec![[None; 4]; sheet.panels.len()];
     for point in fit.kept() {
         if let Some(corner) = point.mark.corner {
             measured[point.mark.panel][corner] = Some(point.measured);
         }
     }
-    let stroke = page.stroke(TEAL, 1.2);
+    let stroke = sketch.stroke(TEAL, 1.2);
     for corners in measured {
         for corner in 0..4 {
             if let (Some(from), Some(to)) = (corners[corner], corners[(corner + 1) % 4]) {
-                page.canvas.line(from, to, &stroke);
+                sketch.canvas.line(from, to, stroke);
             }
         }
     }
 }
 
 /// Draws a line from every predicted point along its residual.
-fn residuals(page: &mut Page, fit: &Fit, factor: f64, panel_size: f64) {
-    let (stroke, dot) = (page.stroke(ACCENT, 1.6), format!("fill=\"{ACCENT}\""));
-    let size = f64::min(2.2 * page.unit, 0.03 * panel_size);
+fn residuals(sketch: &mut Sketch, fit: &Fit, factor: f64, panel_size: f64) {
+    let (stroke, dot) = (sketch.stroke(ACCENT, 1.6), Style::fill(ACCENT));
+    let size = f64::min(2.2 * sketch.unit, 0.03 * panel_size);
     for point in fit.kept() {
         let [from, to] = residual(point, factor);
-        page.canvas.line(from, to, &stroke);
-        page.canvas.circle(from, size, &dot);
+        sketch.canvas.line(from, to, stroke);
+        sketch.canvas.circle(from, size, dot);
     }
 }
 
@@ -120,9 +118,9 @@ fn residual(point: &FittedPoint, factor: f64) -> [[f64; 2]; 2] {
 }
 
 /// Draws a cross at every outlier between `low` and `high`, and the number of its panel once.
-fn outliers(page: &mut Page, fit: &Fit, [low, high]: [[f64; 2]; 2]) {
-    let label = format!("{} font-weight=\"bold\"", page.haloed(INK));
-    let (cross, arm) = (page.stroke(INK, 1.6), 4.0 * page.unit);
+fn outliers(sketch: &mut Sketch, fit: &Fit, [low, high]: [[f64; 2]; 2]) {
+    let label = sketch.haloed(INK).bold();
+    let (cross, arm) = (sketch.stroke(INK, 1.6), 4.0 * sketch.unit);
     let inside =
         |[x, y]: [f64; 2]| (low[0]..=high[0]).contains(&x) && (low[1]..=high[1]).contains(&y);
     let mut named = BTreeSet::new();
@@ -132,20 +130,23 @@ fn outliers(page: &mut Page, fit: &Fit, [low, high]: [[f64; 2]; 2]) {
         .filter(|point| point.outlier && inside(point.measured));
     for point in outliers {
         let ([x, y], panel) = (point.measured, point.mark.panel);
-        page.canvas
-            .line([x - arm, y - arm], [x + arm, y + arm], &cross);
-        page.canvas
-            .line([x - arm, y + arm], [x + arm, y - arm], &cross);
+        sketch
+            .canvas
+            .line([x - arm, y - arm], [x + arm, y + arm], cross);
+        sketch
+            .canvas
+            .line([x - arm, y + arm], [x + arm, y - arm], cross);
         if named.insert(panel) {
-            let (beside, height) = ([x + 1.5 * arm, y + 0.5 * arm], 12.0 * page.unit);
-            page.canvas
-                .text(beside, height, Anchor::Start, &label, &format!("P{panel}"));
+            let (beside, height) = ([x + 1.5 * arm, y + 0.5 * arm], 12.0 * sketch.unit);
+            sketch
+                .canvas
+                .text(beside, height, Anchor::Start, label, &format!("P{panel}"));
         }
     }
 }
 
 /// Draws the openings measured against predicted, with two standard errors and the line of agreement.
-fn openings(page: &mut Page, corners: [[f64; 2]; 2], report: &MeasurementReport) {
+fn openings(sketch: &mut Sketch, corners: [[f64; 2]; 2], report: &MeasurementReport) {
     let bar = |it: &MeasuredOpening| [-2.0, 2.0].map(|k| it.measured_deg + k * it.error_deg);
     let values = report
         .openings
@@ -160,28 +161,30 @@ fn openings(page: &mut Page, corners: [[f64; 2]; 2], report: &MeasurementReport)
     let margin = f64::max(0.08 * (high - low), 0.2);
     let range = [low - margin, high + margin];
     let names = ["predicted opening (deg)", "measured opening (deg)"];
-    let chart = Chart::new(page, corners, [range; 2], names, [true; 2]);
-    let line = page.dashed(MUTED, 1.0, 4.0);
-    page.canvas
-        .line(chart.at([range[0]; 2]), chart.at([range[1]; 2]), &line);
-    let (stroke, dot) = (page.stroke(TEAL, 1.0), format!("fill=\"{TEAL}\""));
+    let chart = Chart::new(sketch, corners, [range; 2], names, [true; 2]);
+    let line = sketch.dashed(MUTED, 1.0, 4.0);
+    sketch
+        .canvas
+        .line(chart.at([range[0]; 2]), chart.at([range[1]; 2]), line);
+    let (stroke, dot) = (sketch.stroke(TEAL, 1.0), Style::fill(TEAL));
     // Many openings are drawn as small dots.
     let radius = if report.openings.len() > 100 {
         1.6
     } else {
         3.0
-    } * page.unit;
+    } * sketch.unit;
     for opening in &report.openings {
         let predicted = opening.predicted_deg;
         let [from, to] = bar(opening).map(|measured| chart.at([predicted, measured]));
-        page.canvas.line(from, to, &stroke);
-        page.canvas
-            .circle(chart.at([predicted, opening.measured_deg]), radius, &dot);
+        sketch.canvas.line(from, to, stroke);
+        sketch
+            .canvas
+            .circle(chart.at([predicted, opening.measured_deg]), radius, dot);
     }
 }
 
 /// Draws the error of every panel centre as a bar, and the floor of the measurement as a line.
-fn centres(page: &mut Page, corners: [[f64; 2]; 2], report: &MeasurementReport) {
+fn centres(sketch: &mut Sketch, corners: [[f64; 2]; 2], report: &MeasurementReport) {
     let panels = &report.panels;
     if panels.is_empty() {
         return;
@@ -204,37 +207,38 @@ fn centres(page: &mut Page, corners: [[f64; 2]; 2], report: &MeasurementReport) 
     };
     let names = [name, "error of the panel centre (mm)"];
     let chart = Chart::new(
-        page,
+        sketch,
         corners,
         ranges,
         names,
         [panels.len() > NUMBERED, true],
     );
-    let muted = format!("fill=\"{MUTED}\"");
+    let muted = Style::fill(MUTED);
     for (place, panel) in panels.iter().enumerate() {
         let above = floor.is_some_and(|floor| panel.distance() > floor);
-        let fill = format!("fill=\"{}\"", if above { ACCENT } else { TEAL });
+        let fill = Style::fill(if above { ACCENT } else { TEAL });
         let [left, right] = [0.15, 0.85].map(|part| place as f64 + part);
         let top = panel.distance();
         let bar = [[left, 0.0], [right, 0.0], [right, top], [left, top]].map(|at| chart.at(at));
-        page.canvas.polygon(&bar, &fill);
+        sketch.canvas.polygon(&bar, fill);
         if panels.len() <= NUMBERED {
             let [x, y] = chart.at([place as f64 + 0.5, 0.0]);
-            let below = [x, y - 16.0 * page.unit];
+            let below = [x, y - 16.0 * sketch.unit];
             let number = format!("P{}", panel.panel);
             // A number of three characters is about as wide as its font is high times two.
             let pitch = chart.at([1.0, 0.0])[0] - chart.at([0.0, 0.0])[0];
-            let height = f64::min(11.0 * page.unit, 0.45 * pitch);
-            page.canvas
-                .text(below, height, Anchor::Middle, &muted, &number);
+            let height = f64::min(11.0 * sketch.unit, 0.45 * pitch);
+            sketch
+                .canvas
+                .text(below, height, Anchor::Middle, muted, &number);
         }
     }
     if let Some(floor) = floor {
-        let line = page.dashed(INK, 1.2, 4.0);
-        page.canvas.line(
+        let line = sketch.dashed(INK, 1.2, 4.0);
+        sketch.canvas.line(
             chart.at([0.0, floor]),
             chart.at([ranges[0][1], floor]),
-            &line,
+            line,
         );
     }
 }

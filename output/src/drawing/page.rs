@@ -1,17 +1,19 @@
 //! Common parts of the pictures: the page with its title and scale bar, the colours, the colour scale.
 
-use crate::canvas::{Anchor, Canvas};
+use crate::cut_file::CutDrawing;
+use crate::display::{Anchor, Canvas, Colour, Style, Text, bounds, rectangle, trimmed};
+use design::geometry::polygon::area;
 
 /// Colour of main lines and titles.
-pub const INK: &str = "#1f2933";
+pub const INK: Colour = [31, 41, 51];
 /// Colour of secondary texts.
-pub const MUTED: &str = "#66727f";
+pub const MUTED: Colour = [102, 114, 127];
 /// Colour of what a picture emphasises.
-pub const ACCENT: &str = "#c2410c";
+pub const ACCENT: Colour = [194, 65, 12];
 /// Second colour of emphasis.
-pub const TEAL: &str = "#0f766e";
+pub const TEAL: Colour = [15, 118, 110];
 /// Colours of panels with even and odd column + row, which rotate in opposite senses.
-pub const PANELS: [&str; 2] = ["#eaf0f6", "#f6f0e4"];
+pub const PANELS: [Colour; 2] = [[234, 240, 246], [246, 240, 228]];
 
 /// Width of a picture on a screen (px).
 const WIDTH_PX: f64 = 1400.0;
@@ -34,28 +36,67 @@ fn fitted(text: &str, size: f64, character: f64, wide: f64) -> (f64, String) {
     (SMALLEST, kept + "\u{2026}")
 }
 
-/// A picture: sheet coordinates with margins for texts.
-pub(crate) struct Page {
+/// A drawing in sheet coordinates, with the unit of its strokes and texts.
+pub(crate) struct Sketch {
     pub canvas: Canvas,
-    /// A thousandth of the picture's width (mm): the unit of strokes and texts.
+    /// In a picture a thousandth of its width (mm).
     pub unit: f64,
+}
+
+/// A picture: a drawing with margins for texts.
+pub(crate) struct Page {
+    pub sketch: Sketch,
     /// Lower and upper corner of the drawn content, without the margins (mm).
     low: [f64; 2],
     high: [f64; 2],
-    /// Left and right edge of the page (mm).
-    edges: [f64; 2],
+    /// Lower and upper corner of the page (mm).
+    corners: [[f64; 2]; 2],
 }
 
-/// The minimum and maximum coordinates.
-pub fn bounds(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
-    let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    for point in points {
-        for axis in 0..2 {
-            bounds[0][axis] = bounds[0][axis].min(point[axis]);
-            bounds[1][axis] = bounds[1][axis].max(point[axis]);
-        }
+impl Sketch {
+    /// An empty drawing.
+    pub fn new(unit: f64) -> Self {
+        let canvas = Canvas::default();
+        Self { canvas, unit }
     }
-    bounds
+
+    /// A line with the given width in units.
+    pub fn stroke(&self, colour: Colour, width: f64) -> Style {
+        Style::stroke(colour, width * self.unit).round()
+    }
+
+    /// As [`stroke`](Self::stroke), dashed.
+    pub fn dashed(&self, colour: Colour, width: f64, dash: f64) -> Style {
+        let dash = dash * self.unit;
+        self.stroke(colour, width).dashed(dash, 0.7 * dash)
+    }
+
+    /// A text that remains readable over lines.
+    pub fn haloed(&self, colour: Colour) -> Style {
+        Style::fill(colour).haloed(4.0 * self.unit)
+    }
+}
+
+impl Sketch {
+    /// Adds the paths of a tool in the colours of their layers.
+    pub fn cut_drawing(&mut self, drawing: &CutDrawing) {
+        let shapes = drawing.coloured(1.2 * self.unit);
+        let shapes = shapes.map(|(style, shape)| (style, shape.clone()));
+        self.canvas.shapes.extend(shapes);
+    }
+
+    /// Writes the number of a panel with the given corners in its middle.
+    pub fn panel_number(&mut self, k: usize, corners: &[[f64; 2]; 4]) {
+        let middle =
+            [0, 1].map(|axis| 0.25 * corners.iter().map(|corner| corner[axis]).sum::<f64>());
+        let text = Text::centred(middle, self.number_height(area(corners)), format!("P{k}"));
+        self.canvas.add(Style::fill(MUTED), text);
+    }
+
+    /// The height of a number on a panel of the given area: less than that of other labels on small panels (mm).
+    pub fn number_height(&self, panel_area: f64) -> f64 {
+        f64::min(10.0 * self.unit, 0.14 * panel_area.sqrt())
+    }
 }
 
 impl Page {
@@ -74,18 +115,10 @@ impl Page {
         let slack = (content - (high[0] - low[0])) / 2.0;
         let page_low = [low[0] - slack - 40.0 * unit, low[1] - 90.0 * unit];
         let page_high = [high[0] + slack + right * unit, high[1] + 100.0 * unit];
-        let mut canvas = Canvas::new(page_low, page_high);
-        canvas.polygon(
-            &[
-                page_low,
-                [page_high[0], page_low[1]],
-                page_high,
-                [page_low[0], page_high[1]],
-            ],
-            "fill=\"#ffffff\"",
-        );
+        let corners = [page_low, page_high];
+        let mut canvas = Canvas::on_white(corners);
         let left = page_low[0] + 40.0 * unit;
-        let ink = format!("fill=\"{INK}\" font-weight=\"bold\"");
+        let ink = Style::fill(INK).bold();
         let top = page_high[1];
         let wide = (page_high[0] - left) / unit - 20.0;
         let (size, title) = fitted(title, 24.0, BOLD_WIDTH, wide);
@@ -93,78 +126,54 @@ impl Page {
             [left, top - 44.0 * unit],
             size * unit,
             Anchor::Start,
-            &ink,
+            ink,
             &title,
         );
-        let muted = format!("fill=\"{MUTED}\"");
+        let muted = Style::fill(MUTED);
         let below = [left, top - 70.0 * unit];
         let (size, subtitle) = fitted(subtitle, 15.0, PLAIN_WIDTH, wide);
-        canvas.text(below, size * unit, Anchor::Start, &muted, &subtitle);
+        canvas.text(below, size * unit, Anchor::Start, muted, &subtitle);
         let mut page = Self {
-            canvas,
-            unit,
+            sketch: Sketch { canvas, unit },
             low,
             high,
-            edges: [page_low[0], page_high[0]],
+            corners,
         };
         page.scale_bar([left, page_low[1] + 32.0 * unit]);
         page
     }
 
     pub fn finish(self) -> String {
-        self.canvas.finish(WIDTH_PX, "px")
-    }
-
-    /// Attributes of a line with the given width in thousandths of the picture's width.
-    pub fn stroke(&self, colour: &str, width: f64) -> String {
-        format!(
-            "fill=\"none\" stroke=\"{colour}\" stroke-width=\"{:.4}\" stroke-linecap=\"round\" \
-             stroke-linejoin=\"round\"",
-            width * self.unit
-        )
-    }
-
-    /// As [`stroke`](Self::stroke), dashed.
-    pub fn dashed(&self, colour: &str, width: f64, dash: f64) -> String {
-        format!(
-            "{} stroke-dasharray=\"{:.4} {:.4}\"",
-            self.stroke(colour, width),
-            dash * self.unit,
-            0.7 * dash * self.unit
-        )
-    }
-
-    /// Attributes of a text that remains readable over lines.
-    pub fn haloed(&self, colour: &str) -> String {
-        format!(
-            "fill=\"{colour}\" stroke=\"#ffffff\" stroke-width=\"{:.4}\" stroke-opacity=\"0.9\" \
-             stroke-linejoin=\"round\" paint-order=\"stroke\"",
-            4.0 * self.unit
-        )
+        self.sketch.canvas.svg(self.corners, WIDTH_PX, "px")
     }
 
     /// Draws a scale bar with a round length between a tenth and a quarter of the picture's width.
     fn scale_bar(&mut self, at: [f64; 2]) {
-        let length = round_below((self.edges[1] - self.edges[0]) / 4.0);
-        let (height, end) = (5.0 * self.unit, at[0] + length);
-        let stroke = self.stroke(INK, 1.6);
-        self.canvas.line(at, [end, at[1]], &stroke);
+        let length = round_below((self.corners[1][0] - self.corners[0][0]) / 4.0);
+        let (height, end) = (5.0 * self.sketch.unit, at[0] + length);
+        let stroke = self.sketch.stroke(INK, 1.6);
+        self.sketch.canvas.line(at, [end, at[1]], stroke);
         for x in [at[0], end] {
-            self.canvas
-                .line([x, at[1] - height], [x, at[1] + height], &stroke);
+            self.sketch
+                .canvas
+                .line([x, at[1] - height], [x, at[1] + height], stroke);
         }
         let text = format!("{length} mm");
-        let at = [end + 12.0 * self.unit, at[1] - 5.0 * self.unit];
-        let muted = format!("fill=\"{MUTED}\"");
-        self.canvas
-            .text(at, 15.0 * self.unit, Anchor::Start, &muted, &text);
+        let at = [
+            end + 12.0 * self.sketch.unit,
+            at[1] - 5.0 * self.sketch.unit,
+        ];
+        let muted = Style::fill(MUTED);
+        self.sketch
+            .canvas
+            .text(at, 15.0 * self.sketch.unit, Anchor::Start, muted, &text);
     }
 
     /// Draws the colours of `scale` from bottom to top at the right edge, with its ticks.
     pub fn colour_scale(&mut self, scale: &ColourScale, name: &str) {
         const BANDS: usize = 60;
-        let u = self.unit;
-        let right = self.edges[1];
+        let u = self.sketch.unit;
+        let right = self.corners[1][0];
         let (x0, x1) = (right - 88.0 * u, right - 68.0 * u);
         let middle = (self.low[1] + self.high[1]) / 2.0;
         let height = f64::min(0.7 * (self.high[1] - self.low[1]), 340.0 * u);
@@ -172,26 +181,29 @@ impl Page {
         let at = |fraction: f64| bottom + fraction * height;
         for band in 0..BANDS {
             let [f0, f1] = [band, band + 1].map(|edge| edge as f64 / BANDS as f64);
-            let colour = viridis((f0 + f1) / 2.0);
             // Neighbouring bands overlap slightly so that no seam is visible.
             let y1 = at((f1 + 0.3 / BANDS as f64).min(1.0));
-            let corners = [[x0, at(f0)], [x1, at(f0)], [x1, y1], [x0, y1]];
-            self.canvas.polygon(&corners, &format!("fill=\"{colour}\""));
+            let band = rectangle([[x0, at(f0)], [x1, y1]]);
+            self.sketch
+                .canvas
+                .polygon(&band, Style::fill(viridis((f0 + f1) / 2.0)));
         }
-        let muted = format!("fill=\"{MUTED}\"");
+        let muted = Style::fill(MUTED);
         for tick in 0..=scale.steps() {
             let value = scale.low + scale.step * tick as f64;
             let y = at(tick as f64 / scale.steps() as f64);
-            let stroke = self.stroke(MUTED, 1.0);
-            self.canvas.line([x1, y], [x1 + 4.0 * u, y], &stroke);
-            let text = format!("{value:.3}");
-            let text = text.trim_end_matches('0').trim_end_matches('.');
+            let stroke = self.sketch.stroke(MUTED, 1.0);
+            self.sketch.canvas.line([x1, y], [x1 + 4.0 * u, y], stroke);
+            let text = trimmed(value, 3);
             let at = [x1 + 9.0 * u, y - 5.0 * u];
-            self.canvas.text(at, 14.0 * u, Anchor::Start, &muted, text);
+            self.sketch
+                .canvas
+                .text(at, 14.0 * u, Anchor::Start, muted, &text);
         }
         let above = [(x0 + x1) / 2.0, at(1.0) + 16.0 * u];
-        self.canvas
-            .text(above, 14.0 * u, Anchor::Middle, &muted, name);
+        self.sketch
+            .canvas
+            .text(above, 14.0 * u, Anchor::Middle, muted, name);
     }
 }
 
@@ -220,7 +232,7 @@ impl ColourScale {
         ((self.high - self.low) / self.step).round() as usize
     }
 
-    pub fn colour(&self, value: f64) -> String {
+    pub fn colour(&self, value: f64) -> Colour {
         viridis((value - self.low) / (self.high - self.low))
     }
 }
@@ -236,7 +248,7 @@ pub(crate) fn round_below(value: f64) -> f64 {
 }
 
 /// A perceptually uniform scale that remains readable in grey and with colour blindness.
-fn viridis(fraction: f64) -> String {
+fn viridis(fraction: f64) -> Colour {
     const STOPS: [[f64; 3]; 6] = [
         [68.0, 1.0, 84.0],
         [65.0, 68.0, 135.0],
@@ -248,9 +260,7 @@ fn viridis(fraction: f64) -> String {
     let position = fraction.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
     let stop = (position as usize).min(STOPS.len() - 2);
     let f = position - stop as f64;
-    let [r, g, b] =
-        [0, 1, 2].map(|c| (STOPS[stop][c] + f * (STOPS[stop + 1][c] - STOPS[stop][c])) as u8);
-    format!("#{r:02x}{g:02x}{b:02x}")
+    [0, 1, 2].map(|c| (STOPS[stop][c] + f * (STOPS[stop + 1][c] - STOPS[stop][c])) as u8)
 }
 
 #[cfg(test)]
@@ -291,8 +301,11 @@ mod tests {
         assert_eq!((scale.low, scale.high), (0.0, 30.0));
         let scale = ColourScale::covering([-3.0, 27.3]);
         assert!(scale.low <= -3.0 && scale.high >= 27.3);
-        assert_eq!(scale.colour(1e9), "#fde725");
+        assert_eq!(scale.colour(1e9), [0xfd, 0xe7, 0x25]);
         // All values are zero: no division by zero.
-        assert_eq!(ColourScale::covering([0.0, 0.0]).colour(0.0), "#440154");
+        assert_eq!(
+            ColourScale::covering([0.0, 0.0]).colour(0.0),
+            [0x44, 0x01, 0x54]
+        );
     }
 }

@@ -1,6 +1,6 @@
 //! The facts of a run: what the sheet is made of, how far it opens under which load, what the hinge law rests on.
 
-use crate::drawing::page::bounds;
+use crate::display::bounds;
 use crate::report::columns::rounded;
 use crate::report::hinge_row::HingeRow;
 use crate::report::self_weight::SelfWeight;

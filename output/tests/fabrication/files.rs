@@ -2,7 +2,7 @@
 
 use super::{FILLET_RATIO, KERF, distance, irregular_sheets, length, uniform_cuts};
 use design::sheet::cut_sheet::Sheet;
-use output::cut_file::{CutLines, Paper, SheetDrawing, Tiling, write_dxf, write_pdf, write_svg};
+use output::cut_file::{CutLines, Layer, Paper, SheetDrawing, Tiling, dxf, svg, tiles_pdf};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -99,8 +99,8 @@ fn the_dxf_holds_the_simulated_sheet_in_millimetres() {
     let folder = tempfile::tempdir().unwrap();
     let [path, again] = ["a.dxf", "b.dxf"].map(|name| folder.path().join(name));
     for (sheet, cuts, drawing) in irregular_sheets() {
-        write_dxf(&path, &drawing.annotated()).unwrap();
-        write_dxf(&again, &drawing.annotated()).unwrap();
+        std::fs::write(&path, dxf(&drawing.annotated())).unwrap();
+        std::fs::write(&again, dxf(&drawing.annotated())).unwrap();
         assert!(std::fs::read(&path).unwrap() == std::fs::read(&again).unwrap());
 
         let file = read_dxf(&path);
@@ -148,7 +148,7 @@ fn the_handles_of_the_dxf_are_unique_and_owned() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.dxf");
     let (_, _, drawing) = irregular_sheets().next().unwrap();
-    write_dxf(&path, &drawing.annotated()).unwrap();
+    std::fs::write(&path, dxf(&drawing.annotated())).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     let lines: Vec<&str> = text.lines().map(str::trim).collect();
     let pairs: Vec<(&str, &str)> = lines.chunks(2).map(|pair| (pair[0], pair[1])).collect();
@@ -217,12 +217,9 @@ fn svg_paths(svg: &str) -> BTreeMap<String, Vec<Vec<[f64; 2]>>> {
 
 #[test]
 fn the_svg_holds_the_simulated_sheet_at_one_to_one() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("cut.svg");
     for (sheet, cuts, drawing) in irregular_sheets() {
         let drawing = drawing.annotated();
-        write_svg(&path, &drawing).unwrap();
-        let paths = svg_paths(&std::fs::read_to_string(&path).unwrap());
+        let paths = svg_paths(&svg(&drawing));
         // The page begins 5 mm to the left of the drawing and above it, and y points down.
         let [low, high] = drawing.bounds();
         let in_sheet = |[x, y]: [f64; 2]| [x + low[0] - 5.0, high[1] + 5.0 - y];
@@ -270,12 +267,9 @@ fn a_scene_without_registration_marks_has_none() {
 
 #[test]
 fn the_pdf_has_an_overview_and_a_page_of_paper_size_a_tile() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("tiles.pdf");
     let (_, _, drawing) = irregular_sheets().nth(1).unwrap();
     let tiling = Tiling::new(Paper::A3, drawing.numbered.bounds()).unwrap();
-    write_pdf(&path, &drawing.numbered, &tiling, "Sheet", &drawing.notes).unwrap();
-    let bytes = std::fs::read(&path).unwrap();
+    let bytes = tiles_pdf(&drawing.numbered, &tiling, "Sheet", &drawing.notes);
     let text = String::from_utf8_lossy(&bytes);
     assert!(text.starts_with("%PDF-"));
     let boxes: Vec<&str> = text.split("/MediaBox [").skip(1).collect();
@@ -292,5 +286,64 @@ fn the_pdf_has_an_overview_and_a_page_of_paper_size_a_tile() {
             .collect();
         assert!((sides[2] * 25.4 / 72.0 - 297.0).abs() < 1e-3, "{sides:?}");
         assert!((sides[3] * 25.4 / 72.0 - 420.0).abs() < 1e-3, "{sides:?}");
+    }
+}
+
+/// A point of the sheet is printed where its tile shows it, 72 points an inch.
+#[test]
+fn the_tiles_are_true_to_scale() {
+    let (_, _, drawing) = irregular_sheets().next().unwrap();
+    let drawing = drawing.numbered;
+    let tiling = Tiling::new(Paper::A4, drawing.bounds()).unwrap();
+    let bytes = tiles_pdf(&drawing, &tiling, "Sheet", &[]);
+    let text = String::from_utf8_lossy(&bytes);
+    let numbers = |line: &str| -> Vec<f64> {
+        let words = line.split_whitespace();
+        words.filter_map(|word| word.parse().ok()).collect()
+    };
+    // The drawing is written once, in mm; every slit with both of its ends.
+    let form = text
+        .split("/BBox")
+        .nth(1)
+        .unwrap()
+        .split("endstream")
+        .next()
+        .unwrap();
+    let lines: Vec<Vec<f64>> = form.lines().map(numbers).collect();
+    for shape in drawing.on(Layer::Cut) {
+        let ends = shape.ends();
+        let written = lines.windows(2).any(|pair| {
+            let near = |found: &Vec<f64>, end: [f64; 2]| {
+                found.len() == 2 && (0..2).all(|axis| (found[axis] - end[axis]).abs() < 1e-3)
+            };
+            near(&pair[0], ends[0]) && near(&pair[1], ends[1])
+        });
+        assert!(written, "{ends:?}");
+    }
+    // Every tile shows it at one point a 72nd of an inch, shifted by the corner of the tile.
+    let [rows, columns] = tiling.counts;
+    let tiles = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+    let pages: Vec<&str> = text.split("/D Do").collect();
+    assert_eq!(pages.len(), rows * columns + 1);
+    for ((row, column), page) in tiles.zip(&pages) {
+        let transforms: Vec<Vec<f64>> = page
+            .lines()
+            .filter(|line| line.ends_with(" cm"))
+            .map(numbers)
+            .collect();
+        let [.., scale, shift] = &transforms[..] else {
+            panic!("{page}")
+        };
+        assert!(
+            (scale[0] - 72.0 / 25.4).abs() < 1e-6 && scale[0] == scale[3],
+            "{scale:?}"
+        );
+        assert_eq!(shift[..4], [1.0, 0.0, 0.0, 1.0]);
+        let [low, _] = tiling.tile(row, column);
+        let corner = [10.0 - low[0], 26.0 - low[1]];
+        assert!(
+            (0..2).all(|axis| (shift[4 + axis] - corner[axis]).abs() < 1e-3),
+            "{shift:?}"
+        );
     }
 }

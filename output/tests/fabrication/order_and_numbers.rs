@@ -1,7 +1,8 @@
 //! Cutting order and idle travel of random drawings, and numbers clear of all cuts.
 
 use super::{KERF, irregular_sheets, length};
-use output::cut_file::{CutDrawing, Layer, Shape, Text};
+use output::cut_file::{CutDrawing, Layer};
+use output::display::{Shape, Text};
 use proptest::prelude::*;
 
 fn point() -> impl Strategy<Value = [f64; 2]> {

@@ -2,7 +2,8 @@
 
 use super::{distance, irregular, irregular_sheets, length, uniform, uniform_cuts};
 use design::pattern::grid::Grid;
-use output::cut_file::{FabricationError, Layer, Part, Shape, split};
+use output::cut_file::{FabricationError, Layer, Part, split};
+use output::display::Shape;
 
 /// The lines of a layer of a part, in the sheet.
 fn lines(part: &Part, layer: Layer) -> Vec<[[f64; 2]; 2]> {

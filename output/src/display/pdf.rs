@@ -1,13 +1,20 @@
 //! Pages of PDF in mm, with fonts that every reader has.
 
+use crate::display::shape::{Anchor, Shape, Text};
+use crate::display::style::{Colour, Style};
+use pdf_writer::types::{LineCapStyle, LineJoinStyle, TextRenderingMode};
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
 
 /// Points per mm.
 const POINTS: f64 = 72.0 / 25.4;
+/// Height of the capitals of Helvetica relative to the size of the font, and widths of digits and of other characters.
+const CAPITALS: f64 = 0.718;
+const DIGIT: f64 = 0.556;
+const LETTER: f64 = 0.6;
 
 /// A font.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Font {
+pub(crate) enum Font {
     /// Helvetica.
     Sans,
     /// Helvetica Bold.
@@ -28,7 +35,7 @@ impl Font {
 }
 
 /// A drawing that is written once and shown on any number of pages.
-pub(super) struct Form {
+pub(crate) struct Form {
     /// Its name in `Content::x_object`.
     pub name: Name<'static>,
     /// Its content (mm).
@@ -38,7 +45,7 @@ pub(super) struct Form {
 }
 
 /// A file of pages of the given size (mm), with the fonts and the form that they use.
-pub(super) fn file(
+pub(crate) fn file(
     size: [f64; 2],
     fonts: &[Font],
     form: Option<&Form>,
@@ -94,43 +101,88 @@ pub(super) fn file(
 }
 
 /// An empty page, whose unit is the mm.
-pub(super) fn page() -> Content {
+pub(crate) fn page() -> Content {
     let mut content = Content::new();
-    let scale = POINTS as f32;
-    content.transform([scale, 0.0, 0.0, scale, 0.0, 0.0]);
+    place(&mut content, POINTS, [0.0; 2]);
     content
 }
 
 /// Restricts what follows to a rectangle, until the state is restored.
-pub(super) fn clip(content: &mut Content, [low, high]: [[f64; 2]; 2]) {
+pub(crate) fn clip(content: &mut Content, [low, high]: [[f64; 2]; 2]) {
     let size = [high[0] - low[0], high[1] - low[1]].map(|x| x as f32);
     content.rect(low[0] as f32, low[1] as f32, size[0], size[1]);
     content.clip_nonzero().end_path();
 }
 
-/// The colour of lines, areas and texts, 0 to 255.
-pub(super) fn colour(content: &mut Content, rgb: [u8; 3]) {
+/// The colour of texts, 0 to 255.
+pub(crate) fn colour(content: &mut Content, rgb: Colour) {
     let [r, g, b] = rgb.map(|x| f32::from(x) / 255.0);
-    content.set_stroke_rgb(r, g, b).set_fill_rgb(r, g, b);
+    content.set_fill_rgb(r, g, b);
 }
 
-pub(super) fn line(content: &mut Content, ends: [[f64; 2]; 2]) {
-    polyline(content, &ends);
+/// Sets what follows smaller or larger, and shifts its origin to a point (mm).
+pub(crate) fn place(content: &mut Content, scale: f64, [x, y]: [f64; 2]) {
+    let [scale, x, y] = [scale, x, y].map(|value| value as f32);
+    content.transform([scale, 0.0, 0.0, scale, x, y]);
 }
 
-pub(super) fn polyline(content: &mut Content, points: &[[f64; 2]]) {
-    trace(content, points);
-    content.stroke();
+/// Draws shapes one after the other; texts in Helvetica. Where a style is transparent the paper shines through.
+pub(crate) fn draw<'a>(
+    content: &mut Content,
+    shapes: impl IntoIterator<Item = (Style, &'a Shape)>,
+) {
+    for (style, shape) in shapes {
+        if let Shape::Text(text) = shape {
+            draw_text(content, &style, text);
+            continue;
+        }
+        if let Some(fill) = style.fill {
+            colour(content, on_white(fill, style.fill_opacity));
+        }
+        if let Some(stroke) = style.stroke {
+            set_line(content, on_white(stroke, style.stroke_opacity), style.width);
+            let [cap, join] = if style.round { [1, 1] } else { [0, 0] };
+            content.set_line_cap([LineCapStyle::ButtCap, LineCapStyle::RoundCap][cap]);
+            content.set_line_join([LineJoinStyle::MiterJoin, LineJoinStyle::RoundJoin][join]);
+        }
+        let dash: Vec<f32> = style
+            .dash
+            .iter()
+            .flatten()
+            .map(|length| *length as f32)
+            .collect();
+        content.set_dash_pattern(dash, 0.0);
+        outline(content, shape);
+        match (style.fill, style.stroke) {
+            (Some(_), Some(_)) => content.fill_nonzero_and_stroke(),
+            (Some(_), None) => content.fill_nonzero(),
+            (None, Some(_)) => content.stroke(),
+            (None, None) => content.end_path(),
+        };
+    }
 }
 
-pub(super) fn polygon(content: &mut Content, corners: &[[f64; 2]]) {
-    trace(content, corners);
-    content.close_path().stroke();
+/// A colour with this opacity on white paper.
+fn on_white(rgb: Colour, opacity: f64) -> Colour {
+    rgb.map(|x| (255.0 - opacity * (255.0 - f64::from(x))).round() as u8)
 }
 
-pub(super) fn filled(content: &mut Content, corners: &[[f64; 2]]) {
-    trace(content, corners);
-    content.close_path().fill_nonzero();
+fn set_line(content: &mut Content, rgb: Colour, width: f64) {
+    let [r, g, b] = rgb.map(|x| f32::from(x) / 255.0);
+    content.set_stroke_rgb(r, g, b).set_line_width(width as f32);
+}
+
+fn outline(content: &mut Content, shape: &Shape) {
+    match shape {
+        Shape::Line(ends) => trace(content, ends),
+        Shape::Polyline(points) => trace(content, points),
+        Shape::Polygon(corners) => {
+            trace(content, corners);
+            content.close_path();
+        }
+        Shape::Circle { centre, radius } => circle(content, *centre, *radius),
+        Shape::Text(_) => {}
+    }
 }
 
 fn trace(content: &mut Content, points: &[[f64; 2]]) {
@@ -143,7 +195,7 @@ fn trace(content: &mut Content, points: &[[f64; 2]]) {
 }
 
 /// A circle of four cubic curves, whose error is below 0.03 % of the radius.
-pub(super) fn circle(content: &mut Content, [x, y]: [f64; 2], radius: f64) {
+fn circle(content: &mut Content, [x, y]: [f64; 2], radius: f64) {
     const HANDLE: f64 = 0.552_284_75;
     let at = |u: f64, v: f64| [(x + radius * u) as f32, (y + radius * v) as f32];
     let [begin_x, begin_y] = at(1.0, 0.0);
@@ -154,11 +206,35 @@ pub(super) fn circle(content: &mut Content, [x, y]: [f64; 2], radius: f64) {
         let [f, g] = at(-s, c);
         content.cubic_to(a, b, d, e, f, g);
     }
-    content.close_path().stroke();
+    content.close_path();
+}
+
+fn draw_text(content: &mut Content, style: &Style, text: &Text) {
+    let size = text.height / CAPITALS;
+    let widths = text
+        .text
+        .chars()
+        .map(|c| if c.is_ascii_digit() { DIGIT } else { LETTER });
+    let [mut x, y] = text.baseline();
+    if text.anchor != Anchor::Start {
+        x -= 0.5 * size * widths.sum::<f64>();
+    }
+    if let Some(width) = style.halo {
+        set_line(content, [255; 3], width);
+        content.set_dash_pattern([], 0.0);
+        content.set_text_rendering_mode(TextRenderingMode::Stroke);
+        write(content, Font::Sans, size, [x, y], &text.text);
+        content.set_text_rendering_mode(TextRenderingMode::Fill);
+    }
+    colour(
+        content,
+        on_white(style.fill.unwrap_or_default(), style.fill_opacity),
+    );
+    write(content, Font::Sans, size, [x, y], &text.text);
 }
 
 /// A text that begins at a point, in a font of the given size (mm).
-pub(super) fn write(content: &mut Content, font: Font, size: f64, [x, y]: [f64; 2], text: &str) {
+pub(crate) fn write(content: &mut Content, font: Font, size: f64, [x, y]: [f64; 2], text: &str) {
     let bytes: Vec<u8> = text.chars().map(|c| byte(c).unwrap_or(b'?')).collect();
     content
         .begin_text()
