@@ -3,8 +3,8 @@
 mod columns;
 mod estimate;
 mod fact_sheet;
-mod finding;
 mod hinge_row;
+mod rules;
 mod self_weight;
 mod text;
 mod warning;
@@ -20,6 +20,7 @@ pub use self_weight::SelfWeight;
 pub use warning::{Concern, Severity, Warning};
 
 use crate::cut_file::{CutLines, FabricationError};
+use crate::report::rules::{Judged, JudgedRun};
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
 use design::optimise::outer_loop::Ended;
@@ -63,11 +64,13 @@ pub fn warnings(
     deployment: &Deployment,
     cuts: &Result<CutLines, FabricationError>,
 ) -> Vec<Warning> {
-    let hinges = 0..deployment.sheet.hinges.len();
-    let hinges: Vec<HingeRow> = hinges
-        .map(|h| HingeRow::new(scene, deployment, h))
-        .collect();
-    warning::all(scene, deployment, cuts, &hinges)
+    rules::warnings(&Judged {
+        scene,
+        deployment,
+        cuts,
+        hinges: &HingeRow::all(scene, deployment),
+        run: None,
+    })
 }
 
 impl Report {
@@ -108,14 +111,20 @@ impl Report {
         force: bool,
     ) -> Self {
         let deployment = &designed.best.deployment;
-        let hinges: Vec<HingeRow> = (0..deployment.sheet.hinges.len())
-            .map(|h| HingeRow::new(scene, deployment, h))
-            .collect();
+        let hinges = HingeRow::all(scene, deployment);
         let facts = FactSheet::new(scene, &designed.problem, deployment, &hinges);
         let after = Scores::new(&designed.problem.objective, &designed.best);
-        let mut warnings = warning::all(scene, deployment, cuts, &hinges);
-        warnings.extend(finding::of_run(scene, designed, &facts, &after));
-        warnings.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
+        let warnings = rules::warnings(&Judged {
+            scene,
+            deployment,
+            cuts,
+            hinges: &hinges,
+            run: Some(JudgedRun {
+                designed,
+                facts: &facts,
+                after: &after,
+            }),
+        });
         let mut report = Self {
             cut_file: false,
             title: scene.config.title.clone(),

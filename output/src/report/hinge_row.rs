@@ -41,7 +41,13 @@ pub struct HingeRow {
 }
 
 impl HingeRow {
-    pub(super) fn new(scene: &Scene, deployment: &Deployment, h: usize) -> Self {
+    /// The rows of all hinges.
+    pub(super) fn all(scene: &Scene, deployment: &Deployment) -> Vec<Self> {
+        let hinges = 0..deployment.sheet.hinges.len();
+        hinges.map(|h| Self::new(scene, deployment, h)).collect()
+    }
+
+    fn new(scene: &Scene, deployment: &Deployment, h: usize) -> Self {
         let sheet = &deployment.sheet;
         let hinge = &sheet.hinges[h];
         let last = deployment.final_step().deformations[h];
