@@ -66,21 +66,37 @@ pub const RUN_FILES: [RunFile; 17] = [
         "the run on one page: open it in a browser, click a hinge, move the slider",
         |run| Ok(Some(run_page(run.scene, run.designed, run.report)?.into())),
     ),
-    result("report.pdf", "the report for paper with both drawings", |run| {
-        let cuts = run.cuts.as_ref().ok();
-        Ok(Some(report_pdf(run.scene, run.designed, run.report, cuts)))
+    result(
+        "report.pdf",
+        "the report for paper with both drawings",
+        |run| {
+            let cuts = run.cuts.as_ref().ok();
+            Ok(Some(report_pdf(run.scene, run.designed, run.report, cuts)))
+        },
+    ),
+    result("cut.dxf", CUTS, |run| {
+        Ok(run.annotated().map(|drawing| dxf(&drawing).into()))
     }),
-    result("cut.dxf", CUTS, |run| Ok(run.annotated().map(|drawing| dxf(&drawing).into()))),
-    result("cut.svg", CUTS, |run| Ok(run.annotated().map(|drawing| svg(&drawing).into()))),
+    result("cut.svg", CUTS, |run| {
+        Ok(run.annotated().map(|drawing| svg(&drawing).into()))
+    }),
     result(
         "cut-list.csv",
         "hole diameter, ligament width and caliper width of every hinge",
-        |run| Ok(run.cut().map(|(cuts, _)| cut_list(&run.best().sheet, cuts).into())),
+        |run| {
+            Ok(run
+                .cut()
+                .map(|(cuts, _)| cut_list(&run.best().sheet, cuts).into()))
+        },
     ),
     result(
         "cut-summary.csv",
         "number of cuts, holes by diameter, length of cuts and idle travel",
-        |run| Ok(run.cut().map(|(cuts, sheet)| cut_summary(cuts, &sheet.totals).into())),
+        |run| {
+            Ok(run
+                .cut()
+                .map(|(cuts, sheet)| cut_summary(cuts, &sheet.totals).into()))
+        },
     ),
     result("deployed.dxf", "the panels at full load", |run| {
         Ok(run.cut().map(|_| {
@@ -99,7 +115,9 @@ pub const RUN_FILES: [RunFile; 17] = [
         Ok(Some(run.picture(&run.designed.start.deployment)))
     }),
     picture("deployed-start.png", BEFORE),
-    result("deployed.svg", AFTER, |run| Ok(Some(run.picture(run.best())))),
+    result("deployed.svg", AFTER, |run| {
+        Ok(Some(run.picture(run.best())))
+    }),
     picture("deployed.png", AFTER),
     picture(ANIMATION, "animation of the deployment"),
 ];
@@ -107,7 +125,8 @@ pub const RUN_FILES: [RunFile; 17] = [
 /// The name of the animation of the deployment.
 pub const ANIMATION: &str = "deployment.png";
 
-const CUTS: &str = "cuts in cutting order, 1:1 in mm; layers HOLES, CUT, OUTLINE, REGISTRATION, ANNOTATION";
+const CUTS: &str =
+    "cuts in cutting order, 1:1 in mm; layers HOLES, CUT, OUTLINE, REGISTRATION, ANNOTATION";
 const FLAT: &str = "the flat sheet with its cuts";
 const BEFORE: &str = "the deployed sheet before the search";
 const AFTER: &str = "the deployed sheet after the search";

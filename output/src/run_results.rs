@@ -1,36 +1,24 @@
-//! The results of a run, written to its folder besides its state: report, cut files, pictures.
+//! The results of a run, written to its folder besides its state, and deleted before it is searched anew.
 
-use crate::cut_file::{
-    CutLines, SheetDrawing, cut_list, cut_summary, deployed_panels, dxf, mark_errors, svg,
-};
-use crate::drawing;
-use crate::report::{Report, Warning};
-use crate::report_pdf::report_pdf;
-use crate::run_page::run_page;
-use design::objective::design_problem::Deployment;
+use crate::cut_file::{CutLines, SheetDrawing};
+use crate::report::Report;
+use crate::run_files::{RUN_FILES, Results, Writer};
 use design::scene::Scene;
-use design::scene::design_run::{CUT_FILES, Designed};
-use design::scene::placement::placed;
-use design::sheet::kinematics::deployed_corners;
-use std::path::PathBuf;
+use design::scene::design_run::{Designed, InverseDesignError};
+use std::io;
+use std::path::{Path, PathBuf};
 use support::whole_file;
 
 /// A result that could not be written.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
-pub enum ResultsError {
-    #[error("cannot write {path}: {source}", path = .path.display())]
-    Write {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+#[error("cannot write {path}: {source}", path = .path.display())]
+pub struct ResultsError {
+    path: PathBuf,
+    source: io::Error,
 }
 
-/// Writes `report.json`, `report.txt`, `report.pdf`, `run.html`, `deployed-start.svg` and `deployed.svg`; for a design with
-/// cut lines also `flat.svg`; for a design without errors, or if `force`, also the [`CUT_FILES`].
+/// Writes the results of [`RUN_FILES`]: the picture of the flat sheet for a design with cut lines, the cut files for a
+/// design without errors, or if `force`.
 ///
 /// If no cut file is written, the report states why, and the cut files of an earlier design are removed.
 pub fn write_results(
@@ -38,81 +26,58 @@ pub fn write_results(
     designed: &Designed,
     force: bool,
 ) -> Result<Report, ResultsError> {
-    let folder = scene.output();
-    let write = |name: &str, contents: &[u8]| {
-        let path = folder.join(name);
-        whole_file::write(&path, contents).map_err(|source| ResultsError::Write { path, source })
-    };
     let best = &designed.best.deployment;
     let cuts = CutLines::new(&best.pattern, &best.sheet, scene.config.cutting);
-    // Written first, so that there is never a cut file without its report.
     let report = Report::new(scene, designed, &cuts, force);
-    let not_json = |name: &str| {
-        let path = folder.join(name);
-        |error: serde_json::Error| ResultsError::Write {
-            path,
-            source: error.into(),
-        }
+    let drawn = cuts.as_ref().ok().filter(|_| report.cut_file);
+    let results = Results {
+        scene,
+        designed,
+        cuts: &cuts,
+        report: &report,
+        sheet: drawn.map(|cuts| SheetDrawing::new(cuts, &best.sheet, &scene.material)),
     };
-    let json = serde_json::to_vec_pretty(&report).map_err(not_json("report.json"))?;
-    write("report.json", &json)?;
-    write("report.txt", report.to_string().as_bytes())?;
-    let page = run_page(scene, designed, &report).map_err(not_json("run.html"))?;
-    write("run.html", page.as_bytes())?;
-    let paper = report_pdf(scene, designed, &report, cuts.as_ref().ok());
-    write("report.pdf", &paper)?;
-    match &cuts {
-        Ok(cuts) if report.cut_file => {
-            let drawing = SheetDrawing::new(cuts, &best.sheet, &scene.material);
-            let mut annotated = drawing.annotated();
-            let errors: Vec<String> = report.errors().map(Warning::to_string).collect();
-            mark_errors(&mut annotated, &errors);
-            write("cut.dxf", dxf(&annotated).as_bytes())?;
-            write("cut.svg", svg(&annotated).as_bytes())?;
-            write("cut-list.csv", cut_list(&best.sheet, cuts).as_bytes())?;
-            write(
-                "cut-summary.csv",
-                cut_summary(cuts, &drawing.totals).as_bytes(),
-            )?;
-            let configuration = placed(scene, &best.sheet, &best.final_step().configuration);
-            let deployed = deployed_panels(&deployed_corners(&best.sheet, &configuration));
-            write("deployed.dxf", dxf(&deployed).as_bytes())?;
-        }
-        _ => {
-            for name in CUT_FILES {
-                remove(folder.join(name))?;
-            }
-        }
+    for file in &RUN_FILES {
+        let Writer::Results(contents) = file.writer else {
+            continue;
+        };
+        let path = scene.output().join(file.name);
+        let written = contents(&results).and_then(|contents| match contents {
+            Some(bytes) => whole_file::write(&path, &bytes),
+            None => remove_with_pixels(&path),
+        });
+        written.map_err(|source| ResultsError { path, source })?;
     }
-    match &cuts {
-        Ok(cuts) => {
-            let flat = drawing::flat(&scene.config.title, &best.sheet, cuts);
-            write("flat.svg", flat.as_bytes())?;
-        }
-        Err(_) => {
-            for name in ["flat.svg", "flat.png"] {
-                remove(folder.join(name))?;
-            }
-        }
-    }
-    write(
-        "deployed-start.svg",
-        picture(scene, &designed.start.deployment).as_bytes(),
-    )?;
-    write("deployed.svg", picture(scene, best).as_bytes())?;
     Ok(report)
 }
 
-/// Removes a file of an earlier run, if there is one.
-fn remove(path: PathBuf) -> Result<(), ResultsError> {
-    match std::fs::remove_file(&path) {
-        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-            Err(ResultsError::Write { path, source })
-        }
-        _ => Ok(()),
+/// Removes the files of an earlier run of the scene, so that the next one begins at the start design. The copies of its
+/// inputs stay. An error, and nothing is removed, if the start has no objective value.
+pub fn remove_run(scene: &Scene) -> Result<(), InverseDesignError> {
+    let start = scene.problem()?.evaluate(&scene.start());
+    start.map_err(InverseDesignError::Start)?;
+    for file in &RUN_FILES {
+        let path = scene.output().join(file.name);
+        remove(&path).map_err(|source| InverseDesignError::Folder { path, source })?;
+    }
+    Ok(())
+}
+
+/// Removes a result of an earlier design and, of a picture, its pixels.
+fn remove_with_pixels(path: &Path) -> io::Result<()> {
+    remove(path)?;
+    let pixels = path.with_extension("png");
+    let name = pixels.file_name().and_then(|name| name.to_str());
+    match RUN_FILES.iter().any(|file| Some(file.name) == name) {
+        true => remove(&pixels),
+        false => Ok(()),
     }
 }
 
-fn picture(scene: &Scene, deployment: &Deployment) -> String {
-    drawing::deployed(scene, &deployment.sheet, deployment.final_step())
+/// Removes a file, if there is one.
+fn remove(path: &Path) -> io::Result<()> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
 }

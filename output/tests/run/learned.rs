@@ -5,10 +5,9 @@ use super::{FILM, read, run, with};
 use design::objective::design_problem::Deployment;
 use design::objective::target::TargetShape;
 use design::scene::Scene;
-use design::scene::design_run::forget;
 use output::cut_file::CutLines;
 use output::report::{Concern, Report, Severity, warnings};
-use output::run_results::write_results;
+use output::run_results::{remove_run, write_results};
 use std::path::Path;
 use surrogate::Surrogate;
 
@@ -190,7 +189,7 @@ fn a_ligament_that_tears_is_reported_before_the_cut_file_is_written() {
             .save(&folder.path().join("tiny.safetensors"))
             .unwrap();
         let scene = read(folder.path(), &scene);
-        forget(&scene).unwrap();
+        remove_run(&scene).unwrap();
         let designed = run(&scene, None).unwrap();
         // The report is written even if the cut file cannot be.
         std::fs::remove_file(scene.output().join("cut.dxf")).ok();
@@ -300,6 +299,6 @@ fn a_run_is_not_continued_with_another_model() {
         .to_string();
     assert!(error.contains("other weights"), "{error}");
     let scene = read(folder.path(), &learned(&[("steps = 6", "steps = 1")]));
-    forget(&scene).unwrap();
+    remove_run(&scene).unwrap();
     assert_eq!(run(&scene, None).unwrap().history.len(), 2);
 }

@@ -1,10 +1,11 @@
 //! The files of a run, and the warnings of its report.
 
 use super::{SCENE, read, run, with};
-use design::scene::design_run::CUT_FILES;
 use output::cut_file::FORCED;
 use output::report::{Concern, Report, Severity};
-use output::run_results::write_results;
+use output::run_files::RUN_FILES;
+use output::run_results::{remove_run, write_results};
+use std::collections::BTreeSet;
 
 fn report(changes: &[(&str, &str)]) -> (tempfile::TempDir, Report) {
     let folder = tempfile::tempdir().unwrap();
@@ -201,7 +202,55 @@ fn a_load_far_too_large_leaves_no_cut_file_unless_it_is_forced() {
     }
     let report = write_results(&scene, &designed, false).unwrap();
     assert!(!report.cut_file && report.errors().count() > 0);
-    for name in CUT_FILES {
+    for name in [
+        "cut.dxf",
+        "cut.svg",
+        "cut-list.csv",
+        "cut-summary.csv",
+        "deployed.dxf",
+    ] {
         assert!(!folder.path().join("run").join(name).exists(), "{name}");
     }
+}
+
+/// The table of the tutorial is that of the program: one line for successive files of the same contents.
+#[test]
+fn the_tutorial_lists_the_files_of_a_run() {
+    let mut lines: Vec<(String, &str)> = Vec::new();
+    for file in &RUN_FILES {
+        let name = format!("`{}`", file.name);
+        match lines.last_mut() {
+            Some((names, contents)) if *contents == file.contents => *names += &format!(", {name}"),
+            _ => lines.push((name, file.contents)),
+        }
+    }
+    let lines = lines
+        .iter()
+        .map(|(names, contents)| format!("| {names} | {contents} |\n"));
+    let tutorial = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/TUTORIAL.md");
+    let tutorial = std::fs::read_to_string(tutorial).unwrap();
+    assert!(
+        tutorial.contains(&lines.collect::<String>()),
+        "docs/TUTORIAL.md"
+    );
+}
+
+#[test]
+fn a_restart_leaves_the_inputs_of_the_run_alone() {
+    let (folder, _) = report(&[("steps = 25", "steps = 1")]);
+    let run = folder.path().join("run");
+    // The pictures that the program draws.
+    for name in [
+        "flat.png",
+        "deployed-start.png",
+        "deployed.png",
+        "deployment.png",
+    ] {
+        std::fs::write(run.join(name), "").unwrap();
+    }
+    let scene = read(folder.path(), &with(&[("steps = 25", "steps = 1")]));
+    remove_run(&scene).unwrap();
+    let left = std::fs::read_dir(&run).unwrap();
+    let left: BTreeSet<_> = left.map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left, BTreeSet::from(["inputs".into(), "scene.toml".into()]));
 }
