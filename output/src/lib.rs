@@ -1,16 +1,24 @@
 //! What a designed sheet is written as.
 //!
-//! | module | contents |
-//! |---|---|
-//! | [`display`] | the display list: shapes and styles, written as SVG and PDF |
-//! | [`cut_file`] | the lines that a machine cuts, checked in the file as written: SVG, DXF, PDF in tiles |
-//! | [`report`] | results, findings, warnings and estimates of a run: text, JSON, a printed sheet |
-//! | [`run_files`], [`run_results`] | the files of a run |
-//! | [`drawing`] | pictures of the sheet: flat, deployed, measured |
-//! | [`listing`] | pattern, path and gradient in numbers |
-//! | [`measurement`] | a measured sheet against its design |
-//! | [`material_check`] | weights against the design that they are for |
-//! | [`vtk_sheet`], [`hinge_states`] | the path for other programs |
+//! Every drawing is a list of shapes, the [`display`] list, which SVG, PDF and DXF write: the lines that a machine cuts
+//! ([`cut_file`]), checked in the file as written, and the pictures ([`drawing`]). [`report`] holds results, findings and
+//! warnings of a run; [`run_files`] lists the files of its folder.
+//!
+//! The cut file of a sheet:
+//!
+//! ```
+//! use design::Scene;
+//! use output::cut_file::{CutLines, SheetDrawing, dxf};
+//! use std::path::Path;
+//!
+//! # let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
+//! let scene = Scene::read(&scenes.join("pin-7x7.toml"))?;
+//! let deployment = scene.problem()?.deploy(&scene.start())?;
+//! let cuts = CutLines::new(&deployment.pattern, &deployment.sheet, scene.config.cutting)?;
+//! let drawing = SheetDrawing::new(&cuts, &deployment.sheet, &scene.material);
+//! assert!(dxf(&drawing.annotated()).contains("LWPOLYLINE"));
+//! # Ok::<_, Box<dyn std::error::Error>>(())
+//! ```
 
 #![warn(missing_docs)]
 

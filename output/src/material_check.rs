@@ -169,13 +169,14 @@ fn law(material: &SheetMaterial) -> Vec<Verdict> {
         let fall = format!(
             "the table falls from {from} to {to} MPa between the plastic strains {start} and {end}"
         );
-        verdicts.push(match steepness > STEEPEST_DROP {
-            true => warning(format!(
+        verdicts.push(if steepness > STEEPEST_DROP {
+warning(format!(
                 "{fall}, by {steepness:.3} E: above {STEEPEST_DROP} E coarse meshes diverge; spread the fall over a longer \
                  strain"
-            )),
-            false => note(format!("{fall}: the material softens there")),
-        });
+            ))
+} else {
+note(format!("{fall}: the material softens there"))
+});
     }
     if *fracture_strain > 1.05 * strain {
         verdicts.push(note(format!(
@@ -231,13 +232,14 @@ fn panels(intended: &Intended, ligaments: &[LigamentEstimate]) -> Option<Verdict
         "panels of {pitch:.1} mm with ligaments of {} mm have Gamma = {gamma:.3} (L* = {:.0} mm)",
         least.w_lig, least.critical_edge
     );
-    Some(match gamma < 1.0 {
-        true => warning(format!(
+    Some(if gamma < 1.0 {
+        warning(format!(
             "{at}, for a sheet that lies on a surface: below 1 its weight does not hold the panels down"
-        )),
-        false => note(format!(
+        ))
+    } else {
+        note(format!(
             "{at}, for a sheet that lies on a surface: its weight presses the panels down, which need not keep them flat"
-        )),
+        ))
     })
 }
 

@@ -138,7 +138,7 @@ impl Report {
             terms: designed.problem.objective.labels(),
             before: Scores::new(&designed.problem.objective, &designed.start),
             after,
-            estimate: Estimate::of(scene.networks(), deployment),
+            estimate: Estimate::new(scene.networks(), deployment),
             facts,
             warnings,
             hinges,

@@ -236,9 +236,10 @@ fn wrapped(line: &str, columns: usize) -> Vec<String> {
     let mut pieces = Vec::new();
     let mut rest = &characters[..];
     loop {
-        let (room, from) = match pieces.is_empty() {
-            true => (columns, indent),
-            false => (columns - indent, 0),
+        let (room, from) = if pieces.is_empty() {
+            (columns, indent)
+        } else {
+            (columns - indent, 0)
         };
         if rest.len() <= room {
             break;

@@ -68,9 +68,10 @@ fn remove_with_pixels(path: &Path) -> io::Result<()> {
     remove(path)?;
     let pixels = path.with_extension("png");
     let name = pixels.file_name().and_then(|name| name.to_str());
-    match RUN_FILES.iter().any(|file| Some(file.name) == name) {
-        true => remove(&pixels),
-        false => Ok(()),
+    if RUN_FILES.iter().any(|file| Some(file.name) == name) {
+        remove(&pixels)
+    } else {
+        Ok(())
     }
 }
 

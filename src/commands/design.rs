@@ -117,9 +117,10 @@ impl DesignCommand {
             for seed in 0..self.seeds {
                 let scene = self.scene(file, |config| {
                     if let Some(out) = out {
-                        let name = match file.is_dir() {
-                            true => file.file_name(),
-                            false => file.file_stem(),
+                        let name = if file.is_dir() {
+                            file.file_name()
+                        } else {
+                            file.file_stem()
                         };
                         config.output = out.join(name.unwrap_or_default());
                     }
@@ -250,9 +251,10 @@ fn progress_line(step: &StepRecord, learned: bool) -> String {
         .filter(|(_, value)| **value != 0.0)
         .map(|(name, value)| format!("{} {}", in_words(name), shown(*value)))
         .collect();
-    let inside = match learned {
-        true => format!(", {:.0} % inside the domain", 100.0 * scores.share_inside),
-        false => String::new(),
+    let inside = if learned {
+        format!(", {:.0} % inside the domain", 100.0 * scores.share_inside)
+    } else {
+        String::new()
     };
     format!(
         "loss {:.4} ({}), outline {:.2} mm{inside}",

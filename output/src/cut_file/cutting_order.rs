@@ -1,6 +1,6 @@
 //! The order of cutting: holes before slits, slits before seams, the outline last, so that the sheet holds what is cut.
 //!
-//! Within a layer the tool moves on to the nearest cut, which it begins at the nearer end. The route is then shortened
+//! Within a layer the tool moves on to the nearest cut, which it begins at the nearer end. The tour is then shortened
 //! by 2-opt: a run of cuts is cut backwards wherever this reduces the travel between the cuts.
 
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
@@ -21,7 +21,7 @@ impl CutDrawing {
             let mut shapes: Vec<Shape> = self.on(layer).cloned().collect();
             if layer.is_cut() {
                 shapes.iter_mut().for_each(|shape| shape.begin_near(at));
-                shapes = route(&shapes, at);
+                shapes = tour(&shapes, at);
             }
             if let Some(last) = shapes.last() {
                 at = last.ends()[1];
@@ -64,61 +64,66 @@ impl Shape {
     }
 }
 
-/// A cut on a route: its index and its ends in the direction of cutting.
+/// A cut of a tour: its index and its ends in the direction of cutting.
 type Leg = (usize, [[f64; 2]; 2]);
 
-fn route(shapes: &[Shape], from: [f64; 2]) -> Vec<Shape> {
+fn tour(shapes: &[Shape], from: [f64; 2]) -> Vec<Shape> {
     let given: Vec<Leg> = shapes.iter().map(Shape::ends).enumerate().collect();
     let nearest = nearest_neighbours(&given, from);
-    let mut route = match travel(&nearest, from) < travel(&given, from) {
-        true => nearest,
-        false => given,
+    let mut tour = if travel(&nearest, from) < travel(&given, from) {
+        nearest
+    } else {
+        given
     };
-    two_opt(&mut route, from);
-    let legs = route.into_iter();
+    two_opt(&mut tour, from);
+    let legs = tour.into_iter();
     legs.map(|(i, ends)| shapes[i].along(ends)).collect()
 }
 
-fn travel(route: &[Leg], from: [f64; 2]) -> f64 {
-    let begins = route.iter().map(|(_, [begin, _])| *begin);
-    let ends = std::iter::once(from).chain(route.iter().map(|(_, [_, end])| *end));
+fn travel(tour: &[Leg], from: [f64; 2]) -> f64 {
+    let begins = tour.iter().map(|(_, [begin, _])| *begin);
+    let ends = std::iter::once(from).chain(tour.iter().map(|(_, [_, end])| *end));
     ends.zip(begins).map(|(p, q)| distance(p, q)).sum()
 }
 
 fn nearest_neighbours(legs: &[Leg], from: [f64; 2]) -> Vec<Leg> {
     let mut left = legs.to_vec();
     let mut at = from;
-    let mut route = Vec::with_capacity(legs.len());
+    let mut tour = Vec::with_capacity(legs.len());
     while !left.is_empty() {
         let to = |leg: &Leg| distance(at, leg.1[0]).min(distance(at, leg.1[1]));
-        let nearest = (1..left.len()).fold(0, |best, i| match to(&left[i]) < to(&left[best]) {
-            true => i,
-            false => best,
+        let nearest = (1..left.len()).fold(0, |best, i| {
+            if to(&left[i]) < to(&left[best]) {
+                i
+            } else {
+                best
+            }
         });
         let (i, [a, b]) = left.swap_remove(nearest);
-        let ends = match distance(at, b) < distance(at, a) {
-            true => [b, a],
-            false => [a, b],
+        let ends = if distance(at, b) < distance(at, a) {
+            [b, a]
+        } else {
+            [a, b]
         };
         at = ends[1];
-        route.push((i, ends));
+        tour.push((i, ends));
     }
-    route
+    tour
 }
 
-fn two_opt(route: &mut [Leg], from: [f64; 2]) {
+fn two_opt(tour: &mut [Leg], from: [f64; 2]) {
     let mut shorter = true;
     while std::mem::take(&mut shorter) {
-        for i in 0..route.len() {
-            let before = i.checked_sub(1).map_or(from, |last| route[last].1[1]);
-            for j in i..usize::min(i + RUN, route.len()) {
-                let next = route.get(j + 1).map(|leg| leg.1[0]);
+        for i in 0..tour.len() {
+            let before = i.checked_sub(1).map_or(from, |last| tour[last].1[1]);
+            for j in i..usize::min(i + RUN, tour.len()) {
+                let next = tour.get(j + 1).map(|leg| leg.1[0]);
                 let onwards = |end| next.map_or(0.0, |next| distance(end, next));
-                let ([begin, _], [_, end]) = (route[i].1, route[j].1);
+                let ([begin, _], [_, end]) = (tour[i].1, tour[j].1);
                 let now = distance(before, begin) + onwards(end);
                 if distance(before, end) + onwards(begin) < now - GAIN {
-                    route[i..=j].reverse();
-                    route[i..=j].iter_mut().for_each(|leg| leg.1.reverse());
+                    tour[i..=j].reverse();
+                    tour[i..=j].iter_mut().for_each(|leg| leg.1.reverse());
                     shorter = true;
                 }
             }

@@ -275,11 +275,14 @@ fn colour_index(layer: Layer) -> u8 {
 /// A text of a file in the code page ANSI_1252, with the other characters as \U+XXXX.
 fn escaped(text: &str) -> String {
     let mut units = [0; 2];
-    let escape = |c: char| match c.is_ascii() {
-        true => c.to_string(),
-        false => (c.encode_utf16(&mut units).iter())
-            .map(|unit| format!("\\U+{unit:04X}"))
-            .collect(),
+    let escape = |c: char| {
+        if c.is_ascii() {
+            c.to_string()
+        } else {
+            (c.encode_utf16(&mut units).iter())
+                .map(|unit| format!("\\U+{unit:04X}"))
+                .collect()
+        }
     };
     text.chars().map(escape).collect()
 }

@@ -96,8 +96,9 @@ pub enum FabricationError {
 fn with_less_tape(widest: f64) -> String {
     // Rounded down, so that the width stated fits.
     let tenths = (10.0 * widest).floor() / 10.0;
-    match tenths > 0.0 {
-        true => format!("use --lap {tenths}, or a larger bed"),
-        false => "use a larger bed, or design larger panels".to_owned(),
+    if tenths > 0.0 {
+        format!("use --lap {tenths}, or a larger bed")
+    } else {
+        "use a larger bed, or design larger panels".to_owned()
     }
 }

@@ -112,9 +112,10 @@ impl Taken {
         // Gap between two rectangles; a point is one without extent.
         let gap = |[from, to]: [[f64; 2]; 2]| {
             let along = [0, 1].map(|axis| f64::max(low[axis] - to[axis], from[axis] - high[axis]));
-            match along[0].max(along[1]) < 0.0 {
-                true => along[0].max(along[1]),
-                false => f64::hypot(along[0].max(0.0), along[1].max(0.0)),
+            if along[0].max(along[1]) < 0.0 {
+                along[0].max(along[1])
+            } else {
+                f64::hypot(along[0].max(0.0), along[1].max(0.0))
             }
         };
         let to_holes = self

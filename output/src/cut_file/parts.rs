@@ -69,9 +69,10 @@ pub fn split(
             && one != other
         {
             let seam = Seam::new(sheet, h, lap)?;
-            let keeper_first = match seam.panel == b {
-                true => [one, other],
-                false => [other, one],
+            let keeper_first = if seam.panel == b {
+                [one, other]
+            } else {
+                [other, one]
             };
             joints.push((seam, keeper_first));
         }

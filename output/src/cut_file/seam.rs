@@ -51,9 +51,10 @@ impl Seam {
         let hinge = &sheet.hinges[number];
         let [a, b] = [hinge.site.a, hinge.site.b].map(|at| Self::across(sheet, hinge, at, lap));
         let fill = |seam: &Across| seam.needed / seam.room;
-        let (at, seam) = match fill(&a) < fill(&b) {
-            true => (hinge.site.a, a),
-            false => (hinge.site.b, b),
+        let (at, seam) = if fill(&a) < fill(&b) {
+            (hinge.site.a, a)
+        } else {
+            (hinge.site.b, b)
         };
         let (hinge, (panel, corner)) = (number, at);
         if seam.needed > seam.room {

@@ -67,14 +67,16 @@ impl Tiling {
             }
         });
         let [portrait, landscape] = tilings;
-        let tiling = match landscape.pages() < portrait.pages() {
-            true => landscape,
-            false => portrait,
+        let tiling = if landscape.pages() < portrait.pages() {
+            landscape
+        } else {
+            portrait
         };
         let (pages, limit) = (tiling.pages(), MAX_PAGES);
-        match pages > limit {
-            true => Err(FabricationError::TooManyPages { pages, limit }),
-            false => Ok(tiling),
+        if pages > limit {
+            Err(FabricationError::TooManyPages { pages, limit })
+        } else {
+            Ok(tiling)
         }
     }
 

@@ -52,48 +52,38 @@ impl Style {
     }
 
     /// With round ends and corners of lines.
-    pub fn round(self) -> Self {
-        Self {
-            round: true,
-            ..self
-        }
+    pub fn round(mut self) -> Self {
+        self.round = true;
+        self
     }
 
     /// Dashed, with the lengths of a dash and of a gap (mm).
-    pub fn dashed(self, dash: f64, gap: f64) -> Self {
-        Self {
-            dash: Some([dash, gap]),
-            ..self
-        }
+    pub fn dashed(mut self, dash: f64, gap: f64) -> Self {
+        self.dash = Some([dash, gap]);
+        self
     }
 
     /// A line around an area of the given colour.
-    pub fn filled(self, colour: Colour) -> Self {
-        Self {
-            fill: Some(colour),
-            ..self
-        }
+    pub fn filled(mut self, colour: Colour) -> Self {
+        self.fill = Some(colour);
+        self
     }
 
     /// With the opacities of area and line, 0 to 1.
-    pub fn opacity(self, fill: f64, stroke: f64) -> Self {
-        Self {
-            fill_opacity: fill,
-            stroke_opacity: stroke,
-            ..self
-        }
+    pub fn opacity(mut self, fill: f64, stroke: f64) -> Self {
+        (self.fill_opacity, self.stroke_opacity) = (fill, stroke);
+        self
     }
 
     /// A text in bold letters.
-    pub fn bold(self) -> Self {
-        Self { bold: true, ..self }
+    pub fn bold(mut self) -> Self {
+        self.bold = true;
+        self
     }
 
     /// A text with a white line of the given width around its letters (mm).
-    pub fn haloed(self, width: f64) -> Self {
-        Self {
-            halo: Some(width),
-            ..self
-        }
+    pub fn haloed(mut self, width: f64) -> Self {
+        self.halo = Some(width);
+        self
     }
 }

@@ -117,7 +117,7 @@ impl<'a> State<'a> {
             configuration: placed(scene, sheet, &step.configuration),
             openings_deg: deformations
                 .iter()
-                .map(|it| it.theta.to_degrees())
+                .map(|eps| eps.theta.to_degrees())
                 .collect(),
         }
     }

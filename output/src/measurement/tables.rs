@@ -131,9 +131,10 @@ impl MeasurementReport {
                 "  {mark:<16} {distance:>10.2} mm from its prediction ({x:+.2}, {y:+.2})"
             )?;
         }
-        match single.count() > LISTED {
-            true => writeln!(f, "  ... all of them are in residuals.csv"),
-            false => Ok(()),
+        if single.count() > LISTED {
+            writeln!(f, "  ... all of them are in residuals.csv")
+        } else {
+            Ok(())
         }
     }
 

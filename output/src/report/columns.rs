@@ -11,9 +11,10 @@ pub(crate) fn rounded(value: f64, digits: usize) -> String {
         Ok(exponent @ -3..6) => {
             let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
             let text = format!("{value:.decimals$}");
-            match text.contains('.') {
-                true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-                false => text,
+            if text.contains('.') {
+                text.trim_end_matches('0').trim_end_matches('.').to_owned()
+            } else {
+                text
             }
         }
         _ => exponential,
@@ -22,9 +23,10 @@ pub(crate) fn rounded(value: f64, digits: usize) -> String {
 
 /// A number with `decimals` decimals, or with three significant digits if it has more than five before the point.
 pub(super) fn fixed(value: f64, decimals: usize) -> String {
-    match value.abs() < 1e5 {
-        true => format!("{value:.decimals$}"),
-        false => format!("{value:.2e}"),
+    if value.abs() < 1e5 {
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.2e}")
     }
 }
 

@@ -37,12 +37,14 @@ struct Spread {
 impl Estimate {
     /// The estimate for a path computed with the first of `networks`; `None` for a single network, or if no state is
     /// inside the training domain.
-    pub fn of(networks: &[Surrogate], deployment: &Deployment) -> Option<Self> {
+    pub fn new(networks: &[Surrogate], deployment: &Deployment) -> Option<Self> {
         let [mut energy, mut forces, mut peak] = [(); 3].map(|()| Spread::default());
         let mut peak_known = true;
-        for (step, answers) in std::iter::zip(&deployment.path, answers(networks, deployment)) {
+        for (step, predictions) in
+            std::iter::zip(&deployment.path, predictions(networks, deployment))
+        {
             for (_, [w, f_a, f_s, m, d_peak]) in
-                std::iter::zip(&step.inside, answers).filter(|(inside, _)| **inside)
+                std::iter::zip(&step.inside, predictions).filter(|(inside, _)| **inside)
             {
                 energy.add(&w);
                 [f_a, f_s, m].iter().for_each(|force| forces.add(force));
@@ -70,7 +72,7 @@ pub(crate) fn force_spreads(
     }
     let (mut squares, mut count) = (0.0, 0);
     let mut deviations: Vec<Vec<f64>> = Vec::new();
-    for (step, answers) in std::iter::zip(&deployment.path, answers(networks, deployment)) {
+    for (step, predictions) in std::iter::zip(&deployment.path, predictions(networks, deployment)) {
         let of_hinge = |(inside, [_, f_a, f_s, m, _]): (&bool, [Vec<f64>; 5])| {
             let mut forces = Spread::default();
             [f_a, f_s, m].iter().for_each(|force| forces.add(force));
@@ -82,7 +84,7 @@ pub(crate) fn force_spreads(
             forces.variances.sqrt()
         };
         deviations.push(
-            std::iter::zip(&step.inside, answers)
+            std::iter::zip(&step.inside, predictions)
                 .map(of_hinge)
                 .collect(),
         );
@@ -94,27 +96,30 @@ pub(crate) fn force_spreads(
 }
 
 /// At every load step and hinge: (W, w_lig F_a, w_lig F_s, M_theta, D_peak), each with one value for each network.
-fn answers(
+fn predictions(
     networks: &[Surrogate],
     deployment: &Deployment,
 ) -> impl Iterator<Item = Vec<[Vec<f64>; 5]>> {
     let designs = deployment.sheet.designs();
-    let prepared: Vec<_> = networks.iter().map(|it| it.prepare(&designs)).collect();
+    let prepared: Vec<_> = networks
+        .iter()
+        .map(|network| network.prepare(&designs))
+        .collect();
     deployment.path.iter().map(move |step| {
         let states: &[HingeDeformation] = &step.deformations;
-        let mut answers = vec![<[Vec<f64>; 5]>::default(); designs.len()];
+        let mut predictions = vec![<[Vec<f64>; 5]>::default(); designs.len()];
         for (network, prepared) in std::iter::zip(networks, &prepared) {
             let energies = network.evaluate(prepared, states, Order::Forces);
             let damages = network.damage_values(&designs, states);
             let hinges = std::iter::zip(energies, damages).zip(&designs);
-            for (((energy, damage), design), answers) in hinges.zip(&mut answers) {
+            for (((energy, damage), design), predictions) in hinges.zip(&mut predictions) {
                 let ([f_a, f_s, m], w) = (energy.forces, design.w_lig);
                 let peak = damage.d_peak.unwrap_or(f64::NAN);
                 let values = [energy.w, w * f_a, w * f_s, m, peak];
-                std::iter::zip(answers, values).for_each(|(all, value)| all.push(value));
+                std::iter::zip(predictions, values).for_each(|(all, value)| all.push(value));
             }
         }
-        answers
+        predictions
     })
 }
 

@@ -141,7 +141,7 @@ impl FactSheet {
                 .map(|row| row.gamma)
                 .fold(f64::INFINITY, f64::min),
             share_inside: deployment.share_inside(),
-            weights: WeightFacts::of(scene),
+            weights: WeightFacts::new(scene),
             scene_hash: scene.hash(),
             material_hash: material.law_hash(),
             target_hash: scene.target.hash(),
@@ -229,9 +229,10 @@ impl Reached {
 
     fn rows(&self) -> Vec<(&'static str, String)> {
         let [length, force] = self.units;
-        let end = match self.ended_early {
-            true => ", where the path ends early",
-            false => "",
+        let end = if self.ended_early {
+            ", where the path ends early"
+        } else {
+            ""
         };
         let mut rows = vec![(
             "load reached",
@@ -259,7 +260,7 @@ impl Reached {
 }
 
 impl WeightFacts {
-    fn of(scene: &Scene) -> Option<Self> {
+    fn new(scene: &Scene) -> Option<Self> {
         let surrogate = scene.weights()?;
         let path = scene.hinge.weights_file.as_ref();
         let card = surrogate.card();
@@ -306,9 +307,12 @@ impl WeightFacts {
 fn errors(percents: &[f64], states: usize, kind: &str) -> String {
     let names = ["W", "F_a", "F_s", "M_theta", "D", "D_peak"];
     let errors: Vec<String> = std::iter::zip(names, percents)
-        .map(|(name, error)| match error.is_nan() {
-            true => format!("{name} -"),
-            false => format!("{name} {}", rounded(*error, 3)),
+        .map(|(name, error)| {
+            if error.is_nan() {
+                format!("{name} -")
+            } else {
+                format!("{name} {}", rounded(*error, 3))
+            }
         })
         .collect();
     format!("{} % (rms, {states} {kind} states)", errors.join(", "))
@@ -316,9 +320,10 @@ fn errors(percents: &[f64], states: usize, kind: &str) -> String {
 
 /// What moves the sheet, and what its displacement means.
 fn stroke_of(scene: &Scene, curve: &ActuationCurve) -> String {
-    let [way, load] = match curve.translational {
-        true => ["displacement", "force"],
-        false => ["rotation", "couple"],
+    let [way, load] = if curve.translational {
+        ["displacement", "force"]
+    } else {
+        ["rotation", "couple"]
     };
     if curve.mover == Mover::Supports {
         return format!("{way} of the moved supports");

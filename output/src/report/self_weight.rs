@@ -48,9 +48,10 @@ impl SelfWeight {
 
 /// A ratio to the load in words.
 pub(super) fn of_the_load(ratio: f64) -> String {
-    match ratio < 10.0 {
-        true => format!("{} % of the load", rounded(100.0 * ratio, 2)),
-        false => format!("{} times the load", rounded(ratio, 2)),
+    if ratio < 10.0 {
+        format!("{} % of the load", rounded(100.0 * ratio, 2))
+    } else {
+        format!("{} times the load", rounded(ratio, 2))
     }
 }
 

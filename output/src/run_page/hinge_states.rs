@@ -77,7 +77,7 @@ impl HingeStates {
             let known = known_damage(deployment, before.len(), measure)?;
             Some(by_hinge(&|i, h| known[i][h]))
         };
-        let curve = mechanics.and_then(|it| ActuationCurve::new(it, deployment));
+        let curve = mechanics.and_then(|mechanics| ActuationCurve::new(mechanics, deployment));
         Self {
             of: all.len(),
             load_factor: shown.iter().map(|state| state.load_factor).collect(),
@@ -88,7 +88,7 @@ impl HingeStates {
                 .flatten()
                 .collect(),
             deformations: (shown.iter())
-                .flat_map(|state| state.deformations.iter().flat_map(|it| it.to_array()))
+                .flat_map(|state| state.deformations.iter().flat_map(|eps| eps.to_array()))
                 .collect(),
             inside: by_hinge(&|i, h| f64::from(u8::from(all[i].inside[h]))),
             energy: mechanics.map(|_| by_hinge(&|i, h| all[i].energies[h])),
@@ -144,9 +144,12 @@ fn known_damage(
     let mut states = vec![vec![0.0_f64; deployment.sheet.hinges.len()]; before];
     for state in &deployment.path {
         let earlier = &states[states.len() - 1];
-        let of_hinge = |h: usize| match state.inside[h] && !earlier[h].is_nan() {
-            true => known(state, h).unwrap_or(f64::NAN),
-            false => f64::NAN,
+        let of_hinge = |h: usize| {
+            if state.inside[h] && !earlier[h].is_nan() {
+                known(state, h).unwrap_or(f64::NAN)
+            } else {
+                f64::NAN
+            }
         };
         states.push((0..earlier.len()).map(of_hinge).collect());
     }

@@ -95,8 +95,8 @@ impl<'a> PageData<'a> {
             warnings: &report.warnings,
             scene: scene_text(scene),
             history: History::new(&designed.problem.objective, &designed.history),
-            panels: Panels::of(sheet),
-            hinges: Hinges::of(sheet, report),
+            panels: Panels::new(sheet),
+            hinges: Hinges::new(sheet, report),
             states: HingeStates::new(scene, designed),
             actuation: scene.actuation(),
             stroke: reached.map(|reached| (reached.stroke_of.as_str(), reached.units)),
@@ -146,18 +146,18 @@ impl History {
 }
 
 impl Panels {
-    fn of(sheet: &Sheet) -> Self {
+    fn new(sheet: &Sheet) -> Self {
         let panels = || sheet.panels.iter();
         Self {
             grid: [sheet.grid.m, sheet.grid.n],
-            corners: panels().flat_map(|it| it.corners).flatten().collect(),
-            centroids: panels().flat_map(|it| it.centroid).collect(),
+            corners: panels().flat_map(|panel| panel.corners).flatten().collect(),
+            centroids: panels().flat_map(|panel| panel.centroid).collect(),
         }
     }
 }
 
 impl Hinges {
-    fn of(sheet: &Sheet, report: &Report) -> Self {
+    fn new(sheet: &Sheet, report: &Report) -> Self {
         let rows = &report.hinges;
         let known = |damage: Option<f64>| damage.unwrap_or(f64::NAN);
         let worst = rows.iter().min_by(|one, other| worst_first(one, other));
