@@ -129,7 +129,7 @@ impl CutCommand {
             for (i, part) in split.parts.iter().enumerate() {
                 write_drawing(out, &format!("part-{}", i + 1), &part.drawing)?;
             }
-            run_folder::write(out, JOINTS, split.joint_list())?;
+            run_folder::write(out, JOINTS, &split.joint_list())?;
         }
         Ok(())
     }
@@ -169,8 +169,8 @@ impl CutCommand {
 
 /// Writes the DXF and the SVG of a drawing.
 fn write_drawing(out: &Path, name: &str, drawing: &CutDrawing) -> Result<()> {
-    run_folder::write(out, &format!("{name}.dxf"), dxf(drawing))?;
-    run_folder::write(out, &format!("{name}.svg"), svg(drawing))
+    run_folder::write(out, &format!("{name}.dxf"), &dxf(drawing))?;
+    run_folder::write(out, &format!("{name}.svg"), &svg(drawing))
 }
 
 fn print_parts(split: &Split, [low, high]: [[f64; 2]; 2]) {

@@ -16,8 +16,8 @@ pub fn write<const N: usize>(
     let table = (columns.iter().enumerate()).fold(Table::new(), |table, (i, name)| {
         table.column(*name, move |cells: &[String; N]| Cell::text(&cells[i]))
     });
-    run_folder::write(folder, &format!("{name}.csv"), table.csv(&rows))?;
-    run_folder::write(folder, &format!("{name}.md"), table.markdown(&rows))?;
+    run_folder::write(folder, &format!("{name}.csv"), &table.csv(&rows))?;
+    run_folder::write(folder, &format!("{name}.md"), &table.markdown(&rows))?;
     let mut listed = ui::table::table(columns);
     for cells in rows {
         listed.add_row(cells);
