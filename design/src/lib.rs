@@ -23,7 +23,6 @@
 //! | [`optimise`](mod@optimise) | the outer loop, Algorithm 1 |
 //! | [`scene`] | a design problem read from TOML, and its run folder |
 //! | [`analysis`] | forces, capacity, void families, localisation of a deployed sheet; measured sheets |
-//! | [`output`] | reports, the page of a run, listings, drawings, cut files, VTK grids |
 //!
 //! A room uses itself and the rooms above it. Lengths are in mm, forces in N, angles in rad.
 //!
@@ -87,7 +86,6 @@ pub mod geometry;
 pub mod hinge_law;
 pub mod objective;
 pub mod optimise;
-pub mod output;
 pub mod pattern;
 pub mod scene;
 pub mod sheet;

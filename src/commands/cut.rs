@@ -5,13 +5,14 @@ use crate::ui::run_folder;
 use crate::ui::width_by_height::width_by_height;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use design::output::cut_file::{
-    CutDrawing, CutLines, OVERLAP, Paper, SheetDrawing, Split, Tiling, cut_list, cut_summary,
-    mark_errors, split, write_dxf, write_pdf, write_svg,
-};
-use design::output::report::{Severity, Warning, warnings};
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
+use output::cut_file::{
+    CutDrawing, CutLines, OVERLAP, Paper, SheetDrawing, Split, Tiling, cut_list, cut_summary, dxf,
+    mark_errors, split, svg, tiles_pdf,
+};
+use output::display::Shape;
+use output::report::{Severity, Warning, warnings};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -116,20 +117,17 @@ impl CutCommand {
     }
 
     fn write(&self, pieces: &Pieces, title: &str, out: &Path) -> Result<()> {
-        write_dxf(&out.join("cut.dxf"), &pieces.annotated)?;
-        write_svg(&out.join("cut.svg"), &pieces.annotated)?;
+        write_drawing(out, "cut", &pieces.annotated)?;
         run_folder::write(out, "cut-list.csv", &pieces.list)?;
         run_folder::write(out, "cut-summary.csv", &pieces.summary)?;
         if let (Some((_, paper)), Some(tiling)) = (self.paper, &pieces.tiling) {
             let whole = &pieces.whole;
-            let path = out.join(tiles_name(paper));
-            write_pdf(&path, &whole.numbered, tiling, title, &whole.notes)?;
+            let tiles = tiles_pdf(&whole.numbered, tiling, title, &whole.notes);
+            run_folder::write(out, &tiles_name(paper), &tiles)?;
         }
         if let Some(split) = &pieces.split {
             for (i, part) in split.parts.iter().enumerate() {
-                let stem = out.join(format!("part-{}", i + 1));
-                write_dxf(&stem.with_extension("dxf"), &part.drawing)?;
-                write_svg(&stem.with_extension("svg"), &part.drawing)?;
+                write_drawing(out, &format!("part-{}", i + 1), &part.drawing)?;
             }
             run_folder::write(out, JOINTS, &split.joint_list())?;
         }
@@ -162,11 +160,17 @@ impl CutCommand {
             );
         }
         if let Some(split) = split {
-            print_parts(split, CutDrawing::extent(pieces.whole.numbered.cuts()));
+            print_parts(split, Shape::extent(pieces.whole.numbered.cuts()));
         }
         println!("written to {}", out.canonicalize()?.display());
         Ok(())
     }
+}
+
+/// Writes the DXF and the SVG of a drawing.
+fn write_drawing(out: &Path, name: &str, drawing: &CutDrawing) -> Result<()> {
+    run_folder::write(out, &format!("{name}.dxf"), &dxf(drawing))?;
+    run_folder::write(out, &format!("{name}.svg"), &svg(drawing))
 }
 
 fn print_parts(split: &Split, [low, high]: [[f64; 2]; 2]) {

@@ -11,12 +11,13 @@ use clap::Args;
 use design::objective::scores::shown;
 use design::objective::term::in_words;
 use design::optimise::outer_loop::{Ended, StepRecord};
-use design::output::drawing::deployment_frames;
-use design::output::report::{Report, Warning};
-use design::output::run_results::write_results;
-use design::scene::design_run::{Designed, forget, inverse_design};
+use design::scene::design_run::{Designed, inverse_design};
 use design::scene::run_inputs::scene_file;
 use design::scene::{Scene, SceneConfig};
+use output::drawing::deployment_frames;
+use output::report::{Report, Warning};
+use output::run_files::{ANIMATION, RUN_FILES, Writer};
+use output::run_results::{remove_run, write_results};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use support::shard::Shard;
@@ -116,9 +117,10 @@ impl DesignCommand {
             for seed in 0..self.seeds {
                 let scene = self.scene(file, |config| {
                     if let Some(out) = out {
-                        let name = match file.is_dir() {
-                            true => file.file_name(),
-                            false => file.file_stem(),
+                        let name = if file.is_dir() {
+                            file.file_name()
+                        } else {
+                            file.file_stem()
                         };
                         config.output = out.join(name.unwrap_or_default());
                     }
@@ -185,7 +187,7 @@ impl DesignCommand {
     fn design(&self, scene: &Scene) -> Result<(Report, Ended)> {
         let _held = run_folder::hold(&scene.output())?;
         if self.restart {
-            forget(scene)?;
+            remove_run(scene)?;
         }
         let stop = interrupt::stop_flag()?;
         let bar = Progress::new(scene.config.optimiser.steps, "design steps");
@@ -218,7 +220,7 @@ pub(crate) fn write_run(scene: &Scene, designed: &Designed, force: bool) -> Resu
     let report = write_results(scene, designed, force)?;
     rasterise(&scene.output())?;
     let frames = deployment_frames(scene, designed, MOST_FRAMES);
-    animation::save(&frames, &scene.output().join("deployment.png"), FRAME_WIDTH)?;
+    animation::save(&frames, &scene.output().join(ANIMATION), FRAME_WIDTH)?;
     Ok(report)
 }
 
@@ -249,9 +251,10 @@ fn progress_line(step: &StepRecord, learned: bool) -> String {
         .filter(|(_, value)| **value != 0.0)
         .map(|(name, value)| format!("{} {}", in_words(name), shown(*value)))
         .collect();
-    let inside = match learned {
-        true => format!(", {:.0} % inside the domain", 100.0 * scores.share_inside),
-        false => String::new(),
+    let inside = if learned {
+        format!(", {:.0} % inside the domain", 100.0 * scores.share_inside)
+    } else {
+        String::new()
     };
     format!(
         "loss {:.4} ({}), outline {:.2} mm{inside}",
@@ -261,15 +264,17 @@ fn progress_line(step: &StepRecord, learned: bool) -> String {
     )
 }
 
-/// Writes a PNG of every picture in the run folder.
+/// Writes the PNG of every picture in the run folder that has an SVG.
 fn rasterise(folder: &Path) -> Result<()> {
-    for name in ["flat", "deployed-start", "deployed"] {
-        let stem = folder.join(name);
-        let vector = stem.with_extension("svg");
+    let pictures = RUN_FILES
+        .iter()
+        .filter(|file| matches!(file.writer, Writer::Pictures));
+    for file in pictures {
+        let vector = folder.join(file.name).with_extension("svg");
         if vector.exists() {
             let svg = std::fs::read_to_string(&vector)
                 .with_context(|| format!("cannot read {}", vector.display()))?;
-            picture::save(&svg, &stem, PICTURE_WIDTH)?;
+            picture::save(&svg, &vector.with_extension(""), PICTURE_WIDTH)?;
         }
     }
     Ok(())

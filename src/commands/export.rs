@@ -7,7 +7,7 @@ use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
 use crate::ui::run_folder;
 use anyhow::{Context, Result};
 use clap::Args;
-use design::output::vtk_sheet::vtk_states;
+use output::vtk_sheet::vtk_states;
 use std::path::PathBuf;
 use support::vtk;
 

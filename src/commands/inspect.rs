@@ -1,15 +1,13 @@
-//! `kirigami inspect`: the numbers of one stage of a design.
+//! `kirigami inspect`: the numbers of the stages of a design.
 
-mod deploy;
-mod equilibrium;
-mod gradient;
 #[cfg(feature = "pipeline")]
 pub(crate) mod judged_design;
-mod pattern;
 pub mod scene_args;
 
-use anyhow::Result;
+use crate::commands::inspect::scene_args::Listed;
+use anyhow::{Context, Result};
 use clap::{Args, Subcommand};
+use output::listing::{DeploymentListing, EquilibriumListing, GradientListing, PatternListing};
 
 /// Print the numbers of one stage of a design: pattern, deploy, equilibrium, gradient
 #[derive(Args)]
@@ -20,19 +18,58 @@ pub struct InspectCommand {
 
 #[derive(Subcommand)]
 enum Stage {
-    Pattern(pattern::PatternCommand),
-    Deploy(deploy::DeployCommand),
-    Equilibrium(equilibrium::EquilibriumCommand),
-    Gradient(gradient::GradientCommand),
+    /// Print cut endpoints, panels and hinges of a scene's sheet, and whether it is valid
+    ///
+    /// Example: kirigami inspect pattern configs/scenes/linear-7x7.toml --json
+    Pattern(Listed),
+    /// Print the kinematic deployment of a scene's sheet, with the same opening angle at every hinge
+    ///
+    /// Example: kirigami inspect deploy configs/scenes/linear-7x7.toml --opening-deg 60 --json
+    Deploy(DeployArgs),
+    /// Print the equilibria of a scene's sheet along its equilibrium path, and how each was solved
+    ///
+    /// Example: kirigami inspect equilibrium configs/scenes/linear-7x7.toml --json
+    Equilibrium(Listed),
+    /// Print the objective of a scene's sheet, term by term, and its gradient
+    ///
+    /// Example: kirigami inspect gradient configs/scenes/linear-7x7.toml --json
+    Gradient(Listed),
+}
+
+#[derive(Args)]
+struct DeployArgs {
+    #[command(flatten)]
+    listed: Listed,
+    /// Opening angle of the hinges (deg) [default: that of the design, if the scene has pin hinges]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    opening_deg: Option<f64>,
 }
 
 impl InspectCommand {
     pub(crate) fn run(&self) -> Result<()> {
         match &self.stage {
-            Stage::Pattern(command) => command.run(),
-            Stage::Deploy(command) => command.run(),
-            Stage::Equilibrium(command) => command.run(),
-            Stage::Gradient(command) => command.run(),
+            Stage::Pattern(listed) => {
+                let (scene, design) = listed.read()?;
+                listed.print(PatternListing::new(&scene.problem()?, &design)?)
+            }
+            Stage::Deploy(DeployArgs {
+                listed,
+                opening_deg,
+            }) => {
+                let (scene, design) = listed.read()?;
+                let opening = (opening_deg.map(f64::to_radians))
+                    .or(design.opening)
+                    .context("this scene's hinges are not pins: pass --opening-deg")?;
+                listed.print(DeploymentListing::new(&scene.problem()?, &design, opening)?)
+            }
+            Stage::Equilibrium(listed) => {
+                let (scene, design) = listed.read()?;
+                listed.print(EquilibriumListing::new(&scene.problem()?, &design)?)
+            }
+            Stage::Gradient(listed) => {
+                let (scene, design) = listed.read()?;
+                listed.print(GradientListing::new(&scene, &design)?)
+            }
         }
     }
 }

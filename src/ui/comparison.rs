@@ -1,10 +1,9 @@
 //! Tables that compare several runs, as files and on the screen.
 
-use crate::ui::run_folder;
-use crate::ui::table::table;
+use crate::ui::{self, run_folder};
 use anyhow::Result;
-use comfy_table::Table;
 use std::path::Path;
+use support::table::{Cell, Table};
 
 /// Writes `NAME.csv` and `NAME.md`, one line a row, to `folder`, and returns the table.
 pub fn write<const N: usize>(
@@ -12,19 +11,16 @@ pub fn write<const N: usize>(
     name: &str,
     columns: [&str; N],
     rows: impl IntoIterator<Item = [String; N]>,
-) -> Result<Table> {
-    let mut csv = csv::Writer::from_writer(Vec::new());
-    csv.write_record(columns)?;
-    let rule = "---|".repeat(N);
-    let mut page = format!("| {} |\n|{rule}\n", columns.join(" | "));
-    let mut listed = table(columns);
+) -> Result<comfy_table::Table> {
+    let rows: Vec<[String; N]> = rows.into_iter().collect();
+    let table = (columns.iter().enumerate()).fold(Table::new(), |table, (i, name)| {
+        table.column(*name, move |cells: &[String; N]| Cell::text(&cells[i]))
+    });
+    run_folder::write(folder, &format!("{name}.csv"), &table.csv(&rows))?;
+    run_folder::write(folder, &format!("{name}.md"), &table.markdown(&rows))?;
+    let mut listed = ui::table::table(columns);
     for cells in rows {
-        csv.write_record(&cells)?;
-        page += &format!("| {} |\n", cells.join(" | "));
         listed.add_row(cells);
     }
-    let csv = String::from_utf8(csv.into_inner()?)?;
-    run_folder::write(folder, &format!("{name}.csv"), &csv)?;
-    run_folder::write(folder, &format!("{name}.md"), &page)?;
     Ok(listed)
 }

@@ -27,8 +27,8 @@ pub fn lock(path: &Path, taken: impl FnOnce() -> String) -> Result<File> {
 }
 
 /// Writes a file of the folder atomically.
-pub fn write(folder: &Path, name: &str, text: &str) -> Result<()> {
+pub fn write(folder: &Path, name: &str, contents: &(impl AsRef<[u8]> + ?Sized)) -> Result<()> {
     let path = folder.join(name);
-    support::whole_file::write(&path, text.as_bytes())
+    support::whole_file::write(&path, contents.as_ref())
         .with_context(|| format!("cannot write {}", path.display()))
 }

@@ -14,11 +14,11 @@ use design::analysis::further_load::FurtherLoad;
 use design::objective::design_problem::Deployment;
 use design::objective::outline_error::outline_error;
 use design::optimise::outer_loop::Ended;
-use design::output::drawing;
 use design::pattern::design_vector::DesignVector;
 use design::scene::{HingeModel, PinConfig, Scene, SceneConfig};
 use kirigami::ui::progress::Progress;
 use kirigami::ui::{interrupt, picture, run_folder};
+use output::drawing;
 use readings::READINGS;
 use std::path::PathBuf;
 

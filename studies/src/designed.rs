@@ -3,9 +3,10 @@
 use anyhow::{Result, bail};
 use design::optimise::outer_loop::{Ended, StepRecord};
 use design::scene::Scene;
-use design::scene::design_run::{Designed, forget, inverse_design};
+use design::scene::design_run::{Designed, inverse_design};
 use kirigami::ui::exit::Unfinished;
 use kirigami::ui::interrupt;
+use output::run_results::remove_run;
 
 /// The finished search of a scene; a search that was stopped or is stuck is an error.
 pub fn designed(scene: &Scene, progress: &mut dyn FnMut(&StepRecord)) -> Result<Designed> {
@@ -13,7 +14,7 @@ pub fn designed(scene: &Scene, progress: &mut dyn FnMut(&StepRecord)) -> Result<
     let designed = match inverse_design(scene, stop, progress) {
         // A run of other weights or of a changed scene, left by an earlier study, is discarded.
         Err(error) if error.is_of_another_run() => {
-            forget(scene)?;
+            remove_run(scene)?;
             inverse_design(scene, stop, progress)?
         }
         designed => designed?,

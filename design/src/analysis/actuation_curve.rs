@@ -143,9 +143,10 @@ impl ActuationCurve {
 
     /// Units of displacement and load.
     pub fn units(&self) -> [&'static str; 2] {
-        match self.translational {
-            true => ["mm", "N"],
-            false => ["rad", "N mm"],
+        if self.translational {
+            ["mm", "N"]
+        } else {
+            ["rad", "N mm"]
         }
     }
 }
@@ -187,9 +188,10 @@ fn vertex([x0, f0]: [f64; 2], [x1, f1]: [f64; 2], [x2, f2]: [f64; 2]) -> [f64; 2
     let curvature = (right - left) / (x2 - x0);
     let slope = left + curvature * (x1 - x0);
     let ahead = -0.5 * slope / curvature;
-    match ahead.is_finite() && (x0 - x1..=x2 - x1).contains(&ahead) {
-        true => [x1 + ahead, f1 + 0.5 * slope * ahead],
-        false => [x1, f1],
+    if ahead.is_finite() && (x0 - x1..=x2 - x1).contains(&ahead) {
+        [x1 + ahead, f1 + 0.5 * slope * ahead]
+    } else {
+        [x1, f1]
     }
 }
 

@@ -12,7 +12,7 @@
 use hinge::SheetMaterial;
 
 /// Acceleration of gravity (mm/s^2).
-pub(crate) const GRAVITY: f64 = 9810.0;
+pub const GRAVITY: f64 = 9810.0;
 /// From kg/m^3 to tonne/mm^3, consistent with mm, N and MPa.
 const TONNE_PER_MM3: f64 = 1e-12;
 

@@ -163,7 +163,7 @@ impl LoadStep {
     }
 
     /// The ideal deployment as a path of one step, without energy and without unbalanced forces.
-    pub(crate) fn ideal(sheet: &Sheet, configuration: Configuration) -> Self {
+    pub fn ideal(sheet: &Sheet, configuration: Configuration) -> Self {
         let hinges = sheet.hinges.len();
         Self {
             load_factor: 1.0,

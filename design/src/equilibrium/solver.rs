@@ -134,6 +134,11 @@ impl EquilibriumSolver {
         })
     }
 
+    /// Whether the stroke is prescribed and the load factor follows.
+    pub fn is_driven(&self) -> bool {
+        self.drive.is_some()
+    }
+
     /// The same supports and loads under displacement control: the load factors follow from the strokes
     /// i/steps of `stroke` (mm), the work of the full loads divided by the sum of their magnitudes.
     pub fn driven(mut self, stroke: f64) -> Result<Self, EquilibriumError> {

@@ -279,7 +279,8 @@ impl DesignProblem {
 }
 
 impl Mechanics {
-    pub(crate) fn hinged<'a>(
+    /// The sheet with its prepared hinge law and contact, as the solver reads it.
+    pub fn hinged<'a>(
         &'a self,
         sheet: &'a Sheet,
         law: &'a dyn PreparedLaw,

@@ -76,7 +76,7 @@ impl Grid {
     }
 
     /// All vertices, row by row.
-    pub(crate) fn vertices(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+    pub fn vertices(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let m = self.m;
         (0..=self.n).flat_map(move |j| (0..=m).map(move |i| (i, j)))
     }

@@ -21,14 +21,6 @@ use support::sealed_json::{self, SealError};
 use support::{regular_file, whole_file};
 
 const SAVE_EVERY: Duration = Duration::from_secs(1);
-/// The files of a run that are written only for a design that can be cut.
-pub const CUT_FILES: [&str; 5] = [
-    "cut.dxf",
-    "cut.svg",
-    "cut-list.csv",
-    "cut-summary.csv",
-    "deployed.dxf",
-];
 
 /// A finished run.
 pub struct Designed {
@@ -266,31 +258,6 @@ fn wide_enough(scene: &Scene, start: &Evaluation) -> Result<(), InverseDesignErr
     let thinnest = thinnest_panel(&panels);
     if minimum > 0.0 && thinnest <= minimum {
         return Err(InverseDesignError::ThinStart { thinnest, minimum });
-    }
-    Ok(())
-}
-
-/// Deletes the state in the scene's run folder, so that the next run begins at the start, with the report, the page
-/// and the cut files of the design that it held. Nothing is deleted if the start of the scene cannot be evaluated.
-pub fn forget(scene: &Scene) -> Result<(), InverseDesignError> {
-    let start = scene.problem()?.evaluate(&scene.start());
-    start.map_err(InverseDesignError::Start)?;
-    let results = [
-        "report.txt",
-        "report.json",
-        "report.pdf",
-        "run.html",
-        "deployment.png",
-        STATE_FILE,
-    ];
-    for name in CUT_FILES.into_iter().chain(results) {
-        let path = scene.output().join(name);
-        match std::fs::remove_file(&path) {
-            Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-                return Err(InverseDesignError::Folder { path, source });
-            }
-            _ => {}
-        }
     }
     Ok(())
 }

@@ -17,11 +17,11 @@ pub struct HingeSite {
     /// Panel B of the window, with odd column + row, and its corner.
     pub b: PanelCorner,
     /// The cut endpoint at the hinge.
-    pub(crate) corner: usize,
+    pub corner: usize,
     /// The ends of the secondary cut, in the direction of e_sec.
     pub(crate) secondary: [usize; 2],
     /// The far end of the main cut.
-    pub(crate) main_end: usize,
+    pub main_end: usize,
 }
 
 /// The cut endpoints at the corners SW, SE, NE, NW of every panel.

@@ -12,8 +12,7 @@ use design::equilibrium::settings::SolverSettings;
 use design::equilibrium::solver::EquilibriumSolver;
 use design::equilibrium::supports::{Dof, Load};
 use design::hinge_law::{HingeLaw, LinearLaw};
-use design::objective::design_problem::{DesignError, Mechanics, Model};
-use design::output::listing::EquilibriumListing;
+use design::objective::design_problem::{Mechanics, Model};
 use design::pattern::coordinates::PatternCoordinates;
 use design::pattern::cut_pattern::{CutPattern, Outline};
 use design::pattern::grid::Grid;
@@ -195,13 +194,6 @@ fn a_sheet_without_a_finite_energy_has_no_path() {
     let path = path(&sheet, &law, &clamp(3), &[pull(5, 1.0)], 3);
     assert_eq!((path.len(), path[0].status), (1, Status::Diverged));
     assert_finite(&path);
-}
-
-#[test]
-fn a_sheet_on_pins_has_no_equilibria_to_list() {
-    let pins = problem(Model::Ideal { opening: 0.5 }, HingePoint::Corner);
-    let error = EquilibriumListing::new(&pins, &start()).unwrap_err();
-    assert!(matches!(error, DesignError::NoMechanics));
 }
 
 /// Beyond the limit point of the load the tangent under displacement control is indefinite; the gradient is exact.

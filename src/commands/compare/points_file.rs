@@ -175,9 +175,10 @@ impl Columns {
         let length = |axis: usize| -> Result<f64> {
             let value = text(self.position[axis]);
             value.parse().ok().with_context(|| {
-                let decimals = match value.contains(',') {
-                    true => "; decimals have a point",
-                    false => "",
+                let decimals = if value.contains(',') {
+                    "; decimals have a point"
+                } else {
+                    ""
                 };
                 let name = ["x", "y"][axis];
                 format!("column `{name}`: `{value}` is not a number{decimals}")

@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use dataset::{Values, parquet_table};
 use design::equilibrium::load_step::LoadStep;
 use design::objective::design_problem::Deployment;
-use design::output::hinge_states::{HingeState, hinge_states};
+use output::hinge_states::{HingeState, hinge_states};
 use std::path::Path;
 
 /// Writes `hinges.parquet` and `path.parquet`.

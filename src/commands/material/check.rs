@@ -3,11 +3,11 @@
 use crate::ui::table::table;
 use anyhow::{Result, bail, ensure};
 use clap::Args;
-use design::output::material_check::{Intended, MaterialCheck};
-use design::output::report::Severity;
 use design::scene::SceneConfig;
 use design::scene::run_inputs::scene_file;
 use hinge::SheetMaterial;
+use output::material_check::{Intended, MaterialCheck};
+use output::report::Severity;
 use std::path::PathBuf;
 use support::toml_file;
 

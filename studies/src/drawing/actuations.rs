@@ -5,12 +5,12 @@
 use design::analysis::force_transmission::{ForceTransmission, Interface};
 use design::analysis::tension_routes::TensionRoute;
 use design::objective::design_problem::Deployment;
-use design::output::canvas::{Anchor, Canvas};
-use design::output::drawing::page::{ACCENT, INK, MUTED, PANELS, TEAL, bounds};
 use design::scene::{Scene, SupportKind};
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::deployed_corners;
 use design::sheet::topology::is_even;
+use output::display::{Anchor, Canvas, Colour, Style, bounds};
+use output::drawing::page::{ACCENT, INK, MUTED, PANELS, TEAL};
 
 /// A row of the picture.
 pub struct ActuationRow<'a> {
@@ -27,8 +27,8 @@ pub struct ActuationRow<'a> {
 
 const WIDTH_PX: f64 = 2400.0;
 /// Colours of the void families; further families have the last colour.
-const FAMILIES: [&str; 3] = ["#e3a857", "#7cb3a6", "#b49fd1"];
-const PLAIN: &str = "#f4f5f7";
+const FAMILIES: [Colour; 3] = [[227, 168, 87], [124, 179, 166], [180, 159, 209]];
+const PLAIN: Colour = [244, 245, 247];
 /// Colours of panels with a quarter of, once and four times their area at the start.
 const AREAS: [[f64; 3]; 3] = [
     [180.0, 83.0, 9.0],
@@ -49,30 +49,18 @@ pub fn actuations(rows: &[ActuationRow]) -> String {
         return String::new();
     };
     let layout = Layout::of(rows, first);
-    let mut canvas = Canvas::new([0.0; 2], [layout.width, layout.height]);
-    let page = [
-        [0.0; 2],
-        [layout.width, 0.0],
-        [layout.width, layout.height],
-        [0.0, layout.height],
-    ];
-    canvas.polygon(&page, "fill=\"#ffffff\"");
-    let bold = format!("fill=\"{INK}\" font-weight=\"bold\"");
+    let page = [[0.0; 2], [layout.width, layout.height]];
+    let mut canvas = Canvas::on_white(page);
+    let bold = Style::fill(INK).bold();
     let u = layout.unit;
     for ((_, name), left) in COLUMNS.iter().zip(layout.left) {
         let at = [left, layout.height - 22.0 * u];
-        canvas.text(at, 13.0 * u, Anchor::Start, &bold, name);
+        canvas.text(at, 13.0 * u, Anchor::Start, bold, name);
     }
     for (i, row) in rows.iter().enumerate() {
         let bottom = layout.height - 40.0 * u - layout.row * (i as f64 + 1.0);
         let middle = bottom + 0.5 * layout.row;
-        canvas.text(
-            [12.0 * u, middle],
-            20.0 * u,
-            Anchor::Start,
-            &bold,
-            row.label,
-        );
+        canvas.text([12.0 * u, middle], 20.0 * u, Anchor::Start, bold, row.label);
         let cell = |column: usize, [low, high]: [[f64; 2]; 2]| Cell {
             scale: COLUMNS[column].0,
             // The content between `low` and `high` is centred in the row.
@@ -90,7 +78,7 @@ pub fn actuations(rows: &[ActuationRow]) -> String {
         forces(&mut canvas, &cell(3, open), row);
     }
     legend(&mut canvas, &layout);
-    canvas.finish(WIDTH_PX, "px")
+    canvas.svg(page, WIDTH_PX, "px")
 }
 
 /// Positions of columns and rows (mm of the sheet).
@@ -143,17 +131,13 @@ impl Cell {
         ]
     }
 
-    fn polygon(&self, canvas: &mut Canvas, points: &[[f64; 2]], attributes: &str) {
+    fn polygon(&self, canvas: &mut Canvas, points: &[[f64; 2]], style: Style) {
         let points: Vec<_> = points.iter().map(|point| self.at(*point)).collect();
-        canvas.polygon(&points, attributes);
+        canvas.polygon(&points, style);
     }
 
-    fn stroke(&self, colour: &str, width: f64) -> String {
-        format!(
-            "stroke=\"{colour}\" stroke-width=\"{:.2}\" stroke-linejoin=\"round\" \
-             stroke-linecap=\"round\"",
-            width * self.unit
-        )
+    fn stroke(&self, colour: Colour, width: f64) -> Style {
+        Style::stroke(colour, width * self.unit).round()
     }
 }
 
@@ -161,20 +145,20 @@ fn boundary_values(canvas: &mut Canvas, cell: &Cell, row: &ActuationRow) {
     let u = cell.unit;
     for (k, panel) in row.start.panels.iter().enumerate() {
         let fill = PANELS[usize::from(!is_even(row.start.grid, k))];
-        let style = format!("fill=\"{fill}\" {}", cell.stroke("#c3cbd4", 0.4));
-        cell.polygon(canvas, &panel.corners, &style);
+        let style = cell.stroke([195, 203, 212], 0.4).filled(fill);
+        cell.polygon(canvas, &panel.corners, style);
     }
     let centroid = |[column, line]: [usize; 2]| {
         cell.at(row.start.panels[row.start.grid.panel(column, line)].centroid)
     };
-    let ink = format!("fill=\"{INK}\"");
+    let ink = Style::fill(INK);
     for support in &row.scene.config.supports {
         let [x, y] = centroid(support.panel);
         match support.kind {
-            SupportKind::RollerX | SupportKind::RollerY => canvas.circle([x, y], 4.0 * u, &ink),
+            SupportKind::RollerX | SupportKind::RollerY => canvas.circle([x, y], 4.0 * u, ink),
             SupportKind::Pin | SupportKind::Clamp => {
                 let triangle = [[-5.0, -6.0], [5.0, -6.0], [0.0, 3.0]];
-                canvas.polygon(&triangle.map(|[a, b]| [x + a * u, y + b * u]), &ink);
+                canvas.polygon(&triangle.map(|[a, b]| [x + a * u, y + b * u]), ink);
             }
         }
     }
@@ -184,7 +168,7 @@ fn boundary_values(canvas: &mut Canvas, cell: &Cell, row: &ActuationRow) {
         .iter()
         .map(|load| size(load.force))
         .fold(0.0, f64::max);
-    let (stroke, fill) = (cell.stroke(ACCENT, 1.8), format!("fill=\"{ACCENT}\""));
+    let (stroke, fill) = (cell.stroke(ACCENT, 1.8), Style::fill(ACCENT));
     for load in loads {
         let [x, y] = centroid(load.panel);
         let force = size(load.force);
@@ -193,13 +177,13 @@ fn boundary_values(canvas: &mut Canvas, cell: &Cell, row: &ActuationRow) {
             let length = (12.0 + 18.0 * force / max) * u;
             let at =
                 |along: f64, aside: f64| [x + along * c - aside * s, y + along * s + aside * c];
-            canvas.line([x, y], at(length - 5.0 * u, 0.0), &stroke);
+            canvas.line([x, y], at(length - 5.0 * u, 0.0), stroke);
             let head = [
                 at(length, 0.0),
                 at(length - 7.0 * u, 3.2 * u),
                 at(length - 7.0 * u, -3.2 * u),
             ];
-            canvas.polygon(&head, &fill);
+            canvas.polygon(&head, fill);
         }
         if load.couple != 0.0 {
             let sense = if load.couple > 0.0 {
@@ -207,7 +191,7 @@ fn boundary_values(canvas: &mut Canvas, cell: &Cell, row: &ActuationRow) {
             } else {
                 "\u{21bb}"
             };
-            canvas.text([x, y + 6.0 * u], 24.0 * u, Anchor::Middle, &fill, sense);
+            canvas.text([x, y + 6.0 * u], 24.0 * u, Anchor::Middle, fill, sense);
         }
     }
 }
@@ -216,7 +200,7 @@ fn flat_areas(canvas: &mut Canvas, cell: &Cell, row: &ActuationRow) {
     let edge = cell.stroke(INK, 0.5);
     for (panel, start) in std::iter::zip(&row.deployment.sheet.panels, &row.start.panels) {
         let colour = area_colour(panel.area() / start.area());
-        cell.polygon(canvas, &panel.corners, &format!("fill=\"{colour}\" {edge}"));
+        cell.polygon(canvas, &panel.corners, edge.filled(colour));
     }
 }
 
@@ -231,12 +215,11 @@ fn deployed(canvas: &mut Canvas, cell: &Cell, row: &ActuationRow) {
     let edge = cell.stroke(INK, 0.5);
     let corners = deployed_corners(sheet, &row.deployment.final_step().configuration);
     for (corners, fill) in corners.iter().zip(fills) {
-        cell.polygon(canvas, corners, &format!("fill=\"{fill}\" {edge}"));
+        cell.polygon(canvas, corners, edge.filled(fill));
     }
     let u = cell.unit;
-    let dashes = format!("stroke-dasharray=\"{:.1} {:.1}\"", 5.0 * u, 3.5 * u);
-    let style = format!("fill=\"none\" {} {dashes}", cell.stroke(ACCENT, 1.2));
-    cell.polygon(canvas, row.scene.target.points(), &style);
+    let style = cell.stroke(ACCENT, 1.2).dashed(5.0 * u, 3.5 * u);
+    cell.polygon(canvas, row.scene.target.points(), style);
 }
 
 fn forces(canvas: &mut Canvas, cell: &Cell, row: &ActuationRow) {
@@ -252,12 +235,12 @@ fn forces(canvas: &mut Canvas, cell: &Cell, row: &ActuationRow) {
         }
     }
     let most = pressed.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-    let edge = cell.stroke("#c3cbd4", 0.5);
+    let edge = cell.stroke([195, 203, 212], 0.5);
     for (corners, pressed) in corners.iter().zip(pressed) {
-        cell.polygon(canvas, corners, &format!("fill=\"#ffffff\" {edge}"));
+        cell.polygon(canvas, corners, edge.filled([255; 3]));
         let fraction = pressed / most;
-        let style = format!("fill=\"{TEAL}\" fill-opacity=\"{fraction:.3}\"");
-        cell.polygon(canvas, corners, &style);
+        let style = Style::fill(TEAL).opacity(fraction, 1.0);
+        cell.polygon(canvas, corners, style);
     }
     let maximum = |size: &dyn Fn(&Interface) -> f64| {
         (transmission.interfaces.iter().map(size)).fold(f64::MIN_POSITIVE, f64::max)
@@ -269,26 +252,26 @@ fn forces(canvas: &mut Canvas, cell: &Cell, row: &ActuationRow) {
             let style = cell.stroke(ACCENT, 0.8 + 3.6 * interface.normal / most_tension);
             let hinge = cell.at(interface.at);
             for panel in interface.panels {
-                canvas.line(cell.at(transmission.centroids[panel]), hinge, &style);
+                canvas.line(cell.at(transmission.centroids[panel]), hinge, style);
             }
         }
     }
     let most_shear = maximum(&|it| it.tangential.abs());
-    let ink = format!("fill=\"{INK}\"");
+    let ink = Style::fill(INK);
     for h in transmission.strongest(|it| it.tangential.abs()) {
         let interface = &transmission.interfaces[h];
         let fraction = interface.tangential.abs() / most_shear;
-        canvas.circle(cell.at(interface.at), (0.7 + 2.3 * fraction) * u, &ink);
+        canvas.circle(cell.at(interface.at), (0.7 + 2.3 * fraction) * u, ink);
     }
 }
 
 fn legend(canvas: &mut Canvas, layout: &Layout) {
     let u = layout.unit;
-    let (muted, y, height) = (format!("fill=\"{MUTED}\""), 20.0 * u, 11.0 * u);
+    let (muted, y, height) = (Style::fill(MUTED), 20.0 * u, 11.0 * u);
     let text = |canvas: &mut Canvas, x: f64, text: &str| {
-        canvas.text([x, y], height, Anchor::Start, &muted, text);
+        canvas.text([x, y], height, Anchor::Start, muted, text);
     };
-    let swatch = |canvas: &mut Canvas, x: f64, style: &str| {
+    let swatch = |canvas: &mut Canvas, x: f64, style: Style| {
         let (low, high) = (y - 1.5 * u, y + 8.5 * u);
         let corners = [
             [x, low],
@@ -302,37 +285,31 @@ fn legend(canvas: &mut Canvas, layout: &Layout) {
     for step in 0..=16 {
         let ratio = 2f64.powf(step as f64 / 4.0 - 2.0);
         let x = layout.left[1] + 26.0 * u + 6.0 * u * f64::from(step);
-        swatch(canvas, x, &format!("fill=\"{}\"", area_colour(ratio)));
+        swatch(canvas, x, Style::fill(area_colour(ratio)));
     }
     text(canvas, layout.left[1], "\u{bc}");
     text(canvas, layout.left[1] + 138.0 * u, "4 \u{d7} area");
     for (k, colour) in FAMILIES.iter().enumerate() {
         let x = layout.left[2] + 70.0 * u * k as f64;
-        swatch(canvas, x, &format!("fill=\"{colour}\""));
+        swatch(canvas, x, Style::fill(*colour));
         text(canvas, x + 14.0 * u, &format!("family {}", k + 1));
     }
     let x = layout.left[3];
-    let line = format!("stroke=\"{ACCENT}\" stroke-width=\"{:.1}\"", 3.0 * u);
-    canvas.line([x, y + 3.5 * u], [x + 12.0 * u, y + 3.5 * u], &line);
+    let line = Style::stroke(ACCENT, 3.0 * u);
+    canvas.line([x, y + 3.5 * u], [x + 12.0 * u, y + 3.5 * u], line);
     text(canvas, x + 16.0 * u, "tension");
-    swatch(canvas, x + 70.0 * u, &format!("fill=\"{TEAL}\""));
+    swatch(canvas, x + 70.0 * u, Style::fill(TEAL));
     text(canvas, x + 84.0 * u, "compression");
-    canvas.circle(
-        [x + 172.0 * u, y + 3.5 * u],
-        2.6 * u,
-        &format!("fill=\"{INK}\""),
-    );
+    canvas.circle([x + 172.0 * u, y + 3.5 * u], 2.6 * u, Style::fill(INK));
     text(canvas, x + 179.0 * u, "shear");
 }
 
 /// Brown for panels with reduced area, white for unchanged area, green for increased area.
-fn area_colour(ratio: f64) -> String {
+fn area_colour(ratio: f64) -> Colour {
     let position = (0.5 * ratio.log2() + 1.0).clamp(0.0, 2.0);
     let stop = (position as usize).min(1);
     let f = position - stop as f64;
-    let [r, g, b] = [0, 1, 2]
-        .map(|c| (AREAS[stop][c] + f * (AREAS[stop + 1][c] - AREAS[stop][c])).round() as u8);
-    format!("#{r:02x}{g:02x}{b:02x}")
+    [0, 1, 2].map(|c| (AREAS[stop][c] + f * (AREAS[stop + 1][c] - AREAS[stop][c])).round() as u8)
 }
 
 #[cfg(test)]
@@ -341,8 +318,8 @@ mod tests {
 
     #[test]
     fn panels_are_coloured_by_the_logarithm_of_their_area() {
-        assert_eq!(area_colour(1.0), "#fafafa");
+        assert_eq!(area_colour(1.0), [250, 250, 250]);
         assert_eq!(area_colour(0.25), area_colour(0.1));
-        assert_eq!(area_colour(4.0), "#15803d");
+        assert_eq!(area_colour(4.0), [21, 128, 61]);
     }
 }

@@ -2,15 +2,15 @@
 
 use crate::tessellation::{Defects, Tessellation};
 use design::geometry::polygon::{area, common};
-use design::output::canvas::{Anchor, Canvas};
-use design::output::drawing::page::{ACCENT, INK, MUTED, PANELS, bounds};
 use design::pattern::grid::Grid;
 use design::sheet::topology::is_even;
+use output::display::{Anchor, Canvas, Colour, Style, bounds};
+use output::drawing::page::{ACCENT, INK, MUTED, PANELS};
 
 /// Colour of area that the flat panels do not cover.
-const VOID: &str = "#f6a55f";
+const VOID: Colour = [246, 165, 95];
 /// Colour of overlaps.
-const OVERLAP: &str = "#8b1a1a";
+const OVERLAP: Colour = [139, 26, 26];
 
 /// One sheet with its target.
 pub struct Column<'a> {
@@ -52,17 +52,16 @@ pub fn side_by_side(columns: &[Column]) -> String {
     let (title, text) = (34.0 * unit, 17.0 * unit);
     let bottom = -high_flat - high_deployed - title - text * (lines as f64 + 2.5);
     let right = width * columns.len() as f64;
-    let mut canvas = Canvas::new([0.0, bottom], [right, 0.0]);
-    let whole = [[0.0, bottom], [right, bottom], [right, 0.0], [0.0; 2]];
-    canvas.polygon(&whole, "fill=\"#ffffff\"");
+    let page = [[0.0, bottom], [right, 0.0]];
+    let mut canvas = Canvas::on_white(page);
     for (c, column) in columns.iter().enumerate() {
         let middle = width * (c as f64 + 0.5);
-        let ink = format!("fill=\"{INK}\" font-weight=\"bold\"");
+        let ink = Style::fill(INK).bold();
         canvas.text(
             [middle, -24.0 * unit],
             16.0 * unit,
             Anchor::Middle,
-            &ink,
+            ink,
             column.title,
         );
         let sheet = column.tessellation;
@@ -71,25 +70,17 @@ pub fn side_by_side(columns: &[Column]) -> String {
             move |[a, b]: [f64; 2]| [middle + a - centre[0], y + b - centre[1]]
         };
         let place = onto(flat(column), -title - 0.5 * high_flat);
-        canvas.polygon(
-            &sheet.outline.corners.map(place),
-            &format!("fill=\"{VOID}\""),
-        );
+        canvas.polygon(&sheet.outline.corners.map(place), Style::fill(VOID));
         panels(&mut canvas, sheet.grid, &sheet.flat, place);
         let place = onto(deployed(column), -title - high_flat - 0.5 * high_deployed);
         panels(&mut canvas, sheet.grid, &sheet.deployed, place);
         let target: Vec<_> = column.target.iter().map(|point| place(*point)).collect();
-        let dashed = format!(
-            "fill=\"none\" stroke=\"{ACCENT}\" stroke-width=\"{:.4}\" stroke-dasharray=\"{:.4} {:.4}\"",
-            1.5 * unit,
-            6.0 * unit,
-            4.0 * unit
-        );
-        canvas.polygon(&target, &dashed);
+        let dashed = Style::stroke(ACCENT, 1.5 * unit).dashed(6.0 * unit, 4.0 * unit);
+        canvas.polygon(&target, dashed);
         for (i, line) in column.lines.iter().enumerate() {
             let y = -title - high_flat - high_deployed - text * (i as f64 + 1.0);
-            let muted = format!("fill=\"{MUTED}\"");
-            canvas.text([middle, y], 12.0 * unit, Anchor::Middle, &muted, line);
+            let muted = Style::fill(MUTED);
+            canvas.text([middle, y], 12.0 * unit, Anchor::Middle, muted, line);
         }
     }
     let torn = |column: &Column| {
@@ -99,11 +90,11 @@ pub fn side_by_side(columns: &[Column]) -> String {
     if columns.iter().any(torn) {
         legend(&mut canvas, [0.5 * right, bottom + 0.7 * text], unit);
     }
-    canvas.finish(1600.0, "px")
+    canvas.svg(page, 1600.0, "px")
 }
 
 fn legend(canvas: &mut Canvas, [x, y]: [f64; 2], unit: f64) {
-    let muted = format!("fill=\"{MUTED}\"");
+    let muted = Style::fill(MUTED);
     let entries = [
         (VOID, "area that no panel covers", x - 245.0 * unit),
         (OVERLAP, "panels that overlap", x + 25.0 * unit),
@@ -116,12 +107,12 @@ fn legend(canvas: &mut Canvas, [x, y]: [f64; 2], unit: f64) {
             [x + side, low + side],
             [x, low + side],
         ];
-        canvas.polygon(&square, &format!("fill=\"{colour}\""));
+        canvas.polygon(&square, Style::fill(colour));
         canvas.text(
             [x + 17.0 * unit, y],
             12.0 * unit,
             Anchor::Start,
-            &muted,
+            muted,
             text,
         );
     }
@@ -136,18 +127,16 @@ fn panels(
     let mean = panels.iter().map(|panel| area(panel).abs()).sum::<f64>() / panels.len() as f64;
     let edge = 0.025 * mean.sqrt();
     for (k, panel) in panels.iter().enumerate() {
-        let style = format!(
-            "fill=\"{}\" stroke=\"{INK}\" stroke-width=\"{edge:.4}\" stroke-linejoin=\"round\"",
-            PANELS[usize::from(!is_even(grid, k))]
-        );
-        canvas.polygon(&panel.map(&place), &style);
+        let fill = PANELS[usize::from(!is_even(grid, k))];
+        let style = Style::stroke(INK, edge).round().filled(fill);
+        canvas.polygon(&panel.map(&place), style);
     }
     for (k, panel) in panels.iter().enumerate() {
         for other in &panels[..k] {
             let shared = common(panel, other);
             if area(&shared) > 1e-4 * mean {
                 let shared: Vec<_> = shared.into_iter().map(&place).collect();
-                canvas.polygon(&shared, &format!("fill=\"{OVERLAP}\" fill-opacity=\"0.8\""));
+                canvas.polygon(&shared, Style::fill(OVERLAP).opacity(0.8, 1.0));
             }
         }
     }

@@ -1,0 +1,38 @@
+//! Cut files of a designed sheet for cutting machines and for cutting by hand, at 1:1 in mm.
+//!
+//! [`CutLines`] is the finished geometry, checked against the simulated sheet. [`SheetDrawing`] is what is cut, in cutting
+//! order, with numbers and instructions; [`dxf()`], [`svg()`] and [`tiles_pdf`] are its files. [`split`] divides a sheet
+//! that is larger than the bed of the machine.
+
+mod cut_drawing;
+mod cut_lines;
+mod cut_list;
+mod cutting_order;
+mod deployed_panels;
+mod dxf;
+mod error_mark;
+mod fabrication_error;
+mod numbers;
+mod parts;
+mod pdf_tiles;
+mod seam;
+mod sheet_drawing;
+mod svg;
+mod tiling;
+mod totals;
+mod written_check;
+
+pub use cut_drawing::{CutDrawing, Layer};
+pub use cut_lines::{CutLines, Hole, Slit};
+pub use cut_list::{cut_list, cut_summary};
+pub use deployed_panels::deployed_panels;
+pub use dxf::dxf;
+pub use error_mark::{FORCED, mark_errors};
+pub use fabrication_error::FabricationError;
+pub use parts::{Part, Split, split};
+pub use pdf_tiles::tiles_pdf;
+pub use seam::Seam;
+pub use sheet_drawing::SheetDrawing;
+pub use svg::svg;
+pub use tiling::{OVERLAP, Paper, Tiling};
+pub use totals::Totals;

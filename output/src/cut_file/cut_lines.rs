@@ -1,0 +1,211 @@
+//! The paths of the cutting tool, from the simulated geometry.
+//!
+//! A slit runs between the tips O of the hinges at its ends, so that each hinge keeps its ligament w_lig;
+//! a slit that is open on the outline starts there. Each slit ends in a hole of radius rho_f w_lig, which is drilled
+//! about O.
+//!
+//! **Ligament.** w_lig is the material between O and the finished edge of the secondary cut, as in the window:
+//! the distance of O from the line of that cut is larger by half a kerf. The hole reduces the ligament by its radius,
+//! so that a caliper beside the hole reads (1 - rho_f) w_lig, [`CutLines::caliper`].
+//!
+//! **Kerf.** A slit is one pass of the tool along its line and removes the kerf, half on each flank:
+//! the tool's kerf is the design kerf w_c of (7). Holes and outline are closed paths, offset by half
+//! the kerf (holes inwards, the outline outwards), so that the finished hole and sheet have their
+//! nominal size.
+//!
+//! **Over-run.** A slit that is open on the outline is cut beyond the finished edge, so that no web is left between
+//! the two cuts.
+
+use crate::cut_file::cut_drawing::{CutDrawing, Layer};
+use crate::cut_file::fabrication_error::FabricationError;
+use crate::cut_file::written_check;
+use crate::display::{Shape, distance};
+use design::geometry::polygon::{distance_to_segment, edges};
+use design::pattern::cut_pattern::CutPattern;
+use design::scene::CuttingConfig;
+use design::sheet::cut_sheet::Sheet;
+use design::sheet::topology::hinge_sites;
+use std::collections::BTreeMap;
+
+/// One straight cut through the sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slit {
+    /// Its ends (mm); the first is always the tip O of a hinge.
+    pub ends: [[f64; 2]; 2],
+    /// The hinge at each end; `None` at an end that is open on the outline.
+    pub hinges: [Option<usize>; 2],
+}
+
+/// The drilled end of a slit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hole {
+    /// The tip O of its hinge (mm).
+    pub centre: [f64; 2],
+    /// Radius of the finished hole: rho_f w_lig (mm).
+    pub radius: f64,
+}
+
+/// The finished geometry of a cut sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutLines {
+    /// All cuts inside the sheet, each once.
+    pub slits: Vec<Slit>,
+    /// One per hinge.
+    pub holes: Vec<Hole>,
+    /// Corners of the sheet, counter-clockwise (mm).
+    pub outline: [[f64; 2]; 4],
+    /// Width of the kerf (mm).
+    pub kerf: f64,
+    /// How the sheet is cut.
+    pub cutting: CuttingConfig,
+}
+
+impl CutLines {
+    /// The cuts of `sheet`, which must come from `pattern`. They are checked to be those of the simulated sheet, to
+    /// meet nowhere and to leave the sheet in one piece.
+    pub fn new(
+        pattern: &CutPattern,
+        sheet: &Sheet,
+        cutting: CuttingConfig,
+    ) -> Result<Self, FabricationError> {
+        let process = sheet.options.process;
+        let holes: Vec<Hole> = sheet
+            .hinges
+            .iter()
+            .map(|hinge| Hole {
+                centre: hinge.tip,
+                radius: process.fillet_ratio * hinge.w_lig,
+            })
+            .collect();
+        for (hinge, hole) in holes.iter().enumerate() {
+            if 2.0 * hole.radius <= process.kerf {
+                return Err(FabricationError::HoleTooSmall {
+                    hinge,
+                    diameter: 2.0 * hole.radius,
+                    kerf: process.kerf,
+                });
+            }
+        }
+        let cuts = Self {
+            slits: slits(pattern, sheet, &holes)?,
+            holes,
+            outline: sheet.outline.corners,
+            kerf: process.kerf,
+            cutting,
+        };
+        written_check::check(&cuts.drawing(), sheet)?;
+        Ok(cuts)
+    }
+
+    /// The paths of the tool, in the order of the pattern.
+    pub fn drawing(&self) -> CutDrawing {
+        let mut drawing = CutDrawing::default();
+        for hole in &self.holes {
+            let (centre, radius) = (hole.centre, self.tool_radius(hole));
+            drawing.add(Layer::Holes, Shape::Circle { centre, radius });
+        }
+        for slit in &self.slits {
+            drawing.add(Layer::Cut, Shape::Line(self.tool_slit(slit)));
+        }
+        drawing.add(Layer::Outline, Shape::Polygon(self.tool_outline().to_vec()));
+        drawing
+    }
+
+    /// The path of the tool along a slit: with the over-run at an end that is open on the outline (mm).
+    pub fn tool_slit(&self, slit: &Slit) -> [[f64; 2]; 2] {
+        let [from, to] = slit.ends;
+        match slit.hinges[1] {
+            Some(_) => slit.ends,
+            None => {
+                let longer = 1.0 + self.cutting.over_run / distance(from, to);
+                let end = [0, 1].map(|axis| from[axis] + longer * (to[axis] - from[axis]));
+                [from, end]
+            }
+        }
+    }
+
+    /// Width of a ligament as measured by a caliper, from the edge of its hole to the secondary cut (mm).
+    pub fn caliper(&self, hinge: usize) -> f64 {
+        self.clearance(hinge) - self.holes[hinge].radius
+    }
+
+    /// Radius of the path of the tool's centre in a hole (mm).
+    pub fn tool_radius(&self, hole: &Hole) -> f64 {
+        hole.radius - self.kerf / 2.0
+    }
+
+    /// The path of the tool's centre around the sheet (mm).
+    pub fn tool_outline(&self) -> [[f64; 2]; 4] {
+        let outward = |k: usize| {
+            let (p, q) = (self.outline[k % 4], self.outline[(k + 1) % 4]);
+            let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
+            [dy / dx.hypot(dy), -dx / dx.hypot(dy)]
+        };
+        std::array::from_fn(|k| {
+            // The corner moves so that both of its edges move by half the kerf.
+            let (a, b) = (outward(k + 3), outward(k));
+            let shift = self.kerf / 2.0 / (1.0 + a[0] * b[0] + a[1] * b[1]);
+            let corner = self.outline[k];
+            [
+                corner[0] + shift * (a[0] + b[0]),
+                corner[1] + shift * (a[1] + b[1]),
+            ]
+        })
+    }
+
+    /// Material between the tip O of a hinge and the nearest cut other than its own (mm).
+    ///
+    /// It is w_lig for a valid hinge, and less if another cut is closer than the secondary cut. Half the kerf of
+    /// a slit lies on this side of its line.
+    pub fn clearance(&self, hinge: usize) -> f64 {
+        let tip = self.holes[hinge].centre;
+        let to_slits = self
+            .slits
+            .iter()
+            .filter(|slit| !slit.hinges.contains(&Some(hinge)))
+            .map(|slit| distance_to_segment(tip, slit.ends[0], slit.ends[1]) - 0.5 * self.kerf);
+        let to_outline = edges(&self.outline).map(|(p, q)| distance_to_segment(tip, p, q));
+        to_slits.chain(to_outline).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Every slit once: the main cut of one hinge (open on the outline) or of two.
+fn slits(
+    pattern: &CutPattern,
+    sheet: &Sheet,
+    holes: &[Hole],
+) -> Result<Vec<Slit>, FabricationError> {
+    let sites = hinge_sites(sheet.grid);
+    let at_corner: BTreeMap<usize, usize> = sites
+        .iter()
+        .enumerate()
+        .map(|(hinge, site)| (site.corner, hinge))
+        .collect();
+    let mut slits = Vec::new();
+    for (hinge, site) in sites.iter().enumerate() {
+        let other = at_corner
+            .get(&site.main_end)
+            .copied()
+            .filter(|&other| sites[other].main_end == site.corner);
+        if other.is_some_and(|other| other < hinge) {
+            continue;
+        }
+        let tip = holes[hinge].centre;
+        let end = other.map_or(pattern.points[site.main_end], |other| holes[other].centre);
+        let main = sheet.hinges[hinge].main;
+        let length = main[0] * (end[0] - tip[0]) + main[1] * (end[1] - tip[1]);
+        let drilled = holes[hinge].radius + other.map_or(0.0, |other| holes[other].radius);
+        if length <= drilled {
+            return Err(FabricationError::SlitVanishes {
+                hinge,
+                length,
+                drilled,
+            });
+        }
+        slits.push(Slit {
+            ends: [tip, end],
+            hinges: [Some(hinge), other],
+        });
+    }
+    Ok(slits)
+}

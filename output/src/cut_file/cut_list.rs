@@ -1,0 +1,36 @@
+//! The cut list: what to drill, what a caliper reads, and the amount of cutting, as CSV.
+
+use crate::cut_file::cut_lines::CutLines;
+use crate::cut_file::totals::{Totals, holes_by_diameter};
+use design::sheet::cut_sheet::Sheet;
+
+/// One row a hinge: its hole, its ligament as designed and as measured by a caliper beside the hole, and its panels.
+pub fn cut_list(sheet: &Sheet, cuts: &CutLines) -> String {
+    let mut text = "hinge,hole_diameter_mm,w_lig_mm,caliper_mm,panel_a,panel_b\n".to_owned();
+    for (h, (hinge, hole)) in std::iter::zip(&sheet.hinges, &cuts.holes).enumerate() {
+        let (diameter, caliper) = (2.0 * hole.radius, cuts.caliper(h));
+        let (w_lig, a, b) = (hinge.w_lig, hinge.panel_a(), hinge.panel_b());
+        text += &format!("{h},{diameter:.3},{w_lig:.3},{caliper:.3},{a},{b}\n");
+    }
+    text
+}
+
+/// One row a quantity: the totals, and the number of holes by diameter, rounded to 0.1 mm.
+pub fn cut_summary(cuts: &CutLines, totals: &Totals) -> String {
+    let mut text = format!(
+        "quantity,value,unit\nkerf,{},mm\nover-run,{},mm\nslits,{},\nholes,{},\npierces,{},\ncut length,{:.3},m\n\
+         idle travel,{:.3},m\nidle travel in the order of the pattern,{:.3},m\n",
+        cuts.kerf,
+        cuts.cutting.over_run,
+        totals.slits,
+        totals.holes,
+        totals.pierces,
+        totals.cut_m,
+        totals.idle_m,
+        totals.idle_unordered_m
+    );
+    for (tenths, count) in holes_by_diameter(cuts.holes.iter().map(|hole| hole.radius)) {
+        text += &format!("holes of diameter {:.1} mm,{count},\n", 0.1 * tenths as f64);
+    }
+    text
+}

@@ -1,0 +1,132 @@
+//! The order of cutting: holes before slits, slits before seams, the outline last, so that the sheet holds what is cut.
+//!
+//! Within a layer the tool moves on to the nearest cut, which it begins at the nearer end. The tour is then shortened
+//! by 2-opt: a run of cuts is cut backwards wherever this reduces the travel between the cuts.
+
+use crate::cut_file::cut_drawing::{CutDrawing, Layer};
+use crate::display::{Shape, distance};
+
+/// Maximum number of cuts in a run that is reversed: it bounds the time of a sweep over large sheets.
+const RUN: usize = 1000;
+/// Reduction of the travel that is not rounding (mm).
+const GAIN: f64 = 1e-6;
+
+impl CutDrawing {
+    /// The shapes in cutting order, from a tool at `home`. The travel within a layer is at most that of the present
+    /// order.
+    pub fn in_cutting_order(&self, home: [f64; 2]) -> Self {
+        let mut at = home;
+        let mut ordered = Self::default();
+        for layer in Layer::ALL {
+            let mut shapes: Vec<Shape> = self.on(layer).cloned().collect();
+            if layer.is_cut() {
+                shapes.iter_mut().for_each(|shape| shape.begin_near(at));
+                shapes = tour(&shapes, at);
+            }
+            if let Some(last) = shapes.last() {
+                at = last.ends()[1];
+            }
+            ordered
+                .shapes
+                .extend(shapes.into_iter().map(|shape| (layer, shape)));
+        }
+        ordered
+    }
+
+    /// Length of the moves between the cuts, from a tool at `home` to the beginning of the last cut (mm).
+    pub fn idle_travel(&self, home: [f64; 2]) -> f64 {
+        let mut at = home;
+        let moves = self.cuts().map(|shape| {
+            let [begin, end] = shape.ends();
+            distance(std::mem::replace(&mut at, end), begin)
+        });
+        moves.sum()
+    }
+}
+
+impl Shape {
+    /// Begins a polygon at its corner nearest to a point.
+    fn begin_near(&mut self, point: [f64; 2]) {
+        if let Self::Polygon(corners) = self {
+            let nearest = (0..corners.len()).min_by(|&i, &j| {
+                distance(corners[i], point).total_cmp(&distance(corners[j], point))
+            });
+            corners.rotate_left(nearest.unwrap_or_default());
+        }
+    }
+
+    /// The shape cut in the direction in which it begins at `ends[0]`.
+    fn along(&self, ends: [[f64; 2]; 2]) -> Self {
+        match self {
+            Self::Line(_) => Self::Line(ends),
+            other => other.clone(),
+        }
+    }
+}
+
+/// A cut of a tour: its index and its ends in the direction of cutting.
+type Leg = (usize, [[f64; 2]; 2]);
+
+fn tour(shapes: &[Shape], from: [f64; 2]) -> Vec<Shape> {
+    let given: Vec<Leg> = shapes.iter().map(Shape::ends).enumerate().collect();
+    let nearest = nearest_neighbours(&given, from);
+    let mut tour = if travel(&nearest, from) < travel(&given, from) {
+        nearest
+    } else {
+        given
+    };
+    two_opt(&mut tour, from);
+    let legs = tour.into_iter();
+    legs.map(|(i, ends)| shapes[i].along(ends)).collect()
+}
+
+fn travel(tour: &[Leg], from: [f64; 2]) -> f64 {
+    let begins = tour.iter().map(|(_, [begin, _])| *begin);
+    let ends = std::iter::once(from).chain(tour.iter().map(|(_, [_, end])| *end));
+    ends.zip(begins).map(|(p, q)| distance(p, q)).sum()
+}
+
+fn nearest_neighbours(legs: &[Leg], from: [f64; 2]) -> Vec<Leg> {
+    let mut left = legs.to_vec();
+    let mut at = from;
+    let mut tour = Vec::with_capacity(legs.len());
+    while !left.is_empty() {
+        let to = |leg: &Leg| distance(at, leg.1[0]).min(distance(at, leg.1[1]));
+        let nearest = (1..left.len()).fold(0, |best, i| {
+            if to(&left[i]) < to(&left[best]) {
+                i
+            } else {
+                best
+            }
+        });
+        let (i, [a, b]) = left.swap_remove(nearest);
+        let ends = if distance(at, b) < distance(at, a) {
+            [b, a]
+        } else {
+            [a, b]
+        };
+        at = ends[1];
+        tour.push((i, ends));
+    }
+    tour
+}
+
+fn two_opt(tour: &mut [Leg], from: [f64; 2]) {
+    let mut shorter = true;
+    while std::mem::take(&mut shorter) {
+        for i in 0..tour.len() {
+            let before = i.checked_sub(1).map_or(from, |last| tour[last].1[1]);
+            for j in i..usize::min(i + RUN, tour.len()) {
+                let next = tour.get(j + 1).map(|leg| leg.1[0]);
+                let onwards = |end| next.map_or(0.0, |next| distance(end, next));
+                let ([begin, _], [_, end]) = (tour[i].1, tour[j].1);
+                let now = distance(before, begin) + onwards(end);
+                if distance(before, end) + onwards(begin) < now - GAIN {
+                    tour[i..=j].reverse();
+                    tour[i..=j].iter_mut().for_each(|leg| leg.1.reverse());
+                    shorter = true;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! DXF R2000 (AC1015) in millimetres, one layer per tool.
+//!
+//! A DXF file is a list of pairs, a group code and a value, in the sections HEADER, TABLES, BLOCKS, ENTITIES and OBJECTS.
+//! Every object has a hexadecimal handle and names its owner's. Reference: Autodesk, DXF Reference (AutoCAD 2000).
+
+use crate::cut_file::cut_drawing::{CutDrawing, Layer};
+use crate::display::{Anchor, Shape, Text};
+use std::fmt::{Display, Write};
+
+/// The file of a drawing, identical for identical drawings.
+pub fn dxf(drawing: &CutDrawing) -> String {
+    let extent = drawing.bounds();
+    let mut body = Pairs::default();
+    let model_space = body.tables(extent);
+    body.section("ENTITIES");
+    for (layer, shape) in &drawing.shapes {
+        body.entity(model_space, *layer, shape);
+    }
+    body.pair(0, "ENDSEC");
+    body.objects();
+    body.pair(0, "EOF");
+
+    let mut file = Pairs::default();
+    file.header(extent, body.handles + 1);
+    file.text + &body.text
+}
+
+/// The pairs written so far, and the last handle.
+#[derive(Default)]
+struct Pairs {
+    text: String,
+    handles: u32,
+}
+
+impl Pairs {
+    fn pair(&mut self, code: u16, value: impl Display) {
+        // Writing to a String cannot fail.
+        let _ = write!(self.text, "{code:>3}\n{value}\n");
+    }
+
+    fn handle(&mut self, code: u16, handle: u32) {
+        self.pair(code, format_args!("{handle:X}"));
+    }
+
+    /// The coordinates of a point, x with the given code.
+    fn point(&mut self, code: u16, [x, y]: [f64; 2]) {
+        for (axis, value) in [x, y, 0.0].into_iter().enumerate() {
+            self.pair(code + 10 * axis as u16, value);
+        }
+    }
+
+    fn section(&mut self, name: &str) {
+        self.pair(0, "SECTION");
+        self.pair(2, name);
+    }
+
+    /// Begins an object with a new handle, which is returned.
+    fn object(&mut self, kind: &str, owner: u32, classes: &[&str]) -> u32 {
+        self.handles += 1;
+        self.pair(0, kind);
+        // Code 5 is another value of a dimension style.
+        let code = if kind == "DIMSTYLE" { 105 } else { 5 };
+        self.handle(code, self.handles);
+        self.handle(330, owner);
+        classes.iter().for_each(|class| self.pair(100, class));
+        self.handles
+    }
+
+    fn header(&mut self, [low, high]: [[f64; 2]; 2], next_handle: u32) {
+        self.section("HEADER");
+        let variable = |pairs: &mut Self, name: &str, code: u16, value: &str| {
+            pairs.pair(9, name);
+            pairs.pair(code, value);
+        };
+        variable(self, "$ACADVER", 1, "AC1015");
+        variable(self, "$DWGCODEPAGE", 3, "ANSI_1252");
+        variable(self, "$HANDSEED", 5, &format!("{next_handle:X}"));
+        // Millimetres, metric.
+        variable(self, "$INSUNITS", 70, "4");
+        variable(self, "$MEASUREMENT", 70, "1");
+        for (name, corner) in [("$EXTMIN", low), ("$EXTMAX", high)] {
+            self.pair(9, name);
+            self.point(10, corner);
+        }
+        self.pair(0, "ENDSEC");
+    }
+
+    /// Writes TABLES and BLOCKS; returns the handle of the model space, which owns the entities.
+    fn tables(&mut self, [low, high]: [[f64; 2]; 2]) -> u32 {
+        self.section("TABLES");
+        let table = self.table("VPORT", 1);
+        self.record("VPORT", table, "AcDbViewportTableRecord", "*Active");
+        // The view that a reader opens: the whole drawing.
+        let size = [high[0] - low[0], high[1] - low[1]];
+        let centre = [low[0] + 0.5 * size[0], low[1] + 0.5 * size[1]];
+        for (code, [x, y]) in [(10, [0.0, 0.0]), (11, [1.0, 1.0]), (12, centre)] {
+            self.pair(code, x);
+            self.pair(code + 10, y);
+        }
+        self.pair(40, 1.1 * size[1].max(0.5 * size[0]));
+        self.pair(41, 2.0);
+        self.pair(0, "ENDTAB");
+
+        let table = self.table("LTYPE", 3);
+        for name in ["ByBlock", "ByLayer", "Continuous"] {
+            self.record("LTYPE", table, "AcDbLinetypeTableRecord", name);
+            self.pair(3, "");
+            self.pair(72, 65);
+            self.pair(73, 0);
+            self.pair(40, 0.0);
+        }
+        self.pair(0, "ENDTAB");
+
+        let table = self.table("LAYER", 1 + Layer::ALL.len());
+        let layers = Layer::ALL.map(|layer| (layer.name(), colour_index(layer)));
+        for (name, colour) in [("0", 7)].into_iter().chain(layers) {
+            self.record("LAYER", table, "AcDbLayerTableRecord", name);
+            self.pair(62, colour);
+            self.pair(6, "Continuous");
+        }
+        self.pair(0, "ENDTAB");
+
+        let table = self.table("STYLE", 1);
+        self.record("STYLE", table, "AcDbTextStyleTableRecord", "Standard");
+        for (code, value) in [(40, "0"), (41, "1"), (50, "0"), (71, "0"), (42, "2.5")] {
+            self.pair(code, value);
+        }
+        self.pair(3, "txt");
+        self.pair(4, "");
+        self.pair(0, "ENDTAB");
+
+        for empty in ["VIEW", "UCS"] {
+            self.table(empty, 0);
+            self.pair(0, "ENDTAB");
+        }
+        let table = self.table("APPID", 1);
+        self.record("APPID", table, "AcDbRegAppTableRecord", "ACAD");
+        self.pair(0, "ENDTAB");
+        let table = self.table("DIMSTYLE", 1);
+        self.pair(100, "AcDbDimStyleTable");
+        self.record("DIMSTYLE", table, "AcDbDimStyleTableRecord", "Standard");
+        self.pair(0, "ENDTAB");
+
+        let table = self.table("BLOCK_RECORD", 2);
+        let spaces = ["*Model_Space", "*Paper_Space"].map(|name| {
+            let handle = self.object(
+                "BLOCK_RECORD",
+                table,
+                &["AcDbSymbolTableRecord", "AcDbBlockTableRecord"],
+            );
+            self.pair(2, name);
+            self.pair(340, 0);
+            (name, handle)
+        });
+        self.pair(0, "ENDTAB");
+        self.pair(0, "ENDSEC");
+        self.blocks(spaces);
+        spaces[0].1
+    }
+
+    fn table(&mut self, name: &str, entries: usize) -> u32 {
+        self.pair(0, "TABLE");
+        self.pair(2, name);
+        self.handles += 1;
+        self.handle(5, self.handles);
+        self.handle(330, 0);
+        self.pair(100, "AcDbSymbolTable");
+        self.pair(70, entries);
+        self.handles
+    }
+
+    fn record(&mut self, kind: &str, table: u32, class: &str, name: &str) {
+        self.object(kind, table, &["AcDbSymbolTableRecord", class]);
+        self.pair(2, name);
+        self.pair(70, 0);
+    }
+
+    fn blocks(&mut self, spaces: [(&str, u32); 2]) {
+        self.section("BLOCKS");
+        for (name, space) in spaces {
+            for (kind, class) in [("BLOCK", "AcDbBlockBegin"), ("ENDBLK", "AcDbBlockEnd")] {
+                self.object(kind, space, &["AcDbEntity"]);
+                if name == "*Paper_Space" {
+                    self.pair(67, 1);
+                }
+                self.pair(8, 0);
+                self.pair(100, class);
+                if kind == "BLOCK" {
+                    self.pair(2, name);
+                    self.pair(70, 0);
+                    self.point(10, [0.0; 2]);
+                    self.pair(3, name);
+                    self.pair(1, "");
+                }
+            }
+        }
+        self.pair(0, "ENDSEC");
+    }
+
+    fn entity(&mut self, space: u32, layer: Layer, shape: &Shape) {
+        let (kind, class) = match shape {
+            Shape::Line(_) => ("LINE", "AcDbLine"),
+            Shape::Circle { .. } => ("CIRCLE", "AcDbCircle"),
+            Shape::Polyline(_) | Shape::Polygon(_) => ("LWPOLYLINE", "AcDbPolyline"),
+            Shape::Text(_) => ("TEXT", "AcDbText"),
+        };
+        self.object(kind, space, &["AcDbEntity"]);
+        self.pair(8, layer.name());
+        self.pair(100, class);
+        match shape {
+            Shape::Line([from, to]) => {
+                self.point(10, *from);
+                self.point(11, *to);
+            }
+            Shape::Circle { centre, radius } => {
+                self.point(10, *centre);
+                self.pair(40, radius);
+            }
+            Shape::Polyline(points) | Shape::Polygon(points) => {
+                self.pair(90, points.len());
+                let closed = matches!(shape, Shape::Polygon(_));
+                self.pair(70, u8::from(closed));
+                for [x, y] in points {
+                    self.pair(10, x);
+                    self.pair(20, y);
+                }
+            }
+            Shape::Text(text) => self.text(text, class),
+        }
+    }
+
+    fn text(&mut self, text: &Text, class: &str) {
+        self.point(10, text.at);
+        self.pair(40, text.height);
+        self.pair(1, escaped(&text.text));
+        // Horizontally: from the left, or centred; vertically: on the baseline, or centred.
+        let [horizontal, vertical] = match text.anchor {
+            Anchor::Start => [0, 0],
+            Anchor::Middle => [1, 0],
+            Anchor::Centre => [1, 2],
+        };
+        self.pair(72, horizontal);
+        if text.anchor != Anchor::Start {
+            self.point(11, text.at);
+        }
+        self.pair(100, class);
+        self.pair(73, vertical);
+    }
+
+    fn objects(&mut self) {
+        self.section("OBJECTS");
+        let root = self.object("DICTIONARY", 0, &["AcDbDictionary"]);
+        self.pair(281, 1);
+        self.pair(3, "ACAD_GROUP");
+        self.handle(350, root + 1);
+        self.object("DICTIONARY", root, &["AcDbDictionary"]);
+        self.pair(281, 1);
+        self.pair(0, "ENDSEC");
+    }
+}
+
+/// AutoCAD colour index.
+fn colour_index(layer: Layer) -> u8 {
+    match layer {
+        Layer::Cut => 1,
+        Layer::Registration => 3,
+        Layer::Holes => 5,
+        Layer::Joint => 6,
+        Layer::Outline | Layer::Panels => 7,
+        Layer::Annotation => 8,
+        Layer::Errors => 30,
+    }
+}
+
+/// A text of a file in the code page ANSI_1252, with the other characters as \U+XXXX.
+fn escaped(text: &str) -> String {
+    let mut units = [0; 2];
+    let escape = |c: char| {
+        if c.is_ascii() {
+            c.to_string()
+        } else {
+            (c.encode_utf16(&mut units).iter())
+                .map(|unit| format!("\\U+{unit:04X}"))
+                .collect()
+        }
+    };
+    text.chars().map(escape).collect()
+}

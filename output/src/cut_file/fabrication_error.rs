@@ -1,0 +1,104 @@
+//! Errors of cut files.
+
+/// A sheet that cannot be cut, or a file that cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
+pub enum FabricationError {
+    #[error(
+        "the slit at hinge {hinge} would be {length:.3} mm long, but the holes at its ends take \
+         {drilled:.3} mm: narrow the ligament or lengthen the cut"
+    )]
+    SlitVanishes {
+        hinge: usize,
+        length: f64,
+        drilled: f64,
+    },
+    #[error(
+        "the hole of hinge {hinge} is {diameter:.3} mm wide, which must exceed the kerf of {kerf} mm: \
+         increase the ligament width or the fillet ratio"
+    )]
+    HoleTooSmall {
+        hinge: usize,
+        diameter: f64,
+        kerf: f64,
+    },
+    #[error(
+        "the cuts at the hinges {} and {} leave {gap:.3} mm between them, less than the kerf of {least} mm: move them \
+         apart (objective.panel_shape) or narrow the ligaments",
+        .hinges[0], .hinges[1]
+    )]
+    CutsMeet {
+        hinges: [usize; 2],
+        gap: f64,
+        least: f64,
+    },
+    #[error(
+        "the hole of hinge {hinge} leaves {gap:.3} mm to the outline, less than the kerf of {least} mm: move the cut \
+         (objective.panel_shape) or reduce the fillet ratio"
+    )]
+    CutMeetsOutline { hinge: usize, gap: f64, least: f64 },
+    #[error(
+        "the hole of hinge {hinge} is written with a diameter of {written:.6} mm and simulated with {simulated:.6} mm: \
+         this is an error of kirigami"
+    )]
+    HoleDiffers {
+        hinge: usize,
+        written: f64,
+        simulated: f64,
+    },
+    #[error(
+        "the ligament of hinge {hinge} is written {written:.6} mm wide and simulated {simulated:.6} mm wide: this is \
+         an error of kirigami"
+    )]
+    LigamentDiffers {
+        hinge: usize,
+        written: f64,
+        simulated: f64,
+    },
+    #[error(
+        "panel {panel} is written with {written:.3} mm^2 and simulated with {simulated:.3} mm^2: this is an error of \
+         kirigami"
+    )]
+    PanelDiffers {
+        panel: usize,
+        written: f64,
+        simulated: f64,
+    },
+    #[error(
+        "panel {panel} with its joints is {} x {} mm large and does not fit on the bed of {} x {} mm: use a bed \
+         of at least this size",
+        size[0].ceil(), size[1].ceil(), bed[0], bed[1]
+    )]
+    PartTooLarge {
+        panel: usize,
+        size: [f64; 2],
+        bed: [f64; 2],
+    },
+    #[error(
+        "the joint at hinge {hinge} crosses panel {panel}, which is too small for tape of {lap} mm to either side: {}",
+        with_less_tape(*widest)
+    )]
+    NoRoomForSeam {
+        hinge: usize,
+        panel: usize,
+        lap: f64,
+        /// The widest tape for which there is room; not positive if there is none without tape either.
+        widest: f64,
+    },
+    #[error("the drawing takes {pages} pages, more than {limit}: choose a larger paper")]
+    TooManyPages { pages: usize, limit: usize },
+}
+
+/// What to do where a panel is too small for a joint.
+fn with_less_tape(widest: f64) -> String {
+    // Rounded down, so that the width stated fits.
+    let tenths = (10.0 * widest).floor() / 10.0;
+    if tenths > 0.0 {
+        format!("use --lap {tenths}, or a larger bed")
+    } else {
+        "use a larger bed, or design larger panels".to_owned()
+    }
+}

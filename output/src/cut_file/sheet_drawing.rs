@@ -1,0 +1,132 @@
+//! The drawing of a whole sheet: its cuts in cutting order, numbers, scale, instructions and registration marks.
+
+use crate::cut_file::cut_drawing::{CutDrawing, Layer};
+use crate::cut_file::cut_lines::CutLines;
+use crate::cut_file::numbers::numbers;
+use crate::cut_file::totals::Totals;
+use crate::display::{Shape, Text};
+use design::scene::CuttingConfig;
+use design::sheet::cut_sheet::Sheet;
+use hinge::SheetMaterial;
+
+/// Height of the instructions relative to the size of the sheet, and its minimum (mm).
+const NOTE_HEIGHT: f64 = 0.012;
+const MIN_NOTE_HEIGHT: f64 = 2.0;
+/// Length of the scale bar (mm).
+const SCALE_BAR: f64 = 100.0;
+
+/// The drawing of a sheet and its totals.
+pub struct SheetDrawing {
+    /// Cuts, and the numbers of panels and hinges.
+    pub numbered: CutDrawing,
+    /// What is written below the sheet: one line each.
+    pub notes: Vec<String>,
+    /// The amount of cutting.
+    pub totals: Totals,
+    cutting: CuttingConfig,
+}
+
+impl SheetDrawing {
+    /// The drawing of the cuts of `sheet`, cut from `material`.
+    pub fn new(cuts: &CutLines, sheet: &Sheet, material: &SheetMaterial) -> Self {
+        let unordered = cuts.drawing();
+        let home = cuts.tool_outline()[0];
+        let mut numbered = unordered.in_cutting_order(home);
+        let totals = Totals::new(&numbered, &unordered, home);
+        let (panels, hinges) = numbers(cuts, sheet);
+        for text in panels.into_iter().chain(hinges) {
+            numbered.add(Layer::Annotation, Shape::Text(text));
+        }
+        let (kerf, cutting) = (cuts.kerf, &cuts.cutting);
+        let notes = vec![
+            format!(
+                "{}, {} mm thick, 1:1 in mm. Panels P0 to P{}, {} columns x {} rows; hinges 0 to {}.",
+                material.name,
+                material.thickness,
+                sheet.panels.len() - 1,
+                sheet.grid.m,
+                sheet.grid.n,
+                sheet.hinges.len() - 1
+            ),
+            format!(
+                "Kerf {kerf} mm: CUT is one pass of the tool; HOLES and OUTLINE are paths of its centre, {} mm off the \
+                 finished edge.",
+                0.5 * kerf
+            ),
+            format!(
+                "Order: HOLES, CUT, OUTLINE. Slits over-run the outline by {} mm.",
+                cutting.over_run
+            ),
+            format!("{totals}."),
+        ];
+        Self {
+            numbered,
+            notes,
+            totals,
+            cutting: cuts.cutting,
+        }
+    }
+
+    /// The drawing of a cut file: with scale, instructions and, if the scene has them, registration marks.
+    pub fn annotated(&self) -> CutDrawing {
+        let mut drawing = self.numbered.clone();
+        if self.cutting.registration_marks {
+            registration_marks(&mut drawing, self.cutting.over_run);
+        }
+        note(&mut drawing, &self.notes);
+        drawing
+    }
+}
+
+/// Three crosses in circles, at all corners of the bounding box but one, so that a turned sheet is noticed.
+fn registration_marks(drawing: &mut CutDrawing, over_run: f64) {
+    let [low, high] = Shape::extent(drawing.on(Layer::Outline));
+    let size = f64::max(high[0] - low[0], high[1] - low[1]);
+    let radius = (0.004 * size).clamp(1.0, 5.0);
+    let off = over_run + 4.0 * radius;
+    let (low, high) = (low.map(|x| x - off), high.map(|x| x + off));
+    for [x, y] in [low, [high[0], low[1]], [low[0], high[1]]] {
+        let arm = 1.6 * radius;
+        for ends in [[[x - arm, y], [x + arm, y]], [[x, y - arm], [x, y + arm]]] {
+            drawing.add(Layer::Registration, Shape::Line(ends));
+        }
+        let centre = [x, y];
+        drawing.add(Layer::Registration, Shape::Circle { centre, radius });
+    }
+}
+
+/// The height of lines of text of which the longest is at most as wide as the cuts of a drawing (mm).
+pub(super) fn text_height(drawing: &CutDrawing, lines: &[String]) -> f64 {
+    let [left, right] = Shape::extent(drawing.cuts()).map(|corner| corner[0]);
+    let width = right - left;
+    let widths = lines
+        .iter()
+        .map(|line| Text::line([0.0; 2], 1.0, line).size()[0]);
+    let longest = widths.fold(0.0, f64::max);
+    f64::min(NOTE_HEIGHT * width, width / longest).max(MIN_NOTE_HEIGHT)
+}
+
+/// A scale bar and lines of text below the drawing.
+pub(super) fn note(drawing: &mut CutDrawing, lines: &[String]) {
+    let left = Shape::extent(drawing.cuts())[0][0];
+    let [[_, bottom], _] = drawing.bounds();
+    let text = |at, height, text: &str| Shape::Text(Text::line(at, height, text));
+    let height = text_height(drawing, lines);
+
+    let mut y = bottom - 2.5 * height;
+    let tick = 0.4 * height;
+    let ends = [left, left + SCALE_BAR];
+    let bar = [[ends[0], y], [ends[1], y]];
+    drawing.add(Layer::Annotation, Shape::Line(bar));
+    for x in ends {
+        let line = [[x, y - tick], [x, y + tick]];
+        drawing.add(Layer::Annotation, Shape::Line(line));
+    }
+    let name = text([ends[1] + height, y - 0.5 * height], height, "100 mm");
+    drawing.add(Layer::Annotation, name);
+    y -= height;
+    for line in lines {
+        y -= 2.0 * height;
+        drawing.add(Layer::Annotation, text([left, y], height, line));
+    }
+}

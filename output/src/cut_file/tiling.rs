@@ -1,0 +1,177 @@
+//! A drawing on pages of paper, which overlap.
+
+use crate::cut_file::fabrication_error::FabricationError;
+
+/// The paper of a printer or a desktop cutter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Paper {
+    /// 210 x 297 mm.
+    A4,
+    /// 297 x 420 mm.
+    A3,
+    /// 8.5 x 11 inches.
+    Letter,
+}
+
+impl Paper {
+    /// Width and height in portrait (mm).
+    pub fn size(self) -> [f64; 2] {
+        match self {
+            Self::A4 => [210.0, 297.0],
+            Self::A3 => [297.0, 420.0],
+            Self::Letter => [215.9, 279.4],
+        }
+    }
+}
+
+/// Border that printers leave white (mm).
+pub(super) const BORDER: f64 = 10.0;
+/// Height of the line below each tile, with its name and a ruler (mm).
+pub(super) const FOOTER: f64 = 16.0;
+/// Width that two neighbouring tiles share (mm).
+pub const OVERLAP: f64 = 10.0;
+/// Maximum number of pages of a file.
+const MAX_PAGES: usize = 2000;
+
+/// The tiles of a drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tiling {
+    /// Width and height of a page (mm).
+    pub page: [f64; 2],
+    /// Number of rows and columns.
+    pub counts: [usize; 2],
+    /// Lower left corner of all tiles (mm).
+    origin: [f64; 2],
+}
+
+impl Tiling {
+    /// Tiles for a drawing from `low` to `high` (mm), in the orientation that takes fewer pages.
+    pub fn new(paper: Paper, [low, high]: [[f64; 2]; 2]) -> Result<Self, FabricationError> {
+        let [width, height] = paper.size();
+        let tilings = [[width, height], [height, width]].map(|page| {
+            let window = window(page);
+            let count = |axis: usize| {
+                let steps = (high[axis] - low[axis] - OVERLAP) / (window[axis] - OVERLAP);
+                steps.ceil().max(1.0) as usize
+            };
+            let columns_rows = [count(0), count(1)];
+            // The drawing is in the middle of its tiles.
+            let origin = [0, 1].map(|axis| {
+                let length = columns_rows[axis] as f64 * (window[axis] - OVERLAP) + OVERLAP;
+                0.5 * (low[axis] + high[axis] - length)
+            });
+            Self {
+                page,
+                counts: [columns_rows[1], columns_rows[0]],
+                origin,
+            }
+        });
+        let [portrait, landscape] = tilings;
+        let tiling = if landscape.pages() < portrait.pages() {
+            landscape
+        } else {
+            portrait
+        };
+        let (pages, limit) = (tiling.pages(), MAX_PAGES);
+        if pages > limit {
+            Err(FabricationError::TooManyPages { pages, limit })
+        } else {
+            Ok(tiling)
+        }
+    }
+
+    /// Number of tiles.
+    pub fn pages(&self) -> usize {
+        self.counts[0].saturating_mul(self.counts[1])
+    }
+
+    /// Lower left and upper right corner of a tile in the drawing (mm); row 0 is at the top.
+    pub fn tile(&self, row: usize, column: usize) -> [[f64; 2]; 2] {
+        let window = window(self.page);
+        let steps = [column, self.counts[0] - 1 - row];
+        let low =
+            [0, 1].map(|axis| self.origin[axis] + steps[axis] as f64 * (window[axis] - OVERLAP));
+        [low, [low[0] + window[0], low[1] + window[1]]]
+    }
+}
+
+/// Width and height of a page's tile (mm).
+fn window([width, height]: [f64; 2]) -> [f64; 2] {
+    [width - 2.0 * BORDER, height - 2.0 * BORDER - FOOTER]
+}
+
+/// The name of a tile: letters for the row from the top, a number for the column.
+pub(super) fn cell_name(row: usize, column: usize) -> String {
+    let letter = char::from(b'A' + (row % 26) as u8);
+    let before = match row / 26 {
+        0 => String::new(),
+        more => char::from(b'A' + ((more - 1) % 26) as u8).to_string(),
+    };
+    format!("{before}{letter}{}", column + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every point of the drawing is on a tile, neighbours share the overlap, and no page is superfluous.
+    #[test]
+    fn the_tiles_cover_the_drawing_with_the_overlap() {
+        for paper in [Paper::A4, Paper::A3, Paper::Letter] {
+            for [width, height] in [
+                [50.0, 30.0],
+                [190.0, 261.0],
+                [300.0, 200.0],
+                [2800.0, 1234.5],
+            ] {
+                let [low, high] = [[-7.0, 3.0], [width - 7.0, height + 3.0]];
+                let tiling = Tiling::new(paper, [low, high]).unwrap();
+                let [rows, columns] = tiling.counts;
+                let [bottom_left, top_right] =
+                    [tiling.tile(rows - 1, 0)[0], tiling.tile(0, columns - 1)[1]];
+                for axis in 0..2 {
+                    assert!(bottom_left[axis] <= low[axis] + 1e-9);
+                    assert!(top_right[axis] >= high[axis] - 1e-9);
+                    let slack = top_right[axis] - bottom_left[axis] - (high[axis] - low[axis]);
+                    assert!(slack < window(tiling.page)[axis], "{slack}");
+                }
+                for column in 1..columns {
+                    let [left, right] = [column - 1, column].map(|column| tiling.tile(0, column));
+                    assert!((left[1][0] - right[0][0] - OVERLAP).abs() < 1e-9);
+                }
+                for row in 1..rows {
+                    let [above, below] = [row - 1, row].map(|row| tiling.tile(row, 0));
+                    assert!((below[1][1] - above[0][1] - OVERLAP).abs() < 1e-9);
+                }
+            }
+        }
+        assert_eq!(
+            Tiling::new(Paper::A4, [[0.0; 2], [190.0, 261.0]])
+                .unwrap()
+                .pages(),
+            1
+        );
+        assert_eq!(
+            Tiling::new(Paper::A4, [[0.0; 2], [191.0, 261.0]])
+                .unwrap()
+                .pages(),
+            2
+        );
+    }
+
+    #[test]
+    fn a_drawing_of_too_many_pages_is_refused() {
+        let error = Tiling::new(Paper::A4, [[0.0; 2], [2e4, 2e4]]).unwrap_err();
+        assert!(
+            error.to_string().contains("choose a larger paper"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn names_go_on_after_the_last_letter() {
+        assert_eq!(cell_name(0, 0), "A1");
+        assert_eq!(cell_name(25, 9), "Z10");
+        assert_eq!(cell_name(26, 0), "AA1");
+    }
+}

@@ -1,0 +1,58 @@
+//! The amount of cutting.
+
+use crate::cut_file::cut_drawing::{CutDrawing, Layer};
+use crate::display::Shape;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// Totals of a drawing in cutting order.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Totals {
+    /// Number of holes.
+    pub holes: usize,
+    /// Number of slits, or of their pieces in a part of a sheet.
+    pub slits: usize,
+    /// Number of times that the tool is lowered: once a cut.
+    pub pierces: usize,
+    /// Length of all cuts (m).
+    pub cut_m: f64,
+    /// Length of the moves between the cuts, from the lower left corner of the sheet (m).
+    pub idle_m: f64,
+    /// The same in the order of the pattern (m).
+    pub idle_unordered_m: f64,
+}
+
+impl Totals {
+    /// The totals of a drawing from a tool at `home`; `unordered` is the drawing in the order of the pattern.
+    pub fn new(ordered: &CutDrawing, unordered: &CutDrawing, home: [f64; 2]) -> Self {
+        Self {
+            pierces: ordered.cuts().count(),
+            holes: ordered.on(Layer::Holes).count(),
+            slits: ordered.on(Layer::Cut).count(),
+            cut_m: 1e-3 * ordered.cuts().map(Shape::length).sum::<f64>(),
+            idle_m: 1e-3 * ordered.idle_travel(home),
+            idle_unordered_m: 1e-3 * unordered.idle_travel(home),
+        }
+    }
+}
+
+impl fmt::Display for Totals {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(
+            f,
+            "{} holes, {} slits, {} pierces; {:.2} m of cuts, {:.2} m of idle travel ({:.2} m in the order of the \
+             pattern)",
+            self.holes, self.slits, self.pierces, self.cut_m, self.idle_m, self.idle_unordered_m
+        )
+    }
+}
+
+/// The numbers of holes by diameter, in steps of drills: 0.1 mm.
+pub(super) fn holes_by_diameter(radii: impl Iterator<Item = f64>) -> BTreeMap<u64, usize> {
+    let mut counts = BTreeMap::new();
+    for radius in radii {
+        *counts.entry((20.0 * radius).round() as u64).or_default() += 1;
+    }
+    counts
+}

@@ -1,0 +1,15 @@
+//! The display list: every drawing of a sheet is a list of shapes (mm), which SVG, PDF and DXF write.
+//!
+//! A picture is a [`Canvas`]: shapes with a [`Style`]. A cut file has shapes on layers instead, which its writers give a
+//! style ([`crate::cut_file::CutDrawing`]).
+
+mod canvas;
+pub(crate) mod pdf;
+mod shape;
+mod style;
+
+pub use canvas::Canvas;
+pub(crate) use canvas::{document, group, trimmed};
+pub use shape::{Anchor, Shape, Text, bounds};
+pub(crate) use shape::{distance, rectangle};
+pub use style::{Colour, Style};

@@ -1,0 +1,274 @@
+//! Pages of PDF in mm, with fonts that every reader has.
+
+use crate::display::shape::{Anchor, Shape, Text};
+use crate::display::style::{Colour, Style};
+use pdf_writer::types::{LineCapStyle, LineJoinStyle, TextRenderingMode};
+use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str};
+
+/// Points per mm.
+const POINTS: f64 = 72.0 / 25.4;
+/// Height of the capitals of Helvetica relative to the size of the font, and widths of digits and of other characters.
+const CAPITALS: f64 = 0.718;
+const DIGIT: f64 = 0.556;
+const LETTER: f64 = 0.6;
+
+/// A font.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Font {
+    /// Helvetica.
+    Sans,
+    /// Helvetica Bold.
+    Bold,
+    /// Courier, in which every character is 0.6 times as wide as the font is high.
+    Fixed,
+}
+
+impl Font {
+    /// The name of its resource, and of the font.
+    fn names(self) -> [Name<'static>; 2] {
+        match self {
+            Self::Sans => [Name(b"F"), Name(b"Helvetica")],
+            Self::Bold => [Name(b"B"), Name(b"Helvetica-Bold")],
+            Self::Fixed => [Name(b"C"), Name(b"Courier")],
+        }
+    }
+}
+
+/// A drawing that is written once and shown on any number of pages.
+pub(crate) struct Form {
+    /// Its name in `Content::x_object`.
+    pub name: Name<'static>,
+    /// Its content (mm).
+    pub content: Vec<u8>,
+    /// Lower left and upper right corner (mm).
+    pub bounds: [[f64; 2]; 2],
+}
+
+/// A file of pages of the given size (mm), with the fonts and the form that they use.
+pub(crate) fn file(
+    size: [f64; 2],
+    fonts: &[Font],
+    form: Option<&Form>,
+    pages: Vec<Content>,
+) -> Vec<u8> {
+    let mut ids = (1..).map(Ref::new);
+    let mut next = || ids.next().expect("fewer objects than integers");
+    let [catalog, tree] = [next(), next()];
+    let fonts: Vec<(Font, Ref)> = fonts.iter().map(|font| (*font, next())).collect();
+    let mut file = Pdf::new();
+    file.catalog(catalog).pages(tree);
+    for (font, id) in &fonts {
+        file.type1_font(*id)
+            .base_font(font.names()[1])
+            .encoding_predefined(Name(b"WinAnsiEncoding"));
+    }
+    let form = form.map(|form| {
+        let id = next();
+        let [low, high] = form.bounds.map(|corner| corner.map(|x| x as f32));
+        let mut object = file.form_xobject(id, &form.content);
+        object.bbox(Rect::new(low[0], low[1], high[0], high[1]));
+        let mut resources = object.resources();
+        let mut dictionary = resources.fonts();
+        for (font, id) in &fonts {
+            dictionary.pair(font.names()[0], *id);
+        }
+        (form.name, id)
+    });
+    let pages: Vec<(Ref, Ref, Content)> = (pages.into_iter())
+        .map(|page| (next(), next(), page))
+        .collect();
+    let kids = pages.iter().map(|(id, ..)| *id);
+    file.pages(tree).count(pages.len() as i32).kids(kids);
+    let [width, height] = size.map(|x| (x * POINTS) as f32);
+    for (id, stream, content) in pages {
+        let mut page = file.page(id);
+        page.media_box(Rect::new(0.0, 0.0, width, height));
+        page.parent(tree).contents(stream);
+        let mut resources = page.resources();
+        let mut dictionary = resources.fonts();
+        for (font, id) in &fonts {
+            dictionary.pair(font.names()[0], *id);
+        }
+        dictionary.finish();
+        if let Some((name, id)) = form {
+            resources.x_objects().pair(name, id);
+        }
+        resources.finish();
+        page.finish();
+        file.stream(stream, &content.finish());
+    }
+    file.finish()
+}
+
+/// An empty page, whose unit is the mm.
+pub(crate) fn page() -> Content {
+    let mut content = Content::new();
+    place(&mut content, POINTS, [0.0; 2]);
+    content
+}
+
+/// Restricts what follows to a rectangle, until the state is restored.
+pub(crate) fn clip(content: &mut Content, [low, high]: [[f64; 2]; 2]) {
+    let size = [high[0] - low[0], high[1] - low[1]].map(|x| x as f32);
+    content.rect(low[0] as f32, low[1] as f32, size[0], size[1]);
+    content.clip_nonzero().end_path();
+}
+
+/// The colour of texts, 0 to 255.
+pub(crate) fn colour(content: &mut Content, rgb: Colour) {
+    let [r, g, b] = rgb.map(|x| f32::from(x) / 255.0);
+    content.set_fill_rgb(r, g, b);
+}
+
+/// Sets what follows smaller or larger, and shifts its origin to a point (mm).
+pub(crate) fn place(content: &mut Content, scale: f64, [x, y]: [f64; 2]) {
+    let [scale, x, y] = [scale, x, y].map(|value| value as f32);
+    content.transform([scale, 0.0, 0.0, scale, x, y]);
+}
+
+/// Draws shapes one after the other; texts in Helvetica. Where a style is transparent the paper shines through.
+pub(crate) fn draw<'a>(
+    content: &mut Content,
+    shapes: impl IntoIterator<Item = (Style, &'a Shape)>,
+) {
+    for (style, shape) in shapes {
+        if let Shape::Text(text) = shape {
+            draw_text(content, &style, text);
+            continue;
+        }
+        if let Some(fill) = style.fill {
+            colour(content, on_white(fill, style.fill_opacity));
+        }
+        if let Some(stroke) = style.stroke {
+            set_line(content, on_white(stroke, style.stroke_opacity), style.width);
+            let [cap, join] = if style.round { [1, 1] } else { [0, 0] };
+            content.set_line_cap([LineCapStyle::ButtCap, LineCapStyle::RoundCap][cap]);
+            content.set_line_join([LineJoinStyle::MiterJoin, LineJoinStyle::RoundJoin][join]);
+        }
+        let dash: Vec<f32> = style
+            .dash
+            .iter()
+            .flatten()
+            .map(|length| *length as f32)
+            .collect();
+        content.set_dash_pattern(dash, 0.0);
+        outline(content, shape);
+        match (style.fill, style.stroke) {
+            (Some(_), Some(_)) => content.fill_nonzero_and_stroke(),
+            (Some(_), None) => content.fill_nonzero(),
+            (None, Some(_)) => content.stroke(),
+            (None, None) => content.end_path(),
+        };
+    }
+}
+
+/// A colour with this opacity on white paper.
+fn on_white(rgb: Colour, opacity: f64) -> Colour {
+    rgb.map(|x| (255.0 - opacity * (255.0 - f64::from(x))).round() as u8)
+}
+
+fn set_line(content: &mut Content, rgb: Colour, width: f64) {
+    let [r, g, b] = rgb.map(|x| f32::from(x) / 255.0);
+    content.set_stroke_rgb(r, g, b).set_line_width(width as f32);
+}
+
+fn outline(content: &mut Content, shape: &Shape) {
+    match shape {
+        Shape::Line(ends) => trace(content, ends),
+        Shape::Polyline(points) => trace(content, points),
+        Shape::Polygon(corners) => {
+            trace(content, corners);
+            content.close_path();
+        }
+        Shape::Circle { centre, radius } => circle(content, *centre, *radius),
+        Shape::Text(_) => {}
+    }
+}
+
+fn trace(content: &mut Content, points: &[[f64; 2]]) {
+    for (i, [x, y]) in points.iter().enumerate() {
+        match i {
+            0 => content.move_to(*x as f32, *y as f32),
+            _ => content.line_to(*x as f32, *y as f32),
+        };
+    }
+}
+
+/// A circle of four cubic curves, whose error is below 0.03 % of the radius.
+fn circle(content: &mut Content, [x, y]: [f64; 2], radius: f64) {
+    const HANDLE: f64 = 0.552_284_75;
+    let at = |u: f64, v: f64| [(x + radius * u) as f32, (y + radius * v) as f32];
+    let [begin_x, begin_y] = at(1.0, 0.0);
+    content.move_to(begin_x, begin_y);
+    for (c, s) in [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)] {
+        let [a, b] = at(c - HANDLE * s, s + HANDLE * c);
+        let [d, e] = at(-s + HANDLE * c, c + HANDLE * s);
+        let [f, g] = at(-s, c);
+        content.cubic_to(a, b, d, e, f, g);
+    }
+    content.close_path();
+}
+
+fn draw_text(content: &mut Content, style: &Style, text: &Text) {
+    let size = text.height / CAPITALS;
+    let widths = text
+        .text
+        .chars()
+        .map(|c| if c.is_ascii_digit() { DIGIT } else { LETTER });
+    let [mut x, y] = text.baseline();
+    if text.anchor != Anchor::Start {
+        x -= 0.5 * size * widths.sum::<f64>();
+    }
+    if let Some(width) = style.halo {
+        set_line(content, [255; 3], width);
+        content.set_dash_pattern([], 0.0);
+        content.set_text_rendering_mode(TextRenderingMode::Stroke);
+        write(content, Font::Sans, size, [x, y], &text.text);
+        content.set_text_rendering_mode(TextRenderingMode::Fill);
+    }
+    colour(
+        content,
+        on_white(style.fill.unwrap_or_default(), style.fill_opacity),
+    );
+    write(content, Font::Sans, size, [x, y], &text.text);
+}
+
+/// A text that begins at a point, in a font of the given size (mm).
+pub(crate) fn write(content: &mut Content, font: Font, size: f64, [x, y]: [f64; 2], text: &str) {
+    let bytes: Vec<u8> = text.chars().map(|c| byte(c).unwrap_or(b'?')).collect();
+    content
+        .begin_text()
+        .set_font(font.names()[0], size as f32)
+        .set_text_matrix([1.0, 0.0, 0.0, 1.0, x as f32, y as f32])
+        .show(Str(&bytes))
+        .end_text();
+}
+
+/// The place of a character in the code page of the fonts, Windows-1252.
+fn byte(c: char) -> Option<u8> {
+    const FROM_128: &str = "€\u{81}‚ƒ„…†‡ˆ‰Š‹Œ\u{8d}Ž\u{8f}\u{90}‘’“”•–—˜™š›œ\u{9d}žŸ";
+    match FROM_128.chars().position(|other| other == c) {
+        Some(place) => Some(128 + place as u8),
+        None => u8::try_from(u32::from(c)).ok(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::byte;
+
+    #[test]
+    fn characters_are_those_of_windows_1252() {
+        let cases = [
+            ('a', Some(0x61)),
+            ('\u{d7}', Some(0xd7)),
+            ('\u{20ac}', Some(0x80)),
+            ('\u{2013}', Some(0x96)),
+            ('\u{178}', Some(0x9f)),
+            ('\u{3b8}', None),
+        ];
+        for (c, expected) in cases {
+            assert_eq!(byte(c), expected, "{c}");
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! Shapes; lengths in mm, y upwards.
+
+use design::geometry::polygon::edges;
+use std::f64::consts::TAU;
+
+/// One shape.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// A straight line, from its first to its second end.
+    Line([[f64; 2]; 2]),
+    /// An open line through points.
+    Polyline(Vec<[f64; 2]>),
+    /// A circle.
+    Circle {
+        /// Its centre.
+        centre: [f64; 2],
+        /// Its radius.
+        radius: f64,
+    },
+    /// A closed polygon.
+    Polygon(Vec<[f64; 2]>),
+    /// A text of one line.
+    Text(Text),
+}
+
+/// A horizontal text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Text {
+    /// The point to which `anchor` refers (mm).
+    pub at: [f64; 2],
+    /// The point of the text that is at `at`.
+    pub anchor: Anchor,
+    /// Height of the capitals (mm).
+    pub height: f64,
+    /// The text, one line.
+    pub text: String,
+}
+
+/// The point of a text that its position refers to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchor {
+    /// The left end of the baseline.
+    Start,
+    /// The middle of the baseline.
+    Middle,
+    /// The middle of the capitals.
+    Centre,
+}
+
+/// Width of a character relative to the height of the capitals: an upper bound for digits of DejaVu Sans, of Helvetica
+/// and of the stroke font of DXF readers.
+const CHARACTER: f64 = 0.9;
+
+impl Text {
+    /// A text that begins at the point `at`.
+    pub fn line(at: [f64; 2], height: f64, text: &str) -> Self {
+        Self {
+            at,
+            anchor: Anchor::Start,
+            height,
+            text: text.to_owned(),
+        }
+    }
+
+    /// A text around the point `at`.
+    pub fn centred(at: [f64; 2], height: f64, text: String) -> Self {
+        Self {
+            at,
+            anchor: Anchor::Centre,
+            height,
+            text,
+        }
+    }
+
+    /// The anchor's place on the baseline (mm).
+    pub(crate) fn baseline(&self) -> [f64; 2] {
+        let [x, y] = self.at;
+        match self.anchor {
+            Anchor::Start | Anchor::Middle => [x, y],
+            Anchor::Centre => [x, y - 0.5 * self.height],
+        }
+    }
+
+    /// Width and height of the text (mm), an upper bound for texts of digits.
+    pub fn size(&self) -> [f64; 2] {
+        let characters = self.text.chars().count() as f64;
+        [CHARACTER * self.height * characters, self.height]
+    }
+
+    /// The lower left and the upper right corner of the text (mm).
+    pub fn corners(&self) -> [[f64; 2]; 2] {
+        let ([x, y], [width, height]) = (self.baseline(), self.size());
+        let left = match self.anchor {
+            Anchor::Start => x,
+            Anchor::Middle | Anchor::Centre => x - 0.5 * width,
+        };
+        [[left, y], [left + width, y + height]]
+    }
+}
+
+impl Shape {
+    /// Where a tool begins and ends. A hole begins and ends at its centre, where the tool pierces the material.
+    pub fn ends(&self) -> [[f64; 2]; 2] {
+        let at = |point: Option<&[f64; 2]>| point.copied().unwrap_or_default();
+        match self {
+            Self::Line(ends) => *ends,
+            Self::Polyline(points) => [at(points.first()), at(points.last())],
+            Self::Circle { centre, .. } => [*centre; 2],
+            Self::Polygon(corners) => [at(corners.first()); 2],
+            Self::Text(text) => [text.at; 2],
+        }
+    }
+
+    /// Length of the line (mm); zero for a text.
+    pub fn length(&self) -> f64 {
+        match self {
+            Self::Line([from, to]) => distance(*from, *to),
+            Self::Polyline(points) => points
+                .windows(2)
+                .map(|ends| distance(ends[0], ends[1]))
+                .sum(),
+            Self::Circle { radius, .. } => TAU * radius,
+            Self::Polygon(corners) => edges(corners).map(|(p, q)| distance(p, q)).sum(),
+            Self::Text(_) => 0.0,
+        }
+    }
+
+    /// Points whose bounding box is that of the shape.
+    fn extremes(&self) -> Vec<[f64; 2]> {
+        match self {
+            Self::Line(ends) => ends.to_vec(),
+            Self::Circle { centre, radius } => {
+                [-radius, *radius].map(|r| centre.map(|x| x + r)).to_vec()
+            }
+            Self::Polyline(points) | Self::Polygon(points) => points.clone(),
+            Self::Text(text) => text.corners().to_vec(),
+        }
+    }
+
+    /// The bounding box of some shapes: its lower left and its upper right corner (mm).
+    pub fn extent<'a>(shapes: impl Iterator<Item = &'a Self>) -> [[f64; 2]; 2] {
+        bounds(shapes.flat_map(Self::extremes))
+    }
+
+    /// Shifts the shape (mm).
+    pub(crate) fn shift(&mut self, by: [f64; 2]) {
+        let shift = |point: &mut [f64; 2]| *point = [point[0] + by[0], point[1] + by[1]];
+        match self {
+            Self::Line(ends) => ends.iter_mut().for_each(shift),
+            Self::Circle { centre, .. } => shift(centre),
+            Self::Polyline(points) | Self::Polygon(points) => points.iter_mut().for_each(shift),
+            Self::Text(text) => shift(&mut text.at),
+        }
+    }
+}
+
+/// The minimum and maximum coordinates.
+pub fn bounds(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
+    let nothing = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    points.into_iter().fold(nothing, |[low, high], [x, y]| {
+        [
+            [low[0].min(x), low[1].min(y)],
+            [high[0].max(x), high[1].max(y)],
+        ]
+    })
+}
+
+/// The corners of a rectangle, counter-clockwise from the lower left.
+pub(crate) fn rectangle([low, high]: [[f64; 2]; 2]) -> [[f64; 2]; 4] {
+    [low, [high[0], low[1]], high, [low[0], high[1]]]
+}
+
+/// Distance of two points (mm).
+pub(crate) fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
+    f64::hypot(q[0] - p[0], q[1] - p[1])
+}

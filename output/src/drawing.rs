@@ -1,0 +1,16 @@
+//! Pictures of the flat pattern, the deployed sheet and the measured sheet, as SVG.
+
+mod chart;
+mod deployed;
+mod flat;
+mod load_marks;
+mod measured;
+mod numbering;
+pub mod page;
+
+pub(crate) use deployed::deployed_on_paper;
+pub use deployed::{deployed, deployment_frames};
+pub use flat::flat;
+pub(crate) use flat::flat_on_paper;
+pub use measured::measured;
+pub use numbering::numbering;

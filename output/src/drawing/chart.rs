@@ -1,0 +1,72 @@
+//! A small chart in a rectangle of a picture: axes with round ticks, and positions of values.
+
+use crate::display::{Anchor, Style, trimmed};
+use crate::drawing::page::{INK, MUTED, Sketch, round_below};
+
+/// A rectangle of the page with one value range along x and one along y.
+pub(super) struct Chart {
+    low: [f64; 2],
+    high: [f64; 2],
+    ranges: [[f64; 2]; 2],
+}
+
+impl Chart {
+    /// Draws the frame, the ticks and the names of the axes of a chart between the corners `low` and `high` of the
+    /// page (mm). `ticks` selects the axes that have ticks.
+    pub fn new(
+        sketch: &mut Sketch,
+        [low, high]: [[f64; 2]; 2],
+        ranges: [[f64; 2]; 2],
+        names: [&str; 2],
+        ticks: [bool; 2],
+    ) -> Self {
+        let chart = Self { low, high, ranges };
+        let u = sketch.unit;
+        let (axis, muted) = (sketch.stroke(MUTED, 1.0), Style::fill(MUTED));
+        sketch.canvas.line(low, [high[0], low[1]], axis);
+        sketch.canvas.line(low, [low[0], high[1]], axis);
+        for value in chart.ticks(0).into_iter().filter(|_| ticks[0]) {
+            let [x, y] = chart.at([value, ranges[1][0]]);
+            sketch.canvas.line([x, y], [x, y - 4.0 * u], axis);
+            let below = [x, y - 18.0 * u];
+            sketch
+                .canvas
+                .text(below, 12.0 * u, Anchor::Middle, muted, &trimmed(value, 3));
+        }
+        for value in chart.ticks(1).into_iter().filter(|_| ticks[1]) {
+            let [x, y] = chart.at([ranges[0][0], value]);
+            sketch.canvas.line([x, y], [x - 4.0 * u, y], axis);
+            let left = [x - 20.0 * u, y - 4.0 * u];
+            sketch
+                .canvas
+                .text(left, 12.0 * u, Anchor::Middle, muted, &trimmed(value, 3));
+        }
+        let ink = Style::fill(INK);
+        let middle = [(low[0] + high[0]) / 2.0, low[1] - 36.0 * u];
+        sketch
+            .canvas
+            .text(middle, 13.0 * u, Anchor::Middle, ink, names[0]);
+        let above = [low[0] - 30.0 * u, high[1] + 10.0 * u];
+        sketch
+            .canvas
+            .text(above, 13.0 * u, Anchor::Start, ink, names[1]);
+        chart
+    }
+
+    /// The position of a pair of values on the page.
+    pub fn at(&self, values: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| {
+            let [from, to] = self.ranges[i];
+            self.low[i] + (values[i] - from) / (to - from) * (self.high[i] - self.low[i])
+        })
+    }
+
+    /// About five round values of an axis.
+    fn ticks(&self, axis: usize) -> Vec<f64> {
+        let [from, to] = self.ranges[axis];
+        let step = round_below((to - from) / 3.0);
+        let first = (from / step - 1e-9).ceil() as i64;
+        let last = (to / step + 1e-9).floor() as i64;
+        (first..=last).map(|i| i as f64 * step).collect()
+    }
+}

@@ -1,0 +1,197 @@
+//! The deployed sheet with its target; the hinge windows are coloured by their opening angle.
+
+use crate::deployment_states::{kept, states_before};
+use crate::display::{Anchor, Style};
+use crate::drawing::load_marks::{self, Mark, marks};
+use crate::drawing::page::{ACCENT, ColourScale, INK, MUTED, PANELS, Page, Sketch};
+use design::equilibrium::load_step::LoadStep;
+use design::scene::Scene;
+use design::scene::design_run::Designed;
+use design::scene::placement::placed;
+use design::sheet::cut_sheet::Sheet;
+use design::sheet::hinge_window::Window;
+use design::sheet::kinematics::{
+    Configuration, deployed as moved, deployed_corners, hinge_deformations,
+};
+use design::sheet::topology::is_even;
+use std::collections::BTreeSet;
+
+/// The sheet of a scene in a state of its path, with the loads there.
+pub fn deployed(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> String {
+    let state = State::new(scene, sheet, step);
+    let openings_deg = &state.openings_deg;
+    let mean = openings_deg.iter().sum::<f64>() / openings_deg.len() as f64;
+    let max = openings_deg
+        .iter()
+        .copied()
+        .fold(f64::NEG_INFINITY, f64::max);
+    let actuation = if scene.hinge.carries_load() {
+        ". Panels held flat, loads and supports at their centroids"
+    } else {
+        ""
+    };
+    let subtitle = format!(
+        "Deployed: mean hinge opening {mean:.1}\u{b0}, maximum {max:.1}\u{b0}{actuation}. Target dashed"
+    );
+    let scale = ColourScale::covering(openings_deg.iter().copied());
+    state.drawn(state.extent(), &subtitle, &scale)
+}
+
+/// The frames of the deployment of a run: at most `most` states from the flat sheet to the last one, on the same page
+/// and in the same colours.
+pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec<String> {
+    let deployment = &designed.best.deployment;
+    let before = states_before(&designed.problem, deployment);
+    let all: Vec<&LoadStep> = before.iter().chain(&deployment.path).collect();
+    let index = kept(all.len(), most);
+    let states: Vec<State> = (index.iter())
+        .map(|&i| State::new(scene, &deployment.sheet, all[i]))
+        .collect();
+    let extent: Vec<[f64; 2]> = states.iter().flat_map(State::extent).collect();
+    let openings = states
+        .iter()
+        .flat_map(|state| state.openings_deg.iter().copied());
+    let scale = ColourScale::covering(openings);
+    let frame = |(&i, state): (&usize, &State)| {
+        let place = if scene.hinge.carries_load() {
+            format!(
+                "load step {i} of {}, load factor {:.2}",
+                all.len() - 1,
+                all[i].load_factor
+            )
+        } else {
+            format!("opening {:.1}\u{b0}", state.openings_deg[0])
+        };
+        state.drawn(
+            extent.clone(),
+            &format!("Deployment: {place}. Target dashed"),
+            &scale,
+        )
+    };
+    std::iter::zip(&index, &states).map(frame).collect()
+}
+
+/// A state without its hinge windows, with the numbers of the panels that have no symbol, for paper; `unit` is in mm of the
+/// sheet.
+pub(crate) fn deployed_on_paper(
+    scene: &Scene,
+    sheet: &Sheet,
+    step: &LoadStep,
+    unit: f64,
+) -> Sketch {
+    let state = State::new(scene, sheet, step);
+    let mut sketch = Sketch::new(unit);
+    state.panels(&mut sketch);
+    let actuation = scene.actuation();
+    let supported = actuation.supports.iter().map(|support| support.panel);
+    let loads = actuation.boundary_loads().into_iter();
+    let loaded = loads.map(|load| load.panel);
+    let marked: BTreeSet<usize> = supported.chain(loaded).collect();
+    let corners = deployed_corners(sheet, &state.configuration);
+    for (k, corners) in corners.iter().enumerate() {
+        if !marked.contains(&k) {
+            sketch.panel_number(k, corners);
+        }
+    }
+    state.target(&mut sketch);
+    state.loads(&mut sketch);
+    sketch
+}
+
+/// The drawn state.
+struct State<'a> {
+    scene: &'a Scene,
+    sheet: &'a Sheet,
+    step: &'a LoadStep,
+    configuration: Configuration,
+    openings_deg: Vec<f64>,
+}
+
+impl<'a> State<'a> {
+    fn new(scene: &'a Scene, sheet: &'a Sheet, step: &'a LoadStep) -> Self {
+        let deformations = hinge_deformations(sheet, &step.configuration);
+        Self {
+            scene,
+            sheet,
+            step,
+            configuration: placed(scene, sheet, &step.configuration),
+            openings_deg: deformations
+                .iter()
+                .map(|eps| eps.theta.to_degrees())
+                .collect(),
+        }
+    }
+
+    /// The picture of the state on a page around the points `extent`.
+    fn drawn(&self, extent: Vec<[f64; 2]>, subtitle: &str, scale: &ColourScale) -> String {
+        let mut page = Page::around(extent, &self.scene.config.title, subtitle, true);
+        let sketch = &mut page.sketch;
+        let ghost = sketch.dashed(MUTED, 0.8, 3.0);
+        sketch.canvas.polygon(&self.sheet.outline.corners, ghost);
+        self.panels(sketch);
+        self.windows(sketch, scale);
+        self.target(sketch);
+        self.loads(sketch);
+        page.colour_scale(scale, "\u{3b8} (deg)");
+        page.finish()
+    }
+
+    /// The deployed position of a point of panel k.
+    fn moved(&self, k: usize, point: [f64; 2]) -> [f64; 2] {
+        moved(&self.sheet.panels[k], self.configuration[k], point)
+    }
+
+    /// Points that enclose everything drawn.
+    fn extent(&self) -> Vec<[f64; 2]> {
+        let mut points = deployed_corners(self.sheet, &self.configuration).concat();
+        points.extend(self.scene.target.points());
+        points.extend(load_marks::extent(self.scene, self.sheet, self.step));
+        points
+    }
+
+    fn panels(&self, sketch: &mut Sketch) {
+        let corners = deployed_corners(self.sheet, &self.configuration);
+        for (k, corners) in corners.iter().enumerate() {
+            let fill = PANELS[usize::from(!is_even(self.sheet.grid, k))];
+            let style = sketch.stroke(INK, 1.1).filled(fill);
+            sketch.canvas.polygon(corners, style);
+        }
+    }
+
+    fn target(&self, sketch: &mut Sketch) {
+        let style = sketch.dashed(ACCENT, 2.2, 9.0);
+        sketch.canvas.polygon(self.scene.target.points(), style);
+    }
+
+    /// Draws each window in two parts, which move with their panels.
+    fn windows(&self, sketch: &mut Sketch, scale: &ColourScale) {
+        let hinges = self.sheet.hinges.iter().zip(Window::of_sheet(self.sheet));
+        for ((hinge, window), &opening_deg) in hinges.zip(&self.openings_deg) {
+            let style = Style::fill(scale.colour(opening_deg)).opacity(0.85, 1.0);
+            for k in [hinge.panel_a(), hinge.panel_b()] {
+                let part = window.inside(&self.sheet.panels[k]);
+                let part: Vec<_> = part.into_iter().map(|point| self.moved(k, point)).collect();
+                sketch.canvas.polygon(&part, style);
+            }
+        }
+    }
+
+    /// Draws the symbols of the supports, and the loads with their magnitudes.
+    fn loads(&self, sketch: &mut Sketch) {
+        let (stroke, fill) = (sketch.stroke(ACCENT, 3.0), Style::fill(ACCENT));
+        let (support, label) = (Style::fill(INK), sketch.haloed(ACCENT));
+        for mark in marks(self.scene, self.sheet, self.step, sketch.unit) {
+            match mark {
+                Mark::Support(corners) => sketch.canvas.polygon(&corners, support),
+                Mark::Shaft(points) => sketch.canvas.polyline(&points, stroke),
+                Mark::Head(corners) => sketch.canvas.polygon(&corners, fill),
+                Mark::Label([x, y], text) => {
+                    let (size, below) = (14.0 * sketch.unit, [x, y - 5.0 * sketch.unit]);
+                    sketch
+                        .canvas
+                        .text(below, size, Anchor::Middle, label, &text);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! The flat pattern: panels, cuts, holes, ligaments with their windows, hinge numbers.
+
+use crate::cut_file::CutLines;
+use crate::display::{Anchor, Style, Text};
+use crate::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, Sketch, TEAL};
+use design::sheet::cut_sheet::{Hinge, Sheet};
+use design::sheet::hinge_window::Window;
+use design::sheet::topology::is_even;
+
+/// The flat sheet with its cuts.
+pub fn flat(title: &str, sheet: &Sheet, cuts: &CutLines) -> String {
+    let widths = sheet.hinges.iter().map(|hinge| hinge.w_lig);
+    let (min, max) = (
+        widths.clone().fold(f64::INFINITY, f64::min),
+        widths.fold(0.0, f64::max),
+    );
+    let subtitle = format!(
+        "Flat cut pattern: {} \u{d7} {} panels, {} hinges, ligaments {min:.1} to {max:.1} mm",
+        sheet.grid.m,
+        sheet.grid.n,
+        sheet.hinges.len()
+    );
+    let mut page = Page::around(sheet.outline.corners, title, &subtitle, false);
+    panels(&mut page.sketch, sheet);
+    windows(&mut page.sketch, sheet);
+    cut_lines(&mut page.sketch, cuts);
+    ligaments(&mut page.sketch, sheet);
+    page.finish()
+}
+
+/// The paths of the tool, with the numbers of panels and hinges, for paper; `unit` is in mm of the sheet.
+pub(crate) fn flat_on_paper(sheet: &Sheet, cuts: &CutLines, unit: f64) -> Sketch {
+    let mut sketch = Sketch::new(unit);
+    sketch.cut_drawing(&cuts.drawing());
+    for (k, panel) in sheet.panels.iter().enumerate() {
+        sketch.panel_number(k, &panel.corners);
+    }
+    for (number, (hinge, window)) in sheet.hinges.iter().zip(Window::of_sheet(sheet)).enumerate() {
+        let height = sketch.number_height(sheet.panels[hinge.panel_b()].area());
+        let reach = f64::max(0.55 * window.radius, 1.3 * height);
+        let at = number_place(hinge, &window, reach);
+        let text = Text::centred(at, height, number.to_string());
+        sketch.canvas.add(Style::fill(TEAL), text);
+    }
+    sketch
+}
+
+fn panels(sketch: &mut Sketch, sheet: &Sheet) {
+    let muted = Style::fill(MUTED).opacity(0.6, 1.0);
+    for (k, panel) in sheet.panels.iter().enumerate() {
+        let parity = usize::from(!is_even(sheet.grid, k));
+        let fill = Style::fill(PANELS[parity]);
+        sketch.canvas.polygon(&panel.corners, fill);
+        let height = f64::min(16.0 * sketch.unit, 0.1 * panel.area().sqrt());
+        let [x, y] = panel.centroid;
+        let at = [x, y - 0.35 * height];
+        sketch
+            .canvas
+            .text(at, height, Anchor::Middle, muted, &format!("P{k}"));
+    }
+}
+
+fn windows(sketch: &mut Sketch, sheet: &Sheet) {
+    let style = Style::stroke(TEAL, 0.8 * sketch.unit)
+        .filled(TEAL)
+        .opacity(0.12, 0.45);
+    for (hinge, window) in sheet.hinges.iter().zip(Window::of_sheet(sheet)) {
+        for panel in [hinge.panel_a(), hinge.panel_b()] {
+            sketch
+                .canvas
+                .polygon(&window.inside(&sheet.panels[panel]), style);
+        }
+    }
+}
+
+fn cut_lines(sketch: &mut Sketch, cuts: &CutLines) {
+    let stroke = sketch.stroke(INK, 2.0);
+    for slit in &cuts.slits {
+        sketch.canvas.line(slit.ends[0], slit.ends[1], stroke);
+    }
+    sketch.canvas.polygon(&cuts.outline, stroke);
+    let hole = Style::stroke(INK, 0.9 * sketch.unit).filled([255; 3]);
+    for drilled in &cuts.holes {
+        sketch.canvas.circle(drilled.centre, drilled.radius, hole);
+    }
+}
+
+fn ligaments(sketch: &mut Sketch, sheet: &Sheet) {
+    let stroke = sketch.stroke(ACCENT, 3.2);
+    let ink = sketch.haloed(TEAL).bold();
+    for (number, (hinge, window)) in sheet.hinges.iter().zip(Window::of_sheet(sheet)).enumerate() {
+        sketch.canvas.line(hinge.tip, window.foot, stroke);
+        let height = f64::min(15.0 * sketch.unit, 0.3 * window.radius);
+        let [x, y] = number_place(hinge, &window, 0.55 * window.radius);
+        let at = [x, y - 0.35 * height];
+        sketch
+            .canvas
+            .text(at, height, Anchor::Middle, ink, &number.to_string());
+    }
+}
+
+/// The middle of the number of a hinge, on panel B beside the main cut, at the distance `reach` from the hinge (mm).
+fn number_place(hinge: &Hinge, window: &Window, reach: f64) -> [f64; 2] {
+    let along = hinge.alpha / 2.0;
+    window.point(reach * along.cos(), -reach * along.sin())
+}

@@ -1,0 +1,168 @@
+//! Supports and loads in a state of the path: a symbol on every supported panel, an arrow along every force, a curved
+//! arrow in the sense of every couple.
+
+use crate::report::rounded;
+use design::equilibrium::load_step::LoadStep;
+use design::scene::placement::placed;
+use design::scene::{Scene, SupportedPanel};
+use design::sheet::cut_sheet::Sheet;
+use design::sheet::kinematics::deployed as moved;
+use std::f64::consts::PI;
+
+/// A part of a symbol (mm).
+pub(crate) enum Mark {
+    /// The filled symbol of a support.
+    Support(Vec<[f64; 2]>),
+    /// The shaft of an arrow.
+    Shaft(Vec<[f64; 2]>),
+    /// The filled head of an arrow.
+    Head(Vec<[f64; 2]>),
+    /// A magnitude, and the middle of the text.
+    Label([f64; 2], String),
+}
+
+/// Half the size of the symbol of a support, in units of the picture, as the lengths below.
+const SUPPORT: f64 = 9.0;
+/// Length of the arrow of the largest force, the length that no arrow is below, and length and half width of a head.
+const LONGEST: f64 = 68.0;
+const SHORTEST: f64 = 24.0;
+const HEAD: [f64; 2] = [18.0, 8.0];
+/// Radius of a curved arrow, and the angle that it leaves open.
+const RADIUS: f64 = 22.0;
+const OPEN: f64 = 0.3 * PI;
+/// Loads below this fraction of the largest one are rounding.
+const NEGLIGIBLE: f64 = 1e-6;
+/// Reach of an arrow and its label from the centroid of its panel, over the size of the sheet.
+const REACH: f64 = 0.16;
+
+/// The force (N, N) and the couple (N mm) of the loads on a panel in a state.
+struct PanelLoad {
+    at: [f64; 2],
+    force: [f64; 2],
+    couple: f64,
+}
+
+impl PanelLoad {
+    fn on_panels(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> Vec<Self> {
+        let placed = placed(scene, sheet, &step.configuration);
+        let mut sums = vec![[0.0; 3]; sheet.panels.len()];
+        for load in scene.actuation().boundary_loads() {
+            sums[load.panel][load.dof.index()] += step.load_factor * load.value;
+        }
+        let most = |of: fn(&[f64; 3]) -> f64| sums.iter().map(of).fold(0.0, f64::max);
+        let (force, couple) = (
+            most(|[x, y, _]| x.hypot(*y)),
+            most(|[.., moment]| moment.abs()),
+        );
+        let kept = |value: f64, size: f64, largest: f64| {
+            if size > NEGLIGIBLE * largest {
+                value
+            } else {
+                0.0
+            }
+        };
+        (sums.iter().enumerate())
+            .map(|(k, &[x, y, moment])| Self {
+                at: moved(&sheet.panels[k], placed[k], sheet.panels[k].centroid),
+                force: [x, y].map(|component| kept(component, x.hypot(y), force)),
+                couple: kept(moment, moment.abs(), couple),
+            })
+            .filter(|load| load.force != [0.0; 2] || load.couple != 0.0)
+            .collect()
+    }
+
+    fn size(&self) -> f64 {
+        self.force[0].hypot(self.force[1])
+    }
+}
+
+/// Points that enclose arrows and labels (mm).
+pub(super) fn extent(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> Vec<[f64; 2]> {
+    let reach = REACH * sheet.outline.size();
+    (PanelLoad::on_panels(scene, sheet, step).iter())
+        .map(|load| {
+            let size = f64::max(load.size(), f64::MIN_POSITIVE);
+            [0, 1].map(|axis| load.at[axis] + reach * load.force[axis] / size)
+        })
+        .collect()
+}
+
+/// The marks of a state; `unit` is the unit of the picture (mm). Of equal loads the first has a label.
+pub(crate) fn marks(scene: &Scene, sheet: &Sheet, step: &LoadStep, unit: f64) -> Vec<Mark> {
+    let mut marks = supports(scene, sheet, step, unit);
+    let loads = PanelLoad::on_panels(scene, sheet, step);
+    let largest = loads.iter().map(PanelLoad::size).fold(0.0, f64::max);
+    let mut labelled: Vec<String> = Vec::new();
+    let mut label = |marks: &mut Vec<Mark>, key: String, at: [f64; 2], text: String| {
+        if !labelled.contains(&key) {
+            labelled.push(key);
+            marks.push(Mark::Label(at, text));
+        }
+    };
+    for load in &loads {
+        let [x, y] = load.at;
+        if load.force != [0.0; 2] {
+            let size = load.size();
+            let [c, s] = load.force.map(|component| component / size);
+            let at = |[along, aside]: [f64; 2]| {
+                let (along, aside) = (unit * along, unit * aside);
+                [x + along * c - aside * s, y + along * s + aside * c]
+            };
+            let tip = SHORTEST + (LONGEST - SHORTEST) * size / largest;
+            let neck = tip - HEAD[0];
+            marks.push(Mark::Shaft(vec![[x, y], at([neck + 2.0, 0.0])]));
+            let head = [[tip, 0.0], [neck, HEAD[1]], [neck, -HEAD[1]]];
+            marks.push(Mark::Head(head.map(at).to_vec()));
+            let text = format!("{} N", rounded(size, 4));
+            let [x, y] = load.force.map(|component| rounded(component, 4));
+            let key = format!("{x} {y}");
+            // The half width of a character and the half height of a text are 4.1 and 8 units.
+            let width = 4.1 * text.chars().count() as f64;
+            let beyond = tip + 8.0 + width * c.abs() + 8.0 * s.abs();
+            label(&mut marks, key, at([beyond, 0.0]), text);
+        }
+        if load.couple != 0.0 {
+            marks.extend(curved_arrow(load.at, load.couple.signum(), unit));
+            // On the side that the arrow of the force leaves free.
+            let side = if load.force[1] < 0.0 { 1.0 } else { -1.0 };
+            let text = format!("{} N mm", rounded(load.couple.abs(), 4));
+            let at = [x, y + side * (RADIUS + 18.0) * unit];
+            label(&mut marks, rounded(load.couple, 4), at, text);
+        }
+    }
+    marks
+}
+
+/// The symbols of the supports.
+fn supports(scene: &Scene, sheet: &Sheet, step: &LoadStep, unit: f64) -> Vec<Mark> {
+    let placed = placed(scene, sheet, &step.configuration);
+    let symbol = |support: &SupportedPanel| {
+        let k = support.panel;
+        let [x, y] = moved(&sheet.panels[k], placed[k], sheet.panels[k].centroid);
+        let around = |[a, b]: &[f64; 2]| [x + a * SUPPORT * unit, y + b * SUPPORT * unit];
+        Mark::Support(support.symbol.iter().map(around).collect())
+    };
+    scene.actuation().supports.iter().map(symbol).collect()
+}
+
+/// A curved arrow about a point, counter-clockwise for the sense 1, clockwise for -1.
+fn curved_arrow([x, y]: [f64; 2], sense: f64, unit: f64) -> [Mark; 2] {
+    // Symmetric about the vertical axis, open at the bottom.
+    let [from, to] = [-PI / 2.0 + OPEN, 1.5 * PI - OPEN];
+    let at = |radius: f64, angle: f64| {
+        let radius = radius * unit;
+        [x + sense * radius * angle.cos(), y + radius * angle.sin()]
+    };
+    let length = HEAD[0] / RADIUS;
+    let arc = (0..=24).map(|i| from + f64::from(i) / 24.0 * (to - length - from));
+    let neck = to - length;
+    let head = [
+        at(RADIUS, to + 0.1),
+        at(RADIUS - HEAD[1], neck),
+        at(RADIUS + HEAD[1], neck),
+    ];
+    [
+        Mark::Shaft(arc.map(|angle| at(RADIUS, angle)).collect()),
+        Mark::Head(head.to_vec()),
+    ]
+}

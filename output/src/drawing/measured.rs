@@ -1,0 +1,244 @@
+//! A measured sheet beside its prediction, after Fig. 10 (d)-(h) of the paper: outlines superposed with magnified
+//! residuals, hinge openings measured against predicted, errors of the panel centres against the floor.
+
+use crate::display::{Anchor, Style, bounds};
+use crate::drawing::chart::Chart;
+use crate::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, Sketch, TEAL};
+use crate::measurement::MeasurementReport;
+use design::analysis::marks::FittedPoint;
+use design::analysis::measured_openings::MeasuredOpening;
+use design::analysis::robust_pose::Fit;
+use design::sheet::cut_sheet::Sheet;
+use design::sheet::kinematics::deployed_corners;
+use design::sheet::topology::is_even;
+use std::collections::BTreeSet;
+
+/// Magnifications of the residuals.
+const MAGNIFICATIONS: [f64; 8] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0];
+/// The longest magnified residual, in panel sizes.
+const LONGEST: f64 = 0.5;
+/// Number of panels up to which every bar has its number.
+const NUMBERED: usize = 16;
+
+/// The picture of a report; `fit` is its best state.
+pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String {
+    let corners = deployed_corners(sheet, &fit.shape.configuration);
+    let area: f64 = sheet.panels.iter().map(|panel| panel.area()).sum();
+    let panel_size = (area / sheet.panels.len() as f64).sqrt();
+    let factor = magnification(fit, panel_size);
+    let residuals_drawn = fit.kept().map(|point| residual(point, factor)[1]);
+    let [low, high] = bounds(corners.iter().flatten().copied().chain(residuals_drawn));
+    let (width, height) = (high[0] - low[0], high[1] - low[1]);
+    // Both charts stand at the right of the sheet, one above the other.
+    let side = f64::max(0.36 * width, 0.34 * height);
+    let left = high[0] + 0.45 * side;
+    let top = f64::max(high[1], low[1] + 2.7 * side);
+    let whole = [low, [left + 1.1 * side, top]];
+
+    let best = &report.best;
+    let rms = best.corners.as_ref().or(best.centres.as_ref());
+    let rms = rms.map_or(String::new(), |rms| {
+        format!(
+            "; rms {:.2} mm, {:.2} % of the sheet",
+            rms.rms, rms.rms_percent
+        )
+    });
+    let state = match report.load_factor_error {
+        Some(_) => format!("at load factor {:.3}", best.load_factor),
+        None => "at a load factor that is not determined".to_owned(),
+    };
+    let subtitle = format!(
+        "Measured (teal) on predicted (grey) {state}; residuals magnified {factor} times{rms}"
+    );
+    let mut page = Page::around(whole, &report.title, &subtitle, false);
+    let sketch = &mut page.sketch;
+    for (k, corners) in corners.iter().enumerate() {
+        let fill = PANELS[usize::from(!is_even(sheet.grid, k))];
+        let style = sketch.stroke(MUTED, 1.2).filled(fill);
+        sketch.canvas.polygon(corners, style);
+    }
+    outlines(sketch, sheet, fit);
+    residuals(sketch, fit, factor, panel_size);
+    let margin = 0.2 * panel_size;
+    let around = [low.map(|x| x - margin), high.map(|x| x + margin)];
+    outliers(sketch, fit, around);
+    openings(
+        sketch,
+        [[left, top - 1.05 * side], [left + side, top - 0.05 * side]],
+        report,
+    );
+    centres(
+        sketch,
+        [[left, top - 2.55 * side], [left + side, top - 1.55 * side]],
+        report,
+    );
+    page.finish()
+}
+
+/// The largest magnification at which no residual of the fit is longer than a part of a panel.
+fn magnification(fit: &Fit, panel_size: f64) -> f64 {
+    let longest = fit.kept().map(FittedPoint::distance).fold(0.0, f64::max);
+    let fits = |factor: &&f64| *factor * longest <= LONGEST * panel_size;
+    *MAGNIFICATIONS.iter().rev().find(fits).unwrap_or(&1.0)
+}
+
+/// Draws the edges of the panels whose two corners are measured.
+fn outlines(sketch: &mut Sketch, sheet: &Sheet, fit: &Fit) {
+    let mut measured = vec![[None; 4]; sheet.panels.len()];
+    for point in fit.kept() {
+        if let Some(corner) = point.mark.corner {
+            measured[point.mark.panel][corner] = Some(point.measured);
+        }
+    }
+    let stroke = sketch.stroke(TEAL, 1.2);
+    for corners in measured {
+        for corner in 0..4 {
+            if let (Some(from), Some(to)) = (corners[corner], corners[(corner + 1) % 4]) {
+                sketch.canvas.line(from, to, stroke);
+            }
+        }
+    }
+}
+
+/// Draws a line from every predicted point along its residual.
+fn residuals(sketch: &mut Sketch, fit: &Fit, factor: f64, panel_size: f64) {
+    let (stroke, dot) = (sketch.stroke(ACCENT, 1.6), Style::fill(ACCENT));
+    let size = f64::min(2.2 * sketch.unit, 0.03 * panel_size);
+    for point in fit.kept() {
+        let [from, to] = residual(point, factor);
+        sketch.canvas.line(from, to, stroke);
+        sketch.canvas.circle(from, size, dot);
+    }
+}
+
+/// The line along the magnified residual of a point, from its prediction.
+fn residual(point: &FittedPoint, factor: f64) -> [[f64; 2]; 2] {
+    let ([x, y], [dx, dy]) = (point.predicted, point.residual());
+    [[x, y], [x + factor * dx, y + factor * dy]]
+}
+
+/// Draws a cross at every outlier between `low` and `high`, and the number of its panel once.
+fn outliers(sketch: &mut Sketch, fit: &Fit, [low, high]: [[f64; 2]; 2]) {
+    let label = sketch.haloed(INK).bold();
+    let (cross, arm) = (sketch.stroke(INK, 1.6), 4.0 * sketch.unit);
+    let inside =
+        |[x, y]: [f64; 2]| (low[0]..=high[0]).contains(&x) && (low[1]..=high[1]).contains(&y);
+    let mut named = BTreeSet::new();
+    let outliers = fit
+        .points
+        .iter()
+        .filter(|point| point.outlier && inside(point.measured));
+    for point in outliers {
+        let ([x, y], panel) = (point.measured, point.mark.panel);
+        sketch
+            .canvas
+            .line([x - arm, y - arm], [x + arm, y + arm], cross);
+        sketch
+            .canvas
+            .line([x - arm, y + arm], [x + arm, y - arm], cross);
+        if named.insert(panel) {
+            let (beside, height) = ([x + 1.5 * arm, y + 0.5 * arm], 12.0 * sketch.unit);
+            sketch
+                .canvas
+                .text(beside, height, Anchor::Start, label, &format!("P{panel}"));
+        }
+    }
+}
+
+/// Draws the openings measured against predicted, with two standard errors and the line of agreement.
+fn openings(sketch: &mut Sketch, corners: [[f64; 2]; 2], report: &MeasurementReport) {
+    let bar = |it: &MeasuredOpening| [-2.0, 2.0].map(|k| it.measured_deg + k * it.error_deg);
+    let values = report
+        .openings
+        .iter()
+        .flat_map(|it| [bar(it)[0], bar(it)[1], it.predicted_deg]);
+    let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+        [low.min(x), high.max(x)]
+    });
+    if low > high {
+        return;
+    }
+    let margin = f64::max(0.08 * (high - low), 0.2);
+    let range = [low - margin, high + margin];
+    let names = ["predicted opening (deg)", "measured opening (deg)"];
+    let chart = Chart::new(sketch, corners, [range; 2], names, [true; 2]);
+    let line = sketch.dashed(MUTED, 1.0, 4.0);
+    sketch
+        .canvas
+        .line(chart.at([range[0]; 2]), chart.at([range[1]; 2]), line);
+    let (stroke, dot) = (sketch.stroke(TEAL, 1.0), Style::fill(TEAL));
+    // Many openings are drawn as small dots.
+    let radius = if report.openings.len() > 100 {
+        1.6
+    } else {
+        3.0
+    } * sketch.unit;
+    for opening in &report.openings {
+        let predicted = opening.predicted_deg;
+        let [from, to] = bar(opening).map(|measured| chart.at([predicted, measured]));
+        sketch.canvas.line(from, to, stroke);
+        sketch
+            .canvas
+            .circle(chart.at([predicted, opening.measured_deg]), radius, dot);
+    }
+}
+
+/// Draws the error of every panel centre as a bar, and the floor of the measurement as a line.
+fn centres(sketch: &mut Sketch, corners: [[f64; 2]; 2], report: &MeasurementReport) {
+    let panels = &report.panels;
+    if panels.is_empty() {
+        return;
+    }
+    let closed = report
+        .closed
+        .as_ref()
+        .and_then(|closed| closed.floor.centres.as_ref());
+    let floor = closed.map(|centres| centres.rms);
+    let highest = panels
+        .iter()
+        .map(|panel| panel.distance())
+        .chain(floor)
+        .fold(1e-6, f64::max);
+    let ranges = [[0.0, panels.len() as f64], [0.0, 1.08 * highest]];
+    let name = if floor.is_some() {
+        "panel; floor dashed"
+    } else {
+        "panel"
+    };
+    let names = [name, "error of the panel centre (mm)"];
+    let chart = Chart::new(
+        sketch,
+        corners,
+        ranges,
+        names,
+        [panels.len() > NUMBERED, true],
+    );
+    let muted = Style::fill(MUTED);
+    for (place, panel) in panels.iter().enumerate() {
+        let above = floor.is_some_and(|floor| panel.distance() > floor);
+        let fill = Style::fill(if above { ACCENT } else { TEAL });
+        let [left, right] = [0.15, 0.85].map(|part| place as f64 + part);
+        let top = panel.distance();
+        let bar = [[left, 0.0], [right, 0.0], [right, top], [left, top]].map(|at| chart.at(at));
+        sketch.canvas.polygon(&bar, fill);
+        if panels.len() <= NUMBERED {
+            let [x, y] = chart.at([place as f64 + 0.5, 0.0]);
+            let below = [x, y - 16.0 * sketch.unit];
+            let number = format!("P{}", panel.panel);
+            // A number of three characters is about as wide as its font is high times two.
+            let pitch = chart.at([1.0, 0.0])[0] - chart.at([0.0, 0.0])[0];
+            let height = f64::min(11.0 * sketch.unit, 0.45 * pitch);
+            sketch
+                .canvas
+                .text(below, height, Anchor::Middle, muted, &number);
+        }
+    }
+    if let Some(floor) = floor {
+        let line = sketch.dashed(INK, 1.2, 4.0);
+        sketch.canvas.line(
+            chart.at([0.0, floor]),
+            chart.at([ranges[0][1], floor]),
+            line,
+        );
+    }
+}

@@ -1,0 +1,44 @@
+//! The numbers of the panels and of their corners on the flat sheet, as a measurement names them.
+
+use crate::display::{Anchor, Style};
+use crate::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, TEAL};
+use design::sheet::cut_sheet::Sheet;
+use design::sheet::topology::is_even;
+
+/// Distance of a corner's number from the corner, as a fraction of the distance to the centre.
+const INSET: f64 = 0.24;
+
+/// The flat sheet with the number of every panel, its corners 0 to 3 and its centre.
+pub fn numbering(title: &str, sheet: &Sheet) -> String {
+    let subtitle = "Numbers of the panels and corners in a measurement; + marks the centre";
+    let mut page = Page::around(sheet.outline.corners, title, subtitle, false);
+    let sketch = &mut page.sketch;
+    let edge = sketch.stroke(INK, 1.0);
+    for (k, panel) in sheet.panels.iter().enumerate() {
+        let fill = PANELS[usize::from(!is_even(sheet.grid, k))];
+        sketch.canvas.polygon(&panel.corners, Style::fill(fill));
+        sketch.canvas.polygon(&panel.corners, edge);
+        let size = panel.area().sqrt();
+        let height = f64::min(22.0 * sketch.unit, 0.16 * size);
+        let [x, y] = panel.centroid;
+        let arm = 0.3 * height;
+        let thin = sketch.stroke(TEAL, 1.2);
+        sketch.canvas.line([x - arm, y], [x + arm, y], thin);
+        sketch.canvas.line([x, y - arm], [x, y + arm], thin);
+        let bold = Style::fill(INK).bold();
+        let above = [x, y + 0.5 * height];
+        sketch
+            .canvas
+            .text(above, height, Anchor::Middle, bold, &format!("P{k}"));
+        let small = 0.75 * height;
+        for (number, [cx, cy]) in panel.corners.into_iter().enumerate() {
+            let at = [cx + INSET * (x - cx), cy + INSET * (y - cy) - 0.35 * small];
+            let colour = if number == 0 { ACCENT } else { MUTED };
+            let style = Style::fill(colour);
+            sketch
+                .canvas
+                .text(at, small, Anchor::Middle, style, &number.to_string());
+        }
+    }
+    page.finish()
+}

@@ -1,0 +1,370 @@
+//! What a material means for the ligaments and panels of an intended sheet, before windows are solved.
+//!
+//! Estimates for a ligament of width w in a sheet of thickness t, folded by theta (sections 4.2 and 5.1):
+//!
+//! | quantity | value |
+//! |---|---|
+//! | strain at which it buckles | (t / w)^2 / 2, at the rotation t / w |
+//! | surface strain of a fold as long as the ligament is wide | t theta / (2 w) |
+//! | plastic strain of its most strained 1 %, at the tip | 0.05 to 0.3 theta |
+//! | critical panel edge, Gamma | (22), (21) |
+//!
+//! The range of the strain at the tip is that of window solves, tier `small`, of the five materials of Table 2 at
+//! w / t = 18 and 36 and rotations of 45 and 60 degrees; docs/MATERIALS.md lists them.
+
+use crate::report::Severity;
+use design::analysis::localisation::{critical_edge, gamma};
+use hinge::SheetMaterial;
+use serde::Serialize;
+
+/// The intended use of a material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Intended {
+    /// Minimum and maximum ligament width (mm).
+    pub w_lig: [f64; 2],
+    /// Panel edge (mm), if it is known.
+    pub pitch: Option<f64>,
+    /// Rotation of the hinges (rad).
+    pub theta: f64,
+}
+
+/// Estimates for one ligament width.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LigamentEstimate {
+    /// Ligament width (mm).
+    pub w_lig: f64,
+    /// Width over thickness.
+    pub slenderness: f64,
+    /// Rotation at which the ligament buckles (deg).
+    pub buckles_at_deg: f64,
+    /// Rotation at which the surface of the fold yields (deg).
+    pub yields_at_deg: f64,
+    /// Surface strain of the fold at the intended rotation.
+    pub surface_strain: f64,
+    /// Range of the plastic strain at the tip at the intended rotation.
+    pub tip_strain: [f64; 2],
+    /// L* (mm).
+    pub critical_edge: f64,
+    /// Gamma at the intended panel edge.
+    pub gamma: Option<f64>,
+}
+
+/// A statement about the material in its use.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Verdict {
+    /// Note: a fact. Warning: check before hours are spent. Error: the use is not possible.
+    pub severity: Severity,
+    /// The quantity, its limit and the consequence.
+    pub message: String,
+}
+
+/// All estimates and verdicts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MaterialCheck {
+    /// Hash of the law.
+    pub law_hash: String,
+    /// Yield stress over Young's modulus.
+    pub yield_strain: f64,
+    /// Estimates at the minimum and the maximum ligament width.
+    pub ligaments: Vec<LigamentEstimate>,
+    /// Verdicts, the most severe first.
+    pub verdicts: Vec<Verdict>,
+}
+
+/// Plastic strain of the most strained 1 % of a ligament over the rotation (1/rad).
+const TIP_STRAIN: [f64; 2] = [0.05, 0.3];
+/// Range of w / t of the shipped polyester data.
+const KNOWN_SLENDERNESS: [f64; 2] = [10.0, 50.0];
+/// Slope of a softening table over Young's modulus at which coarse meshes still converge: the drop of the polyester film
+/// from 44 to 33.6 MPa over a strain of 0.05.
+const STEEPEST_DROP: f64 = 0.07;
+
+impl MaterialCheck {
+    /// Checks a valid material for an intended use with positive lengths and rotation.
+    pub fn new(material: &SheetMaterial, intended: &Intended) -> Self {
+        let [min, max] = intended.w_lig;
+        let estimate = |w_lig| LigamentEstimate::new(material, intended, w_lig);
+        let mut ligaments = vec![estimate(min)];
+        ligaments.extend((max > min).then(|| estimate(max)));
+        let mut verdicts = law(material);
+        verdicts.extend(buckling(material, &ligaments[0]));
+        verdicts.extend(slenderness(&ligaments));
+        verdicts.extend(panels(intended, &ligaments));
+        verdicts.push(fracture(material, intended, &ligaments[0]));
+        verdicts.sort_by_key(|verdict| std::cmp::Reverse(verdict.severity));
+        Self {
+            law_hash: material.law_hash(),
+            yield_strain: yield_strain(material),
+            ligaments,
+            verdicts,
+        }
+    }
+}
+
+impl LigamentEstimate {
+    fn new(material: &SheetMaterial, intended: &Intended, w_lig: f64) -> Self {
+        let (t, theta) = (material.thickness, intended.theta);
+        Self {
+            w_lig,
+            slenderness: w_lig / t,
+            buckles_at_deg: (t / w_lig).to_degrees(),
+            yields_at_deg: (2.0 * w_lig * yield_strain(material) / t).to_degrees(),
+            surface_strain: t * theta / (2.0 * w_lig),
+            tip_strain: TIP_STRAIN.map(|share| share * theta),
+            critical_edge: critical_edge(material, w_lig),
+            gamma: intended.pitch.map(|edge| gamma(material, w_lig, edge)),
+        }
+    }
+}
+
+fn yield_strain(material: &SheetMaterial) -> f64 {
+    material.plastic[0][0] / material.young
+}
+
+fn note(message: String) -> Verdict {
+    Verdict {
+        severity: Severity::Note,
+        message,
+    }
+}
+
+fn warning(message: String) -> Verdict {
+    Verdict {
+        severity: Severity::Warning,
+        message,
+    }
+}
+
+/// Yield, hardening, softening, and the end of the table.
+fn law(material: &SheetMaterial) -> Vec<Verdict> {
+    let SheetMaterial {
+        plastic,
+        young,
+        fracture_strain,
+        ..
+    } = material;
+    let [yields, _] = plastic[0];
+    let [stress, strain] = plastic[plastic.len() - 1];
+    let mut verdicts = vec![note(match plastic.len() {
+        1 => format!(
+            "the material yields at {yields} MPa, a strain of {:.2} %, and does not harden",
+            100.0 * yield_strain(material)
+        ),
+        _ => format!(
+            "the material yields at {yields} MPa, a strain of {:.2} %, and has {stress} MPa at the plastic strain {strain}: \
+             a mean hardening modulus of {:.4} E",
+            100.0 * yield_strain(material),
+            (stress - yields) / strain / young
+        ),
+    })];
+    let slope = |pair: &[[f64; 2]]| (pair[1][0] - pair[0][0]) / (pair[1][1] - pair[0][1]);
+    let drop = plastic
+        .windows(2)
+        .min_by(|a, b| slope(a).total_cmp(&slope(b)));
+    if let Some(&[[from, start], [to, end]]) =
+        drop.and_then(|pair| <&[[f64; 2]; 2]>::try_from(pair).ok())
+        && to < from
+    {
+        let steepness = (from - to) / (end - start) / young;
+        let fall = format!(
+            "the table falls from {from} to {to} MPa between the plastic strains {start} and {end}"
+        );
+        verdicts.push(if steepness > STEEPEST_DROP {
+warning(format!(
+                "{fall}, by {steepness:.3} E: above {STEEPEST_DROP} E coarse meshes diverge; spread the fall over a longer \
+                 strain"
+            ))
+} else {
+note(format!("{fall}: the material softens there"))
+});
+    }
+    if *fracture_strain > 1.05 * strain {
+        verdicts.push(note(format!(
+            "between the last row, at {strain}, and the fracture strain {fracture_strain} the window solver holds the \
+             stress constant at {stress} MPa"
+        )));
+    }
+    verdicts
+}
+
+/// Whether the narrowest ligament buckles before it yields in its plane.
+fn buckling(material: &SheetMaterial, narrowest: &LigamentEstimate) -> Option<Verdict> {
+    let yields = yield_strain(material);
+    let buckles = 0.5 / narrowest.slenderness.powi(2);
+    (buckles >= yields).then(|| {
+        let width = material.thickness / (2.0 * yields).sqrt();
+        warning(format!(
+            "ligaments narrower than {width:.1} mm yield in their plane, at a strain of {yields:.4}, before they buckle, at \
+             {buckles:.4} for {} mm: their windows converge in small increments or not at all",
+            narrowest.w_lig
+        ))
+    })
+}
+
+/// Width over thickness against the range for which hinge data exist.
+fn slenderness(ligaments: &[LigamentEstimate]) -> Option<Verdict> {
+    let [least, most] = KNOWN_SLENDERNESS;
+    // Rounding of a width given as a multiple of the thickness.
+    let slack = 1e-9;
+    let outside = |it: &&LigamentEstimate| {
+        !(least * (1.0 - slack)..=most * (1.0 + slack)).contains(&it.slenderness)
+    };
+    let found: Vec<String> = (ligaments.iter().filter(outside))
+        .map(|it| format!("{} mm is {:.1} thicknesses", it.w_lig, it.slenderness))
+        .collect();
+    (!found.is_empty()).then(|| {
+        warning(format!(
+            "a ligament of {}: the shipped hinge data cover {least} to {most}, so try a window (kirigami solve) before a \
+             campaign",
+            found.join(", of ")
+        ))
+    })
+}
+
+/// Gamma at the intended panel edge.
+fn panels(intended: &Intended, ligaments: &[LigamentEstimate]) -> Option<Verdict> {
+    let pitch = intended.pitch?;
+    let least = ligaments
+        .iter()
+        .min_by(|a, b| a.gamma.unwrap_or(0.0).total_cmp(&b.gamma.unwrap_or(0.0)))?;
+    let gamma = least.gamma?;
+    let at = format!(
+        "panels of {pitch:.1} mm with ligaments of {} mm have Gamma = {gamma:.3} (L* = {:.0} mm)",
+        least.w_lig, least.critical_edge
+    );
+    Some(if gamma < 1.0 {
+        warning(format!(
+            "{at}, for a sheet that lies on a surface: below 1 its weight does not hold the panels down"
+        ))
+    } else {
+        note(format!(
+            "{at}, for a sheet that lies on a surface: its weight presses the panels down, which need not keep them flat"
+        ))
+    })
+}
+
+/// The strain at the tip against the fracture strain.
+fn fracture(material: &SheetMaterial, intended: &Intended, ligament: &LigamentEstimate) -> Verdict {
+    let [least, most] = ligament.tip_strain;
+    let limit = material.fracture_strain;
+    let at = format!(
+        "a fold of {:.0} deg strains the tip of a ligament by {least:.3} to {most:.3}; the fracture strain is {limit}",
+        intended.theta.to_degrees()
+    );
+    match (least >= limit, most >= limit) {
+        (true, _) => Verdict {
+            severity: Severity::Error,
+            message: format!(
+                "{at}: the ligament tears at its tip; reduce --theta-deg to the rotation that is needed"
+            ),
+        },
+        (_, true) => warning(format!("{at}: the ligament may tear at its tip")),
+        _ => note(format!("{at}: the ligament does not tear")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn film() -> SheetMaterial {
+        SheetMaterial {
+            name: "film".into(),
+            thickness: 0.5,
+            young: 3000.0,
+            poisson: 0.4,
+            density_kg_m3: 1390.0,
+            fracture_strain: 1.784,
+            plastic: vec![[44.0, 0.0], [33.6, 0.05], [200.0, 1.784]],
+        }
+    }
+
+    const PAPER: Intended = Intended {
+        w_lig: [18.0, 18.0],
+        pitch: Some(406.4),
+        theta: 1.0,
+    };
+
+    fn check(change: impl Fn(&mut SheetMaterial), intended: Intended) -> MaterialCheck {
+        let mut material = film();
+        change(&mut material);
+        MaterialCheck::new(&material, &intended)
+    }
+
+    /// Whether a verdict of the severity contains the text.
+    fn says(check: &MaterialCheck, severity: Severity, text: &str) -> bool {
+        let mut verdicts = check.verdicts.iter();
+        verdicts.any(|it| it.severity == severity && it.message.contains(text))
+    }
+
+    #[test]
+    fn the_film_of_the_paper_has_no_warning() {
+        let check = check(|_| {}, PAPER);
+        assert!(
+            check
+                .verdicts
+                .iter()
+                .all(|it| it.severity == Severity::Note),
+            "{check:?}"
+        );
+        let [ligament] = check.ligaments[..] else {
+            panic!("{check:?}")
+        };
+        assert!(
+            (ligament.critical_edge / 10.0 - 6.3).abs() < 0.05,
+            "Table 2"
+        );
+        assert!((250.0..350.0).contains(&ligament.gamma.unwrap()));
+        assert_eq!(ligament.slenderness, 36.0);
+        // At the rotation of yield the surface strain is the yield strain.
+        let at_yield = 0.5 * ligament.yields_at_deg.to_radians() / 36.0;
+        assert!((at_yield - 44.0 / 3000.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn every_limit_has_its_verdict() {
+        let brittle = check(|it| it.fracture_strain = 0.04, PAPER);
+        assert!(says(&brittle, Severity::Error, "tears"), "{brittle:?}");
+        let doubtful = check(|it| it.fracture_strain = 0.2, PAPER);
+        assert!(
+            says(&doubtful, Severity::Warning, "may tear"),
+            "{doubtful:?}"
+        );
+        let steep = check(|it| it.plastic[1][1] = 0.02, PAPER);
+        assert!(
+            says(&steep, Severity::Warning, "coarse meshes diverge"),
+            "{steep:?}"
+        );
+        let small = Intended {
+            pitch: Some(50.0),
+            ..PAPER
+        };
+        assert!(says(
+            &check(|_| {}, small),
+            Severity::Warning,
+            "does not hold the panels down"
+        ));
+        let narrow = Intended {
+            w_lig: [3.0, 30.0],
+            ..PAPER
+        };
+        let narrow = check(|it| it.plastic[0][0] = 30.0, narrow);
+        assert!(
+            says(
+                &narrow,
+                Severity::Warning,
+                "3 mm is 6.0 thicknesses, of 30 mm is 60.0"
+            ),
+            "{narrow:?}"
+        );
+        assert!(
+            says(&narrow, Severity::Warning, "before they buckle"),
+            "{narrow:?}"
+        );
+        let short = check(|it| it.fracture_strain = 3.0, PAPER);
+        assert!(
+            says(&short, Severity::Note, "constant at 200 MPa"),
+            "{short:?}"
+        );
+    }
+}

@@ -1,0 +1,189 @@
+//! The report of a measured sheet: agreement with the path in the measures of section 4.4, outliers, openings.
+//!
+//! `Serialize` writes all numbers, `Display` a page; `residuals_csv` and `openings_csv` the tables.
+
+mod agreement;
+mod tables;
+
+pub use agreement::{Agreement, OpeningSpread, Spread};
+
+use design::analysis::marks::{FittedPoint, Mark};
+use design::analysis::measured_openings::{
+    MeasuredOpening, MeasuredPanel, openings, scatter, slip,
+};
+use design::analysis::measured_sheet::MeasuredSheet;
+use design::analysis::misread::Renumbered;
+use design::analysis::robust_pose::Fit;
+use design::geometry::plane::{complex, point};
+use design::geometry::similarity::{Pair, Scale, Similarity};
+use design::sheet::cut_sheet::Sheet;
+use faer::c64;
+use serde::Serialize;
+
+/// A measured sheet in numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct MeasurementReport {
+    /// Title of the scene.
+    pub title: String,
+    /// The larger of width and height of the flat sheet, to which percentages refer (mm).
+    pub sheet_size: f64,
+    /// Number of measured points.
+    pub points: usize,
+    /// Position of the design's origin in the frame of the measurement (mm), rotation (deg) and scale.
+    pub motion: Motion,
+    /// Agreement at the end of the path: full load, or the full stroke.
+    pub full: Agreement,
+    /// Agreement at the state of the path that fits best.
+    pub best: Agreement,
+    /// Standard error of the load factor of `best`; `None` if the points do not determine it.
+    pub load_factor_error: Option<f64>,
+    /// Whether the best state is the end of the path, so that the sheet may be opened further than at full load.
+    pub at_the_end: bool,
+    /// Standard deviation of one measured coordinate about rigid panels (mm).
+    pub scatter: Option<f64>,
+    /// Points that were left out of the fit.
+    pub outliers: Vec<Outlier>,
+    /// Panels whose points lie at other marks.
+    pub renumbered: Vec<Renumbered>,
+    /// The measurement of the closed sheet, if there is one.
+    pub closed: Option<Closed>,
+    /// Measured panels, at the best state.
+    pub panels: Vec<MeasuredPanel>,
+    /// Measured hinges, at the best state.
+    pub openings: Vec<MeasuredOpening>,
+    #[serde(skip)]
+    best_points: Vec<FittedPoint>,
+}
+
+/// The rigid motion from the design to the measurement.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Motion {
+    /// Position of the design's origin (mm, or pixels if the points are in pixels).
+    pub origin: [f64; 2],
+    /// Rotation (deg).
+    pub rotation_deg: f64,
+    /// Measured lengths over lengths of the design.
+    pub scale: f64,
+}
+
+/// A point far from its prediction.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Outlier {
+    /// The panel and its corner.
+    pub mark: Mark,
+    /// Measured minus predicted position (mm).
+    pub residual: [f64; 2],
+    /// Length of `residual` (mm).
+    pub distance: f64,
+}
+
+/// The measurement of the closed sheet, whose shape is known: the floor of the measurement.
+#[derive(Clone, Debug, Serialize)]
+pub struct Closed {
+    /// Agreement of the closed sheet with the flat design.
+    pub floor: Agreement,
+    /// Whether the points are more than half as far from the flat sheet as those of the deployed sheet: they are hardly those
+    /// of the closed sheet.
+    pub doubtful: bool,
+    /// Panels whose deployed centre is farther from its prediction than the rms of the closed centres.
+    pub centres_above: Vec<usize>,
+    /// Motion of the supported panels between the two measurements that the model does not predict.
+    pub slips: Vec<Slip>,
+}
+
+/// Slip of a support.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Slip {
+    /// The supported panel.
+    pub panel: usize,
+    /// Its slip in the frame of the design (mm).
+    pub slip: [f64; 2],
+}
+
+impl MeasurementReport {
+    /// The report of a measured sheet; `closed` is the measurement of the same sheet before it was deployed, and
+    /// `supported` are the panels whose slip between the two is of interest.
+    pub fn new(
+        title: &str,
+        sheet: &Sheet,
+        measured: &MeasuredSheet,
+        closed: Option<&Fit>,
+        supported: &[usize],
+    ) -> Self {
+        let MeasuredSheet { best, full, .. } = measured;
+        let panels = MeasuredPanel::all(sheet, best);
+        let openings = openings(sheet, best, &panels);
+        let outliers = best.points.iter().filter(|point| point.outlier);
+        Self {
+            title: title.to_owned(),
+            sheet_size: sheet.outline.size(),
+            points: best.points.len(),
+            motion: Motion {
+                origin: point(best.motion.of(c64::ZERO)),
+                rotation_deg: best.motion.rotation().to_degrees(),
+                scale: best.motion.scale(),
+            },
+            full: Agreement::new(sheet, full),
+            best: Agreement::new(sheet, best),
+            load_factor_error: measured.load_factor_error,
+            at_the_end: best.position > full.position - 1e-6,
+            scatter: scatter(&panels),
+            outliers: outliers.map(Outlier::new).collect(),
+            renumbered: measured.renumbered.clone(),
+            closed: closed.map(|closed| Closed::new(sheet, closed, best, &panels, supported)),
+            panels,
+            openings,
+            best_points: best.points.clone(),
+        }
+    }
+}
+
+impl Outlier {
+    fn new(point: &FittedPoint) -> Self {
+        Self {
+            mark: point.mark,
+            residual: point.residual(),
+            distance: point.distance(),
+        }
+    }
+}
+
+impl Closed {
+    fn new(
+        sheet: &Sheet,
+        closed: &Fit,
+        deployed: &Fit,
+        panels: &[MeasuredPanel],
+        supported: &[usize],
+    ) -> Self {
+        let floor = Agreement::new(sheet, closed);
+        let level = floor
+            .centres
+            .as_ref()
+            .map_or(f64::INFINITY, |centres| centres.rms);
+        let above = panels.iter().filter(|panel| panel.distance() > level);
+        let slips = supported.iter().filter_map(|&panel| {
+            let slip = slip(sheet, closed, deployed, panel)?;
+            Some(Slip { panel, slip })
+        });
+        Self {
+            doubtful: from_flat(sheet, closed) > 0.5 * from_flat(sheet, deployed),
+            centres_above: above.map(|panel| panel.panel).collect(),
+            slips: slips.collect(),
+            floor,
+        }
+    }
+}
+
+/// Root mean square distance of the points of a fit from the flat sheet, without a rigid motion (mm).
+fn from_flat(sheet: &Sheet, fit: &Fit) -> f64 {
+    let points = fit.kept();
+    let pairs: Vec<Pair> = points
+        .map(|point| [point.mark.flat(sheet), point.measured].map(complex))
+        .collect();
+    let Some(motion) = Similarity::least_squares(&pairs, Scale::Given) else {
+        return 0.0;
+    };
+    let squares = pairs.iter().map(|pair| motion.residual(pair).powi(2));
+    (squares.sum::<f64>() / pairs.len() as f64).sqrt()
+}

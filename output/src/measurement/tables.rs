@@ -1,0 +1,259 @@
+//! The report of a measured sheet as text and as CSV tables.
+
+use crate::measurement::{Agreement, Closed, MeasurementReport, OpeningSpread, Spread};
+use design::objective::scores::shown;
+use std::fmt::{self, Write};
+
+/// Number of outliers, of hinges and of panels on the printed page; the tables hold all of them.
+const LISTED: usize = 12;
+
+impl MeasurementReport {
+    /// Measured and predicted position of every point at the best state, in the frame of the design (mm).
+    pub fn residuals_csv(&self) -> String {
+        let mut text =
+            "panel,corner,measured_x_mm,measured_y_mm,predicted_x_mm,predicted_y_mm,residual_x_mm,\
+                        residual_y_mm,distance_mm,outlier\n"
+                .to_owned();
+        for point in &self.best_points {
+            let corner = point.mark.corner.map(|corner| corner.to_string());
+            let ([mx, my], [px, py]) = (point.measured, point.predicted);
+            let [rx, ry] = point.residual();
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                text,
+                "{},{},{mx:.4},{my:.4},{px:.4},{py:.4},{rx:.4},{ry:.4},{:.4},{}",
+                point.mark.panel,
+                corner.unwrap_or_default(),
+                point.distance(),
+                point.outlier
+            );
+        }
+        text
+    }
+
+    /// Measured and predicted opening of every measured hinge at the best state.
+    pub fn openings_csv(&self) -> String {
+        let mut text =
+            "hinge,panel_a,panel_b,measured_deg,error_deg,predicted_deg,difference_deg\n"
+                .to_owned();
+        for opening in &self.openings {
+            let [a, b] = opening.panels;
+            let _ = writeln!(
+                text,
+                "{},{a},{b},{:.4},{:.4},{:.4},{:.4}",
+                opening.hinge,
+                opening.measured_deg,
+                opening.error_deg,
+                opening.predicted_deg,
+                opening.difference_deg()
+            );
+        }
+        text
+    }
+
+    fn agreement(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let mut row = |name: &str, [full, best]: [Option<String>; 2]| {
+            let [full, best] = [full, best].map(|value| value.unwrap_or_else(|| "-".to_owned()));
+            writeln!(f, "{name:<38} {full:>20} {best:>20}")
+        };
+        let both =
+            |value: &dyn Fn(&Agreement) -> Option<String>| [&self.full, &self.best].map(value);
+        row(
+            "",
+            ["end of the path", "best fit"].map(|name| Some(name.to_owned())),
+        )?;
+        let best = match self.load_factor_error {
+            Some(error) => format!("{} +- {}", shown(self.best.load_factor), shown(error)),
+            None => "not determined".to_owned(),
+        };
+        row(
+            "load factor",
+            [shown(self.full.load_factor), best].map(Some),
+        )?;
+        type Part = fn(&Agreement) -> Option<&Spread>;
+        let parts: [(&str, Part); 2] = [
+            ("corners", |it| it.corners.as_ref()),
+            ("panel centres", |it| it.centres.as_ref()),
+        ];
+        for (name, part) in parts {
+            let value = |value: fn(&Spread) -> String| both(&|it| part(it).map(value));
+            row(
+                &format!("{name}, rms (mm)"),
+                value(|it| format!("{:.2}", it.rms)),
+            )?;
+            row(
+                &format!("{name}, rms (% of the sheet)"),
+                value(|it| format!("{:.3}", it.rms_percent)),
+            )?;
+            row(
+                &format!("{name}, maximum (mm)"),
+                value(|it| format!("{:.2}", it.max)),
+            )?;
+            row("  at", value(|it| it.max_at.clone()))?;
+        }
+        let value =
+            |value: fn(&OpeningSpread) -> String| both(&|it| it.openings.as_ref().map(value));
+        row(
+            "openings, mean measured (deg)",
+            value(|it| format!("{:.2}", it.measured_mean_deg)),
+        )?;
+        row(
+            "openings, mean predicted (deg)",
+            value(|it| format!("{:.2}", it.predicted_mean_deg)),
+        )?;
+        row(
+            "openings, rms about the mean (deg)",
+            value(|it| format!("{:.2}", it.spread_deg)),
+        )?;
+        row(
+            "openings, worst (deg)",
+            value(|it| format!("{:+.2}", it.max_deg)),
+        )?;
+        row("  at", value(|it| format!("hinge {}", it.max_hinge)))
+    }
+
+    fn outliers(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let count = self.outliers.len();
+        match count {
+            0 => writeln!(f, "\nno outliers")?,
+            _ => writeln!(f, "\noutliers, {count} points left out of the fit:")?,
+        }
+        for renumbered in &self.renumbered {
+            writeln!(f, "  {renumbered}: correct the numbers in the file")?;
+        }
+        let explained = |panel| self.renumbered.iter().any(|it| it.panel == panel);
+        let single = self.outliers.iter().filter(|it| !explained(it.mark.panel));
+        for outlier in single.clone().take(LISTED) {
+            let [x, y] = outlier.residual;
+            let (mark, distance) = (outlier.mark.to_string(), outlier.distance);
+            writeln!(
+                f,
+                "  {mark:<16} {distance:>10.2} mm from its prediction ({x:+.2}, {y:+.2})"
+            )?;
+        }
+        if single.count() > LISTED {
+            writeln!(f, "  ... all of them are in residuals.csv")
+        } else {
+            Ok(())
+        }
+    }
+
+    fn hinges(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        if self.openings.is_empty() {
+            return writeln!(f, "\nno hinge has two panels with at least two points each");
+        }
+        let mut worst: Vec<_> = self.openings.iter().collect();
+        worst.sort_by(|a, b| (b.difference_deg().abs()).total_cmp(&a.difference_deg().abs()));
+        worst.truncate(LISTED);
+        writeln!(
+            f,
+            "\nhinges that differ most, opening in deg (all of them are in openings.csv):"
+        )?;
+        writeln!(
+            f,
+            "  hinge     panels   measured    +-  predicted  difference"
+        )?;
+        for it in worst {
+            let panels = format!("P{} P{}", it.panels[0], it.panels[1]);
+            writeln!(
+                f,
+                "  {:>5} {panels:>10} {:>10.2} {:>5.2} {:>10.2} {:>+11.2}",
+                it.hinge,
+                it.measured_deg,
+                it.error_deg,
+                it.predicted_deg,
+                it.difference_deg()
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for MeasurementReport {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let used = self.points - self.outliers.len();
+        writeln!(f, "{}: measured against predicted\n", self.title)?;
+        writeln!(
+            f,
+            "predicted with panels held flat, without weight and friction"
+        )?;
+        writeln!(
+            f,
+            "{} points, {used} used; sheet of {:.1} mm",
+            self.points, self.sheet_size
+        )?;
+        // In mm of the design, also if the points are in pixels.
+        let [x, y] = self.motion.origin.map(|x| x / self.motion.scale);
+        let rotation = self.motion.rotation_deg;
+        writeln!(
+            f,
+            "removed: shift ({x:.2}, {y:.2}) mm, rotation {rotation:.3} deg, scale {:.5}",
+            self.motion.scale
+        )?;
+        if let Some(scatter) = self.scatter {
+            writeln!(
+                f,
+                "scatter of one coordinate about rigid panels: {scatter:.2} mm"
+            )?;
+        }
+        writeln!(f)?;
+        self.agreement(f)?;
+        if self.load_factor_error.is_none() {
+            writeln!(
+                f,
+                "\nnote: the points do not determine the load factor, and the best fit is one of many: measure points on \
+                 several panels that turn against each other"
+            )?;
+        } else if self.at_the_end {
+            writeln!(
+                f,
+                "\nnote: the best fit is the end of the path; the sheet may be opened further than predicted"
+            )?;
+        }
+        if let Some(closed) = &self.closed {
+            closed.fmt(f)?;
+        }
+        self.outliers(f)?;
+        self.hinges(f)
+    }
+}
+
+impl fmt::Display for Closed {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let rms = |spread: &Option<Spread>| {
+            spread
+                .as_ref()
+                .map_or("-".to_owned(), |spread| format!("{:.2} mm", spread.rms))
+        };
+        writeln!(
+            f,
+            "\nclosed sheet, the floor of the measurement: corners {}, panel centres {} rms",
+            rms(&self.floor.corners),
+            rms(&self.floor.centres)
+        )?;
+        if self.doubtful {
+            writeln!(
+                f,
+                "warning: these points are more than half as far from the flat sheet as those of the deployed sheet: is the \
+                 file of --closed that of the closed sheet?"
+            )?;
+        }
+        let above = self.centres_above.iter().map(|panel| format!(" P{panel}"));
+        let (count, more) = (above.len(), if above.len() > LISTED { " ..." } else { "" });
+        let listed: String = above.take(LISTED).collect();
+        match count {
+            0 => writeln!(f, "no panel centre is above this floor")?,
+            _ => writeln!(f, "{count} panel centres are above it:{listed}{more}")?,
+        }
+        for slip in &self.slips {
+            let [x, y] = slip.slip;
+            let length = x.hypot(y);
+            writeln!(
+                f,
+                "slip of the supported panel P{}: {length:.2} mm ({x:+.2}, {y:+.2}), if both files are in one frame",
+                slip.panel
+            )?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,149 @@
+//! The report of a design run: the objective before and after, all hinges, warnings.
+
+mod columns;
+mod estimate;
+mod fact_sheet;
+mod hinge_row;
+mod rules;
+mod self_weight;
+mod text;
+mod warning;
+
+pub(crate) use columns::rounded;
+pub(crate) use estimate::force_spreads;
+pub(crate) use text::worst_first;
+
+pub use estimate::Estimate;
+pub use fact_sheet::{FactSheet, Reached, SpotCheck, WeightFacts};
+pub use hinge_row::HingeRow;
+pub use self_weight::SelfWeight;
+pub use warning::{Concern, Severity, Warning};
+
+use crate::cut_file::{CutLines, FabricationError};
+use crate::report::rules::{Judged, JudgedRun};
+use design::objective::design_problem::Deployment;
+use design::objective::scores::Scores;
+use design::optimise::outer_loop::Ended;
+use design::scene::Scene;
+use design::scene::design_run::Designed;
+use serde::Serialize;
+
+/// The report of a run, for people (`Display`) and programs (JSON).
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Title of the scene.
+    pub title: String,
+    /// Why the run ended.
+    pub ended: Ended,
+    /// Number of steps after the start.
+    pub steps: usize,
+    /// Number of steps that were halved because a design had no objective value.
+    pub setbacks: usize,
+    /// The terms of the scores in words, with their units.
+    #[serde(skip)]
+    pub terms: Vec<String>,
+    /// Scores of the start.
+    pub before: Scores,
+    /// Scores of the best design.
+    pub after: Scores,
+    /// Standard deviations of the scene's ensemble on the path of the best design, if there is an ensemble.
+    pub estimate: Option<Estimate>,
+    /// What the sheet is made of, how far it opens under which load, and what the hinge law rests on.
+    pub facts: FactSheet,
+    /// Whether a cut file was written.
+    pub cut_file: bool,
+    /// All hinges of the best design.
+    pub hinges: Vec<HingeRow>,
+    /// All warnings about the best design, the most severe first.
+    pub warnings: Vec<Warning>,
+}
+
+/// All warnings about a deployed design with the given cut lines, the most severe first.
+pub fn warnings(
+    scene: &Scene,
+    deployment: &Deployment,
+    cuts: &Result<CutLines, FabricationError>,
+) -> Vec<Warning> {
+    rules::warnings(&Judged {
+        scene,
+        deployment,
+        cuts,
+        hinges: &HingeRow::all(scene, deployment),
+        run: None,
+    })
+}
+
+impl Report {
+    /// The errors, for which no cut file is written unless forced.
+    pub fn errors(&self) -> impl Iterator<Item = &Warning> {
+        let warnings = self.warnings.iter();
+        warnings.filter(|warning| warning.severity == Severity::Error)
+    }
+
+    /// What is said about the cut files unless they were written without errors.
+    pub fn about_cut_files(&self) -> Option<&'static str> {
+        match (self.cut_file, self.errors().next()) {
+            (false, _) => Some("NO CUT FILE"),
+            (true, Some(_)) => Some("CUT FILE FORCED"),
+            (true, None) => None,
+        }
+    }
+
+    /// How the search ended.
+    pub fn end_of_search(&self) -> String {
+        let steps = self.steps;
+        match &self.ended {
+            Ended::Completed => format!("{steps} steps"),
+            Ended::Stopped => format!("stopped after {steps} steps; run again to continue"),
+            Ended::Settled => {
+                format!("settled after {steps} steps: no further step lowers the loss")
+            }
+            Ended::Stuck { reason } => format!("stuck after {steps} steps: {reason}"),
+        }
+    }
+
+    /// The report of a run of `scene`, whose best design has the given cut lines. The cut files are written if there
+    /// are no errors, or if `force`.
+    pub fn new(
+        scene: &Scene,
+        designed: &Designed,
+        cuts: &Result<CutLines, FabricationError>,
+        force: bool,
+    ) -> Self {
+        let deployment = &designed.best.deployment;
+        let hinges = HingeRow::all(scene, deployment);
+        let facts = FactSheet::new(scene, &designed.problem, deployment, &hinges);
+        let after = Scores::new(&designed.problem.objective, &designed.best);
+        let warnings = rules::warnings(&Judged {
+            scene,
+            deployment,
+            cuts,
+            hinges: &hinges,
+            run: Some(JudgedRun {
+                designed,
+                facts: &facts,
+                after: &after,
+            }),
+        });
+        let mut report = Self {
+            cut_file: false,
+            title: scene.config.title.clone(),
+            ended: designed.ended.clone(),
+            steps: designed.history.len() - 1,
+            setbacks: designed
+                .history
+                .iter()
+                .filter(|record| record.setback.is_some())
+                .count(),
+            terms: designed.problem.objective.labels(),
+            before: Scores::new(&designed.problem.objective, &designed.start),
+            after,
+            estimate: Estimate::new(scene.networks(), deployment),
+            facts,
+            warnings,
+            hinges,
+        };
+        report.cut_file = cuts.is_ok() && (force || report.errors().next().is_none());
+        report
+    }
+}

@@ -1,0 +1,82 @@
+//! One hinge in the report.
+
+use design::analysis::localisation::gamma;
+use design::analysis::path_separation::PathSeparation;
+use design::geometry::polygon::edges;
+use design::hinge_law::DamageMeasure;
+use design::objective::design_problem::Deployment;
+use design::scene::Scene;
+use design::sheet::cut_sheet::{Hinge, Sheet};
+use serde::Serialize;
+
+/// One hinge of the best design in the deployed sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct HingeRow {
+    /// Index of the hinge.
+    pub hinge: usize,
+    /// Panels A and B.
+    pub panels: [usize; 2],
+    /// Ligament width (mm).
+    pub w_lig: f64,
+    /// Cut angle (deg).
+    pub alpha_deg: f64,
+    /// Opening in the last state of the path (deg).
+    pub theta_deg: f64,
+    /// a / w_lig in the last state of the path.
+    pub eta_a: f64,
+    /// s / w_lig in the last state of the path.
+    pub eta_s: f64,
+    /// Maximum along the path of D, the mean damage of the ligament; `None` if it is not known: the hinge law
+    /// does not predict it, or a state of the path is outside its training domain.
+    pub damage: Option<f64>,
+    /// Maximum along the path of D_peak; at 1 the ligament tears.
+    pub damage_peak: Option<f64>,
+    /// Whether every state of the path is inside the training domain of the hinge law.
+    pub inside: bool,
+    /// Maximum distance of the path from the straight ray to its end, in ligament widths; see
+    /// [`PathSeparation::whole`].
+    pub path_separation: f64,
+    /// (21), with the shortest edge of the two panels.
+    pub gamma: f64,
+}
+
+impl HingeRow {
+    /// The rows of all hinges.
+    pub(super) fn all(scene: &Scene, deployment: &Deployment) -> Vec<Self> {
+        let hinges = 0..deployment.sheet.hinges.len();
+        hinges.map(|h| Self::new(scene, deployment, h)).collect()
+    }
+
+    fn new(scene: &Scene, deployment: &Deployment, h: usize) -> Self {
+        let sheet = &deployment.sheet;
+        let hinge = &sheet.hinges[h];
+        let last = deployment.final_step().deformations[h];
+        let [eta_a, eta_s] = last.eta(hinge.w_lig);
+        let states: Vec<_> = (deployment.path.iter())
+            .map(|step| step.deformations[h])
+            .collect();
+        Self {
+            hinge: h,
+            panels: [hinge.panel_a(), hinge.panel_b()],
+            w_lig: hinge.w_lig,
+            alpha_deg: hinge.alpha.to_degrees(),
+            theta_deg: last.theta.to_degrees(),
+            eta_a,
+            eta_s,
+            damage: deployment.damage_max(DamageMeasure::Mean, h),
+            damage_peak: deployment.damage_max(DamageMeasure::Peak, h),
+            inside: deployment.path.iter().all(|step| step.inside[h]),
+            path_separation: PathSeparation::of(hinge.w_lig, &states).whole,
+            gamma: gamma(&scene.material, hinge.w_lig, shortest_edge(sheet, hinge)),
+        }
+    }
+}
+
+/// The shortest edge of the two panels of a hinge (mm).
+fn shortest_edge(sheet: &Sheet, hinge: &Hinge) -> f64 {
+    [hinge.panel_a(), hinge.panel_b()]
+        .iter()
+        .flat_map(|&panel| edges(&sheet.panels[panel].corners))
+        .map(|(p, q)| f64::hypot(q[0] - p[0], q[1] - p[1]))
+        .fold(f64::INFINITY, f64::min)
+}

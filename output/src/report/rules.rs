@@ -1,0 +1,356 @@
+//! The rules of a report: each finds one concern about a design, or nothing.
+
+use crate::cut_file::{CutLines, FabricationError};
+use crate::report::columns::rounded;
+use crate::report::fact_sheet::FactSheet;
+use crate::report::hinge_row::HingeRow;
+use crate::report::self_weight::of_the_load;
+use crate::report::warning::{Concern, Severity, Warning};
+use design::analysis::localisation::critical_edge;
+use design::equilibrium::load_step::{LoadStep, Status};
+use design::objective::design_problem::Deployment;
+use design::objective::scores::Scores;
+use design::scene::Scene;
+use design::scene::design_run::Designed;
+use design::sheet::hinge_window::Window;
+
+/// Weight over load above which the sheet may not open as computed.
+const HEAVY: f64 = 0.1;
+/// Distance of the outline from the target over the longer side of the flat sheet from which the target is missed.
+const MISSED: f64 = 0.01;
+/// Relative error of a force (%) above which a law is inaccurate.
+const INACCURATE: f64 = 10.0;
+/// Separation of a path from its ray, in ligament widths, up to which W differs by less than 1 % (docs/results/detours).
+const SAFE_SEPARATION: f64 = 0.15;
+/// Rounding of lengths (mm).
+const ROUNDING: f64 = 1e-6;
+
+/// What the rules read.
+pub(super) struct Judged<'a> {
+    pub scene: &'a Scene,
+    pub deployment: &'a Deployment,
+    /// The cut lines of the sheet.
+    pub cuts: &'a Result<CutLines, FabricationError>,
+    /// All hinges.
+    pub hinges: &'a [HingeRow],
+    /// The run whose best design is judged; `None` for a design alone.
+    pub run: Option<JudgedRun<'a>>,
+}
+
+/// A run whose best design is judged.
+pub(super) struct JudgedRun<'a> {
+    pub designed: &'a Designed,
+    pub facts: &'a FactSheet,
+    /// The scores of the best design.
+    pub after: &'a Scores,
+}
+
+type Rule = fn(&Judged) -> Option<Warning>;
+
+/// First those about a design, then those about a run as a whole: what its model leaves out, what its weights are worth,
+/// how well it meets its target.
+const RULES: [Rule; 18] = [
+    windows_overlap,
+    windows_leave_panels,
+    cutting,
+    tilting,
+    ligaments_outside,
+    states_outside,
+    path_dependence,
+    tearing,
+    overstrained,
+    path,
+    target,
+    not_modelled,
+    heavy,
+    load_peak,
+    inaccurate,
+    outside,
+    missed,
+    other_branch,
+];
+
+/// All that the rules find, the most severe first.
+pub(super) fn warnings(judged: &Judged) -> Vec<Warning> {
+    let mut found: Vec<Warning> = RULES.iter().filter_map(|rule| rule(judged)).collect();
+    found.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
+    found
+}
+
+impl Judged<'_> {
+    /// The hinges whose rows `overstep`.
+    fn those(&self, overstep: impl Fn(&HingeRow) -> bool) -> Vec<usize> {
+        let rows = self.hinges.iter().filter(|row| overstep(row));
+        rows.map(|row| row.hinge).collect()
+    }
+}
+
+/// A warning about the hinges, if there are any.
+fn about(concern: Concern, hinges: Vec<usize>, message: String) -> Option<Warning> {
+    (!hinges.is_empty()).then(|| Warning {
+        hinges,
+        ..concern.of_sheet(message)
+    })
+}
+
+fn windows_overlap(judged: &Judged) -> Option<Warning> {
+    let sheet = &judged.deployment.sheet;
+    let windows = Window::of_sheet(sheet);
+    let overlapping = |h: &usize| {
+        let mut others = windows.iter().enumerate().filter(|(other, _)| other != h);
+        others.any(|(_, other)| windows[*h].overlaps(other))
+    };
+    let hinges = (0..windows.len()).filter(overlapping).collect();
+    let message = format!(
+        "windows of {} mm radius overlap: their ligaments are not independent, and the sum of \
+         hinge energies is not exact",
+        sheet.options.process.r_win
+    );
+    about(Concern::WindowsOverlap, hinges, message)
+}
+
+fn windows_leave_panels(judged: &Judged) -> Option<Warning> {
+    let sheet = &judged.deployment.sheet;
+    let windows = Window::of_sheet(sheet).into_iter().zip(&sheet.hinges);
+    let leaving = windows.enumerate().filter(|(_, (window, hinge))| {
+        let [a, b] = [hinge.panel_a(), hinge.panel_b()].map(|panel| &sheet.panels[panel]);
+        !window.within(a, b)
+    });
+    let r_win = sheet.options.process.r_win;
+    let message = format!("panels are too small for the {r_win} mm windows of their hinges");
+    about(
+        Concern::WindowsLeavePanels,
+        leaving.map(|(h, _)| h).collect(),
+        message,
+    )
+}
+
+fn cutting(judged: &Judged) -> Option<Warning> {
+    let cuts = match judged.cuts {
+        Ok(cuts) => cuts,
+        Err(error) => return Some(Concern::CannotBeCut.of_sheet(error.to_string())),
+    };
+    let hinges = judged.deployment.sheet.hinges.iter().enumerate();
+    let close = hinges.filter(|(h, hinge)| cuts.clearance(*h) < hinge.w_lig - ROUNDING);
+    let message = "another cut is closer to the tip than w_lig".into();
+    about(
+        Concern::CutsTooClose,
+        close.map(|(h, _)| h).collect(),
+        message,
+    )
+}
+
+fn tilting(judged: &Judged) -> Option<Warning> {
+    let tilting = judged.those(|row| row.gamma < 1.0);
+    let critical = |h: &usize| critical_edge(&judged.scene.material, judged.hinges[*h].w_lig);
+    let edge = tilting.iter().map(critical).fold(0.0, f64::max);
+    let message = format!(
+        "panel edges are shorter than the critical length of {edge:.0} mm: Gamma < 1, also on a surface the weight of the \
+         panels does not hold them down against their ligaments"
+    );
+    about(Concern::GammaBelowOne, tilting, message)
+}
+
+fn ligaments_outside(judged: &Judged) -> Option<Warning> {
+    let domain = judged.scene.surrogate()?.domain();
+    let outside = |[min, max]: [f64; 2], value: f64| !(min..=max).contains(&value);
+    let alpha_deg = domain.alpha.map(f64::to_degrees);
+    let hinges =
+        judged.those(|row| outside(domain.w_lig, row.w_lig) || outside(alpha_deg, row.alpha_deg));
+    let message = format!(
+        "ligaments are outside the training domain of the hinge law, w_lig {:.1} to {:.1} mm and alpha \
+         {:.0} to {:.0} deg",
+        domain.w_lig[0], domain.w_lig[1], alpha_deg[0], alpha_deg[1]
+    );
+    about(Concern::LigamentsOutsideDomain, hinges, message)
+}
+
+fn states_outside(judged: &Judged) -> Option<Warning> {
+    judged.scene.surrogate()?;
+    let message = "deformations leave the training domain of the hinge law along the path: energy and forces of these \
+                   hinges are extrapolated, and their damage is not known";
+    let hinges = judged.those(|row| !row.inside);
+    about(Concern::StatesOutsideDomain, hinges, message.into())
+}
+
+/// A learned law was measured along straight rays.
+fn path_dependence(judged: &Judged) -> Option<Warning> {
+    judged.scene.surrogate()?;
+    let bent = judged.those(|row| row.path_separation > SAFE_SEPARATION);
+    let message = format!(
+        "paths depart by more than {SAFE_SEPARATION} ligament widths from the straight rays of the hinge law: energy, forces \
+         and damage depend on the path there (docs/results/detours); check by `kirigami verify`"
+    );
+    about(Concern::PathDependence, bent, message)
+}
+
+fn tearing(judged: &Judged) -> Option<Warning> {
+    // The mean reaches 1 later than the peak; weights without D_peak predict the mean only.
+    let torn = judged.those(|row| {
+        row.damage_peak
+            .or(row.damage)
+            .is_some_and(|damage| damage >= 1.0)
+    });
+    let message = "predicted peak damage of 1 or more: the ligament tears".into();
+    about(Concern::Tearing, torn, message)
+}
+
+fn overstrained(judged: &Judged) -> Option<Warning> {
+    let beyond = judged.those(|row| row.eta_a.abs().max(row.eta_s.abs()) > 1.0);
+    let message =
+        "ligaments translate by more than their width at full load, where no hinge law is valid: \
+                   reduce the load or the size of the target"
+            .into();
+    about(Concern::Overstrained, beyond, message)
+}
+
+fn path(judged: &Judged) -> Option<Warning> {
+    let path = &judged.deployment.path;
+    let steps: Vec<String> = path.iter().filter_map(departure).collect();
+    if steps.is_empty() {
+        return None;
+    }
+    let message = format!(
+        "the equilibrium path is not smooth and stable: {}",
+        steps.join(", ")
+    );
+    let mut warning = Concern::Path.of_sheet(message);
+    if judged.deployment.final_step().status == Status::Diverged {
+        warning.severity = Severity::Error;
+    }
+    Some(warning)
+}
+
+/// How a step of the path is not a stable equilibrium; `None` if it is one.
+fn departure(step: &LoadStep) -> Option<String> {
+    let place = format!("load factor {:.3}", step.load_factor);
+    Some(match step.status {
+        Status::Converged | Status::LeftDomain => return None,
+        Status::Almost => format!("residual {:.0e} at {place}", step.residual),
+        Status::LimitPoint => format!("a jump past a limit point at {place}"),
+        Status::Diverged => {
+            let end = step.descent_end.map(|end| format!(": {end}"));
+            format!(
+                "no equilibrium was found beyond {place}{}",
+                end.unwrap_or_default()
+            )
+        }
+    })
+}
+
+fn target(judged: &Judged) -> Option<Warning> {
+    judged.scene.target.crossing().map(|[x, y]| {
+        Concern::TargetCrosses.of_sheet(format!(
+            "the target outline crosses or touches itself near ({x:.1}, {y:.1}) mm: its inside is not defined; order \
+             its vertices around the outline"
+        ))
+    })
+}
+
+fn not_modelled(judged: &Judged) -> Option<Warning> {
+    judged.scene.surrogate()?;
+    let facts = judged.run.as_ref()?.facts;
+    Some(Concern::NotModelled.of_sheet(format!(
+        "the panels are held flat in the model. Not modelled: panels that leave the plane, as those of a thin sheet do where \
+         nothing holds them; the weight of the sheet, {}",
+        facts.self_weight.beside_load()
+    )))
+}
+
+fn heavy(judged: &Judged) -> Option<Warning> {
+    judged.scene.surrogate()?;
+    let weight = &judged.run.as_ref()?.facts.self_weight;
+    let ratio = weight.over_load.filter(|ratio| *ratio > HEAVY)?;
+    Some(Concern::Weight.of_sheet(format!(
+        "the weight of the sheet is {} and not modelled: a sheet that hangs or stands deploys otherwise, and one that lies \
+         is also held by friction",
+        of_the_load(ratio)
+    )))
+}
+
+fn load_peak(judged: &Judged) -> Option<Warning> {
+    let reached = judged.run.as_ref()?.facts.reached.as_ref()?;
+    let peak = reached.peak?;
+    let carried = peak.dead_load_reaches?;
+    let [length, force] = reached.units;
+    let [maximum, at, last, end, carried] = [
+        peak.load,
+        peak.displacement,
+        reached.load,
+        reached.displacement,
+        carried,
+    ]
+    .map(|value| rounded(value, 4));
+    let consequence = if reached.load * reached.displacement > 0.0 {
+        format!(
+            "a dead load of {last} {force}, such as a hung weight, opens this sheet by {carried} {length} and not by {end} \
+             {length}"
+        )
+    } else {
+        format!(
+            "no dead load opens this sheet by {end} {length}: the load has changed its direction there, to {last} {force}"
+        )
+    };
+    Some(Concern::LoadPeak.of_sheet(format!(
+        "the load has a maximum of {maximum} {force} at a stroke of {at} {length}: {consequence}"
+    )))
+}
+
+/// Weights whose forces are off by more than a tenth, at unseen rays or at their spot check.
+fn inaccurate(judged: &Judged) -> Option<Warning> {
+    let weights = judged.run.as_ref()?.facts.weights.as_ref()?;
+    let spot_check = weights.spot_check.as_ref();
+    let errors = [
+        (Some(&weights.errors_percent), "unseen"),
+        (spot_check.map(|check| &check.errors_percent), "random"),
+    ];
+    let names = ["F_a", "F_s", "M_theta"];
+    let forces = errors.iter().flat_map(|(errors, states)| {
+        let forces = errors.iter().flat_map(|errors| &errors[1..4]);
+        std::iter::zip(names, forces).map(move |(name, error)| (*error, name, *states))
+    });
+    let (error, name, states) = forces
+        .filter(|(error, ..)| *error > INACCURATE)
+        .max_by(|one, other| one.0.total_cmp(&other.0))?;
+    Some(Concern::WeakWeights.of_sheet(format!(
+        "the weights {} are inaccurate: {name} is off by {} % at {states} states; solve more rays, or check this design by \
+         `kirigami verify --equilibrium`",
+        weights.file,
+        rounded(error, 3)
+    )))
+}
+
+/// Weights whose spot check mostly lies outside their training domain.
+fn outside(judged: &Judged) -> Option<Warning> {
+    let weights = judged.run.as_ref()?.facts.weights.as_ref()?;
+    let check = weights.spot_check.as_ref()?;
+    let inside = check.inside.filter(|inside| 2 * inside < check.states)?;
+    Some(Concern::WeakWeights.of_sheet(format!(
+        "only {inside} of {} states of the spot check lie inside the training domain of the weights {}: its errors say \
+         little about them; solve more rays",
+        check.states, weights.file
+    )))
+}
+
+fn missed(judged: &Judged) -> Option<Warning> {
+    let JudgedRun { facts, after, .. } = judged.run.as_ref()?;
+    let [width, height] = facts.flat_size;
+    let ratio = after.outline_error / width.max(height);
+    (ratio > MISSED).then(|| {
+        Concern::TargetMissed.of_sheet(format!(
+            "the outline misses the target by {} mm (root mean square), {} % of the longer side of the flat sheet",
+            rounded(after.outline_error, 3),
+            rounded(100.0 * ratio, 2)
+        ))
+    })
+}
+
+fn other_branch(judged: &Judged) -> Option<Warning> {
+    judged.run.as_ref()?.designed.contradicted.then(|| {
+        Concern::OtherBranch.of_sheet(
+            "during the search a corrected path was on another branch than the path followed from the flat sheet: the designs \
+             found by it are not used, and the search went on from the best design whose path was followed"
+                .into(),
+        )
+    })
+}

@@ -1,0 +1,152 @@
+//! The report as text for people: about sixty lines for a small sheet.
+
+use crate::report::columns::{columns, fixed};
+use crate::report::{HingeRow, Report, Severity};
+use design::objective::scores::{Scores, shown};
+use std::cmp::Ordering;
+use std::fmt;
+
+/// Maximum number of hinges of which all are listed.
+const ALL_LISTED: usize = 24;
+/// Number of hinges that are listed of a larger sheet.
+const WORST_LISTED: usize = 20;
+
+const LEGEND: &str = "\
+w_lig    ligament width; alpha: angle between the cuts
+theta    opening in the last state of the path
+eta      a / w_lig and s / w_lig there: axial opening and shear of the ligament over its width
+D        maximum along the path of the mean damage of the ligament, and D_peak of its most strained 1 %,
+         which tears at 1; ?: not known, since the hinge left the training domain of its law; -: no prediction
+domain   whether every state of the path is inside the training domain
+Gamma    (21), for a sheet that lies on a surface: moment of a panel's weight over that of its folded ligament
+";
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        writeln!(f, "{}", self.title)?;
+        if let Some(text) = self.about_cut_files() {
+            writeln!(f, "{text}")?;
+        }
+        (self.errors()).try_for_each(|error| writeln!(f, "- {error}"))?;
+        writeln!(f, "{}\n\n{}", self.end_of_search(), self.objective())?;
+        let facts = self.fact_rows();
+        let width = facts.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+        for (name, value) in facts {
+            writeln!(f, "{name:<width$}  {value}")?;
+        }
+        writeln!(f, "\n{}\n{LEGEND}", self.hinge_table())?;
+        let warned = (self.warnings.iter()).any(|it| it.severity > Severity::Note);
+        writeln!(f, "{}", if warned { "warnings" } else { "no warnings" })?;
+        (self.warnings.iter()).try_for_each(|warning| writeln!(f, "- {warning}"))
+    }
+}
+
+impl Report {
+    /// The facts of the run, the spread of the ensemble and the number of warnings, as names and values with units.
+    pub fn fact_rows(&self) -> Vec<(&'static str, String)> {
+        let mut rows = self.facts.rows();
+        let hashes = rows.iter().position(|(name, _)| name.starts_with("hash"));
+        let mut further = Vec::new();
+        if let Some(estimate) = &self.estimate {
+            let percent = |x: f64| format!("{:.1} %", 100.0 * x);
+            let text = format!(
+                "{} networks; standard deviation inside the domain: energy {}, forces {}, D_peak {}",
+                estimate.networks,
+                percent(estimate.energy),
+                percent(estimate.forces),
+                estimate.damage_peak.map_or("-".into(), percent)
+            );
+            further.push(("ensemble", text));
+        }
+        let count = |severity| {
+            let found = self.warnings.iter().filter(|it| it.severity == severity);
+            found.count()
+        };
+        let [errors, warnings, notes] =
+            [Severity::Error, Severity::Warning, Severity::Note].map(count);
+        let text = format!("errors {errors}, warnings {warnings}, notes {notes}");
+        further.push(("findings", text));
+        let at = hashes.unwrap_or(rows.len());
+        rows.splice(at..at, further);
+        rows
+    }
+
+    /// The objective at the start and at the best design.
+    fn objective(&self) -> String {
+        let rows = |scores: &Scores| {
+            let mut rows = vec![("outline error (mm)".to_owned(), scores.outline_error)];
+            let values = scores.terms.values().copied();
+            rows.extend(self.terms.iter().cloned().zip(values));
+            rows.push(("loss (mm^2)".to_owned(), scores.loss));
+            if self.facts.has_domain {
+                rows.push(("inside domain (%)".to_owned(), 100.0 * scores.share_inside));
+            }
+            rows
+        };
+        let mut table = vec![["", "start", "best"].map(str::to_owned).to_vec()];
+        let pairs = std::iter::zip(rows(&self.before), rows(&self.after));
+        table.extend(pairs.map(|((name, before), (_, after))| {
+            vec![format!("{name:<18}"), shown(before), shown(after)]
+        }));
+        columns(&table)
+    }
+
+    /// The hinges; of a large sheet those that are nearest to failure.
+    fn hinge_table(&self) -> String {
+        let mut listed: Vec<&HingeRow> = self.hinges.iter().collect();
+        let mut head = String::new();
+        if listed.len() > ALL_LISTED {
+            listed.sort_by(|one, other| worst_first(one, other));
+            listed.truncate(WORST_LISTED);
+            head = format!(
+                "the worst {WORST_LISTED} of {} hinges: first those that left the domain, then by damage and strain;\n\
+                 all hinges: report.json and run.html\n",
+                self.hinges.len()
+            );
+        }
+        let names = [
+            "hinge", "panels", "w_lig", "alpha", "theta", "eta_a", "eta_s", "D", "D_peak",
+            "domain", "Gamma",
+        ];
+        let units = ["", "", "mm", "deg", "deg"];
+        let mut table = vec![
+            names.map(str::to_owned).to_vec(),
+            units.map(str::to_owned).to_vec(),
+        ];
+        table.extend(listed.into_iter().map(HingeRow::cells));
+        head + &columns(&table)
+    }
+}
+
+impl HingeRow {
+    fn cells(&self) -> Vec<String> {
+        let unknown = if self.inside { "-" } else { "?" };
+        let [damage, peak] = [self.damage, self.damage_peak]
+            .map(|damage| damage.map_or(unknown.into(), |damage| fixed(damage, 4)));
+        vec![
+            self.hinge.to_string(),
+            format!("{}-{}", self.panels[0], self.panels[1]),
+            fixed(self.w_lig, 2),
+            fixed(self.alpha_deg, 1),
+            fixed(self.theta_deg, 1),
+            fixed(self.eta_a, 3),
+            fixed(self.eta_s, 3),
+            damage,
+            peak,
+            if self.inside { "inside" } else { "left" }.to_owned(),
+            format!("{:.3e}", self.gamma),
+        ]
+    }
+
+    /// Damage, or without it the translation of the ligament over its width.
+    fn strain(&self) -> f64 {
+        let translation = self.eta_a.abs().max(self.eta_s.abs());
+        self.damage_peak.or(self.damage).unwrap_or(translation)
+    }
+}
+
+/// The order of hinges by their distance from failure.
+pub(crate) fn worst_first(one: &HingeRow, other: &HingeRow) -> Ordering {
+    let by_strain = other.strain().total_cmp(&one.strain());
+    one.inside.cmp(&other.inside).then(by_strain)
+}

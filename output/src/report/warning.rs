@@ -1,0 +1,135 @@
+//! Warnings about a design, to be checked before cutting.
+
+use serde::Serialize;
+use std::fmt;
+
+/// A limit of the model or of fabrication that a design exceeds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Warning {
+    /// The subject.
+    pub concern: Concern,
+    /// The consequence.
+    pub severity: Severity,
+    /// The hinges concerned; empty if the whole sheet is concerned.
+    pub hinges: Vec<usize>,
+    /// The limit that is exceeded, in words.
+    pub message: String,
+}
+
+/// The consequence of a warning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Severity {
+    /// The model is less accurate than elsewhere.
+    Note,
+    /// The sheet may not behave as computed: check before cutting.
+    Warning,
+    /// The sheet will not behave as computed, or cannot be cut: no cut file is written unless forced.
+    Error,
+}
+
+/// The subject of a warning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Concern {
+    /// Windows overlap: the sum of hinge energies counts the common material twice.
+    WindowsOverlap,
+    /// Panels are too small for the windows of their hinges.
+    WindowsLeavePanels,
+    /// Gamma < 1 (21): on a surface, the weight of panels does not hold them down.
+    GammaBelowOne,
+    /// w_lig or alpha is outside the training domain of the hinge law.
+    LigamentsOutsideDomain,
+    /// The path leaves the training domain of the hinge law.
+    StatesOutsideDomain,
+    /// The path departs so far from the straight ray to its end that energy and forces depend on it.
+    PathDependence,
+    /// D_peak of 1 or more: ligaments tear.
+    Tearing,
+    /// |eta| > 1 at full load: a ligament translates by more than its width.
+    Overstrained,
+    /// A cut is closer to a hinge's tip than its secondary cut.
+    CutsTooClose,
+    /// There are no cut lines.
+    CannotBeCut,
+    /// The equilibrium path is not converged and stable throughout.
+    Path,
+    /// The search met designs whose corrected path was on another branch than the followed one.
+    OtherBranch,
+    /// The target outline crosses or touches itself.
+    TargetCrosses,
+    /// The outline is further from the target than 1 % of the sheet.
+    TargetMissed,
+    /// What the model of every learned law leaves out: panels that leave the plane, weight and friction.
+    NotModelled,
+    /// The weight of the sheet is more than a tenth of the load.
+    Weight,
+    /// The load has a maximum on the path: a dead load of the final size does not open the sheet.
+    LoadPeak,
+    /// The weights state errors above 10 % in a force, or a spot check that mostly lies outside their domain.
+    WeakWeights,
+}
+
+impl Concern {
+    /// The severity of the concern.
+    fn severity(self) -> Severity {
+        match self {
+            Self::WindowsLeavePanels
+            | Self::PathDependence
+            | Self::OtherBranch
+            | Self::TargetMissed
+            | Self::NotModelled => Severity::Note,
+            Self::WindowsOverlap
+            | Self::GammaBelowOne
+            | Self::LigamentsOutsideDomain
+            | Self::StatesOutsideDomain
+            | Self::Path
+            | Self::TargetCrosses
+            | Self::Weight
+            | Self::LoadPeak
+            | Self::WeakWeights => Severity::Warning,
+            Self::Tearing | Self::Overstrained | Self::CutsTooClose | Self::CannotBeCut => {
+                Severity::Error
+            }
+        }
+    }
+
+    /// A warning about the whole sheet.
+    pub(super) fn of_sheet(self, message: String) -> Warning {
+        Warning {
+            concern: self,
+            severity: self.severity(),
+            hinges: Vec::new(),
+            message,
+        }
+    }
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Note => "note",
+            Self::Warning => "warning",
+            Self::Error => "error",
+        })
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        const NAMED: usize = 12;
+        write!(f, "{}: {}", self.severity, self.message)?;
+        let named: Vec<String> = self
+            .hinges
+            .iter()
+            .take(NAMED)
+            .map(usize::to_string)
+            .collect();
+        match self.hinges.len() {
+            0 => Ok(()),
+            1 => write!(f, " (hinge {})", named[0]),
+            2..=NAMED => write!(f, " (hinges {})", named.join(", ")),
+            all => write!(f, " (hinges {} and {} more)", named.join(", "), all - NAMED),
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! The files of a run folder: `design` writes them from this table, `--restart` deletes by it, docs/TUTORIAL.md lists it.
+
+use crate::cut_file::{
+    CutDrawing, CutLines, FabricationError, SheetDrawing, cut_list, cut_summary, deployed_panels,
+    dxf, mark_errors, svg,
+};
+use crate::drawing;
+use crate::report::{Report, Warning};
+use crate::report_pdf::report_pdf;
+use crate::run_page::run_page;
+use design::objective::design_problem::Deployment;
+use design::scene::Scene;
+use design::scene::design_run::Designed;
+use design::scene::placement::placed;
+use design::scene::run_inputs::STATE_FILE;
+use design::sheet::kinematics::deployed_corners;
+use std::io;
+
+/// A file of a run folder.
+pub struct RunFile {
+    /// Its name.
+    pub name: &'static str,
+    /// What it holds.
+    pub contents: &'static str,
+    /// Who writes it.
+    pub writer: Writer,
+}
+
+/// Who writes a file of a run.
+pub enum Writer {
+    /// The search, about once per second.
+    Search,
+    /// [`write_results`](crate::run_results::write_results), the text or bytes of this function; no file if that is
+    /// `None`.
+    Results(fn(&Results) -> io::Result<Option<Vec<u8>>>),
+    /// The program, which draws the pictures of the results in pixels.
+    Pictures,
+}
+
+/// What the results of a run are written from.
+pub struct Results<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) designed: &'a Designed,
+    pub(crate) cuts: &'a Result<CutLines, FabricationError>,
+    pub(crate) report: &'a Report,
+    /// The drawing of the sheet, if it is cut.
+    pub(crate) sheet: Option<SheetDrawing>,
+}
+
+/// The files in the order in which they are written: the report first, so that there is never a cut file without its
+/// report. The copies of the inputs, `scene.toml` and `inputs/`, are not among them: a run may be started from them.
+pub const RUN_FILES: [RunFile; 17] = [
+    RunFile {
+        name: STATE_FILE,
+        contents: "state of the search, from which a stopped run continues, and the hashes of the copies of its inputs",
+        writer: Writer::Search,
+    },
+    result("report.json", "the report for programs", |run| {
+        Ok(Some(serde_json::to_vec_pretty(run.report)?))
+    }),
+    result("report.txt", "the report as text", |run| {
+        Ok(Some(run.report.to_string().into()))
+    }),
+    result(
+        "run.html",
+        "the run on one page: open it in a browser, click a hinge, move the slider",
+        |run| Ok(Some(run_page(run.scene, run.designed, run.report)?.into())),
+    ),
+    result(
+        "report.pdf",
+        "the report for paper with both drawings",
+        |run| {
+            let cuts = run.cuts.as_ref().ok();
+            Ok(Some(report_pdf(run.scene, run.designed, run.report, cuts)))
+        },
+    ),
+    result("cut.dxf", CUTS, |run| {
+        Ok(run.annotated().map(|drawing| dxf(&drawing).into()))
+    }),
+    result("cut.svg", CUTS, |run| {
+        Ok(run.annotated().map(|drawing| svg(&drawing).into()))
+    }),
+    result(
+        "cut-list.csv",
+        "hole diameter, ligament width and caliper width of every hinge",
+        |run| {
+            Ok(run
+                .cut()
+                .map(|(cuts, _)| cut_list(&run.best().sheet, cuts).into()))
+        },
+    ),
+    result(
+        "cut-summary.csv",
+        "number of cuts, holes by diameter, length of cuts and idle travel",
+        |run| {
+            Ok(run
+                .cut()
+                .map(|(cuts, sheet)| cut_summary(cuts, &sheet.totals).into()))
+        },
+    ),
+    result("deployed.dxf", "the panels at full load", |run| {
+        Ok(run.cut().map(|_| {
+            let Deployment { sheet, .. } = run.best();
+            let configuration = placed(run.scene, sheet, &run.best().final_step().configuration);
+            dxf(&deployed_panels(&deployed_corners(sheet, &configuration))).into()
+        }))
+    }),
+    result("flat.svg", FLAT, |run| {
+        let title = &run.scene.config.title;
+        let picture = |cuts| drawing::flat(title, &run.best().sheet, cuts).into();
+        Ok(run.cuts.as_ref().ok().map(picture))
+    }),
+    picture("flat.png", FLAT),
+    result("deployed-start.svg", BEFORE, |run| {
+        Ok(Some(run.picture(&run.designed.start.deployment)))
+    }),
+    picture("deployed-start.png", BEFORE),
+    result("deployed.svg", AFTER, |run| {
+        Ok(Some(run.picture(run.best())))
+    }),
+    picture("deployed.png", AFTER),
+    picture(ANIMATION, "animation of the deployment"),
+];
+
+/// The name of the animation of the deployment.
+pub const ANIMATION: &str = "deployment.png";
+
+const CUTS: &str =
+    "cuts in cutting order, 1:1 in mm; layers HOLES, CUT, OUTLINE, REGISTRATION, ANNOTATION";
+const FLAT: &str = "the flat sheet with its cuts";
+const BEFORE: &str = "the deployed sheet before the search";
+const AFTER: &str = "the deployed sheet after the search";
+
+const fn result(
+    name: &'static str,
+    contents: &'static str,
+    write: fn(&Results) -> io::Result<Option<Vec<u8>>>,
+) -> RunFile {
+    RunFile {
+        name,
+        contents,
+        writer: Writer::Results(write),
+    }
+}
+
+const fn picture(name: &'static str, contents: &'static str) -> RunFile {
+    RunFile {
+        name,
+        contents,
+        writer: Writer::Pictures,
+    }
+}
+
+impl Results<'_> {
+    fn best(&self) -> &Deployment {
+        &self.designed.best.deployment
+    }
+
+    /// Cut lines and drawing, if the sheet is cut.
+    fn cut(&self) -> Option<(&CutLines, &SheetDrawing)> {
+        self.cuts.as_ref().ok().zip(self.sheet.as_ref())
+    }
+
+    /// What a machine reads, with the errors of a design whose files were forced.
+    fn annotated(&self) -> Option<CutDrawing> {
+        let mut drawing = self.sheet.as_ref()?.annotated();
+        let errors: Vec<String> = self.report.errors().map(Warning::to_string).collect();
+        mark_errors(&mut drawing, &errors);
+        Some(drawing)
+    }
+
+    fn picture(&self, deployment: &Deployment) -> Vec<u8> {
+        drawing::deployed(self.scene, &deployment.sheet, deployment.final_step()).into()
+    }
+}

@@ -1,0 +1,157 @@
+//! The states of panels and hinges along the path.
+
+use crate::deployment_states::{kept, states_before};
+use crate::report::force_spreads;
+use crate::run_page::packed::Packed;
+use design::analysis::actuation_curve::{ActuationCurve, holding_forces};
+use design::equilibrium::load_step::{LoadStep, Status};
+use design::hinge_law::{DamageMeasure, Order};
+use design::objective::design_problem::{Deployment, Mechanics, Model};
+use design::scene::Scene;
+use design::scene::design_run::Designed;
+use design::scene::placement::placed;
+use design::sheet::cut_sheet::Sheet;
+use serde::Serialize;
+
+/// Maximum number of numbers in the states: 4 bytes each, and a third more in base64, are 4 MB. Of a longer path or
+/// a larger sheet every second, third, ... state is left out, but never the flat and the last one.
+const MOST_NUMBERS: usize = 750_000;
+/// Numbers of a panel and of a hinge in a state.
+const OF_PANEL: usize = 3;
+const OF_HINGE: usize = 11;
+
+/// The states, each list with one entry, or one row, for each state; NaN is not known.
+#[derive(Serialize)]
+pub(super) struct HingeStates {
+    /// Number of states of the path, those that are left out included, and the index of each state shown.
+    of: usize,
+    index: Vec<usize>,
+    load_factor: Vec<f64>,
+    status: Vec<Status>,
+    /// (displacement, load) of what moves the sheet, for all states of the path.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    curve: Option<Vec<[f64; 2]>>,
+    /// (u_x, u_y, phi) of the panels (mm, mm, rad).
+    motions: Packed,
+    /// (a, s, theta) of the hinges (mm, mm, rad).
+    deformations: Packed,
+    /// Whether the hinges are inside the training domain.
+    inside: Packed,
+    /// Energies of the hinges (N mm).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    energy: Option<Packed>,
+    /// (F_a, F_s, M_theta) of the hinges (N, N, N mm).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    forces: Option<Packed>,
+    /// D, known up to the state in which a hinge leaves the training domain.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    damage: Option<Packed>,
+    /// D_peak, likewise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    damage_peak: Option<Packed>,
+    /// Standard deviation of the forces over the ensemble (%), relative to the forces on the path.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    spread: Option<Packed>,
+    /// (F_x, F_y, M) of every support of the scene (N, N, N mm); zero in the free directions.
+    reactions: Packed,
+}
+
+impl HingeStates {
+    pub fn new(scene: &Scene, designed: &Designed) -> Self {
+        let (problem, deployment) = (&designed.problem, &designed.best.deployment);
+        let sheet = &deployment.sheet;
+        let before = states_before(problem, deployment);
+        let all: Vec<&LoadStep> = before.iter().chain(&deployment.path).collect();
+        let size = OF_PANEL * sheet.panels.len() + OF_HINGE * sheet.hinges.len();
+        let index = kept(all.len(), MOST_NUMBERS / size);
+        let shown: Vec<&LoadStep> = index.iter().map(|&i| all[i]).collect();
+        let mechanics = match &problem.model {
+            Model::Ideal { .. } => None,
+            Model::Equilibrium(mechanics) => Some(mechanics),
+        };
+        let by_hinge = |of: &dyn Fn(usize, usize) -> f64| -> Packed {
+            let numbers = |&i: &usize| (0..sheet.hinges.len()).map(move |h| of(i, h));
+            index.iter().flat_map(numbers).collect()
+        };
+        let damage = |measure: DamageMeasure| {
+            let known = known_damage(deployment, before.len(), measure)?;
+            Some(by_hinge(&|i, h| known[i][h]))
+        };
+        let curve = mechanics.and_then(|mechanics| ActuationCurve::new(mechanics, deployment));
+        Self {
+            of: all.len(),
+            load_factor: shown.iter().map(|state| state.load_factor).collect(),
+            status: shown.iter().map(|state| state.status).collect(),
+            curve: curve.map(|curve| curve.points),
+            motions: (shown.iter())
+                .flat_map(|state| placed(scene, sheet, &state.configuration))
+                .flatten()
+                .collect(),
+            deformations: (shown.iter())
+                .flat_map(|state| state.deformations.iter().flat_map(|eps| eps.to_array()))
+                .collect(),
+            inside: by_hinge(&|i, h| f64::from(u8::from(all[i].inside[h]))),
+            energy: mechanics.map(|_| by_hinge(&|i, h| all[i].energies[h])),
+            forces: mechanics.map(|mechanics| {
+                let law = mechanics.law.prepare(&sheet.designs());
+                let hinged = mechanics.hinged(sheet, &*law, false);
+                let energies =
+                    |state: &&LoadStep| hinged.energies(&state.deformations, Order::Forces);
+                let energies = shown.iter().flat_map(energies);
+                energies.flat_map(|energy| energy.forces).collect()
+            }),
+            damage: damage(DamageMeasure::Mean),
+            damage_peak: damage(DamageMeasure::Peak),
+            spread: force_spreads(scene.networks(), deployment).map(|spreads| {
+                // The flat sheet has no forces.
+                by_hinge(&|i, h| {
+                    i.checked_sub(1)
+                        .map_or(0.0, |step| 100.0 * spreads[step][h])
+                })
+            }),
+            reactions: mechanics.map_or_else(
+                || Packed::from_iter([]),
+                |mechanics| reactions(scene, mechanics, sheet, &shown),
+            ),
+            index,
+        }
+    }
+}
+
+/// The forces of every support of the scene in every state.
+fn reactions(scene: &Scene, mechanics: &Mechanics, sheet: &Sheet, states: &[&LoadStep]) -> Packed {
+    let supports = &scene.actuation().supports;
+    let of_state = |state: &&LoadStep| {
+        let forces = holding_forces(mechanics, sheet, &state.configuration);
+        let supports = supports.iter();
+        supports.flat_map(move |support| {
+            let held = std::iter::zip(support.motion, forces[support.panel]);
+            held.map(|(motion, force)| motion.map_or(0.0, |_| force))
+        })
+    };
+    states.iter().flat_map(of_state).collect()
+}
+
+/// The damage of every hinge in every state: zero in the states before the path, NaN from the state in which the hinge
+/// is first outside the training domain; `None` if the law predicts none.
+fn known_damage(
+    deployment: &Deployment,
+    before: usize,
+    measure: DamageMeasure,
+) -> Option<Vec<Vec<f64>>> {
+    let known = |state: &LoadStep, h: usize| measure.known(state.damage.get(h)?);
+    known(&deployment.path[0], 0)?;
+    let mut states = vec![vec![0.0_f64; deployment.sheet.hinges.len()]; before];
+    for state in &deployment.path {
+        let earlier = &states[states.len() - 1];
+        let of_hinge = |h: usize| {
+            if state.inside[h] && !earlier[h].is_nan() {
+                known(state, h).unwrap_or(f64::NAN)
+            } else {
+                f64::NAN
+            }
+        };
+        states.push((0..earlier.len()).map(of_hinge).collect());
+    }
+    Some(states)
+}

@@ -1,0 +1,178 @@
+//! The data of the page.
+
+use crate::deployment_states::kept;
+use crate::report::{Report, Warning, worst_first};
+use crate::run_page::hinge_states::HingeStates;
+use crate::run_page::packed::Packed;
+use design::objective::loss::Objective;
+use design::objective::term::in_words;
+use design::optimise::outer_loop::StepRecord;
+use design::scene::design_run::Designed;
+use design::scene::{Actuation, Scene};
+use design::sheet::cut_sheet::Sheet;
+use hinge::TrainingDomain;
+use serde::Serialize;
+
+/// Maximum number of steps in the history of the objective, and of points on the target.
+const MOST_POINTS: usize = 1500;
+/// Maximum length of the text of the scene: a start with many panels is cut off.
+const MOST_TEXT: usize = 20_000;
+
+/// Everything that the page shows.
+#[derive(Serialize)]
+pub(super) struct PageData<'a> {
+    title: &'a str,
+    /// Whether the hinges carry load; otherwise they are pins.
+    carries_load: bool,
+    about_cut_files: Option<&'static str>,
+    end_of_search: String,
+    facts: Vec<(&'static str, String)>,
+    warnings: &'a [Warning],
+    scene: String,
+    history: History,
+    panels: Panels,
+    hinges: Hinges,
+    states: HingeStates,
+    actuation: Actuation,
+    /// What moves the sheet, and the units of displacement and load.
+    stroke: Option<(&'a str, [&'static str; 2])>,
+    /// Displacement and load at the maximum of the load, if a displacement is prescribed.
+    peak: Option<[f64; 2]>,
+    /// Closed outlines: of the flat sheet and of the target (mm).
+    outline: [[f64; 2]; 4],
+    target: Packed,
+    /// The training domain of the hinge law, and its bounds.
+    domain: Option<(&'a TrainingDomain, [[f64; 2]; 3])>,
+}
+
+/// The objective along the search; its terms are weighted, so that their sum is the loss (mm^2).
+#[derive(Serialize)]
+struct History {
+    step: Vec<usize>,
+    loss: Vec<f64>,
+    outline_error: Vec<f64>,
+    terms: Vec<(String, Vec<f64>)>,
+}
+
+#[derive(Serialize)]
+struct Panels {
+    /// [columns, rows]
+    grid: [usize; 2],
+    /// Corners SW, SE, NE, NW of every panel (mm).
+    corners: Packed,
+    /// The reference point of every panel's rotation (mm).
+    centroids: Packed,
+}
+
+#[derive(Serialize)]
+struct Hinges {
+    /// Panel A and its corner, panel B and its corner, of every hinge.
+    sites: Vec<[usize; 4]>,
+    w_lig: Packed,
+    alpha_deg: Packed,
+    gamma: Packed,
+    /// Maxima along the path; NaN if not known or not predicted.
+    damage: Packed,
+    damage_peak: Packed,
+    /// The hinge nearest to failure.
+    worst: usize,
+    /// Radius of the windows (mm).
+    r_win: f64,
+}
+
+impl<'a> PageData<'a> {
+    pub fn new(scene: &'a Scene, designed: &'a Designed, report: &'a Report) -> Self {
+        let sheet = &designed.best.deployment.sheet;
+        let target = scene.target.points();
+        let domain = scene.surrogate().map(|surrogate| surrogate.domain());
+        let reached = report.facts.reached.as_ref();
+        Self {
+            title: &report.title,
+            carries_load: scene.hinge.carries_load(),
+            about_cut_files: report.about_cut_files(),
+            end_of_search: report.end_of_search(),
+            facts: report.fact_rows(),
+            warnings: &report.warnings,
+            scene: scene_text(scene),
+            history: History::new(&designed.problem.objective, &designed.history),
+            panels: Panels::new(sheet),
+            hinges: Hinges::new(sheet, report),
+            states: HingeStates::new(scene, designed),
+            actuation: scene.actuation(),
+            stroke: reached.map(|reached| (reached.stroke_of.as_str(), reached.units)),
+            peak: reached
+                .and_then(|reached| reached.peak)
+                .map(|peak| [peak.displacement, peak.load]),
+            outline: sheet.outline.corners,
+            target: (kept(target.len(), MOST_POINTS).into_iter())
+                .flat_map(|i| target[i])
+                .collect(),
+            domain: domain.map(|domain| (domain, domain.bounds())),
+        }
+    }
+}
+
+/// The keys of the scene as TOML.
+fn scene_text(scene: &Scene) -> String {
+    let mut text = scene
+        .config
+        .to_toml()
+        .unwrap_or_else(|error| error.to_string());
+    if text.len() > MOST_TEXT {
+        text.truncate(text.floor_char_boundary(MOST_TEXT));
+        text += "\n# ... the scene file contains the rest\n";
+    }
+    text
+}
+
+impl History {
+    fn new(objective: &Objective, records: &[StepRecord]) -> Self {
+        let index = kept(records.len(), MOST_POINTS);
+        let of = |value: &dyn Fn(&StepRecord) -> f64| -> Vec<f64> {
+            index.iter().map(|&i| value(&records[i])).collect()
+        };
+        let terms = objective.terms().filter(|(_, weight)| *weight != 0.0);
+        let terms = terms.map(|(term, weight)| {
+            let value = |record: &StepRecord| weight * record.scores.terms[term.name()];
+            (in_words(term.name()), of(&value))
+        });
+        Self {
+            step: index.iter().map(|&i| records[i].step).collect(),
+            loss: of(&|record| record.scores.loss),
+            outline_error: of(&|record| record.scores.outline_error),
+            terms: terms.collect(),
+        }
+    }
+}
+
+impl Panels {
+    fn new(sheet: &Sheet) -> Self {
+        let panels = || sheet.panels.iter();
+        Self {
+            grid: [sheet.grid.m, sheet.grid.n],
+            corners: panels().flat_map(|panel| panel.corners).flatten().collect(),
+            centroids: panels().flat_map(|panel| panel.centroid).collect(),
+        }
+    }
+}
+
+impl Hinges {
+    fn new(sheet: &Sheet, report: &Report) -> Self {
+        let rows = &report.hinges;
+        let known = |damage: Option<f64>| damage.unwrap_or(f64::NAN);
+        let worst = rows.iter().min_by(|one, other| worst_first(one, other));
+        Self {
+            sites: (sheet.hinges.iter())
+                .map(|hinge| [hinge.site.a, hinge.site.b].map(|(k, corner)| [k, corner]))
+                .map(|[[a, at_a], [b, at_b]]| [a, at_a, b, at_b])
+                .collect(),
+            w_lig: rows.iter().map(|row| row.w_lig).collect(),
+            alpha_deg: rows.iter().map(|row| row.alpha_deg).collect(),
+            gamma: rows.iter().map(|row| row.gamma).collect(),
+            damage: rows.iter().map(|row| known(row.damage)).collect(),
+            damage_peak: rows.iter().map(|row| known(row.damage_peak)).collect(),
+            worst: worst.map_or(0, |row| row.hinge),
+            r_win: sheet.options.process.r_win,
+        }
+    }
+}

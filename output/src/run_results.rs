@@ -1,0 +1,84 @@
+//! The results of a run, written to its folder besides its state, and deleted before it is searched anew.
+
+use crate::cut_file::{CutLines, SheetDrawing};
+use crate::report::Report;
+use crate::run_files::{RUN_FILES, Results, Writer};
+use design::scene::Scene;
+use design::scene::design_run::{Designed, InverseDesignError};
+use std::io;
+use std::path::{Path, PathBuf};
+use support::whole_file;
+
+/// A result that could not be written.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write {path}: {source}", path = .path.display())]
+pub struct ResultsError {
+    path: PathBuf,
+    source: io::Error,
+}
+
+/// Writes the results of [`RUN_FILES`]: the picture of the flat sheet for a design with cut lines, the cut files for a
+/// design without errors, or if `force`.
+///
+/// If no cut file is written, the report states why, and the cut files of an earlier design are removed.
+pub fn write_results(
+    scene: &Scene,
+    designed: &Designed,
+    force: bool,
+) -> Result<Report, ResultsError> {
+    let best = &designed.best.deployment;
+    let cuts = CutLines::new(&best.pattern, &best.sheet, scene.config.cutting);
+    let report = Report::new(scene, designed, &cuts, force);
+    let drawn = cuts.as_ref().ok().filter(|_| report.cut_file);
+    let results = Results {
+        scene,
+        designed,
+        cuts: &cuts,
+        report: &report,
+        sheet: drawn.map(|cuts| SheetDrawing::new(cuts, &best.sheet, &scene.material)),
+    };
+    for file in &RUN_FILES {
+        let Writer::Results(contents) = file.writer else {
+            continue;
+        };
+        let path = scene.output().join(file.name);
+        let written = contents(&results).and_then(|contents| match contents {
+            Some(bytes) => whole_file::write(&path, &bytes),
+            None => remove_with_pixels(&path),
+        });
+        written.map_err(|source| ResultsError { path, source })?;
+    }
+    Ok(report)
+}
+
+/// Removes the files of an earlier run of the scene, so that the next one begins at the start design. The copies of its
+/// inputs stay. An error, and nothing is removed, if the start has no objective value.
+pub fn remove_run(scene: &Scene) -> Result<(), InverseDesignError> {
+    let start = scene.problem()?.evaluate(&scene.start());
+    start.map_err(InverseDesignError::Start)?;
+    for file in &RUN_FILES {
+        let path = scene.output().join(file.name);
+        remove(&path).map_err(|source| InverseDesignError::Folder { path, source })?;
+    }
+    Ok(())
+}
+
+/// Removes a result of an earlier design and, of a picture, its pixels.
+fn remove_with_pixels(path: &Path) -> io::Result<()> {
+    remove(path)?;
+    let pixels = path.with_extension("png");
+    let name = pixels.file_name().and_then(|name| name.to_str());
+    if RUN_FILES.iter().any(|file| Some(file.name) == name) {
+        remove(&pixels)
+    } else {
+        Ok(())
+    }
+}
+
+/// Removes a file, if there is one.
+fn remove(path: &Path) -> io::Result<()> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,349 @@
+//! DXF, SVG and PDF read back by other libraries: the sheet that they describe is the one that was simulated.
+
+use super::{FILLET_RATIO, KERF, distance, irregular_sheets, length, uniform_cuts};
+use design::sheet::cut_sheet::Sheet;
+use output::cut_file::{CutLines, Layer, Paper, SheetDrawing, Tiling, dxf, svg, tiles_pdf};
+use serde::Deserialize;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::process::Command;
+
+/// What a file says: ends of the lines, centre and radius of the circles, corners of the outline (mm).
+#[derive(Default)]
+struct Read {
+    slits: Vec<[[f64; 2]; 2]>,
+    holes: Vec<([f64; 2], f64)>,
+    outline: Vec<[f64; 2]>,
+}
+
+impl Read {
+    /// Compares holes, ligament widths, lengths and panel areas with the simulated sheet.
+    fn is_sheet(&self, sheet: &Sheet, error: f64) {
+        assert_eq!(self.holes.len(), sheet.hinges.len());
+        let at = |p: [f64; 2], q: [f64; 2]| length([p, q]) < error;
+        for hinge in &sheet.hinges {
+            let hole = self
+                .holes
+                .iter()
+                .find(|(centre, _)| at(*centre, hinge.tip))
+                .unwrap();
+            assert!((hole.1 + 0.5 * KERF - FILLET_RATIO * hinge.w_lig).abs() < error);
+            let own = |slit: &&[[f64; 2]; 2]| slit.iter().any(|end| at(*end, hinge.tip));
+            let others = self.slits.iter().filter(|slit| !own(slit));
+            let to_slits = others.map(|slit| distance(hinge.tip, *slit) - 0.5 * KERF);
+            let edges = (0..4).map(|k| [self.outline[k], self.outline[(k + 1) % 4]]);
+            let to_outline = edges.map(|edge| distance(hinge.tip, edge) - 0.5 * KERF);
+            let width = to_slits.chain(to_outline).fold(f64::INFINITY, f64::min);
+            assert!((width - hinge.w_lig).abs() < error, "{width}");
+        }
+        // Each panel's edges are on slits or, half a kerf inwards, on the outline.
+        for panel in &sheet.panels {
+            for k in 0..4 {
+                let (p, q) = (panel.corners[k], panel.corners[(k + 1) % 4]);
+                let middle = [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
+                let to_slits = self.slits.iter().map(|slit| distance(middle, *slit));
+                let edges = (0..4).map(|k| [self.outline[k], self.outline[(k + 1) % 4]]);
+                let to_outline = edges.map(|edge| (distance(middle, edge) - 0.5 * KERF).abs());
+                let off = to_slits.chain(to_outline).fold(f64::INFINITY, f64::min);
+                assert!(off < error, "{off}");
+            }
+        }
+        let area: f64 = sheet.panels.iter().map(|panel| panel.area()).sum();
+        let [low, high] = [f64::min, f64::max]
+            .map(|of| [0, 1].map(|axis| self.outline.iter().map(|p| p[axis]).reduce(of).unwrap()));
+        let written = (high[0] - low[0] - KERF) * (high[1] - low[1] - KERF);
+        assert!(
+            (written / area - 1.0).abs() < error / 100.0,
+            "{written} {area}"
+        );
+    }
+
+    fn slit_length(&self) -> f64 {
+        self.slits.iter().map(|slit| length(*slit)).sum()
+    }
+}
+
+/// The entities of a DXF with their layers, and the defects that ezdxf finds in it.
+#[derive(Deserialize)]
+struct DxfContents {
+    version: String,
+    millimetres: bool,
+    defects: Vec<String>,
+    lines: Vec<(String, [[f64; 2]; 2])>,
+    circles: Vec<(String, [f64; 2], f64)>,
+    polylines: Vec<(String, bool, Vec<[f64; 2]>)>,
+    texts: Vec<String>,
+}
+
+/// Reads a DXF by ezdxf. Debian's package serves Debian's Python, whichever other is first on PATH.
+fn read_dxf(path: &Path) -> DxfContents {
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fabrication/read_dxf.py");
+    let output = Command::new("/usr/bin/python3")
+        .args([Path::new(script), path])
+        .output()
+        .unwrap();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{errors}");
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn tool_length(cuts: &CutLines) -> f64 {
+    cuts.slits
+        .iter()
+        .map(|slit| length(cuts.tool_slit(slit)))
+        .sum()
+}
+
+#[test]
+fn the_dxf_holds_the_simulated_sheet_in_millimetres() {
+    let folder = tempfile::tempdir().unwrap();
+    let [path, again] = ["a.dxf", "b.dxf"].map(|name| folder.path().join(name));
+    for (sheet, cuts, drawing) in irregular_sheets() {
+        std::fs::write(&path, dxf(&drawing.annotated())).unwrap();
+        std::fs::write(&again, dxf(&drawing.annotated())).unwrap();
+        assert!(std::fs::read(&path).unwrap() == std::fs::read(&again).unwrap());
+
+        let file = read_dxf(&path);
+        assert_eq!(file.version, "R2000");
+        assert!(file.millimetres);
+        assert_eq!(file.defects, [""; 0]);
+        let mut read = Read::default();
+        for (layer, ends) in &file.lines {
+            match layer.as_str() {
+                "CUT" => read.slits.push(*ends),
+                "ANNOTATION" | "REGISTRATION" => {}
+                other => panic!("unexpected line on {other}"),
+            }
+        }
+        for (layer, centre, radius) in &file.circles {
+            match layer.as_str() {
+                "HOLES" => read.holes.push((*centre, *radius)),
+                "REGISTRATION" => {}
+                other => panic!("unexpected circle on {other}"),
+            }
+        }
+        for (layer, closed, corners) in &file.polylines {
+            match layer.as_str() {
+                "OUTLINE" => {
+                    assert!(closed);
+                    read.outline = corners.clone();
+                }
+                other => panic!("unexpected polyline on {other}"),
+            }
+        }
+        assert!(file.texts.iter().all(|layer| layer == "ANNOTATION"));
+        read.is_sheet(&sheet, 1e-9);
+        assert!((read.slit_length() - tool_length(&cuts)).abs() < 1e-9);
+        // Panels, hinges, the name of the scale bar and four lines of instructions.
+        assert_eq!(
+            file.texts.len(),
+            sheet.panels.len() + sheet.hinges.len() + 1 + drawing.notes.len()
+        );
+    }
+}
+
+/// Readers of R2000 need unique handles, owners that exist, and a next handle above all others.
+#[test]
+fn the_handles_of_the_dxf_are_unique_and_owned() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.dxf");
+    let (_, _, drawing) = irregular_sheets().next().unwrap();
+    std::fs::write(&path, dxf(&drawing.annotated())).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    let lines: Vec<&str> = text.lines().map(str::trim).collect();
+    let pairs: Vec<(&str, &str)> = lines.chunks(2).map(|pair| (pair[0], pair[1])).collect();
+    let hex = |value: &str| u32::from_str_radix(value, 16).unwrap();
+    let seed = pairs
+        .iter()
+        .position(|pair| *pair == ("9", "$HANDSEED"))
+        .unwrap();
+    let (header, body) = pairs.split_at(seed + 2);
+    let handles: Vec<u32> = (body.iter())
+        .filter(|(code, _)| ["5", "105"].contains(code))
+        .map(|(_, value)| hex(value))
+        .collect();
+    let unique: BTreeSet<u32> = handles.iter().copied().collect();
+    assert_eq!(unique.len(), handles.len());
+    assert!(hex(header[seed + 1].1) > *unique.last().unwrap());
+    let owners = body
+        .iter()
+        .filter(|(code, _)| ["330", "350"].contains(code));
+    for owner in owners.map(|(_, value)| hex(value)) {
+        assert!(owner == 0 || unique.contains(&owner), "{owner:X}");
+    }
+    let layers = [
+        "HOLES",
+        "CUT",
+        "JOINT",
+        "OUTLINE",
+        "PANELS",
+        "REGISTRATION",
+        "ANNOTATION",
+    ];
+    for layer in layers {
+        assert!(body.contains(&("2", layer)), "{layer}");
+    }
+}
+
+/// Points and circles of every group of an SVG, in mm.
+fn svg_paths(svg: &str) -> BTreeMap<String, Vec<Vec<[f64; 2]>>> {
+    fn walk(group: &usvg::Group, layer: &str, found: &mut BTreeMap<String, Vec<Vec<[f64; 2]>>>) {
+        let layer = if group.id().is_empty() {
+            layer
+        } else {
+            group.id()
+        };
+        for node in group.children() {
+            match node {
+                usvg::Node::Group(group) => walk(group, layer, found),
+                usvg::Node::Path(path) => {
+                    let path = path.data().clone().transform(path.abs_transform()).unwrap();
+                    let mm = |x: f32| f64::from(x) * 25.4 / 96.0;
+                    let points = path.points().iter().map(|p| [mm(p.x), mm(p.y)]);
+                    found
+                        .entry(layer.to_owned())
+                        .or_default()
+                        .push(points.collect());
+                }
+                _ => {}
+            }
+        }
+    }
+    let tree = usvg::Tree::from_str(svg, &usvg::Options::default()).unwrap();
+    let mut found = BTreeMap::new();
+    walk(tree.root(), "", &mut found);
+    found
+}
+
+#[test]
+fn the_svg_holds_the_simulated_sheet_at_one_to_one() {
+    for (sheet, cuts, drawing) in irregular_sheets() {
+        let drawing = drawing.annotated();
+        let paths = svg_paths(&svg(&drawing));
+        // The page begins 5 mm to the left of the drawing and above it, and y points down.
+        let [low, high] = drawing.bounds();
+        let in_sheet = |[x, y]: [f64; 2]| [x + low[0] - 5.0, high[1] + 5.0 - y];
+        let mut read = Read::default();
+        for points in &paths["CUT"] {
+            read.slits.push([in_sheet(points[0]), in_sheet(points[1])]);
+        }
+        for points in &paths["HOLES"] {
+            let points: Vec<_> = points.iter().copied().map(in_sheet).collect();
+            let extreme = |axis: usize, of: fn(f64, f64) -> f64| {
+                points.iter().map(|p| p[axis]).reduce(of).unwrap()
+            };
+            let [x, y] = [0, 1].map(|axis| [extreme(axis, f64::min), extreme(axis, f64::max)]);
+            let centre = [0.5 * (x[0] + x[1]), 0.5 * (y[0] + y[1])];
+            read.holes.push((centre, 0.5 * (x[1] - x[0])));
+        }
+        read.outline = paths["OUTLINE"][0][..4]
+            .iter()
+            .copied()
+            .map(in_sheet)
+            .collect();
+        // usvg keeps lengths of 3 m in single precision: 2e-4 mm; the file has four decimals.
+        read.is_sheet(&sheet, 2e-3);
+        assert!((read.slit_length() / tool_length(&cuts) - 1.0).abs() < 1e-6);
+        assert!(paths.contains_key("REGISTRATION") && paths.contains_key("ANNOTATION"));
+    }
+}
+
+#[test]
+fn a_scene_without_registration_marks_has_none() {
+    let mut cuts = uniform_cuts();
+    cuts.cutting.registration_marks = false;
+    let (_, sheet) = super::uniform(super::W_LIG);
+    let drawing = SheetDrawing::new(&cuts, &sheet, &super::material()).annotated();
+    let layers: BTreeSet<_> = drawing
+        .shapes
+        .iter()
+        .map(|(layer, _)| layer.name())
+        .collect();
+    assert_eq!(
+        layers,
+        BTreeSet::from(["ANNOTATION", "CUT", "HOLES", "OUTLINE"])
+    );
+}
+
+#[test]
+fn the_pdf_has_an_overview_and_a_page_of_paper_size_a_tile() {
+    let (_, _, drawing) = irregular_sheets().nth(1).unwrap();
+    let tiling = Tiling::new(Paper::A3, drawing.numbered.bounds()).unwrap();
+    let bytes = tiles_pdf(&drawing.numbered, &tiling, "Sheet", &drawing.notes);
+    let text = String::from_utf8_lossy(&bytes);
+    assert!(text.starts_with("%PDF-"));
+    let boxes: Vec<&str> = text.split("/MediaBox [").skip(1).collect();
+    // 1202 mm with the over-run, on tiles of 277 x 384 mm that overlap by 10 mm.
+    assert_eq!(tiling.counts, [4, 5]);
+    assert_eq!(boxes.len(), 20 + 1);
+    for page in boxes {
+        let sides: Vec<f64> = page
+            .split(']')
+            .next()
+            .unwrap()
+            .split(' ')
+            .map(|side| side.parse().unwrap())
+            .collect();
+        assert!((sides[2] * 25.4 / 72.0 - 297.0).abs() < 1e-3, "{sides:?}");
+        assert!((sides[3] * 25.4 / 72.0 - 420.0).abs() < 1e-3, "{sides:?}");
+    }
+}
+
+/// A point of the sheet is printed where its tile shows it, 72 points an inch.
+#[test]
+fn the_tiles_are_true_to_scale() {
+    let (_, _, drawing) = irregular_sheets().next().unwrap();
+    let drawing = drawing.numbered;
+    let tiling = Tiling::new(Paper::A4, drawing.bounds()).unwrap();
+    let bytes = tiles_pdf(&drawing, &tiling, "Sheet", &[]);
+    let text = String::from_utf8_lossy(&bytes);
+    let numbers = |line: &str| -> Vec<f64> {
+        let words = line.split_whitespace();
+        words.filter_map(|word| word.parse().ok()).collect()
+    };
+    // The drawing is written once, in mm; every slit with both of its ends.
+    let form = text
+        .split("/BBox")
+        .nth(1)
+        .unwrap()
+        .split("endstream")
+        .next()
+        .unwrap();
+    let lines: Vec<Vec<f64>> = form.lines().map(numbers).collect();
+    for shape in drawing.on(Layer::Cut) {
+        let ends = shape.ends();
+        let written = lines.windows(2).any(|pair| {
+            let near = |found: &Vec<f64>, end: [f64; 2]| {
+                found.len() == 2 && (0..2).all(|axis| (found[axis] - end[axis]).abs() < 1e-3)
+            };
+            near(&pair[0], ends[0]) && near(&pair[1], ends[1])
+        });
+        assert!(written, "{ends:?}");
+    }
+    // Every tile shows it at one point a 72nd of an inch, shifted by the corner of the tile.
+    let [rows, columns] = tiling.counts;
+    let tiles = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+    let pages: Vec<&str> = text.split("/D Do").collect();
+    assert_eq!(pages.len(), rows * columns + 1);
+    for ((row, column), page) in tiles.zip(&pages) {
+        let transforms: Vec<Vec<f64>> = page
+            .lines()
+            .filter(|line| line.ends_with(" cm"))
+            .map(numbers)
+            .collect();
+        let [.., scale, shift] = &transforms[..] else {
+            panic!("{page}")
+        };
+        assert!(
+            (scale[0] - 72.0 / 25.4).abs() < 1e-6 && scale[0] == scale[3],
+            "{scale:?}"
+        );
+        assert_eq!(shift[..4], [1.0, 0.0, 0.0, 1.0]);
+        let [low, _] = tiling.tile(row, column);
+        let corner = [10.0 - low[0], 26.0 - low[1]];
+        assert!(
+            (0..2).all(|axis| (shift[4 + axis] - corner[axis]).abs() < 1e-3),
+            "{shift:?}"
+        );
+    }
+}

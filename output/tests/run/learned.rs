@@ -1,0 +1,304 @@
+//! Runs with a learned hinge law of random weights: weights of another hinge are refused, every term of
+//! the objective counts, and the report shows the training domain.
+
+use super::{FILM, read, run, with};
+use design::objective::design_problem::Deployment;
+use design::objective::target::TargetShape;
+use design::scene::Scene;
+use output::cut_file::CutLines;
+use output::report::{Concern, Report, Severity, warnings};
+use output::run_results::{remove_run, write_results};
+use std::path::Path;
+use surrogate::Surrogate;
+
+/// Writes the random weights and their card, with changes, next to the scene.
+pub fn weights(folder: &Path, changes: &[(&str, &str)]) {
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../design/tests/cases");
+    std::fs::copy(
+        cases.join("chi_tiny.safetensors"),
+        folder.join("tiny.safetensors"),
+    )
+    .unwrap();
+    let card = std::fs::read_to_string(cases.join("chi_tiny.json")).unwrap();
+    let changes = [("random weights", "film")].iter().chain(changes);
+    let card = changes.fold(card, |card, (from, to)| {
+        assert!(card.contains(from), "{from}");
+        card.replace(from, to)
+    });
+    std::fs::write(folder.join("tiny.json"), card).unwrap();
+}
+
+pub fn learned(changes: &[(&str, &str)]) -> String {
+    let law = [
+        ("hinge = \"linear\"", "hinge = \"surrogate\""),
+        (
+            "[linear]\nk_a = 400.0\nk_s = 250.0\nk_theta = 300.0",
+            "[surrogate]\nweights = \"tiny.safetensors\"",
+        ),
+        (
+            "compression = 0.01",
+            "compression = 0.2\nshear = 0.1\ndamage = 0.2",
+        ),
+        ("steps = 25", "steps = 6"),
+    ];
+    with(&[&law, changes].concat())
+}
+
+fn refusal(card: &[(&str, &str)], scene: &[(&str, &str)]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    weights(folder.path(), card);
+    std::fs::write(folder.path().join("film.toml"), FILM).unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, learned(scene)).unwrap();
+    Scene::read(&path).unwrap_err().to_string()
+}
+
+#[test]
+pub fn weights_of_another_hinge_or_material_are_refused() {
+    let message = refusal(&[("film", "steel")], &[]);
+    assert!(
+        message.contains("the material `steel`, the scene's is `film`"),
+        "{message}"
+    );
+    let changed = (
+        "\"tier\"",
+        "\"material_hash\": \"0123456789abcdef\", \"tier\"",
+    );
+    let message = refusal(&[changed], &[]);
+    assert!(message.contains("another material law"), "{message}");
+    let message = refusal(&[], &[("fillet_ratio = 0.16", "fillet_ratio = 0.2")]);
+    assert!(
+        message.contains("fillet_ratio = 0.16, but the scene has process.fillet_ratio = 0.2"),
+        "{message}"
+    );
+    // A sheet of a fifth of the thickness has windows of a fifth of the radius.
+    let thin = ("load_steps = 4", "load_steps = 4\nthickness = 0.1");
+    let message = refusal(&[], &[thin]);
+    assert!(
+        message.contains("windows of r_win = 20 mm in a sheet of this thickness, but the scene has process.r_win = 100"),
+        "{message}"
+    );
+}
+
+/// The same scene at a fifth of every length, with a twenty-fifth of every force, deploys to the same shape.
+#[test]
+fn a_similar_sheet_of_another_thickness_deploys_to_a_similar_shape() {
+    const FACTOR: f64 = 0.2;
+    let folder = tempfile::tempdir().unwrap();
+    weights(folder.path(), &[]);
+    let thick = read(folder.path(), &learned(&[]));
+    let mut config = thick.config.clone();
+    config.thickness = Some(FACTOR * thick.material.thickness);
+    config.sheet.size = config.sheet.size.map(|size| size.map(|side| FACTOR * side));
+    config.ligament.start *= FACTOR;
+    config.ligament.range = config.ligament.range.map(|width| FACTOR * width);
+    config.process.kerf *= FACTOR;
+    config.process.r_win *= FACTOR;
+    config.scale_loads(FACTOR.powi(2));
+    if let TargetShape::Circle { centre, radius } = &mut config.target {
+        *centre = centre.map(|x| FACTOR * x);
+        *radius *= FACTOR;
+    }
+    let thin = Scene::new(config, &folder.path().join("scene.toml")).unwrap();
+    let [thick, thin] = [thick, thin].map(|scene| {
+        let deployment = scene.problem().unwrap().deploy(&scene.start()).unwrap();
+        deployment.path.last().unwrap().clone()
+    });
+    assert!((thin.potential / thick.potential / FACTOR.powi(3) - 1.0).abs() < 1e-9);
+    for (thin, thick) in std::iter::zip(&thin.configuration, &thick.configuration) {
+        let expected = [FACTOR * thick[0], FACTOR * thick[1], thick[2]];
+        for (found, expected) in std::iter::zip(thin, expected) {
+            assert!((found - expected).abs() < 1e-6, "{found} {expected}");
+        }
+    }
+}
+
+#[test]
+fn every_term_counts_and_the_report_names_hinges_outside_the_domain() {
+    let folder = tempfile::tempdir().unwrap();
+    weights(folder.path(), &[]);
+    // Ligaments may be wider than the maximum of 25 mm in the card.
+    let scene = read(folder.path(), &learned(&[("start = 18.0", "start = 25.9")]));
+    let designed = run(&scene, None).unwrap();
+    assert_eq!(designed.history.len(), 7);
+    let (start, best) = (&designed.start, &designed.best);
+    assert!(best.loss < start.loss, "{} {}", best.loss, start.loss);
+    let (terms, area) = (&start.terms, 160e3);
+    let loss = terms["chamfer"]
+        + area * (0.2 * terms["damage"] + 0.2 * terms["compression"] + 0.1 * terms["shear"]);
+    assert!((start.loss / loss - 1.0).abs() < 1e-12);
+
+    let report = write_results(&scene, &designed, false).unwrap();
+    // Damage outside the domain of the law is unknown.
+    for row in &report.hinges {
+        assert_eq!(row.damage.is_some_and(|damage| damage > 0.0), row.inside);
+    }
+    let ligaments = warned(&report, Concern::LigamentsOutsideDomain);
+    let wide = report
+        .hinges
+        .iter()
+        .filter(|row| row.w_lig > 25.0)
+        .map(|row| row.hinge);
+    assert!(wide.clone().count() > 0);
+    assert!(wide.into_iter().all(|hinge| ligaments.contains(&hinge)));
+    let left: Vec<usize> = report
+        .hinges
+        .iter()
+        .filter(|row| !row.inside)
+        .map(|row| row.hinge)
+        .collect();
+    assert_eq!(left, warned(&report, Concern::StatesOutsideDomain));
+    assert!(warned(&report, Concern::PathDependence).is_empty());
+}
+
+#[test]
+fn a_path_that_departs_from_its_ray_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    weights(folder.path(), &[]);
+    let scene = read(folder.path(), &learned(&[]));
+    let mut deployment = scene.problem().unwrap().deploy(&scene.start()).unwrap();
+    let w_lig = deployment.sheet.hinges[3].w_lig;
+    let middle = deployment.path.len() / 2;
+    let named = |deployment: &Deployment| {
+        let cuts = CutLines::new(&deployment.pattern, &deployment.sheet, scene.config.cutting);
+        let warnings = warnings(&scene, deployment, &cuts);
+        let bent = warnings
+            .iter()
+            .find(|it| it.concern == Concern::PathDependence);
+        bent.map(|it| (it.severity, it.hinges.clone()))
+    };
+    assert_eq!(named(&deployment), None);
+    deployment.path[middle].deformations[3].s += 0.5 * w_lig;
+    assert_eq!(named(&deployment), Some((Severity::Note, vec![3])));
+}
+
+/// Weights that predict ten times the peak strain at fracture.
+#[test]
+fn a_ligament_that_tears_is_reported_before_the_cut_file_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../surrogate/tests/cases");
+    let random = Surrogate::load(&cases.join("chi_domain.safetensors")).unwrap();
+    let mut card = random.card().clone();
+    card.material = "film".into();
+    card.material_hash = None;
+    let scene = learned(&[("damage = 0.2", "damage = 0.2\ndamage_measure = \"peak\"")]);
+    let mut report = |peak_scale: f64| {
+        card.peak_scale = Some(peak_scale);
+        let weights = Surrogate::from_parts(random.layers(), card.clone()).unwrap();
+        weights
+            .save(&folder.path().join("tiny.safetensors"))
+            .unwrap();
+        let scene = read(folder.path(), &scene);
+        remove_run(&scene).unwrap();
+        let designed = run(&scene, None).unwrap();
+        // The report is written even if the cut file cannot be.
+        std::fs::remove_file(scene.output().join("cut.dxf")).ok();
+        std::fs::create_dir(scene.output().join("cut.dxf")).unwrap();
+        let failed = write_results(&scene, &designed, false).unwrap_err();
+        assert!(failed.to_string().contains("cut.dxf"), "{failed}");
+        let text = std::fs::read_to_string(scene.output().join("report.txt")).unwrap();
+        std::fs::remove_dir(scene.output().join("cut.dxf")).unwrap();
+        (write_results(&scene, &designed, false).unwrap(), text)
+    };
+    let (torn, text) = report(1e3);
+    let named = warned(&torn, Concern::Tearing);
+    let over = torn
+        .hinges
+        .iter()
+        .filter(|row| row.damage_peak.is_some_and(|peak| peak >= 1.0));
+    assert_eq!(named, over.map(|row| row.hinge).collect::<Vec<_>>());
+    assert!(
+        !named.is_empty() && text.contains("the ligament tears"),
+        "{text}"
+    );
+    assert!(!torn.cut_file && text.contains("NO CUT FILE"), "{text}");
+    let (whole, text) = report(1e-3);
+    assert!(warned(&whole, Concern::Tearing).is_empty() && !text.contains("tears (hinge"));
+}
+
+#[test]
+fn the_report_states_how_far_the_networks_of_an_ensemble_disagree() {
+    let folder = tempfile::tempdir().unwrap();
+    weights(folder.path(), &[]);
+    let first = Surrogate::load(&folder.path().join("tiny.safetensors")).unwrap();
+    let save = |scale: f64, dataset_hash: &str| {
+        // The energy is proportional to the square of the scale of the embedding.
+        let mut layers = first.layers();
+        let last = layers.chi.last_mut().unwrap();
+        last.weight
+            .values
+            .iter_mut()
+            .for_each(|weight| *weight *= scale);
+        let mut card = first.card().clone();
+        card.dataset_hash = dataset_hash.into();
+        let other = Surrogate::from_parts(layers, card).unwrap();
+        other
+            .save(&folder.path().join("other.safetensors"))
+            .unwrap();
+    };
+    let ensemble = "weights = \"tiny.safetensors\"\nensemble = [\"other.safetensors\"]";
+    let scene = learned(&[("weights = \"tiny.safetensors\"", ensemble)]);
+    save(1.1, &first.card().dataset_hash);
+    let scene_of_two = read(folder.path(), &scene);
+    let designed = run(&scene_of_two, None).unwrap();
+    let report = write_results(&scene_of_two, &designed, false).unwrap();
+    let estimate = report.estimate.unwrap();
+    // Energies and forces with the factors 1 and 1.21: a deviation of 0.21 / sqrt(2) about a mean of 1.105.
+    let expected = 0.21 / 2f64.sqrt() / 1.105;
+    assert_eq!((estimate.networks, estimate.damage_peak), (2, None));
+    assert!(
+        (estimate.energy - expected).abs() < 1e-9,
+        "{}",
+        estimate.energy
+    );
+    assert!(
+        (estimate.forces - expected).abs() < 1e-9,
+        "{}",
+        estimate.forces
+    );
+    assert!(
+        report
+            .to_string()
+            .contains("2 networks; standard deviation")
+    );
+
+    save(1.1, "other data");
+    std::fs::write(folder.path().join("scene.toml"), &scene).unwrap();
+    let refused = Scene::read(&folder.path().join("scene.toml")).unwrap_err();
+    assert!(
+        refused.to_string().contains("surrogate.ensemble"),
+        "{refused}"
+    );
+}
+
+fn warned(report: &Report, concern: Concern) -> Vec<usize> {
+    let of_concern = report
+        .warnings
+        .iter()
+        .filter(|warning| warning.concern == concern);
+    of_concern
+        .flat_map(|warning| warning.hinges.clone())
+        .collect()
+}
+
+#[test]
+fn a_run_is_not_continued_with_another_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let run_with = |card: &[(&str, &str)]| {
+        weights(folder.path(), card);
+        run(
+            &read(folder.path(), &learned(&[("steps = 6", "steps = 1")])),
+            None,
+        )
+    };
+    run_with(&[]).unwrap();
+    // A narrower training domain: its penalty energy keeps the hinges from opening.
+    let error = run_with(&[("\"theta\": [0.0, 1.25]", "\"theta\": [0.0, 0.01]")])
+        .err()
+        .unwrap()
+        .to_string();
+    assert!(error.contains("other weights"), "{error}");
+    let scene = read(folder.path(), &learned(&[("steps = 6", "steps = 1")]));
+    remove_run(&scene).unwrap();
+    assert_eq!(run(&scene, None).unwrap().history.len(), 2);
+}
