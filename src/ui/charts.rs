@@ -8,7 +8,7 @@ mod tensile_test;
 
 pub use learning_curve::learning_curve;
 #[cfg(feature = "pipeline")]
-pub use parity::{ParityChart, parity};
+pub use parity::parity;
 pub use slices::{Slice, slices};
 pub use tensile_test::tensile_test;
 

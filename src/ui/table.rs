@@ -2,6 +2,15 @@
 
 use comfy_table::{CellAlignment, Table, TableComponent, presets};
 
+/// A number with a fixed number of decimals; `-` if it is not known (NaN).
+pub fn number_or_dash(value: f64, decimals: usize) -> String {
+    if value.is_nan() {
+        "-".into()
+    } else {
+        format!("{value:.decimals$}")
+    }
+}
+
 /// An empty table; the first column aligned left, the others right.
 pub fn table<const N: usize>(header: [&str; N]) -> Table {
     let mut table = Table::new();

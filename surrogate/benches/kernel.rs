@@ -117,7 +117,7 @@ fn card() -> Card {
         tier: "none".into(),
         dataset_hash: "none".into(),
         fine_tuned_from: None,
-        lesson: None,
+        distillation: None,
         split_hash: "none".into(),
         training: Default::default(),
         training_rays: None,
@@ -125,6 +125,5 @@ fn card() -> Card {
         test_errors: TestErrors::default(),
         error_bins: Vec::new(),
         spot_check: None,
-        spot_check_inside: None,
     }
 }

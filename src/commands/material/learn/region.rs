@@ -21,7 +21,7 @@ fn states(ray: Ray, count: u32) -> impl Iterator<Item = (HingeDesign, HingeDefor
     (1..=count).map(move |k| (design, end.at(f64::from(k) / f64::from(count))))
 }
 
-/// Number of states of the lesson. With 10 000 the errors of steel at two spot checks are a tenth to a third larger.
+/// Number of states of the distillation. With 10 000 the errors of steel at two spot checks are a tenth to a third larger.
 const TAUGHT: usize = 20_000;
 
 /// The states at which one network learns the median of several, drawn uniformly inside the region. If they lie on rays of

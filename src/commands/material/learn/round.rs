@@ -1,11 +1,12 @@
 //! The results of one round: its rays, its cost, and the errors of its weights at the spot check.
 
+use crate::ui::table::number_or_dash;
 use ::train::Parity;
 use anyhow::Result;
 use dataset::Row;
 use fe_driver::Tally;
 use std::fmt::{self, Write};
-use surrogate::{Surrogate, TestErrors, number_or_dash};
+use surrogate::{Surrogate, TestErrors};
 
 /// One round.
 #[derive(Clone, Copy)]
@@ -41,7 +42,7 @@ impl Round {
             cpu_s: tally.cpu_seconds,
             training_s,
             inside: inside.count(),
-            errors: Parity::of(weights, spot).errors(),
+            errors: Parity::new(weights, spot).errors(),
         }
     }
 
