@@ -1,5 +1,6 @@
 //! Charts of tensile tests, trainings, studies and replays as SVG: common helpers; one file per kind of chart.
 
+pub mod axes;
 mod learning_curve;
 #[cfg(feature = "pipeline")]
 mod parity;

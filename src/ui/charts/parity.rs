@@ -1,5 +1,6 @@
 //! Parity charts: predicted against computed values.
 
+use super::axes::{Axis, axes, marks};
 use super::*;
 use dataset::ComparedState;
 
@@ -32,26 +33,11 @@ fn parity_chart(
     [computed, judged]: [&str; 2],
 ) -> ChartResult {
     let range = padded(points.iter().flat_map(|&(target, value)| [target, value]));
-    let mut chart = ChartBuilder::on(area)
-        .caption(title, (FONT, 15))
-        .margin(10)
-        .x_label_area_size(38)
-        .y_label_area_size(56)
-        .build_cartesian_2d(range.clone(), range.clone())?;
-    chart
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .x_labels(5)
-        .y_labels(5)
-        .label_style((FONT, 12))
-        .x_desc(computed)
-        .y_desc(judged)
-        .draw()?;
+    let [across, up] = [computed, judged].map(|name| Axis::new(range.clone(), name));
+    let mut chart = axes(area, title, across, up)?;
     let diagonal = [range.start, range.end].map(|v| (v, v));
     chart.draw_series(LineSeries::new(diagonal, GUIDE))?;
-    let mark = |&point: &(f64, f64)| Circle::new(point, 2, POINT.mix(0.5).filled());
-    chart.draw_series(points.iter().map(mark))?;
-    Ok(())
+    marks(&mut chart, points.iter().copied(), 2, POINT.mix(0.5))
 }
 
 #[cfg(test)]
