@@ -40,7 +40,7 @@ pub struct Manifest {
     pub material_hashes: BTreeSet<String>,
     /// Hashes of the campaigns' settings; the set is empty, or contains an empty hash, if they are unknown.
     pub settings_hashes: BTreeSet<String>,
-    /// Tier of the window mesh, as parsed by [`Fidelity::of`](crate::Fidelity::of); mixed tiers are written "a + b".
+    /// Tier of the window mesh, as parsed by [`Fidelity::from_tier`](crate::Fidelity::from_tier); mixed tiers are written "a + b".
     pub tier: String,
     /// The constants of all hinges.
     pub hinge: HingeConstants,

@@ -84,9 +84,10 @@ fn refuse_expanding(
         size = size.saturating_add_signed(column.uncompressed_size() as isize);
     }
     values = values.max(in_columns);
-    match values > VALUES_A_BYTE * bytes || size > EXPANSION * bytes {
-        true => Err(DatasetError::Expanding { values, bytes }),
-        false => Ok(()),
+    if values > VALUES_A_BYTE * bytes || size > EXPANSION * bytes {
+        Err(DatasetError::Expanding { values, bytes })
+    } else {
+        Ok(())
     }
 }
 

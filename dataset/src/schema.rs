@@ -122,7 +122,7 @@ pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {
         columns.push(Series::new(column.name.into(), values).into_column());
     }
     let volumes = rows.iter().map(|row| row.sample.strain_volumes);
-    let volumes: Vec<Option<String>> = volumes.map(|it| it.map(Into::into)).collect();
+    let volumes: Vec<Option<String>> = volumes.map(|volumes| volumes.map(Into::into)).collect();
     columns.push(Series::new(STRAIN_VOLUMES.into(), volumes).into_column());
     for (index, name) in RATIOS.into_iter().enumerate() {
         let values: Vec<f64> = rows.iter().map(|row| row.eta()[index]).collect();

@@ -164,7 +164,7 @@ fn network() -> SurrogateLaw {
         damage_scale: 0.01,
         peak_scale: None,
         damage_sharpness: 8.0,
-        domain: TrainingDomain::of_box(
+        domain: TrainingDomain::from_box(
             [[-0.5, 0.5], [-0.5, 0.5], [-0.2, 1.4]],
             [5.0, 25.0],
             [0.5, 2.6],

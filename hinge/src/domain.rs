@@ -347,7 +347,7 @@ mod tests {
     #[test]
     fn a_box_a_single_state_and_no_state_are_handled() {
         let state = [[-0.5, 0.2], [-0.4, 0.4], [0.0, 1.2]];
-        let boxed = TrainingDomain::of_box(state, [5.0, 25.0], [0.8, 2.3]);
+        let boxed = TrainingDomain::from_box(state, [5.0, 25.0], [0.8, 2.3]);
         let deep = |eta_a, eta_s, theta| {
             boxed.depth(
                 &design(9.0),

@@ -176,15 +176,16 @@ fn readme(folder: &Path, trained: bool) -> String {
          kirigami train {database} --config {training} --out {weights}\n"
     );
     let design = format!("kirigami design {scene}\n");
-    let (first, then) = match trained {
-        true => (
+    let (first, then) = if trained {
+        (
             "The material has weights. Design the sheet:",
             format!("{design}```\n\nTrain weights of your own:\n\n```sh\n{learn}"),
-        ),
-        false => (
+        )
+    } else {
+        (
             "The material has no weights yet. Solve its hinges, train them, and design the sheet:",
             format!("{learn}{design}"),
-        ),
+        )
     };
     format!("# A sheet of your own\n\n{first}\n\n```sh\n{then}```\n")
 }

@@ -76,7 +76,7 @@ pub fn judging_tier(requested: Option<Tier>, surrogate: &Surrogate) -> Result<Ti
 }
 
 fn tier_of(trained_on: &str) -> Result<Tier> {
-    let tier = Fidelity::of(trained_on).mesh().parse();
+    let tier = Fidelity::from_tier(trained_on).mesh().parse();
     tier.with_context(|| {
         format!(
             "the weights were trained on the tier `{trained_on}`, which is no mesh tier: pass the \

@@ -87,7 +87,12 @@ impl<'a, R> Table<'a, R> {
         R: 'r,
     {
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-        let mut text = line(self.columns.iter().map(|it| it.heading.clone()).collect());
+        let mut text = line(
+            self.columns
+                .iter()
+                .map(|column| column.heading.clone())
+                .collect(),
+        );
         text += &format!("|{}\n", "---|".repeat(self.columns.len()));
         for row in rows {
             text += &line(self.cells(row).map(|cell| cell.shown).collect());

@@ -101,7 +101,7 @@ fn card() -> Card {
         damage_scale: 0.012,
         peak_scale: Some(0.3),
         damage_sharpness: 8.0,
-        domain: TrainingDomain::of_box(
+        domain: TrainingDomain::from_box(
             [[-0.5, 0.25], [-0.35, 0.35], [0.0, 1.25]],
             [5.0, 25.0],
             [0.8, 2.3],

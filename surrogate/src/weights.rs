@@ -155,7 +155,10 @@ fn save(surrogate: &Surrogate, weights: &Path) -> Result<(), WeightsError> {
     let mut tensors: Vec<(String, Tensor)> = Vec::new();
     let Layers { chi, chi_d, chi_p } = surrogate.layers();
     let networks = [("chi", chi), ("chi_d", chi_d)];
-    for (name, layers) in networks.into_iter().chain(chi_p.map(|it| ("chi_p", it))) {
+    for (name, layers) in networks
+        .into_iter()
+        .chain(chi_p.map(|layers| ("chi_p", layers)))
+    {
         for (index, Layer { weight, bias }) in layers.into_iter().enumerate() {
             tensors.push((format!("{name}.{index}.weight"), weight));
             tensors.push((format!("{name}.{index}.bias"), bias));

@@ -100,7 +100,7 @@ mod tests {
             states: [0.1, 0.2, 0.4].map(state_of).to_vec(),
         };
         let state = [[-1.0, 1.0], [-1.0, 1.0], [0.0, 1.0]];
-        let domain = TrainingDomain::of_box(state, [5.0, 25.0], [1.0, 2.0]);
+        let domain = TrainingDomain::from_box(state, [5.0, 25.0], [1.0, 2.0]);
         let bins = error_bins(&parity, &rows, &domain);
         for quantity in ["eta_a", "eta_s", "theta_deg", "w_lig", "alpha_deg", "edge"] {
             let of = bins.iter().filter(|bin| bin.quantity == quantity);

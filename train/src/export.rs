@@ -94,7 +94,7 @@ mod tests {
             damage_sharpness: SHARPNESS,
             fine_tuned_from: None,
             distillation: None,
-            domain: TrainingDomain::of_box([[0.0; 2]; 3], [1.0; 2], [1.0; 2]),
+            domain: TrainingDomain::from_box([[0.0; 2]; 3], [1.0; 2], [1.0; 2]),
             hinge: HingeConstants {
                 fillet_ratio: 0.16,
                 kerf: 0.2,

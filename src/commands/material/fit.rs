@@ -335,7 +335,7 @@ fn notes(fit: &MaterialFit) -> Vec<String> {
         ));
     }
     if fit.young_given {
-        let measured = Statistic::of(fit.specimens.iter().map(|it| it.linear.young));
+        let measured = Statistic::new(fit.specimens.iter().map(|specimen| specimen.linear.young));
         notes.push(format!(
             "the records have a mean slope of {:.0} MPa; the difference to the given modulus is removed as the compliance \
              of the machine",
