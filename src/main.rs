@@ -8,5 +8,5 @@ use kirigami::ui::interrupt;
 fn main() -> Exit {
     interrupt::end_quietly_when_nobody_reads();
     exit::report_failures_of_the_system();
-    Exit::of(Cli::parse().run())
+    Exit::from_result(Cli::parse().run())
 }

@@ -1,10 +1,11 @@
-//! The user interface of the commands: progress, tables, comparisons, pictures, charts, sizes, exit codes.
+//! The user interface of the commands: progress, tables, comparisons, files, pictures, charts, sizes, exit codes.
 
 pub mod animation;
 pub mod charts;
 pub mod comparison;
 pub mod exit;
 pub mod interrupt;
+pub mod output_file;
 pub mod picture;
 pub mod progress;
 pub mod run_folder;

@@ -170,16 +170,23 @@ fn files_that_are_not_weights_are_refused() {
 
     // A valid file whose last number, the energy scale, is NaN.
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("surrogate/tests/cases");
-    let mut bytes = std::fs::read(cases.join("chi_tiny.safetensors")).unwrap();
+    let original = std::fs::read(cases.join("chi_tiny.safetensors")).unwrap();
+    let mut bytes = original.clone();
     let last = bytes.len() - 8;
     bytes[last..].copy_from_slice(&f64::NAN.to_le_bytes());
-    std::fs::write(&weights, bytes).unwrap();
+    std::fs::write(&weights, &bytes).unwrap();
     let message = work.error(&format!("design {scene}"));
     assert!(
         message.contains("surrogate.json"),
         "the message names the card: {message}"
     );
-    std::fs::copy(cases.join("chi_tiny.json"), weights.with_extension("json")).unwrap();
+    let card = std::fs::read_to_string(cases.join("chi_tiny.json")).unwrap();
+    let [stated, found] = [original, bytes].map(|bytes| blake3::hash(&bytes).to_hex().to_string());
+    std::fs::write(
+        weights.with_extension("json"),
+        card.replace(&stated, &found),
+    )
+    .unwrap();
     let message = work.error(&format!("design {scene}"));
     assert!(message.contains("w_scale"), "{message}");
 }

@@ -33,7 +33,7 @@ fn records_of_a_film_become_a_material_file_that_is_checked() {
     }
     let message = work.error(FIT);
     assert!(
-        message.contains("film.toml already exists") && message.contains("--replace"),
+        message.contains("film.toml exists") && message.contains("--replace"),
         "{message}"
     );
     let json = work.output(&format!("{FIT} --replace --json"));

@@ -78,9 +78,10 @@ impl Database {
         });
         alike.manifest.split_plan = other.manifest.split_plan;
         let split = &alike.manifest.split;
-        match split.validation.is_empty() || split.test.is_empty() {
-            true => Err(DatasetError::NotAlike),
-            false => Ok(alike),
+        if split.validation.is_empty() || split.test.is_empty() {
+            Err(DatasetError::NotAlike)
+        } else {
+            Ok(alike)
         }
     }
 

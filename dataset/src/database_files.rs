@@ -26,11 +26,9 @@ impl Database {
                 found,
             });
         }
-        let rows = parquet::decode(&parquet, manifest.format_version).map_err(|source| {
-            DatasetError::In {
-                path: path.to_owned(),
-                source: Box::new(source),
-            }
+        let rows = parquet::decode(&parquet).map_err(|source| DatasetError::In {
+            path: path.to_owned(),
+            source: Box::new(source),
         })?;
         match manifest.disagrees(&rows) {
             None => Ok(Self {
@@ -90,15 +88,13 @@ fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
     let version: Version = serde_json::from_slice(&bytes)
         .map_err(SealError::from)
         .map_err(malformed)?;
-    if !(2..=u64::from(FORMAT_VERSION)).contains(&version.format_version) {
+    if version.format_version != u64::from(FORMAT_VERSION) {
         return Err(DatasetError::UnknownVersion {
             path: path.to_owned(),
             found: version.format_version,
-            newest: FORMAT_VERSION,
         });
     }
-    let manifest: Manifest = sealed_json::from_slice(&bytes).map_err(malformed)?;
-    Ok(manifest)
+    sealed_json::from_slice(&bytes).map_err(malformed)
 }
 
 /// What a file is whose first bytes are not those of a Parquet file.

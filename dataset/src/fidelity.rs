@@ -22,7 +22,7 @@ const CORRECTED_TO: &str = " corrected to ";
 
 impl Fidelity {
     /// Parses a tier as written in a database.
-    pub fn of(tier: &str) -> Self {
+    pub fn from_tier(tier: &str) -> Self {
         match tier.rsplit_once(CORRECTED_TO) {
             Some((from, to)) => Self::Corrected {
                 from: from.into(),
@@ -42,7 +42,7 @@ impl Fidelity {
     /// The fidelity of solved rows after their correction to the mesh `reference`. Corrected rows and a corrected
     /// reference are an error, because the correction is fitted to solved rows.
     pub(crate) fn corrected_to(self, reference: &str) -> Result<Self, DatasetError> {
-        match (self, Self::of(reference)) {
+        match (self, Self::from_tier(reference)) {
             (Self::Solved(from), Self::Solved(to)) => Ok(Self::Corrected { from, to }),
             (corrected @ Self::Corrected { .. }, _) | (_, corrected) => {
                 let tier = corrected.to_string();
@@ -67,14 +67,16 @@ mod tests {
 
     #[test]
     fn rows_are_corrected_only_once() {
-        let corrected = Fidelity::of("default").corrected_to("reference").unwrap();
+        let corrected = Fidelity::from_tier("default")
+            .corrected_to("reference")
+            .unwrap();
         assert_eq!(corrected.to_string(), "default corrected to reference");
-        assert_eq!(Fidelity::of(&corrected.to_string()), corrected);
+        assert_eq!(Fidelity::from_tier(&corrected.to_string()), corrected);
         assert_eq!(corrected.mesh(), "reference");
         let twice = corrected.clone().corrected_to("paper").unwrap_err();
         assert!(twice.to_string().contains("default corrected to reference"));
         assert!(
-            Fidelity::of("fine")
+            Fidelity::from_tier("fine")
                 .corrected_to(&corrected.to_string())
                 .is_err()
         );

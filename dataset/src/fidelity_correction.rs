@@ -92,10 +92,7 @@ impl Bridge {
 
     /// The correction of the energy, the damage and D_peak, as far as they are to be `corrected`.
     fn only(self, corrected: [bool; 3]) -> Self {
-        let kept = |of: Coefficients, i: usize| match corrected[i] {
-            true => of,
-            false => [0.0; TERMS.len()],
-        };
+        let kept = |of: Coefficients, i: usize| if corrected[i] { of } else { [0.0; TERMS.len()] };
         Self {
             energy: kept(self.energy, 0),
             damage: kept(self.damage, 1),
@@ -161,13 +158,14 @@ impl Database {
                 found: theirs.material.clone(),
             });
         }
-        let tier = Fidelity::of(&ours.tier).corrected_to(&theirs.tier)?;
+        let tier = Fidelity::from_tier(&ours.tier).corrected_to(&theirs.tier)?;
         let rays = compare(self, reference);
         let judged = left_out(&rays)?;
         let corrected = judged.corrected();
-        let tier = match corrected[0] {
-            true => tier.to_string(),
-            false => ours.tier.clone(),
+        let tier = if corrected[0] {
+            tier.to_string()
+        } else {
+            ours.tier.clone()
         };
         let bridge = Bridge::fit(&rays).only(corrected);
         let cpu_s = rays.iter().map(|ray| (&ray.end().job, ray.cpu_s[1]));

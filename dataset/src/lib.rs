@@ -55,7 +55,7 @@ pub use manifest::{FORMAT_VERSION, Manifest};
 pub use mirror::with_mirrored;
 pub use mixing::Mixing;
 pub use noise::noise;
-pub use plain_table::{Values, numbers_of_table, parquet_table};
+pub use plain_table::{Values, parquet_table};
 pub use ray_stream::Collected;
 pub use rows::Row;
 pub use split::{Part, Split, SplitPlan};

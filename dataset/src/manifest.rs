@@ -7,11 +7,7 @@ use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Format version that this crate writes; it also reads versions 2 and 3.
-///
-/// 3: rows and manifest contain the hashes of the material law and of the campaign's settings. 4: D_peak is the
-/// mean over the most strained 1 % of the ligament, and may be unknown; the domain is the set of states that the rows
-/// cover.
+/// Format version of the Parquet file and its manifest; no other version is read.
 pub const FORMAT_VERSION: u32 = 4;
 
 /// The metadata of a database.
@@ -41,12 +37,10 @@ pub struct Manifest {
     /// Name of the material; mixed materials are written "a + b".
     pub material: String,
     /// Hashes of the material laws; the set is empty, or contains an empty hash, if they are unknown.
-    #[serde(default)]
     pub material_hashes: BTreeSet<String>,
     /// Hashes of the campaigns' settings; the set is empty, or contains an empty hash, if they are unknown.
-    #[serde(default)]
     pub settings_hashes: BTreeSet<String>,
-    /// Tier of the window mesh, as parsed by [`Fidelity::of`](crate::Fidelity::of); mixed tiers are written "a + b".
+    /// Tier of the window mesh, as parsed by [`Fidelity::from_tier`](crate::Fidelity::from_tier); mixed tiers are written "a + b".
     pub tier: String,
     /// The constants of all hinges.
     pub hinge: HingeConstants,

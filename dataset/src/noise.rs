@@ -11,6 +11,7 @@
 
 use crate::rows::Row;
 use crate::schema::{KNOWN, NUMBERS};
+use support::statistics::root_mean_square;
 
 /// Column names of the quantities that a surrogate is trained on.
 const QUANTITIES: [&str; 6] = ["W", "F_a", "F_s", "M_theta", "D", "D_peak"];
@@ -43,7 +44,7 @@ pub fn noise(rows: &[Row]) -> Vec<(&'static str, [f64; 2])> {
             scatter.sort_by(f64::total_cmp);
             let scale = root_mean_square(values.into_iter().filter(|value| !value.is_nan()));
             let median = scatter.get(scatter.len() / 2).copied().unwrap_or(0.0);
-            let all = root_mean_square(scatter.into_iter());
+            let all = root_mean_square(scatter);
             let relative = |value: f64| if scale > 0.0 { value / scale } else { 0.0 };
             (name, [relative(all), relative(median)])
         })
@@ -64,15 +65,6 @@ fn scatter(window: &[Row], values: &[f64]) -> f64 {
     let smooth: f64 = terms.map(|(j, c)| c * values[j]).sum();
     let squares: f64 = coefficients.iter().map(|c| c * c).sum();
     (values[2] - smooth) / (1.0 + squares).sqrt()
-}
-
-fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
-    let (count, sum) = values.fold((0.0, 0.0), |(n, sum), value| (n + 1.0, sum + value * value));
-    if count > 0.0 {
-        f64::sqrt(sum / count)
-    } else {
-        0.0
-    }
 }
 
 #[cfg(test)]

@@ -56,11 +56,11 @@ pub(crate) fn encode(rows: &[Row]) -> Result<Vec<u8>, DatasetError> {
     Ok(bytes)
 }
 
-/// The rows of a Parquet file with the given format version.
-pub(crate) fn decode(bytes: &[u8], format_version: u32) -> Result<Vec<Row>, DatasetError> {
+/// The rows of a Parquet file.
+pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<Row>, DatasetError> {
     let mut reader = ParquetReader::new(Cursor::new(bytes));
     refuse_expanding(&mut reader, bytes.len())?;
-    schema::from_frame(&reader.finish()?, format_version)
+    schema::from_frame(&reader.finish()?)
 }
 
 /// Maximum number of values in a byte of a file. Measured values do not repeat: the shipped databases have 0.3.
@@ -84,9 +84,10 @@ fn refuse_expanding(
         size = size.saturating_add_signed(column.uncompressed_size() as isize);
     }
     values = values.max(in_columns);
-    match values > VALUES_A_BYTE * bytes || size > EXPANSION * bytes {
-        true => Err(DatasetError::Expanding { values, bytes }),
-        false => Ok(()),
+    if values > VALUES_A_BYTE * bytes || size > EXPANSION * bytes {
+        Err(DatasetError::Expanding { values, bytes })
+    } else {
+        Ok(())
     }
 }
 
@@ -131,7 +132,6 @@ mod tests {
     use crate::rows::tests::rows;
     use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, Series};
 
-    /// Files that earlier versions wrote at once have the same hash.
     #[test]
     fn rows_that_arrive_in_parts_give_the_file_that_is_written_at_once() {
         let rows = rows(7000);
@@ -144,7 +144,7 @@ mod tests {
         table.finish().unwrap();
         assert_eq!(bytes.hash(), hash(&bytes.to));
         assert_eq!(bytes.to, encode(&rows).unwrap());
-        assert_eq!(decode(&bytes.to, 4).unwrap(), rows);
+        assert_eq!(decode(&bytes.to).unwrap(), rows);
 
         let (mut at_once, group) = (Vec::new(), &rows[..GROUP]);
         let mut frame = schema::to_frame(group).unwrap();
@@ -159,10 +159,10 @@ mod tests {
         let mut frame = DataFrame::new(5_000_000, vec![zeros]).unwrap();
         ParquetWriter::new(&mut bytes).finish(&mut frame).unwrap();
         assert!(bytes.len() < 100_000, "{}", bytes.len());
-        let error = decode(&bytes, 4).unwrap_err();
+        let error = decode(&bytes).unwrap_err();
         assert!(matches!(error, DatasetError::Expanding { .. }), "{error}");
         // The most regular rows that a solver could give are read.
         let regular = rows(300);
-        assert_eq!(decode(&encode(&regular).unwrap(), 4).unwrap(), regular);
+        assert_eq!(decode(&encode(&regular).unwrap()).unwrap(), regular);
     }
 }

@@ -1,10 +1,7 @@
 //! Tables of named columns as Parquet files, for results that are no hinge database.
 
 use crate::error::DatasetError;
-use polars::prelude::{
-    Column, DataFrame, IntoColumn, NamedFrom, ParquetReader, ParquetWriter, SerReader, Series,
-};
-use std::io::Cursor;
+use polars::prelude::{Column, DataFrame, IntoColumn, NamedFrom, ParquetWriter, Series};
 
 /// The values of a column.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,22 +24,6 @@ pub fn parquet_table(columns: &[(&str, Values)]) -> Result<Vec<u8>, DatasetError
     let mut bytes = Vec::new();
     ParquetWriter::new(&mut bytes).finish(&mut frame)?;
     Ok(bytes)
-}
-
-/// The named columns of numbers of a Parquet file, without gaps, row by row.
-pub fn numbers_of_table<const N: usize>(
-    bytes: &[u8],
-    names: [&'static str; N],
-) -> Result<Vec<[f64; N]>, DatasetError> {
-    let frame = ParquetReader::new(Cursor::new(bytes)).finish()?;
-    let mut rows = vec![[0.0; N]; frame.height()];
-    for (k, column) in names.into_iter().enumerate() {
-        let values = frame.column(column)?.f64()?.iter();
-        for (index, (row, value)) in rows.iter_mut().zip(values).enumerate() {
-            row[k] = value.ok_or(DatasetError::Gap { column, index })?;
-        }
-    }
-    Ok(rows)
 }
 
 impl Values {
@@ -69,6 +50,8 @@ impl Values {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use polars::prelude::{ParquetReader, SerReader};
+    use std::io::Cursor;
 
     #[test]
     fn columns_are_read_back_with_their_types_and_gaps() {
@@ -116,25 +99,5 @@ mod tests {
             ("b", Values::Counts(vec![1, 2])),
         ];
         assert!(parquet_table(&columns).is_err());
-    }
-
-    #[test]
-    fn numbers_are_read_row_by_row_and_a_gap_is_an_error() {
-        let columns = [
-            ("W", Values::Numbers(vec![Some(1.0), Some(2.0)])),
-            ("D", Values::Numbers(vec![Some(0.5), None])),
-        ];
-        let bytes = parquet_table(&columns).unwrap();
-        assert_eq!(numbers_of_table(&bytes, ["W"]).unwrap(), [[1.0], [2.0]]);
-        let error = numbers_of_table(&bytes, ["W", "D"]).unwrap_err();
-        assert!(matches!(
-            error,
-            DatasetError::Gap {
-                column: "D",
-                index: 1
-            }
-        ));
-        assert!(numbers_of_table(&bytes, ["F_a"]).is_err());
-        assert!(numbers_of_table(b"no table", ["W"]).is_err());
     }
 }

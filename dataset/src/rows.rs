@@ -76,7 +76,7 @@ pub(crate) mod tests {
                 d_window: 1e-4 * lambda,
                 d_peak: Some(0.1 * lambda),
                 strain_max: Some(0.2 * lambda),
-                strain_volumes: Some(hinge::StrainVolumes::of([(0.2 * lambda, 1.0)])),
+                strain_volumes: Some(hinge::StrainVolumes::from_points([(0.2 * lambda, 1.0)])),
                 uz_max: 20.0 * lambda.sqrt(),
                 energy_residual: 1e-3,
             },

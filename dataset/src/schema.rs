@@ -95,9 +95,6 @@ pub(crate) const TEXTS: [Text; 9] = texts! {
     job failure material material_hash settings_hash tier solved_tier gmsh ccx
 };
 
-/// Columns that are missing in tables of format version 2.
-const SINCE_VERSION_3: [&str; 2] = ["material_hash", "settings_hash"];
-
 /// The ratios of (13). They are written for readers of the table and recomputed when it is read.
 const RATIOS: [&str; 2] = ["eta_a", "eta_s"];
 
@@ -125,7 +122,7 @@ pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {
         columns.push(Series::new(column.name.into(), values).into_column());
     }
     let volumes = rows.iter().map(|row| row.sample.strain_volumes);
-    let volumes: Vec<Option<String>> = volumes.map(|it| it.map(Into::into)).collect();
+    let volumes: Vec<Option<String>> = volumes.map(|volumes| volumes.map(Into::into)).collect();
     columns.push(Series::new(STRAIN_VOLUMES.into(), volumes).into_column());
     for (index, name) in RATIOS.into_iter().enumerate() {
         let values: Vec<f64> = rows.iter().map(|row| row.eta()[index]).collect();
@@ -134,40 +131,28 @@ pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {
     Ok(DataFrame::new(rows.len(), columns)?)
 }
 
-/// The rows of a table with the given format version. Every column of this version must exist with its type, without
-/// gaps except where a value may be unknown, and every number must be finite.
-pub(crate) fn from_frame(frame: &DataFrame, version: u32) -> Result<Vec<Row>, DatasetError> {
+/// The rows of a table. Every column must exist with its type, without gaps except where a value may be unknown, and
+/// every number must be finite.
+pub(crate) fn from_frame(frame: &DataFrame) -> Result<Vec<Row>, DatasetError> {
     let mut rows = vec![blank(); frame.height()];
     for column in &TEXTS {
-        let series = match frame.column(column.name) {
-            Err(_) if SINCE_VERSION_3.contains(&column.name) => continue,
-            series => series?,
-        };
-        fill(
-            &mut rows,
-            column.name,
-            series.str()?.iter(),
-            |row, value: &str| {
-                (column.set)(row, value.to_owned());
-            },
-        )?;
+        let texts = frame.column(column.name)?.str()?.iter();
+        let owned = texts.map(|text| text.map(str::to_owned));
+        fill(&mut rows, column.name, owned, column.set)?;
     }
     for column in &NUMBERS {
         let series = frame.column(column.name)?;
         fill(&mut rows, column.name, series.f64()?.iter(), column.set)?;
     }
-    // In earlier versions, D_peak was another measure.
-    if version >= 4 {
-        for column in &KNOWN {
-            let values = frame.column(column.name)?.f64()?.iter();
-            rows.iter_mut()
-                .zip(values)
-                .for_each(|(row, value)| (column.set)(row, value));
+    for column in &KNOWN {
+        let values = frame.column(column.name)?.f64()?.iter();
+        for (row, value) in rows.iter_mut().zip(values) {
+            (column.set)(row, value);
         }
-        let volumes = frame.column(STRAIN_VOLUMES)?.str()?.iter();
-        for (row, text) in rows.iter_mut().zip(volumes) {
-            row.sample.strain_volumes = text.map(str::parse).transpose()?;
-        }
+    }
+    let volumes = frame.column(STRAIN_VOLUMES)?.str()?.iter();
+    for (row, text) in rows.iter_mut().zip(volumes) {
+        row.sample.strain_volumes = text.map(str::parse).transpose()?;
     }
     match rows.iter().find(|row| !is_finite(row)) {
         Some(row) => Err(DatasetError::NotFinite {

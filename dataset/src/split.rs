@@ -152,9 +152,10 @@ pub(crate) fn geometry(row: &Row) -> [i64; 2] {
 
 /// The geometry and (a, s, theta) up to mirroring, in units of 1e-9.
 pub(crate) fn state(row: &Row) -> ([i64; 2], [i64; 3]) {
-    let s = match row.design.alpha > FRAC_PI_2 {
-        true => -row.sample.s,
-        false => row.sample.s,
+    let s = if row.design.alpha > FRAC_PI_2 {
+        -row.sample.s
+    } else {
+        row.sample.s
     };
     let deformation = [row.sample.a, s, row.sample.theta];
     (

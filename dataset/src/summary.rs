@@ -103,9 +103,10 @@ fn known(hashes: &BTreeSet<String>) -> String {
         .map(String::as_str)
         .filter(|hash| !hash.is_empty())
         .collect();
-    match known.is_empty() {
-        true => "not known".into(),
-        false => known.join(" + "),
+    if known.is_empty() {
+        "not known".into()
+    } else {
+        known.join(" + ")
     }
 }
 
@@ -127,9 +128,10 @@ impl fmt::Display for Details<'_> {
         for name in ["w_lig", "alpha", "a", "s", "theta", "W", "D", "D_peak"] {
             let values = values(rows, name);
             let counts = histogram(&values).map(|count| format!("{count:6}"));
-            let counts = match values.is_empty() {
-                true => "not known".into(),
-                false => counts.join(" "),
+            let counts = if values.is_empty() {
+                "not known".into()
+            } else {
+                counts.join(" ")
             };
             writeln!(f, "{name:18} {counts}")?;
         }

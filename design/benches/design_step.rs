@@ -164,7 +164,7 @@ fn network() -> SurrogateLaw {
         damage_scale: 0.01,
         peak_scale: None,
         damage_sharpness: 8.0,
-        domain: TrainingDomain::of_box(
+        domain: TrainingDomain::from_box(
             [[-0.5, 0.5], [-0.5, 0.5], [-0.2, 1.4]],
             [5.0, 25.0],
             [0.5, 2.6],
@@ -180,7 +180,7 @@ fn network() -> SurrogateLaw {
         tier: "none".into(),
         dataset_hash: "none".into(),
         fine_tuned_from: None,
-        lesson: None,
+        distillation: None,
         split_hash: "none".into(),
         training: Default::default(),
         training_rays: None,
@@ -188,7 +188,6 @@ fn network() -> SurrogateLaw {
         test_errors: TestErrors::default(),
         error_bins: Vec::new(),
         spot_check: None,
-        spot_check_inside: None,
     };
     let networks = Layers {
         chi: layers(&[5, 256, 256, 256, 128]),

@@ -28,7 +28,7 @@ pub struct NoHistogram(String);
 impl StrainVolumes {
     /// The histogram of integration points (plastic strain, volume in mm^3). Points without plastic strain are
     /// not counted.
-    pub fn of(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
+    pub fn from_points(points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let mut volumes = [0.0_f64; BINS];
         for (strain, volume) in points {
             if strain > 0.0 {
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn every_strained_point_is_in_the_bin_that_contains_it() {
         let points: Vec<(f64, f64)> = (0..200).map(|i| (1e-4 * 1.06_f64.powi(i), 0.5)).collect();
-        let histogram = StrainVolumes::of(points.iter().copied().chain([(0.0, 7.0)]));
+        let histogram = StrainVolumes::from_points(points.iter().copied().chain([(0.0, 7.0)]));
         let total: f64 = histogram.bins().map(|(.., volume)| volume).sum();
         assert_eq!(total, 100.0);
         for (lower, upper, volume) in histogram.bins() {
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn a_histogram_round_trips_through_text_exactly() {
-        let histogram = StrainVolumes::of([(0.01, 1.0 / 3.0), (0.5, 1e-7), (9.0, 12.5)]);
+        let histogram = StrainVolumes::from_points([(0.01, 1.0 / 3.0), (0.5, 1e-7), (9.0, 12.5)]);
         assert_eq!(histogram.to_string().parse(), Ok(histogram));
         assert!("1 2 3".parse::<StrainVolumes>().is_err());
         let negative = StrainVolumes::default().to_string().replacen('0', "-1", 1);

@@ -27,6 +27,7 @@ mod mean_curve;
 mod number_table;
 mod quantity;
 mod record;
+mod regression;
 mod specimen;
 mod thinning;
 

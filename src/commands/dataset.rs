@@ -2,7 +2,8 @@
 
 mod compare;
 
-use anyhow::{Context, Result, ensure};
+use crate::ui::output_file;
+use anyhow::{Result, ensure};
 use clap::{Args, Subcommand};
 use dataset::{ColumnMap, Database, Details, Gates, Mixing, SplitPlan, rows_from_csv};
 use std::path::{Path, PathBuf};
@@ -44,9 +45,6 @@ struct CheckCommand {
     /// Database (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
-    /// If nothing is found, write the manifest again with its checksum, which older manifests lack
-    #[arg(long)]
-    seal: bool,
 }
 
 /// Join the databases of several campaigns; a job found in several of them is kept once
@@ -191,9 +189,6 @@ impl CheckCommand {
             "{} is not fit for training",
             self.database.display()
         );
-        if self.seal {
-            database.write(&self.database, true)?;
-        }
         println!("{}: nothing found", self.database.display());
         Ok(())
     }
@@ -206,9 +201,10 @@ impl MergeCommand {
             .iter()
             .map(|path| Database::read(path))
             .collect();
-        let mixing = match self.mixed {
-            true => Mixing::Allowed,
-            false => Mixing::Refused,
+        let mixing = if self.mixed {
+            Mixing::Allowed
+        } else {
+            Mixing::Refused
         };
         self.out
             .write(&Database::merge(&databases?, &self.out.plan(), mixing)?)
@@ -243,15 +239,12 @@ impl ImportCommand {
 
 impl ExportCommand {
     fn run(&self) -> Result<()> {
-        ensure!(
-            self.replace || !self.out.exists(),
-            "{} exists: choose another name, or replace it with --replace",
-            self.out.display()
-        );
+        if !self.replace {
+            output_file::refuse_existing(&self.out)?;
+        }
         let csv = Database::read(&self.database)?.to_csv()?;
-        make_folder(&self.out)?;
-        support::whole_file::write(&self.out, &csv)
-            .with_context(|| format!("cannot write {}", self.out.display()))?;
+        output_file::create_folder_of(&self.out)?;
+        output_file::write(&self.out, csv)?;
         println!("written to {}", self.out.display());
         Ok(())
     }
@@ -283,16 +276,8 @@ impl OutArgs {
 }
 
 fn write(database: &Database, out: &Path, replace: bool) -> Result<()> {
-    make_folder(out)?;
+    output_file::create_folder_of(out)?;
     database.write(out, replace)?;
     println!("{database}\nwritten to {}", out.display());
     Ok(())
-}
-
-fn make_folder(file: &Path) -> Result<()> {
-    let Some(folder) = file.parent() else {
-        return Ok(());
-    };
-    std::fs::create_dir_all(folder)
-        .with_context(|| format!("cannot create the folder {}", folder.display()))
 }

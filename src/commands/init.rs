@@ -8,6 +8,7 @@ use crate::commands::init::edited::{heading, scale, set};
 use crate::commands::init::first_scene::FirstScene;
 use crate::commands::init::similar_scene::{Like, SimilarScene};
 use crate::commands::input_file;
+use crate::ui::output_file;
 use crate::ui::shell_word::shell_word;
 use crate::ui::width_by_height::width_by_height;
 use anyhow::{Context, Result, ensure};
@@ -15,7 +16,7 @@ use clap::Args;
 use hinge::SheetMaterial;
 use mesher::Tier;
 use std::path::{Path, PathBuf};
-use support::{regular_file, whole_file};
+use support::regular_file;
 use surrogate::Surrogate;
 use toml_edit::DocumentMut;
 
@@ -100,8 +101,7 @@ impl InitCommand {
             .to_string_lossy();
         let campaign = campaign(&name, measured.thickness, Tier::Default)?;
 
-        std::fs::create_dir_all(&self.folder)
-            .with_context(|| format!("cannot create {}", self.folder.display()))?;
+        output_file::create_folder(&self.folder)?;
         let readme = readme(&self.folder, trained);
         for (file, contents) in [
             ("material.toml", &text),
@@ -110,9 +110,7 @@ impl InitCommand {
             ("scene.toml", &scene),
             ("README.md", &readme),
         ] {
-            let path = self.folder.join(file);
-            whole_file::write(&path, contents.as_bytes())
-                .with_context(|| format!("cannot write {}", path.display()))?;
+            output_file::write(&self.folder.join(file), contents)?;
         }
         println!("{readme}");
         Ok(())
@@ -178,15 +176,16 @@ fn readme(folder: &Path, trained: bool) -> String {
          kirigami train {database} --config {training} --out {weights}\n"
     );
     let design = format!("kirigami design {scene}\n");
-    let (first, then) = match trained {
-        true => (
+    let (first, then) = if trained {
+        (
             "The material has weights. Design the sheet:",
             format!("{design}```\n\nTrain weights of your own:\n\n```sh\n{learn}"),
-        ),
-        false => (
+        )
+    } else {
+        (
             "The material has no weights yet. Solve its hinges, train them, and design the sheet:",
             format!("{learn}{design}"),
-        ),
+        )
     };
     format!("# A sheet of your own\n\n{first}\n\n```sh\n{then}```\n")
 }

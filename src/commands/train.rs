@@ -8,11 +8,10 @@ pub use kept_fits::kept_fit;
 
 use crate::commands::input_file;
 use crate::ui::charts;
-use crate::ui::charts::ParityChart;
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::Progress;
 use crate::ui::table::table;
-use crate::ui::{interrupt, picture, run_folder};
+use crate::ui::{interrupt, output_file, picture, run_folder};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use comfy_table::Table;
@@ -23,9 +22,10 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use support::shard::Shard;
-use surrogate::{ErrorBin, FitError, Surrogate, TestErrors, number_or_dash};
+use support::table::number_or_dash;
+use surrogate::{ErrorBin, Surrogate, TestErrors};
 use train::{
-    Backend, Epoch, Parity, Start, StiffnessCheck, Trained, Training, TrainingConfig, TrainingData,
+    Backend, Epoch, Start, StiffnessCheck, Trained, Training, TrainingConfig, TrainingData,
 };
 
 /// Train the surrogate hinge energy on a database
@@ -78,6 +78,16 @@ pub struct TrainCommand {
 /// The data on which test errors are measured.
 pub const UNSEEN: &str = "samples of unseen geometries";
 
+/// Titles of the parity charts.
+const CHART_TITLES: [&str; 6] = [
+    "energy W (N mm)",
+    "axial force F_a (N)",
+    "shear force F_s (N)",
+    "moment M (N mm)",
+    "damage D",
+    "damage D_peak",
+];
+
 /// Maximum training time that is lost if the process is killed.
 const SAVE_EVERY: Duration = Duration::from_secs(30);
 
@@ -110,10 +120,7 @@ impl TrainCommand {
             let database = self.database.display();
             bail!("{database}: {leak}: split it again with `kirigami dataset split`");
         }
-        if let Some(folder) = self.out.parent() {
-            std::fs::create_dir_all(folder)
-                .with_context(|| format!("cannot create the folder {}", folder.display()))?;
-        }
+        output_file::create_folder_of(&self.out)?;
         self.refuse_card_of_database()?;
         if self.seeds > 1 {
             return self.train_seeds(&database, &config, base.as_ref());
@@ -125,14 +132,12 @@ impl TrainCommand {
         self.refuse_existing()?;
         let _held = hold(&self.out)?;
         let state = self.state();
-        let parent = base.as_ref();
-        let start = match (self.resume, parent) {
-            (true, parent) => Start::State {
-                state: &state,
-                parent,
-            },
-            (false, Some(parent)) => Start::Weights(parent),
-            (false, None) => Start::Fresh,
+        let pretrained = base.as_ref();
+        let start = if self.resume {
+            let state = &state;
+            Start::State { state, pretrained }
+        } else {
+            pretrained.map_or(Start::Fresh, Start::Weights)
         };
         let trained = fit((&database).into(), &config, self.backend, start, &state)?;
         self.write(&trained, &database)?;
@@ -163,8 +168,8 @@ impl TrainCommand {
         if self.replace || self.resume {
             return Ok(());
         }
-        for path in [self.out.clone(), card_path(&self.out)] {
-            ensure!(!path.exists(), exists(&path));
+        for path in [&self.out, &card_path(&self.out)] {
+            output_file::refuse_existing(path)?;
         }
         if self.state().exists() {
             bail!(
@@ -181,7 +186,8 @@ impl TrainCommand {
         trained.surrogate.save(&self.out)?;
         trained.last.save(&self.beside("last.safetensors"))?;
         self.write_curve(&trained.history)?;
-        let parity = parity_chart(&trained.parity)?;
+        let axes = ["finite elements", "surrogate"];
+        let parity = charts::parity(&trained.parity.states, CHART_TITLES, axes)?;
         picture::save(&parity, &self.beside("parity"), 2000)?;
         let slices = slices::rotations(&trained.surrogate, database);
         if !slices.is_empty() {
@@ -233,14 +239,11 @@ impl TrainCommand {
             )?;
         }
         let stem = self.beside("learning-curve");
-        write(&stem.with_extension("csv"), &csv)?;
-        let training: Vec<_> = history.iter().map(|e| e.training_loss).collect();
-        let validation: Vec<_> = history.iter().map(|e| e.validation_loss).collect();
-        picture::save(
-            &charts::learning_curve(&training, &validation)?,
-            &stem,
-            1200,
-        )?;
+        output_file::write(&stem.with_extension("csv"), csv)?;
+        let losses = |of: fn(&Epoch) -> f64| -> Vec<f64> { history.iter().map(of).collect() };
+        let (training, validation) = (losses(|e| e.training_loss), losses(|e| e.validation_loss));
+        let chart = charts::learning_curve(&training, &validation)?;
+        picture::save(&chart, &stem, 1200)?;
         Ok(())
     }
 }
@@ -289,17 +292,6 @@ fn hold(out: &Path) -> Result<File> {
     })
 }
 
-/// The error message of weights that are there already.
-fn exists(path: &Path) -> String {
-    let path = path.display();
-    format!("{path} exists: choose another name or pass --replace")
-}
-
-fn write(path: &Path, text: &str) -> Result<()> {
-    support::whole_file::write(path, text.as_bytes())
-        .with_context(|| format!("cannot write {}", path.display()))
-}
-
 /// The path of the card of weights, or of the manifest of a database.
 fn card_path(file: &Path) -> PathBuf {
     file.with_extension("json")
@@ -314,32 +306,18 @@ fn located(file: &Path) -> Result<PathBuf> {
     Ok(folder.join(file.file_name().unwrap_or_default()))
 }
 
-fn parity_chart(parity: &Parity) -> Result<String> {
-    let chart = |title: &str, points| ParityChart {
-        title: title.to_owned(),
-        points,
-    };
-    let mut charts = vec![
-        chart("energy W (N mm)", &parity.energy),
-        chart("axial force F_a (N)", &parity.f_a),
-        chart("shear force F_s (N)", &parity.f_s),
-        chart("moment M (N mm)", &parity.m_theta),
-        chart("damage D", &parity.damage),
-        chart("damage D_peak", &parity.damage_peak),
-    ];
-    charts.retain(|chart| !chart.points.is_empty());
-    charts::parity(&charts, ["finite elements", "surrogate"])
-}
-
 /// The errors of each quantity on `what`.
 pub fn error_table(errors: &TestErrors, what: &str) -> Table {
     let header = format!("on {} {what}", errors.rows);
     let mut table = table([header.as_str(), "relative RMSE", "median"]);
-    let percent = |error: f64| match error.is_nan() {
-        true => "-".to_owned(),
-        false => format!("{:.2} %", 100.0 * error),
+    let percent = |error: f64| {
+        if error.is_nan() {
+            "-".to_owned()
+        } else {
+            format!("{:.2} %", 100.0 * error)
+        }
     };
-    for (name, error) in quantities(errors) {
+    for (name, error) in QUANTITIES.into_iter().zip(errors.by_quantity()) {
         table.add_row([
             name.to_owned(),
             percent(error.relative_rmse),
@@ -349,16 +327,15 @@ pub fn error_table(errors: &TestErrors, what: &str) -> Table {
     table
 }
 
-fn quantities(errors: &TestErrors) -> [(&'static str, FitError); 6] {
-    [
-        ("energy W", errors.energy),
-        ("axial force F_a", errors.f_a),
-        ("shear force F_s", errors.f_s),
-        ("moment M_theta", errors.m_theta),
-        ("damage D", errors.damage),
-        ("damage D_peak", errors.damage_peak),
-    ]
-}
+/// The quantities of [`TestErrors::by_quantity`].
+const QUANTITIES: [&str; 6] = [
+    "energy W",
+    "axial force F_a",
+    "shear force F_s",
+    "moment M_theta",
+    "damage D",
+    "damage D_peak",
+];
 
 /// Relative root mean square errors by bins.
 pub fn bin_table(bins: &[ErrorBin]) -> Table {
@@ -386,8 +363,7 @@ pub fn bin_table(bins: &[ErrorBin]) -> Table {
             format!("{upper:.2}"),
             errors.rows.to_string(),
         ];
-        let percent = |error: FitError| number_or_dash(100.0 * error.relative_rmse, 2);
-        row.extend(quantities(errors).map(|(_, error)| percent(error)));
+        row.extend(errors.percents().map(|percent| number_or_dash(percent, 2)));
         table.add_row(row);
     }
     table

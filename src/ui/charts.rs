@@ -1,5 +1,6 @@
 //! Charts of tensile tests, trainings, studies and replays as SVG: common helpers; one file per kind of chart.
 
+pub mod axes;
 mod learning_curve;
 #[cfg(feature = "pipeline")]
 mod parity;
@@ -8,7 +9,7 @@ mod tensile_test;
 
 pub use learning_curve::learning_curve;
 #[cfg(feature = "pipeline")]
-pub use parity::{ParityChart, parity};
+pub use parity::parity;
 pub use slices::{Slice, slices};
 pub use tensile_test::tensile_test;
 

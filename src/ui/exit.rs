@@ -37,14 +37,15 @@ impl Unfinished {
 
 impl Exit {
     /// Prints the error of a command, if there is one.
-    pub fn of(result: anyhow::Result<()>) -> Self {
+    pub fn from_result(result: anyhow::Result<()>) -> Self {
         match result {
             Ok(()) => Self::Done,
             Err(error) => {
                 eprintln!("error: {}", message(&error));
-                match error.is::<Unfinished>() {
-                    true => Self::Unfinished,
-                    false => Self::Failed,
+                if error.is::<Unfinished>() {
+                    Self::Unfinished
+                } else {
+                    Self::Failed
                 }
             }
         }

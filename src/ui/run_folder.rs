@@ -1,5 +1,6 @@
 //! The output folder of a command: created if missing, and locked against a second run.
 
+use crate::ui::output_file;
 use anyhow::{Context, Result, bail};
 use std::fs::File;
 use std::io::ErrorKind;
@@ -8,8 +9,7 @@ use support::lock_file;
 
 /// Creates the folder and locks it until the returned file is dropped.
 pub fn hold(folder: &Path) -> Result<File> {
-    std::fs::create_dir_all(folder)
-        .with_context(|| format!("cannot create the folder {}", folder.display()))?;
+    output_file::create_folder(folder)?;
     lock(&folder.join("lock"), || {
         let folder = folder.display();
         format!(
@@ -28,7 +28,5 @@ pub fn lock(path: &Path, taken: impl FnOnce() -> String) -> Result<File> {
 
 /// Writes a file of the folder atomically.
 pub fn write(folder: &Path, name: &str, contents: &(impl AsRef<[u8]> + ?Sized)) -> Result<()> {
-    let path = folder.join(name);
-    support::whole_file::write(&path, contents.as_ref())
-        .with_context(|| format!("cannot write {}", path.display()))
+    output_file::write(&folder.join(name), contents)
 }

@@ -1,6 +1,5 @@
 //! Charts of the studies, one file per kind.
 
-mod axes;
 mod capacity;
 mod contours;
 mod convergence;

@@ -89,5 +89,5 @@ impl Study {
 fn main() -> Exit {
     interrupt::end_quietly_when_nobody_reads();
     exit::report_failures_of_the_system();
-    Exit::of(Cli::parse().study.run())
+    Exit::from_result(Cli::parse().study.run())
 }

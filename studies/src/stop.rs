@@ -22,6 +22,6 @@ mod tests {
     fn a_stopped_study_is_unfinished_and_not_failed() {
         assert!(refuse_stop(&AtomicBool::new(false)).is_ok());
         let stopped = refuse_stop(&AtomicBool::new(true));
-        assert_eq!(Exit::of(stopped), Exit::Unfinished);
+        assert_eq!(Exit::from_result(stopped), Exit::Unfinished);
     }
 }

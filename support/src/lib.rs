@@ -24,6 +24,7 @@ pub mod regular_file;
 pub mod scratch;
 pub mod sealed_json;
 pub mod shard;
+pub mod statistics;
 pub mod table;
 pub mod toml_file;
 pub mod verbose;

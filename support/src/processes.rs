@@ -16,7 +16,7 @@ pub(crate) const FOLDER: &str = "KIRIGAMI_WORK_FOLDER";
 /// process that waits for a disk dies later.
 pub(crate) fn kill_all_of(folder: &Path) {
     for _ in 0..5 {
-        let processes = of(folder);
+        let processes = started_for(folder);
         if processes.is_empty() {
             return;
         }
@@ -29,7 +29,7 @@ pub(crate) fn kill_all_of(folder: &Path) {
 }
 
 /// The processes whose environment names `folder`. Those of other users cannot be read and are not ours.
-fn of(folder: &Path) -> Vec<Pid> {
+fn started_for(folder: &Path) -> Vec<Pid> {
     let mark = [FOLDER.as_bytes(), b"=", folder.as_os_str().as_bytes()].concat();
     let Ok(processes) = std::fs::read_dir("/proc") else {
         return Vec::new();

@@ -1,6 +1,6 @@
 //! JSON files with damage detection: the key `checksum` contains the BLAKE3 hash of the other contents.
 //!
-//! A file without this key, from an older version or written by hand, is read without a check.
+//! A file without this key, written by hand, is read without a check.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -87,7 +87,12 @@ impl<'a, R> Table<'a, R> {
         R: 'r,
     {
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-        let mut text = line(self.columns.iter().map(|it| it.heading.clone()).collect());
+        let mut text = line(
+            self.columns
+                .iter()
+                .map(|column| column.heading.clone())
+                .collect(),
+        );
         text += &format!("|{}\n", "---|".repeat(self.columns.len()));
         for row in rows {
             text += &line(self.cells(row).map(|cell| cell.shown).collect());
@@ -123,6 +128,15 @@ fn csv_line<'c>(cells: impl Iterator<Item = &'c str>) -> String {
         }
     });
     quoted.collect::<Vec<_>>().join(",") + "\n"
+}
+
+/// A number with a fixed number of decimals; `-` if it is not known (NaN).
+pub fn number_or_dash(value: f64, decimals: usize) -> String {
+    if value.is_nan() {
+        "-".into()
+    } else {
+        format!("{value:.decimals$}")
+    }
 }
 
 #[cfg(test)]

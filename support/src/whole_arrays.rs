@@ -80,12 +80,13 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Whole<V> {
         let expected = counted.read;
         while counted.next_element::<IgnoredAny>()?.is_some() {}
         let found = counted.read;
-        match found == expected {
-            true => Ok(value),
-            false => Err(A::Error::custom(format!(
+        if found == expected {
+            Ok(value)
+        } else {
+            Err(A::Error::custom(format!(
                 "an array of {expected} has {found} elements: remove those too many; the decimal sign is a point (40.5, not \
                  40,5)"
-            ))),
+            )))
         }
     }
 

@@ -101,7 +101,7 @@ fn card() -> Card {
         damage_scale: 0.012,
         peak_scale: Some(0.3),
         damage_sharpness: 8.0,
-        domain: TrainingDomain::of_box(
+        domain: TrainingDomain::from_box(
             [[-0.5, 0.25], [-0.35, 0.35], [0.0, 1.25]],
             [5.0, 25.0],
             [0.8, 2.3],
@@ -117,7 +117,7 @@ fn card() -> Card {
         tier: "none".into(),
         dataset_hash: "none".into(),
         fine_tuned_from: None,
-        lesson: None,
+        distillation: None,
         split_hash: "none".into(),
         training: Default::default(),
         training_rays: None,
@@ -125,6 +125,5 @@ fn card() -> Card {
         test_errors: TestErrors::default(),
         error_bins: Vec::new(),
         spot_check: None,
-        spot_check_inside: None,
     }
 }

@@ -5,15 +5,8 @@ use crate::network::InvalidWeights;
 use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// Format version of the weight file and its card that this crate writes; it also reads all earlier versions.
-///
-/// 1: the damage head predicts D. 2: it may also predict D_peak; errors by bins. 3: the hashes of
-/// the material law and of the campaign's settings. 4: D_peak has a separate head; beta;
-/// the training time. 5: the domain is the set of states that the rows cover, not their box; D_peak is the mean over
-/// the most strained 1 % of the ligament. D_peak of older weights is another measure and is ignored. 6: the card
-/// states the hash of the weight file, and has a checksum. 7: the card may state the errors at a spot check. 8: and how many
-/// of its states are inside the domain.
-pub const FORMAT_VERSION: u32 = 8;
+/// Format version of the weight file and its card; no other version is read.
+pub const FORMAT_VERSION: u32 = 9;
 
 /// The units of all inputs and outputs of a surrogate.
 pub const UNITS: &str = "mm, N, MPa, N mm, rad";
@@ -24,7 +17,7 @@ pub const UNITS: &str = "mm, N, MPa, N mm, rad";
 pub struct Card {
     /// [`FORMAT_VERSION`] of the writer.
     pub format_version: u32,
-    /// BLAKE3 of the weight file `X.safetensors`; `None` in memory, and in cards before version 6.
+    /// BLAKE3 of the weight file `X.safetensors`; `None` in memory.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub weights_hash: Option<String>,
     /// [`UNITS`]
@@ -41,7 +34,6 @@ pub struct Card {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peak_scale: Option<f64>,
     /// beta of the damage heads. A larger value gives a sharper transition from no damage to damage at yield.
-    #[serde(default = "one")]
     pub damage_sharpness: f64,
     /// The states that the training rows cover.
     pub domain: TrainingDomain,
@@ -59,14 +51,14 @@ pub struct Card {
     pub tier: String,
     /// Hash of the database file.
     pub dataset_hash: String,
-    /// For fine-tuned weights: [`Surrogate::hash`] of the initial weights; in older cards, the hash of their database.
+    /// For fine-tuned weights: [`Surrogate::hash`] of the initial weights.
     ///
     /// [`Surrogate::hash`]: crate::Surrogate::hash
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fine_tuned_from: Option<String>,
     /// The ensemble whose median the weights are also trained on, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lesson: Option<LessonRecord>,
+    pub distillation: Option<DistillationRecord>,
     /// Hash of the split into training, validation and test.
     pub split_hash: String,
     /// The training configuration.
@@ -80,20 +72,26 @@ pub struct Card {
     /// Errors on the test split.
     pub test_errors: TestErrors,
     /// Errors on the test split by bins of single quantities.
-    #[serde(default)]
     pub error_bins: Vec<ErrorBin>,
     /// Errors at random states of the campaign's region, which no training has seen, if they were measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub spot_check: Option<TestErrors>,
-    /// Number of states of the spot check that lie inside `domain`, if it was counted.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub spot_check_inside: Option<usize>,
+    pub spot_check: Option<SpotCheck>,
+}
+
+/// Errors of a surrogate at random states.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpotCheck {
+    /// Errors at all states.
+    pub errors: TestErrors,
+    /// Number of the states that lie inside the training domain.
+    pub inside: usize,
 }
 
 /// The ensemble whose median predictions weights were also trained on, at states that no solver has computed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct LessonRecord {
+pub struct DistillationRecord {
     /// The networks of the ensemble.
     pub teachers: Vec<Teacher>,
     /// BLAKE3 hash (hexadecimal) of the states and of the median predictions there.
@@ -129,8 +127,7 @@ pub struct TestErrors {
     pub m_theta: FitError,
     /// Error of D.
     pub damage: FitError,
-    /// Error of D_peak; not known if no head predicts it. Some older cards have zero then.
-    #[serde(default = "FitError::unknown")]
+    /// Error of D_peak; not known if no head predicts it.
     pub damage_peak: FitError,
 }
 
@@ -173,38 +170,43 @@ fn number_or_null<'de, D: Deserializer<'de>>(value: D) -> Result<f64, D::Error> 
     Ok(Option::deserialize(value)?.unwrap_or(f64::NAN))
 }
 
-/// A number for a table; `-` if it is not known (NaN).
-pub fn number_or_dash(value: f64, decimals: usize) -> String {
-    match value.is_nan() {
-        true => "-".into(),
-        false => format!("{value:.decimals$}"),
-    }
-}
-
 impl TestErrors {
-    /// Relative root mean square errors (%): W, F_a, F_s, M_theta, D, D_peak.
-    pub fn percents(&self) -> [f64; 6] {
-        let Self {
+    /// The errors of W, F_a, F_s, M_theta, D, D_peak on a number of rows.
+    pub fn new(rows: usize, by_quantity: [FitError; 6]) -> Self {
+        let [energy, f_a, f_s, m_theta, damage, damage_peak] = by_quantity;
+        Self {
+            rows,
             energy,
             f_a,
             f_s,
             m_theta,
             damage,
             damage_peak,
-            ..
-        } = *self;
-        [energy, f_a, f_s, m_theta, damage, damage_peak].map(|error| 100.0 * error.relative_rmse)
+        }
+    }
+
+    /// Relative root mean square errors (%): W, F_a, F_s, M_theta, D, D_peak.
+    pub fn percents(&self) -> [f64; 6] {
+        self.by_quantity().map(|error| 100.0 * error.relative_rmse)
+    }
+
+    /// The errors of W, F_a, F_s, M_theta, D, D_peak.
+    pub fn by_quantity(&self) -> [FitError; 6] {
+        [
+            self.energy,
+            self.f_a,
+            self.f_s,
+            self.m_theta,
+            self.damage,
+            self.damage_peak,
+        ]
     }
 
     /// Root mean square of the errors of the three forces (%).
     pub fn forces_percent(&self) -> f64 {
-        forces_percent(&self.percents())
+        let [_, f_a, f_s, m_theta, ..] = self.percents();
+        ((f_a * f_a + f_s * f_s + m_theta * m_theta) / 3.0).sqrt()
     }
-}
-
-/// Root mean square of the errors of the three forces in [`TestErrors::percents`].
-pub fn forces_percent([_, f_a, f_s, m_theta, ..]: &[f64; 6]) -> f64 {
-    ((f_a * f_a + f_s * f_s + m_theta * m_theta) / 3.0).sqrt()
 }
 
 impl Card {
@@ -276,11 +278,6 @@ impl Card {
     }
 }
 
-/// The damage sharpness of weights before version 4.
-fn one() -> f64 {
-    1.0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -297,7 +294,5 @@ mod tests {
         let read: TestErrors = serde_json::from_str(&text).unwrap();
         assert!(read.damage_peak.relative_rmse.is_nan() && read.damage_peak.median.is_nan());
         assert_eq!(read.energy, errors.energy);
-        let shown = errors.percents().map(|percent| number_or_dash(percent, 1));
-        assert_eq!(shown, ["0.0", "0.0", "0.0", "0.0", "0.0", "-"]);
     }
 }

@@ -10,16 +10,6 @@ pub fn mean_and_variance(values: impl IntoIterator<Item = f64, IntoIter: Clone>)
     [mean, squares / (n - 1.0).max(1.0)]
 }
 
-/// The middle value, or the mean of the two in the middle.
-///
-/// # Panics
-/// If there are no values.
-pub fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let [below, above] = [(values.len() - 1) / 2, values.len() / 2];
-    0.5 * (values[below] + values[above])
-}
-
 #[cfg(test)]
 mod tests {
     use super::mean_and_variance;

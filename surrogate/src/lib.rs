@@ -45,12 +45,12 @@ mod tanh;
 mod weights;
 
 pub use card::{
-    Card, ErrorBin, FORMAT_VERSION, FitError, LessonRecord, Teacher, TestErrors, UNITS,
-    forces_percent, number_or_dash,
+    Card, DistillationRecord, ErrorBin, FORMAT_VERSION, FitError, SpotCheck, Teacher, TestErrors,
+    UNITS,
 };
 pub use damage::HingeDamage;
 pub use energy::{HingeEnergy, Order, Prepared};
-pub use ensemble::{mean_and_variance, median};
+pub use ensemble::mean_and_variance;
 pub use features::{FEATURE_NAMES, Standardisation, features};
 pub use model::{Layers, Surrogate};
 pub use network::{InvalidWeights, Layer, Network, Tensor};

@@ -1,6 +1,6 @@
 //! A surrogate: the networks of (14) with their card.
 
-use crate::card::{Card, ErrorBin, TestErrors};
+use crate::card::{Card, ErrorBin, SpotCheck, TestErrors};
 use crate::damage::{self, HingeDamage};
 use crate::energy::{self, HingeEnergy, Order, Prepared};
 use crate::network::{InvalidWeights, Layer, Network};
@@ -67,8 +67,7 @@ impl Surrogate {
 
     /// The same surrogate with the errors at a spot check on its card, `inside` of whose states lie inside the domain.
     pub fn with_spot_check(mut self, errors: TestErrors, inside: usize) -> Self {
-        self.card.spot_check = Some(errors);
-        self.card.spot_check_inside = Some(inside);
+        self.card.spot_check = Some(SpotCheck { errors, inside });
         self
     }
 

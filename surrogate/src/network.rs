@@ -91,7 +91,7 @@ impl Network {
             bias.check(&format!("{name}.{index}.bias"), &[rows])?;
             inputs = bias.values.len();
         }
-        let mut affine: Vec<Affine> = layers.iter().map(Affine::of).collect();
+        let mut affine: Vec<Affine> = layers.iter().map(Affine::new).collect();
         affine[0].fold(standardisation);
         Ok(Self { layers, affine })
     }
@@ -107,7 +107,7 @@ impl Network {
 }
 
 impl Affine {
-    fn of(layer: &Layer) -> Self {
+    fn new(layer: &Layer) -> Self {
         let (outputs, inputs) = (layer.bias.values.len(), layer.weight.shape[1]);
         Self {
             weight: Mat::from_fn(outputs, inputs, |i, j| layer.weight.values[i * inputs + j]),

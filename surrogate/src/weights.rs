@@ -9,9 +9,6 @@
 //! | `w_scale` | (1), N mm |
 //! | `d_scale` | (1) or (2), dimensionless: of D, and of D_peak if there is a head for it |
 //!
-//! Before version 4, D_peak was a second output of `chi_d`. Before version 5 it was another measure, and it is
-//! ignored.
-//!
 //! Tensors are written in float64; float32 is also read. Both files contain the scaling, so
 //! that a card that does not belong to the weights is detected.
 
@@ -46,8 +43,8 @@ pub enum WeightsError {
     #[error("{path} is not a card of a surrogate: {source}", path = .path.display())]
     Card { path: PathBuf, source: SealError },
     #[error(
-        "{path} has the format version {found}, but this program reads versions 1 to {FORMAT_VERSION}; \
-         export the weights again, or use a newer program",
+        "{path} has the format version {found}, but this program reads version {FORMAT_VERSION} alone: train the weights \
+         again, or use the program that wrote them",
         path = .path.display()
     )]
     UnknownVersion { path: PathBuf, found: u64 },
@@ -112,30 +109,23 @@ fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
     })?;
     let mut tensors = read_tensors(weights, &bytes)?;
     let mut card = read_card(weights)?;
-    if let Some(expected) = card.weights_hash.take() {
-        let found = blake3::hash(&bytes).to_hex().to_string();
-        if found != expected {
-            return Err(WeightsError::Hash {
-                path: weights.to_owned(),
-                expected,
-                found,
-            });
-        }
+    let expected = card.weights_hash.take().unwrap_or_default();
+    let found = blake3::hash(&bytes).to_hex().to_string();
+    if found != expected {
+        return Err(WeightsError::Hash {
+            path: weights.to_owned(),
+            expected,
+            found,
+        });
     }
     let invalid = |source| WeightsError::Invalid {
         path: weights.to_owned(),
         source,
     };
     let chi = take_layers(&mut tensors, "chi").map_err(invalid)?;
-    let mut chi_d = take_layers(&mut tensors, "chi_d").map_err(invalid)?;
-    let chi_p = match (card.peak_scale, card.format_version) {
-        (None, _) => None,
-        (Some(_), ..4) => {
-            keep_first_output(&mut chi_d).map_err(invalid)?;
-            None
-        }
-        (Some(_), 4..) => Some(take_layers(&mut tensors, "chi_p").map_err(invalid)?),
-    };
+    let chi_d = take_layers(&mut tensors, "chi_d").map_err(invalid)?;
+    let chi_p = card.peak_scale.map(|_| take_layers(&mut tensors, "chi_p"));
+    let chi_p = chi_p.transpose().map_err(invalid)?;
     for (tensor, expected) in scaling(&card) {
         let found = take(&mut tensors, tensor).map_err(invalid)?;
         if found.shape != expected.shape {
@@ -158,37 +148,17 @@ fn load(weights: &Path) -> Result<Surrogate, WeightsError> {
             tensor,
         });
     }
-    // Before version 5, D_peak was a percentile over the window, which is no measure of a narrow ligament.
-    let chi_p = chi_p.filter(|_| card.format_version >= 5);
-    card.peak_scale = card.peak_scale.filter(|_| card.format_version >= 5);
-    // In memory, every card has the current version.
-    card.format_version = FORMAT_VERSION;
     Surrogate::from_parts(Layers { chi, chi_d, chi_p }, card).map_err(invalid)
-}
-
-/// Removes the second of the two outputs of a network.
-fn keep_first_output(network: &mut [Layer]) -> Result<(), InvalidWeights> {
-    let index = network.len() - 1;
-    let Layer { weight, bias } = &mut network[index];
-    for (name, Tensor { shape, values }) in [("weight", weight), ("bias", bias)] {
-        if shape.first() != Some(&2) || values.len() % 2 != 0 {
-            return Err(InvalidWeights::Shape {
-                tensor: format!("chi_d.{index}.{name}"),
-                expected: "two outputs, of D and of D_peak".into(),
-                found: shape.clone(),
-            });
-        }
-        values.truncate(values.len() / 2);
-        shape[0] = 1;
-    }
-    Ok(())
 }
 
 fn save(surrogate: &Surrogate, weights: &Path) -> Result<(), WeightsError> {
     let mut tensors: Vec<(String, Tensor)> = Vec::new();
     let Layers { chi, chi_d, chi_p } = surrogate.layers();
     let networks = [("chi", chi), ("chi_d", chi_d)];
-    for (name, layers) in networks.into_iter().chain(chi_p.map(|it| ("chi_p", it))) {
+    for (name, layers) in networks
+        .into_iter()
+        .chain(chi_p.map(|layers| ("chi_p", layers)))
+    {
         for (index, Layer { weight, bias }) in layers.into_iter().enumerate() {
             tensors.push((format!("{name}.{index}.weight"), weight));
             tensors.push((format!("{name}.{index}.bias"), bias));
@@ -255,7 +225,7 @@ fn read_card(weights: &Path) -> Result<Card, WeightsError> {
     let version: Version = serde_json::from_slice(&text)
         .map_err(SealError::from)
         .map_err(malformed)?;
-    if !(1..=u64::from(FORMAT_VERSION)).contains(&version.format_version) {
+    if version.format_version != u64::from(FORMAT_VERSION) {
         return Err(WeightsError::UnknownVersion {
             path: path.clone(),
             found: version.format_version,

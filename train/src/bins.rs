@@ -61,7 +61,7 @@ fn bin_of(value: f64, minimum: f64, width: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::validation::ParityPoint;
+    use dataset::ComparedState;
     use hinge::{HingeConstants, HingeSample};
 
     fn row(w_lig: f64, theta: f64) -> Row {
@@ -92,16 +92,15 @@ mod tests {
     #[test]
     fn every_row_is_in_exactly_one_bin_of_each_quantity() {
         let rows = [row(5.0, 0.1), row(12.0, 0.5), row(25.0, 1.0)];
-        let point = |error: f64| ParityPoint {
-            target: 1.0,
-            predicted: 1.0 + error,
+        let state_of = |error: f64| ComparedState {
+            value: [1.0 + error; 6],
+            reference: [1.0; 6],
         };
         let parity = Parity {
-            energy: vec![point(0.1), point(0.2), point(0.4)],
-            ..Parity::default()
+            states: [0.1, 0.2, 0.4].map(state_of).to_vec(),
         };
         let state = [[-1.0, 1.0], [-1.0, 1.0], [0.0, 1.0]];
-        let domain = TrainingDomain::of_box(state, [5.0, 25.0], [1.0, 2.0]);
+        let domain = TrainingDomain::from_box(state, [5.0, 25.0], [1.0, 2.0]);
         let bins = error_bins(&parity, &rows, &domain);
         for quantity in ["eta_a", "eta_s", "theta_deg", "w_lig", "alpha_deg", "edge"] {
             let of = bins.iter().filter(|bin| bin.quantity == quantity);

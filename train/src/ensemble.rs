@@ -5,8 +5,8 @@
 //! error^2     = mean over force components of |mean_m F_c - F_c*|^2 / sigma_c^2
 //! ```
 
-use crate::validation::root_mean_square;
 use dataset::Row;
+use support::statistics::root_mean_square;
 use surrogate::{Order, Surrogate};
 
 /// Deviation of the members' forces at one state, and their error.
@@ -36,7 +36,7 @@ pub struct EnsembleCheck {
 ///
 /// `members` must not be empty.
 pub fn disagreements(members: &[Surrogate], rows: &[Row]) -> Vec<Disagreement> {
-    let forces: Vec<Vec<[f64; 3]>> = members.iter().map(|it| forces(it, rows)).collect();
+    let forces: Vec<Vec<[f64; 3]>> = members.iter().map(|member| forces(member, rows)).collect();
     let targets: Vec<[f64; 3]> = rows
         .iter()
         .map(|row| [row.sample.f_a, row.sample.f_s, row.sample.m_theta])
@@ -62,19 +62,19 @@ pub fn disagreements(members: &[Surrogate], rows: &[Row]) -> Vec<Disagreement> {
 
 impl EnsembleCheck {
     /// Evaluates the states, of which there must be at least one.
-    pub fn of(states: &[Disagreement]) -> Self {
+    pub fn new(states: &[Disagreement]) -> Self {
         let logarithm = |value: f64| value.max(f64::MIN_POSITIVE).ln();
         let pairs = states.iter();
-        let pairs = pairs.map(|it| (logarithm(it.deviation), logarithm(it.error)));
+        let pairs = pairs.map(|state| (logarithm(state.deviation), logarithm(state.error)));
         let correlation = correlation(pairs);
         let mut sorted = states.to_vec();
         sorted.sort_by(|left, right| right.deviation.total_cmp(&left.deviation));
         let squared_error =
-            |states: &[Disagreement]| states.iter().map(|it| it.error.powi(2)).sum::<f64>();
+            |states: &[Disagreement]| states.iter().map(|state| state.error.powi(2)).sum::<f64>();
         let top = &sorted[..states.len().div_ceil(10)];
         Self {
-            deviation: root_mean_square(states.iter().map(|it| it.deviation)),
-            error: root_mean_square(states.iter().map(|it| it.error)),
+            deviation: root_mean_square(states.iter().map(|state| state.deviation)),
+            error: root_mean_square(states.iter().map(|state| state.error)),
             error_in_top_tenth: squared_error(top) / squared_error(states),
             correlation,
         }
@@ -130,7 +130,7 @@ mod tests {
                 error: f64::from(k),
             })
             .collect();
-        let check = EnsembleCheck::of(&states);
+        let check = EnsembleCheck::new(&states);
         assert!((check.error - 2.0 * check.deviation).abs() < 1e-12);
         assert!((check.correlation - 1.0).abs() < 1e-12);
         let share = (19.0 * 19.0 + 20.0 * 20.0) / 2870.0;

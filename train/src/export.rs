@@ -34,7 +34,9 @@ fn layer(affine: Affine) -> Result<Layer, TrainError> {
 mod tests {
     use super::*;
     use crate::backend::Backend;
+    use crate::config::TrainingConfig;
     use crate::loss::predict;
+    use crate::loss::tests::config;
     use crate::samples::{Batch, Scales};
     use crate::validation::Parity;
     use burn::tensor::{DType, TensorCreationOptions};
@@ -91,8 +93,8 @@ mod tests {
             peak_scale: scales.peak,
             damage_sharpness: SHARPNESS,
             fine_tuned_from: None,
-            lesson: None,
-            domain: TrainingDomain::of_box([[0.0; 2]; 3], [1.0; 2], [1.0; 2]),
+            distillation: None,
+            domain: TrainingDomain::from_box([[0.0; 2]; 3], [1.0; 2], [1.0; 2]),
             hinge: HingeConstants {
                 fillet_ratio: 0.16,
                 kerf: 0.2,
@@ -110,7 +112,6 @@ mod tests {
             test_errors: TestErrors::default(),
             error_bins: Vec::new(),
             spot_check: None,
-            spot_check_inside: None,
         };
         Surrogate::from_parts(layers(networks).unwrap(), card).unwrap()
     }
@@ -118,9 +119,16 @@ mod tests {
     /// |burn - kernel| / |kernel| over all rows, for W, F_a, F_s, M_theta, D and D_peak.
     fn disagreement(backend: Backend, dtype: DType) -> [f64; 6] {
         let options = TensorCreationOptions::new(backend.device()).with_dtype(dtype);
-        let networks = Networks::new(&[64, 64, 32], &[64, 64], true, true, 1, &options);
+        let config = TrainingConfig {
+            seed: 1,
+            embedding: vec![64, 64, 32],
+            damage: vec![64, 64],
+            mirror: true,
+            ..config()
+        };
+        let networks = Networks::new(&config, true, &options);
         let rows: Vec<Row> = (0..200).map(row).collect();
-        let scales = Scales::of(&rows, false).unwrap();
+        let scales = Scales::new(&rows, false).unwrap();
         let samples: Vec<_> = rows
             .iter()
             .map(|row| scales.sample(&row.design, &row.sample))
@@ -139,21 +147,13 @@ mod tests {
             column(&predicted.damage, 0, scales.damage),
             column(&predicted.damage, 1, scales.peak.unwrap()),
         ];
-        let parity = Parity::of(&surrogate(&networks, &scales), &rows);
-        let kernel = [
-            parity.energy,
-            parity.f_a,
-            parity.f_s,
-            parity.m_theta,
-            parity.damage,
-            parity.damage_peak,
-        ];
+        let parity = Parity::new(&surrogate(&networks, &scales), &rows);
         std::array::from_fn(|quantity| {
-            let pairs = || burn[quantity].iter().zip(&kernel[quantity]);
+            let pairs = || burn[quantity].iter().zip(parity.points(quantity));
             let error: f64 = pairs()
-                .map(|(burn, point)| (burn - point.predicted).powi(2))
+                .map(|(burn, [_, predicted])| (burn - predicted).powi(2))
                 .sum();
-            let norm: f64 = pairs().map(|(_, point)| point.predicted.powi(2)).sum();
+            let norm: f64 = pairs().map(|(_, [_, predicted])| predicted.powi(2)).sum();
             (error / norm).sqrt()
         })
     }

@@ -56,6 +56,8 @@ mod tests {
     use super::*;
     use crate::affine::forward;
     use crate::backend::Backend;
+    use crate::config::TrainingConfig;
+    use crate::loss::tests::config;
     use crate::networks::Networks;
     use crate::samples::Batch;
     use crate::samples::tests::samples;
@@ -67,7 +69,13 @@ mod tests {
         for &backend in Backend::ALL {
             let options = TensorCreationOptions::new(backend.device()).with_dtype(DType::F64);
             for symmetric in [false, true] {
-                let chi = Networks::new(&[8, 6, 4], &[2], true, symmetric, 5, &options).chi;
+                let config = TrainingConfig {
+                    seed: 5,
+                    damage: vec![2],
+                    mirror: symmetric,
+                    ..config()
+                };
+                let chi = Networks::new(&config, true, &options).chi;
                 let layers = chi.affine();
                 let embedding = with_tangents(&layers, Batch::new(&samples(6), &options).states);
                 for k in 0..3 {

@@ -60,7 +60,7 @@ pub(crate) fn loss(networks: &Networks, batch: &Batch, config: &TrainingConfig) 
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::backend::Backend;
     use crate::config::Precision;
@@ -69,7 +69,7 @@ mod tests {
     use burn::module::Param;
     use burn::tensor::{DType, TensorCreationOptions, TensorData};
 
-    fn config() -> TrainingConfig {
+    pub fn config() -> TrainingConfig {
         TrainingConfig {
             seed: 0,
             embedding: vec![8, 6, 4],
@@ -116,9 +116,12 @@ mod tests {
     fn check_parameter_gradient(symmetric: bool) {
         let options =
             TensorCreationOptions::new(Backend::default().device()).with_dtype(DType::F64);
-        let config = config();
-        let (embedding, damage) = (&config.embedding, &config.damage);
-        let networks = Networks::new(embedding, damage, true, symmetric, 3, &options);
+        let config = TrainingConfig {
+            seed: 3,
+            mirror: symmetric,
+            ..config()
+        };
+        let networks = Networks::new(&config, true, &options);
         let batch = Batch::new(&samples(8), &options);
         let gradients = loss(&networks, &batch, &config).backward();
         let step = 1e-5;

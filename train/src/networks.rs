@@ -1,6 +1,7 @@
 //! The embedding chi and the damage heads chi_D and chi_P of (14) as Burn modules.
 
 use crate::affine::Affine;
+use crate::config::TrainingConfig;
 use crate::mirror::Fold;
 use burn::module::{Module, Param};
 use burn::tensor::{Tensor, TensorCreationOptions, TensorData};
@@ -37,18 +38,11 @@ pub(crate) struct Dense {
 
 impl Networks {
     /// Initial networks with Xavier's uniform weights and zero biases. The random numbers do not come from the backend,
-    /// so that a seed gives the same weights on every backend. `symmetric` networks must have an even number of units
-    /// in each layer.
-    pub fn new(
-        embedding: &[usize],
-        damage: &[usize],
-        with_peak: bool,
-        symmetric: bool,
-        seed: u64,
-        options: &TensorCreationOptions,
-    ) -> Self {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let head: Vec<usize> = damage.iter().copied().chain([1]).collect();
+    /// so that a seed gives the same weights on every backend.
+    pub fn new(config: &TrainingConfig, with_peak: bool, options: &TensorCreationOptions) -> Self {
+        let (embedding, symmetric) = (&config.embedding, config.mirror);
+        let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
+        let head: Vec<usize> = config.damage.iter().copied().chain([1]).collect();
         let mut network = |widths: &[usize], folds: Vec<Fold>| {
             let inputs = std::iter::once(INPUTS).chain(widths.iter().copied());
             let layers = inputs
@@ -69,12 +63,12 @@ impl Networks {
     }
 
     /// The networks of a weight file.
-    pub fn of_layers(layers: &Layers, symmetric: bool, options: &TensorCreationOptions) -> Self {
+    pub fn from_layers(layers: &Layers, symmetric: bool, options: &TensorCreationOptions) -> Self {
         let network = |layers: &[Layer], folds: Vec<Fold>| {
             let layers = layers.iter().zip(folds);
             Mlp {
                 layers: layers
-                    .map(|(layer, fold)| Dense::of(layer, fold, options))
+                    .map(|(layer, fold)| Dense::from_layer(layer, fold, options))
                     .collect(),
             }
         };
@@ -90,9 +84,12 @@ impl Networks {
     /// The same networks, the first `layers` layers of each of which no optimiser step changes.
     pub fn frozen(self, layers: usize) -> Self {
         let freeze = |mut network: Mlp| {
-            let freeze = |(index, layer): (usize, Dense)| match index < layers {
-                true => layer.no_grad(),
-                false => layer,
+            let freeze = |(index, layer): (usize, Dense)| {
+                if index < layers {
+                    layer.no_grad()
+                } else {
+                    layer
+                }
             };
             network.layers = network.layers.into_iter().enumerate().map(freeze).collect();
             network
@@ -171,7 +168,7 @@ impl Dense {
     }
 
     /// The trained part of a layer of a weight file, whose weight is (outputs, inputs).
-    fn of(layer: &Layer, fold: Fold, options: &TensorCreationOptions) -> Self {
+    fn from_layer(layer: &Layer, fold: Fold, options: &TensorCreationOptions) -> Self {
         let tensor = |tensor: &surrogate::Tensor| {
             TensorData::new(tensor.values.clone(), tensor.shape.clone())
         };

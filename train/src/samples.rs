@@ -61,7 +61,7 @@ impl Scales {
     /// Computes the scales; an error if a feature is constant, or a target is zero or has outliers.
     ///
     /// `symmetric`: the rows include their mirror images.
-    pub fn of(rows: &[Row], symmetric: bool) -> Result<Self, TrainError> {
+    pub fn new(rows: &[Row], symmetric: bool) -> Result<Self, TrainError> {
         let count = rows.len() as f64;
         let root_mean_square = |target: &'static str, value: fn(&Row) -> f64| {
             let sum: f64 = rows.iter().map(|row| value(row).powi(2)).sum();
@@ -108,22 +108,23 @@ impl Scales {
             ],
             damage: root_mean_square("D", |row| row.sample.d)?,
             // The mean over all rows counts rows without D_peak as zero.
-            peak: match rows.iter().any(|row| d_peak(row) != 0.0) {
-                true => Some(root_mean_square("D_peak", d_peak)? * peak_weight.sqrt()),
-                false => None,
+            peak: if rows.iter().any(|row| d_peak(row) != 0.0) {
+                Some(root_mean_square("D_peak", d_peak)? * peak_weight.sqrt())
+            } else {
+                None
             },
             peak_weight,
         })
     }
 
     /// The scales of trained weights; those of the forces are computed from the rows.
-    pub fn of_card(card: &Card, rows: &[Row], symmetric: bool) -> Result<Self, TrainError> {
+    pub fn from_card(card: &Card, rows: &[Row], symmetric: bool) -> Result<Self, TrainError> {
         Ok(Self {
             standardisation: card.standardisation,
             energy: card.energy_scale,
             damage: card.damage_scale,
             peak: card.peak_scale,
-            ..Self::of(rows, symmetric)?
+            ..Self::new(rows, symmetric)?
         })
     }
 

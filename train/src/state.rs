@@ -160,7 +160,7 @@ impl State {
         })
     }
 
-    /// An error if the configuration, the database, the split, the initial weights or the lesson are not those of the state.
+    /// An error if the configuration, the database, the split, the initial weights or the distillation are not those of the state.
     pub fn check(&self, card: &Card) -> Result<(), StateError> {
         let saved = &self.progress.card;
         for (what, same) in [
@@ -171,7 +171,7 @@ impl State {
                 "network to start from",
                 saved.fine_tuned_from == card.fine_tuned_from,
             ),
-            ("lesson", saved.lesson == card.lesson),
+            ("distillation", saved.distillation == card.distillation),
         ] {
             if !same {
                 let path = self.path.clone();

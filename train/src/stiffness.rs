@@ -8,7 +8,7 @@
 //!
 //! and that of the surrogate is (eps_2 - eps_1)' H (eps_2 - eps_1) / (lambda_2 - lambda_1)^2, evaluated at the middle.
 
-use crate::validation::{ParityPoint, fit_error};
+use crate::validation::fit_error;
 use dataset::Row;
 use hinge::HingeDeformation;
 use surrogate::{FitError, Order, Surrogate};
@@ -30,7 +30,7 @@ pub struct StiffnessCheck {
 
 impl StiffnessCheck {
     /// Compares the tangents on `rows`, which must be in the order of job and lambda, as in a database.
-    pub fn of(surrogate: &Surrogate, rows: &[Row]) -> Self {
+    pub fn new(surrogate: &Surrogate, rows: &[Row]) -> Self {
         let pairs: Vec<(&Row, &Row)> = rows
             .iter()
             .zip(rows.iter().skip(1))
@@ -40,25 +40,18 @@ impl StiffnessCheck {
         let middles: Vec<HingeDeformation> = pairs.iter().map(|pair| between(pair, 0.5)).collect();
         let prepared = surrogate.prepare(&designs);
         let energies = surrogate.evaluate(&prepared, &middles, Order::Tangent);
-        let points: Vec<ParityPoint> = pairs
-            .iter()
-            .zip(&energies)
-            .map(|(pair, energy)| ParityPoint {
-                target: curvature(pair),
-                predicted: along(&energy.tangent, pair),
-            })
+        let points: Vec<[f64; 2]> = std::iter::zip(&pairs, &energies)
+            .map(|(pair, energy)| [curvature(pair), along(&energy.tangent, pair)])
             .collect();
-        let share = |count: usize| count as f64 / pairs.len().max(1) as f64;
-        let negative = |value: fn(&ParityPoint) -> f64| {
-            share(points.iter().filter(|point| value(point) < 0.0).count())
-        };
+        let fraction = |count: usize| count as f64 / pairs.len().max(1) as f64;
+        let negative = |of: usize| fraction(points.iter().filter(|point| point[of] < 0.0).count());
         let indefinite = energies.iter().filter(|energy| !positive(&energy.tangent));
         Self {
             pairs: pairs.len(),
-            indefinite: share(indefinite.count()),
-            softening: negative(|point| point.target),
-            learned_softening: negative(|point| point.predicted),
-            curvature: fit_error(&points),
+            indefinite: fraction(indefinite.count()),
+            softening: negative(0),
+            learned_softening: negative(1),
+            curvature: fit_error(points.into_iter()),
         }
     }
 }

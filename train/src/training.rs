@@ -4,14 +4,14 @@
 use crate::backend::Backend;
 use crate::bins::error_bins;
 use crate::config::{Precision, TrainingConfig};
+use crate::distillation::TrainingData;
 use crate::epoch::Epoch;
 use crate::error::TrainError;
 use crate::export::layers;
-use crate::lesson::TrainingData;
+use crate::fine_tuning::{Initial, check_pretrained, inherit};
 use crate::loss::loss;
 use crate::networks::Networks;
 use crate::optimiser::{learning_rate, optimiser};
-use crate::parent::{Initial, check_parent, inherit};
 use crate::samples::{Batch, Sample, Scales};
 use crate::state::{self, Progress, State};
 use crate::stiffness::StiffnessCheck;
@@ -59,7 +59,7 @@ pub enum Start<'a> {
         /// The file.
         state: &'a Path,
         /// The weights with which the training was started, if it is a fine-tuning.
-        parent: Option<&'a Surrogate>,
+        pretrained: Option<&'a Surrogate>,
     },
 }
 
@@ -114,61 +114,51 @@ impl Training {
         config.validate()?;
         let began = Instant::now();
         let data: TrainingData = data.into();
-        let parts = Parts::of(data.database)?;
-        let dtype = match config.precision {
-            Precision::F32 => DType::F32,
-            Precision::F64 => DType::F64,
+        let parts = Parts::new(data.database)?;
+        let manifest = data.database.manifest();
+        let rows = if config.mirror {
+            with_mirrored(&parts.training)
+        } else {
+            parts.training.clone()
         };
-        let options = TensorCreationOptions::new(backend.device()).with_dtype(dtype);
         let state = match start {
             Start::State { state, .. } => Some(State::read(state)?),
             Start::Fresh | Start::Weights(_) => None,
         };
-        let described = match config.mirror {
-            true => with_mirrored(&parts.training),
-            false => parts.training.clone(),
-        };
-        let manifest = data.database.manifest();
-        let initial = match start {
-            Start::Weights(parent) => {
-                check_parent(parent, config, backend)?;
-                let initial = Initial::new(parent, &described, &manifest.hinge, config.mirror)?;
-                Some(initial)
+        let (layers, scales) = match (start, &state) {
+            (Start::Weights(pretrained), _) => {
+                check_pretrained(pretrained, config, backend)?;
+                let initial = Initial::new(pretrained, &rows, &manifest.hinge, config.mirror)?;
+                (Some(initial.layers), initial.scales)
             }
-            Start::Fresh | Start::State { .. } => None,
-        };
-        let scales = match (&initial, &state) {
-            (Some(initial), _) => initial.scales,
-            (None, Some(state)) => {
-                Scales::of_card(&state.progress.card, &described, config.mirror)?
+            (_, Some(state)) => {
+                let card = &state.progress.card;
+                (None, Scales::from_card(card, &rows, config.mirror)?)
             }
-            (None, None) => Scales::of(&described, config.mirror)?,
+            (_, None) => (None, Scales::new(&rows, config.mirror)?),
         };
-        let mut card = card(manifest, &described, &scales, config)?;
-        card.lesson = data.record().cloned();
+        let mut card = card(manifest, &rows, &scales, config)?;
+        card.distillation = data.record().cloned();
         match start {
             Start::Fresh => {}
-            Start::Weights(parent) => inherit(&mut card, parent, &described),
-            Start::State { parent, .. } => card.fine_tuned_from = parent.map(Surrogate::hash),
+            Start::Weights(pretrained) => inherit(&mut card, pretrained, &rows),
+            Start::State { pretrained, .. } => {
+                card.fine_tuned_from = pretrained.map(Surrogate::hash);
+            }
         }
-        let networks = match &initial {
-            Some(initial) => Networks::of_layers(&initial.layers, config.mirror, &options),
-            None => Networks::new(
-                &config.embedding,
-                &config.damage,
-                scales.peak.is_some(),
-                config.mirror,
-                config.seed,
-                &options,
-            ),
+        let options = options(config, backend);
+        let networks = match &layers {
+            Some(layers) => Networks::from_layers(layers, config.mirror, &options),
+            None => Networks::new(config, scales.peak.is_some(), &options),
         };
         let solved = parts.training.iter().map(|row| (&row.design, &row.sample));
-        let taught = data.lesson.into_iter().flat_map(|lesson| &lesson.samples);
-        let taught = taught.map(|(design, sample)| (design, sample));
+        let distilled = data.distillation.into_iter();
+        let distilled = distilled.flat_map(|distillation| &distillation.samples);
+        let distilled = distilled.map(|(design, sample)| (design, sample));
         let mut training = Self {
             config: config.clone(),
             options,
-            samples: (solved.chain(taught))
+            samples: (solved.chain(distilled))
                 .map(|(design, sample)| scales.sample(design, sample))
                 .collect(),
             parts,
@@ -182,7 +172,7 @@ impl Training {
             elapsed_s: 0.0,
         };
         if let Some(state) = state {
-            training.go_on(state)?;
+            training.resume(state)?;
         }
         training.networks = training.networks.frozen(config.frozen_layers);
         Ok(training)
@@ -190,7 +180,12 @@ impl Training {
 
     /// Whether all epochs have been run, or the number of epochs without improvement has reached the patience.
     pub fn is_finished(&self) -> bool {
-        let since_best = self.history.iter().rev().take_while(|it| !it.best).count();
+        let since_best = self
+            .history
+            .iter()
+            .rev()
+            .take_while(|epoch| !epoch.best)
+            .count();
         let patience = self.config.patience.unwrap_or(usize::MAX);
         self.history.len() >= self.config.epochs || since_best >= patience
     }
@@ -200,7 +195,7 @@ impl Training {
         &self.history
     }
 
-    /// One pass over the training rows, and the states of the lesson.
+    /// One pass over the training rows, and the states of the distillation.
     pub fn epoch(&mut self) -> Result<Epoch, TrainError> {
         let epoch = self.history.len() + 1;
         let training_loss = self.descend(epoch)?;
@@ -213,14 +208,17 @@ impl Training {
             return Err(diverged);
         }
         let surrogate = export(&self.networks, &self.card)?;
-        let validation = Parity::of(&surrogate, &self.parts.validation);
+        let validation = Parity::new(&surrogate, &self.parts.validation);
         let validation_loss = validation.loss(&self.scales, &self.config);
         if !validation_loss.is_finite() {
             return Err(diverged);
         }
         let errors = validation.network_errors();
         let better = [0, 1, 2].map(|network| {
-            let before = self.history.iter().map(|it| it.validation_errors[network]);
+            let before = self
+                .history
+                .iter()
+                .map(|epoch| epoch.validation_errors[network]);
             errors[network] < before.fold(f64::INFINITY, f64::min)
         });
         // The networks have no common layers, and the damage heads overfit earlier. Without a known error, the network of
@@ -253,13 +251,13 @@ impl Training {
     pub fn finish(mut self) -> Result<Trained, TrainError> {
         self.card.training_s = self.history.last().map(|epoch| epoch.elapsed_s);
         let best = export(&self.best, &self.card)?;
-        let parity = Parity::of(&best, &self.parts.test);
+        let parity = Parity::new(&best, &self.parts.test);
         let test_errors = parity.errors();
         let bins = error_bins(&parity, &self.parts.test, &self.card.domain);
         let last = export(&self.networks, &self.card)?;
-        let last_errors = Parity::of(&last, &self.parts.test).errors();
+        let last_errors = Parity::new(&last, &self.parts.test).errors();
         Ok(Trained {
-            stiffness: StiffnessCheck::of(&best, &self.parts.test),
+            stiffness: StiffnessCheck::new(&best, &self.parts.test),
             surrogate: best.with_test_errors(test_errors, bins),
             last: last.with_test_errors(last_errors, Vec::new()),
             history: self.history,
@@ -275,7 +273,7 @@ impl Training {
         Ok(())
     }
 
-    fn go_on(&mut self, state: State) -> Result<(), TrainError> {
+    fn resume(&mut self, state: State) -> Result<(), TrainError> {
         state.check(&self.card)?;
         let Progress { card, history, .. } = state.progress.clone();
         self.elapsed_s = history.last().map_or(0.0, |epoch| epoch.elapsed_s);
@@ -322,7 +320,7 @@ impl Training {
 }
 
 impl Parts {
-    fn of(database: &Database) -> Result<Self, TrainError> {
+    fn new(database: &Database) -> Result<Self, TrainError> {
         let part = |part, name| match database.part(part) {
             rows if rows.is_empty() => Err(TrainError::NoRows { part: name }),
             rows => Ok(rows),
@@ -333,6 +331,15 @@ impl Parts {
             test: part(Part::Test, "test")?,
         })
     }
+}
+
+/// Where and in which number type the tensors are.
+fn options(config: &TrainingConfig, backend: Backend) -> TensorCreationOptions {
+    let dtype = match config.precision {
+        Precision::F32 => DType::F32,
+        Precision::F64 => DType::F64,
+    };
+    TensorCreationOptions::new(backend.device()).with_dtype(dtype)
 }
 
 /// The card before training; the test errors are added at the end.
@@ -363,7 +370,7 @@ fn card(
         tier: manifest.tier.clone(),
         dataset_hash: manifest.hash.clone(),
         fine_tuned_from: None,
-        lesson: None,
+        distillation: None,
         split_hash: manifest.split_hash.clone(),
         training: serde_json::to_value(config)
             .expect("a configuration of numbers and lists can always be written as JSON"),
@@ -372,7 +379,6 @@ fn card(
         test_errors: TestErrors::default(),
         error_bins: Vec::new(),
         spot_check: None,
-        spot_check_inside: None,
     })
 }
 

@@ -2,117 +2,51 @@
 
 use crate::config::TrainingConfig;
 use crate::samples::Scales;
-use dataset::Row;
+use dataset::{ComparedState, Row};
+use support::statistics::root_mean_square;
 use surrogate::{FitError, Surrogate, TestErrors};
 
-/// One value of the finite elements and of the surrogate.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ParityPoint {
-    /// Value of the finite elements; NaN if it is unknown.
-    pub target: f64,
-    /// Value of the surrogate.
-    pub predicted: f64,
-}
-
-/// Targets and predictions of every row, in the order of the rows.
+/// Predictions of a surrogate with their targets, the values of the finite elements, one state a row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Parity {
-    /// W (N mm)
-    pub energy: Vec<ParityPoint>,
-    /// F_a (N)
-    pub f_a: Vec<ParityPoint>,
-    /// F_s (N)
-    pub f_s: Vec<ParityPoint>,
-    /// M_theta (N mm)
-    pub m_theta: Vec<ParityPoint>,
-    /// D
-    pub damage: Vec<ParityPoint>,
-    /// D_peak; empty if the surrogate does not predict it.
-    pub damage_peak: Vec<ParityPoint>,
+    /// Targets (`reference`) and predictions (`value`), in the order of the rows. Quantities that are not known, or that the
+    /// surrogate does not predict, are NaN.
+    pub states: Vec<ComparedState>,
 }
 
 impl Parity {
     /// Evaluates the surrogate at every row.
-    pub fn of(surrogate: &Surrogate, rows: &[Row]) -> Self {
+    pub fn new(surrogate: &Surrogate, rows: &[Row]) -> Self {
         let (designs, deformations): (Vec<_>, Vec<_>) = rows
             .iter()
             .map(|row| (row.design, row.sample.deformation()))
             .unzip();
-        let mut parity = Self::default();
-        for (row, found) in rows.iter().zip(surrogate.samples(&designs, &deformations)) {
-            let target = row.sample;
-            let pairs = [
-                (&mut parity.energy, target.w, Some(found.w)),
-                (&mut parity.f_a, target.f_a, Some(found.f_a)),
-                (&mut parity.f_s, target.f_s, Some(found.f_s)),
-                (&mut parity.m_theta, target.m_theta, Some(found.m_theta)),
-                (&mut parity.damage, target.d, Some(found.d)),
-                (
-                    &mut parity.damage_peak,
-                    target.d_peak.unwrap_or(f64::NAN),
-                    found.d_peak,
-                ),
-            ];
-            for (points, target, predicted) in pairs {
-                points.extend(predicted.map(|predicted| ParityPoint { target, predicted }));
-            }
+        let predictions = surrogate.samples(&designs, &deformations);
+        let states = std::iter::zip(&predictions, rows)
+            .map(|(prediction, row)| ComparedState::new(prediction, &row.sample));
+        Self {
+            states: states.collect(),
         }
-        parity
     }
 
-    /// The mean of the predictions of several surrogates for the same rows.
-    pub fn mean(members: &[Self]) -> Self {
-        let mean = |points: fn(&Self) -> &[ParityPoint]| {
-            let count = members.len() as f64;
-            let of_row = |row: usize, target: f64| ParityPoint {
-                target,
-                predicted: members
-                    .iter()
-                    .map(|it| points(it)[row].predicted)
-                    .sum::<f64>()
-                    / count,
-            };
-            let targets = members.iter().take(1).flat_map(points).enumerate();
-            targets
-                .map(|(row, point)| of_row(row, point.target))
-                .collect()
-        };
-        Self {
-            energy: mean(|it| &it.energy),
-            f_a: mean(|it| &it.f_a),
-            f_s: mean(|it| &it.f_s),
-            m_theta: mean(|it| &it.m_theta),
-            damage: mean(|it| &it.damage),
-            damage_peak: mean(|it| &it.damage_peak),
-        }
+    /// [target, prediction] of the quantity `i` of [`dataset::COMPARED`] in every state.
+    pub fn points(&self, i: usize) -> impl Iterator<Item = [f64; 2]> {
+        self.states
+            .iter()
+            .map(move |state| [state.reference[i], state.value[i]])
     }
 
     /// The errors by quantity.
     pub fn errors(&self) -> TestErrors {
-        TestErrors {
-            rows: self.energy.len(),
-            energy: fit_error(&self.energy),
-            f_a: fit_error(&self.f_a),
-            f_s: fit_error(&self.f_s),
-            m_theta: fit_error(&self.m_theta),
-            damage: fit_error(&self.damage),
-            damage_peak: fit_error(&self.damage_peak),
-        }
+        let by_quantity = std::array::from_fn(|i| fit_error(self.points(i)));
+        TestErrors::new(self.states.len(), by_quantity)
     }
 
-    /// The targets and predictions of the rows with these indices.
+    /// The states of the rows with these indices.
     pub(crate) fn of_rows(&self, indices: &[usize]) -> Self {
-        let some = |points: &[ParityPoint]| {
-            let chosen = indices.iter().filter_map(|&index| points.get(index));
-            chosen.copied().collect()
-        };
+        let states = indices.iter().map(|&index| self.states[index]);
         Self {
-            energy: some(&self.energy),
-            f_a: some(&self.f_a),
-            f_s: some(&self.f_s),
-            m_theta: some(&self.m_theta),
-            damage: some(&self.damage),
-            damage_peak: some(&self.damage_peak),
+            states: states.collect(),
         }
     }
 
@@ -122,21 +56,18 @@ impl Parity {
         let force_weight = (1.0 - config.energy_weight) / 3.0;
         let damages = 1 + usize::from(scales.peak.is_some());
         let damage_weight = config.damage_weight / damages as f64;
-        [
-            (&self.energy, scales.energy, config.energy_weight),
-            (&self.f_a, f_a, force_weight),
-            (&self.f_s, f_s, force_weight),
-            (&self.m_theta, m_theta, force_weight),
-            (&self.damage, scales.damage, damage_weight),
-        ]
-        .into_iter()
-        .chain(
-            scales
-                .peak
-                .map(|scale| (&self.damage_peak, scale, damage_weight)),
-        )
-        .map(|(points, scale, weight)| weight * (rms_error(points) / scale).powi(2))
-        .sum()
+        let terms = [
+            (scales.energy, config.energy_weight),
+            (f_a, force_weight),
+            (f_s, force_weight),
+            (m_theta, force_weight),
+            (scales.damage, damage_weight),
+        ];
+        let peak = scales.peak.map(|scale| (scale, damage_weight));
+        let terms = terms.into_iter().chain(peak).enumerate();
+        terms
+            .map(|(i, (scale, weight))| weight * (rms_error(self.points(i)) / scale).powi(2))
+            .sum()
     }
 
     /// The relative root mean square error of each network, by which its best epoch is chosen: the geometric mean of
@@ -145,65 +76,56 @@ impl Parity {
     /// error of each state is limited to the root mean square of its quantity, so that a single ray far from all
     /// training rays does not determine the choice.
     pub(crate) fn network_errors(&self) -> [f64; 3] {
-        let potential = [&self.energy, &self.f_a, &self.f_s, &self.m_theta];
-        let potential = potential.map(|points| limited_error(points));
-        let known: Vec<f64> = potential.into_iter().filter(|it| !it.is_nan()).collect();
+        let [w, f_a, f_s, m_theta, damage, damage_peak] =
+            std::array::from_fn(|i| limited_error(self.points(i)));
+        let potential = [w, f_a, f_s, m_theta].into_iter();
+        let known: Vec<f64> = potential.filter(|error| !error.is_nan()).collect();
         let mean = match known.len() {
             0 => f64::NAN,
             count => known.iter().product::<f64>().powf(1.0 / count as f64),
         };
-        [
-            mean,
-            limited_error(&self.damage),
-            limited_error(&self.damage_peak),
-        ]
+        [mean, damage, damage_peak]
     }
 }
 
 /// The root mean square error divided by the root mean square of the targets, each error being limited to the latter; NaN
-/// if no target is known, or all are zero.
-fn limited_error(points: &[ParityPoint]) -> f64 {
-    let targets: Vec<f64> = known(points).map(|point| point.target).collect();
-    let target = root_mean_square(targets.into_iter());
-    let errors = known(points).map(|point| (point.predicted - point.target).abs().min(target));
-    let errors: Vec<f64> = errors.collect();
+/// if no target is known and predicted, or all are zero.
+fn limited_error(points: impl Iterator<Item = [f64; 2]>) -> f64 {
+    let known: Vec<[f64; 2]> = known(points)
+        .filter(|[_, predicted]| !predicted.is_nan())
+        .collect();
+    let target = root_mean_square(known.iter().map(|[target, _]| *target));
+    let errors = known
+        .iter()
+        .map(|[target_here, predicted]| (predicted - target_here).abs().min(target));
     if target > 0.0 {
-        root_mean_square(errors.into_iter()) / target
+        root_mean_square(errors) / target
     } else {
         f64::NAN
     }
 }
 
-/// Root mean square of the values; zero if there are none.
-pub(crate) fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let count = values.len().max(1) as f64;
-    (values.map(|value| value * value).sum::<f64>() / count).sqrt()
-}
-
-fn rms_error(points: &[ParityPoint]) -> f64 {
-    let known: Vec<f64> = known(points)
-        .map(|point| point.predicted - point.target)
-        .collect();
-    root_mean_square(known.into_iter())
+fn rms_error(points: impl Iterator<Item = [f64; 2]>) -> f64 {
+    root_mean_square(known(points).map(|[target, predicted]| predicted - target))
 }
 
 /// The points whose target is known.
-fn known(points: &[ParityPoint]) -> impl Iterator<Item = &ParityPoint> {
-    points.iter().filter(|point| !point.target.is_nan())
+fn known(points: impl Iterator<Item = [f64; 2]>) -> impl Iterator<Item = [f64; 2]> {
+    points.filter(|[target, _]| !target.is_nan())
 }
 
-/// Errors relative to the targets; not known if no target is known, or all are zero.
-pub(crate) fn fit_error(points: &[ParityPoint]) -> FitError {
-    let targets: Vec<f64> = known(points).map(|point| point.target).collect();
-    let target = root_mean_square(targets.into_iter());
-    let nonzero = known(points).filter(|point| point.target != 0.0);
+/// Errors of points [target, prediction] relative to the targets; not known if no target is known, or all are zero.
+pub(crate) fn fit_error(points: impl Iterator<Item = [f64; 2]>) -> FitError {
+    let points: Vec<[f64; 2]> = known(points).collect();
+    let target = root_mean_square(points.iter().map(|[target, _]| *target));
+    let nonzero = points.iter().filter(|[target, _]| *target != 0.0);
     let mut relative: Vec<f64> = nonzero
-        .map(|point| ((point.predicted - point.target) / point.target).abs())
+        .map(|[target, predicted]| ((predicted - target) / target).abs())
         .collect();
     relative.sort_by(f64::total_cmp);
     match relative.get(relative.len() / 2) {
         Some(&median) => FitError {
-            relative_rmse: rms_error(points) / target,
+            relative_rmse: rms_error(points.into_iter()) / target,
             median,
         },
         None => FitError::unknown(),
@@ -216,9 +138,8 @@ mod tests {
 
     #[test]
     fn errors_are_relative_to_the_targets() {
-        let points = [(0.0, 0.3), (3.0, 3.3), (-4.0, -4.0), (5.0, 4.0)]
-            .map(|(target, predicted)| ParityPoint { target, predicted });
-        let error = fit_error(&points);
+        let points = [[0.0, 0.3], [3.0, 3.3], [-4.0, -4.0], [5.0, 4.0]];
+        let error = fit_error(points.into_iter());
         let expected = ((0.09 + 0.09 + 1.0) / 50.0_f64).sqrt();
         assert!((error.relative_rmse - expected).abs() < 1e-12);
         assert!((error.median - 0.1).abs() < 1e-12);
@@ -226,31 +147,28 @@ mod tests {
 
     #[test]
     fn the_error_of_one_outlying_state_is_limited() {
-        let point = |predicted| ParityPoint {
-            target: 2.0,
-            predicted,
-        };
-        let errors = [point(2.1), point(1.9), point(f64::INFINITY)];
-        assert!((limited_error(&errors[..2]) - 0.05).abs() < 1e-12);
-        assert!(
-            (limited_error(&errors) - (0.0025 * 2.0 / 3.0 + 1.0 / 3.0_f64).sqrt()).abs() < 1e-12
-        );
-        let unknown = ParityPoint {
-            target: f64::NAN,
-            predicted: 1.0,
-        };
-        let zero = ParityPoint {
-            target: 0.0,
-            predicted: 1.0,
-        };
+        let limited = |points: &[[f64; 2]]| limited_error(points.iter().copied());
+        let fit = |points: &[[f64; 2]]| fit_error(points.iter().copied());
+        let errors = [[2.0, 2.1], [2.0, 1.9], [2.0, f64::INFINITY]];
+        assert!((limited(&errors[..2]) - 0.05).abs() < 1e-12);
+        assert!((limited(&errors) - (0.0025 * 2.0 / 3.0 + 1.0 / 3.0_f64).sqrt()).abs() < 1e-12);
+        let (unknown, zero) = ([f64::NAN, 1.0], [0.0, 1.0]);
         for points in [vec![], vec![unknown], vec![zero, unknown]] {
-            assert!(limited_error(&points).is_nan());
-            assert!(fit_error(&points).relative_rmse.is_nan());
-            assert!(fit_error(&points).median.is_nan());
+            assert!(limited(&points).is_nan());
+            assert!(fit(&points).relative_rmse.is_nan());
+            assert!(fit(&points).median.is_nan());
         }
         assert_eq!(
-            fit_error(&[point(2.1), unknown]).relative_rmse,
-            fit_error(&[point(2.1)]).relative_rmse
+            fit(&[[2.0, 2.1], unknown]).relative_rmse,
+            fit(&[[2.0, 2.1]]).relative_rmse
         );
+    }
+
+    #[test]
+    fn a_quantity_without_a_network_has_no_known_error() {
+        let unpredicted = [[2.0, f64::NAN], [1.0, f64::NAN]];
+        assert!(limited_error(unpredicted.into_iter()).is_nan());
+        assert!(fit_error(unpredicted.into_iter()).relative_rmse.is_nan());
+        assert!(fit_error(unpredicted.into_iter()).median.is_nan());
     }
 }

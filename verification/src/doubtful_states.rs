@@ -137,7 +137,7 @@ mod tests {
 
     #[test]
     fn rays_pass_through_states_far_from_each_other_and_from_their_mirror_images() {
-        let domain = TrainingDomain::of_box(
+        let domain = TrainingDomain::from_box(
             [[-0.8, 0.2], [-0.4, 0.4], [-0.1, 1.3]],
             [5.0, 25.0],
             [0.8, 2.3],

@@ -193,7 +193,7 @@ impl LearningRound {
             cpu_s: tally.cpu_seconds,
             training_s,
             inside: inside.count(),
-            errors: Parity::of(weights, task.spot).errors(),
+            errors: Parity::new(weights, task.spot).errors(),
         })
     }
 

@@ -38,7 +38,7 @@ pub fn judging_tier(
 }
 
 fn tier_of(trained_on: &str) -> Result<Tier, VerificationError> {
-    let tier = Fidelity::of(trained_on).mesh().parse();
+    let tier = Fidelity::from_tier(trained_on).mesh().parse();
     tier.map_err(|_| VerificationError::NoTier {
         trained_on: trained_on.to_owned(),
     })

@@ -2,7 +2,7 @@
 
 use crate::learning::LearningRound;
 use std::fmt;
-use surrogate::number_or_dash;
+use support::table::number_or_dash;
 
 impl LearningRound {
     /// The columns of a round that is displayed.

@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn states_are_uniform_inside_the_domain() {
         let state = [[-0.8, 0.2], [-0.4, 0.4], [-0.1, 1.3]];
-        let domain = TrainingDomain::of_box(state, [5.0, 25.0], [0.8, 2.3]);
+        let domain = TrainingDomain::from_box(state, [5.0, 25.0], [0.8, 2.3]);
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let mut counts = [0; 4];
         let mut all = 0;

@@ -219,7 +219,11 @@ mod tests {
         let state = [[-0.02, 0.03], [-0.02, 0.02], [0.0, 0.1]];
         config.objective(&Setting {
             target: &Target::sample(&circle, Path::new(""), config.target_points).unwrap(),
-            law: Some(&Law(TrainingDomain::of_box(state, [1.0, 2.5], [0.8, 1.5]))),
+            law: Some(&Law(TrainingDomain::from_box(
+                state,
+                [1.0, 2.5],
+                [0.8, 1.5],
+            ))),
             mean_panel_area: 10.0,
             r_win: 10.0,
         })

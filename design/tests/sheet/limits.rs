@@ -78,7 +78,7 @@ fn the_maximum_stretch_is_that_of_equation_six_and_no_opening_exceeds_it() {
 fn windows_and_cut_angles_are_compared_with_the_hinges() {
     let pattern = cases::pattern(&case("p0_3x3_uniform"));
     let state = [[-0.1, 0.1], [-0.1, 0.1], [0.0, 1.0]];
-    let domain = |alpha, w_lig| TrainingDomain::of_box(state, w_lig, alpha);
+    let domain = |alpha, w_lig| TrainingDomain::from_box(state, w_lig, alpha);
     let measured = |r_win: f64, domain: &TrainingDomain| {
         let mut options = AT_CORNER;
         options.process.r_win = r_win;

@@ -81,7 +81,7 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
     };
     let domain = DomainPenalty {
         domain: law.map(|_| {
-            TrainingDomain::of_box(
+            TrainingDomain::from_box(
                 [[-0.02, 0.0], [-0.01, 0.01], [0.0, 0.02]],
                 [15.0, 17.0],
                 [1.5, 1.6],

@@ -119,7 +119,7 @@ impl Damage {
             d_window: plastic_integral / (fracture * mesh.volume()),
             d_peak: mean_of_first(&points, PEAK_FRACTION * ligament) / fracture,
             strain_max: points.first().map_or(0.0, |(strain, _)| *strain),
-            strain_volumes: StrainVolumes::of(points),
+            strain_volumes: StrainVolumes::from_points(points),
         }
     }
 }

@@ -55,7 +55,7 @@ impl TrainingDomain {
     }
 
     /// The domain of a box of states; an interval may have zero length.
-    pub fn of_box(state: [[f64; 2]; 3], w_lig: [f64; 2], alpha: [f64; 2]) -> Self {
+    pub fn from_box(state: [[f64; 2]; 3], w_lig: [f64; 2], alpha: [f64; 2]) -> Self {
         let mut domain = Self {
             w_lig,
             alpha,

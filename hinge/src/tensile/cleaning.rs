@@ -75,9 +75,10 @@ pub(super) fn cleaned(rows: &[RecordRow]) -> Result<Cleaned, u64> {
     }
     let mut kept = Vec::with_capacity(rows.len());
     for (row, loading) in rows.iter().zip(&is_loading) {
-        match loading {
-            true => kept.push(*row),
-            false => drop(row, Cause::Unloading),
+        if *loading {
+            kept.push(*row)
+        } else {
+            drop(row, Cause::Unloading)
         }
     }
     let end = break_of(&kept);

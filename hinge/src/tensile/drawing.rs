@@ -49,9 +49,10 @@ impl Drawing {
         let [sigma, plastic] = [self.yields_at(), self.from[1]];
         let rise = self.to[0] - sigma;
         // A cut yield stress is constant up to the natural draw ratio.
-        let exponent = match self.mean > sigma {
-            true => rise / (self.mean - sigma) - 1.0,
-            false => f64::INFINITY,
+        let exponent = if self.mean > sigma {
+            rise / (self.mean - sigma) - 1.0
+        } else {
+            f64::INFINITY
         };
         let point = |index: usize| {
             let x = index as f64 / count as f64;

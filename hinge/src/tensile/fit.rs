@@ -112,8 +112,8 @@ const NECK_POINTS: usize = 100;
 const DIGITS: [i32; 2] = [3, 5];
 
 impl Statistic {
-    /// Of at least one value.
-    pub fn of(values: impl Iterator<Item = f64>) -> Self {
+    /// The statistic of at least one value.
+    pub fn new(values: impl Iterator<Item = f64>) -> Self {
         let values: Vec<f64> = values.collect();
         let count = values.len() as f64;
         let mean = values.iter().sum::<f64>() / count;
@@ -135,18 +135,18 @@ impl MaterialFit {
         };
         let specimens: Vec<Specimen> = records.iter().map(evaluate).collect::<Result<_, _>>()?;
         same_kind(&specimens)?;
-        let over = |value: fn(&Specimen) -> f64| Statistic::of(specimens.iter().map(value));
+        let over = |value: fn(&Specimen) -> f64| Statistic::new(specimens.iter().map(value));
         let drawn = |value: fn(&Draw) -> f64| {
             let draws: Option<Vec<f64>> = (specimens.iter())
                 .map(|specimen| specimen.draw.as_ref().map(value))
                 .collect();
-            draws.map(|values| Statistic::of(values.into_iter()))
+            draws.map(|values| Statistic::new(values.into_iter()))
         };
         let young = over(|specimen| specimen.young);
         let (plateau, draw_ratio) = (drawn(|draw| draw.plateau), drawn(|draw| draw.draw_ratio));
         let (mut curve, cut_yield) = hardening(&specimens, young.mean, plateau.zip(draw_ratio))?;
         let fracture = fracture(&specimens, options, &curve)?;
-        let necks = specimens.iter().all(|it| it.end == End::Neck);
+        let necks = specimens.iter().all(|specimen| specimen.end == End::Neck);
         let end = curve[curve.len() - 1];
         if necks && fracture.strain > end.strain {
             curve.push(HardeningRow {
@@ -186,8 +186,8 @@ fn hardening(
     young: f64,
     draw: Option<(Statistic, Statistic)>,
 ) -> Result<(Vec<HardeningRow>, Option<f64>), TensileError> {
-    let before: Vec<&[[f64; 2]]> = specimens.iter().map(|it| &*it.before).collect();
-    let end = Statistic::of(before.iter().map(|curve| last(curve)[1])).mean;
+    let before: Vec<&[[f64; 2]]> = specimens.iter().map(|specimen| &*specimen.before).collect();
+    let end = Statistic::new(before.iter().map(|curve| last(curve)[1])).mean;
     let mut uniform = mean_curve(&before, end);
     let Some((plateau, ratio)) = draw else {
         return Ok((marked(&uniform, Origin::Measured), None));
@@ -234,33 +234,33 @@ fn same_kind(specimens: &[Specimen]) -> Result<(), TensileError> {
     let names = |these: Vec<&Specimen>| {
         let names: Vec<String> = these
             .iter()
-            .map(|it| it.path.display().to_string())
+            .map(|specimen| specimen.path.display().to_string())
             .collect();
         names.join(", ")
     };
     let (drawn, others): (Vec<_>, Vec<_>) = specimens.iter().partition(draws);
-    match drawn.is_empty() || others.is_empty() {
-        true => Ok(()),
-        false => Err(TensileError::Specimens(format!(
+    if drawn.is_empty() || others.is_empty() {
+        Ok(())
+    } else {
+        Err(TensileError::Specimens(format!(
             "{} have a draw plateau, {} have none: fit them apart, or leave out specimens that broke early",
             names(drawn),
             names(others)
-        ))),
+        )))
     }
 }
 
 /// The mean curve from the natural draw ratio at `start` to the mean end.
 fn drawn_curve(specimens: &[Specimen], start: [f64; 2]) -> Vec<[f64; 2]> {
     let shifted: Vec<Vec<[f64; 2]>> = (specimens.iter())
-        .map(|it| {
-            it.after
-                .iter()
-                .map(|row| [row[0], row[1] - it.after[0][1]])
-                .collect()
+        .map(|specimen| {
+            let after = &specimen.after;
+            let rows = after.iter().map(|row| [row[0], row[1] - after[0][1]]);
+            rows.collect()
         })
         .collect();
     let curves: Vec<&[[f64; 2]]> = shifted.iter().map(Vec::as_slice).collect();
-    let end = Statistic::of(curves.iter().map(|curve| last(curve)[1])).mean;
+    let end = Statistic::new(curves.iter().map(|curve| last(curve)[1])).mean;
     if end <= 0.0 {
         return Vec::new();
     }
@@ -284,16 +284,17 @@ fn fracture(
 ) -> Result<Fracture, TensileError> {
     let end = curve[curve.len() - 1].strain;
     if let Some(strain) = options.fracture_strain {
-        return match strain >= end {
-            true => Ok(Fracture {
+        return if strain >= end {
+            Ok(Fracture {
                 strain,
                 scatter: None,
                 source: FractureSource::Given,
-            }),
-            false => Err(TensileError::Specimens(format!(
+            })
+        } else {
+            Err(TensileError::Specimens(format!(
                 "--fracture-strain {strain} is less than the plastic strain {end:.4} that the specimens reach on \
                  average: it is ln(A0 / A), from the section A of the broken specimen"
-            ))),
+            )))
         };
     }
     let worst = |of| specimens.iter().any(|specimen| specimen.end == of);
@@ -303,16 +304,17 @@ fn fracture(
         _ if specimens.iter().all(Specimen::broke) => FractureSource::Break,
         _ => FractureSource::RecordEnd,
     };
-    let reached = |it: &Specimen| {
-        last(if it.after.is_empty() {
-            &it.before
+    let reached = |specimen: &Specimen| {
+        let drawn = !specimen.after.is_empty();
+        last(if drawn {
+            &specimen.after
         } else {
-            &it.after
+            &specimen.before
         })[1]
     };
     Ok(Fracture {
         strain: end,
-        scatter: Statistic::of(specimens.iter().map(reached)).deviation,
+        scatter: Statistic::new(specimens.iter().map(reached)).deviation,
         source,
     })
 }

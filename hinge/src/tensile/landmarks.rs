@@ -4,6 +4,7 @@
 //! stretches, and the nominal strain is their average. The curve is local again where the neck has covered the
 //! specimen and the stress rises from the plateau.
 
+use crate::tensile::regression::interpolated;
 use serde::Serialize;
 
 /// Plastic strain at the yield stress Rp0.2 (ISO 6892-1).
@@ -57,9 +58,10 @@ pub(super) fn offset_yield(curve: &[[f64; 2]], young: f64, from: usize) -> Optio
     let after = &curve[from.min(curve.len())..];
     let crossing = after.windows(2).find(|pair| above(&pair[1]) <= 0.0)?;
     let [before, after] = [above(&crossing[0]), above(&crossing[1])];
-    let share = match before > 0.0 {
-        true => before / (before - after),
-        false => 0.0,
+    let share = if before > 0.0 {
+        before / (before - after)
+    } else {
+        0.0
     };
     Some(crossing[0][1] + share * (crossing[1][1] - crossing[0][1]))
 }
@@ -128,9 +130,10 @@ pub(super) fn draw(
 pub(super) fn uniform_end(curve: &[[f64; 2]], from: usize, noise: f64) -> (usize, bool) {
     let last = curve.len() - 1;
     let top = highest(curve, from, curve.len());
-    match curve[last][1] < curve[top][1] - change(curve[top][1], noise) {
-        true => (top, true),
-        false => (last, false),
+    if curve[last][1] < curve[top][1] - change(curve[top][1], noise) {
+        (top, true)
+    } else {
+        (last, false)
     }
 }
 
@@ -168,7 +171,9 @@ fn highest(curve: &[[f64; 2]], from: usize, to: usize) -> usize {
 fn plateau_end(curve: &[[f64; 2]]) -> [f64; 2] {
     let [from, to] = [curve[0][0], curve[curve.len() - 1][0]];
     let strain = |point: usize| from + (to - from) * point as f64 / POINTS as f64;
-    let stresses: Vec<f64> = (0..=POINTS).map(|point| at(curve, strain(point))).collect();
+    let stresses: Vec<f64> = (0..=POINTS)
+        .map(|point| interpolated(curve, 1, strain(point)))
+        .collect();
     let mut best = [f64::INFINITY, stresses[0], from];
     let mut sum = 0.0;
     for end in 0..POINTS {
@@ -185,12 +190,13 @@ fn plateau_end(curve: &[[f64; 2]]) -> [f64; 2] {
             xxy += x * x * y;
         }
         let determinant = xx * xxxx - xxx * xxx;
-        let (b, c) = match determinant > 1e-9 * xx * xxxx {
-            true => (
+        let (b, c) = if determinant > 1e-9 * xx * xxxx {
+            (
                 (xy * xxxx - xxy * xxx) / determinant,
                 (xx * xxy - xxx * xy) / determinant,
-            ),
-            false => (xy / xx, 0.0),
+            )
+        } else {
+            (xy / xx, 0.0)
         };
         let flat: f64 = stresses[..=end].iter().map(|s| (s - level).powi(2)).sum();
         let rising = (end + 1..=POINTS).map(rise);
@@ -203,19 +209,6 @@ fn plateau_end(curve: &[[f64; 2]]) -> [f64; 2] {
         }
     }
     [best[1], best[2]]
-}
-
-/// Linear interpolation of a curve [x, y] with increasing x; constant beyond its ends.
-pub(super) fn at(curve: &[[f64; 2]], x: f64) -> f64 {
-    let after = curve.partition_point(|row| row[0] < x);
-    match after {
-        0 => curve[0][1],
-        after if after == curve.len() => curve[after - 1][1],
-        after => {
-            let ([x0, y0], [x1, y1]) = (curve[after - 1], curve[after]);
-            y0 + (y1 - y0) * (x - x0) / (x1 - x0)
-        }
-    }
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! rows stay on its line, and the line is fitted again. ISO 527-1 and ASTM D638 extend the line to zero stress: the strain
 //! there is the slack and toe of the curve, and is subtracted from all strains.
 
+use crate::tensile::regression::Regression;
 use serde::Serialize;
 
 /// The linear part of a curve.
@@ -29,6 +30,8 @@ struct Line {
     slope: f64,
     /// Strain at zero stress.
     zero: f64,
+    /// Sum of the squared deviations of the strain from its mean.
+    squares: f64,
 }
 
 /// Fraction of the maximum stress that the seed covers.
@@ -84,30 +87,23 @@ impl LinearPart {
 impl Line {
     /// The regression of the stress on the strain.
     fn fitted(curve: &[[f64; 2]], first: usize, last: usize) -> Option<Self> {
-        let rows = &curve[first..=last];
-        let count = rows.len() as f64;
-        let mean = |of: usize| rows.iter().map(|row| row[of]).sum::<f64>() / count;
-        let [strain, stress] = [mean(0), mean(1)];
-        let (mut variance, mut covariance) = (0.0, 0.0);
-        for row in rows {
-            variance += (row[0] - strain).powi(2);
-            covariance += (row[0] - strain) * (row[1] - stress);
-        }
-        let slope = covariance / variance;
+        let Regression {
+            mean: [strain, stress],
+            squares,
+            slope,
+        } = Regression::new(&curve[first..=last]);
         slope.is_finite().then(|| Self {
             first,
             last,
             slope,
             zero: strain - stress / slope,
+            squares,
         })
     }
 
     /// Standard error of the slope for the noise of strain and stress.
-    fn error(&self, curve: &[[f64; 2]], noise: [f64; 2]) -> f64 {
-        let rows = &curve[self.first..=self.last];
-        let mean = rows.iter().map(|row| row[0]).sum::<f64>() / rows.len() as f64;
-        let variance: f64 = rows.iter().map(|row| (row[0] - mean).powi(2)).sum();
-        f64::hypot(noise[1], self.slope * noise[0]) / variance.sqrt()
+    fn error(&self, noise: [f64; 2]) -> f64 {
+        f64::hypot(noise[1], self.slope * noise[0]) / self.squares.sqrt()
     }
 
     fn part(&self, curve: &[[f64; 2]]) -> LinearPart {
@@ -135,7 +131,7 @@ fn seed(curve: &[[f64; 2]], span: f64, noise: [f64; 2]) -> Option<Line> {
             break;
         }
         if let Some(line) = Line::fitted(curve, first, last) {
-            let score = line.slope - 2.0 * line.error(curve, noise);
+            let score = line.slope - 2.0 * line.error(noise);
             if line.slope > 0.0 && best.as_ref().is_none_or(|(other, _)| score > *other) {
                 best = Some((score, line));
             }
@@ -152,9 +148,10 @@ mod tests {
     fn curve(toe: f64) -> Vec<[f64; 2]> {
         let stress = |strain: f64| {
             let knee = 2.0 * toe;
-            let elastic = match strain < knee {
-                true => 2000.0 * strain * strain / (2.0 * knee),
-                false => 2000.0 * (strain - toe),
+            let elastic = if strain < knee {
+                2000.0 * strain * strain / (2.0 * knee)
+            } else {
+                2000.0 * (strain - toe)
             };
             elastic.min(40.0 + 10.0 * (strain - toe))
         };

@@ -1,5 +1,7 @@
 //! The mean hardening curve of several specimens.
 
+use crate::tensile::regression::interpolated;
+
 /// Number of intervals of the mean curve; they grow linearly, because a curve bends most after yield.
 const INTERVALS: usize = 400;
 
@@ -9,17 +11,20 @@ const INTERVALS: usize = 400;
 /// that a specimen that breaks early leaves no jump.
 pub(super) fn mean_curve(curves: &[&[[f64; 2]]], end: f64) -> Vec<[f64; 2]> {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let starts: Vec<f64> = curves.iter().map(|curve| stress(curve, 0.0)).collect();
+    let starts: Vec<f64> = curves
+        .iter()
+        .map(|curve| interpolated(curve, 0, 0.0))
+        .collect();
     let mut rows = vec![[mean(&starts), 0.0]];
     if end <= 0.0 {
         return rows;
     }
     for interval in 1..=INTERVALS {
         let [before, strain] =
-            [interval - 1, interval].map(|it| end * (it as f64 / INTERVALS as f64).powi(2));
+            [interval - 1, interval].map(|index| end * (index as f64 / INTERVALS as f64).powi(2));
         let reached = |curve: &&&[[f64; 2]]| curve.last().is_some_and(|row| row[1] >= before);
         let increments: Vec<f64> = (curves.iter().filter(reached))
-            .map(|curve| stress(curve, strain) - stress(curve, before))
+            .map(|curve| interpolated(curve, 0, strain) - interpolated(curve, 0, before))
             .collect();
         let increment = if increments.is_empty() {
             0.0
@@ -29,19 +34,6 @@ pub(super) fn mean_curve(curves: &[&[[f64; 2]]], end: f64) -> Vec<[f64; 2]> {
         rows.push([rows[rows.len() - 1][0] + increment, strain]);
     }
     rows
-}
-
-/// The stress of a curve at a strain, constant beyond its ends.
-pub(super) fn stress(curve: &[[f64; 2]], strain: f64) -> f64 {
-    let after = curve.partition_point(|row| row[1] < strain);
-    match after {
-        0 => curve[0][0],
-        after if after == curve.len() => curve[after - 1][0],
-        after => {
-            let ([s0, e0], [s1, e1]) = (curve[after - 1], curve[after]);
-            s0 + (s1 - s0) * (strain - e0) / (e1 - e0)
-        }
-    }
 }
 
 #[cfg(test)]

@@ -73,7 +73,7 @@ impl NumberTable {
         };
         let labels = labels(&rows[..start], width, decimal_comma)?;
         let filled =
-            |row: &&TextRow| !row.is_comment() && row.cells.iter().any(|it| !it.is_empty());
+            |row: &&TextRow| !row.is_comment() && row.cells.iter().any(|cell| !cell.is_empty());
         let rows = rows[start..].iter().filter(filled).cloned().collect();
         Ok(Self {
             labels,
@@ -93,7 +93,10 @@ impl NumberTable {
 impl TextRow {
     /// Count of the numbers, 0 if there is only one: a name with its value.
     fn numbers(&self, decimal_comma: bool) -> usize {
-        let numbers = self.cells.iter().filter_map(|it| number(it, decimal_comma));
+        let numbers = self
+            .cells
+            .iter()
+            .filter_map(|cell| number(cell, decimal_comma));
         match numbers.count() {
             1 => 0,
             several => several,
@@ -153,9 +156,12 @@ fn split(text: &str, separator: u8) -> Vec<TextRow> {
 /// Index and number of cells of the first row of numbers. It has as many cells and numbers as most rows, so that a
 /// preamble with two numbers in a line is not taken for the table.
 fn first_row(rows: &[TextRow], decimal_comma: bool) -> Option<(usize, usize)> {
-    let shape = |row: &TextRow| match row.is_comment() {
-        true => (0, 0),
-        false => (row.cells.len(), row.numbers(decimal_comma)),
+    let shape = |row: &TextRow| {
+        if row.is_comment() {
+            (0, 0)
+        } else {
+            (row.cells.len(), row.numbers(decimal_comma))
+        }
     };
     let mut counts: BTreeMap<(usize, usize), usize> = BTreeMap::new();
     for shape in rows.iter().map(shape).filter(|(_, numbers)| *numbers > 0) {
@@ -171,15 +177,15 @@ fn labels(above: &[TextRow], width: usize, decimal_comma: bool) -> Result<Vec<St
     let words = |row: &TextRow| -> Vec<String> {
         let cells = row.cells.iter();
         cells
-            .map(|it| it.trim_start_matches('#').trim().to_owned())
+            .map(|cell| cell.trim_start_matches('#').trim().to_owned())
             .collect()
     };
     let mut lines = above.iter().rev().map(words);
     let mut names = lines.next().unwrap_or_default();
     let bare = |cell: &str| cell.trim_matches(['(', ')', '[', ']']).to_owned();
     let units: Vec<String> = names.iter().map(|cell| bare(cell)).collect();
-    if units.iter().all(|it| it.is_empty() || is_unit(it)) && units.iter().any(|it| !it.is_empty())
-    {
+    let named = |unit: &String| !unit.is_empty();
+    if units.iter().any(named) && units.iter().all(|unit| !named(unit) || is_unit(unit)) {
         names = lines.next().unwrap_or_default();
         for (name, unit) in names
             .iter_mut()
@@ -189,7 +195,11 @@ fn labels(above: &[TextRow], width: usize, decimal_comma: bool) -> Result<Vec<St
             *name = format!("{name} ({unit})");
         }
     }
-    let known = |names: &[String]| names.iter().all(|it| Quantity::of_label(it).is_some());
+    let known = |names: &[String]| {
+        names
+            .iter()
+            .all(|name| Quantity::from_label(name).is_some())
+    };
     if width == 2 * names.len() && known(&names) {
         return Err(format!(
             "names {} columns, but the rows have {width} cells: if the comma is the decimal sign, save the \
@@ -197,10 +207,14 @@ fn labels(above: &[TextRow], width: usize, decimal_comma: bool) -> Result<Vec<St
             names.len()
         ));
     }
-    let named = names.len() == width && names.iter().all(|it| number(it, decimal_comma).is_none());
-    Ok(match named {
-        true => names,
-        false => vec![String::new(); width],
+    let named = names.len() == width
+        && names
+            .iter()
+            .all(|name| number(name, decimal_comma).is_none());
+    Ok(if named {
+        names
+    } else {
+        vec![String::new(); width]
     })
 }
 

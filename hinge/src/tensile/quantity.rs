@@ -119,7 +119,7 @@ impl Quantity {
     }
 
     /// The quantity that a column's name describes, in its usual spellings in English and German.
-    pub(super) fn of_label(label: &str) -> Option<Self> {
+    pub(super) fn from_label(label: &str) -> Option<Self> {
         let name = label.to_lowercase();
         let name = name.split(['(', '[']).next().unwrap_or_default();
         let words: Vec<&str> = (name.split(|c: char| !c.is_alphabetic()))
@@ -135,7 +135,7 @@ impl Quantity {
         let unit = unit_of(label);
         let measured_in = |quantity: Self| {
             unit.as_ref()
-                .is_some_and(|it| quantity.factor(it).is_some())
+                .is_some_and(|unit| quantity.factor(unit).is_some())
         };
         if has(&["stress", "sigma"]) || ends("spannung") {
             return Some(if is_true { TrueStress } else { Stress });
@@ -230,11 +230,11 @@ mod tests {
             ("True strain", TrueStrain, None),
             ("plastic_strain", PlasticStrain, None),
         ] {
-            assert_eq!(Quantity::of_label(label), Some(quantity), "{label}");
+            assert_eq!(Quantity::from_label(label), Some(quantity), "{label}");
             assert_eq!(unit_of(label).as_deref(), unit, "{label}");
         }
         for label in ["Time (s)", "Strain rate (1/s)", "Width (mm)", "", "Cycle"] {
-            assert_eq!(Quantity::of_label(label), None, "{label}");
+            assert_eq!(Quantity::from_label(label), None, "{label}");
         }
     }
 

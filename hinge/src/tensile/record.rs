@@ -194,7 +194,7 @@ fn columns(table: &NumberTable, options: &RecordOptions) -> Result<Vec<Column>, 
     let recognised = || {
         let labels = table.labels.iter().enumerate();
         labels
-            .filter_map(|(index, label)| Some((Quantity::of_label(label)?, index)))
+            .filter_map(|(index, label)| Some((Quantity::from_label(label)?, index)))
             .collect()
     };
     let named = |(quantity, text): &(Quantity, String)| {
@@ -215,13 +215,11 @@ fn columns(table: &NumberTable, options: &RecordOptions) -> Result<Vec<Column>, 
         })?;
         Ok((*quantity, index))
     };
-    let chosen: Vec<(Quantity, usize)> = match options.columns.is_empty() {
-        true => recognised(),
-        false => options
-            .columns
-            .iter()
-            .map(named)
-            .collect::<Result<_, String>>()?,
+    let chosen: Vec<(Quantity, usize)> = if options.columns.is_empty() {
+        recognised()
+    } else {
+        let named = options.columns.iter().map(named);
+        named.collect::<Result<_, String>>()?
     };
     chosen
         .into_iter()

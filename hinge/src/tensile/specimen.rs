@@ -14,6 +14,7 @@ use crate::tensile::linear_part::LinearPart;
 use crate::tensile::local_curve::{first_part, second_part, true_row};
 use crate::tensile::quantity::Quantity::{PlasticStrain, TrueStrain, TrueStress};
 use crate::tensile::record::Record;
+use crate::tensile::regression::Regression;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -131,10 +132,11 @@ impl Specimen {
             ))
         })?;
         check_yield_strain(record, offset_yield / young).map_err(file)?;
-        let draw = match is_local {
-            true => None,
-            false => draw(smooth, elastic, noise[1], options.draw_ratio)
-                .map_err(|fault| file(fault.to_string()))?,
+        let draw = if is_local {
+            None
+        } else {
+            draw(smooth, elastic, noise[1], options.draw_ratio)
+                .map_err(|fault| file(fault.to_string()))?
         };
         let (last, end) = match (&draw, is_local) {
             (_, true) => (smooth.len() - 1, End::Uniform),
@@ -365,17 +367,9 @@ fn smoothed(curve: &[[f64; 2]], half: usize) -> Vec<[f64; 2]> {
     let last = curve.len().saturating_sub(1);
     let value = |row: usize| {
         let half = half.min(row).min(last - row);
-        let rows = &curve[row - half..=row + half];
-        let count = rows.len() as f64;
-        let mean = |of: usize| rows.iter().map(|row| row[of]).sum::<f64>() / count;
-        let [strain, stress] = [mean(0), mean(1)];
-        let variance: f64 = rows.iter().map(|row| (row[0] - strain).powi(2)).sum();
-        let products = rows.iter().map(|row| (row[0] - strain) * (row[1] - stress));
-        let slope = if variance > 0.0 {
-            products.sum::<f64>() / variance
-        } else {
-            0.0
-        };
+        let line = Regression::new(&curve[row - half..=row + half]);
+        let slope = if line.squares > 0.0 { line.slope } else { 0.0 };
+        let [strain, stress] = line.mean;
         [curve[row][0], stress + slope * (curve[row][0] - strain)]
     };
     (0..curve.len()).map(value).collect()

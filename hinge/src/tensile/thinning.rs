@@ -52,7 +52,8 @@ mod tests {
             let (kept, deviation) = thinned(&curve, most);
             assert!(kept.len() <= most && kept[0] == 0 && kept[kept.len() - 1] == 1000);
             for pair in kept.windows(2) {
-                let found = farthest(&curve, pair[0], pair[1]).map_or(0.0, |it| it.0);
+                let found =
+                    farthest(&curve, pair[0], pair[1]).map_or(0.0, |(deviation, _)| deviation);
                 assert!(found <= deviation);
             }
             deviations.push(deviation);

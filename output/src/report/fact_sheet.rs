@@ -275,9 +275,9 @@ impl WeightFacts {
             test_rows: card.test_errors.rows,
             errors_percent: errors(&card.test_errors),
             spot_check: card.spot_check.as_ref().map(|check| SpotCheck {
-                states: check.rows,
-                inside: card.spot_check_inside,
-                errors_percent: errors(check),
+                states: check.errors.rows,
+                inside: Some(check.inside),
+                errors_percent: errors(&check.errors),
             }),
         })
     }

@@ -201,7 +201,7 @@ fn a_spot_check_outside_the_domain_is_a_warning() {
         let errors: Vec<String> = quantities.map(|name| format!("\"{name}\": {zero}")).into();
         let errors = errors.join(", ");
         format!(
-            "\"spot_check\": {{\"rows\": 60, {errors}}}, \"spot_check_inside\": {inside}, \"test_errors\""
+            "\"spot_check\": {{\"errors\": {{\"rows\": 60, {errors}}}, \"inside\": {inside}}}, \"test_errors\""
         )
     };
     for (inside, expected) in [(29, 1), (30, 0)] {

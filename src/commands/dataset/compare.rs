@@ -1,8 +1,8 @@
 //! `kirigami dataset compare`: differences of a database from a finer one of the same rays.
 
 use crate::commands::compared_states;
-use crate::ui::run_folder;
-use anyhow::{Context, Result, ensure};
+use crate::ui::{output_file, run_folder};
+use anyhow::{Result, ensure};
 use clap::Args;
 use dataset::{COMPARED, ComparedRay, ComparedState, Database, LeftOut, compare, left_out};
 use std::fmt::Write;
@@ -42,8 +42,7 @@ impl CompareCommand {
             self.reference.display()
         );
         let states: Vec<_> = rays.iter().map(ComparedRay::states).collect();
-        std::fs::create_dir_all(&self.out)
-            .with_context(|| format!("cannot create the folder {}", self.out.display()))?;
+        output_file::create_folder(&self.out)?;
         let tiers = [&judged, &reference].map(|database| database.manifest().tier.clone());
         let mut summary = summary(&rays, &states, &tiers)?;
         match left_out(&rays) {

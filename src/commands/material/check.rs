@@ -62,7 +62,7 @@ impl CheckCommand {
         let errors = check
             .verdicts
             .iter()
-            .filter(|it| it.severity == Severity::Error);
+            .filter(|verdict| verdict.severity == Severity::Error);
         match errors.count() {
             0 => Ok(()),
             1 => bail!("the material has 1 error for this use"),

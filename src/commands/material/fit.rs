@@ -3,7 +3,7 @@
 use crate::ui::charts::tensile_test;
 use crate::ui::shell_word::shell_word;
 use crate::ui::table::table;
-use crate::ui::{picture, run_folder};
+use crate::ui::{output_file, picture, run_folder};
 use anyhow::{Result, ensure};
 use clap::Args;
 use hinge::tensile::{
@@ -104,11 +104,9 @@ impl FitCommand {
         let records = self.records()?;
         let name = format!("{}.toml", self.name);
         let file = self.out.join(&name);
-        ensure!(
-            self.replace || !file.exists(),
-            "{} already exists; choose another --name or --out, or replace it with `--replace`",
-            file.display()
-        );
+        if !self.replace {
+            output_file::refuse_existing(&file)?;
+        }
         let fit = MaterialFit::new(&records, &self.options()?)?;
         let facts = SheetFacts {
             name: self.name.clone(),
@@ -337,7 +335,7 @@ fn notes(fit: &MaterialFit) -> Vec<String> {
         ));
     }
     if fit.young_given {
-        let measured = Statistic::of(fit.specimens.iter().map(|it| it.linear.young));
+        let measured = Statistic::new(fit.specimens.iter().map(|specimen| specimen.linear.young));
         notes.push(format!(
             "the records have a mean slope of {:.0} MPa; the difference to the given modulus is removed as the compliance \
              of the machine",

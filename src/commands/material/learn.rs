@@ -16,7 +16,7 @@ use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
 use crate::ui::progress::duration;
 use crate::ui::run_folder;
-use ::train::{Backend, TrainingConfig, check_parent};
+use ::train::{Backend, TrainingConfig, check_pretrained};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use dataset::{Database, Gates, SplitPlan};
@@ -109,7 +109,7 @@ impl LearnCommand {
                 file.display(),
                 self.from[0].display()
             );
-            check_parent(parent, &config, Backend::default())
+            check_pretrained(parent, &config, Backend::default())
                 .with_context(|| format!("{}", file.display()))?;
         }
         let campaign = self.campaign(&material)?;

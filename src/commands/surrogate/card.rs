@@ -37,7 +37,7 @@ impl CardCommand {
         for Teacher {
             weights,
             fine_tuned_from,
-        } in card.lesson.iter().flat_map(|lesson| &lesson.teachers)
+        } in (card.distillation.iter()).flat_map(|distillation| &distillation.teachers)
         {
             let from = known(fine_tuned_from);
             println!("taught by weights {weights}, fine-tuned from {from}");

@@ -89,12 +89,20 @@ impl EvalCommand {
             return Ok(());
         }
         println!("inside,W,F_a,F_s,M_theta,D,D_peak");
-        for it in answers {
-            let [d, peak] = [it.d, it.d_peak].map(|it| it.map_or(String::new(), |d| d.to_string()));
-            println!(
-                "{},{},{},{},{},{d},{peak}",
-                it.inside, it.w, it.f_a, it.f_s, it.m_theta
-            );
+        for Answer {
+            inside,
+            w,
+            f_a,
+            f_s,
+            m_theta,
+            d,
+            d_peak,
+            ..
+        } in answers
+        {
+            let known = |damage: Option<f64>| damage.map_or(String::new(), |d| d.to_string());
+            let (d, d_peak) = (known(d), known(d_peak));
+            println!("{inside},{w},{f_a},{f_s},{m_theta},{d},{d_peak}");
         }
         Ok(())
     }
@@ -104,9 +112,9 @@ fn answers(surrogate: &Surrogate, states: &[State]) -> Vec<Answer> {
     let constants = surrogate.card().hinge;
     let (designs, deformations): (Vec<HingeDesign>, Vec<HingeDeformation>) = states
         .iter()
-        .map(|it| {
-            let design = constants.hinge(it.w_lig, it.alpha);
-            (design, HingeDeformation::from([it.a, it.s, it.theta]))
+        .map(|state| {
+            let deformation = HingeDeformation::from([state.a, state.s, state.theta]);
+            (constants.hinge(state.w_lig, state.alpha), deformation)
         })
         .unzip();
     let prepared = surrogate.prepare(&designs);
@@ -144,7 +152,7 @@ fn read_states(path: &Path) -> Result<Vec<State>> {
         let row = || format!("{}, row {}", path.display(), index + 1);
         if ![state.a, state.s, state.theta]
             .iter()
-            .all(|it| it.is_finite())
+            .all(|number| number.is_finite())
         {
             bail!("{}: a number is not finite", row());
         }

@@ -2,12 +2,13 @@
 
 use crate::commands::train::fit;
 use crate::ui::exit::Unfinished;
+use crate::ui::output_file;
 use ::train::{Backend, Start, TrainError, Trained, TrainingConfig, TrainingData};
-use anyhow::{Context, Result};
+use anyhow::Result;
 use std::path::Path;
 use surrogate::{Card, Surrogate};
 
-/// The network of a configuration, its data and its initial weights (random if there is no `parent`): the file `name` of
+/// The network of a configuration, its data and its initial weights (random if there is no `pretrained`): the file `name` of
 /// the folder, if it was trained so, otherwise a new one.
 ///
 /// A training that was stopped is continued.
@@ -16,11 +17,10 @@ pub fn kept_fit<'a>(
     name: &str,
     data: impl Into<TrainingData<'a>>,
     config: &TrainingConfig,
-    parent: Option<&Surrogate>,
+    pretrained: Option<&Surrogate>,
 ) -> Result<Surrogate> {
     let data = data.into();
-    std::fs::create_dir_all(folder)
-        .with_context(|| format!("cannot create the folder {}", folder.display()))?;
+    output_file::create_folder(folder)?;
     let path = folder.join(name).with_added_extension("safetensors");
     let kept = match Surrogate::load(&path) {
         Ok(kept) => Some(kept),
@@ -31,12 +31,12 @@ pub fn kept_fit<'a>(
             None
         }
     };
-    if let Some(kept) = kept.filter(|kept| is_of(kept.card(), data, config, parent)) {
+    if let Some(kept) = kept.filter(|kept| is_of(kept.card(), data, config, pretrained)) {
         return Ok(kept);
     }
     let state = path.with_extension("state");
     let backend = Backend::default();
-    let trained = continued_fit(data, config, backend, parent, &state, true);
+    let trained = continued_fit(data, config, backend, pretrained, &state, true);
     let trained = trained.map_err(|error| match error.downcast::<Unfinished>() {
         // Here the same command continues without --resume.
         Ok(Unfinished { left, what, .. }) => Unfinished::new(left, what).into(),
@@ -52,14 +52,14 @@ pub(super) fn is_of(
     card: &Card,
     data: TrainingData,
     config: &TrainingConfig,
-    parent: Option<&Surrogate>,
+    pretrained: Option<&Surrogate>,
 ) -> bool {
     let manifest = data.database.manifest();
     serde_json::to_value(config).is_ok_and(|training| card.training == training)
         && card.dataset_hash == manifest.hash
         && card.split_hash == manifest.split_hash
-        && card.fine_tuned_from == parent.map(Surrogate::hash)
-        && card.lesson.as_ref() == data.record()
+        && card.fine_tuned_from == pretrained.map(Surrogate::hash)
+        && card.distillation.as_ref() == data.record()
 }
 
 /// A training that continues from the file `state`, if it exists. The state of another training, or a damaged one, is an
@@ -68,16 +68,16 @@ pub(super) fn continued_fit(
     data: TrainingData,
     config: &TrainingConfig,
     backend: Backend,
-    parent: Option<&Surrogate>,
+    pretrained: Option<&Surrogate>,
     state: &Path,
     discard: bool,
 ) -> Result<Trained> {
     let fit = |start| fit(data, config, backend, start, state);
-    let first = parent.map_or(Start::Fresh, Start::Weights);
+    let first = pretrained.map_or(Start::Fresh, Start::Weights);
     if !state.exists() {
         return fit(first);
     }
-    match fit(Start::State { state, parent }) {
+    match fit(Start::State { state, pretrained }) {
         Err(error) if discard && error.is::<TrainError>() => fit(first),
         fitted => fitted,
     }

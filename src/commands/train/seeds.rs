@@ -5,18 +5,19 @@
 //! and the comparison. Two commands that do so at the same time write the same contents.
 
 use crate::commands::train::kept_fits::{continued_fit, is_of};
-use crate::commands::train::{TrainCommand, exists, hold, quantities};
+use crate::commands::train::{QUANTITIES, TrainCommand, hold};
 use crate::ui::exit::Unfinished;
 use crate::ui::progress::announce;
 use crate::ui::table::table;
-use crate::ui::{comparison, interrupt};
+use crate::ui::{comparison, interrupt, output_file};
 use ::train::{EnsembleCheck, Trained, TrainingConfig, disagreements};
 use anyhow::{Context, Result, bail, ensure};
 use comfy_table::Table;
 use dataset::{Database, Part};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
-use surrogate::{Surrogate, TestErrors, number_or_dash};
+use support::table::number_or_dash;
+use surrogate::{Surrogate, TestErrors};
 
 /// What all seeds of one command have in common.
 #[derive(Clone, Copy)]
@@ -71,13 +72,13 @@ impl TrainCommand {
         }
         for config in configs {
             let member = self.member(config.seed);
-            ensure!(
-                !member.exists() || shared.holds(&member, config),
-                exists(&member)
-            );
+            if !shared.holds(&member, config) {
+                output_file::refuse_existing(&member)?;
+            }
         }
-        let ours = || configs.iter().any(|it| shared.holds(&self.out, it));
-        ensure!(!self.out.exists() || ours(), exists(&self.out));
+        if !(configs.iter()).any(|config| shared.holds(&self.out, config)) {
+            output_file::refuse_existing(&self.out)?;
+        }
         Ok(())
     }
 
@@ -156,10 +157,9 @@ impl TrainCommand {
 
     /// The cells of one seed in the comparison.
     fn cells(&self, config: &TrainingConfig, member: &Trained, chosen: bool) -> [String; 13] {
-        let percent = |value: f64| number_or_dash(100.0 * value, 2);
-        let [w, d, d_peak] = validation_errors(member).map(percent);
-        let tested = quantities(&member.test_errors).map(|(_, error)| percent(error.relative_rmse));
-        let [test_w, f_a, f_s, m, test_d, test_d_peak] = tested;
+        let shown = |percent: f64| number_or_dash(percent, 2);
+        let [w, d, d_peak] = validation_errors(member).map(|error| shown(100.0 * error));
+        let [test_w, f_a, f_s, m, test_d, test_d_peak] = member.test_errors.percents().map(shown);
         [
             config.seed.to_string(),
             if chosen { "yes" } else { "no" }.to_owned(),
@@ -207,7 +207,7 @@ const COLUMNS: [&str; 13] = [
 /// The minimum validation error of each network over the epochs; NaN if it is not known.
 fn validation_errors(trained: &Trained) -> [f64; 3] {
     [0, 1, 2].map(|network| {
-        let errors = (trained.history.iter()).map(|it| it.validation_errors[network]);
+        let errors = (trained.history.iter()).map(|epoch| epoch.validation_errors[network]);
         errors.fold(f64::NAN, f64::min)
     })
 }
@@ -215,7 +215,7 @@ fn validation_errors(trained: &Trained) -> [f64; 3] {
 /// The product of the minimum validation errors of the networks of W and of D, as far as they are known.
 fn validation_error(trained: &Trained) -> f64 {
     let [w, d, _] = validation_errors(trained);
-    [w, d].into_iter().filter(|it| !it.is_nan()).product()
+    [w, d].into_iter().filter(|error| !error.is_nan()).product()
 }
 
 /// Prints the spread of the errors of the seeds, and what it implies for the error.
@@ -224,7 +224,7 @@ fn print_spread(members: &[Trained], database: &Database) {
     println!("{}\n", spread_table(&errors));
     let surrogates = members.iter().map(|member| member.surrogate.clone());
     let surrogates: Vec<Surrogate> = surrogates.collect();
-    let check = EnsembleCheck::of(&disagreements(&surrogates, &database.part(Part::Test)));
+    let check = EnsembleCheck::new(&disagreements(&surrogates, &database.part(Part::Test)));
     println!(
         "forces of {} networks, in units of their root mean square: standard deviation {:.3}, error of the mean {:.3};\n\
          the tenth of the states with the largest deviation has {:.0} % of the squared error; \
@@ -241,16 +241,15 @@ fn print_spread(members: &[Trained], database: &Database) {
 fn spread_table(errors: &[TestErrors]) -> Table {
     let header = format!("relative RMSE (%) of {} seeds", errors.len());
     let mut table = table([header.as_str(), "minimum", "mean", "maximum"]);
-    let all: Vec<_> = errors.iter().map(quantities).collect();
-    for quantity in 0..quantities(&TestErrors::default()).len() {
-        let values: Vec<f64> = all
+    for (quantity, name) in QUANTITIES.into_iter().enumerate() {
+        let values: Vec<f64> = errors
             .iter()
-            .map(|errors| 100.0 * errors[quantity].1.relative_rmse)
+            .map(|errors| errors.percents()[quantity])
             .collect();
         let fold =
             |pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick).unwrap_or(f64::NAN);
         table.add_row([
-            all[0][quantity].0.to_owned(),
+            name.to_owned(),
             number_or_dash(fold(f64::min), 2),
             number_or_dash(values.iter().sum::<f64>() / values.len() as f64, 2),
             number_or_dash(fold(f64::max), 2),

@@ -1,5 +1,6 @@
 //! Chart of the energy against the rotation: curves of the surrogate, points of the finite elements.
 
+use super::axes::{Axis, axes, line, marks, names};
 use super::*;
 
 /// W against the rotation at one hinge design: the surrogate's curve and the finite-element points.
@@ -18,46 +19,17 @@ pub fn slices(slices: &[Slice]) -> Result<String> {
 }
 
 fn slice_chart(area: &Area, slices: &[Slice]) -> ChartResult {
-    let all = || {
-        slices
-            .iter()
-            .flat_map(|it| it.curve.iter().chain(&it.points))
-    };
-    let mut chart = ChartBuilder::on(area)
-        .caption("Energy against rotation", (FONT, 16))
-        .margin(12)
-        .x_label_area_size(40)
-        .y_label_area_size(60)
-        .build_cartesian_2d(padded(all().map(|p| p.0)), padded(all().map(|p| p.1)))?;
-    chart
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .label_style((FONT, 12))
-        .x_desc("theta (deg)")
-        .y_desc("W (N mm); points: finite elements")
-        .draw()?;
+    let all = || (slices.iter()).flat_map(|slice| slice.curve.iter().chain(&slice.points));
+    let theta = Axis::new(padded(all().map(|point| point.0)), "theta (deg)");
+    let energies = padded(all().map(|point| point.1));
+    let energy = Axis::new(energies, "W (N mm); points: finite elements");
+    let mut chart = axes(area, "Energy against rotation", theta, energy)?;
     for (slice, &colour) in slices.iter().zip(SLICES.iter().cycle()) {
-        chart
-            .draw_series(LineSeries::new(
-                slice.curve.iter().copied(),
-                colour.stroke_width(2),
-            ))?
-            .label(&slice.title)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
-        let marks = slice
-            .points
-            .iter()
-            .map(|&p| Circle::new(p, 3, colour.filled()));
-        chart.draw_series(marks)?;
+        let curve = slice.curve.iter().copied();
+        line(&mut chart, &slice.title, curve, colour.stroke_width(2))?;
+        marks(&mut chart, slice.points.iter().copied(), 3, colour)?;
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
-        .label_font((FONT, 13))
-        .border_style(GUIDE)
-        .background_style(WHITE)
-        .draw()?;
-    Ok(())
+    names(&mut chart, SeriesLabelPosition::UpperLeft)
 }
 
 #[cfg(test)]

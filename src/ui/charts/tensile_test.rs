@@ -1,5 +1,6 @@
 //! Chart of a fitted material: the records of its specimens at small strains and in full, and the hardening curve.
 
+use super::axes::{Axis, Chart, axes, line, names};
 use super::*;
 use hinge::tensile::{HardeningRow, MaterialFit, Origin, Specimen};
 use plotters::coord::types::RangedCoordf64;
@@ -12,8 +13,7 @@ const PANEL: (u32, u32) = (500, 440);
 const CROSS: i32 = 3;
 
 /// A panel with a strain and a stress (MPa) as axes.
-type StressChart<'a, 'b> =
-    ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+type StressChart<'a> = Chart<'a, RangedCoordf64, RangedCoordf64>;
 
 /// Three panels: the linear part with modulus and offset yield, the whole records with the draw, and the hardening table
 /// on the curve that it approximates.
@@ -30,12 +30,14 @@ pub fn tensile_test(fit: &MaterialFit, name: &str) -> Result<String> {
 fn small_strains(area: &Area, fit: &MaterialFit) -> ChartResult {
     let (young, yields) = (fit.young.mean, fit.offset_yield.mean);
     let end = 300.0 * (yields / young + 0.002);
-    let toes = fit.specimens.iter().map(|it| -100.0 * it.toe);
+    let toes = fit.specimens.iter().map(|specimen| -100.0 * specimen.toe);
     let start = toes.fold(0.0, f64::min).max(-0.5 * end);
-    let seen = (fit.specimens.iter().flat_map(|it| &it.nominal)).filter(|row| 100.0 * row[0] < end);
+    let seen = (fit.specimens.iter().flat_map(|specimen| &specimen.nominal))
+        .filter(|row| 100.0 * row[0] < end);
     let top = 1.25 * seen.map(|row| row[1]).fold(yields, f64::max);
-    let ranges = [start - 0.03 * end..end, 0.0..top];
-    let mut chart = axes(area, "Modulus and offset yield", ranges, "strain, %")?;
+    let strain = Axis::new(start - 0.03 * end..end, "strain, %");
+    let stress = Axis::new(0.0..top, "stress, MPa");
+    let mut chart = axes(area, "Modulus and offset yield", strain, stress)?;
     draw_records(&mut chart, &fit.specimens, [start, end])?;
     for offset in [0.0, 0.2] {
         let at = |stress: f64| (offset + 100.0 * stress / young, stress);
@@ -55,16 +57,17 @@ fn small_strains(area: &Area, fit: &MaterialFit) -> ChartResult {
         (at_yield.0 + right, 0.4 * yields),
         &format!("Rp0.2 = {yields:.1} MPa"),
     )?;
-    legend(&mut chart, SeriesLabelPosition::LowerRight)
+    names(&mut chart, SeriesLabelPosition::LowerRight)
 }
 
 /// The whole records, with upper yield, plateau and natural draw ratio.
 fn records(area: &Area, fit: &MaterialFit, name: &str) -> ChartResult {
-    let rows = || fit.specimens.iter().flat_map(|it| &it.nominal);
+    let rows = || fit.specimens.iter().flat_map(|specimen| &specimen.nominal);
     let end = 100.0 * rows().map(|row| row[0]).fold(0.0, f64::max);
     let top = 1.25 * rows().map(|row| row[1]).fold(0.0, f64::max);
-    let ranges = [-0.02 * end..1.03 * end, 0.0..top];
-    let mut chart = axes(area, name, ranges, "strain, %")?;
+    let strain = Axis::new(-0.02 * end..1.03 * end, "strain, %");
+    let stress = Axis::new(0.0..top, "stress, MPa");
+    let mut chart = axes(area, name, strain, stress)?;
     draw_records(&mut chart, &fit.specimens, [-end, end])?;
     if let (Some(upper), Some(plateau), Some(ratio)) =
         (fit.upper_yield, fit.plateau, fit.draw_ratio)
@@ -76,8 +79,9 @@ fn records(area: &Area, fit: &MaterialFit, name: &str) -> ChartResult {
         ] {
             chart.draw_series(DashedLineSeries::new(line, 6, 4, GUIDE.stroke_width(1)))?;
         }
-        for it in fit.specimens.iter().filter_map(|it| it.draw) {
-            mark(&mut chart, (100.0 * it.upper_yield_strain, it.upper_yield))?;
+        for draw in fit.specimens.iter().filter_map(|specimen| specimen.draw) {
+            let at_yield = (100.0 * draw.upper_yield_strain, draw.upper_yield);
+            mark(&mut chart, at_yield)?;
         }
         let upper_text = format!("upper yield {:.1} MPa", upper.mean);
         write_at(&mut chart, (0.04 * end, 1.06 * upper.mean), &upper_text)?;
@@ -88,13 +92,14 @@ fn records(area: &Area, fit: &MaterialFit, name: &str) -> ChartResult {
         )?;
         let ratio = format!("natural draw ratio {:.2}", ratio.mean);
         // The text takes a third of the width.
-        let beside = match natural + 0.36 * end < end {
-            true => natural + 0.02 * end,
-            false => natural - 0.36 * end,
+        let beside = if natural + 0.36 * end < end {
+            natural + 0.02 * end
+        } else {
+            natural - 0.36 * end
         };
         write_at(&mut chart, (beside, 0.5 * stress), &ratio)?;
     }
-    legend(&mut chart, SeriesLabelPosition::UpperRight)
+    names(&mut chart, SeriesLabelPosition::UpperRight)
 }
 
 /// The hardening curve by its origin, the rows of the table, and the fracture strain.
@@ -104,25 +109,21 @@ fn hardening(area: &Area, fit: &MaterialFit) -> ChartResult {
             .fracture_strain
             .max(fit.curve[fit.curve.len() - 1].strain);
     let top = 1.25 * fit.curve.iter().map(|row| row.stress).fold(0.0, f64::max);
-    let ranges = [-0.02 * end..1.02 * end, 0.0..top];
-    let mut chart = axes(area, "Hardening table", ranges, "true plastic strain")?;
+    let strain = Axis::new(-0.02 * end..1.02 * end, "true plastic strain");
+    let stress = Axis::new(0.0..top, "true stress, MPa");
+    let mut chart = axes(area, "Hardening table", strain, stress)?;
     for (origin, name, colour) in [
         (Origin::Measured, "measured", POINT),
         (Origin::Drawn, "neck: equal work", VALIDATION),
         (Origin::Extrapolated, "Considere's tangent", SLICES[2]),
     ] {
-        let mut named = false;
-        for part in parts(&fit.curve, origin) {
-            let line = LineSeries::new(
-                part.iter().map(|row| (row.strain, row.stress)),
-                colour.stroke_width(2),
-            );
-            let series = chart.draw_series(line)?;
-            if !named {
-                series.label(name).legend(move |(x, y)| {
-                    PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2))
-                });
-                named = true;
+        for (index, part) in parts(&fit.curve, origin).into_iter().enumerate() {
+            let points = part.iter().map(|row| (row.strain, row.stress));
+            let style = colour.stroke_width(2);
+            if index == 0 {
+                line(&mut chart, name, points, style)?;
+            } else {
+                chart.draw_series(LineSeries::new(points, style))?;
             }
         }
     }
@@ -145,7 +146,7 @@ fn hardening(area: &Area, fit: &MaterialFit) -> ChartResult {
         ))?
         .label(format!("fracture strain {:.3}", fit.fracture_strain))
         .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(1)));
-    legend(&mut chart, SeriesLabelPosition::UpperLeft)
+    names(&mut chart, SeriesLabelPosition::UpperLeft)
 }
 
 /// The connected parts of a curve with one origin. A part begins at the last row of the part before it.
@@ -159,35 +160,6 @@ fn parts(curve: &[HardeningRow], origin: Origin) -> Vec<&[HardeningRow]> {
         start += part.len();
     }
     parts
-}
-
-/// Empty axes.
-fn axes<'a, 'b>(
-    area: &'a Area<'b>,
-    title: &str,
-    [x, y]: [Range<f64>; 2],
-    x_name: &str,
-) -> std::result::Result<StressChart<'a, 'b>, DrawingAreaErrorKind<std::io::Error>> {
-    let mut chart = ChartBuilder::on(area)
-        .caption(title, (FONT, 15))
-        .margin(12)
-        .x_label_area_size(40)
-        .y_label_area_size(56)
-        .build_cartesian_2d(x, y)?;
-    chart
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .x_labels(6)
-        .y_labels(6)
-        .label_style((FONT, 12))
-        .x_desc(x_name)
-        .y_desc(if x_name.starts_with("true") {
-            "true stress, MPa"
-        } else {
-            "stress, MPa"
-        })
-        .draw()?;
-    Ok(chart)
 }
 
 /// The used rows of each specimen as a line and the dropped ones as crosses, between two strains (%).
@@ -205,22 +177,20 @@ fn draw_records(
             .collect();
         let step = seen.len().div_ceil(POINTS).max(1);
         let points = seen.iter().step_by(step).chain(seen.last());
-        let line = LineSeries::new(
-            points.map(|row| (100.0 * row[0], row[1])),
-            POINT.mix(0.8).stroke_width(1),
-        );
-        let series = chart.draw_series(line)?;
+        let points = points.map(|row| (100.0 * row[0], row[1]));
+        let style = POINT.mix(0.8).stroke_width(1);
         if index == 0 {
-            series
-                .label(if specimens.len() == 1 {
-                    "record"
-                } else {
-                    "records"
-                })
-                .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], POINT.stroke_width(1)));
+            let name = if specimens.len() == 1 {
+                "record"
+            } else {
+                "records"
+            };
+            line(chart, name, points, style)?;
+        } else {
+            chart.draw_series(LineSeries::new(points, style))?;
         }
     }
-    let dropped = specimens.iter().flat_map(|it| &it.dropped);
+    let dropped = specimens.iter().flat_map(|specimen| &specimen.dropped);
     let dropped: Vec<_> = dropped
         .filter(|row| within(row.strain) && row.stress >= 0.0)
         .collect();
@@ -247,17 +217,4 @@ fn mark(chart: &mut StressChart, at: (f64, f64)) -> ChartResult {
 fn write_at(chart: &mut StressChart, at: (f64, f64), text: &str) -> ChartResult {
     chart.draw_series([Text::new(text.to_owned(), at, (FONT, 12).into_font())])?;
     Ok(())
-}
-
-fn legend<'a, 'b: 'a>(
-    chart: &mut StressChart<'a, 'b>,
-    position: SeriesLabelPosition,
-) -> ChartResult {
-    chart
-        .configure_series_labels()
-        .position(position)
-        .label_font((FONT, 12))
-        .border_style(GUIDE)
-        .background_style(WHITE)
-        .draw()
 }

@@ -1,7 +1,7 @@
 //! Charts of the load capacity: opening and boundary error against the transverse load; load against stroke.
 
-use super::axes::{Axis, axes, line, marks, names};
 use anyhow::Result;
+use kirigami::ui::charts::axes::{Axis, axes, line, marks, names};
 use kirigami::ui::charts::*;
 use plotters::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Charts of the influence of the modelling choices of the window solve on the energy.
 
-use super::axes::{line, names};
 use anyhow::Result;
+use kirigami::ui::charts::axes::{line, names};
 use kirigami::ui::charts::*;
 use plotters::prelude::*;
 use std::collections::BTreeMap;

@@ -1,7 +1,7 @@
 //! Charts of errors against costs.
 
-use super::axes::{Axis, axes, names};
 use anyhow::Result;
+use kirigami::ui::charts::axes::{Axis, axes, names};
 use kirigami::ui::charts::*;
 use plotters::prelude::*;
 

@@ -1,7 +1,7 @@
 //! The cost of paths against the number of panels.
 
-use super::axes::{Axis, axes, line, marks, names};
 use anyhow::Result;
+use kirigami::ui::charts::axes::{Axis, axes, line, marks, names};
 use kirigami::ui::charts::*;
 use plotters::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Charts of the errors of a surrogate against its number of training rays.
 
-use super::axes::{Axis, axes, line, marks};
 use anyhow::Result;
+use kirigami::ui::charts::axes::{Axis, axes, line, marks};
 use kirigami::ui::charts::*;
 use plotters::prelude::*;
 

@@ -1,8 +1,8 @@
 //! Charts of the set of designs that reach one shape.
 
-use super::axes::{Axis, axes, line, marks};
 use super::contours::{PlaneValues, contours};
 use anyhow::Result;
+use kirigami::ui::charts::axes::{Axis, axes, line, marks};
 use kirigami::ui::charts::*;
 use plotters::prelude::*;
 

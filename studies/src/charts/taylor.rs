@@ -1,7 +1,7 @@
 //! Chart of the Taylor remainders of a gradient.
 
-use super::axes::{Axis, axes, line, names};
 use anyhow::Result;
+use kirigami::ui::charts::axes::{Axis, axes, line, names};
 use kirigami::ui::charts::*;
 use plotters::prelude::*;
 

@@ -10,7 +10,7 @@ use design::scene::{ObjectiveConfig, SceneConfig};
 use design::sheet::cut_sheet::HingePoint;
 use kirigami::ui::progress::Progress;
 use std::fmt::Write;
-use surrogate::median;
+use support::statistics::median;
 
 /// Random starts of each objective, and the standard deviation of their coordinates.
 const SEEDS: u64 = 4;

@@ -8,12 +8,12 @@ pub fn cases() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases")
 }
 
-/// A surrogate of format version 1, without D_peak.
+/// A surrogate without D_peak.
 pub fn tiny() -> Surrogate {
     Surrogate::load(&cases().join("chi_tiny.safetensors")).unwrap()
 }
 
-/// A surrogate like [`tiny`] with D_peak, of format version 5 and with a sharpness of 8.
+/// A surrogate like [`tiny`] with D_peak and a sharpness of 8.
 pub fn with_peak() -> Surrogate {
     Surrogate::load(&cases().join("chi_domain.safetensors")).unwrap()
 }

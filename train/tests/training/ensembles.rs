@@ -5,7 +5,7 @@ use dataset::Row;
 use hinge::{HingeDeformation, HingeDesign};
 use surrogate::Surrogate;
 use train::{
-    Backend, EnsembleCheck, Lesson, Parity, Start, StateError, TrainError, Training,
+    Backend, Distillation, EnsembleCheck, Parity, Start, StateError, TrainError, Training,
     TrainingConfig, TrainingData, disagreements, train,
 };
 
@@ -20,9 +20,9 @@ fn equal_members_of_an_ensemble_agree_and_different_ones_deviate() {
             .surrogate
     };
     let first = member(1);
-    let same = EnsembleCheck::of(&disagreements(&[first.clone(), first.clone()], &rows));
+    let same = EnsembleCheck::new(&disagreements(&[first.clone(), first.clone()], &rows));
     assert!(same.deviation < 1e-12 && same.error > 0.0, "{same:?}");
-    let different = EnsembleCheck::of(&disagreements(&[first, member(2)], &rows));
+    let different = EnsembleCheck::new(&disagreements(&[first, member(2)], &rows));
     assert!(different.deviation > 0.01, "{different:?}");
     assert!(different.error_in_top_tenth > 0.0 && different.error_in_top_tenth < 1.0);
 }
@@ -74,61 +74,66 @@ fn ensemble() -> ([Surrogate; 2], Vec<(HingeDesign, HingeDeformation)>) {
 fn a_network_learns_the_median_of_several() {
     let (members, states) = ensemble();
     let database = database(rows(20));
-    let lesson = Lesson::new(&members, &states);
-    let student = |lesson: Option<&Lesson>| {
+    let distillation = Distillation::new(&members, &states);
+    let student = |distillation: Option<&Distillation>| {
         let data = TrainingData {
             database: &database,
-            lesson,
+            distillation,
         };
         let start = Start::Weights(&members[0]);
         finished(Training::new(data, &config(40), Backend::default(), start).unwrap()).surrogate
     };
-    let [taught, alone] = [Some(&lesson), None].map(student);
+    let [distilled, alone] = [Some(&distillation), None].map(student);
     // On rays of neither.
     let unseen = rows(220).split_off(1200);
-    let parities = |networks: &[Surrogate]| {
-        let parities: Vec<Parity> = networks.iter().map(|it| Parity::of(it, &unseen)).collect();
-        Parity::mean(&parities)
+    let predicted = |network: &Surrogate| -> Vec<f64> {
+        let parity = Parity::new(network, &unseen);
+        parity.points(0).map(|[_, predicted]| predicted).collect()
     };
     // The median of two is their mean.
-    let mean = parities(&members);
+    let [one, other] = [0, 1].map(|member| predicted(&members[member]));
+    assert_eq!(members.len(), 2);
+    let mean = std::iter::zip(one, other).map(|(one, other)| 0.5 * (one + other));
+    let mean: Vec<f64> = mean.collect();
     let distance = |network: &Surrogate| {
-        let found = parities(std::slice::from_ref(network));
-        let pairs = mean.energy.iter().zip(&found.energy);
-        pairs
-            .map(|(mean, found)| (mean.predicted - found.predicted).powi(2))
-            .sum::<f64>()
-            .sqrt()
+        let squares = std::iter::zip(&mean, predicted(network));
+        let squares = squares.map(|(mean, found)| (mean - found).powi(2));
+        squares.sum::<f64>().sqrt()
     };
-    let [taught_distance, alone_distance] = [&taught, &alone].map(distance);
+    let [distilled_distance, alone_distance] = [&distilled, &alone].map(distance);
     assert!(
-        taught_distance < 0.3 * alone_distance,
-        "{taught_distance} and {alone_distance}"
+        distilled_distance < 0.3 * alone_distance,
+        "{distilled_distance} and {alone_distance}"
     );
-    let record = taught.card().lesson.as_ref().unwrap();
+    let record = distilled.card().distillation.as_ref().unwrap();
     let hashes = members.iter().map(Surrogate::hash);
-    assert!(hashes.eq(record.teachers.iter().map(|it| it.weights.clone())));
-    assert_eq!(alone.card().lesson, None);
-    // The lesson is not evidence: domain, scales and test errors are of the rows alone.
-    assert_eq!(taught.card().domain, alone.card().domain);
-    assert_eq!(taught.card().energy_scale, alone.card().energy_scale);
+    assert!(
+        hashes.eq(record
+            .teachers
+            .iter()
+            .map(|teacher| teacher.weights.clone()))
+    );
+    assert_eq!(alone.card().distillation, None);
+    // The median is not evidence: domain, scales and test errors are of the rows alone.
+    assert_eq!(distilled.card().domain, alone.card().domain);
+    assert_eq!(distilled.card().energy_scale, alone.card().energy_scale);
     assert_eq!(
-        taught.card().test_errors.rows,
+        distilled.card().test_errors.rows,
         alone.card().test_errors.rows
     );
 }
 
 #[test]
-fn a_training_with_a_lesson_continues_only_with_that_lesson() {
+fn a_training_with_a_distillation_continues_only_with_it() {
     let (members, states) = ensemble();
     let database = database(rows(20));
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("chi.state");
     let begun = |members: &[Surrogate], states: &[_], start| {
-        let lesson = Lesson::new(members, states);
+        let distillation = Distillation::new(members, states);
         let data = TrainingData {
             database: &database,
-            lesson: Some(&lesson),
+            distillation: Some(&distillation),
         };
         Training::new(data, &config(2), Backend::default(), start)
     };
@@ -137,7 +142,7 @@ fn a_training_with_a_lesson_continues_only_with_that_lesson() {
     training.save(&state).unwrap();
     let resumed = Start::State {
         state: &state,
-        parent: None,
+        pretrained: None,
     };
     let fewer = &states[1..];
     let straight = finished(begun(&members, &states, Start::Fresh).unwrap());
@@ -152,7 +157,10 @@ fn a_training_with_a_lesson_continues_only_with_that_lesson() {
     ] {
         assert!(matches!(
             other.err(),
-            Some(TrainError::State(StateError::Other { what: "lesson", .. }))
+            Some(TrainError::State(StateError::Other {
+                what: "distillation",
+                ..
+            }))
         ));
     }
 }

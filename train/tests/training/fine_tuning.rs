@@ -5,8 +5,7 @@ use dataset::{Database, Part, Row};
 use hinge::HingeSample;
 use surrogate::Surrogate;
 use train::{
-    Backend, Parity, ParityPoint, Precision, Start, StateError, TrainError, Training,
-    TrainingConfig, train,
+    Backend, Parity, Precision, Start, StateError, TrainError, Training, TrainingConfig, train,
 };
 
 /// The rows in a sheet of `factor` times the thickness, whose material is `stiffness` times as stiff.
@@ -29,44 +28,38 @@ fn similar(rows: Vec<Row>, factor: f64, stiffness: f64) -> Vec<Row> {
 }
 
 /// The training of `epochs` epochs in float64 on the rows of a sheet of another thickness and stiffness, which starts from
-/// `parent`.
-fn tuned(parent: &Surrogate, epochs: usize) -> (Database, Training) {
+/// `pretrained`.
+fn tuned(pretrained: &Surrogate, epochs: usize) -> (Database, Training) {
     let database = database(similar(rows(30), 0.4, 3.0));
     let config = TrainingConfig {
         precision: Precision::F64,
         learning_rate: 1e-3,
         ..config(epochs)
     };
-    let start = Start::Weights(parent);
+    let start = Start::Weights(pretrained);
     let training = Training::new(&database, &config, Backend::default(), start).unwrap();
     (database, training)
 }
 
 #[test]
 fn fine_tuning_starts_with_the_function_of_the_given_weights() {
-    let parent = trained(40, Backend::default()).surrogate;
-    let (database, training) = tuned(&parent, 1);
+    let pretrained = trained(40, Backend::default()).surrogate;
+    let (database, training) = tuned(&pretrained, 1);
     let start = training.finish().unwrap().surrogate;
-    let scaled = parent.clone().scaled(0.4);
+    let scaled = pretrained.clone().scaled(0.4);
     assert_ne!(start.card().standardisation, scaled.card().standardisation);
     let hash = start.card().fine_tuned_from.clone();
-    assert_eq!(hash, Some(parent.hash()));
+    assert_eq!(hash, Some(pretrained.hash()));
 
     let predicted = |surrogate: &Surrogate| {
-        let parity = Parity::of(surrogate, &database.part(Part::Training));
-        [
-            parity.energy,
-            parity.f_a,
-            parity.f_s,
-            parity.m_theta,
-            parity.damage,
-            parity.damage_peak,
-        ]
+        let parity = Parity::new(surrogate, &database.part(Part::Training));
+        [0, 1, 2, 3, 4, 5].map(|quantity| parity.points(quantity).collect::<Vec<_>>())
     };
     let (expected, found) = (predicted(&scaled), predicted(&start));
-    let factor = |points: &[ParityPoint]| {
-        let product: f64 = points.iter().map(|it| it.target * it.predicted).sum();
-        product / points.iter().map(|it| it.predicted.powi(2)).sum::<f64>()
+    let factor = |points: &[[f64; 2]]| {
+        let products = points.iter().map(|[target, predicted]| target * predicted);
+        let squares = points.iter().map(|[_, predicted]| predicted.powi(2));
+        products.sum::<f64>() / squares.sum::<f64>()
     };
     let [energy, d, d_peak] = [0, 4, 5].map(|k| factor(&expected[k]));
     assert!((energy / 3.0 - 1.0).abs() < 0.1, "{energy}");
@@ -74,10 +67,10 @@ fn fine_tuning_starts_with_the_function_of_the_given_weights() {
     for ((expected, found), factor) in expected.iter().zip(&found).zip(factors) {
         let size = expected
             .iter()
-            .map(|it| it.predicted.abs())
+            .map(|[_, predicted]| predicted.abs())
             .fold(0.0, f64::max);
         for (expected, found) in expected.iter().zip(found) {
-            let difference = (factor * expected.predicted - found.predicted).abs();
+            let difference = (factor * expected[1] - found[1]).abs();
             assert!(difference < 1e-10 * factor * size, "{difference}");
         }
     }
@@ -85,8 +78,8 @@ fn fine_tuning_starts_with_the_function_of_the_given_weights() {
 
 #[test]
 fn a_fine_tuned_network_is_closer_than_one_from_scratch() {
-    let parent = trained(40, Backend::default()).surrogate;
-    let (database, training) = tuned(&parent, 10);
+    let pretrained = trained(40, Backend::default()).surrogate;
+    let (database, training) = tuned(&pretrained, 10);
     let scratch = train(&database, &config(10), Backend::default(), &mut |_| {}).unwrap();
     let tuned = finished(training);
     for k in 0..4 {
@@ -105,7 +98,7 @@ fn weights_of_the_same_law_keep_their_domain_and_sizes() {
         database(rows.into_iter().map(with_law).collect())
     };
     let whole = of_law(rows(40), "film");
-    let parent = train(&whole, &config(1), Backend::default(), &mut |_| {})
+    let pretrained = train(&whole, &config(1), Backend::default(), &mut |_| {})
         .unwrap()
         .surrogate;
     let few: Vec<Row> = whole.part(Part::Training).into_iter().take(80).collect();
@@ -115,28 +108,36 @@ fn weights_of_the_same_law_keep_their_domain_and_sizes() {
             damage: vec![4],
             ..config(1)
         };
-        let config = other.with_sizes_of(&parent);
-        let training = Training::new(rows, &config, Backend::default(), Start::Weights(&parent));
+        let config = other.with_sizes_of(&pretrained);
+        let training = Training::new(
+            rows,
+            &config,
+            Backend::default(),
+            Start::Weights(&pretrained),
+        );
         training.unwrap().finish().unwrap().surrogate
     };
     let domain = |surrogate: &Surrogate| surrogate.card().domain.clone();
     assert_eq!(
         domain(&start(&of_law(few.clone(), "film"))),
-        domain(&parent)
+        domain(&pretrained)
     );
     let other = domain(&start(&of_law(few.clone(), "steel")));
-    assert_ne!(other, domain(&parent));
+    assert_ne!(other, domain(&pretrained));
     // Rows beyond the domain enlarge it.
-    assert_ne!(domain(&start(&of_law(rows(120), "film"))), domain(&parent));
+    assert_ne!(
+        domain(&start(&of_law(rows(120), "film"))),
+        domain(&pretrained)
+    );
     // The same law in another thickness: the ligaments scale with it.
     let thin = domain(&start(&of_law(similar(few, 0.4, 1.0), "film")));
-    assert_eq!(thin, domain(&parent.clone().scaled(0.4)));
-    assert_ne!(thin, domain(&parent));
+    assert_eq!(thin, domain(&pretrained.clone().scaled(0.4)));
+    assert_ne!(thin, domain(&pretrained));
 }
 
 #[test]
 fn frozen_layers_are_not_trained() {
-    let parent = trained(2, Backend::default()).surrogate;
+    let pretrained = trained(2, Backend::default()).surrogate;
     let database = database(rows(20));
     let config = TrainingConfig {
         frozen_layers: 1,
@@ -145,17 +146,17 @@ fn frozen_layers_are_not_trained() {
     let folder = tempfile::tempdir().unwrap();
     let state = folder.path().join("chi.state");
     let begun = |start| Training::new(&database, &config, Backend::default(), start).unwrap();
-    let start = Start::Weights(&parent);
+    let start = Start::Weights(&pretrained);
     let initial = begun(start).finish().unwrap().last.layers();
     let mut training = begun(start);
     training.epoch().unwrap();
     training.save(&state).unwrap();
     // Also of a training that is resumed.
-    let resumed = |parent| Start::State {
+    let resumed = |pretrained| Start::State {
         state: &state,
-        parent,
+        pretrained,
     };
-    let last = finished(begun(resumed(Some(&parent)))).last.layers();
+    let last = finished(begun(resumed(Some(&pretrained)))).last.layers();
     let without = Training::new(&database, &config, Backend::default(), resumed(None));
     assert!(matches!(
         without.err(),
@@ -178,8 +179,8 @@ fn frozen_layers_are_not_trained() {
 fn unsuitable_initial_weights_are_errors() {
     let base = trained(1, Backend::default()).surrogate;
     let database = database(rows(20));
-    let refusal = |parent: &Surrogate, config: &TrainingConfig| {
-        let start = Start::Weights(parent);
+    let refusal = |pretrained: &Surrogate, config: &TrainingConfig| {
+        let start = Start::Weights(pretrained);
         let training = Training::new(&database, config, Backend::default(), start);
         training.err().unwrap()
     };

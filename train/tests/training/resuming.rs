@@ -18,7 +18,7 @@ fn resumed(state: &Path, config: &TrainingConfig) -> Result<Training, TrainError
     let database = database(rows(20));
     let start = Start::State {
         state,
-        parent: None,
+        pretrained: None,
     };
     Training::new(&database, config, Backend::default(), start)
 }
@@ -33,7 +33,7 @@ fn a_resumed_training_is_bit_exact() {
         let database = database(rows(20));
         let start = Start::State {
             state: &state,
-            parent: None,
+            pretrained: None,
         };
         let training = Training::new(&database, &config(5), backend, start).unwrap();
         assert_eq!(training.history().len(), 2);

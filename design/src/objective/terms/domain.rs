@@ -94,7 +94,7 @@ mod tests {
 
     fn domain() -> TrainingDomain {
         let state = [[-0.8, 0.2], [-0.4, 0.4], [-0.1, 1.3]];
-        TrainingDomain::of_box(state, [5.0, 25.0], [0.8, 2.3])
+        TrainingDomain::from_box(state, [5.0, 25.0], [0.8, 2.3])
     }
 
     fn value(x: &[f64]) -> f64 {

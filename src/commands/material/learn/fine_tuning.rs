@@ -1,7 +1,7 @@
 //! The network of one round: several weights are fine-tuned on its rays, and one network learns the rays and their median.
 
 use crate::commands::train::kept_fit;
-use ::train::{Lesson, TrainingConfig, TrainingData};
+use ::train::{Distillation, TrainingConfig, TrainingData};
 use anyhow::{Context, Result};
 use dataset::Database;
 use hinge::{HingeDeformation, HingeDesign};
@@ -31,7 +31,7 @@ impl FineTuning {
         if networks.len() > 1 {
             let data = TrainingData {
                 database,
-                lesson: Some(&Lesson::new(&networks, &self.distillation)),
+                distillation: Some(&Distillation::new(&networks, &self.distillation)),
             };
             // Any of the networks can be the start.
             let (name, first) = (format!("{rays}-rays"), Some(&networks[0]));

@@ -1,14 +1,14 @@
-//! Given weights, the parent, as the initial networks of a training on another material, thickness or mesh.
+//! Pretrained weights as the initial networks of a training on another material, thickness or mesh.
 //!
-//! The parent is scaled to the size of the database's windows ([`Surrogate::scaled`]), its first layers to the
+//! The pretrained weights, of the energy W_0, are scaled to the size of the database's windows ([`Surrogate::scaled`]), their first layers to the
 //! standardisation of the rows, and the last layer of chi to their root mean square of W. One factor for each of W, D
 //! and D_peak is fitted to the rows by least squares:
 //!
 //! ```text
-//! W = c_W W_parent,   c_W = sum W* W_parent / sum W_parent^2,   and the same for D and D_peak
+//! W = c_W W_0,   c_W = sum W* W_0 / sum W_0^2,   and the same for D and D_peak
 //! ```
 //!
-//! Apart from these factors and from rounding, the function of the networks is that of the parent.
+//! Apart from these factors and from rounding, the function of the networks is that of the pretrained ones.
 
 use crate::backend::Backend;
 use crate::config::TrainingConfig;
@@ -17,7 +17,7 @@ use crate::export::layers;
 use crate::mirror;
 use crate::networks::{Networks, widths};
 use crate::samples::Scales;
-use crate::validation::{Parity, ParityPoint};
+use crate::validation::Parity;
 use burn::tensor::{DType, TensorCreationOptions};
 use dataset::Row;
 use hinge::HingeConstants;
@@ -30,25 +30,25 @@ pub(crate) struct Initial {
 }
 
 impl Initial {
-    /// The parent for the windows `hinge`, fitted to the training rows, which include their mirror images if
+    /// The pretrained weights for the windows `hinge`, fitted to the training rows, which include their mirror images if
     /// `symmetric`.
     pub fn new(
-        parent: &Surrogate,
+        pretrained: &Surrogate,
         rows: &[Row],
         hinge: &HingeConstants,
         symmetric: bool,
     ) -> Result<Self, TrainError> {
-        let parent = at_size_of(parent, hinge);
-        let parity = Parity::of(&parent, rows);
-        let own = Scales::of(rows, symmetric)?;
-        let card = parent.card();
-        let mut layers = parent.layers();
+        let pretrained = at_size_of(pretrained, hinge);
+        let parity = Parity::new(&pretrained, rows);
+        let own = Scales::new(rows, symmetric)?;
+        let card = pretrained.card();
+        let mut layers = pretrained.layers();
         let (from, to) = (&card.standardisation, &own.standardisation);
         let heads = [Some(&mut layers.chi_d), layers.chi_p.as_mut()];
         for network in heads.into_iter().flatten().chain([&mut layers.chi]) {
             restandardise(&mut network[0], from, to);
         }
-        let energy = factor(&parity.energy) * card.energy_scale / own.energy;
+        let energy = factor(parity.points(0)) * card.energy_scale / own.energy;
         if let Some(last) = layers.chi.last_mut() {
             multiply(last, energy.sqrt());
         }
@@ -57,43 +57,43 @@ impl Initial {
         Ok(Self {
             layers,
             scales: Scales {
-                damage: factor(&parity.damage) * card.damage_scale,
-                peak: peak.map(|scale| factor(&parity.damage_peak) * scale),
+                damage: factor(parity.points(4)) * card.damage_scale,
+                peak: peak.map(|scale| factor(parity.points(5)) * scale),
                 ..own
             },
         })
     }
 }
 
-/// The parent for windows of another size. Campaigns choose the radius of the windows in proportion to the thickness.
-fn at_size_of(parent: &Surrogate, hinge: &HingeConstants) -> Surrogate {
-    let factor = hinge.r_win / parent.card().hinge.r_win;
-    parent.clone().scaled(factor)
+/// The pretrained weights for windows of another size. Campaigns choose the radius of the windows in proportion to the thickness.
+fn at_size_of(pretrained: &Surrogate, hinge: &HingeConstants) -> Surrogate {
+    let factor = hinge.r_win / pretrained.card().hinge.r_win;
+    pretrained.clone().scaled(factor)
 }
 
-/// Completes the card of a network that starts from the parent and is trained on `rows`. If all of them are of the
-/// parent's law and in its domain, that domain is kept: the rays of the parent count as well.
-pub(crate) fn inherit(card: &mut Card, parent: &Surrogate, rows: &[Row]) {
-    card.fine_tuned_from = Some(parent.hash());
-    let parent = at_size_of(parent, &card.hinge);
-    let law = &parent.card().material_hash;
+/// Completes the card of a network that starts from pretrained weights and is trained on `rows`. If all of them are of the
+/// law of these weights and in their domain, that domain is kept: the rays they were trained on count as well.
+pub(crate) fn inherit(card: &mut Card, pretrained: &Surrogate, rows: &[Row]) {
+    card.fine_tuned_from = Some(pretrained.hash());
+    let pretrained = at_size_of(pretrained, &card.hinge);
+    let law = &pretrained.card().material_hash;
     let inside = |row: &Row| {
-        parent
+        pretrained
             .domain()
             .contains(&row.design, &row.sample.deformation())
     };
     if law.is_some() && *law == card.material_hash && rows.iter().all(inside) {
-        card.domain = parent.domain().clone();
+        card.domain = pretrained.domain().clone();
     }
 }
 
 /// Rejects initial weights whose sizes, sharpness or symmetry are not those of the configuration.
-pub fn check_parent(
-    parent: &Surrogate,
+pub fn check_pretrained(
+    pretrained: &Surrogate,
     config: &TrainingConfig,
     backend: Backend,
 ) -> Result<(), TrainError> {
-    let given = parent.layers();
+    let given = pretrained.layers();
     let heads = 1 + usize::from(given.chi_p.is_some());
     let damage = std::iter::repeat_n(config.damage.clone(), heads);
     let expected: Vec<_> = std::iter::once(config.embedding.clone())
@@ -103,26 +103,27 @@ pub fn check_parent(
     if found != expected {
         return Err(TrainError::OtherSizes { expected, found });
     }
-    let found = parent.card().damage_sharpness;
+    let found = pretrained.card().damage_sharpness;
     if found != config.damage_sharpness {
         return Err(TrainError::OtherSharpness { found });
     }
     let exact = TensorCreationOptions::new(backend.device()).with_dtype(DType::F64);
-    let folded = Networks::of_layers(&given, config.mirror, &exact);
+    let folded = Networks::from_layers(&given, config.mirror, &exact);
     let unchanged = layers(&folded)? == given;
-    let centred = !config.mirror || mirror::is_centred(&parent.card().standardisation);
-    match unchanged && centred {
-        true => Ok(()),
-        false => Err(TrainError::NotSymmetric),
+    let centred = !config.mirror || mirror::is_centred(&pretrained.card().standardisation);
+    if unchanged && centred {
+        Ok(())
+    } else {
+        Err(TrainError::NotSymmetric)
     }
 }
 
 /// The factor of the predictions that is closest to the targets.
-fn factor(points: &[ParityPoint]) -> f64 {
-    let known = || points.iter().filter(|point| !point.target.is_nan());
-    let product: f64 = known().map(|it| it.target * it.predicted).sum();
-    let square: f64 = known().map(|it| it.predicted.powi(2)).sum();
-    product / square
+fn factor(points: impl Iterator<Item = [f64; 2]>) -> f64 {
+    let known: Vec<_> = points.filter(|[target, _]| !target.is_nan()).collect();
+    let products = known.iter().map(|[target, predicted]| target * predicted);
+    let squares = known.iter().map(|[_, predicted]| predicted.powi(2));
+    products.sum::<f64>() / squares.sum::<f64>()
 }
 
 /// Changes a first layer such that its outputs for inputs standardised by `to` are those for inputs standardised by

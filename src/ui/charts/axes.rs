@@ -1,6 +1,6 @@
 //! What the charts share: axes with names, named lines, the box with the names.
 
-use kirigami::ui::charts::{Area, ChartError, ChartResult, FONT, GUIDE};
+use super::{Area, ChartError, ChartResult, FONT, GUIDE};
 use plotters::chart::SeriesLabelPosition;
 use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::prelude::*;
@@ -10,8 +10,11 @@ pub type Chart<'a, X, Y> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, Y>>;
 
 /// An axis: its range, linear or logarithmic, its name and the text of a tick.
 pub struct Axis<'n, R> {
+    /// From the first to the last value.
     pub range: R,
+    /// Quantity and unit.
     pub name: &'n str,
+    /// The text of a tick.
     pub tick: fn(&f64) -> String,
 }
 

@@ -8,41 +8,42 @@
 
 use dataset::Database;
 use hinge::{HingeDeformation, HingeDesign, HingeSample};
-use surrogate::{LessonRecord, Surrogate, Teacher, median};
+use support::statistics::median;
+use surrogate::{DistillationRecord, Surrogate, Teacher};
 
 /// States whose targets are the median predictions of an ensemble.
 #[derive(Clone, Debug)]
-pub struct Lesson {
-    pub(crate) record: LessonRecord,
+pub struct Distillation {
+    pub(crate) record: DistillationRecord,
     pub(crate) samples: Vec<(HingeDesign, HingeSample)>,
 }
 
-/// What a network is trained on: the rows of a database, and the lesson of an ensemble.
+/// What a network is trained on: the rows of a database, and the median of an ensemble.
 #[derive(Clone, Copy, Debug)]
 pub struct TrainingData<'a> {
     /// The rows. Scales, training domain, validation and test are of these alone.
     pub database: &'a Database,
     /// Further states for the training.
-    pub lesson: Option<&'a Lesson>,
+    pub distillation: Option<&'a Distillation>,
 }
 
 impl<'a> From<&'a Database> for TrainingData<'a> {
     fn from(database: &'a Database) -> Self {
         Self {
             database,
-            lesson: None,
+            distillation: None,
         }
     }
 }
 
 impl TrainingData<'_> {
-    /// What the card of a network states about the lesson.
-    pub fn record(&self) -> Option<&LessonRecord> {
-        self.lesson.map(|lesson| &lesson.record)
+    /// What the card of a network states about the distillation.
+    pub fn record(&self) -> Option<&DistillationRecord> {
+        self.distillation.map(|median| &median.record)
     }
 }
 
-impl Lesson {
+impl Distillation {
     /// The median predictions of the members at the states, each quantity by itself.
     ///
     /// # Panics
@@ -60,7 +61,7 @@ impl Lesson {
         let samples: Vec<_> = (designs.into_iter().enumerate())
             .map(|(state, design)| (design, of_state(state)))
             .collect();
-        let record = LessonRecord {
+        let record = DistillationRecord {
             teachers: members.iter().map(teacher).collect(),
             hash: hash(&samples),
         };
@@ -82,14 +83,16 @@ fn hash(samples: &[(HingeDesign, HingeSample)]) -> String {
 
 /// The medians of W, forces and damage at one state. D_peak is unknown if one network does not predict it.
 fn medians(members: &[&HingeSample]) -> HingeSample {
-    let of = |value: fn(&HingeSample) -> f64| median(members.iter().map(|it| value(it)).collect());
-    let peaks: Option<Vec<f64>> = members.iter().map(|it| it.d_peak).collect();
+    let of = |value: fn(&HingeSample) -> f64| {
+        median(members.iter().map(|sample| value(sample)).collect())
+    };
+    let peaks: Option<Vec<f64>> = members.iter().map(|sample| sample.d_peak).collect();
     HingeSample {
-        w: of(|it| it.w),
-        f_a: of(|it| it.f_a),
-        f_s: of(|it| it.f_s),
-        m_theta: of(|it| it.m_theta),
-        d: of(|it| it.d),
+        w: of(|sample| sample.w),
+        f_a: of(|sample| sample.f_a),
+        f_s: of(|sample| sample.f_s),
+        m_theta: of(|sample| sample.m_theta),
+        d: of(|sample| sample.d),
         d_peak: peaks.map(median),
         ..*members[0]
     }
@@ -102,21 +105,25 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn a_lesson_has_the_median_of_three_networks() {
+    fn a_distillation_has_the_median_of_three_networks() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/pet-0.5mm");
         let members = ["medium", "medium-1", "small"].map(|name| {
             Surrogate::load(&folder.join(name).with_added_extension("safetensors")).unwrap()
         });
         let design = HingeConstants::PAPER.hinge(15.0, 1.2);
         let state = HingeDeformation::from_eta(-0.2, 0.1, 0.4, design.w_lig);
-        let lesson = Lesson::new(&members, &[(design, state)]);
-        let of_members = members.map(|it| it.samples(&[design], &[state])[0]);
-        let quantities: [fn(&HingeSample) -> f64; 3] = [|it| it.w, |it| it.m_theta, |it| it.d];
+        let distillation = Distillation::new(&members, &[(design, state)]);
+        let of_members = members.map(|member| member.samples(&[design], &[state])[0]);
+        let quantities: [fn(&HingeSample) -> f64; 3] = [
+            |sample| sample.w,
+            |sample| sample.m_theta,
+            |sample| sample.d,
+        ];
         for value in quantities {
             let mut values = of_members.each_ref().map(value);
             values.sort_by(f64::total_cmp);
             assert!(values[0] < values[1] && values[1] < values[2], "{values:?}");
-            assert_eq!(value(&lesson.samples[0].1), values[1]);
+            assert_eq!(value(&distillation.samples[0].1), values[1]);
         }
     }
 

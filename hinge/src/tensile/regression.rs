@@ -1,0 +1,43 @@
+//! The straight line through rows [x, y], by least squares, and linear interpolation between them.
+
+/// The line through a set of rows.
+pub(super) struct Regression {
+    /// Means of x and y.
+    pub mean: [f64; 2],
+    /// Sum of the squared deviations of x from its mean.
+    pub squares: f64,
+    /// Slope of the line; not finite if all x are equal.
+    pub slope: f64,
+}
+
+impl Regression {
+    pub fn new(rows: &[[f64; 2]]) -> Self {
+        let count = rows.len() as f64;
+        let mean = [0, 1].map(|of| rows.iter().map(|row| row[of]).sum::<f64>() / count);
+        let (mut squares, mut products) = (0.0, 0.0);
+        for row in rows {
+            squares += (row[0] - mean[0]).powi(2);
+            products += (row[0] - mean[0]) * (row[1] - mean[1]);
+        }
+        Self {
+            mean,
+            squares,
+            slope: products / squares,
+        }
+    }
+}
+
+/// The value in the column `of` of a curve at the value `x` in its other column, which increases: linear between rows,
+/// constant beyond the ends.
+pub(super) fn interpolated(curve: &[[f64; 2]], of: usize, x: f64) -> f64 {
+    let by = 1 - of;
+    let after = curve.partition_point(|row| row[by] < x);
+    match after {
+        0 => curve[0][of],
+        after if after == curve.len() => curve[after - 1][of],
+        after => {
+            let [low, high] = [curve[after - 1], curve[after]];
+            low[of] + (high[of] - low[of]) * (x - low[by]) / (high[by] - low[by])
+        }
+    }
+}
