@@ -71,7 +71,7 @@ impl Canvas {
     pub fn svg(&self, corners: [[f64; 2]; 2], width: f64, unit: &str) -> String {
         let elements = self.shapes.iter();
         let body: String = elements
-            .map(|(style, shape)| element(shape, &attributes(style)))
+            .map(|(style, shape)| element(shape, &attributes(style, shape)))
             .collect();
         document(corners, width, unit, &body)
     }
@@ -100,7 +100,11 @@ pub(crate) fn group<'a>(
     width: f64,
     shapes: impl Iterator<Item = &'a Shape>,
 ) -> String {
-    let line = attributes(&Style::stroke(colour, width));
+    let line = format!(
+        "fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"",
+        hex(colour),
+        number(width)
+    );
     let text = format!("fill=\"{}\" stroke=\"none\"", hex(colour));
     let elements = shapes.map(|shape| match shape {
         Shape::Text(_) => element(shape, &text),
@@ -156,7 +160,7 @@ fn text_element(text: &Text, attributes: &str) -> String {
     )
 }
 
-fn attributes(style: &Style) -> String {
+fn attributes(style: &Style, shape: &Shape) -> String {
     let mut text = match style.fill {
         Some(colour) => format!("fill=\"{}\"", hex(colour)),
         None => "fill=\"none\"".to_owned(),
@@ -173,8 +177,12 @@ fn attributes(style: &Style) -> String {
     if style.stroke_opacity < 1.0 {
         add("stroke-opacity", &number(style.stroke_opacity));
     }
+    // A closed line has ends only if it is dashed. Lines thinner than a pixel would show them.
+    let closed = matches!(shape, Shape::Polygon(_) | Shape::Circle { .. });
     if style.round {
-        add("stroke-linecap", "round");
+        if !closed || style.dash.is_some() {
+            add("stroke-linecap", "round");
+        }
         add("stroke-linejoin", "round");
     }
     if let Some([dash, gap]) = style.dash {
