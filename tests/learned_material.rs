@@ -135,7 +135,7 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
     assert!(
         card.contains("polypropylene-0.8mm")
             && card.contains("fine-tuned from")
-            && card.matches("taught by").count() == 2,
+            && card.matches("distilled from").count() == 2,
         "{card}"
     );
     // One network alone, of other sizes than those of the configuration, is fine-tuned and kept.
@@ -143,7 +143,7 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
     work.output(&learn_from(&["small"], POLYPROPYLENE, &options));
     let card = work.output("surrogate card learned/weights.safetensors");
     assert!(
-        card.contains("fine-tuned from") && !card.contains("taught by"),
+        card.contains("fine-tuned from") && !card.contains("distilled from"),
         "{card}"
     );
     // Several networks must have the same sizes.

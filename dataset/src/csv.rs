@@ -4,7 +4,7 @@ use crate::database::Database;
 use crate::error::DatasetError;
 use crate::rows::Row;
 use crate::schema::{self, KNOWN, NUMBERS, TEXTS};
-use polars::prelude::{CsvReadOptions, CsvWriter, SerReader, SerWriter};
+use polars::prelude::{CsvReadOptions, CsvWriter, DataFrame, SerReader, SerWriter};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -82,74 +82,52 @@ fn rows_of(bytes: &[u8], map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
         .with_infer_schema_length(Some(0))
         .into_reader_with_file_handle(Cursor::new(bytes))
         .finish()?;
-    let mut rows = vec![schema::blank(); frame.height()];
+    let table = ForeignTable { frame, map };
+    let mut rows = vec![schema::blank(); table.frame.height()];
     for (index, row) in rows.iter_mut().enumerate() {
         row.job = format!("row-{index:06}");
         row.sample.lambda = 1.0;
     }
-    let column = |name: &str| -> Result<Option<Vec<Option<String>>>, DatasetError> {
-        let Ok(series) = frame.column(map.columns.get(name).map_or(name, String::as_str)) else {
-            return match map.columns.get(name) {
-                Some(source) => Err(DatasetError::NoColumn {
-                    column: source.clone(),
-                }),
-                None => Ok(None),
-            };
-        };
-        Ok(Some(
-            series
-                .str()?
-                .iter()
-                .map(|cell| cell.map(str::to_owned))
-                .collect(),
-        ))
-    };
-    let numbers = |name: &'static str| -> Result<Option<Vec<f64>>, DatasetError> {
-        let mut values = match (column(name)?, map.constants.get(name)) {
-            (Some(cells), _) => parsed(name, &cells)?,
-            (None, Some(Constant::Number(value))) => vec![*value; frame.height()],
-            (None, _) => return Ok(None),
-        };
-        let factor = map.factors.get(name).copied().unwrap_or(1.0);
-        values.iter_mut().for_each(|value| *value *= factor);
-        Ok(Some(values))
+    let required = |is_required: bool, column: &str| {
+        let column = column.to_owned();
+        is_required.then_some(DatasetError::NoColumn { column })
     };
     for text in &TEXTS {
-        let values = match (column(text.name)?, map.constants.get(text.name)) {
-            // An empty cell is an empty text; for example, most rows have no failure.
-            (Some(cells), _) => cells
-                .into_iter()
-                .map(|c| Some(c.unwrap_or_default()))
-                .collect(),
-            (None, Some(Constant::Text(value))) => vec![Some(value.clone()); rows.len()],
-            (None, _) if text.name == "material" => {
-                return Err(DatasetError::NoColumn {
-                    column: text.name.into(),
-                });
-            }
-            (None, _) => continue,
-        };
-        schema::fill(&mut rows, text.name, values, text.set)?;
+        match (
+            table.texts(text.name)?,
+            required(text.name == "material", text.name),
+        ) {
+            (None, Some(missing)) => return Err(missing),
+            (values, _) => set_all(&mut rows, values, text.set),
+        }
     }
     for known in &KNOWN {
-        for (row, value) in rows
-            .iter_mut()
-            .zip(numbers(known.name)?.unwrap_or_default())
-        {
+        set_all(&mut rows, table.numbers(known.name)?, |row, value| {
             (known.set)(row, Some(value).filter(|value| !value.is_nan()));
-        }
+        });
     }
     for number in &NUMBERS {
-        let values = numbers(number.name)?;
-        if values.is_none() && REQUIRED.contains(&number.name) {
-            return Err(DatasetError::NoColumn {
-                column: number.name.into(),
-            });
-        }
-        for (row, value) in rows.iter_mut().zip(values.unwrap_or_default()) {
-            (number.set)(row, value);
+        let is_required = REQUIRED.contains(&number.name);
+        match (
+            table.numbers(number.name)?,
+            required(is_required, number.name),
+        ) {
+            (None, Some(missing)) => return Err(missing),
+            (values, _) => set_all(&mut rows, values, number.set),
         }
     }
+    refuse_degrees(&rows)?;
+    Ok(rows)
+}
+
+/// Sets a column of all rows, if it is known.
+fn set_all<T>(rows: &mut [Row], values: Option<Vec<T>>, set: impl Fn(&mut Row, T)) {
+    for (row, value) in rows.iter_mut().zip(values.into_iter().flatten()) {
+        set(row, value);
+    }
+}
+
+fn refuse_degrees(rows: &[Row]) -> Result<(), DatasetError> {
     for (index, row) in rows.iter().enumerate() {
         for (column, value) in [("alpha", row.design.alpha), ("theta", row.sample.theta)] {
             if value.abs() > PI {
@@ -161,7 +139,57 @@ fn rows_of(bytes: &[u8], map: &ColumnMap) -> Result<Vec<Row>, DatasetError> {
             }
         }
     }
-    Ok(rows)
+    Ok(())
+}
+
+/// A table of texts, and where it has the columns of a database.
+struct ForeignTable<'a> {
+    frame: DataFrame,
+    map: &'a ColumnMap,
+}
+
+impl ForeignTable<'_> {
+    /// The cells of a column of a database; `None` if the table lacks it.
+    fn cells(&self, name: &str) -> Result<Option<Vec<Option<String>>>, DatasetError> {
+        let source = self.map.columns.get(name);
+        match (
+            self.frame.column(source.map_or(name, String::as_str)),
+            source,
+        ) {
+            (Ok(column), _) => {
+                let cells = column.str()?.iter().map(|cell| cell.map(str::to_owned));
+                Ok(Some(cells.collect()))
+            }
+            (Err(_), Some(column)) => Err(DatasetError::NoColumn {
+                column: column.clone(),
+            }),
+            (Err(_), None) => Ok(None),
+        }
+    }
+
+    /// The numbers of a column or its constant, times its factor.
+    fn numbers(&self, name: &'static str) -> Result<Option<Vec<f64>>, DatasetError> {
+        let mut values = match (self.cells(name)?, self.map.constants.get(name)) {
+            (Some(cells), _) => parsed(name, &cells)?,
+            (None, Some(Constant::Number(value))) => vec![*value; self.frame.height()],
+            (None, _) => return Ok(None),
+        };
+        let factor = self.map.factors.get(name).copied().unwrap_or(1.0);
+        values.iter_mut().for_each(|value| *value *= factor);
+        Ok(Some(values))
+    }
+
+    /// The texts of a column or its constant. An empty cell is an empty text; for example, most rows have no failure.
+    fn texts(&self, name: &str) -> Result<Option<Vec<String>>, DatasetError> {
+        let texts = self.cells(name)?.map(|cells| {
+            let texts = cells.into_iter().map(Option::unwrap_or_default);
+            texts.collect()
+        });
+        Ok(texts.or_else(|| match self.map.constants.get(name) {
+            Some(Constant::Text(text)) => Some(vec![text.clone(); self.frame.height()]),
+            _ => None,
+        }))
+    }
 }
 
 /// The numbers of a column. An empty cell becomes NaN, which the gates reject.

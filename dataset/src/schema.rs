@@ -170,7 +170,7 @@ pub(crate) fn is_finite(row: &Row) -> bool {
     numbers.all(f64::is_finite) && known.all(f64::is_finite)
 }
 
-pub(crate) fn fill<T>(
+fn fill<T>(
     rows: &mut [Row],
     column: &'static str,
     values: impl IntoIterator<Item = Option<T>>,

@@ -7,7 +7,7 @@
 //! 4. Landmarks are read from the nominal curve (`landmarks`).
 //! 5. Where the strain is uniform, nominal rows become local ones (`local_curve`).
 
-use crate::tensile::cleaning::{Cause, DroppedRow, cleaned};
+use crate::tensile::cleaning::{Cause, Cleaned, DroppedRow, cleaned};
 use crate::tensile::error::TensileError;
 use crate::tensile::landmarks::{Draw, draw, offset_yield, uniform_end};
 use crate::tensile::linear_part::LinearPart;
@@ -106,20 +106,8 @@ impl Specimen {
                     .into(),
             ));
         }
-        let mut cleaned = cleaned(&record.rows).map_err(|line| TensileError::Row {
-            path: record.path.clone(),
-            line,
-            what: "from here on the strain falls for most of the file: sort the rows by time, and give each specimen its \
-                   own file"
-                .into(),
-        })?;
-        let is_local = record.load == TrueStress || record.deformation == TrueStrain;
-        if is_local {
-            cleaned
-                .curve
-                .iter_mut()
-                .for_each(|row| *row = nominal(record, *row));
-        }
+        let cleaned = nominal_curve(record)?;
+        let is_local = is_local(record);
         let curve =
             Compensated::new(record, &cleaned.curve, cleaned.noise, options).map_err(file)?;
         let (young, elastic, noise) = (curve.young, curve.elastic, curve.noise);
@@ -141,10 +129,7 @@ impl Specimen {
         let (last, end) = match (&draw, is_local) {
             (_, true) => (smooth.len() - 1, End::Uniform),
             (Some(draw), _) => draw_end(smooth, draw, noise[1]),
-            (None, _) => match uniform_end(smooth, elastic, noise[1]) {
-                (row, true) => (row, End::Neck),
-                (row, false) => (row, End::Uniform),
-            },
+            (None, _) => uniform(uniform_end(smooth, elastic, noise[1])),
         };
         let onset = ONSET.max(3.0 * f64::hypot(noise[0], noise[1] / young));
         let until = draw.map_or(last, |draw| draw.top);
@@ -197,6 +182,27 @@ impl Specimen {
     pub fn dropped_for(&self, cause: Cause) -> usize {
         self.dropped.iter().filter(|row| row.cause == cause).count()
     }
+}
+
+/// Whether a record has true values.
+fn is_local(record: &Record) -> bool {
+    record.load == TrueStress || record.deformation == TrueStrain
+}
+
+/// The monotone part of a record as a nominal curve.
+fn nominal_curve(record: &Record) -> Result<Cleaned, TensileError> {
+    let mut cleaned = cleaned(&record.rows).map_err(|line| TensileError::Row {
+        path: record.path.clone(),
+        line,
+        what: "from here on the strain falls for most of the file: sort the rows by time, and give each specimen its own file"
+            .into(),
+    })?;
+    if is_local(record) {
+        for row in &mut cleaned.curve {
+            *row = nominal(record, *row);
+        }
+    }
+    Ok(cleaned)
 }
 
 /// A nominal curve without noise, toe and compliance of the machine.
@@ -381,8 +387,10 @@ fn draw_end(curve: &[[f64; 2]], draw: &Draw, noise: f64) -> (usize, End) {
     if drawn == curve.len() {
         return (drawn - 1, End::Drawing);
     }
-    match uniform_end(curve, drawn, noise) {
-        (row, true) => (row, End::Neck),
-        (row, false) => (row, End::Uniform),
-    }
+    uniform(uniform_end(curve, drawn, noise))
+}
+
+/// The last row of a uniform deformation, and how it ended.
+fn uniform((row, necks): (usize, bool)) -> (usize, End) {
+    (row, if necks { End::Neck } else { End::Uniform })
 }

@@ -40,7 +40,7 @@ impl CardCommand {
         } in (card.distillation.iter()).flat_map(|distillation| &distillation.teachers)
         {
             let from = known(fine_tuned_from);
-            println!("taught by weights {weights}, fine-tuned from {from}");
+            println!("distilled from weights {weights}, fine-tuned from {from}");
         }
         let hinge = card.hinge;
         println!(
