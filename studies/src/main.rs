@@ -3,6 +3,7 @@
 mod actuations;
 mod approaches;
 mod capacity;
+mod chain;
 mod charts;
 mod choices;
 mod designed;
@@ -44,6 +45,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Study {
     Levels(levels::LevelsStudy),
+    Chain(chain::ChainStudy),
     Sheet(sheet::SheetStudy),
     Window(window::WindowStudy),
     PathCosts(path_costs::PathCostStudy),
@@ -66,6 +68,7 @@ impl Study {
     fn run(&self) -> Result<()> {
         match self {
             Self::Levels(study) => study.run(),
+            Self::Chain(study) => study.run(),
             Self::Sheet(study) => study.run(),
             Self::Window(study) => study.run(),
             Self::PathCosts(study) => study.run(),

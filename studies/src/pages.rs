@@ -139,9 +139,10 @@ fn shell(command: &str) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use clap::CommandFactory;
 
     #[test]
-    fn the_shipped_book_names_products_that_exist() {
+    fn the_shipped_book_names_products_and_studies_that_exist() {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/results/pages.toml");
         let book: Book = support::toml_file::read(&file).unwrap();
         let needs = book.page.iter().flat_map(|page| &page.needs);
@@ -150,6 +151,15 @@ mod tests {
                 book.product.iter().any(|product| product.name == *name),
                 "{name}"
             );
+        }
+        let pages = book.page.iter().map(|page| &page.commands);
+        let commands = pages.chain(book.product.iter().map(|product| &product.commands));
+        let studies = crate::Cli::command();
+        for command in commands.flatten() {
+            let study = command.strip_prefix("kirigami-studies ");
+            if let Some(study) = study.and_then(|rest| rest.split(' ').next()) {
+                assert!(studies.find_subcommand(study).is_some(), "{command}");
+            }
         }
         assert!(book.chosen(&["no such page".into()]).is_err());
         assert_eq!(book.chosen(&[]).unwrap().len(), book.page.len());

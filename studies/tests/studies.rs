@@ -7,7 +7,7 @@ mod failing_ccx;
 
 use common::{Workplace, failure};
 use failing_ccx::failing_ccx;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const PIN: &str = "configs/scenes/pin-7x7.toml";
 
@@ -31,6 +31,18 @@ fn set_steps(work: &Workplace, scene: &str, steps: usize) {
     let text = std::fs::read_to_string(work.path(scene)).unwrap();
     let old = text.lines().find(|line| line.starts_with("steps")).unwrap();
     work.edit(scene, &[(old, &format!("steps = {steps}"))]);
+}
+
+/// Copies the shipped weights of the film, including the ensemble of its scenes.
+fn shipped_weights(work: &Workplace) {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/pet-0.5mm");
+    std::fs::create_dir_all(work.path("data/pet-0.5mm")).unwrap();
+    for name in ["small", "medium", "medium-1", "medium-2", "medium-3"] {
+        for file in ["safetensors", "json"].map(|kind| format!("{name}.{kind}")) {
+            let there = work.path("data/pet-0.5mm").join(&file);
+            std::fs::copy(data.join(&file), there).unwrap();
+        }
+    }
 }
 
 #[test]
@@ -130,6 +142,39 @@ fn sheets_whose_panels_stay_flat() {
         work.error("localisation --edge=-1 --out out")
             .contains("--edge")
     );
+}
+
+#[test]
+fn the_chain_is_compared_with_the_given_reference() {
+    let work = Workplace::new();
+    let scene = "configs/scenes/pet-3x3.toml";
+    shipped_weights(&work);
+    set_steps(&work, scene, 2);
+    // The card of a network trained on a coarser mesh.
+    let card = work.path("data/pet-0.5mm/small.json");
+    let mut content: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(&card).unwrap()).unwrap();
+    content["tier"] = "tiny".into();
+    content.as_object_mut().unwrap().remove("checksum");
+    std::fs::write(&card, content.to_string()).unwrap();
+    let weights = |name: &str| format!("data/pet-0.5mm/{name}.safetensors");
+    let study = format!(
+        "chain {scene} {} {} --reference {}",
+        weights("small"),
+        weights("medium"),
+        weights("medium")
+    );
+    let chain = page(&work, &study, "chain.csv");
+    let shape = |choice: &str| -> f64 {
+        let row = chain.lines().find(|line| line.contains(choice)).unwrap();
+        row.split(',').nth(5).unwrap().parse().unwrap()
+    };
+    assert!(chain.contains("window tier,small,") && chain.contains("network,medium,"));
+    // The reference differs from itself by its tolerance and load steps only.
+    assert!(shape("network,medium,") < 1e-6, "{chain}");
+    assert!(shape("tier,small,") > 1e-4, "{chain}");
+    let linear = "chain configs/scenes/linear-7x7.toml --reference data/pet-0.5mm/small.safetensors --out out";
+    assert!(work.error(linear).contains("hinge = \"surrogate\""));
 }
 
 #[test]
