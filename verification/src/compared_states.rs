@@ -1,7 +1,6 @@
 //! Differences of values from finer reference values, group by group: a table of their distribution.
 
 use dataset::{COMPARED, ComparedState, reference_rms, relative_rms};
-use support::table::{Cell, Table};
 
 /// Lower bound of the scale of a group's difference, relative to the reference of all groups.
 const MIN_SCALE: f64 = 0.1;
@@ -21,36 +20,27 @@ pub fn each_relative(groups: &[&[ComparedState]]) -> Vec<[f64; 6]> {
 
 /// One row per quantity: the difference over all states, and its distribution over the groups.
 pub fn spread_table(groups: &[&[ComparedState]], group: &str) -> String {
+    let mut text = format!(
+        "| quantity | all states | median {group} | 90 % of {group}s | worst {group} |\n\
+         |---|---|---|---|---|\n"
+    );
     let all = relative_rms(&groups.concat(), [0.0; 6]);
     let each = each_relative(groups);
-    // The differences of a quantity over the groups that know it, in ascending order.
-    let known = |i: usize| {
-        let groups = std::iter::zip(groups, &each);
-        let known = groups.filter(|(states, _)| states.iter().any(|state| state.is_known(i)));
-        let mut sorted: Vec<f64> = known.map(|(_, rms)| rms[i]).collect();
+    for (i, name) in COMPARED.iter().enumerate() {
+        let known = std::iter::zip(groups, &each)
+            .filter(|(states, _)| states.iter().any(|state| state.is_known(i)));
+        let mut sorted: Vec<_> = known.map(|(_, rms)| rms[i]).collect();
         sorted.sort_by(f64::total_cmp);
-        sorted
-    };
-    let sorted: [Vec<f64>; 6] = std::array::from_fn(known);
-    let quantile = |i: usize, fraction: f64| {
-        let last = sorted[i].len().checked_sub(1);
-        let place = last.map(|last| (fraction * last as f64).round() as usize);
-        Cell::text(place.map_or(String::new(), |place| percent(sorted[i][place])))
-    };
-    let table = Table::new()
-        .column("quantity", |i: &usize| Cell::text(COMPARED[*i]))
-        .column("all states", |i| {
-            let known = !sorted[*i].is_empty();
-            Cell::text(if known {
-                percent(all[*i])
-            } else {
-                "not known".into()
-            })
-        })
-        .column(format!("median {group}"), |i| quantile(*i, 0.5))
-        .column(format!("90 % of {group}s"), |i| quantile(*i, 0.9))
-        .column(format!("worst {group}"), |i| quantile(*i, 1.0));
-    table.markdown(&[0, 1, 2, 3, 4, 5])
+        let Some(last) = sorted.len().checked_sub(1) else {
+            text += &format!("| {name} | not known | | | |\n");
+            continue;
+        };
+        let quantile = |fraction: f64| sorted[(fraction * last as f64).round() as usize];
+        let [median, most, worst] = [0.5, 0.9, 1.0].map(|fraction| percent(quantile(fraction)));
+        let all = percent(all[i]);
+        text += &format!("| {name} | {all} | {median} | {most} | {worst} |\n");
+    }
+    text
 }
 
 /// Cuts off at 1000 %: if the reference is almost zero (damage of hinges that do not yield), the ratio is meaningless.
