@@ -73,108 +73,131 @@ pub(super) fn all<'a>(
     [learned, linear]: [(&SceneConfig, &'a Path); 2],
     panels: usize,
 ) -> Result<Vec<Extreme<'a>>> {
-    use Promise::{Flat, Opened, Reached, Refused, Stated};
-    let (config, path) = learned;
-    let own = deployment(config, path).map_err(|reason| anyhow!(reason))?;
-    let own = Opened(own.final_step().opening());
-    let thickness = Scene::new(config.clone(), path)?.material.thickness;
-    let mut all = Vec::new();
-    let mut add = |(base, path): (&SceneConfig, &'a Path),
-                   name: String,
-                   promise: Promise,
-                   edit: &dyn Fn(&mut SceneConfig)| {
-        let mut config = base.clone();
+    let mut of_learned = Extremes::new(learned);
+    let mut of_linear = Extremes::new(linear);
+    of_learned.loads("");
+    of_linear.loads("linear, ");
+    of_learned.cuts();
+    of_learned.settings()?;
+    of_linear.stiffnesses();
+    of_learned.add(
+        format!("{panels} x {panels} panels"),
+        Promise::Stated,
+        |config| enlarged(config, panels),
+    );
+    Ok(of_learned.list.into_iter().chain(of_linear.list).collect())
+}
+
+/// The extremes of one scene.
+struct Extremes<'s, 'a> {
+    base: &'s SceneConfig,
+    path: &'a Path,
+    list: Vec<Extreme<'a>>,
+}
+
+impl<'s, 'a> Extremes<'s, 'a> {
+    fn new((base, path): (&'s SceneConfig, &'a Path)) -> Self {
+        let list = Vec::new();
+        Self { base, path, list }
+    }
+
+    fn add(&mut self, name: String, promise: Promise, edit: impl FnOnce(&mut SceneConfig)) {
+        let (mut config, path) = (self.base.clone(), self.path);
         edit(&mut config);
-        all.push(Extreme {
+        self.list.push(Extreme {
             name,
             config,
             path,
             promise,
         });
-    };
-    for (factor, promise) in [
-        (0.0, Flat),
-        (1e-9, Reached),
-        (1e-6, Reached),
-        (1e-3, Reached),
-        (1.0, Reached),
-        (10.0, Stated),
-        (1e3, Stated),
-        (1e6, Refused),
-        (-1.0, Stated),
-        (-1e3, Stated),
-    ] {
-        let load = |config: &mut SceneConfig| config.scale_loads(factor);
-        add(learned, format!("load x {factor:e}"), promise, &load);
-        add(linear, format!("linear, load x {factor:e}"), promise, &load);
     }
-    for (w_lig, promise) in [
-        (0.6, Stated),
-        (2.0, Stated),
-        (36.0, Stated),
-        (100.0, Refused),
-    ] {
-        add(
-            learned,
-            format!("ligaments of {w_lig} mm"),
-            promise,
-            &|config| {
+
+    fn loads(&mut self, prefix: &str) {
+        use Promise::{Flat, Reached, Refused, Stated};
+        for (factor, promise) in [
+            (0.0, Flat),
+            (1e-9, Reached),
+            (1e-6, Reached),
+            (1e-3, Reached),
+            (1.0, Reached),
+            (10.0, Stated),
+            (1e3, Stated),
+            (1e6, Refused),
+            (-1.0, Stated),
+            (-1e3, Stated),
+        ] {
+            self.add(format!("{prefix}load x {factor:e}"), promise, |config| {
+                config.scale_loads(factor);
+            });
+        }
+    }
+
+    /// Widths and angles of the ligaments.
+    fn cuts(&mut self) {
+        use Promise::{Refused, Stated};
+        let widths = [
+            (0.6, Stated),
+            (2.0, Stated),
+            (36.0, Stated),
+            (100.0, Refused),
+        ];
+        for (w_lig, promise) in widths {
+            self.add(format!("ligaments of {w_lig} mm"), promise, |config| {
                 config.ligament.start = w_lig;
                 config.ligament.range = [0.9 * w_lig, 1.1 * w_lig];
                 config.process.kerf = config.process.kerf.min(0.02 * w_lig);
-            },
-        );
-    }
-    for angle_deg in [25.0, 150.0] {
-        add(
-            learned,
-            format!("cuts at {angle_deg} deg"),
-            Stated,
-            &|config| {
+            });
+        }
+        for angle_deg in [25.0, 150.0] {
+            self.add(format!("cuts at {angle_deg} deg"), Stated, |config| {
                 let [width, height] = config.sheet.size.unwrap_or_default();
                 let (sin, cos) = f64::to_radians(angle_deg).sin_cos();
                 let (x, y) = (height * cos, height * sin);
                 config.sheet.corners = Some([[0.0; 2], [width, 0.0], [width + x, y], [x, y]]);
                 config.sheet.size = None;
-            },
-        );
+            });
+        }
     }
-    for factor in [0.05, 8.0] {
-        let name = format!("all lengths x {factor}");
-        add(learned, name, own, &|config| {
-            scaled(config, thickness, factor)
-        });
+
+    /// What must not change the opening of the sheet: its scale, the load steps, the tolerance.
+    fn settings(&mut self) -> Result<()> {
+        let own = deployment(self.base, self.path).map_err(|reason| anyhow!(reason))?;
+        let own = Promise::Opened(own.final_step().opening());
+        let thickness = Scene::new(self.base.clone(), self.path)?.material.thickness;
+        for factor in [0.05, 8.0] {
+            self.add(format!("all lengths x {factor}"), own, |config| {
+                scaled(config, thickness, factor);
+            });
+        }
+        for steps in [1, 1000] {
+            self.add(format!("{steps} load steps"), own, |config| {
+                config.load_steps = steps;
+            });
+        }
+        for tolerance in [1e-14, 0.1] {
+            let name = format!("tolerance {tolerance:e}");
+            self.add(name, Promise::Reached, |config| {
+                config.solver.tolerance = tolerance;
+            });
+        }
+        Ok(())
     }
-    for steps in [1, 1000] {
-        add(learned, format!("{steps} load steps"), own, &|config| {
-            config.load_steps = steps;
-        });
+
+    fn stiffnesses(&mut self) {
+        use Promise::{Reached, Refused};
+        for (k_a, k_theta, promise) in [
+            (1e6, 1e-3, Refused),
+            (1e6, 1.0, Reached),
+            (1e-3, 1e6, Reached),
+        ] {
+            let name = format!("linear, k_a = k_s = {k_a:e}, k_theta = {k_theta:e}");
+            self.add(name, promise, |config| {
+                if let Some(linear) = &mut config.linear {
+                    (linear.k_a, linear.k_s, linear.k_theta) = (k_a, k_a, k_theta);
+                }
+            });
+        }
     }
-    for tolerance in [1e-14, 0.1] {
-        let name = format!("tolerance {tolerance:e}");
-        add(learned, name, Reached, &|config| {
-            config.solver.tolerance = tolerance
-        });
-    }
-    for (k_a, k_theta, promise) in [
-        (1e6, 1e-3, Refused),
-        (1e6, 1.0, Reached),
-        (1e-3, 1e6, Reached),
-    ] {
-        let name = format!("linear, k_a = k_s = {k_a:e}, k_theta = {k_theta:e}");
-        add(linear, name, promise, &|config| {
-            if let Some(linear) = &mut config.linear {
-                (linear.k_a, linear.k_s, linear.k_theta) = (k_a, k_a, k_theta);
-            }
-        });
-    }
-    add(
-        learned,
-        format!("{panels} x {panels} panels"),
-        Stated,
-        &|config| enlarged(config, panels),
-    );
-    Ok(all)
 }
 
 /// All lengths of the scene multiplied by `factor`: the same sheet by similarity. `thickness` is that of the sheet (mm).
