@@ -104,8 +104,8 @@ pub struct WeightFacts {
 pub struct SpotCheck {
     /// Number of states.
     pub states: usize,
-    /// Number of states inside the training domain, if it was counted.
-    pub inside: Option<usize>,
+    /// Number of states inside the training domain.
+    pub inside: usize,
     /// As [`WeightFacts::errors_percent`], at all states.
     pub errors_percent: Vec<f64>,
 }
@@ -276,7 +276,7 @@ impl WeightFacts {
             errors_percent: errors(&card.test_errors),
             spot_check: card.spot_check.as_ref().map(|check| SpotCheck {
                 states: check.errors.rows,
-                inside: Some(check.inside),
+                inside: check.inside,
                 errors_percent: errors(&check.errors),
             }),
         })
@@ -294,10 +294,8 @@ impl WeightFacts {
         let mut rows = vec![("weights", trained), ("test errors", test_errors)];
         if let Some(check) = &self.spot_check {
             let text = errors(&check.errors_percent, check.states, "random");
-            let inside = check
-                .inside
-                .map(|inside| format!(", {inside} of them inside the domain"));
-            rows.push(("spot check", text + &inside.unwrap_or_default()));
+            let inside = format!(", {} of them inside the domain", check.inside);
+            rows.push(("spot check", text + &inside));
         }
         rows
     }

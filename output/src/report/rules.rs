@@ -324,12 +324,13 @@ fn inaccurate(judged: &Judged) -> Option<Warning> {
 fn outside(judged: &Judged) -> Option<Warning> {
     let weights = judged.run.as_ref()?.facts.weights.as_ref()?;
     let check = weights.spot_check.as_ref()?;
-    let inside = check.inside.filter(|inside| 2 * inside < check.states)?;
-    Some(Concern::WeakWeights.of_sheet(format!(
-        "only {inside} of {} states of the spot check lie inside the training domain of the weights {}: its errors say \
-         little about them; solve more rays",
-        check.states, weights.file
-    )))
+    (2 * check.inside < check.states).then(|| {
+        Concern::WeakWeights.of_sheet(format!(
+            "only {} of {} states of the spot check lie inside the training domain of the weights {}: its errors say little \
+             about them; solve more rays",
+            check.inside, check.states, weights.file
+        ))
+    })
 }
 
 fn missed(judged: &Judged) -> Option<Warning> {

@@ -19,8 +19,8 @@ fn learning_chart(area: &Area, training: &[f64], validation: &[f64]) -> ChartRes
         range: 0.0..training.len().max(2) as f64 - 1.0,
         name: "epoch",
         tick: |epoch| {
-            if epoch.fract() == 0.0 {
-                epoch.to_string()
+            if (epoch - epoch.round()).abs() < 1e-6 {
+                format!("{epoch:.0}")
             } else {
                 String::new()
             }
