@@ -1,6 +1,5 @@
 //! Errors of collecting, reading, writing and correcting a database.
 
-use crate::manifest::FORMAT_VERSION;
 use std::path::PathBuf;
 
 /// Why a database cannot be collected, read, written or corrected.
@@ -104,11 +103,15 @@ pub enum DatasetError {
         source: support::sealed_json::SealError,
     },
     #[error(
-        "{path} has the format version {found}, but this program reads version {FORMAT_VERSION} alone: collect the campaign \
+        "{path} has the format version {found}, but this program reads version {expected} alone: collect the campaign \
          again, or use the program that wrote it",
         path = .path.display()
     )]
-    UnknownVersion { path: PathBuf, found: u64 },
+    UnknownVersion {
+        path: PathBuf,
+        found: u64,
+        expected: u32,
+    },
     #[error(
         "{path} does not match its manifest (its BLAKE3 hash is {found}, not {expected}); \
          copy both files from the same place, or collect the campaign again",
