@@ -92,7 +92,7 @@ fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {
         return Err(DatasetError::UnknownVersion {
             path: path.to_owned(),
             found: version.format_version,
-            known: FORMAT_VERSION,
+            expected: FORMAT_VERSION,
         });
     }
     sealed_json::from_slice(&bytes).map_err(malformed)

@@ -103,14 +103,14 @@ pub enum DatasetError {
         source: support::sealed_json::SealError,
     },
     #[error(
-        "{path} has the format version {found}, but this program reads version {known} alone: collect the campaign \
+        "{path} has the format version {found}, but this program reads version {expected} alone: collect the campaign \
          again, or use the program that wrote it",
         path = .path.display()
     )]
     UnknownVersion {
         path: PathBuf,
         found: u64,
-        known: u32,
+        expected: u32,
     },
     #[error(
         "{path} does not match its manifest (its BLAKE3 hash is {found}, not {expected}); \
