@@ -38,7 +38,7 @@ pub struct TrainingConfig {
     #[schemars(range(min = 1))]
     pub batch_size: usize,
     /// The learning rate at the first step.
-    #[schemars(range(min = 1e-9, max = 1.0))]
+    #[schemars(range(min = 1e-30, max = 1.0))]
     pub learning_rate: f64,
     /// The learning rate at the end of the cosine schedule, at most `learning_rate`.
     #[schemars(range(min = 0.0))]

@@ -216,8 +216,8 @@ fn a_loss_that_overflows_float32_is_an_error() {
 fn a_training_that_no_longer_improves_stops_after_the_patience() {
     let config = TrainingConfig {
         patience: Some(2),
-        learning_rate: 1e-9,
-        learning_rate_end: 0.0,
+        learning_rate: 1e-30,
+        learning_rate_end: 1e-30,
         ..config(50)
     };
     let trained = train(
