@@ -29,6 +29,18 @@ pub struct Layers {
     pub chi_p: Option<Vec<Layer>>,
 }
 
+impl Layers {
+    /// Number of units of each layer: of chi, and of the hidden layers of each damage head.
+    pub fn widths(&self) -> Vec<Vec<usize>> {
+        let units = |layers: &[Layer]| -> Vec<usize> {
+            layers.iter().map(|layer| layer.bias.values.len()).collect()
+        };
+        let heads = std::iter::once(&self.chi_d).chain(&self.chi_p);
+        let hidden = heads.map(|head| units(&head[..head.len().saturating_sub(1)]));
+        std::iter::once(units(&self.chi)).chain(hidden).collect()
+    }
+}
+
 impl Surrogate {
     /// Constructs a surrogate from its networks and its card.
     ///

@@ -1,6 +1,5 @@
 //! The training configuration, read from a TOML file.
 
-use crate::networks::widths;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use support::key_limits::{self, OutOfRange};
@@ -101,7 +100,7 @@ pub enum InvalidConfig {
 impl TrainingConfig {
     /// The same configuration with the network sizes of given weights.
     pub fn with_sizes_of(self, weights: &Surrogate) -> Self {
-        let mut sizes = widths(&weights.layers()).into_iter();
+        let mut sizes = weights.layers().widths().into_iter();
         Self {
             embedding: sizes.next().unwrap_or_default(),
             damage: sizes.next().unwrap_or_default(),

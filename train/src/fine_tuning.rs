@@ -15,7 +15,7 @@ use crate::config::TrainingConfig;
 use crate::error::TrainError;
 use crate::export::layers;
 use crate::mirror;
-use crate::networks::{Networks, widths};
+use crate::networks::Networks;
 use crate::samples::Scales;
 use crate::validation::Parity;
 use burn::tensor::{DType, TensorCreationOptions};
@@ -99,7 +99,7 @@ pub fn check_pretrained(
     let expected: Vec<_> = std::iter::once(config.embedding.clone())
         .chain(damage)
         .collect();
-    let found = widths(&given);
+    let found = given.widths();
     if found != expected {
         return Err(TrainError::OtherSizes { expected, found });
     }

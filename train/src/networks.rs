@@ -126,22 +126,6 @@ fn head_folds(layers: usize, symmetric: bool) -> Vec<Fold> {
     folds
 }
 
-/// Number of units of each layer: of chi, and of the hidden layers of each damage head.
-pub(crate) fn widths(layers: &Layers) -> Vec<Vec<usize>> {
-    let units = |layers: &[Layer]| -> Vec<usize> {
-        layers.iter().map(|layer| layer.bias.values.len()).collect()
-    };
-    let head = |layers: &[Layer]| {
-        let mut units = units(layers);
-        units.pop();
-        units
-    };
-    let peak = layers.chi_p.as_deref().map(head);
-    let mut all = vec![units(&layers.chi), head(&layers.chi_d)];
-    all.extend(peak);
-    all
-}
-
 impl Mlp {
     /// The layers as evaluated.
     pub fn affine(&self) -> Vec<Affine> {

@@ -293,10 +293,17 @@ fn a_run_is_not_continued_with_another_model() {
     };
     run_with(&[]).unwrap();
     // A narrower training domain: its penalty energy keeps the hinges from opening.
-    let error = run_with(&[("\"theta\": [0.0, 1.25]", "\"theta\": [0.0, 0.01]")])
-        .err()
-        .unwrap()
-        .to_string();
+    let narrower = [
+        (
+            "\"centre\": [-0.125, 0.0, 0.625]",
+            "\"centre\": [-0.125, 0.0, 0.005]",
+        ),
+        (
+            "\"half_range\": [0.375, 0.35, 0.625]",
+            "\"half_range\": [0.375, 0.35, 0.005]",
+        ),
+    ];
+    let error = run_with(&narrower).err().unwrap().to_string();
     assert!(error.contains("other weights"), "{error}");
     let scene = read(folder.path(), &learned(&[("steps = 6", "steps = 1")]));
     remove_run(&scene).unwrap();
