@@ -66,8 +66,26 @@ fn sheet(case: &Value, start: &Value) -> String {
     let corners: Vec<[f64; 2]> = corners
         .map(|corner| [0, 1].map(|axis| SIZE * corner[axis].as_f64().unwrap()))
         .collect();
-    let (m, n, z, ell) = (&case["M"], &case["N"], &start["z"], &start["ell"]);
-    format!("[sheet]\ncorners = {corners:?}\npanels = [{m}, {n}]\n[start]\nz = {z}\nell = {ell}")
+    let (m, n) = (&case["M"], &case["N"]);
+    let numbers = |value: &Value| -> Vec<f64> { serde_json::from_value(value.clone()).unwrap() };
+    let r: Vec<f64> = (numbers(&start["z"]).iter())
+        .map(|z| 1.0 / (1.0 + (-z).exp()))
+        .collect();
+    let edges = start["ell"].as_array().unwrap().iter();
+    let tau: Vec<Vec<f64>> = edges.map(|ell| positions(&numbers(ell))).collect();
+    format!(
+        "[sheet]\ncorners = {corners:?}\npanels = [{m}, {n}]\n[start]\nr = {r:?}\ntau = {tau:?}"
+    )
+}
+
+/// The positions of the cuts on an edge from the logits of their intervals; (5).
+fn positions(ell: &[f64]) -> Vec<f64> {
+    let total: f64 = ell.iter().map(|logit| logit.exp()).sum();
+    let sums = ell.iter().scan(0.0, |sum, logit| {
+        *sum += logit.exp() / total;
+        Some(*sum)
+    });
+    sums.take(ell.len() - 1).collect()
 }
 
 #[test]
