@@ -127,7 +127,7 @@ impl Cluster {
         let folder = host.map_or_else(PathBuf::new, |host| host.unwrap().path());
         let history = folder.join(format!("events-{task}-of-4.jsonl"));
         let text = std::fs::read_to_string(history).unwrap_or_default();
-        text.matches("\"ended\":{\"rung\"").count()
+        text.matches("\"ended\":{\"attempt\"").count()
     }
 
     /// Waits until a task has solved a ray and goes on to the next.
