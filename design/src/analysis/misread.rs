@@ -26,10 +26,7 @@ const ORDERS: [[usize; 4]; 8] = [
 
 /// A mistake that concerns all points.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum Misread {
     #[error(
         "the points are a mirror image of the sheet (median residual {mirrored:.3} mm if mirrored, {level:.3} mm if \

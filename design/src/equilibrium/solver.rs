@@ -16,10 +16,7 @@ use crate::sheet::panel_vectors::gather;
 
 /// Supports, loads or settings that do not define an equilibrium problem.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum EquilibriumError {
     #[error("{what} on panel {panel}: the panels of the sheet are 0..{panels}")]
     NoSuchPanel {

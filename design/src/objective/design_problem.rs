@@ -24,10 +24,7 @@ use support::verbose;
 
 /// Why a design has no objective value.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum DesignError {
     #[error(transparent)]
     Pattern(#[from] PatternError),

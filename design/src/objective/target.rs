@@ -67,10 +67,7 @@ impl TargetShape {
 
 /// Why a target is not an outline.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum TargetError {
     #[error("cannot read the target outline {path}: {source}", path = .path.display())]
     Read {

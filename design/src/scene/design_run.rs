@@ -43,10 +43,7 @@ pub struct Designed {
 
 /// Why a run failed.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum InverseDesignError {
     #[error(transparent)]
     Scene(#[from] SceneError),

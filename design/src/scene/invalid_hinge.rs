@@ -6,10 +6,7 @@ use std::path::PathBuf;
 
 /// A hinge law without what it needs, or one that the rest of the scene excludes; the message names the key.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum InvalidHinge {
     #[error("hinge = \"{0}\" needs the section [{0}]")]
     NoSection(&'static str),
@@ -63,10 +60,7 @@ pub enum InvalidHinge {
 
 /// What weights are for, if not for the hinges of the scene.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum WeightsMismatch {
     #[error(
         "another material law than that of the scene: `{trained}` ({trained_law}, that of the file `{file}` is {law}). Name \

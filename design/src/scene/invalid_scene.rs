@@ -6,10 +6,7 @@ use support::key_limits::OutOfRange;
 
 /// A value of a scene that is outside its range or that other values exclude; the message names the key.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum InvalidScene {
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),

@@ -31,10 +31,7 @@ pub(super) type InputHashes = BTreeMap<String, String>;
 
 /// Why the inputs of a run cannot be written or read.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum RunInputsError {
     #[error("cannot use {path}: {source}", path = .path.display())]
     File { path: PathBuf, source: io::Error },

@@ -12,10 +12,7 @@ use surrogate::WeightsError;
 
 /// Why a scene is invalid; every message names the file and the key.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum SceneError {
     #[error(transparent)]
     Config(#[from] ConfigError),

@@ -2,10 +2,7 @@
 
 /// A sheet that cannot be cut, or a file that cannot be written.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum FabricationError {
     #[error(
         "the slit at hinge {hinge} would be {length:.3} mm long, but the holes at its ends take \

@@ -37,10 +37,7 @@ pub struct GradientListing {
 
 /// Why there is no gradient.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum GradientListingError {
     #[error(transparent)]
     Scene(#[from] SceneError),
