@@ -34,7 +34,7 @@ const STEPS: usize = 10;
 
 /// A sheet with panels of 1 x 1 and the linear law.
 fn linear((m, n): (usize, usize)) -> (DesignProblem, DesignVector) {
-    let law = LinearLaw::uniform([1e4, 1e4, 1.0], Grid { m, n }.hinge_count()).unwrap();
+    let law = LinearLaw::uniform([1e4, 1e4, 1.0], Grid { m, n }.hinge_count());
     problem(Grid { m, n }, 1.0, law, HingePoint::Corner, 3.0 * n as f64)
 }
 

@@ -47,11 +47,6 @@ pub enum EquilibriumError {
     NothingDrives,
     #[error("{0} load steps: use at least 1")]
     NoSteps(usize),
-    #[error(
-        "solver settings {0:?} violate 0 < tolerance < 1, follow_every >= 1, max_iterations >= 1, \
-         max_increments >= 1"
-    )]
-    Settings(SolverSettings),
 }
 
 /// Supports and loads of a sheet, with everything that depends on its topology alone.
@@ -85,9 +80,6 @@ impl EquilibriumSolver {
     ) -> Result<Self, EquilibriumError> {
         if steps == 0 {
             return Err(EquilibriumError::NoSteps(steps));
-        }
-        if !settings.are_valid() {
-            return Err(EquilibriumError::Settings(settings));
         }
         let check = |what, panel, value: f64| {
             let panels = grid.panel_count();

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
+use support::file_error::FileError;
 use support::key_limits::{self, OutOfRange};
 use support::regular_file;
 
@@ -69,11 +70,8 @@ impl TargetShape {
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum TargetError {
-    #[error("cannot read the target outline {path}: {source}", path = .path.display())]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    #[error("cannot read the target outline {0}")]
+    Read(#[from] FileError),
     #[error("{path}:{line}: `{text}` is not `x,y` in mm", path = .path.display())]
     Row {
         path: PathBuf,
@@ -134,7 +132,7 @@ impl Target {
                 height,
             } => {
                 let path = folder.join(file);
-                let svg = read(&path)?;
+                let svg = regular_file::read_to_string(&path).map_err(FileError::at(&path))?;
                 let drawn =
                     svg_path::vertices(&svg).map_err(|source| TargetError::Svg { path, source })?;
                 along_polygon(&placed(&drawn, *centre, *height)?, count)
@@ -241,15 +239,8 @@ fn placed(
     Ok(vertices.iter().map(place).collect())
 }
 
-fn read(path: &Path) -> Result<String, TargetError> {
-    regular_file::read_to_string(path).map_err(|source| TargetError::Read {
-        path: path.to_owned(),
-        source,
-    })
-}
-
 fn read_points(path: &Path) -> Result<Vec<[f64; 2]>, TargetError> {
-    read(path)?
+    (regular_file::read_to_string(path).map_err(FileError::at(path))?)
         .lines()
         .enumerate()
         .map(|(row, line)| (row + 1, line.split('#').next().unwrap_or_default().trim()))

@@ -1,7 +1,7 @@
 //! Why the hinge law of a scene cannot be used.
 
 use crate::equilibrium::tangent::MIN_PIVOT_RATIO;
-use crate::hinge_law::{InvalidContact, InvalidStiffness};
+use crate::hinge_law::InvalidContact;
 use std::path::PathBuf;
 
 /// A hinge law without what it needs, or one that the rest of the scene excludes; the message names the key.
@@ -36,8 +36,6 @@ pub enum InvalidHinge {
          {MIN_PIVOT_RATIO:.0e} rotations are lost in the rounding of the translations. Raise k_theta, or lower k_a and k_s"
     )]
     Soft { ratio: f64 },
-    #[error(transparent)]
-    Stiffness(#[from] InvalidStiffness),
     #[error(transparent)]
     Contact(#[from] InvalidContact),
     #[error(

@@ -1,6 +1,10 @@
 //! Why the values of a scene do not fit each other.
 
+use crate::equilibrium::solver::EquilibriumError;
+use crate::objective::design_problem::DesignError;
+use crate::objective::target::TargetError;
 use crate::pattern::pattern_error::PatternError;
+use crate::scene::invalid_hinge::InvalidHinge;
 use hinge::{InvalidDesign, InvalidMaterial};
 use support::key_limits::OutOfRange;
 
@@ -13,7 +17,15 @@ pub enum InvalidScene {
     #[error("{source} (the outline of the flat sheet is {perimeter:.0} mm long)")]
     TargetLength { source: OutOfRange, perimeter: f64 },
     #[error(transparent)]
-    Material(InvalidMaterial),
+    Hinges(#[from] InvalidHinge),
+    #[error(transparent)]
+    Target(#[from] TargetError),
+    #[error(transparent)]
+    Equilibrium(#[from] EquilibriumError),
+    #[error("objective.balance needs the gradients at the start: {0}")]
+    Balance(DesignError),
+    #[error(transparent)]
+    Material(#[from] InvalidMaterial),
     #[error("title contains the control character {0:?}: remove it")]
     Title(char),
     #[error("sheet: give either size or corners")]

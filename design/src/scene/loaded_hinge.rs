@@ -66,20 +66,17 @@ impl LoadedHinge {
         measured: &SheetMaterial,
         path: &Path,
     ) -> Result<Self, SceneError> {
-        let refuse = |source| SceneError::Hinge {
-            path: path.to_owned(),
-            source: Box::new(source),
-        };
+        let refuse = SceneError::at::<InvalidHinge>(path);
         let missing = |section| refuse(InvalidHinge::NoSection(section));
         let networks = |section| networks(config, section, measured, path);
         let hinge = match config.hinge {
             HingeModel::Pin => {
                 let pin = config.pin.ok_or_else(|| missing("pin"))?;
-                pinned(config, pin).map_err(refuse)
+                pinned(config, pin).map_err(&refuse)
             }
             HingeModel::Linear => match (&config.condensed, config.linear) {
-                (Some(file), _) => condensed(config, networks("condensed")?, file).map_err(refuse),
-                (None, Some(constants)) => linear(config, constants).map_err(refuse),
+                (Some(file), _) => condensed(config, networks("condensed")?, file).map_err(&refuse),
+                (None, Some(constants)) => linear(config, constants).map_err(&refuse),
                 (None, None) => Err(missing("linear")),
             },
             HingeModel::Surrogate => {
@@ -87,7 +84,7 @@ impl LoadedHinge {
                     .surrogate
                     .as_ref()
                     .ok_or_else(|| missing("surrogate"))?;
-                learned(config, networks("surrogate")?).map_err(refuse)
+                learned(config, networks("surrogate")?).map_err(&refuse)
             }
         }?;
         hinge.check_objective(config).map_err(refuse)?;
@@ -146,9 +143,7 @@ fn networks(
     let load = |weights: PathBuf| {
         let file = beside(path, &weights);
         if !file.is_file() {
-            let path = path.to_owned();
-            let source = Box::new(InvalidHinge::NoWeights { section, file });
-            return Err(SceneError::Hinge { path, source });
+            return Err(SceneError::at(path)(InvalidHinge::NoWeights { section, file }));
         }
         network(config, measured, path, &file)
     };
@@ -166,9 +161,7 @@ pub(super) fn network(
     let surrogate = Surrogate::load(weights)?;
     fitted(config, measured, surrogate).map_err(|source| {
         let file = weights.to_owned();
-        let path = path.to_owned();
-        let source = Box::new(InvalidHinge::OtherHinges { file, source });
-        SceneError::Hinge { path, source }
+        SceneError::at(path)(InvalidHinge::OtherHinges { file, source })
     })
 }
 
@@ -280,7 +273,7 @@ fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHing
     if ratio < MIN_PIVOT_RATIO {
         return Err(InvalidHinge::Soft { ratio });
     }
-    let law = LinearLaw::uniform([k_a, k_s, k_theta], grid.hinge_count())?;
+    let law = LinearLaw::uniform([k_a, k_s, k_theta], grid.hinge_count());
     let contact = contact(config, k_theta, CONTACT_WALL)?;
     Ok(springs(Arc::new(law), contact))
 }

@@ -41,7 +41,7 @@ fn a_pulled_sheet_with_path_functionals() {
     };
     let [w_minus, w_plus] = get(theta, "w_minus_plus");
     let grid = cases::grid(&case);
-    let law = LinearLaw::uniform(get(&case, "k_a_k_s_k_theta"), grid.hinge_count()).unwrap();
+    let law = LinearLaw::uniform(get(&case, "k_a_k_s_k_theta"), grid.hinge_count());
     let problem = DesignProblem {
         grid,
         outline: cases::outline(&case),
