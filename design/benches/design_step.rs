@@ -199,7 +199,11 @@ fn network() -> SurrogateLaw {
 
 fn assert_equilibria(problem: &DesignProblem, design: &DesignVector) {
     let deployment = problem.deploy(design).unwrap();
-    let iterations: usize = deployment.path.iter().map(|step| step.iterations).sum();
+    let iterations: usize = deployment
+        .path
+        .iter()
+        .map(|step| step.effort.iterations)
+        .sum();
     let last = deployment.final_step();
     let open = last
         .deformations

@@ -10,6 +10,6 @@ mod style;
 
 pub use canvas::Canvas;
 pub(crate) use canvas::{document, group, trimmed};
-pub use shape::{Anchor, Shape, Text, bounds};
-pub(crate) use shape::{distance, rectangle};
+pub(crate) use shape::rectangle;
+pub use shape::{Anchor, Shape, Text};
 pub use style::{Colour, Style};

@@ -3,6 +3,7 @@
 
 use crate::analysis::marks::{FittedPoint, MeasuredPoint};
 use crate::analysis::robust_pose::{Fit, Problem};
+use crate::geometry::polygon;
 use crate::geometry::similarity::Scale;
 use crate::sheet::cut_sheet::Sheet;
 use serde::Serialize;
@@ -158,8 +159,10 @@ pub(crate) fn renumbered(sheet: &Sheet, fit: &Fit, limit: f64) -> Vec<Renumbered
                 let mut mark = point.mark;
                 mark.panel = other.lies_at;
                 mark.corner = mark.corner.map(|corner| other.corners[corner]);
-                let [x, y] = mark.deployed(sheet, &fit.shape.configuration);
-                f64::hypot(point.measured[0] - x, point.measured[1] - y)
+                polygon::distance(
+                    point.measured,
+                    mark.deployed(sheet, &fit.shape.configuration),
+                )
             });
             farthest.fold(0.0, f64::max)
         };

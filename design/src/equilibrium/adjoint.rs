@@ -9,6 +9,7 @@
 //! of (11) the bracket is `eps_c e_c . D eps_h[lambda]`, for the loads it is `-zeta lambda`. Under displacement
 //! control the system has the border of the stroke, whose condition (f . q)/F = stroke also depends on the loads.
 
+use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::refined_solve::refined_solve;
@@ -67,9 +68,7 @@ pub(crate) fn adjoint(
             continue;
         }
         let hinges = || sheet.sheet.hinges.iter().enumerate();
-        let motions: Vec<HingeMotion> = hinges()
-            .map(|(h, _)| HingeMotion::new(sheet.sheet, h, &step.configuration))
-            .collect();
+        let motions = HingeMotion::all(sheet.sheet, &step.configuration);
         for (h, hinge) in hinges() {
             let [a, s, theta, ..] = by_path[h][i];
             add_at_hinge(&mut by_q, hinge, motions[h].forces([a, s, theta]));
@@ -100,11 +99,7 @@ pub(crate) fn adjoint(
         for (h, hinge) in hinges() {
             let virtual_motion = at_hinge(hinge, &lambda);
             let (energy, rates) = (&energies[h], motions[h].rates(virtual_motion));
-            let against = |row: [f64; 3]| -> f64 {
-                std::iter::zip(row, rates)
-                    .map(|(entry, rate)| entry * rate)
-                    .sum()
-            };
+            let against = |row: [f64; 3]| dot(&row, &rates);
             let by_state = by_path[h][i];
             let weights = std::array::from_fn(|c| by_state[c] - against(energy.tangent[c]));
             let turning = motions[h].rates_geometry_gradient(energy.forces, virtual_motion);

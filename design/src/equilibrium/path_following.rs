@@ -5,7 +5,7 @@
 //! one load step to the next and looks for no limit points.
 
 use crate::equilibrium::branch::Branch;
-use crate::equilibrium::displacement_control::HeldFactor;
+use crate::equilibrium::displacement_control::{HeldFactor, work};
 use crate::equilibrium::follower::{Follower, LEAP};
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status, StepTangent};
@@ -148,11 +148,7 @@ impl EquilibriumSolver {
 
     /// Work of the full loads and of the loads held constant (N mm).
     fn works(&self, configuration: &[[f64; 3]]) -> [f64; 2] {
-        [&self.loads, &self.held].map(|loads| {
-            std::iter::zip(loads.as_flattened(), configuration.as_flattened())
-                .map(|(f, q)| f * q)
-                .sum()
-        })
+        [&self.loads, &self.held].map(|loads| work(loads, configuration))
     }
 }
 
@@ -289,7 +285,6 @@ impl Branch<'_> {
             descent_end: None,
             residual: state.residual,
             rounding: state.rounding,
-            iterations: effort.iterations,
             effort,
             jumps,
             negative_pivots: factor.map_or(0, |factor| factor.negative_pivots),

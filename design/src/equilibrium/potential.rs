@@ -10,7 +10,7 @@
 //! The minimised function is then U alone, because the work of the loads is the same in every configuration with
 //! that stroke. If there are loads held constant, U contains their work with negative sign.
 
-use crate::equilibrium::displacement_control::Stroke;
+use crate::equilibrium::displacement_control::{Stroke, dot};
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::tangent::TangentPattern;
 use crate::hinge_law::{HingeEnergy, Order};
@@ -123,9 +123,7 @@ impl Potential<'_> {
     /// The state with the derivatives of the hinge energies up to `order`, at least the forces.
     pub fn state_up_to(&self, configuration: Configuration, order: Order) -> Option<State> {
         let sheet = self.sheet.sheet;
-        let motions: Vec<HingeMotion> = (0..sheet.hinges.len())
-            .map(|hinge| HingeMotion::new(sheet, hinge, &configuration))
-            .collect();
+        let motions = HingeMotion::all(sheet, &configuration);
         let deformations: Vec<HingeDeformation> =
             motions.iter().map(HingeMotion::deformation).collect();
         let energies = self.sheet.energies(&deformations, order);
@@ -224,8 +222,7 @@ impl Potential<'_> {
         std::iter::zip(&self.sheet.sheet.hinges, hinges)
             .map(|(hinge, (hinge_motion, energy))| {
                 let rates = hinge_motion.rates(at_hinge(hinge, motion));
-                let along = |row: [f64; 3]| std::iter::zip(row, rates).map(|(k, e)| k * e).sum();
-                energy.tangent.map(along)
+                energy.tangent.map(|row| dot(&row, &rates))
             })
             .collect()
     }
@@ -238,7 +235,7 @@ impl Potential<'_> {
             let (motions, forces_of_hinge) = (at_hinge(hinge, motion), state.expected_forces(h));
             let force = hinge_motion
                 .stiffness(&energy.tangent, forces_of_hinge)
-                .map(|row| std::iter::zip(row, motions).map(|(k, q)| k * q).sum());
+                .map(|row| dot(&row, &motions));
             add_at_hinge(&mut forces, hinge, force);
         }
         forces

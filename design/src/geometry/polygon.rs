@@ -52,10 +52,31 @@ pub fn distance_to_polygon(point: [f64; 2], polygon: &[[f64; 2]]) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
+/// Distance between two points (mm).
+pub fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
+    f64::hypot(q[0] - p[0], q[1] - p[1])
+}
+
+/// The mean of points.
+pub fn mean(points: &[[f64; 2]]) -> [f64; 2] {
+    let sum = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>();
+    [sum(0), sum(1)].map(|sum| sum / points.len() as f64)
+}
+
+/// The minimum and maximum coordinates of points: the lower left and the upper right corner of their bounding box.
+pub fn bounds(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
+    let nothing = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    points.into_iter().fold(nothing, |[low, high], [x, y]| {
+        [
+            [low[0].min(x), low[1].min(y)],
+            [high[0].max(x), high[1].max(y)],
+        ]
+    })
+}
+
 /// Distance from a point to the segment from `a` to `b` (mm).
 pub fn distance_to_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
-    let [x, y] = nearest_on_segment(point, a, b);
-    f64::hypot(point[0] - x, point[1] - y)
+    distance(point, nearest_on_segment(point, a, b))
 }
 
 /// Distance between two segments; zero if they cross (mm).

@@ -73,12 +73,17 @@ pub enum Model {
 }
 
 impl Model {
-    /// The training domain of the hinge law, if it has one.
-    pub fn domain(&self) -> Option<&TrainingDomain> {
+    /// Hinge law, supports and loads of equilibria.
+    pub fn mechanics(&self) -> Option<&Mechanics> {
         match self {
             Self::Ideal { .. } => None,
-            Self::Equilibrium(mechanics) => mechanics.law.domain(),
+            Self::Equilibrium(mechanics) => Some(mechanics),
         }
+    }
+
+    /// The training domain of the hinge law, if it has one.
+    pub fn domain(&self) -> Option<&TrainingDomain> {
+        self.mechanics()?.law.domain()
     }
 }
 

@@ -143,7 +143,7 @@ impl ObjectiveConfig {
         } else {
             [0.0; 2]
         };
-        let points = setting.target.points().iter();
+        let points = setting.target.points.iter();
         Shape {
             target: points.map(|point| [point[0] - x, point[1] - y]).collect(),
             chamfer: Chamfer {

@@ -159,13 +159,6 @@ impl LoadConfig {
     }
 }
 
-impl EdgeLoadConfig {
-    /// Multiplies the traction.
-    pub fn scale(&mut self, factor: f64) {
-        self.traction = self.traction.map(|traction| factor * traction);
-    }
-}
-
 impl SheetEdge {
     /// The name in a scene.
     pub(super) fn name(self) -> &'static str {

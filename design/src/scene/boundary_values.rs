@@ -1,6 +1,7 @@
 //! Supports and loads of a scene on the panels of its sheet: what solver, drawings, run page and report read.
 
 use crate::equilibrium::supports::{Dof, Load, Support};
+use crate::geometry::polygon::distance;
 use crate::pattern::grid::{EDGES, Grid};
 use crate::scene::actuation::{EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig};
 use crate::scene::checked_scene::Scene;
@@ -149,7 +150,7 @@ impl LoadConfig {
 impl EdgeLoadConfig {
     /// `ends` are those of the edge in the flat sheet.
     fn on(&self, grid: Grid, [from, to]: [[f64; 2]; 2]) -> AppliedLoad {
-        let length = f64::hypot(to[0] - from[0], to[1] - from[1]);
+        let length = distance(from, to);
         let resultant = self.traction.map(|traction| traction * length);
         let panels = self.edge.panels(grid);
         let [x, y] = resultant.map(|force| force / panels.len() as f64);

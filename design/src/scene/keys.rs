@@ -139,7 +139,8 @@ impl SceneConfig {
     /// Multiplies every load: on panels, on edges and on hinges.
     pub fn scale_loads(&mut self, factor: f64) {
         (self.loads.iter_mut()).for_each(|load| load.scale(factor));
-        (self.edge_loads.iter_mut()).for_each(|load| load.scale(factor));
+        (self.edge_loads.iter_mut())
+            .for_each(|load| load.traction = load.traction.map(|traction| factor * traction));
         (self.opening_couples.iter_mut()).for_each(|load| load.couple *= factor);
     }
 }

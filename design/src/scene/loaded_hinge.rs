@@ -143,7 +143,10 @@ fn networks(
     let load = |weights: PathBuf| {
         let file = beside(path, &weights);
         if !file.is_file() {
-            return Err(SceneError::at(path)(InvalidHinge::NoWeights { section, file }));
+            return Err(SceneError::at(path)(InvalidHinge::NoWeights {
+                section,
+                file,
+            }));
         }
         network(config, measured, path, &file)
     };

@@ -71,13 +71,9 @@ impl Scene {
     }
 
     fn objective(&self, model: &Model) -> Objective {
-        let law = match model {
-            Model::Ideal { .. } => None,
-            Model::Equilibrium(mechanics) => Some(&*mechanics.law),
-        };
         self.config.objective.objective(&Setting {
             target: &self.target,
-            law,
+            law: model.mechanics().map(|mechanics| &*mechanics.law),
             mean_panel_area: self.mean_panel_area(),
             r_win: self.config.process.r_win,
         })

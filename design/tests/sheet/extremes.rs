@@ -80,7 +80,10 @@ fn no_load_leaves_the_sheet_flat() {
     let sheet = cases::sheet(&case("p1_3x3_random"));
     let law = LinearLaw::uniform([90.0, 40.0, 0.8], 12);
     for step in path(&sheet, &law, &clamp(3), &[], 3) {
-        assert_eq!((step.status, step.iterations), (Status::Converged, 0));
+        assert_eq!(
+            (step.status, step.effort.iterations),
+            (Status::Converged, 0)
+        );
         assert_eq!(step.configuration, vec![[0.0; 3]; 9]);
     }
 }
@@ -156,7 +159,7 @@ fn an_energy_with_few_digits_converges_by_its_forces() {
     let sheet = cases::sheet(&case("p1_3x3_random"));
     for step in path(&sheet, &law, &clamp(3), &[pull(1e-2)], 5) {
         assert_eq!(step.status, Status::Converged);
-        assert!(step.iterations <= 6);
+        assert!(step.effort.iterations <= 6);
     }
 }
 

@@ -261,7 +261,7 @@ fn a_jump_does_not_hide_an_unconverged_state() {
 fn costs(path: &[LoadStep]) -> [usize; 3] {
     let total = |of: fn(&LoadStep) -> usize| path.iter().map(of).sum::<usize>();
     let found = [
-        total(|step| step.iterations),
+        total(|step| step.effort.iterations),
         total(|step| step.effort.factorisations),
         total(|step| step.effort.rejected),
     ];

@@ -4,7 +4,8 @@
 //! by 2-opt: a run of cuts is cut backwards wherever this reduces the travel between the cuts.
 
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
-use crate::display::{Shape, distance};
+use crate::display::Shape;
+use design::geometry::polygon::distance;
 
 /// Maximum number of cuts in a run that is reversed: it bounds the time of a sweep over large sheets.
 const RUN: usize = 1000;

@@ -2,7 +2,7 @@
 
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::display::{Shape, Text};
-use design::geometry::polygon::area;
+use design::geometry::polygon::{area, mean};
 
 /// The panels with the given corners (mm), and their numbers.
 pub fn deployed_panels(panels: &[[[f64; 2]; 4]]) -> CutDrawing {
@@ -11,9 +11,8 @@ pub fn deployed_panels(panels: &[[[f64; 2]; 4]]) -> CutDrawing {
         drawing.add(Layer::Panels, Shape::Polygon(corners.to_vec()));
     }
     for (k, corners) in panels.iter().enumerate() {
-        let middle = |axis: usize| 0.25 * corners.iter().map(|corner| corner[axis]).sum::<f64>();
         let height = 0.1 * area(corners).sqrt();
-        let text = Text::centred([middle(0), middle(1)], height, format!("P{k}"));
+        let text = Text::centred(mean(corners), height, format!("P{k}"));
         drawing.add(Layer::Annotation, Shape::Text(text));
     }
     drawing

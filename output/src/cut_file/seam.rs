@@ -12,7 +12,7 @@
 //! ```
 
 use crate::cut_file::fabrication_error::FabricationError;
-use crate::display::distance;
+use design::geometry::polygon::distance;
 use design::sheet::cut_sheet::{Hinge, Sheet};
 use design::sheet::topology::PanelCorner;
 

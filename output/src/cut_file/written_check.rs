@@ -7,9 +7,9 @@
 
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::fabrication_error::FabricationError;
-use crate::display::{Shape, distance};
+use crate::display::Shape;
 use design::geometry::polygon::{
-    area, distance_between_segments, distance_to_segment, edges, nearest_on_outline,
+    area, distance, distance_between_segments, distance_to_segment, edges, nearest_on_outline,
 };
 use design::sheet::cut_sheet::Sheet;
 use std::collections::BTreeMap;

@@ -144,7 +144,7 @@ impl<'a> State<'a> {
     /// Points that enclose everything drawn.
     fn extent(&self) -> Vec<[f64; 2]> {
         let mut points = deployed_corners(self.sheet, &self.configuration).concat();
-        points.extend(self.scene.target.points());
+        points.extend(&self.scene.target.points);
         points.extend(load_marks::extent(self.scene, self.sheet, self.step));
         points
     }
@@ -160,7 +160,7 @@ impl<'a> State<'a> {
 
     fn target(&self, sketch: &mut Sketch) {
         let style = sketch.dashed(ACCENT, 2.2, 9.0);
-        sketch.canvas.polygon(self.scene.target.points(), style);
+        sketch.canvas.polygon(&self.scene.target.points, style);
     }
 
     /// Draws each window in two parts, which move with their panels.

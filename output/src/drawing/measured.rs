@@ -1,13 +1,14 @@
 //! A measured sheet beside its prediction, after Fig. 10 (d)-(h) of the paper: outlines superposed with magnified
 //! residuals, hinge openings measured against predicted, errors of the panel centres against the floor.
 
-use crate::display::{Anchor, Style, bounds};
+use crate::display::{Anchor, Style};
 use crate::drawing::chart::Chart;
 use crate::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, Sketch, TEAL};
 use crate::measurement::MeasurementReport;
 use design::analysis::marks::FittedPoint;
 use design::analysis::measured_openings::MeasuredOpening;
 use design::analysis::robust_pose::Fit;
+use design::geometry::polygon::bounds;
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::deployed_corners;
 use design::sheet::topology::is_even;

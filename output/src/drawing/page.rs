@@ -1,8 +1,8 @@
 //! Common parts of the pictures: the page with its title and scale bar, the colours, the colour scale.
 
 use crate::cut_file::CutDrawing;
-use crate::display::{Anchor, Canvas, Colour, Style, Text, bounds, rectangle, trimmed};
-use design::geometry::polygon::area;
+use crate::display::{Anchor, Canvas, Colour, Style, Text, rectangle, trimmed};
+use design::geometry::polygon::{area, bounds, mean};
 
 /// Colour of main lines and titles.
 pub const INK: Colour = [31, 41, 51];
@@ -87,9 +87,11 @@ impl Sketch {
 
     /// Writes the number of a panel with the given corners in its middle.
     pub fn panel_number(&mut self, k: usize, corners: &[[f64; 2]; 4]) {
-        let middle =
-            [0, 1].map(|axis| 0.25 * corners.iter().map(|corner| corner[axis]).sum::<f64>());
-        let text = Text::centred(middle, self.number_height(area(corners)), format!("P{k}"));
+        let text = Text::centred(
+            mean(corners),
+            self.number_height(area(corners)),
+            format!("P{k}"),
+        );
         self.canvas.add(Style::fill(MUTED), text);
     }
 

@@ -71,7 +71,7 @@ impl GradientListing {
             sensitivities,
             adjoint_residual,
             outline_error,
-            intersection_over_union: intersection_over_union(&outline, scene.target.points()),
+            intersection_over_union: intersection_over_union(&outline, &scene.target.points),
         })
     }
 }

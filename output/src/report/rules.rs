@@ -239,7 +239,7 @@ fn departure(step: &LoadStep) -> Option<String> {
 }
 
 fn target(judged: &Judged) -> Option<Warning> {
-    judged.scene.target.crossing().map(|[x, y]| {
+    judged.scene.target.crossing.map(|[x, y]| {
         Concern::TargetCrosses.of_sheet(format!(
             "the target outline crosses or touches itself near ({x:.1}, {y:.1}) mm: its inside is not defined; order \
              its vertices around the outline"

@@ -107,8 +107,8 @@ fn a_target_is_drawn_in_an_svg_file() {
             "[target.svg]\nfile = \"outline.svg\"\ncentre = [700.0, 550.0]\nheight = 900.0",
         )]),
     );
-    assert!((scene.target.length() - 2.0 * (1800.0 + 900.0)).abs() < 1e-9);
-    for [x, y] in scene.target.points() {
+    assert!((scene.target.length - 2.0 * (1800.0 + 900.0)).abs() < 1e-9);
+    for [x, y] in &scene.target.points {
         let (x, y) = ((x - 700.0).abs() / 900.0, (y - 550.0).abs() / 450.0);
         assert!((x.max(y) - 1.0).abs() < 1e-9, "{x} {y}");
     }
@@ -150,7 +150,11 @@ fn both_methods_find_the_same_equilibria() {
         mechanics.solver.use_lbfgs(20_000);
     }
     let lbfgs = problem.deploy(&scene.start()).unwrap().path;
-    let total = |path: &[LoadStep]| path.iter().map(|step| step.iterations).sum::<usize>();
+    let total = |path: &[LoadStep]| {
+        path.iter()
+            .map(|step| step.effort.iterations)
+            .sum::<usize>()
+    };
     assert!(total(&lbfgs) > 5 * total(&newton));
     for (x, y) in std::iter::zip(&newton[3].configuration, &lbfgs[3].configuration) {
         assert!((x[2] - y[2]).abs() < 1e-6, "{x:?} {y:?}");
