@@ -280,7 +280,7 @@ mod tests {
             ] {
                 let pieces = wrapped(line, columns);
                 assert!(
-                    pieces.iter().all(|it| it.chars().count() <= columns),
+                    pieces.iter().all(|piece| piece.chars().count() <= columns),
                     "{pieces:?}"
                 );
                 let words = |text: &str| text.split_whitespace().collect::<String>();

@@ -181,7 +181,9 @@ impl ForceTransmission {
     /// not stored in rotation; zero if one of the two is constant.
     pub fn rank_correlation(&self) -> f64 {
         let force = self.interfaces.iter().map(Interface::force).collect();
-        let share = |it: &Interface| it.translational / (it.translational + it.rotational);
+        let share = |interface: &Interface| {
+            interface.translational / (interface.translational + interface.rotational)
+        };
         correlation(
             &ranks(force),
             &ranks(self.interfaces.iter().map(share).collect()),
@@ -302,7 +304,7 @@ mod tests {
             areas: vec![2.0, 1.0, 6.0, 4.0, 9.0],
         };
         // A tenth of five panels is the third alone.
-        assert_eq!(transmission.moment_panels(|it| it.interfaces), 1.5);
+        assert_eq!(transmission.moment_panels(|moment| moment.interfaces), 1.5);
         let shares = transmission.shares();
         assert_eq!(shares.tension, 0.6);
         assert_eq!((shares.compression, shares.shear), (0.2, 0.2));

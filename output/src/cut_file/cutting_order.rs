@@ -18,7 +18,7 @@ impl CutDrawing {
     pub fn in_cutting_order(&self, home: [f64; 2]) -> Self {
         let mut at = home;
         let mut ordered = Self::default();
-        for layer in Layer::ALL {
+        for layer in Layer::all() {
             let mut shapes: Vec<Shape> = self.on(layer).cloned().collect();
             if layer.is_cut() {
                 shapes.iter_mut().for_each(|shape| shape.begin_near(at));

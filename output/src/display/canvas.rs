@@ -220,10 +220,14 @@ pub(crate) fn trimmed(value: f64, decimals: usize) -> String {
 }
 
 fn escaped(text: &str) -> String {
+    text_of_element(text).replace('"', "&quot;")
+}
+
+/// Text of an element of HTML or SVG.
+pub(crate) fn text_of_element(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
-        .replace('"', "&quot;")
 }
 
 #[cfg(test)]

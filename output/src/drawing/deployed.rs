@@ -187,9 +187,7 @@ impl<'a> State<'a> {
                 Mark::Head(corners) => sketch.canvas.polygon(&corners, fill),
                 Mark::Label([x, y], text) => {
                     let (size, below) = (14.0 * sketch.unit, [x, y - 5.0 * sketch.unit]);
-                    sketch
-                        .canvas
-                        .text(below, size, Anchor::Middle, label, &text);
+                    sketch.text(below, size, Anchor::Middle, label, &text);
                 }
             }
         }

@@ -71,13 +71,16 @@ impl Sketch {
         self.stroke(colour, width).dashed(dash, 0.7 * dash)
     }
 
+    /// Writes a text in a font of the given size (mm).
+    pub fn text(&mut self, at: [f64; 2], size: f64, anchor: Anchor, style: Style, text: &str) {
+        self.canvas.text(at, size, anchor, style, text);
+    }
+
     /// A text that remains readable over lines.
     pub fn haloed(&self, colour: Colour) -> Style {
         Style::fill(colour).haloed(4.0 * self.unit)
     }
-}
 
-impl Sketch {
     /// Adds the paths of a tool in the colours of their layers.
     pub fn cut_drawing(&mut self, drawing: &CutDrawing) {
         let shapes = drawing.coloured(1.2 * self.unit);
@@ -167,7 +170,6 @@ impl Page {
         ];
         let muted = Style::fill(MUTED);
         self.sketch
-            .canvas
             .text(at, 15.0 * self.sketch.unit, Anchor::Start, muted, &text);
     }
 
@@ -198,13 +200,10 @@ impl Page {
             self.sketch.canvas.line([x1, y], [x1 + 4.0 * u, y], stroke);
             let text = trimmed(value, 3);
             let at = [x1 + 9.0 * u, y - 5.0 * u];
-            self.sketch
-                .canvas
-                .text(at, 14.0 * u, Anchor::Start, muted, &text);
+            self.sketch.text(at, 14.0 * u, Anchor::Start, muted, &text);
         }
         let above = [(x0 + x1) / 2.0, at(1.0) + 16.0 * u];
         self.sketch
-            .canvas
             .text(above, 14.0 * u, Anchor::Middle, muted, name);
     }
 }
