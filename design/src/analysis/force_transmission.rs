@@ -311,8 +311,12 @@ mod tests {
         assert_eq!(shares.rotation, 0.8);
         // A quarter of four interfaces is the first alone.
         assert_eq!(shares.non_rotational, 0.75);
-        assert_eq!(transmission.strongest(|it| it.normal), [0]);
-        assert!(transmission.strongest(|it| it.normal - 10.0).is_empty());
+        assert_eq!(transmission.strongest(|interface| interface.normal), [0]);
+        assert!(
+            transmission
+                .strongest(|interface| interface.normal - 10.0)
+                .is_empty()
+        );
     }
 
     #[test]

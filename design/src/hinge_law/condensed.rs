@@ -29,11 +29,6 @@ impl CondensedLaw {
         Self { surrogate, secant }
     }
 
-    /// The learned energy that the constants are condensed from.
-    pub fn surrogate(&self) -> &Surrogate {
-        &self.surrogate
-    }
-
     /// (k_a, k_s, k_theta) of each design (N/mm, N/mm, N mm) with their gradients in (w_lig, alpha).
     pub fn constants(&self, designs: &[HingeDesign]) -> Vec<[Constant; 3]> {
         let prepared = self.surrogate.prepare(designs);

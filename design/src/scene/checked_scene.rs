@@ -2,9 +2,8 @@
 
 use crate::objective::target::Target;
 use crate::scene::checks;
-use crate::scene::keys::SceneConfig;
+use crate::scene::keys::{SceneConfig, beside, folder};
 use crate::scene::loaded_hinge::{LoadedHinge, network};
-use crate::scene::relative_path::{beside, folder};
 use crate::scene::scene_error::SceneError;
 use crate::sheet::cut_sheet::SheetOptions;
 use hinge::SheetMaterial;

@@ -16,7 +16,7 @@ use crate::sheet::cut_sheet::{Centroid, HingePoint};
 use hinge::{HingeConstants, SheetMaterial};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The keys of a scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -113,6 +113,16 @@ pub struct OptimiserConfig {
     /// Seed of the random start.
     #[serde(default)]
     pub seed: u64,
+}
+
+/// The folder of a scene file.
+pub(super) fn folder(scene: &Path) -> &Path {
+    scene.parent().unwrap_or(Path::new(""))
+}
+
+/// A path written relative to the scene file, without `.` inside.
+pub(super) fn beside(scene: &Path, path: &Path) -> PathBuf {
+    folder(scene).join(path).components().collect()
 }
 
 fn default_load_steps() -> usize {

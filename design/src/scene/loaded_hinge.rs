@@ -3,9 +3,8 @@
 use crate::equilibrium::tangent::MIN_PIVOT_RATIO;
 use crate::hinge_law::{CondensedLaw, Contact, DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
 use crate::scene::hinge_model::{CondensedConfig, HingeModel, LinearConstants, PinConfig};
-use crate::scene::invalid_hinge::{InvalidHinge, WeightsMismatch};
-use crate::scene::keys::SceneConfig;
-use crate::scene::relative_path::beside;
+use crate::scene::invalid_scene::{InvalidScene, WeightsMismatch};
+use crate::scene::keys::{SceneConfig, beside};
 use crate::scene::scene_error::SceneError;
 use crate::sheet::cut_sheet::HingePoint;
 use hinge::SheetMaterial;
@@ -66,8 +65,8 @@ impl LoadedHinge {
         measured: &SheetMaterial,
         path: &Path,
     ) -> Result<Self, SceneError> {
-        let refuse = SceneError::at::<InvalidHinge>(path);
-        let missing = |section| refuse(InvalidHinge::NoSection(section));
+        let refuse = SceneError::at::<InvalidScene>(path);
+        let missing = |section| refuse(InvalidScene::NoSection(section));
         let networks = |section| networks(config, section, measured, path);
         let hinge = match config.hinge {
             HingeModel::Pin => {
@@ -113,10 +112,10 @@ impl LoadedHinge {
     }
 
     /// An error if the objective needs a prediction that the law does not make.
-    fn check_objective(&self, config: &SceneConfig) -> Result<(), InvalidHinge> {
+    fn check_objective(&self, config: &SceneConfig) -> Result<(), InvalidScene> {
         let objective = &config.objective;
         if objective.domain > 0.0 && self.predictors().is_empty() {
-            return Err(InvalidHinge::NoDomain);
+            return Err(InvalidScene::NoDomain);
         }
         let predicts = |measure| match &self.behaviour {
             HingeBehaviour::Pinned { .. } => false,
@@ -126,9 +125,9 @@ impl LoadedHinge {
             return Ok(());
         }
         Err(if predicts(DamageMeasure::Mean) {
-            InvalidHinge::NoPeakDamage
+            InvalidScene::NoPeakDamage
         } else {
-            InvalidHinge::NoDamage
+            InvalidScene::NoDamage
         })
     }
 }
@@ -143,7 +142,7 @@ fn networks(
     let load = |weights: PathBuf| {
         let file = beside(path, &weights);
         if !file.is_file() {
-            return Err(SceneError::at(path)(InvalidHinge::NoWeights {
+            return Err(SceneError::at(path)(InvalidScene::NoWeights {
                 section,
                 file,
             }));
@@ -164,7 +163,7 @@ pub(super) fn network(
     let surrogate = Surrogate::load(weights)?;
     fitted(config, measured, surrogate).map_err(|source| {
         let file = weights.to_owned();
-        SceneError::at(path)(InvalidHinge::OtherHinges { file, source })
+        SceneError::at(path)(InvalidScene::OtherHinges { file, source })
     })
 }
 
@@ -174,14 +173,14 @@ fn condensed(
     config: &SceneConfig,
     networks: Vec<Surrogate>,
     file: &CondensedConfig,
-) -> Result<LoadedHinge, InvalidHinge> {
+) -> Result<LoadedHinge, InvalidScene> {
     let secant = file.secant_deg;
     let law = CondensedLaw::new(networks[0].clone(), secant.to_radians());
     let constants = constants_at_start(config, &law);
     let [_, _, k_theta] = constants;
     if !constants.iter().all(|constant| *constant > 0.0) {
         let w_lig = config.ligament.start;
-        return Err(InvalidHinge::Condensed { w_lig, constants });
+        return Err(InvalidScene::Condensed { w_lig, constants });
     }
     Ok(LoadedHinge {
         networks,
@@ -191,7 +190,7 @@ fn condensed(
 }
 
 /// The learned law; the contact stiffness is relative to the secant stiffness of a hinge of the start.
-fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge, InvalidHinge> {
+fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge, InvalidScene> {
     same_training(&networks)?;
     let surrogate = &networks[0];
     let [_, _, [closed, _]] = surrogate.domain().bounds();
@@ -218,7 +217,7 @@ fn constants_at_start(config: &SceneConfig, law: &CondensedLaw) -> [f64; 3] {
 
 /// The contact of a scene, or by default one for hinges with the stiffness `k_theta` that becomes infinite at the
 /// void angle `wall` (rad).
-fn contact(config: &SceneConfig, k_theta: f64, wall: f64) -> Result<Contact, InvalidHinge> {
+fn contact(config: &SceneConfig, k_theta: f64, wall: f64) -> Result<Contact, InvalidScene> {
     let contact = match config.contact {
         Some(contact) => contact.contact(),
         None => Contact::new(CONTACT_STIFFNESS * k_theta, wall, 0.0),
@@ -227,7 +226,7 @@ fn contact(config: &SceneConfig, k_theta: f64, wall: f64) -> Result<Contact, Inv
 }
 
 /// The spread of networks trained on different data estimates the error of neither.
-fn same_training(networks: &[Surrogate]) -> Result<(), InvalidHinge> {
+fn same_training(networks: &[Surrogate]) -> Result<(), InvalidScene> {
     let data = |network: &Surrogate| {
         let card = network.card();
         (card.dataset_hash.clone(), card.split_hash.clone())
@@ -238,13 +237,13 @@ fn same_training(networks: &[Surrogate]) -> Result<(), InvalidHinge> {
     {
         return Ok(());
     }
-    Err(InvalidHinge::OtherTraining)
+    Err(InvalidScene::OtherTraining)
 }
 
-fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, InvalidHinge> {
+fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, InvalidScene> {
     let held_or_loaded = !config.supports.is_empty() || config.has_loads();
     if held_or_loaded || config.drive.is_some() || config.contact.is_some() {
-        return Err(InvalidHinge::HeldPins);
+        return Err(InvalidScene::HeldPins);
     }
     Ok(LoadedHinge {
         label: "pins: kinematics without forces",
@@ -268,13 +267,13 @@ fn springs(law: Arc<dyn HingeLaw>, contact: Contact) -> LoadedHinge {
     }
 }
 
-fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHinge, InvalidHinge> {
+fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHinge, InvalidScene> {
     let LinearConstants { k_a, k_s, k_theta } = constants;
     let grid = config.sheet.grid();
     let panel = config.sheet.outline().area().abs() / grid.panel_count() as f64;
     let ratio = k_theta / (k_a.max(k_s) * panel);
     if ratio < MIN_PIVOT_RATIO {
-        return Err(InvalidHinge::Soft { ratio });
+        return Err(InvalidScene::Soft { ratio });
     }
     let law = LinearLaw::uniform([k_a, k_s, k_theta], grid.hinge_count());
     let contact = contact(config, k_theta, CONTACT_WALL)?;

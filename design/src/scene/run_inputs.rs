@@ -11,8 +11,7 @@
 //! The state of the run holds the BLAKE3 hash of each of them.
 
 use crate::scene::checked_scene::Scene;
-use crate::scene::keys::SceneConfig;
-use crate::scene::relative_path::beside;
+use crate::scene::keys::{SceneConfig, beside};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io;

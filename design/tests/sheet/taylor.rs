@@ -282,7 +282,7 @@ fn driven_sheets() {
 #[test]
 fn linear_law_condensed_from_the_surrogate() {
     for secant in [0.0, 0.35] {
-        let law = CondensedLaw::new(tiny().surrogate().clone(), secant);
+        let law = CondensedLaw::new(tiny().surrogate, secant);
         let model = mechanics(law, 80.0, East::Pulled(4.0));
         assert_order_two(&problem(model, HingePoint::CutTip), &start());
     }

@@ -1,6 +1,7 @@
 //! Shapes on layers: what every cut file draws. The shapes of a layer are cut one after the other.
 
-use crate::display::{Colour, Shape, Style};
+use crate::display::{Colour, Shape, Style, Text};
+use design::geometry::polygon::{area, mean};
 
 /// The tool or the purpose of a shape, in the order of cutting: what is cut later holds what is cut before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -110,4 +111,18 @@ impl CutDrawing {
             shape.shift(by);
         }
     }
+}
+
+/// The panels of a deployed sheet with the given corners (mm), and their numbers, at 1:1.
+pub fn deployed_panels(panels: &[[[f64; 2]; 4]]) -> CutDrawing {
+    let mut drawing = CutDrawing::default();
+    for corners in panels {
+        drawing.add(Layer::Panels, Shape::Polygon(corners.to_vec()));
+    }
+    for (k, corners) in panels.iter().enumerate() {
+        let height = 0.1 * area(corners).sqrt();
+        let text = Text::centred(mean(corners), height, format!("P{k}"));
+        drawing.add(Layer::Annotation, Shape::Text(text));
+    }
+    drawing
 }
