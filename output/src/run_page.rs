@@ -26,7 +26,6 @@ const SCRIPTS: [&str; 7] = [
     include_str!("run_page/page.js"),
 ];
 
-/// The page of a run of `scene` with its report.
 pub(super) fn run_page(
     scene: &Scene,
     designed: &Designed,

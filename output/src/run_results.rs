@@ -73,7 +73,6 @@ fn remove_with_pixels(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Removes a file, if there is one.
 fn remove(path: &Path) -> io::Result<()> {
     match std::fs::remove_file(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),

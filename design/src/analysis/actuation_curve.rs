@@ -196,7 +196,6 @@ fn vertex([x0, f0]: [f64; 2], [x1, f1]: [f64; 2], [x2, f2]: [f64; 2]) -> [f64; 2
     }
 }
 
-/// Load factor and configuration of a load step.
 fn load_and_state(step: &LoadStep) -> (f64, &[[f64; 3]]) {
     (step.load_factor, &step.configuration)
 }

@@ -18,7 +18,7 @@ use crate::geometry::plane::{add, complex};
 use crate::hinge_law::Order;
 use crate::sheet::cut_sheet::SheetGradient;
 use crate::sheet::kinematics::{HingeGeometryGradient, HingeMotion};
-use crate::sheet::panel_vectors::{add_at_hinge, at_hinge, gather, spread};
+use crate::sheet::panel_vectors::{add_at_hinge, at_hinge};
 use std::borrow::Cow;
 
 /// Backward error of an adjoint solve above which the tangent is considered singular.
@@ -73,8 +73,8 @@ pub(crate) fn adjoint(
             let [a, s, theta, ..] = by_path[h][i];
             add_at_hinge(&mut by_q, hinge, motions[h].forces([a, s, theta]));
         }
-        let rhs = gather(&solver.pattern.free, &by_q);
-        let stroke = solver.drive.as_ref().map(|(stroke, _)| &**stroke);
+        let rhs = solver.pattern.gather(&by_q);
+        let stroke = solver.stroke();
         let solution = (step.tangent.as_ref())
             .and_then(|tangent| refined_solve(&solver.pattern, tangent, stroke, &rhs))
             .filter(|solution| solution.error < SINGULAR)
@@ -82,7 +82,7 @@ pub(crate) fn adjoint(
                 load_factor: step.load_factor,
             })?;
         sums.residual = sums.residual.max(solution.error);
-        let lambda = spread(&solver.pattern.free, &solution.x);
+        let lambda = solver.pattern.spread(&solution.x);
         for (sum, lambda) in std::iter::zip(&mut sums.loads, &lambda) {
             (0..3).for_each(|d| sum[d] += step.load_factor * lambda[d]);
         }

@@ -145,7 +145,6 @@ pub(crate) fn magnitude(by_panel: &[[f64; 3]]) -> Option<(f64, bool)> {
     }
 }
 
-/// The work of forces and couples on all panels.
 pub(crate) fn work(forces: &[[f64; 3]], motions: &[[f64; 3]]) -> f64 {
     dot(forces.as_flattened(), motions.as_flattened())
 }

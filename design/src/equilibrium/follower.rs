@@ -351,12 +351,10 @@ impl Branch<'_> {
     pub fn minimum(&mut self, start: &Place) -> Result<Minimum, Failure> {
         let potential = self.potential(start.at);
         let configuration = start.configuration.clone();
-        let (settings, effort) = (&self.solver.settings, &mut self.effort);
+        let effort = &mut self.effort;
         match self.solver.lbfgs {
-            None => potential.minimise(configuration, settings, effort),
-            Some(max_iterations) => {
-                potential.minimise_lbfgs(configuration, settings, max_iterations, effort)
-            }
+            None => potential.minimise(configuration, effort),
+            Some(most) => potential.minimise_lbfgs(configuration, most, effort),
         }
     }
 

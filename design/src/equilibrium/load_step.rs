@@ -5,7 +5,6 @@ use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::{HingeDamage, HingeEnergy, Order};
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::kinematics::{Configuration, hinge_deformations};
-use crate::sheet::panel_vectors::gather;
 use hinge::HingeDeformation;
 use serde::Serialize;
 use std::fmt;
@@ -153,7 +152,7 @@ impl LoadStep {
     /// limit point of the load; `None` without loads, or if the tangent could not be factorised.
     pub fn stiffness(&self, solver: &EquilibriumSolver) -> Option<f64> {
         let held = self.tangent.as_ref()?.factor.as_ref()?;
-        let stroke = Stroke::new(&solver.loads, &gather(&solver.pattern.free, &solver.loads))?;
+        let stroke = Stroke::new(&solver.loads, &solver.pattern.gather(&solver.loads))?;
         let mut response = stroke.direction().to_vec();
         solver.pattern.solve(&held.factor, &mut response);
         let stiffness = 1.0 / dot(stroke.direction(), &response);

@@ -153,7 +153,6 @@ impl EquilibriumSolver {
 }
 
 impl Follower<'_> {
-    /// The load step at the load parameter `to`.
     fn load_step(&mut self, to: f64) -> LoadStep {
         let found = match self.branch.solver.lbfgs {
             None => self.followed(to),
@@ -179,7 +178,6 @@ impl Follower<'_> {
         }
     }
 
-    /// The state at the last point that was found.
     fn last_state(&self, order: Order) -> State {
         let state = self.branch.state(&self.last.place, order);
         state.expect("this state was computed before")

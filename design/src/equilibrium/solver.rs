@@ -12,7 +12,6 @@ use crate::equilibrium::supports::{Dof, Load, Support, hold_rigid_body};
 use crate::equilibrium::tangent::TangentPattern;
 use crate::pattern::grid::Grid;
 use crate::sheet::cut_sheet::Sheet;
-use crate::sheet::panel_vectors::gather;
 
 /// Supports, loads or settings that do not define an equilibrium problem.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -123,6 +122,11 @@ impl EquilibriumSolver {
         })
     }
 
+    /// The direction in which the stroke of the loads is prescribed, if it is.
+    pub(crate) fn stroke(&self) -> Option<&Stroke> {
+        self.drive.as_ref().map(|(stroke, _)| &**stroke)
+    }
+
     /// Whether the stroke is prescribed and the load factor follows.
     pub fn is_driven(&self) -> bool {
         self.drive.is_some()
@@ -134,7 +138,7 @@ impl EquilibriumSolver {
         if !stroke.is_finite() {
             return Err(EquilibriumError::Stroke(stroke));
         }
-        let direction = Stroke::new(&self.loads, &gather(&self.pattern.free, &self.loads));
+        let direction = Stroke::new(&self.loads, &self.pattern.gather(&self.loads));
         let direction = direction.ok_or(EquilibriumError::NothingDrives)?;
         self.drive = Some((Box::new(direction), stroke));
         Ok(self)

@@ -96,7 +96,6 @@ pub struct HingeGeometryGradient {
 }
 
 impl HingeMotion {
-    /// The kinematics of every hinge.
     pub(crate) fn all(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<Self> {
         let hinges = 0..sheet.hinges.len();
         hinges.map(|h| Self::new(sheet, h, configuration)).collect()

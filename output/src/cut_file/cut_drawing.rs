@@ -57,7 +57,6 @@ impl Layer {
         LAYERS[self as usize].2
     }
 
-    /// AutoCAD colour index.
     pub(super) fn colour_index(self) -> u8 {
         LAYERS[self as usize].3
     }

@@ -74,7 +74,6 @@ impl Seam {
         })
     }
 
-    /// The seam across a corner.
     fn across(sheet: &Sheet, hinge: &Hinge, (panel, corner): PanelCorner, lap: f64) -> Across {
         let corners = &sheet.panels[panel].corners;
         let from = corners[corner];

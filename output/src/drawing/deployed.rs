@@ -98,7 +98,6 @@ pub(crate) fn deployed_on_paper(
     sketch
 }
 
-/// The drawn state.
 struct State<'a> {
     scene: &'a Scene,
     sheet: &'a Sheet,

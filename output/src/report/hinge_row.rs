@@ -41,7 +41,6 @@ pub struct HingeRow {
 }
 
 impl HingeRow {
-    /// The rows of all hinges.
     pub(super) fn all(scene: &Scene, deployment: &Deployment) -> Vec<Self> {
         let hinges = 0..deployment.sheet.hinges.len();
         hinges.map(|h| Self::new(scene, deployment, h)).collect()

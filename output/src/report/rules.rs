@@ -25,7 +25,6 @@ const SAFE_SEPARATION: f64 = 0.15;
 /// Rounding of lengths (mm).
 const ROUNDING: f64 = 1e-6;
 
-/// What the rules read.
 pub(super) struct Judged<'a> {
     pub scene: &'a Scene,
     pub deployment: &'a Deployment,
@@ -37,7 +36,6 @@ pub(super) struct Judged<'a> {
     pub run: Option<JudgedRun<'a>>,
 }
 
-/// A run whose best design is judged.
 pub(super) struct JudgedRun<'a> {
     pub designed: &'a Designed,
     pub facts: &'a FactSheet,
