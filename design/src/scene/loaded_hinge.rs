@@ -2,7 +2,7 @@
 
 use crate::equilibrium::tangent::MIN_PIVOT_RATIO;
 use crate::hinge_law::{CondensedLaw, Contact, DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
-use crate::scene::hinge_model::{CondensedConfig, HingeModel, LinearConstants, PinConfig};
+use crate::scene::hinge_model::{CondensedConfig, HingeModel, LinearConstants};
 use crate::scene::invalid_scene::{InvalidScene, WeightsMismatch};
 use crate::scene::keys::{SceneConfig, beside};
 use crate::scene::scene_error::SceneError;
@@ -32,8 +32,6 @@ pub struct LoadedHinge {
     pub(super) hinge_point: HingePoint,
     /// The networks that the law reads, its own first, then those of the ensemble.
     pub(super) networks: Vec<Surrogate>,
-    /// The file of the first network, as the scene names it.
-    pub weights_file: Option<PathBuf>,
 }
 
 /// How hinges open.
@@ -65,28 +63,14 @@ impl LoadedHinge {
         measured: &SheetMaterial,
         path: &Path,
     ) -> Result<Self, SceneError> {
-        let refuse = SceneError::at::<InvalidScene>(path);
-        let missing = |section| refuse(InvalidScene::NoSection(section));
-        let networks = |section| networks(config, section, measured, path);
+        let networks = networks(config, measured, path)?;
         let hinge = match config.hinge {
-            HingeModel::Pin => {
-                let pin = config.pin.ok_or_else(|| missing("pin"))?;
-                pinned(config, pin).map_err(&refuse)
-            }
-            HingeModel::Linear => match (&config.condensed, config.linear) {
-                (Some(file), _) => condensed(config, networks("condensed")?, file).map_err(&refuse),
-                (None, Some(constants)) => linear(config, constants).map_err(&refuse),
-                (None, None) => Err(missing("linear")),
-            },
-            HingeModel::Surrogate => {
-                config
-                    .surrogate
-                    .as_ref()
-                    .ok_or_else(|| missing("surrogate"))?;
-                learned(config, networks("surrogate")?).map_err(&refuse)
-            }
-        }?;
-        hinge.check_objective(config).map_err(refuse)?;
+            HingeModel::Pin => pinned(config),
+            HingeModel::Linear => linear(config, networks),
+            HingeModel::Surrogate => learned(config, networks),
+        };
+        let hinge = hinge.map_err(SceneError::at(path))?;
+        (hinge.check_objective(config)).map_err(SceneError::at(path))?;
         Ok(hinge)
     }
 
@@ -132,16 +116,19 @@ impl LoadedHinge {
     }
 }
 
-/// The networks that the hinge law reads, named in a section of the scene, at the thickness of the sheet.
+/// The networks that the hinge law reads, at the thickness of the sheet.
 fn networks(
     config: &SceneConfig,
-    section: &'static str,
     measured: &SheetMaterial,
     path: &Path,
 ) -> Result<Vec<Surrogate>, SceneError> {
     let load = |weights: PathBuf| {
         let file = beside(path, &weights);
         if !file.is_file() {
+            let section = match config.hinge {
+                HingeModel::Surrogate => "surrogate",
+                HingeModel::Linear | HingeModel::Pin => "condensed",
+            };
             return Err(SceneError::at(path)(InvalidScene::NoWeights {
                 section,
                 file,
@@ -182,17 +169,15 @@ fn condensed(
         let w_lig = config.ligament.start;
         return Err(InvalidScene::Condensed { w_lig, constants });
     }
-    Ok(LoadedHinge {
-        networks,
-        weights_file: Some(file.weights.clone()),
-        ..springs(Arc::new(law), contact(config, k_theta, CONTACT_WALL)?)
-    })
+    let contact = contact(config, k_theta, CONTACT_WALL)?;
+    Ok(springs(Arc::new(law), contact, networks))
 }
 
 /// The learned law; the contact stiffness is relative to the secant stiffness of a hinge of the start.
 fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge, InvalidScene> {
     same_training(&networks)?;
-    let surrogate = &networks[0];
+    let surrogate = networks.first();
+    let surrogate = surrogate.ok_or(InvalidScene::NoSection("surrogate"))?;
     let [_, _, [closed, _]] = surrogate.domain().bounds();
     let wall = if closed < 0.0 { closed } else { CONTACT_WALL };
     let secant = CondensedLaw::new(surrogate.clone(), TYPICAL_SECANT);
@@ -205,7 +190,6 @@ fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge
         },
         hinge_point: HingePoint::CutTip,
         networks,
-        weights_file: config.weights_files().into_iter().next(),
     })
 }
 
@@ -240,7 +224,8 @@ fn same_training(networks: &[Surrogate]) -> Result<(), InvalidScene> {
     Err(InvalidScene::OtherTraining)
 }
 
-fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, InvalidScene> {
+fn pinned(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
+    let pin = config.pin.ok_or(InvalidScene::NoSection("pin"))?;
     let held_or_loaded = !config.supports.is_empty() || config.has_loads();
     if held_or_loaded || config.drive.is_some() || config.contact.is_some() {
         return Err(InvalidScene::HeldPins);
@@ -252,22 +237,24 @@ fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, InvalidSc
         },
         hinge_point: HingePoint::Corner,
         networks: Vec::new(),
-        weights_file: None,
     })
 }
 
 /// A law of springs (11).
-fn springs(law: Arc<dyn HingeLaw>, contact: Contact) -> LoadedHinge {
+fn springs(law: Arc<dyn HingeLaw>, contact: Contact, networks: Vec<Surrogate>) -> LoadedHinge {
     LoadedHinge {
         label: "linear springs (11)",
         behaviour: HingeBehaviour::Elastic { law, contact },
         hinge_point: HingePoint::Corner,
-        networks: Vec::new(),
-        weights_file: None,
+        networks,
     }
 }
 
-fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHinge, InvalidScene> {
+fn linear(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge, InvalidScene> {
+    if let Some(file) = &config.condensed {
+        return condensed(config, networks, file);
+    }
+    let constants = config.linear.ok_or(InvalidScene::NoSection("linear"))?;
     let LinearConstants { k_a, k_s, k_theta } = constants;
     let grid = config.sheet.grid();
     let panel = config.sheet.outline().area().abs() / grid.panel_count() as f64;
@@ -277,7 +264,7 @@ fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHing
     }
     let law = LinearLaw::uniform([k_a, k_s, k_theta], grid.hinge_count());
     let contact = contact(config, k_theta, CONTACT_WALL)?;
-    Ok(springs(Arc::new(law), contact))
+    Ok(springs(Arc::new(law), contact, networks))
 }
 
 /// Relative difference of r_win from that of the weights that rounding in a scene file may cause.

@@ -259,12 +259,12 @@ impl Reached {
 impl WeightFacts {
     fn new(scene: &Scene) -> Option<Self> {
         let surrogate = scene.weights()?;
-        let path = scene.hinge.weights_file.as_ref();
+        let files = scene.config.weights_files();
         let card = surrogate.card();
         let predicted = if card.peak_scale.is_some() { 6 } else { 5 };
         let errors = |of: &TestErrors| of.percents()[..predicted].to_vec();
         Some(Self {
-            file: (path.and_then(|path| path.file_name()))
+            file: (files.first().and_then(|path| path.file_name()))
                 .map_or(String::new(), |name| name.to_string_lossy().into_owned()),
             hash: surrogate.hash(),
             tier: card.tier.clone(),
