@@ -194,7 +194,9 @@ fn network() -> SurrogateLaw {
         chi_d: layers(&[5, 256, 256, 1]),
         chi_p: None,
     };
-    SurrogateLaw::new(Surrogate::from_parts(networks, card).unwrap())
+    SurrogateLaw {
+        surrogate: Surrogate::from_parts(networks, card).unwrap(),
+    }
 }
 
 fn assert_equilibria(problem: &DesignProblem, design: &DesignVector) {

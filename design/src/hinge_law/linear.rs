@@ -6,19 +6,16 @@ use hinge::{HingeDeformation, HingeDesign};
 /// Three uncoupled springs per hinge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearLaw {
-    /// (k_a, k_s, k_theta) per hinge (N/mm, N/mm, N mm).
-    stiffness: Vec<[f64; 3]>,
+    /// (k_a, k_s, k_theta) per hinge, all positive (N/mm, N/mm, N mm).
+    pub stiffness: Vec<[f64; 3]>,
 }
 
 impl LinearLaw {
-    /// One triple (k_a, k_s, k_theta) of positive constants per hinge (N/mm, N/mm, N mm).
-    pub fn new(stiffness: Vec<[f64; 3]>) -> Self {
-        Self { stiffness }
-    }
-
     /// The same constants at all `hinges` hinges.
     pub fn uniform(stiffness: [f64; 3], hinges: usize) -> Self {
-        Self::new(vec![stiffness; hinges])
+        Self {
+            stiffness: vec![stiffness; hinges],
+        }
     }
 }
 

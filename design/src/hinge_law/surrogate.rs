@@ -38,13 +38,6 @@ pub struct SurrogateLaw {
     pub surrogate: Surrogate,
 }
 
-impl SurrogateLaw {
-    /// The hinge law of a learned energy.
-    pub fn new(surrogate: Surrogate) -> Self {
-        Self { surrogate }
-    }
-}
-
 impl HingeLaw for SurrogateLaw {
     fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a> {
         let (mapped, angle_slopes): (Vec<HingeDesign>, Vec<f64>) = designs
@@ -271,7 +264,9 @@ mod tests {
             env!("CARGO_MANIFEST_DIR"),
             "/tests/cases/chi_tiny.safetensors"
         );
-        SurrogateLaw::new(Surrogate::load(Path::new(weights)).unwrap())
+        SurrogateLaw {
+            surrogate: Surrogate::load(Path::new(weights)).unwrap(),
+        }
     }
 
     /// x = (a, s, theta, w_lig, alpha)
@@ -387,7 +382,9 @@ mod tests {
             env!("CARGO_MANIFEST_DIR"),
             "/../data/pet-0.5mm/small.safetensors"
         );
-        let law = SurrogateLaw::new(Surrogate::load(Path::new(weights)).unwrap());
+        let law = SurrogateLaw {
+            surrogate: Surrogate::load(Path::new(weights)).unwrap(),
+        };
         let domain = law.surrogate.domain();
         let (centre, bounds) = (domain.centre(), domain.bounds());
         // Fractions of multiples of irrational numbers fill the intervals evenly.

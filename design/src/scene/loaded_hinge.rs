@@ -161,8 +161,10 @@ fn condensed(
     networks: Vec<Surrogate>,
     file: &CondensedConfig,
 ) -> Result<LoadedHinge, InvalidScene> {
-    let secant = file.secant_deg;
-    let law = CondensedLaw::new(networks[0].clone(), secant.to_radians());
+    let law = CondensedLaw {
+        surrogate: networks[0].clone(),
+        secant: file.secant_deg.to_radians(),
+    };
     let constants = constants_at_start(config, &law);
     let [_, _, k_theta] = constants;
     if !constants.iter().all(|constant| *constant > 0.0) {
@@ -180,12 +182,17 @@ fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge
     let surrogate = surrogate.ok_or(InvalidScene::NoSection("surrogate"))?;
     let [_, _, [closed, _]] = surrogate.domain().bounds();
     let wall = if closed < 0.0 { closed } else { CONTACT_WALL };
-    let secant = CondensedLaw::new(surrogate.clone(), TYPICAL_SECANT);
+    let secant = CondensedLaw {
+        surrogate: surrogate.clone(),
+        secant: TYPICAL_SECANT,
+    };
     let [.., k_theta] = constants_at_start(config, &secant);
     Ok(LoadedHinge {
         label: "learned energy (14)",
         behaviour: HingeBehaviour::Elastic {
-            law: Arc::new(SurrogateLaw::new(surrogate.clone())),
+            law: Arc::new(SurrogateLaw {
+                surrogate: surrogate.clone(),
+            }),
             contact: contact(config, k_theta.abs().max(f64::MIN_POSITIVE), wall)?,
         },
         hinge_point: HingePoint::CutTip,

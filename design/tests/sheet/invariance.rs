@@ -180,7 +180,7 @@ fn a_mirrored_sheet_deploys_as_the_mirror_image() {
             load(Dof::UY, 0.4),
             load(Dof::Phi, side * 0.1),
         ];
-        let law = LinearLaw::new(stiffness);
+        let law = LinearLaw { stiffness };
         path(sheet, &law, &clamp(held), &loads, 4)
     };
     let [held, loaded] = [grid.m, 2 * grid.m - 1];

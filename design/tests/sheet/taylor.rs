@@ -33,7 +33,9 @@ pub fn tiny() -> SurrogateLaw {
         env!("CARGO_MANIFEST_DIR"),
         "/tests/cases/chi_tiny.safetensors"
     );
-    SurrogateLaw::new(Surrogate::load(Path::new(weights)).unwrap())
+    SurrogateLaw {
+        surrogate: Surrogate::load(Path::new(weights)).unwrap(),
+    }
 }
 
 /// Clamped in the middle of the west edge, with a moment at a corner; in the middle of the east edge
@@ -282,7 +284,10 @@ fn driven_sheets() {
 #[test]
 fn linear_law_condensed_from_the_surrogate() {
     for secant in [0.0, 0.35] {
-        let law = CondensedLaw::new(tiny().surrogate, secant);
+        let law = CondensedLaw {
+            surrogate: tiny().surrogate,
+            secant,
+        };
         let model = mechanics(law, 80.0, East::Pulled(4.0));
         assert_order_two(&problem(model, HingePoint::CutTip), &start());
     }

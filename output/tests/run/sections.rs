@@ -136,7 +136,10 @@ fn constants_are_condensed_from_weights() {
         prepared.energies(&states, Order::Design)
     };
     let weights = Surrogate::load(Path::new(&folder.path().join("tiny.safetensors"))).unwrap();
-    let expected = CondensedLaw::new(weights, 20.0_f64.to_radians());
+    let expected = CondensedLaw {
+        surrogate: weights,
+        secant: 20.0_f64.to_radians(),
+    };
     assert_eq!(energies(&*mechanics.law), energies(&expected));
 }
 
