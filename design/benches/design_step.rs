@@ -110,7 +110,14 @@ fn problem(
                 centred: true,
             },
             functionals: vec![
-                Weighted::new(1.0, Damage::new(DamageMeasure::Mean, scale.unwrap_or(1.0))),
+                Weighted::new(
+                    1.0,
+                    Damage {
+                        measure: DamageMeasure::Mean,
+                        scale: scale.unwrap_or(1.0),
+                        temperature: 0.1,
+                    },
+                ),
                 Weighted::new(0.1, Compression { temperature: 0.02 }),
                 Weighted::new(0.1, Shear { temperature: 0.02 }),
             ],

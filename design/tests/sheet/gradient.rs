@@ -24,7 +24,14 @@ fn functionals(case: &Value) -> Vec<Weighted> {
         temperature: temperature("shear"),
     };
     vec![
-        Weighted::new(weight("damage"), Damage::new(DamageMeasure::Mean, 1.0)),
+        Weighted::new(
+            weight("damage"),
+            Damage {
+                measure: DamageMeasure::Mean,
+                scale: 1.0,
+                temperature: 0.1,
+            },
+        ),
         Weighted::new(weight("comp"), compression),
         Weighted::new(weight("shear"), shear),
     ]

@@ -118,7 +118,11 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
             functionals: vec![
                 Weighted::new(
                     300.0,
-                    Damage::new(DamageMeasure::Mean, scale.unwrap_or(1.0)),
+                    Damage {
+                        measure: DamageMeasure::Mean,
+                        scale: scale.unwrap_or(1.0),
+                        temperature: 0.1,
+                    },
                 ),
                 Weighted::new(1e4, Compression { temperature: 0.02 }),
                 Weighted::new(1e4, Shear { temperature: 0.02 }),

@@ -93,14 +93,8 @@ fn nearest_neighbours(legs: &[Leg], from: [f64; 2]) -> Vec<Leg> {
     let mut tour = Vec::with_capacity(legs.len());
     while !left.is_empty() {
         let to = |leg: &Leg| distance(at, leg.1[0]).min(distance(at, leg.1[1]));
-        let nearest = (1..left.len()).fold(0, |best, i| {
-            if to(&left[i]) < to(&left[best]) {
-                i
-            } else {
-                best
-            }
-        });
-        let (i, [a, b]) = left.swap_remove(nearest);
+        let nearest = (0..left.len()).min_by(|&i, &j| to(&left[i]).total_cmp(&to(&left[j])));
+        let (i, [a, b]) = left.swap_remove(nearest.unwrap_or_default());
         let ends = if distance(at, b) < distance(at, a) {
             [b, a]
         } else {

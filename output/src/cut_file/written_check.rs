@@ -9,7 +9,7 @@ use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::fabrication_error::FabricationError;
 use crate::display::Shape;
 use design::geometry::polygon::{
-    area, distance, distance_between_segments, distance_to_segment, edges, nearest_on_outline,
+    area, distance, distance_between_segments, distance_to_segment, edges, nearest_on_outline, side,
 };
 use design::sheet::cut_sheet::Sheet;
 use std::collections::BTreeMap;
@@ -186,10 +186,8 @@ fn inwards(p: [f64; 2], q: [f64; 2], by: f64) -> [[f64; 2]; 2] {
 /// Whether an edge lies along a line, at least in part.
 fn carries(line: &[[f64; 2]; 2], edge: [[f64; 2]; 2]) -> bool {
     let [a, b] = *line;
-    let off = |[x, y]: [f64; 2]| {
-        ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / distance(a, b)
-    };
-    edge.iter().all(|end| off(*end).abs() < ROUNDING)
+    edge.iter()
+        .all(|end| (side((a, b), *end) / distance(a, b)).abs() < ROUNDING)
         && distance_between_segments(*line, edge) < ROUNDING
 }
 
