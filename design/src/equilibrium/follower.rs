@@ -278,13 +278,8 @@ impl<'a> Follower<'a> {
         self.begin();
     }
 
-    /// Continues the path from a place whose rate is not known.
-    pub fn continue_from(&mut self, place: Place) {
-        self.last = Point::still(place);
-        self.begin();
-    }
-
-    fn begin(&mut self) {
+    /// Begins a branch at the last point.
+    pub fn begin(&mut self) {
         (self.arc, self.stretch) = (None, 1.0);
         (self.length, self.unstable) = (FIRST, None);
     }

@@ -4,7 +4,7 @@
 //! points of the path is the start of a correction at the load of the step. L-BFGS, the baseline, minimises from
 //! one load step to the next and looks for no limit points.
 
-use crate::equilibrium::branch::Branch;
+use crate::equilibrium::branch::{Branch, Point};
 use crate::equilibrium::displacement_control::{HeldFactor, work};
 use crate::equilibrium::follower::{Follower, LEAP};
 use crate::equilibrium::hinged_sheet::HingedSheet;
@@ -237,11 +237,12 @@ impl Follower<'_> {
         self.branch.hold(&mut start, &self.last.place);
         let minimum = self.branch.minimum(&start)?;
         let moved = self.branch.moved(&minimum, &start);
-        self.continue_from(Place {
+        self.last = Point::still(Place {
             at: to,
             configuration: minimum.state.configuration.clone(),
             forces: minimum.state.forces(),
         });
+        self.begin();
         Ok((minimum, moved))
     }
 }

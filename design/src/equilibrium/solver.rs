@@ -54,8 +54,9 @@ pub struct EquilibriumSolver {
     pub(crate) grid: Grid,
     pub(crate) settings: SolverSettings,
     pub(crate) steps: usize,
-    /// The maximum number of iterations of L-BFGS per load step, if that replaces Newton's method.
-    pub(crate) lbfgs: Option<usize>,
+    /// The maximum number of iterations of L-BFGS per load step, if that replaces Newton's method, as in the paper: from
+    /// one load step to the next, without looking for limit points.
+    pub lbfgs: Option<usize>,
     /// Prescribed motions at full load.
     pub(crate) supports: Box<[Support]>,
     /// (F_x, F_y, M) per panel at full load.
@@ -142,12 +143,6 @@ impl EquilibriumSolver {
         let direction = direction.ok_or(EquilibriumError::NothingDrives)?;
         self.drive = Some((Box::new(direction), stroke));
         Ok(self)
-    }
-
-    /// Minimises by L-BFGS as in the paper, the baseline for Newton's method: at most `max_iterations` iterations from
-    /// one load step to the next, without looking for limit points.
-    pub fn use_lbfgs(&mut self, max_iterations: usize) {
-        self.lbfgs = Some(max_iterations);
     }
 
     /// Number of stored entries of the factors of a tangent, zeros of merged columns included.

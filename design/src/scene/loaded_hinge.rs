@@ -210,7 +210,10 @@ fn constants_at_start(config: &SceneConfig, law: &CondensedLaw) -> [f64; 3] {
 /// void angle `wall` (rad).
 fn contact(config: &SceneConfig, k_theta: f64, wall: f64) -> Result<Contact, InvalidScene> {
     let contact = match config.contact {
-        Some(contact) => contact.contact(),
+        Some(given) => {
+            let [wall, begin] = [given.phi_min_deg, given.phi_cut_deg].map(f64::to_radians);
+            Contact::new(given.stiffness, wall, begin)
+        }
         None => Contact::new(CONTACT_STIFFNESS * k_theta, wall, 0.0),
     };
     Ok(contact?)

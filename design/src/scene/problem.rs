@@ -65,16 +65,11 @@ impl Scene {
         design
     }
 
-    /// Area of the sheet divided by the number of panels (mm^2); the weights of the objective are relative to it.
-    pub fn mean_panel_area(&self) -> f64 {
-        self.config.sheet.mean_panel_area()
-    }
-
     fn objective(&self, model: &Model) -> Objective {
         self.config.objective.objective(&Setting {
             target: &self.target,
             law: model.mechanics().map(|mechanics| &*mechanics.law),
-            mean_panel_area: self.mean_panel_area(),
+            mean_panel_area: self.config.sheet.mean_panel_area(),
             r_win: self.config.process.r_win,
         })
     }

@@ -150,7 +150,7 @@ fn both_methods_find_the_same_equilibria() {
     let mut problem = scene.problem().unwrap();
     let newton = problem.deploy(&scene.start()).unwrap().path;
     if let Model::Equilibrium(mechanics) = &mut problem.model {
-        mechanics.solver.use_lbfgs(20_000);
+        mechanics.solver.lbfgs = Some(20_000);
     }
     let lbfgs = problem.deploy(&scene.start()).unwrap().path;
     let total = |path: &[LoadStep]| {
