@@ -34,7 +34,7 @@ const STEPS: usize = 10;
 
 /// A sheet with panels of 1 x 1 and the linear law.
 fn linear((m, n): (usize, usize)) -> (DesignProblem, DesignVector) {
-    let law = LinearLaw::uniform([1e4, 1e4, 1.0], Grid { m, n }.hinge_count()).unwrap();
+    let law = LinearLaw::uniform([1e4, 1e4, 1.0], Grid { m, n }.hinge_count());
     problem(Grid { m, n }, 1.0, law, HingePoint::Corner, 3.0 * n as f64)
 }
 
@@ -110,7 +110,14 @@ fn problem(
                 centred: true,
             },
             functionals: vec![
-                Weighted::new(1.0, Damage::new(DamageMeasure::Mean, scale.unwrap_or(1.0))),
+                Weighted::new(
+                    1.0,
+                    Damage {
+                        measure: DamageMeasure::Mean,
+                        scale: scale.unwrap_or(1.0),
+                        temperature: 0.1,
+                    },
+                ),
                 Weighted::new(0.1, Compression { temperature: 0.02 }),
                 Weighted::new(0.1, Shear { temperature: 0.02 }),
             ],
@@ -194,12 +201,18 @@ fn network() -> SurrogateLaw {
         chi_d: layers(&[5, 256, 256, 1]),
         chi_p: None,
     };
-    SurrogateLaw::new(Surrogate::from_parts(networks, card).unwrap())
+    SurrogateLaw {
+        surrogate: Surrogate::from_parts(networks, card).unwrap(),
+    }
 }
 
 fn assert_equilibria(problem: &DesignProblem, design: &DesignVector) {
     let deployment = problem.deploy(design).unwrap();
-    let iterations: usize = deployment.path.iter().map(|step| step.iterations).sum();
+    let iterations: usize = deployment
+        .path
+        .iter()
+        .map(|step| step.effort.iterations)
+        .sum();
     let last = deployment.final_step();
     let open = last
         .deformations

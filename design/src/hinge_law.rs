@@ -20,5 +20,5 @@ pub use condensed::{CondensedLaw, Constant};
 pub use contact::{Contact, InvalidContact};
 pub use corrected::{CorrectedLaw, Correction, MissingForces};
 pub use law::{DamageMeasure, HingeDamage, HingeEnergy, HingeLaw, Order, PreparedLaw};
-pub use linear::{InvalidStiffness, LinearLaw};
+pub use linear::LinearLaw;
 pub use surrogate::SurrogateLaw;

@@ -54,7 +54,7 @@
 //!         process: HingeConstants::PAPER,
 //!     },
 //!     model: Model::Equilibrium(Box::new(Mechanics {
-//!         law: Arc::new(LinearLaw::uniform([400.0, 250.0, 300.0], grid.hinge_count())?),
+//!         law: Arc::new(LinearLaw::uniform([400.0, 250.0, 300.0], grid.hinge_count())),
 //!         contact: None,
 //!         solver,
 //!     })),

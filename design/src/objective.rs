@@ -5,7 +5,6 @@ mod design_gradient;
 pub mod design_problem;
 pub mod hinge_measures;
 pub mod loss;
-pub mod outline_error;
 pub mod scores;
 pub mod shape;
 pub mod target;

@@ -10,14 +10,12 @@ mod checks;
 mod cutting;
 pub mod design_run;
 mod hinge_model;
-mod invalid_hinge;
 mod invalid_scene;
 mod keys;
 mod loaded_hinge;
 pub mod placement;
 mod problem;
 mod ratios;
-mod relative_path;
 pub mod run_inputs;
 mod scene_error;
 mod sheet_config;
@@ -34,8 +32,7 @@ pub use cutting::CuttingConfig;
 pub use hinge_model::{
     CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
 };
-pub use invalid_hinge::{InvalidHinge, WeightsMismatch};
-pub use invalid_scene::InvalidScene;
+pub use invalid_scene::{InvalidScene, WeightsMismatch};
 pub use keys::{OptimiserConfig, SceneConfig};
 pub use loaded_hinge::LoadedHinge;
 pub use ratios::{Ratios, rounded};

@@ -37,7 +37,9 @@ fn the_interface_energies_sum_to_the_stored_energy_and_tension_reaches_the_load(
     assert_eq!(Degeneration::of(deployment.final_step()), None);
     let transmission = ForceTransmission::new(&problem, &deployment).unwrap();
     let interfaces = transmission.interfaces.iter();
-    let stored: f64 = interfaces.map(|it| it.translational + it.rotational).sum();
+    let stored: f64 = interfaces
+        .map(|interface| interface.translational + interface.rotational)
+        .sum();
     let last = deployment.final_step();
     let expected: f64 = last.energies.iter().sum();
     assert!(

@@ -29,7 +29,7 @@ fn refusal(name: &str, text: &str, replacement: &str) -> String {
 fn the_linear_scene_is_read_and_needs_no_weights() {
     let scene = Scene::read(&shipped("linear-7x7.toml")).unwrap();
     assert!(scene.surrogate().is_none());
-    assert_eq!(scene.target.points().len(), 500);
+    assert_eq!(scene.target.points.len(), 500);
     assert_eq!(scene.material.thickness, 0.5);
     assert!(scene.output().ends_with("runs/linear-7x7"));
 }

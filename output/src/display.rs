@@ -9,7 +9,7 @@ mod shape;
 mod style;
 
 pub use canvas::Canvas;
-pub(crate) use canvas::{document, group, trimmed};
-pub use shape::{Anchor, Shape, Text, bounds};
-pub(crate) use shape::{distance, rectangle};
+pub(crate) use canvas::{document, group, text_of_element, trimmed};
+pub(crate) use shape::rectangle;
+pub use shape::{Anchor, Shape, Text};
 pub use style::{Colour, Style};

@@ -13,5 +13,5 @@ mod pattern;
 
 pub use deployment::DeploymentListing;
 pub use equilibrium::{EnergyParts, EquilibriumListing, StepListing};
-pub use gradient::{GradientListing, GradientListingError};
+pub use gradient::GradientListing;
 pub use pattern::{HingeListing, PatternListing};

@@ -121,18 +121,8 @@ fn yield_strain(material: &SheetMaterial) -> f64 {
     material.plastic[0][0] / material.young
 }
 
-fn note(message: String) -> Verdict {
-    Verdict {
-        severity: Severity::Note,
-        message,
-    }
-}
-
-fn warning(message: String) -> Verdict {
-    Verdict {
-        severity: Severity::Warning,
-        message,
-    }
+fn verdict(severity: Severity, message: String) -> Verdict {
+    Verdict { severity, message }
 }
 
 /// Yield, hardening, softening, and the end of the table.
@@ -145,18 +135,19 @@ fn law(material: &SheetMaterial) -> Vec<Verdict> {
     } = material;
     let [yields, _] = plastic[0];
     let [stress, strain] = plastic[plastic.len() - 1];
-    let mut verdicts = vec![note(match plastic.len() {
-        1 => format!(
-            "the material yields at {yields} MPa, a strain of {:.2} %, and does not harden",
-            100.0 * yield_strain(material)
-        ),
-        _ => format!(
-            "the material yields at {yields} MPa, a strain of {:.2} %, and has {stress} MPa at the plastic strain {strain}: \
-             a mean hardening modulus of {:.4} E",
-            100.0 * yield_strain(material),
-            (stress - yields) / strain / young
-        ),
-    })];
+    let hardens = match plastic.len() {
+        1 => "does not harden".to_owned(),
+        _ => {
+            let modulus = (stress - yields) / strain / young;
+            format!(
+                "has {stress} MPa at the plastic strain {strain}: a mean hardening modulus of {modulus:.4} E"
+            )
+        }
+    };
+    let percent = 100.0 * yield_strain(material);
+    let yields =
+        format!("the material yields at {yields} MPa, a strain of {percent:.2} %, and {hardens}");
+    let mut verdicts = vec![verdict(Severity::Note, yields)];
     let slope = |pair: &[[f64; 2]]| (pair[1][0] - pair[0][0]) / (pair[1][1] - pair[0][1]);
     let drop = plastic
         .windows(2)
@@ -170,19 +161,21 @@ fn law(material: &SheetMaterial) -> Vec<Verdict> {
             "the table falls from {from} to {to} MPa between the plastic strains {start} and {end}"
         );
         verdicts.push(if steepness > STEEPEST_DROP {
-warning(format!(
+            let steep = format!(
                 "{fall}, by {steepness:.3} E: above {STEEPEST_DROP} E coarse meshes diverge; spread the fall over a longer \
                  strain"
-            ))
-} else {
-note(format!("{fall}: the material softens there"))
-});
+            );
+            verdict(Severity::Warning, steep)
+        } else {
+            verdict(Severity::Note, format!("{fall}: the material softens there"))
+        });
     }
     if *fracture_strain > 1.05 * strain {
-        verdicts.push(note(format!(
+        let held = format!(
             "between the last row, at {strain}, and the fracture strain {fracture_strain} the window solver holds the \
              stress constant at {stress} MPa"
-        )));
+        );
+        verdicts.push(verdict(Severity::Note, held));
     }
     verdicts
 }
@@ -193,11 +186,12 @@ fn buckling(material: &SheetMaterial, narrowest: &LigamentEstimate) -> Option<Ve
     let buckles = 0.5 / narrowest.slenderness.powi(2);
     (buckles >= yields).then(|| {
         let width = material.thickness / (2.0 * yields).sqrt();
-        warning(format!(
+        let message = format!(
             "ligaments narrower than {width:.1} mm yield in their plane, at a strain of {yields:.4}, before they buckle, at \
              {buckles:.4} for {} mm: their windows converge in small increments or not at all",
             narrowest.w_lig
-        ))
+        );
+        verdict(Severity::Warning, message)
     })
 }
 
@@ -206,18 +200,21 @@ fn slenderness(ligaments: &[LigamentEstimate]) -> Option<Verdict> {
     let [least, most] = KNOWN_SLENDERNESS;
     // Rounding of a width given as a multiple of the thickness.
     let slack = 1e-9;
-    let outside = |it: &&LigamentEstimate| {
-        !(least * (1.0 - slack)..=most * (1.0 + slack)).contains(&it.slenderness)
-    };
-    let found: Vec<String> = (ligaments.iter().filter(outside))
-        .map(|it| format!("{} mm is {:.1} thicknesses", it.w_lig, it.slenderness))
+    let known = least * (1.0 - slack)..=most * (1.0 + slack);
+    let outside = ligaments
+        .iter()
+        .map(|ligament| (ligament.w_lig, ligament.slenderness))
+        .filter(|(_, slenderness)| !known.contains(slenderness));
+    let found: Vec<String> = outside
+        .map(|(w_lig, slenderness)| format!("{w_lig} mm is {slenderness:.1} thicknesses"))
         .collect();
     (!found.is_empty()).then(|| {
-        warning(format!(
+        let message = format!(
             "a ligament of {}: the shipped hinge data cover {least} to {most}, so try a window (kirigami solve) before a \
              campaign",
             found.join(", of ")
-        ))
+        );
+        verdict(Severity::Warning, message)
     })
 }
 
@@ -232,15 +229,15 @@ fn panels(intended: &Intended, ligaments: &[LigamentEstimate]) -> Option<Verdict
         "panels of {pitch:.1} mm with ligaments of {} mm have Gamma = {gamma:.3} (L* = {:.0} mm)",
         least.w_lig, least.critical_edge
     );
-    Some(if gamma < 1.0 {
-        warning(format!(
-            "{at}, for a sheet that lies on a surface: below 1 its weight does not hold the panels down"
-        ))
+    let (severity, weight) = if gamma < 1.0 {
+        let weak = "below 1 its weight does not hold the panels down";
+        (Severity::Warning, weak)
     } else {
-        note(format!(
-            "{at}, for a sheet that lies on a surface: its weight presses the panels down, which need not keep them flat"
-        ))
-    })
+        let enough = "its weight presses the panels down, which need not keep them flat";
+        (Severity::Note, enough)
+    };
+    let message = format!("{at}, for a sheet that lies on a surface: {weight}");
+    Some(verdict(severity, message))
 }
 
 /// The strain at the tip against the fracture strain.
@@ -251,16 +248,15 @@ fn fracture(material: &SheetMaterial, intended: &Intended, ligament: &LigamentEs
         "a fold of {:.0} deg strains the tip of a ligament by {least:.3} to {most:.3}; the fracture strain is {limit}",
         intended.theta.to_degrees()
     );
-    match (least >= limit, most >= limit) {
-        (true, _) => Verdict {
-            severity: Severity::Error,
-            message: format!(
-                "{at}: the ligament tears at its tip; reduce --theta-deg to the rotation that is needed"
-            ),
-        },
-        (_, true) => warning(format!("{at}: the ligament may tear at its tip")),
-        _ => note(format!("{at}: the ligament does not tear")),
-    }
+    let (severity, tears) = match (least >= limit, most >= limit) {
+        (true, _) => (
+            Severity::Error,
+            "tears at its tip; reduce --theta-deg to the rotation that is needed",
+        ),
+        (_, true) => (Severity::Warning, "may tear at its tip"),
+        _ => (Severity::Note, "does not tear"),
+    };
+    verdict(severity, format!("{at}: the ligament {tears}"))
 }
 
 #[cfg(test)]
@@ -294,7 +290,7 @@ mod tests {
     /// Whether a verdict of the severity contains the text.
     fn says(check: &MaterialCheck, severity: Severity, text: &str) -> bool {
         let mut verdicts = check.verdicts.iter();
-        verdicts.any(|it| it.severity == severity && it.message.contains(text))
+        verdicts.any(|found| found.severity == severity && found.message.contains(text))
     }
 
     #[test]
@@ -304,7 +300,7 @@ mod tests {
             check
                 .verdicts
                 .iter()
-                .all(|it| it.severity == Severity::Note),
+                .all(|found| found.severity == Severity::Note),
             "{check:?}"
         );
         let [ligament] = check.ligaments[..] else {
@@ -323,14 +319,14 @@ mod tests {
 
     #[test]
     fn every_limit_has_its_verdict() {
-        let brittle = check(|it| it.fracture_strain = 0.04, PAPER);
+        let brittle = check(|material| material.fracture_strain = 0.04, PAPER);
         assert!(says(&brittle, Severity::Error, "tears"), "{brittle:?}");
-        let doubtful = check(|it| it.fracture_strain = 0.2, PAPER);
+        let doubtful = check(|material| material.fracture_strain = 0.2, PAPER);
         assert!(
             says(&doubtful, Severity::Warning, "may tear"),
             "{doubtful:?}"
         );
-        let steep = check(|it| it.plastic[1][1] = 0.02, PAPER);
+        let steep = check(|material| material.plastic[1][1] = 0.02, PAPER);
         assert!(
             says(&steep, Severity::Warning, "coarse meshes diverge"),
             "{steep:?}"
@@ -348,7 +344,7 @@ mod tests {
             w_lig: [3.0, 30.0],
             ..PAPER
         };
-        let narrow = check(|it| it.plastic[0][0] = 30.0, narrow);
+        let narrow = check(|material| material.plastic[0][0] = 30.0, narrow);
         assert!(
             says(
                 &narrow,
@@ -361,7 +357,7 @@ mod tests {
             says(&narrow, Severity::Warning, "before they buckle"),
             "{narrow:?}"
         );
-        let short = check(|it| it.fracture_strain = 3.0, PAPER);
+        let short = check(|material| material.fracture_strain = 3.0, PAPER);
         assert!(
             says(&short, Severity::Note, "constant at 200 MPa"),
             "{short:?}"

@@ -19,6 +19,7 @@ use design::geometry::similarity::{Pair, Scale, Similarity};
 use design::sheet::cut_sheet::Sheet;
 use faer::c64;
 use serde::Serialize;
+use support::statistics::root_mean_square;
 
 /// A measured sheet in numbers.
 #[derive(Clone, Debug, Serialize)]
@@ -114,6 +115,11 @@ impl MeasurementReport {
         let panels = MeasuredPanel::all(sheet, best);
         let openings = openings(sheet, best, &panels);
         let outliers = best.points.iter().filter(|point| point.outlier);
+        let outliers = outliers.map(|point| Outlier {
+            mark: point.mark,
+            residual: point.residual(),
+            distance: point.distance(),
+        });
         Self {
             title: title.to_owned(),
             sheet_size: sheet.outline.size(),
@@ -128,22 +134,12 @@ impl MeasurementReport {
             load_factor_error: measured.load_factor_error,
             at_the_end: best.position > full.position - 1e-6,
             scatter: scatter(&panels),
-            outliers: outliers.map(Outlier::new).collect(),
+            outliers: outliers.collect(),
             renumbered: measured.renumbered.clone(),
             closed: closed.map(|closed| Closed::new(sheet, closed, best, &panels, supported)),
             panels,
             openings,
             best_points: best.points.clone(),
-        }
-    }
-}
-
-impl Outlier {
-    fn new(point: &FittedPoint) -> Self {
-        Self {
-            mark: point.mark,
-            residual: point.residual(),
-            distance: point.distance(),
         }
     }
 }
@@ -184,6 +180,5 @@ fn from_flat(sheet: &Sheet, fit: &Fit) -> f64 {
     let Some(motion) = Similarity::least_squares(&pairs, Scale::Given) else {
         return 0.0;
     };
-    let squares = pairs.iter().map(|pair| motion.residual(pair).powi(2));
-    (squares.sum::<f64>() / pairs.len() as f64).sqrt()
+    root_mean_square(pairs.iter().map(|pair| motion.residual(pair)))
 }

@@ -2,10 +2,11 @@
 
 use crate::cut_file::{CutLines, Paper};
 use crate::display::pdf::{self, Font, draw, page, place};
-use crate::display::{Canvas, Style, Text, bounds};
+use crate::display::{Canvas, Style, Text};
 use crate::drawing::page::{INK, MUTED, Sketch, round_below};
 use crate::drawing::{deployed_on_paper, flat_on_paper};
 use crate::report::Report;
+use design::geometry::polygon::bounds;
 use design::scene::Scene;
 use design::scene::design_run::Designed;
 use pdf_writer::Content;
@@ -279,7 +280,7 @@ mod tests {
             ] {
                 let pieces = wrapped(line, columns);
                 assert!(
-                    pieces.iter().all(|it| it.chars().count() <= columns),
+                    pieces.iter().all(|piece| piece.chars().count() <= columns),
                     "{pieces:?}"
                 );
                 let words = |text: &str| text.split_whitespace().collect::<String>();

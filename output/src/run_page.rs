@@ -8,6 +8,7 @@ mod hinge_states;
 mod packed;
 mod page_data;
 
+use crate::display::text_of_element;
 use crate::report::Report;
 use design::scene::Scene;
 use design::scene::design_run::Designed;
@@ -25,7 +26,6 @@ const SCRIPTS: [&str; 7] = [
     include_str!("run_page/page.js"),
 ];
 
-/// The page of a run of `scene` with its report.
 pub(super) fn run_page(
     scene: &Scene,
     designed: &Designed,
@@ -33,7 +33,7 @@ pub(super) fn run_page(
 ) -> Result<String, serde_json::Error> {
     let data = serde_json::to_string(&PageData::new(scene, designed, report))?;
     let filled = |marker: &str| match marker {
-        "title" => escaped(&report.title),
+        "title" => text_of_element(&report.title),
         "style" => STYLE.to_owned(),
         "scripts" => SCRIPTS.concat(),
         _ => data.replace('<', "\\u003c"),
@@ -47,11 +47,4 @@ pub(super) fn run_page(
         page += text;
     }
     Ok(page)
-}
-
-/// Text of an HTML element.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
 }

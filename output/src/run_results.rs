@@ -6,16 +6,14 @@ use crate::run_files::{RUN_FILES, Results, Writer};
 use design::scene::Scene;
 use design::scene::design_run::{Designed, InverseDesignError};
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use support::file_error::FileError;
 use support::whole_file;
 
 /// A result that could not be written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write {path}: {source}", path = .path.display())]
-pub struct ResultsError {
-    path: PathBuf,
-    source: io::Error,
-}
+#[error("cannot write {0}")]
+pub struct ResultsError(#[from] FileError);
 
 /// Writes the results of [`RUN_FILES`]: the picture of the flat sheet for a design with cut lines, the cut files for a
 /// design without errors, or if `force`.
@@ -46,7 +44,7 @@ pub fn write_results(
             Some(bytes) => whole_file::write(&path, &bytes),
             None => remove_with_pixels(&path),
         });
-        written.map_err(|source| ResultsError { path, source })?;
+        written.map_err(FileError::at(&path))?;
     }
     Ok(report)
 }
@@ -58,7 +56,7 @@ pub fn remove_run(scene: &Scene) -> Result<(), InverseDesignError> {
     start.map_err(InverseDesignError::Start)?;
     for file in &RUN_FILES {
         let path = scene.output().join(file.name);
-        remove(&path).map_err(|source| InverseDesignError::Folder { path, source })?;
+        remove(&path).map_err(FileError::at(&path))?;
     }
     Ok(())
 }
@@ -75,7 +73,6 @@ fn remove_with_pixels(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Removes a file, if there is one.
 fn remove(path: &Path) -> io::Result<()> {
     match std::fs::remove_file(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),

@@ -41,7 +41,6 @@ pub fn vtk_states(deployment: &Deployment) -> Vec<VtkState> {
         .collect()
 }
 
-/// The hinge before deployment.
 fn flat(state: &HingeState) -> HingeState {
     HingeState {
         step: 0,

@@ -68,7 +68,7 @@ impl InspectCommand {
             }
             Stage::Gradient(listed) => {
                 let (scene, design) = listed.read()?;
-                listed.print(GradientListing::new(&scene, &design)?)
+                listed.print(GradientListing::new(&scene, &scene.problem()?, &design)?)
             }
         }
     }

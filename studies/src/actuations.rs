@@ -12,7 +12,7 @@ use design::analysis::force_transmission::ForceTransmission;
 use design::analysis::tension_routes::{TensionRoute, tension_routes};
 use design::analysis::void_families::{VoidFamilies, disjoint_voids};
 use design::objective::loss::Objective;
-use design::objective::outline_error::outline_error;
+use design::objective::scores::outline_error;
 use design::scene::design_run::Designed;
 use design::scene::{Scene, SceneConfig};
 use drive_readings::READINGS;

@@ -181,11 +181,11 @@ impl ApproachStudy {
             rate,
             steps: designed.history.len() - 1,
             loss: designed.best.loss,
-            fit: OutlineMatch::of(sheet, &tessellation.deployed, scene.target.points()),
+            fit: OutlineMatch::of(sheet, &tessellation.deployed, &scene.target.points),
             defects: tessellation.defects_in(states),
             opening_deg: opening.to_degrees(),
             tessellation,
-            target: scene.target.points().to_vec(),
+            target: scene.target.points.clone(),
             seconds: began.elapsed().as_secs_f64(),
         })
     }

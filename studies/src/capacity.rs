@@ -12,7 +12,7 @@ use clap::Args;
 use design::analysis::degeneration::{Degeneration, last_jump};
 use design::analysis::further_load::FurtherLoad;
 use design::objective::design_problem::Deployment;
-use design::objective::outline_error::outline_error;
+use design::objective::scores::outline_error;
 use design::optimise::outer_loop::Ended;
 use design::pattern::design_vector::DesignVector;
 use design::scene::{HingeModel, PinConfig, Scene, SceneConfig};

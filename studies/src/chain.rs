@@ -15,7 +15,7 @@ use dataset::Database;
 use design::analysis::force_transmission::ForceTransmission;
 use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::{Deployment, DesignProblem};
-use design::objective::outline_error::outline_error;
+use design::objective::scores::outline_error;
 use design::pattern::design_vector::DesignVector;
 use design::scene::{HingeModel, Scene, SceneConfig};
 use design::sheet::cut_sheet::HingePoint;

@@ -101,7 +101,7 @@ impl Measured {
         let statuses = path.iter().map(|step| step.status);
         Ok(Self {
             seconds: [equilibria, gradient],
-            iterations: path.iter().map(|step| step.iterations).sum(),
+            iterations: path.iter().map(|step| step.effort.iterations).sum(),
             status: statuses
                 .max_by_key(rank)
                 .context("a path has at least one step")?,

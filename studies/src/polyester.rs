@@ -11,7 +11,7 @@ use design::analysis::force_transmission::{ForceTransmission, TransmissionShares
 use design::analysis::threshold::least_passing;
 use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
-use design::objective::outline_error::outline_error;
+use design::objective::scores::outline_error;
 use design::scene::design_run::Designed;
 use design::scene::{HingeModel, Scene, SceneConfig};
 use design::sheet::cut_sheet::{HingePoint, Panel};

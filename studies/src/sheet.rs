@@ -190,7 +190,7 @@ impl Row {
         if let Model::Equilibrium(mechanics) = &mut problem.model
             && name.starts_with(LBFGS)
         {
-            mechanics.solver.use_lbfgs(MAX_ITERATIONS);
+            mechanics.solver.lbfgs = Some(MAX_ITERATIONS);
         }
         let measured = Measured::new(&problem, &read.start());
         let measured = measured.with_context(|| format!("{scene}, {kind}, {name}"))?;

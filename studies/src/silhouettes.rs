@@ -133,7 +133,7 @@ impl SilhouetteStudy {
             );
         })?;
         let seconds = began.elapsed().as_secs_f64();
-        let (deployment, target) = (&designed.best.deployment, scene.target.points());
+        let (deployment, target) = (&designed.best.deployment, &scene.target.points);
         let tessellation = Tessellation::of(&scene, deployment);
         let opening = designed.design.opening;
         let opening = opening.context("the scene has no opening angle: set hinge = \"pin\"")?;

@@ -160,7 +160,10 @@ impl Iteration<'_> {
         let corrections = (designs.iter().zip(&self.missing))
             .map(|(design, missing)| Correction::new(design, missing))
             .collect();
-        let corrected = Arc::new(CorrectedLaw::new(self.law.clone(), corrections));
+        let corrected = Arc::new(CorrectedLaw {
+            law: self.law.clone(),
+            corrections,
+        });
         let before = std::mem::replace(law_of(&mut self.problem)?, corrected);
         let next = self.problem.deploy(self.design)?;
         if let Err(error) = next.at_full_load() {

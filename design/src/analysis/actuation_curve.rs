@@ -12,6 +12,7 @@
 //! Where a stroke or a motion is prescribed, the load may have a maximum on the way. A dead load, such as a hung weight,
 //! opens the sheet only as far as the first state that carries it.
 
+use crate::equilibrium::displacement_control::{magnitude, work};
 use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::path_following::Increment;
 use crate::equilibrium::solver::EquilibriumSolver;
@@ -195,7 +196,6 @@ fn vertex([x0, f0]: [f64; 2], [x1, f1]: [f64; 2], [x2, f2]: [f64; 2]) -> [f64; 2
     }
 }
 
-/// Load factor and configuration of a load step.
 fn load_and_state(step: &LoadStep) -> (f64, &[[f64; 3]]) {
     (step.load_factor, &step.configuration)
 }
@@ -209,8 +209,7 @@ pub fn holding_forces(
 ) -> Vec<[f64; 3]> {
     let law = mechanics.law.prepare(&sheet.designs());
     let hinged = mechanics.hinged(sheet, &*law, false);
-    let motion = |hinge| HingeMotion::new(sheet, hinge, configuration);
-    let motions: Vec<HingeMotion> = (0..sheet.hinges.len()).map(motion).collect();
+    let motions = HingeMotion::all(sheet, configuration);
     let deformations: Vec<HingeDeformation> =
         motions.iter().map(HingeMotion::deformation).collect();
     let energies = hinged.energies(&deformations, Order::Forces);
@@ -228,24 +227,6 @@ fn prescribed(solver: &EquilibriumSolver) -> Vec<[f64; 3]> {
         motions[support.panel][support.dof.index()] = support.value;
     }
     motions
-}
-
-/// The sum of the magnitudes of the translational components, or of the rotational ones if the former are zero, and
-/// whether it is the former; `None` if all are zero.
-fn magnitude(by_panel: &[[f64; 3]]) -> Option<(f64, bool)> {
-    let along: f64 = by_panel.iter().map(|[x, y, _]| x.hypot(*y)).sum();
-    let about: f64 = by_panel.iter().map(|[_, _, m]| m.abs()).sum();
-    match (along > 0.0, about > 0.0) {
-        (true, _) => Some((along, true)),
-        (false, true) => Some((about, false)),
-        (false, false) => None,
-    }
-}
-
-fn work(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
-    std::iter::zip(a.as_flattened(), b.as_flattened())
-        .map(|(a, b)| a * b)
-        .sum()
 }
 
 #[cfg(test)]

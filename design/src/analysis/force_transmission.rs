@@ -7,7 +7,7 @@
 //! energies, and only the fractions of the force are meaningful.
 
 use crate::hinge_law::Order;
-use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Model};
+use crate::objective::design_problem::{Deployment, DesignError, DesignProblem};
 use crate::sheet::cut_sheet::Panel;
 use crate::sheet::kinematics::{HingeMotion, deployed};
 
@@ -84,9 +84,7 @@ impl Interface {
 impl ForceTransmission {
     /// At full load of a deployment of `problem`, whose model must be an equilibrium.
     pub fn new(problem: &DesignProblem, deployment: &Deployment) -> Result<Self, DesignError> {
-        let Model::Equilibrium(mechanics) = &problem.model else {
-            return Err(DesignError::NoMechanics);
-        };
+        let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
         let (sheet, last) = (&deployment.sheet, deployment.final_step());
         let law = mechanics.law.prepare(&sheet.designs());
         let energies = law.energies(&last.deformations, Order::Forces);
@@ -139,36 +137,35 @@ impl ForceTransmission {
     pub fn shares(&self) -> TransmissionShares {
         let sum = |part: &dyn Fn(&Interface) -> f64| self.interfaces.iter().map(part).sum::<f64>();
         let (tension, compression, shear) = (
-            sum(&|it| it.normal.max(0.0)),
-            sum(&|it| (-it.normal).max(0.0)),
-            sum(&|it| it.tangential.abs()),
+            sum(&|interface| interface.normal.max(0.0)),
+            sum(&|interface| (-interface.normal).max(0.0)),
+            sum(&|interface| interface.tangential.abs()),
         );
         let transmitted = tension + compression + shear;
-        let rotational = sum(&|it| it.rotational);
-        let strong = self.strongest(|it| it.force());
+        let rotational = sum(&|interface| interface.rotational);
+        let strong = self.strongest(Interface::force);
         let of_strong = |part: &dyn Fn(&Interface) -> f64| -> f64 {
             strong.iter().map(|&h| part(&self.interfaces[h])).sum()
         };
-        let translational = of_strong(&|it| it.translational);
-        Self::finite_shares([
-            tension / transmitted,
-            compression / transmitted,
-            shear / transmitted,
-            rotational / (rotational + sum(&|it| it.translational)),
-            translational / (translational + of_strong(&|it| it.rotational)),
-        ])
-    }
-
-    /// A sheet without loads transmits no force: all fractions are then zero.
-    fn finite_shares(shares: [f64; 5]) -> TransmissionShares {
-        let [tension, compression, shear, rotation, non_rotational] =
-            shares.map(|share| if share.is_finite() { share } else { 0.0 });
+        let translational = of_strong(&|interface| interface.translational);
+        // A sheet without loads transmits no force.
+        let share = |part: f64, whole: f64| {
+            Some(part / whole)
+                .filter(|share| share.is_finite())
+                .unwrap_or(0.0)
+        };
         TransmissionShares {
-            tension,
-            compression,
-            shear,
-            rotation,
-            non_rotational,
+            tension: share(tension, transmitted),
+            compression: share(compression, transmitted),
+            shear: share(shear, transmitted),
+            rotation: share(
+                rotational,
+                rotational + sum(&|interface| interface.translational),
+            ),
+            non_rotational: share(
+                translational,
+                translational + of_strong(&|interface| interface.rotational),
+            ),
         }
     }
 
@@ -184,7 +181,9 @@ impl ForceTransmission {
     /// not stored in rotation; zero if one of the two is constant.
     pub fn rank_correlation(&self) -> f64 {
         let force = self.interfaces.iter().map(Interface::force).collect();
-        let share = |it: &Interface| it.translational / (it.translational + it.rotational);
+        let share = |interface: &Interface| {
+            interface.translational / (interface.translational + interface.rotational)
+        };
         correlation(
             &ranks(force),
             &ranks(self.interfaces.iter().map(share).collect()),
@@ -305,15 +304,19 @@ mod tests {
             areas: vec![2.0, 1.0, 6.0, 4.0, 9.0],
         };
         // A tenth of five panels is the third alone.
-        assert_eq!(transmission.moment_panels(|it| it.interfaces), 1.5);
+        assert_eq!(transmission.moment_panels(|moment| moment.interfaces), 1.5);
         let shares = transmission.shares();
         assert_eq!(shares.tension, 0.6);
         assert_eq!((shares.compression, shares.shear), (0.2, 0.2));
         assert_eq!(shares.rotation, 0.8);
         // A quarter of four interfaces is the first alone.
         assert_eq!(shares.non_rotational, 0.75);
-        assert_eq!(transmission.strongest(|it| it.normal), [0]);
-        assert!(transmission.strongest(|it| it.normal - 10.0).is_empty());
+        assert_eq!(transmission.strongest(|interface| interface.normal), [0]);
+        assert!(
+            transmission
+                .strongest(|interface| interface.normal - 10.0)
+                .is_empty()
+        );
     }
 
     #[test]

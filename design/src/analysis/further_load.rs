@@ -7,7 +7,7 @@
 use crate::analysis::degeneration::Degeneration;
 use crate::equilibrium::load_step::{LoadStep, Status};
 use crate::equilibrium::supports::Load;
-use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Model};
+use crate::objective::design_problem::{Deployment, DesignError, DesignProblem};
 use std::fmt;
 
 /// Number of steps in which the first limit is located.
@@ -112,9 +112,7 @@ impl DesignProblem {
         stroke: f64,
         steps: usize,
     ) -> Result<FurtherLoad, DesignError> {
-        let Model::Equilibrium(mechanics) = &self.model else {
-            return Err(DesignError::NoMechanics);
-        };
+        let mechanics = self.model.mechanics().ok_or(DesignError::NoMechanics)?;
         let (sheet, opened) = (&deployment.sheet, deployment.final_step());
         if opened.status == Status::Diverged {
             return Ok(FurtherLoad {

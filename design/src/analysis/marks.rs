@@ -1,5 +1,6 @@
 //! Points of the panels that can be measured on a deployed sheet.
 
+use crate::geometry::polygon::distance;
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::kinematics::deployed;
 use serde::Serialize;
@@ -75,7 +76,6 @@ impl FittedPoint {
 
     /// Distance of the measured from the predicted position (mm).
     pub fn distance(&self) -> f64 {
-        let [x, y] = self.residual();
-        x.hypot(y)
+        distance(self.predicted, self.measured)
     }
 }

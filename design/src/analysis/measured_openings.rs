@@ -6,6 +6,7 @@
 
 use crate::analysis::robust_pose::Fit;
 use crate::geometry::plane::{complex, point};
+use crate::geometry::polygon::distance;
 use crate::geometry::similarity::{Pair, Scale, Similarity};
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::kinematics::hinge_deformations;
@@ -81,8 +82,7 @@ impl MeasuredPanel {
 
     /// Distance of the measured from the predicted centre (mm).
     pub fn distance(&self) -> f64 {
-        let [x, y] = [0, 1].map(|axis| self.centre[axis] - self.predicted[axis]);
-        x.hypot(y)
+        distance(self.predicted, self.centre)
     }
 }
 
@@ -133,7 +133,7 @@ pub fn openings(sheet: &Sheet, fit: &Fit, panels: &[MeasuredPanel]) -> Vec<Measu
 pub fn slip(sheet: &Sheet, closed: &Fit, deployed: &Fit, panel: usize) -> Option<[f64; 2]> {
     let seen = |fit: &Fit| {
         let panels = MeasuredPanel::all(sheet, fit);
-        let found = panels.into_iter().find(|it| it.panel == panel)?;
+        let found = panels.into_iter().find(|other| other.panel == panel)?;
         // In the frame of the closed sheet.
         let image = closed.motion.back(fit.motion.of(complex(found.centre)));
         Some(image - complex(found.predicted))

@@ -26,10 +26,7 @@ pub struct MeasuredSheet {
 
 /// Why a measurement cannot be compared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum MeasurementError {
     #[error("{mark} (point {index}): {fault}")]
     Point {
@@ -54,10 +51,7 @@ pub enum MeasurementError {
 
 /// Why a point is not one of the sheet.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum PointFault {
     #[error("the sheet has the panels 0 to {last}")]
     NoSuchPanel { last: usize },

@@ -3,6 +3,7 @@
 
 use crate::analysis::marks::{FittedPoint, MeasuredPoint};
 use crate::analysis::robust_pose::{Fit, Problem};
+use crate::geometry::polygon;
 use crate::geometry::similarity::Scale;
 use crate::sheet::cut_sheet::Sheet;
 use serde::Serialize;
@@ -26,10 +27,7 @@ const ORDERS: [[usize; 4]; 8] = [
 
 /// A mistake that concerns all points.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum Misread {
     #[error(
         "the points are a mirror image of the sheet (median residual {mirrored:.3} mm if mirrored, {level:.3} mm if \
@@ -161,8 +159,10 @@ pub(crate) fn renumbered(sheet: &Sheet, fit: &Fit, limit: f64) -> Vec<Renumbered
                 let mut mark = point.mark;
                 mark.panel = other.lies_at;
                 mark.corner = mark.corner.map(|corner| other.corners[corner]);
-                let [x, y] = mark.deployed(sheet, &fit.shape.configuration);
-                f64::hypot(point.measured[0] - x, point.measured[1] - y)
+                polygon::distance(
+                    point.measured,
+                    mark.deployed(sheet, &fit.shape.configuration),
+                )
             });
             farthest.fold(0.0, f64::max)
         };

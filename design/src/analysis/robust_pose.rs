@@ -166,7 +166,6 @@ impl Problem<'_> {
         self.motion_at(position, kept)
     }
 
-    /// The motion that fits the state at `position`.
     pub(crate) fn motion_at(&self, position: f64, kept: &[usize]) -> Option<Placed> {
         let motion = Similarity::least_squares(&self.pairs_of(position, kept), self.scale)?;
         Some((position, motion))

@@ -1,6 +1,7 @@
 //! The set of designs that reach one shape, section 3.1: the curvature of the objective at one of
 //! them, the directions in which the outline does not move, and the distribution of many solutions.
 
+use crate::equilibrium::displacement_control::dot;
 use crate::objective::design_problem::{DesignError, DesignProblem};
 use crate::pattern::design_vector::DesignVector;
 use faer::{Mat, Side};
@@ -42,10 +43,7 @@ pub fn outline_rank(problem: &DesignProblem, design: &DesignVector) -> Result<us
         Ok(outline.into_flattened())
     })?;
     let n = columns.len();
-    let gram = Mat::from_fn(n, n, |i, j| {
-        let products = std::iter::zip(&columns[i], &columns[j]);
-        products.map(|(x, y)| x * y).sum::<f64>()
-    });
+    let gram = Mat::from_fn(n, n, |i, j| dot(&columns[i], &columns[j]));
     let (squares, _) = descending(&gram);
     let largest = squares.first().copied().unwrap_or_default();
     Ok(squares
@@ -142,13 +140,9 @@ impl PrincipalPlane {
 
     /// The coordinates of a point in the plane.
     pub fn place(&self, point: &[f64]) -> [f64; 2] {
-        let along = |axis: &Vec<f64>| {
-            let offsets = std::iter::zip(point, &self.mean).map(|(x, mean)| x - mean);
-            std::iter::zip(offsets, axis)
-                .map(|(offset, axis)| offset * axis)
-                .sum()
-        };
-        [along(&self.axes[0]), along(&self.axes[1])]
+        let offsets = std::iter::zip(point, &self.mean).map(|(x, mean)| x - mean);
+        let offsets: Vec<f64> = offsets.collect();
+        self.axes.each_ref().map(|axis| dot(&offsets, axis))
     }
 }
 

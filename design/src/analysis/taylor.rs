@@ -6,6 +6,8 @@
 //!
 //! An exact gradient of a smooth function gives the order 2, a wrong one the order 1.
 
+use crate::equilibrium::displacement_control::dot;
+
 /// Taylor remainders along one direction, at h, h/2, h/4, ...
 #[derive(Clone, Debug, PartialEq)]
 pub struct TaylorRemainders {
@@ -27,9 +29,7 @@ impl TaylorRemainders {
         count: usize,
     ) -> Result<Self, E> {
         let value = f(x)?;
-        let slope: f64 = std::iter::zip(gradient, direction)
-            .map(|(g, d)| g * d)
-            .sum();
+        let slope = dot(gradient, direction);
         let steps: Vec<f64> = std::iter::successors(Some(first), |h| Some(0.5 * h))
             .take(count)
             .collect();

@@ -9,6 +9,7 @@
 //! of (11) the bracket is `eps_c e_c . D eps_h[lambda]`, for the loads it is `-zeta lambda`. Under displacement
 //! control the system has the border of the stroke, whose condition (f . q)/F = stroke also depends on the loads.
 
+use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::refined_solve::refined_solve;
@@ -17,7 +18,7 @@ use crate::geometry::plane::{add, complex};
 use crate::hinge_law::Order;
 use crate::sheet::cut_sheet::SheetGradient;
 use crate::sheet::kinematics::{HingeGeometryGradient, HingeMotion};
-use crate::sheet::panel_vectors::{add_at_hinge, at_hinge, gather, spread};
+use crate::sheet::panel_vectors::{add_at_hinge, at_hinge};
 use std::borrow::Cow;
 
 /// Backward error of an adjoint solve above which the tangent is considered singular.
@@ -67,15 +68,13 @@ pub(crate) fn adjoint(
             continue;
         }
         let hinges = || sheet.sheet.hinges.iter().enumerate();
-        let motions: Vec<HingeMotion> = hinges()
-            .map(|(h, _)| HingeMotion::new(sheet.sheet, h, &step.configuration))
-            .collect();
+        let motions = HingeMotion::all(sheet.sheet, &step.configuration);
         for (h, hinge) in hinges() {
             let [a, s, theta, ..] = by_path[h][i];
             add_at_hinge(&mut by_q, hinge, motions[h].forces([a, s, theta]));
         }
-        let rhs = gather(&solver.pattern.free, &by_q);
-        let stroke = solver.drive.as_ref().map(|(stroke, _)| &**stroke);
+        let rhs = solver.pattern.gather(&by_q);
+        let stroke = solver.stroke();
         let solution = (step.tangent.as_ref())
             .and_then(|tangent| refined_solve(&solver.pattern, tangent, stroke, &rhs))
             .filter(|solution| solution.error < SINGULAR)
@@ -83,7 +82,7 @@ pub(crate) fn adjoint(
                 load_factor: step.load_factor,
             })?;
         sums.residual = sums.residual.max(solution.error);
-        let lambda = spread(&solver.pattern.free, &solution.x);
+        let lambda = solver.pattern.spread(&solution.x);
         for (sum, lambda) in std::iter::zip(&mut sums.loads, &lambda) {
             (0..3).for_each(|d| sum[d] += step.load_factor * lambda[d]);
         }
@@ -100,11 +99,7 @@ pub(crate) fn adjoint(
         for (h, hinge) in hinges() {
             let virtual_motion = at_hinge(hinge, &lambda);
             let (energy, rates) = (&energies[h], motions[h].rates(virtual_motion));
-            let against = |row: [f64; 3]| -> f64 {
-                std::iter::zip(row, rates)
-                    .map(|(entry, rate)| entry * rate)
-                    .sum()
-            };
+            let against = |row: [f64; 3]| dot(&row, &rates);
             let by_state = by_path[h][i];
             let weights = std::array::from_fn(|c| by_state[c] - against(energy.tangent[c]));
             let turning = motions[h].rates_geometry_gradient(energy.forces, virtual_motion);

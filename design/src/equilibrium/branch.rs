@@ -16,11 +16,10 @@ use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::Effort;
 use crate::equilibrium::newton::Minimum;
 use crate::equilibrium::place::Place;
-use crate::equilibrium::potential::{Control, Potential, State, moved};
+use crate::equilibrium::potential::{Potential, State, moved};
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::Order;
 use crate::sheet::cut_sheet::Panel;
-use crate::sheet::panel_vectors::{gather, spread};
 
 /// Maximum number of corrections.
 const CORRECTIONS: usize = 10;
@@ -63,14 +62,12 @@ pub(crate) struct Corrected {
     pub error: f64,
 }
 
-/// A state, its tangent and the factors of the tangent.
 struct Linearised {
     state: State,
     values: Vec<f64>,
     factor: HeldFactor,
 }
 
-/// A correction of a place.
 struct Correction {
     at: f64,
     motion: Vec<[f64; 3]>,
@@ -78,7 +75,6 @@ struct Correction {
     length: f64,
 }
 
-/// A point of the branch.
 pub(crate) struct Point {
     pub place: Place,
     /// The rate along the path; the fastest hinge moves by one (rad, or panel sizes).
@@ -135,14 +131,9 @@ impl<'a> Branch<'a> {
     /// The potential at a point of the path.
     pub fn potential(&self, at: f64) -> Potential<'a> {
         Potential {
+            solver: self.solver,
             sheet: self.sheet,
-            pattern: &self.solver.pattern,
-            control: match &self.solver.drive {
-                None => Control::Load(at),
-                Some((stroke, _)) => Control::Stroke(stroke),
-            },
-            loads: &self.solver.loads,
-            held: &self.solver.held,
+            at,
             force: self.force,
             panel_size: self.panel_size,
         }
@@ -157,10 +148,9 @@ impl<'a> Branch<'a> {
                 known.configuration[panel][dof] + ahead * support.value;
         }
         if let Some((stroke, full)) = &self.solver.drive {
-            let of =
-                |place: &Place| stroke.of(&gather(&self.solver.pattern.free, &place.configuration));
+            let of = |place: &Place| stroke.of(&self.solver.pattern.gather(&place.configuration));
             let short = of(known) + ahead * full - of(place);
-            let motion = spread(&self.solver.pattern.free, &stroke.motion(short));
+            let motion = self.solver.pattern.spread(&stroke.motion(short));
             place.configuration = moved(&place.configuration, &motion, 1.0);
         }
     }
@@ -289,7 +279,6 @@ impl<'a> Branch<'a> {
         self.potential(place.at).state_up_to(configuration, order)
     }
 
-    /// The tangent of a state and its factors, if it has any.
     fn linearised(&mut self, at: f64, state: State) -> Option<Linearised> {
         let potential = self.potential(at);
         let (values, factor) = self.factor(&potential, &state);
@@ -330,7 +319,6 @@ impl<'a> Branch<'a> {
         Correction { at, motion, length }
     }
 
-    /// The place after the correction of a state.
     fn corrected(&self, at: f64, state: &State, by: &Correction) -> Place {
         let rates = self.potential(at).force_rates(state, &by.motion);
         Place {
@@ -343,10 +331,8 @@ impl<'a> Branch<'a> {
     /// The correction d_0 of a state at constant load.
     pub fn direct(&self, state: &State, factor: &HeldFactor) -> Vec<[f64; 3]> {
         let downhill: Vec<f64> = state.gradient.iter().map(|g| -g).collect();
-        spread(
-            &self.solver.pattern.free,
-            &factor.solve(&self.solver.pattern, &downhill),
-        )
+        let pattern = &self.solver.pattern;
+        pattern.spread(&factor.solve(pattern, &downhill))
     }
 
     /// The correction in the plane normal to the path, and that of the load parameter.
@@ -413,7 +399,7 @@ impl<'a> Branch<'a> {
         factor: &HeldFactor,
         mut rate: Vec<[f64; 3]>,
     ) -> Vec<[f64; 3]> {
-        let free = &self.solver.pattern.free;
+        let pattern = &self.solver.pattern;
         for _ in 0..RATE.1 {
             let resisted = potential.resistance(state, &rate);
             let missing: Vec<[f64; 3]> = match &self.solver.drive {
@@ -422,8 +408,7 @@ impl<'a> Branch<'a> {
                     .collect(),
                 Some(_) => resisted.iter().map(|force| force.map(|f| -f)).collect(),
             };
-            let change = factor.solve(&self.solver.pattern, &gather(free, &missing));
-            let change = spread(free, &change);
+            let change = pattern.spread(&factor.solve(pattern, &pattern.gather(&missing)));
             let [before, by] = [&rate, &change].map(|motion| potential.length(state, motion));
             rate = moved(&rate, &change, 1.0);
             if by <= RATE.0 * before {
@@ -450,9 +435,9 @@ impl<'a> Branch<'a> {
         if solver.supports.iter().any(|support| support.value != 0.0) {
             b = moved(&b, &potential.resistance(state, &supports), -1.0);
         }
-        let b = gather(&solver.pattern.free, &b);
+        let b = solver.pattern.gather(&b);
         let (free, _) = factor.solve_bordered(&solver.pattern, &b, stroke);
-        moved(&supports, &spread(&solver.pattern.free, &free), 1.0)
+        moved(&supports, &solver.pattern.spread(&free), 1.0)
     }
 }
 

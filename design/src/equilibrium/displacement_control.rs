@@ -27,11 +27,7 @@ impl Stroke {
     /// freedom; `None` without any load. If there are only couples, F is the sum of the couples and the
     /// stroke is an angle.
     pub fn new(loads: &[[f64; 3]], gathered: &[f64]) -> Option<Self> {
-        let forces: f64 = loads.iter().map(|[x, y, _]| x.hypot(*y)).sum();
-        let couples: f64 = loads.iter().map(|[_, _, m]| m.abs()).sum();
-        let of_forces = forces > 0.0;
-        let size = if of_forces { forces } else { couples };
-        (size > 0.0).then(|| Self {
+        magnitude(loads).map(|(size, of_forces)| Self {
             direction: gathered.iter().map(|f| f / size).collect(),
             size,
             of_forces,
@@ -49,10 +45,7 @@ impl Stroke {
 
     /// The gradient of the stroke of a configuration with respect to the loads.
     pub fn by_loads(&self, loads: &[[f64; 3]], configuration: &[[f64; 3]]) -> Vec<[f64; 3]> {
-        let work: f64 = std::iter::zip(loads.as_flattened(), configuration.as_flattened())
-            .map(|(f, q)| f * q)
-            .sum();
-        let stroke = work / self.size;
+        let stroke = work(loads, configuration) / self.size;
         let by_load = |([x, y, m], q): (&[f64; 3], &[f64; 3])| {
             let force = x.hypot(*y);
             let by_size = if !self.of_forces {
@@ -138,6 +131,22 @@ impl HeldFactor {
         }
         (x, mu)
     }
+}
+
+/// The sum of the magnitudes of the translational components, or of the rotational ones if the former are zero, and
+/// whether it is the former; `None` if all are zero.
+pub(crate) fn magnitude(by_panel: &[[f64; 3]]) -> Option<(f64, bool)> {
+    let along: f64 = by_panel.iter().map(|[x, y, _]| x.hypot(*y)).sum();
+    let about: f64 = by_panel.iter().map(|[_, _, m]| m.abs()).sum();
+    match (along > 0.0, about > 0.0) {
+        (true, _) => Some((along, true)),
+        (false, true) => Some((about, false)),
+        (false, false) => None,
+    }
+}
+
+pub(crate) fn work(forces: &[[f64; 3]], motions: &[[f64; 3]]) -> f64 {
+    dot(forces.as_flattened(), motions.as_flattened())
 }
 
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -278,13 +278,8 @@ impl<'a> Follower<'a> {
         self.begin();
     }
 
-    /// Continues the path from a place whose rate is not known.
-    pub fn continue_from(&mut self, place: Place) {
-        self.last = Point::still(place);
-        self.begin();
-    }
-
-    fn begin(&mut self) {
+    /// Begins a branch at the last point.
+    pub fn begin(&mut self) {
         (self.arc, self.stretch) = (None, 1.0);
         (self.length, self.unstable) = (FIRST, None);
     }
@@ -351,12 +346,10 @@ impl Branch<'_> {
     pub fn minimum(&mut self, start: &Place) -> Result<Minimum, Failure> {
         let potential = self.potential(start.at);
         let configuration = start.configuration.clone();
-        let (settings, effort) = (&self.solver.settings, &mut self.effort);
+        let effort = &mut self.effort;
         match self.solver.lbfgs {
-            None => potential.minimise(configuration, settings, effort),
-            Some(max_iterations) => {
-                potential.minimise_lbfgs(configuration, settings, max_iterations, effort)
-            }
+            None => potential.minimise(configuration, effort),
+            Some(most) => potential.minimise_lbfgs(configuration, most, effort),
         }
     }
 

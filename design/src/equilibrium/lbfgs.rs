@@ -9,10 +9,8 @@ use crate::equilibrium::lbfgs_memory::Memory;
 use crate::equilibrium::load_step::{DescentEnd, Effort};
 use crate::equilibrium::newton::{Failure, Minimum};
 use crate::equilibrium::potential::{Potential, State, moved};
-use crate::equilibrium::settings::SolverSettings;
 use crate::hinge_law::Order;
 use crate::sheet::kinematics::Configuration;
-use crate::sheet::panel_vectors::{gather, spread};
 
 /// Constants of the weak Wolfe conditions: sufficient decrease and curvature.
 const WOLFE: [f64; 2] = [1e-4, 0.9];
@@ -28,13 +26,13 @@ impl Potential<'_> {
     pub fn minimise_lbfgs(
         &self,
         start: Configuration,
-        settings: &SolverSettings,
         max_iterations: usize,
         effort: &mut Effort,
     ) -> Result<Minimum, Failure> {
+        let settings = &self.solver.settings;
         let mut state = self.forces(start).ok_or(Failure::NOT_FINITE)?;
         let scale = vec![[1.0, 1.0, 1.0 / self.panel_size]; state.configuration.len()];
-        let scale = gather(&self.pattern.free, &scale);
+        let scale = self.solver.pattern.gather(&scale);
         let mut gradient = self.scaled(&state, &scale);
         let mut memory = Memory::default();
         let mut iterations = 0;
@@ -83,7 +81,7 @@ impl Potential<'_> {
         let times =
             |v: &[f64]| -> Vec<f64> { std::iter::zip(v, scale).map(|(v, s)| v * s).collect() };
         let mut gradient = times(&state.gradient);
-        if let Some(stroke) = self.control.stroke() {
+        if let Some(stroke) = self.solver.stroke() {
             let border = times(stroke.direction());
             let along = dot(&border, &gradient) / dot(&border, &border);
             for (g, c) in std::iter::zip(&mut gradient, border) {
@@ -104,7 +102,7 @@ impl Potential<'_> {
         let scaled: Vec<f64> = std::iter::zip(direction, scale)
             .map(|(d, s)| d * s)
             .collect();
-        let motion = spread(&self.pattern.free, &scaled);
+        let motion = self.solver.pattern.spread(&scaled);
         let slope = dot(gradient, direction);
         let (mut near, mut far, mut fraction) = (0.0, f64::INFINITY, 1.0);
         for _ in 0..TRIALS {

@@ -5,10 +5,10 @@ use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::{HingeDamage, HingeEnergy, Order};
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::kinematics::{Configuration, hinge_deformations};
-use crate::sheet::panel_vectors::gather;
 use hinge::HingeDeformation;
 use serde::Serialize;
 use std::fmt;
+use support::statistics::root_mean_square;
 
 /// How a load step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -90,8 +90,6 @@ pub struct LoadStep {
     pub residual: f64,
     /// The part of the residual that rounding can cause: below it no state is closer to equilibrium.
     pub rounding: f64,
-    /// Newton iterations, summed over all increments since the step before.
-    pub iterations: usize,
     /// What the path cost since the step before.
     pub effort: Effort,
     /// Number of jumps since the step before, at limit points or bifurcations.
@@ -126,7 +124,7 @@ impl fmt::Display for LoadStep {
         write!(
             f,
             "load factor {factor:.4}: {status:?}, relative residual {residual:.1e}, {} iterations",
-            self.iterations
+            self.effort.iterations
         )
     }
 }
@@ -134,8 +132,7 @@ impl fmt::Display for LoadStep {
 impl LoadStep {
     /// Root mean square of the rotations of the hinges (rad).
     pub fn opening(&self) -> f64 {
-        let squares = self.deformations.iter().map(|state| state.theta.powi(2));
-        (squares.sum::<f64>() / self.deformations.len() as f64).sqrt()
+        root_mean_square(self.deformations.iter().map(|state| state.theta))
     }
 
     /// Estimate of the condition number of the tangent in the 1-norm, scaled to a unit diagonal so
@@ -155,7 +152,7 @@ impl LoadStep {
     /// limit point of the load; `None` without loads, or if the tangent could not be factorised.
     pub fn stiffness(&self, solver: &EquilibriumSolver) -> Option<f64> {
         let held = self.tangent.as_ref()?.factor.as_ref()?;
-        let stroke = Stroke::new(&solver.loads, &gather(&solver.pattern.free, &solver.loads))?;
+        let stroke = Stroke::new(&solver.loads, &solver.pattern.gather(&solver.loads))?;
         let mut response = stroke.direction().to_vec();
         solver.pattern.solve(&held.factor, &mut response);
         let stiffness = 1.0 / dot(stroke.direction(), &response);
@@ -176,7 +173,6 @@ impl LoadStep {
             descent_end: None,
             residual: 0.0,
             rounding: 0.0,
-            iterations: 0,
             effort: Effort::default(),
             jumps: 0,
             negative_pivots: 0,

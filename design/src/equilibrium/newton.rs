@@ -12,9 +12,7 @@
 use crate::equilibrium::displacement_control::{HeldFactor, dot};
 use crate::equilibrium::load_step::{DescentEnd, Effort};
 use crate::equilibrium::potential::{Potential, State, moved};
-use crate::equilibrium::settings::SolverSettings;
 use crate::sheet::kinematics::Configuration;
-use crate::sheet::panel_vectors::spread;
 
 /// Maximum length of a step: rotations in rad, hinge translations in panel sizes.
 const LONGEST_STEP: f64 = 0.5;
@@ -34,7 +32,6 @@ const NEGATIVE_CURVATURE: f64 = -1e-11;
 /// learned energy is a difference of much larger numbers.
 pub(crate) const LEVEL: f64 = 1e-9;
 
-/// Result of a minimisation.
 pub(crate) struct Minimum {
     pub state: State,
     pub tangent: Vec<f64>,
@@ -58,12 +55,8 @@ impl Failure {
 
 impl Potential<'_> {
     /// A minimum near `start`, at lower energy.
-    pub fn minimise(
-        &self,
-        start: Configuration,
-        settings: &SolverSettings,
-        effort: &mut Effort,
-    ) -> Result<Minimum, Failure> {
+    pub fn minimise(&self, start: Configuration, effort: &mut Effort) -> Result<Minimum, Failure> {
+        let settings = &self.solver.settings;
         let mut state = self.state(start).ok_or(Failure::NOT_FINITE)?;
         let (mut scale, mut memory) = (None, Vec::new());
         let (mut longest, mut shift) = (LONGEST_STEP, SHIFTS[0]);
@@ -73,7 +66,7 @@ impl Potential<'_> {
                 state.expected = None;
             }
             let tangent = self.tangent(&state);
-            let scale = scale.get_or_insert_with(|| self.pattern.shift_scale(&tangent));
+            let scale = scale.get_or_insert_with(|| self.solver.pattern.shift_scale(&tangent));
             effort.factorisations += 1;
             let factor = self.factorise(&tangent, std::mem::take(&mut memory));
             let stable = factor
@@ -81,14 +74,14 @@ impl Potential<'_> {
                 .filter(|factor| factor.unstable_directions() == 0);
             let next = match stable {
                 Some(_) if stationary => None,
-                Some(factor) => self.step(&state, factor, &mut longest, settings),
+                Some(factor) => self.step(&state, factor, &mut longest),
                 None => {
                     let shifted = self.shifted_factor(&tangent, scale, &mut shift, effort);
                     shifted.and_then(|factor| {
                         if stationary {
                             self.escape(&state, &tangent, scale, &factor)
                         } else {
-                            self.step(&state, &factor, &mut longest, settings)
+                            self.step(&state, &factor, &mut longest)
                         }
                     })
                 }
@@ -123,17 +116,12 @@ impl Potential<'_> {
     /// The state after a damped Newton step; `None` if no state along it is better, or if the
     /// residual is small and no longer halves. `longest` is the maximum step length (see
     /// [`length`](Self::length)), adapted after every step.
-    fn step(
-        &self,
-        state: &State,
-        factor: &HeldFactor,
-        longest: &mut f64,
-        settings: &SolverSettings,
-    ) -> Option<State> {
+    fn step(&self, state: &State, factor: &HeldFactor, longest: &mut f64) -> Option<State> {
+        let settings = &self.solver.settings;
         let downhill: Vec<f64> = state.gradient.iter().map(|g| -g).collect();
-        let direction = factor.solve(self.pattern, &downhill);
+        let direction = factor.solve(&self.solver.pattern, &downhill);
         let slope = dot(&state.gradient, &direction);
-        let motion = spread(&self.pattern.free, &direction);
+        let motion = self.solver.pattern.spread(&direction);
         let length = self.length(state, &motion);
         // A shifted step is too short where the energy curves downwards.
         let reach = if factor.shifted { REACH / length } else { 1.0 };
@@ -168,8 +156,8 @@ impl Potential<'_> {
     /// The factors of the tangent, stored in `memory` of earlier factors, with the border under displacement
     /// control.
     pub fn factorise(&self, tangent: &[f64], memory: Vec<f64>) -> Option<HeldFactor> {
-        let factor = self.pattern.factorise(tangent, memory)?;
-        HeldFactor::new(self.pattern, factor, self.control.stroke())
+        let factor = self.solver.pattern.factorise(tangent, memory)?;
+        HeldFactor::new(&self.solver.pattern, factor, self.solver.stroke())
     }
 
     /// H + sigma S, positive definite; `None` if no sigma up to the maximum makes it so. The search begins below
@@ -184,9 +172,8 @@ impl Potential<'_> {
         let [first, growth, maximum] = SHIFTS;
         *shift = first.max(*shift / growth);
         while *shift <= maximum {
-            let shifted = self
-                .pattern
-                .shifted(tangent, scale.iter().map(|entry| *shift * entry));
+            let pattern = &self.solver.pattern;
+            let shifted = pattern.shifted(tangent, scale.iter().map(|entry| *shift * entry));
             effort.factorisations += 1;
             match self.factorise(&shifted, Vec::new()) {
                 Some(mut factor) if factor.unstable_directions() == 0 => {
@@ -214,20 +201,20 @@ impl Potential<'_> {
             for (component, scale) in std::iter::zip(&mut direction, scale) {
                 *component *= scale;
             }
-            direction = factor.solve(self.pattern, &direction);
+            direction = factor.solve(&self.solver.pattern, &direction);
             let norm = dot(&direction, &direction).sqrt();
             direction
                 .iter_mut()
                 .for_each(|component| *component /= norm);
         }
-        let (product, _) = self.pattern.product(tangent, &direction);
+        let (product, _) = self.solver.pattern.product(tangent, &direction);
         let size: f64 = std::iter::zip(&direction, scale)
             .map(|(d, s)| d * d * s)
             .sum();
         if dot(&direction, &product) >= NEGATIVE_CURVATURE * size {
             return None;
         }
-        let motion = spread(&self.pattern.free, &direction);
+        let motion = self.solver.pattern.spread(&direction);
         let mut fraction = 0.1 / self.length(state, &motion);
         for _ in 0..20 {
             let beside = [fraction, -fraction].map(|f| self.moved(state, &motion, f));

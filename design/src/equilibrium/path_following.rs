@@ -4,8 +4,8 @@
 //! points of the path is the start of a correction at the load of the step. L-BFGS, the baseline, minimises from
 //! one load step to the next and looks for no limit points.
 
-use crate::equilibrium::branch::Branch;
-use crate::equilibrium::displacement_control::HeldFactor;
+use crate::equilibrium::branch::{Branch, Point};
+use crate::equilibrium::displacement_control::{HeldFactor, work};
 use crate::equilibrium::follower::{Follower, LEAP};
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status, StepTangent};
@@ -148,16 +148,11 @@ impl EquilibriumSolver {
 
     /// Work of the full loads and of the loads held constant (N mm).
     fn works(&self, configuration: &[[f64; 3]]) -> [f64; 2] {
-        [&self.loads, &self.held].map(|loads| {
-            std::iter::zip(loads.as_flattened(), configuration.as_flattened())
-                .map(|(f, q)| f * q)
-                .sum()
-        })
+        [&self.loads, &self.held].map(|loads| work(loads, configuration))
     }
 }
 
 impl Follower<'_> {
-    /// The load step at the load parameter `to`.
     fn load_step(&mut self, to: f64) -> LoadStep {
         let found = match self.branch.solver.lbfgs {
             None => self.followed(to),
@@ -183,7 +178,6 @@ impl Follower<'_> {
         }
     }
 
-    /// The state at the last point that was found.
     fn last_state(&self, order: Order) -> State {
         let state = self.branch.state(&self.last.place, order);
         state.expect("this state was computed before")
@@ -243,11 +237,12 @@ impl Follower<'_> {
         self.branch.hold(&mut start, &self.last.place);
         let minimum = self.branch.minimum(&start)?;
         let moved = self.branch.moved(&minimum, &start);
-        self.continue_from(Place {
+        self.last = Point::still(Place {
             at: to,
             configuration: minimum.state.configuration.clone(),
             forces: minimum.state.forces(),
         });
+        self.begin();
         Ok((minimum, moved))
     }
 }
@@ -289,7 +284,6 @@ impl Branch<'_> {
             descent_end: None,
             residual: state.residual,
             rounding: state.rounding,
-            iterations: effort.iterations,
             effort,
             jumps,
             negative_pivots: factor.map_or(0, |factor| factor.negative_pivots),

@@ -10,25 +10,22 @@
 //! The minimised function is then U alone, because the work of the loads is the same in every configuration with
 //! that stroke. If there are loads held constant, U contains their work with negative sign.
 
-use crate::equilibrium::displacement_control::Stroke;
+use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::tangent::TangentPattern;
+use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::{HingeEnergy, Order};
 use crate::sheet::kinematics::{Configuration, HingeMotion};
-use crate::sheet::panel_vectors::{add_at_hinge, at_hinge, gather, spread};
+use crate::sheet::panel_vectors::{add_at_hinge, at_hinge};
 use hinge::HingeDeformation;
 
 /// The potential (10) at one point of the path.
 pub(crate) struct Potential<'a> {
+    pub solver: &'a EquilibriumSolver,
     pub sheet: HingedSheet<'a>,
-    pub pattern: &'a TangentPattern,
-    pub control: Control<'a>,
+    /// The load parameter: zeta, unless the stroke of the loads is prescribed.
+    pub at: f64,
     /// Size of a panel, by which moments are divided (mm).
     pub panel_size: f64,
-    /// (F_x, F_y, M) per panel at zeta = 1.
-    pub loads: &'a [[f64; 3]],
-    /// Loads that do not depend on zeta.
-    pub held: &'a [[f64; 3]],
     /// Lower bound of the force that residuals are relative to (N): if the path passes a state without forces,
     /// the force of the states before.
     pub force: f64,
@@ -36,15 +33,6 @@ pub(crate) struct Potential<'a> {
 
 /// Maximum number of hinges of a panel, whose rounding errors add up.
 const HINGES_OF_A_PANEL: f64 = 4.0;
-
-/// The controlled quantity.
-#[derive(Clone, Copy)]
-pub(crate) enum Control<'a> {
-    /// zeta
-    Load(f64),
-    /// The stroke of the loads.
-    Stroke(&'a Stroke),
-}
 
 /// The potential and its first derivatives at a configuration.
 pub(crate) struct State {
@@ -104,16 +92,6 @@ impl State {
     }
 }
 
-impl Control<'_> {
-    /// The stroke, if it is prescribed.
-    pub fn stroke(&self) -> Option<&Stroke> {
-        match self {
-            Self::Load(_) => None,
-            Self::Stroke(stroke) => Some(stroke),
-        }
-    }
-}
-
 impl Potential<'_> {
     /// The state with all that the tangent needs; `None` if the potential is not finite.
     pub fn state(&self, configuration: Configuration) -> Option<State> {
@@ -122,10 +100,8 @@ impl Potential<'_> {
 
     /// The state with the derivatives of the hinge energies up to `order`, at least the forces.
     pub fn state_up_to(&self, configuration: Configuration, order: Order) -> Option<State> {
-        let sheet = self.sheet.sheet;
-        let motions: Vec<HingeMotion> = (0..sheet.hinges.len())
-            .map(|hinge| HingeMotion::new(sheet, hinge, &configuration))
-            .collect();
+        let (sheet, solver) = (self.sheet.sheet, self.solver);
+        let motions = HingeMotion::all(sheet, &configuration);
         let deformations: Vec<HingeDeformation> =
             motions.iter().map(HingeMotion::deformation).collect();
         let energies = self.sheet.energies(&deformations, order);
@@ -134,25 +110,25 @@ impl Potential<'_> {
         for ((hinge, motion), energy) in sheet.hinges.iter().zip(&motions).zip(&energies) {
             add_at_hinge(&mut inner, hinge, motion.forces(energy.forces));
         }
-        for (inner, held) in std::iter::zip(inner.as_flattened_mut(), self.held.as_flattened()) {
+        for (inner, held) in std::iter::zip(inner.as_flattened_mut(), solver.held.as_flattened()) {
             *inner -= held;
         }
-        let (load_factor, worked) = match self.control {
-            Control::Load(zeta) => (zeta, zeta),
-            Control::Stroke(_) => (self.multiplier(&inner), 0.0),
+        let (load_factor, worked) = match self.solver.drive {
+            None => (self.at, self.at),
+            Some(_) => (self.multiplier(&inner), 0.0),
         };
-        let unbalanced: Vec<[f64; 3]> = std::iter::zip(&inner, self.loads)
+        let unbalanced: Vec<[f64; 3]> = std::iter::zip(&inner, &solver.loads)
             .map(|(inner, load)| std::array::from_fn(|d| inner[d] - load_factor * load[d]))
             .collect();
-        let works = (self.loads.as_flattened().iter())
-            .zip(self.held.as_flattened())
+        let works = (solver.loads.as_flattened().iter())
+            .zip(solver.held.as_flattened())
             .zip(configuration.as_flattened())
             .map(|((load, held), u)| -(worked * load + held) * u);
         let terms = energies.iter().map(|energy| energy.w).chain(works);
-        let gradient = gather(&self.pattern.free, &unbalanced);
-        let left = self.largest(spread(&self.pattern.free, &gradient).into_iter());
-        let held = self.largest(self.held.iter().copied());
-        let loads = held + load_factor.abs() * self.largest(self.loads.iter().copied());
+        let gradient = self.solver.pattern.gather(&unbalanced);
+        let left = self.largest(solver.pattern.spread(&gradient).into_iter());
+        let held = self.largest(solver.held.iter().copied());
+        let loads = held + load_factor.abs() * self.largest(solver.loads.iter().copied());
         let hinges = self.largest(energies.iter().map(|energy| energy.forces));
         let force = self.force.max(loads).max(hinges);
         let over_force = |unbalanced: f64| match unbalanced {
@@ -196,7 +172,7 @@ impl Potential<'_> {
         let arm = 1.0 / (self.panel_size * self.panel_size);
         let product = |[x, y, m]: [f64; 3], [fx, fy, fm]: [f64; 3]| x * fx + y * fy + arm * m * fm;
         let (mut along, mut square) = (0.0, 0.0);
-        for (&inner, &load) in std::iter::zip(inner, self.loads) {
+        for (&inner, &load) in std::iter::zip(inner, &self.solver.loads) {
             along += product(inner, load);
             square += product(load, load);
         }
@@ -213,9 +189,11 @@ impl Potential<'_> {
     /// H of (20); away from an equilibrium with the predicted hinge forces.
     pub fn tangent(&self, state: &State) -> Vec<f64> {
         let hinges = state.motions.iter().zip(&state.energies).enumerate();
-        self.pattern.assemble(hinges.map(|(h, (motion, energy))| {
-            motion.stiffness(&energy.tangent, state.expected_forces(h))
-        }))
+        self.solver
+            .pattern
+            .assemble(hinges.map(|(h, (motion, energy))| {
+                motion.stiffness(&energy.tangent, state.expected_forces(h))
+            }))
     }
 
     /// The rates of the hinge forces under a motion of all panels.
@@ -224,8 +202,7 @@ impl Potential<'_> {
         std::iter::zip(&self.sheet.sheet.hinges, hinges)
             .map(|(hinge, (hinge_motion, energy))| {
                 let rates = hinge_motion.rates(at_hinge(hinge, motion));
-                let along = |row: [f64; 3]| std::iter::zip(row, rates).map(|(k, e)| k * e).sum();
-                energy.tangent.map(along)
+                energy.tangent.map(|row| dot(&row, &rates))
             })
             .collect()
     }
@@ -238,7 +215,7 @@ impl Potential<'_> {
             let (motions, forces_of_hinge) = (at_hinge(hinge, motion), state.expected_forces(h));
             let force = hinge_motion
                 .stiffness(&energy.tangent, forces_of_hinge)
-                .map(|row| std::iter::zip(row, motions).map(|(k, q)| k * q).sum());
+                .map(|row| dot(&row, &motions));
             add_at_hinge(&mut forces, hinge, force);
         }
         forces

@@ -56,7 +56,6 @@ pub(crate) fn refined_solve(
     best
 }
 
-/// The solution after refinement with the given factors.
 fn refined(
     pattern: &TangentPattern,
     values: &[f64],

@@ -42,12 +42,4 @@ impl SolverSettings {
     pub fn loose_tolerance(&self) -> f64 {
         self.tolerance.max(LOOSE_TOLERANCE)
     }
-
-    pub(crate) fn are_valid(&self) -> bool {
-        self.tolerance > 0.0
-            && self.tolerance < 1.0
-            && self.follow_every >= 1
-            && self.max_iterations >= 1
-            && self.max_increments >= 1
-    }
 }

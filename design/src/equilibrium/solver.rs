@@ -12,14 +12,10 @@ use crate::equilibrium::supports::{Dof, Load, Support, hold_rigid_body};
 use crate::equilibrium::tangent::TangentPattern;
 use crate::pattern::grid::Grid;
 use crate::sheet::cut_sheet::Sheet;
-use crate::sheet::panel_vectors::gather;
 
 /// Supports, loads or settings that do not define an equilibrium problem.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum EquilibriumError {
     #[error("{what} on panel {panel}: the panels of the sheet are 0..{panels}")]
     NoSuchPanel {
@@ -50,11 +46,6 @@ pub enum EquilibriumError {
     NothingDrives,
     #[error("{0} load steps: use at least 1")]
     NoSteps(usize),
-    #[error(
-        "solver settings {0:?} violate 0 < tolerance < 1, follow_every >= 1, max_iterations >= 1, \
-         max_increments >= 1"
-    )]
-    Settings(SolverSettings),
 }
 
 /// Supports and loads of a sheet, with everything that depends on its topology alone.
@@ -63,8 +54,9 @@ pub struct EquilibriumSolver {
     pub(crate) grid: Grid,
     pub(crate) settings: SolverSettings,
     pub(crate) steps: usize,
-    /// The maximum number of iterations of L-BFGS per load step, if that replaces Newton's method.
-    pub(crate) lbfgs: Option<usize>,
+    /// The maximum number of iterations of L-BFGS per load step, if that replaces Newton's method, as in the paper: from
+    /// one load step to the next, without looking for limit points.
+    pub lbfgs: Option<usize>,
     /// Prescribed motions at full load.
     pub(crate) supports: Box<[Support]>,
     /// (F_x, F_y, M) per panel at full load.
@@ -88,9 +80,6 @@ impl EquilibriumSolver {
     ) -> Result<Self, EquilibriumError> {
         if steps == 0 {
             return Err(EquilibriumError::NoSteps(steps));
-        }
-        if !settings.are_valid() {
-            return Err(EquilibriumError::Settings(settings));
         }
         let check = |what, panel, value: f64| {
             let panels = grid.panel_count();
@@ -134,6 +123,11 @@ impl EquilibriumSolver {
         })
     }
 
+    /// The direction in which the stroke of the loads is prescribed, if it is.
+    pub(crate) fn stroke(&self) -> Option<&Stroke> {
+        self.drive.as_ref().map(|(stroke, _)| &**stroke)
+    }
+
     /// Whether the stroke is prescribed and the load factor follows.
     pub fn is_driven(&self) -> bool {
         self.drive.is_some()
@@ -145,16 +139,10 @@ impl EquilibriumSolver {
         if !stroke.is_finite() {
             return Err(EquilibriumError::Stroke(stroke));
         }
-        let direction = Stroke::new(&self.loads, &gather(&self.pattern.free, &self.loads));
+        let direction = Stroke::new(&self.loads, &self.pattern.gather(&self.loads));
         let direction = direction.ok_or(EquilibriumError::NothingDrives)?;
         self.drive = Some((Box::new(direction), stroke));
         Ok(self)
-    }
-
-    /// Minimises by L-BFGS as in the paper, the baseline for Newton's method: at most `max_iterations` iterations from
-    /// one load step to the next, without looking for limit points.
-    pub fn use_lbfgs(&mut self, max_iterations: usize) {
-        self.lbfgs = Some(max_iterations);
     }
 
     /// Number of stored entries of the factors of a tangent, zeros of merged columns included.

@@ -19,7 +19,7 @@ pub(crate) const MIN_PIVOT_RATIO: f64 = 1e-13;
 pub(crate) struct TangentPattern {
     ldl: SparseLdl,
     /// Indices of the free degrees of freedom in the order of elimination, three entries per panel.
-    pub free: Box<[Option<usize>]>,
+    free: Box<[Option<usize>]>,
     /// Positions of the entries of each hinge's 6 x 6 block; `None` for supported or upper entries.
     slots: Vec<[[Option<u32>; 6]; 6]>,
 }
@@ -89,6 +89,24 @@ impl TangentPattern {
             free: free.into(),
             slots,
         }
+    }
+
+    /// The free components of a vector with three components per panel.
+    pub fn gather(&self, by_panel: &[[f64; 3]]) -> Vec<f64> {
+        let mut row = vec![0.0; self.free.iter().flatten().count()];
+        for (number, component) in std::iter::zip(&self.free, by_panel.as_flattened()) {
+            if let Some(number) = number {
+                row[*number] = *component;
+            }
+        }
+        row
+    }
+
+    /// The inverse of [`gather`](Self::gather); supported components are zero.
+    pub fn spread(&self, row: &[f64]) -> Vec<[f64; 3]> {
+        (self.free.chunks(3))
+            .map(|numbers| std::array::from_fn(|d| numbers[d].map_or(0.0, |i| row[i])))
+            .collect()
     }
 
     /// Positions of the diagonal entries, the first of their columns.

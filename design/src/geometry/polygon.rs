@@ -33,12 +33,8 @@ pub fn clip(polygon: &[[f64; 2]], height: impl Fn([f64; 2]) -> f64) -> Vec<[f64;
 /// Whether a convex counter-clockwise polygon contains a point; its border belongs to it.
 pub fn contains(polygon: &[[f64; 2]], point: [f64; 2]) -> bool {
     edges(polygon).all(|(p, q)| {
-        let (d, e) = (
-            [q[0] - p[0], q[1] - p[1]],
-            [point[0] - p[0], point[1] - p[1]],
-        );
-        let rounding = 1e-9 * (d[0] * d[0] + d[1] * d[1]);
-        d[0] * e[1] - d[1] * e[0] >= -rounding
+        let d = [q[0] - p[0], q[1] - p[1]];
+        side((p, q), point) >= -1e-9 * (d[0] * d[0] + d[1] * d[1])
     })
 }
 
@@ -52,18 +48,37 @@ pub fn distance_to_polygon(point: [f64; 2], polygon: &[[f64; 2]]) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
+/// Distance between two points (mm).
+pub fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
+    f64::hypot(q[0] - p[0], q[1] - p[1])
+}
+
+/// The mean of points.
+pub fn mean(points: &[[f64; 2]]) -> [f64; 2] {
+    let sum = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>();
+    [sum(0), sum(1)].map(|sum| sum / points.len() as f64)
+}
+
+/// The minimum and maximum coordinates of points: the lower left and the upper right corner of their bounding box.
+pub fn bounds(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
+    let nothing = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    points.into_iter().fold(nothing, |[low, high], [x, y]| {
+        [
+            [low[0].min(x), low[1].min(y)],
+            [high[0].max(x), high[1].max(y)],
+        ]
+    })
+}
+
 /// Distance from a point to the segment from `a` to `b` (mm).
 pub fn distance_to_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
-    let [x, y] = nearest_on_segment(point, a, b);
-    f64::hypot(point[0] - x, point[1] - y)
+    distance(point, nearest_on_segment(point, a, b))
 }
 
 /// Distance between two segments; zero if they cross (mm).
 pub fn distance_between_segments(s: [[f64; 2]; 2], t: [[f64; 2]; 2]) -> f64 {
-    let side = |[a, b]: [[f64; 2]; 2], p: [f64; 2]| {
-        (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
-    };
-    let separates = |s, [p, q]: [[f64; 2]; 2]| side(s, p) * side(s, q) < 0.0;
+    let separates =
+        |[a, b]: [[f64; 2]; 2], [p, q]: [[f64; 2]; 2]| side((a, b), p) * side((a, b), q) < 0.0;
     if separates(s, t) && separates(t, s) {
         return 0.0;
     }
@@ -124,15 +139,17 @@ pub(crate) fn self_crossing(points: &[[f64; 2]]) -> Option<[f64; 2]> {
 
 type Edge = ([f64; 2], [f64; 2]);
 
+/// Distance of a point from the line of an edge times the length of the edge, positive on its left.
+pub fn side((a, b): Edge, point: [f64; 2]) -> f64 {
+    (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])
+}
+
 /// A common point of two segments, if their boxes overlap and neither is on one side of the other.
 fn shared_point((p, q): Edge, (r, s): Edge) -> Option<[f64; 2]> {
     let overlap = |c: usize| p[c].max(q[c]) >= r[c].min(s[c]) && r[c].max(s[c]) >= p[c].min(q[c]);
     if !(overlap(0) && overlap(1)) {
         return None;
     }
-    let side = |(a, b): Edge, point: [f64; 2]| {
-        (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])
-    };
     let (side_p, side_q) = (side((r, s), p), side((r, s), q));
     if side_p * side_q > 0.0 || side((p, q), r) * side((p, q), s) > 0.0 {
         return None;

@@ -18,10 +18,7 @@ const NO_BACKGROUND: &str = "svg { background-color: none !important }";
 
 /// Why a file has no outline; coordinates are those of the path data.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum SvgPathError {
     #[error("the file is empty; draw one closed outline and save it as SVG")]
     Empty,

@@ -19,21 +19,13 @@ const SMALL: [f64; 3] = [1e-3, 1e-3, 1e-4];
 /// The linear law of a learned energy.
 #[derive(Clone, Debug)]
 pub struct CondensedLaw {
-    surrogate: Surrogate,
-    secant: f64,
+    /// The learned energy that the constants are condensed from.
+    pub surrogate: Surrogate,
+    /// Angle of the rotational secant (rad); 0 for the Hessian at zero.
+    pub secant: f64,
 }
 
 impl CondensedLaw {
-    /// With the rotational secant at the angle `secant` (rad), or with the Hessian at zero if it is 0.
-    pub fn new(surrogate: Surrogate, secant: f64) -> Self {
-        Self { surrogate, secant }
-    }
-
-    /// The learned energy that the constants are condensed from.
-    pub fn surrogate(&self) -> &Surrogate {
-        &self.surrogate
-    }
-
     /// (k_a, k_s, k_theta) of each design (N/mm, N/mm, N mm) with their gradients in (w_lig, alpha).
     pub fn constants(&self, designs: &[HingeDesign]) -> Vec<[Constant; 3]> {
         let prepared = self.surrogate.prepare(designs);
@@ -118,7 +110,10 @@ mod tests {
             env!("CARGO_MANIFEST_DIR"),
             "/tests/cases/chi_tiny.safetensors"
         );
-        CondensedLaw::new(Surrogate::load(Path::new(weights)).unwrap(), secant)
+        CondensedLaw {
+            surrogate: Surrogate::load(Path::new(weights)).unwrap(),
+            secant,
+        }
     }
 
     #[test]

@@ -27,8 +27,10 @@ use std::sync::Arc;
 
 /// A hinge law with a correction for each hinge of one sheet.
 pub struct CorrectedLaw {
-    law: Arc<dyn HingeLaw>,
-    corrections: Vec<Correction>,
+    /// The law that is corrected.
+    pub law: Arc<dyn HingeLaw>,
+    /// One for each hinge of the sheet, in their order.
+    pub corrections: Vec<Correction>,
 }
 
 /// Lengths l of (eta_a, eta_s, theta (rad)): about a third of the extent of a training domain. The forces of a second round
@@ -133,13 +135,6 @@ fn kernel_slopes(x: [f64; 3], y: [f64; 3]) -> [[f64; 3]; 3] {
     let u = minus(x, y);
     let unit = |i, j| if i == j { 1.0 } else { 0.0 };
     from_fn(|i| from_fn(|j| gaussian(u) * (unit(i, j) - u[i] * u[j])))
-}
-
-impl CorrectedLaw {
-    /// The law with one correction for each hinge of a sheet, in their order.
-    pub fn new(law: Arc<dyn HingeLaw>, corrections: Vec<Correction>) -> Self {
-        Self { law, corrections }
-    }
 }
 
 impl HingeLaw for CorrectedLaw {
@@ -329,9 +324,12 @@ mod tests {
             "/../data/pet-0.5mm/small.safetensors"
         );
         let law = Surrogate::load(std::path::Path::new(weights)).unwrap();
-        let law: Arc<dyn HingeLaw> = Arc::new(SurrogateLaw::new(law));
+        let law: Arc<dyn HingeLaw> = Arc::new(SurrogateLaw { surrogate: law });
         let correction = Correction::new(&design(), &[missing()]);
-        let law = CorrectedLaw::new(law, vec![correction]);
+        let law = CorrectedLaw {
+            law,
+            corrections: vec![correction],
+        };
         let of = |design: &HingeDesign| {
             let prepared = law.prepare(std::slice::from_ref(design));
             prepared.energies(&[state()], Order::Design)[0]

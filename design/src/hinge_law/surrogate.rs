@@ -34,19 +34,8 @@ const RESOLUTION: f64 = 16.0 * f64::EPSILON;
 /// The learned hinge law.
 #[derive(Clone, Debug)]
 pub struct SurrogateLaw {
-    surrogate: Surrogate,
-}
-
-impl SurrogateLaw {
-    /// The hinge law of a learned energy.
-    pub fn new(surrogate: Surrogate) -> Self {
-        Self { surrogate }
-    }
-
     /// The learned energy of the law.
-    pub fn surrogate(&self) -> &Surrogate {
-        &self.surrogate
-    }
+    pub surrogate: Surrogate,
 }
 
 impl HingeLaw for SurrogateLaw {
@@ -275,7 +264,9 @@ mod tests {
             env!("CARGO_MANIFEST_DIR"),
             "/tests/cases/chi_tiny.safetensors"
         );
-        SurrogateLaw::new(Surrogate::load(Path::new(weights)).unwrap())
+        SurrogateLaw {
+            surrogate: Surrogate::load(Path::new(weights)).unwrap(),
+        }
     }
 
     /// x = (a, s, theta, w_lig, alpha)
@@ -306,7 +297,7 @@ mod tests {
                 central_slope(|x| part(&energy(&law, x)), &x, &unit(i), 1e-5)
             };
             let close = |found: f64, expected: f64| {
-                let scale = law.surrogate().energy_scale().max(expected.abs());
+                let scale = law.surrogate.energy_scale().max(expected.abs());
                 assert!(
                     (found - expected).abs() < 1e-7 * scale,
                     "{found} {expected}"
@@ -349,7 +340,7 @@ mod tests {
             kerf: 0.2,
             r_win: 100.0,
         };
-        let surrogate = law.surrogate();
+        let surrogate = &law.surrogate;
         let bare = surrogate.evaluate(&surrogate.prepare(&[design]), &[state], Order::Design);
         assert_eq!(energy(&law, &[1.0, 1.0, 0.5, 18.0, 1.5]), bare[0]);
         assert_eq!(law.prepare(&[design]).inside(&[state]), [true]);
@@ -391,8 +382,10 @@ mod tests {
             env!("CARGO_MANIFEST_DIR"),
             "/../data/pet-0.5mm/small.safetensors"
         );
-        let law = SurrogateLaw::new(Surrogate::load(Path::new(weights)).unwrap());
-        let domain = law.surrogate().domain();
+        let law = SurrogateLaw {
+            surrogate: Surrogate::load(Path::new(weights)).unwrap(),
+        };
+        let domain = law.surrogate.domain();
         let (centre, bounds) = (domain.centre(), domain.bounds());
         // Fractions of multiples of irrational numbers fill the intervals evenly.
         let part = |i: usize, number: f64| (i as f64 * number).fract();
@@ -426,7 +419,7 @@ mod tests {
                 fall = fall.max(peak - slope);
             }
             // The networks' own softening at the edge of a folding hinge.
-            let most = 0.3 * law.surrogate().energy_scale();
+            let most = 0.3 * law.surrogate.energy_scale();
             assert!(fall < most, "{w_lig} {outwards:?}: {fall}");
         }
     }

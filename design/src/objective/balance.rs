@@ -1,5 +1,6 @@
 //! Weights of the path functionals relative to the gradient of the shape.
 
+use crate::equilibrium::displacement_control::dot;
 use crate::objective::design_problem::{DesignError, DesignProblem};
 use crate::objective::loss::Objective;
 use crate::objective::term::Weighted;
@@ -32,5 +33,5 @@ impl DesignProblem {
 }
 
 fn norm(vector: &[f64]) -> f64 {
-    vector.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
+    dot(vector, vector).sqrt()
 }

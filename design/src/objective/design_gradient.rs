@@ -28,14 +28,6 @@ struct Partials<'a> {
     by_corners: Option<&'a [[[f64; 2]; 4]]>,
 }
 
-/// The gradient of a function of a deployment in the design and in the constants of the problem.
-struct DesignGradient {
-    gradient: DesignVector,
-    sensitivities: Sensitivities,
-    /// See [`Evaluation::adjoint_residual`].
-    adjoint_residual: f64,
-}
-
 impl DesignProblem {
     /// L(theta) and its gradient.
     pub fn evaluate(&self, design: &DesignVector) -> Result<Evaluation, DesignError> {
@@ -60,14 +52,15 @@ impl DesignProblem {
             by_path: &judgement.gradient.by_states,
             by_corners: Some(&judgement.gradient.by_corners),
         };
-        let by_design = self.design_gradient(design, &deployment, law.as_deref(), &partials)?;
+        let (gradient, sensitivities, adjoint_residual) =
+            self.design_gradient(design, &deployment, law.as_deref(), &partials)?;
         Ok(Evaluation {
             loss: judgement.loss,
             terms: judgement.terms,
-            gradient: by_design.gradient,
-            sensitivities: by_design.sensitivities,
+            gradient,
+            sensitivities,
             deployment,
-            adjoint_residual: by_design.adjoint_residual,
+            adjoint_residual,
         })
     }
 
@@ -103,20 +96,22 @@ impl DesignProblem {
                 by_path: &by_path,
                 by_corners: None,
             };
-            let curved = self.design_gradient(design, deployment, law.as_deref(), &partials)?;
-            Ok(curved.gradient.to_flat())
+            let (gradient, ..) =
+                self.design_gradient(design, deployment, law.as_deref(), &partials)?;
+            Ok(gradient.to_flat())
         });
         gradients.collect()
     }
 
-    /// The gradient in the design, and in the constants of the problem, of a function of the deployment.
+    /// The gradient in the design, and in the constants of the problem, of a function of the deployment, and
+    /// [`Evaluation::adjoint_residual`].
     fn design_gradient(
         &self,
         design: &DesignVector,
         deployment: &Deployment,
         law: Option<&dyn PreparedLaw>,
         partials: &Partials,
-    ) -> Result<DesignGradient, DesignError> {
+    ) -> Result<(DesignVector, Sensitivities, f64), DesignError> {
         let (sheet, last) = (&deployment.sheet, deployment.final_step());
         let mut by_sheet = SheetGradient::zeros(self.grid);
         if let Some(by_corners) = partials.by_corners {
@@ -156,11 +151,7 @@ impl DesignProblem {
                 .collect(),
             opening: by_opening,
         };
-        Ok(DesignGradient {
-            gradient,
-            sensitivities,
-            adjoint_residual,
-        })
+        Ok((gradient, sensitivities, adjoint_residual))
     }
 }
 

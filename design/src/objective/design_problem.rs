@@ -24,10 +24,7 @@ use support::verbose;
 
 /// Why a design has no objective value.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum DesignError {
     #[error(transparent)]
     Pattern(#[from] PatternError),
@@ -35,8 +32,6 @@ pub enum DesignError {
     Sheet(#[from] SheetError),
     #[error(transparent)]
     Equilibrium(#[from] EquilibriumError),
-    #[error("w_minus = {w_minus} mm, w_plus = {w_plus} mm violates 0 < w_minus < w_plus")]
-    WidthChart { w_minus: f64, w_plus: f64 },
     #[error("hinge = \"pin\" has no equilibrium; set hinge = \"linear\" or \"surrogate\"")]
     NoMechanics,
     #[error("the target has no points")]
@@ -78,12 +73,17 @@ pub enum Model {
 }
 
 impl Model {
-    /// The training domain of the hinge law, if it has one.
-    pub fn domain(&self) -> Option<&TrainingDomain> {
+    /// Hinge law, supports and loads of equilibria.
+    pub fn mechanics(&self) -> Option<&Mechanics> {
         match self {
             Self::Ideal { .. } => None,
-            Self::Equilibrium(mechanics) => mechanics.law.domain(),
+            Self::Equilibrium(mechanics) => Some(mechanics),
         }
+    }
+
+    /// The training domain of the hinge law, if it has one.
+    pub fn domain(&self) -> Option<&TrainingDomain> {
+        self.mechanics()?.law.domain()
     }
 }
 
@@ -198,10 +198,6 @@ impl Deployment {
 impl DesignProblem {
     /// Lines 2-4 of Algorithm 1: cut pattern and flat sheet.
     pub fn cut(&self, design: &DesignVector) -> Result<(CutPattern, Sheet), DesignError> {
-        let WidthChart { w_minus, w_plus } = self.widths;
-        if !(w_minus > 0.0 && w_minus < w_plus && w_plus.is_finite()) {
-            return Err(DesignError::WidthChart { w_minus, w_plus });
-        }
         let pattern = CutPattern::new(self.grid, self.outline, &design.pattern)?;
         let w_lig: Vec<f64> = (design.omega.iter())
             .map(|&omega| self.widths.width(omega))

@@ -1,8 +1,8 @@
 //! The objective of one design and its terms, as stored for each step and reported.
 
-use crate::objective::design_problem::Evaluation;
+use crate::geometry::chamfer::{Chamfer, Precision};
+use crate::objective::design_problem::{Deployment, Evaluation};
 use crate::objective::loss::{Objective, TermValues};
-use crate::objective::outline_error::outline_error;
 use serde::{Deserialize, Serialize};
 
 /// The objective of one design.
@@ -29,6 +29,24 @@ impl Scores {
             share_inside: evaluation.deployment.share_inside(),
         }
     }
+}
+
+/// Root mean square distance of the deployed outline points P from the curve through the target's
+/// samples (mm).
+///
+/// It is the square root of the first sum of the Chamfer distance to the curve. The second sum, coverage, also
+/// depends on the spacing of the points P, and stays large for a coarse sheet that matches its target.
+pub fn outline_error(objective: &Objective, deployment: &Deployment) -> f64 {
+    let shape = &objective.shape;
+    let points = shape.outline.corners(&deployment.sheet);
+    let outline = shape.placed(&deployment.outline(&points));
+    let precision = Chamfer {
+        coverage_weight: 0.0,
+        smoothing: 0.0,
+        precision: Precision::Curve,
+    };
+    let (squared, _) = precision.evaluate(&outline, &shape.target);
+    squared.sqrt()
 }
 
 /// A term as text: four digits after the point, or scientific notation if these do not show it.

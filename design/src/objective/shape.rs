@@ -1,6 +1,7 @@
 //! The shape term of the objective: the Chamfer distance of the deployed outline to the target.
 
 use crate::geometry::chamfer::{Chamfer, Precision};
+use crate::geometry::polygon::mean;
 use crate::objective::term::{Deployed, Term, TermGradient};
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::topology::PanelCorner;
@@ -119,11 +120,4 @@ impl Shape {
         }
         vectors
     }
-}
-
-fn mean(points: &[[f64; 2]]) -> [f64; 2] {
-    let sum = points.iter().fold([0.0; 2], |sum, point| {
-        [sum[0] + point[0], sum[1] + point[1]]
-    });
-    sum.map(|component| component / points.len() as f64)
 }

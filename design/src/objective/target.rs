@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
+use support::file_error::FileError;
 use support::key_limits::{self, OutOfRange};
 use support::regular_file;
 
@@ -67,16 +68,10 @@ impl TargetShape {
 
 /// Why a target is not an outline.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum TargetError {
-    #[error("cannot read the target outline {path}: {source}", path = .path.display())]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    #[error("cannot read the target outline {0}")]
+    Read(#[from] FileError),
     #[error("{path}:{line}: `{text}` is not `x,y` in mm", path = .path.display())]
     Row {
         path: PathBuf,
@@ -94,9 +89,12 @@ pub enum TargetError {
 /// The sampled target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
-    points: Vec<[f64; 2]>,
-    length: f64,
-    crossing: Option<[f64; 2]>,
+    /// The samples, evenly spaced along the outline (mm).
+    pub points: Vec<[f64; 2]>,
+    /// Length of the outline itself (mm).
+    pub length: f64,
+    /// A point at which the outline crosses or touches itself, so that its inside is not defined (mm).
+    pub crossing: Option<[f64; 2]>,
 }
 
 impl Target {
@@ -137,7 +135,7 @@ impl Target {
                 height,
             } => {
                 let path = folder.join(file);
-                let svg = read(&path)?;
+                let svg = regular_file::read_to_string(&path).map_err(FileError::at(&path))?;
                 let drawn =
                     svg_path::vertices(&svg).map_err(|source| TargetError::Svg { path, source })?;
                 along_polygon(&placed(&drawn, *centre, *height)?, count)
@@ -152,51 +150,32 @@ impl Target {
         blake3::hash(&bytes).to_hex().to_string()
     }
 
-    /// The samples, evenly spaced along the outline (mm).
-    pub fn points(&self) -> &[[f64; 2]] {
-        &self.points
-    }
-
     /// Mean of the samples: the centre of the outline (mm).
     pub fn mean(&self) -> [f64; 2] {
-        let sum = |axis: usize| self.points.iter().map(|point| point[axis]).sum::<f64>();
-        [sum(0), sum(1)].map(|sum| sum / self.points.len() as f64)
+        polygon::mean(&self.points)
     }
 
     /// Extent of the samples along x (mm).
     pub fn width(&self) -> f64 {
-        let across = || self.points.iter().map(|point| point[0]);
-        across().fold(f64::NEG_INFINITY, f64::max) - across().fold(f64::INFINITY, f64::min)
+        let [low, high] = polygon::bounds(self.points.iter().copied());
+        high[0] - low[0]
     }
 
     /// Distance of a point to the curve through the samples (mm).
     pub fn distance(&self, point: [f64; 2]) -> f64 {
-        let [x, y] = polygon::nearest_on_outline(point, &self.points);
-        f64::hypot(point[0] - x, point[1] - y)
+        polygon::distance(point, polygon::nearest_on_outline(point, &self.points))
     }
 
     /// Area inside the curve through the samples (mm^2).
     pub fn area(&self) -> f64 {
         polygon::area(&self.points).abs()
     }
-
-    /// Length of the outline itself (mm).
-    pub fn length(&self) -> f64 {
-        self.length
-    }
-
-    /// A point at which the outline crosses or touches itself, so that its inside is not defined (mm).
-    pub fn crossing(&self) -> Option<[f64; 2]> {
-        self.crossing
-    }
 }
 
 /// `count` points at equal arc lengths along a closed polygon.
 fn along_polygon(vertices: &[[f64; 2]], count: usize) -> Result<Target, TargetError> {
     let edges = || polygon::edges(vertices);
-    let lengths: Vec<f64> = edges()
-        .map(|(p, q)| f64::hypot(q[0] - p[0], q[1] - p[1]))
-        .collect();
+    let lengths: Vec<f64> = edges().map(|(p, q)| polygon::distance(p, q)).collect();
     let length: f64 = lengths.iter().sum();
     if polygon::area(vertices).abs() <= 1e-9 * length * length {
         return Err(TargetError::NoArea);
@@ -229,12 +208,7 @@ fn placed(
     centre: [f64; 2],
     height: f64,
 ) -> Result<Vec<[f64; 2]>, TargetError> {
-    let bounds = |axis: usize| {
-        let values = vertices.iter().map(|vertex| vertex[axis]);
-        let minimum = values.clone().fold(f64::INFINITY, f64::min);
-        [minimum, values.fold(f64::NEG_INFINITY, f64::max)]
-    };
-    let [[left, right], [low, high]] = [bounds(0), bounds(1)];
+    let [[left, low], [right, high]] = polygon::bounds(vertices.iter().copied());
     if high <= low || vertices.is_empty() {
         return Err(TargetError::NoArea);
     }
@@ -244,15 +218,8 @@ fn placed(
     Ok(vertices.iter().map(place).collect())
 }
 
-fn read(path: &Path) -> Result<String, TargetError> {
-    regular_file::read_to_string(path).map_err(|source| TargetError::Read {
-        path: path.to_owned(),
-        source,
-    })
-}
-
 fn read_points(path: &Path) -> Result<Vec<[f64; 2]>, TargetError> {
-    read(path)?
+    (regular_file::read_to_string(path).map_err(FileError::at(path))?)
         .lines()
         .enumerate()
         .map(|(row, line)| (row + 1, line.split('#').next().unwrap_or_default().trim()))
@@ -297,10 +264,10 @@ mod tests {
         let (radius, n) = (760.0, 500);
         let centre = [1.0, 2.0];
         let circle = sample(TargetShape::Circle { centre, radius }, n).unwrap();
-        assert_eq!(circle.points().len(), n);
-        assert!((circle.length() - TAU * radius).abs() < 1e-9);
+        assert_eq!(circle.points.len(), n);
+        assert!((circle.length - TAU * radius).abs() < 1e-9);
         let inscribed = 0.5 * n as f64 * radius * radius * (TAU / n as f64).sin();
-        assert!((area(circle.points()) / inscribed - 1.0).abs() < 1e-12);
+        assert!((area(&circle.points) / inscribed - 1.0).abs() < 1e-12);
     }
 
     #[test]
@@ -311,10 +278,10 @@ mod tests {
             rotation_deg: -15.4,
         };
         let rectangle = sample(shape, 100).unwrap();
-        assert!((rectangle.length() - 1000.0).abs() < 1e-9);
+        assert!((rectangle.length - 1000.0).abs() < 1e-9);
         let (sin, cos) = 15.4_f64.to_radians().sin_cos();
         assert!((rectangle.width() - (300.0 * cos + 200.0 * sin)).abs() < 1e-9);
-        let p = rectangle.points();
+        let p = &rectangle.points;
         assert_eq!(p.len(), 100);
         assert!(
             (area(p) - 60e3).abs() < 1e-6,
@@ -345,8 +312,8 @@ mod tests {
             triangle,
             sample(TargetShape::Polygon { vertices }, 24).unwrap()
         );
-        assert!((triangle.length() - 120.0).abs() < 1e-12);
-        assert!((area(triangle.points()) - 600.0).abs() < 1e-9);
+        assert!((triangle.length - 120.0).abs() < 1e-12);
+        assert!((area(&triangle.points) - 600.0).abs() < 1e-9);
         let error = from_file("0,0\n1;2\n").unwrap_err().to_string();
         assert!(error.contains("triangle.csv:2: `1;2`"), "{error}");
     }
@@ -367,7 +334,7 @@ mod tests {
                 height: 1.0,
             };
             let target = Target::sample(&shape, &folder, 2000).unwrap();
-            assert!((target.length() - length).abs() < 1e-6, "{name}");
+            assert!((target.length - length).abs() < 1e-6, "{name}");
             assert!((target.area() - area).abs() < 1e-6, "{name}");
         }
     }
@@ -394,7 +361,7 @@ mod tests {
             let vertices = vertices.to_vec();
             sample(TargetShape::Polygon { vertices }, 100)
                 .unwrap()
-                .crossing()
+                .crossing
         };
         let square = [[0.0, 0.0], [40.0, 0.0], [40.0, 40.0], [0.0, 40.0]];
         assert_eq!(crossing(&square), None);

@@ -106,32 +106,26 @@ impl ObjectiveConfig {
         let domain = setting.law.and_then(|law| law.domain());
         // Only a learned hinge has a window. Two window radii and a gap: the windows do not lie on one line.
         let min_distance = domain.map_or(0.0, |_| 3.0 * setting.r_win);
-        let limited = f64::from(self.min_panel_width > 0.0);
+        let (minimum, limited) = (self.min_panel_width, f64::from(self.min_panel_width > 0.0));
+        // Temperatures are a tenth of typical values.
+        let (domain, temperature) = (domain.cloned(), 0.01);
+        let damage = Damage {
+            measure: self.damage_measure,
+            // No scale is needed without damage.
+            scale: scale.unwrap_or(1.0),
+            temperature: 0.1,
+        };
         Objective {
             shape: self.shape(setting),
             functionals: vec![
-                // No scale is needed without damage.
-                Weighted::new(
-                    self.damage * unit,
-                    Damage::new(self.damage_measure, scale.unwrap_or(1.0)),
-                ),
-                Weighted::new(self.compression * unit, Compression::default()),
-                Weighted::new(self.shear * unit, Shear::default()),
+                Weighted::new(self.damage * unit, damage),
+                Weighted::new(self.compression * unit, Compression { temperature }),
+                Weighted::new(self.shear * unit, Shear { temperature }),
             ],
             penalties: vec![
                 Weighted::new(self.panel_shape * area, PanelShape { min_distance }),
-                Weighted::new(
-                    limited,
-                    PanelWidth {
-                        minimum: self.min_panel_width,
-                    },
-                ),
-                Weighted::new(
-                    self.domain * area,
-                    DomainPenalty {
-                        domain: domain.cloned(),
-                    },
-                ),
+                Weighted::new(limited, PanelWidth { minimum }),
+                Weighted::new(self.domain * area, DomainPenalty { domain }),
             ],
         }
     }
@@ -143,7 +137,7 @@ impl ObjectiveConfig {
         } else {
             [0.0; 2]
         };
-        let points = setting.target.points().iter();
+        let points = setting.target.points.iter();
         Shape {
             target: points.map(|point| [point[0] - x, point[1] - y]).collect(),
             chamfer: Chamfer {

@@ -10,6 +10,7 @@
 //! and its exact vector-Jacobian product by the transposed system.
 
 use crate::geometry::plane::{add, complex, cross, dot};
+use crate::geometry::polygon::bounds;
 use crate::pattern::coordinates::{
     PatternCoordinates, intervals, logistic, partial_sums, partial_sums_pullback,
 };
@@ -46,12 +47,8 @@ impl Outline {
 
     /// The larger of width and height (mm).
     pub fn size(&self) -> f64 {
-        let extent = |axis: usize| {
-            let values = self.corners.map(|corner| corner[axis]);
-            let max = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
-            max - values.into_iter().fold(f64::INFINITY, f64::min)
-        };
-        f64::max(extent(0), extent(1))
+        let [low, high] = bounds(self.corners);
+        f64::max(high[0] - low[0], high[1] - low[1])
     }
 
     /// Whether the outline is strictly convex with counter-clockwise corners.

@@ -2,10 +2,7 @@
 
 /// Why there is no cut pattern for the given numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum PatternError {
     #[error("a sheet of {m} x {n} panels has no interior cut: use at least 2 x 2")]
     TooFewPanels { m: usize, n: usize },

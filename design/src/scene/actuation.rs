@@ -111,16 +111,6 @@ impl SupportKind {
         }
     }
 
-    /// The name in a scene.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Clamp => "clamp",
-            Self::Pin => "pin",
-            Self::RollerX => "roller-x",
-            Self::RollerY => "roller-y",
-        }
-    }
-
     /// Outline of the symbol, in halves of its size: a square, a triangle or a disc.
     pub(super) fn symbol(self) -> Vec<[f64; 2]> {
         match self {
@@ -159,24 +149,7 @@ impl LoadConfig {
     }
 }
 
-impl EdgeLoadConfig {
-    /// Multiplies the traction.
-    pub fn scale(&mut self, factor: f64) {
-        self.traction = self.traction.map(|traction| factor * traction);
-    }
-}
-
 impl SheetEdge {
-    /// The name in a scene.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Bottom => "bottom",
-            Self::Right => "right",
-            Self::Top => "top",
-            Self::Left => "left",
-        }
-    }
-
     /// The panels along the edge.
     pub(super) fn panels(self, grid: Grid) -> Vec<usize> {
         let row = |q| (0..grid.m).map(|p| grid.panel(p, q)).collect();

@@ -1,6 +1,7 @@
 //! Supports and loads of a scene on the panels of its sheet: what solver, drawings, run page and report read.
 
 use crate::equilibrium::supports::{Dof, Load, Support};
+use crate::geometry::polygon::distance;
 use crate::pattern::grid::{EDGES, Grid};
 use crate::scene::actuation::{EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig};
 use crate::scene::checked_scene::Scene;
@@ -118,12 +119,18 @@ impl Actuation {
     }
 }
 
+/// The name of a value in a scene.
+fn name(value: impl Serialize) -> String {
+    let name = serde_json::to_value(value).unwrap_or_default();
+    name.as_str().unwrap_or_default().to_owned()
+}
+
 impl SupportConfig {
     fn on(&self, grid: Grid) -> SupportedPanel {
         let [column, row] = self.panel;
         let (holds, motion) = (self.kind.holds(), self.motion());
         SupportedPanel {
-            name: format!("{}, panel [{column},{row}]", self.kind.name()),
+            name: format!("{}, panel [{column},{row}]", name(self.kind)),
             panel: grid.panel(column, row),
             motion: std::array::from_fn(|d| holds[d].then_some(motion[d])),
             symbol: self.kind.symbol(),
@@ -149,11 +156,11 @@ impl LoadConfig {
 impl EdgeLoadConfig {
     /// `ends` are those of the edge in the flat sheet.
     fn on(&self, grid: Grid, [from, to]: [[f64; 2]; 2]) -> AppliedLoad {
-        let length = f64::hypot(to[0] - from[0], to[1] - from[1]);
+        let length = distance(from, to);
         let resultant = self.traction.map(|traction| traction * length);
         let panels = self.edge.panels(grid);
         let [x, y] = resultant.map(|force| force / panels.len() as f64);
-        let edge = format!("{} edge", self.edge.name());
+        let edge = format!("{} edge", name(self.edge));
         AppliedLoad {
             name: format!("load, {edge}"),
             place: None,

@@ -2,10 +2,8 @@
 
 use crate::objective::target::Target;
 use crate::scene::checks;
-use crate::scene::invalid_scene::InvalidScene;
-use crate::scene::keys::SceneConfig;
+use crate::scene::keys::{SceneConfig, beside, folder};
 use crate::scene::loaded_hinge::{LoadedHinge, network};
-use crate::scene::relative_path::{beside, folder};
 use crate::scene::scene_error::SceneError;
 use crate::sheet::cut_sheet::SheetOptions;
 use hinge::SheetMaterial;
@@ -49,26 +47,18 @@ impl Scene {
     /// Reads the material, the target and the weights of a scene whose paths are relative to the
     /// file at `path`, and checks all values.
     pub fn new(config: SceneConfig, path: &Path) -> Result<Self, SceneError> {
-        let refuse = |source| SceneError::Value {
-            path: path.to_owned(),
-            source: Box::new(source),
-        };
-        checks::config(&config).map_err(refuse)?;
+        checks::config(&config).map_err(SceneError::at(path))?;
         let material_path = beside(path, &config.material);
         let measured = SheetMaterial::load(&material_path)?;
         let material = SheetMaterial {
             thickness: config.thickness.unwrap_or(measured.thickness),
             ..measured.clone()
         };
-        (material.validate()).map_err(|error| refuse(InvalidScene::Material(error)))?;
+        (material.validate()).map_err(SceneError::at(path))?;
         let points = config.objective.target_points;
-        let target = Target::sample(&config.target, folder(path), points).map_err(|source| {
-            SceneError::Target {
-                path: path.to_owned(),
-                source,
-            }
-        })?;
-        checks::target(&target, &config.sheet.outline()).map_err(refuse)?;
+        let target = Target::sample(&config.target, folder(path), points);
+        let target = target.map_err(SceneError::at(path))?;
+        checks::target(&target, &config.sheet.outline()).map_err(SceneError::at(path))?;
         let hinge = LoadedHinge::load(&config, &measured, path)?;
         Ok(Self {
             config,

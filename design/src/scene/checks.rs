@@ -2,7 +2,7 @@
 //!
 //! The ranges are wider than those of any real sheet, and narrower than an error by a factor of 1000.
 
-use crate::geometry::polygon::edges;
+use crate::geometry::polygon::{distance, edges, mean};
 use crate::objective::target::Target;
 use crate::pattern::cut_pattern::Outline;
 use crate::pattern::pattern_error::PatternError;
@@ -34,23 +34,11 @@ const AWAY: f64 = 1e6;
 
 /// A target of a very different size than the sheet, or far away from it, is assumed to be in the wrong unit.
 pub(super) fn target(target: &Target, outline: &Outline) -> Result<(), InvalidScene> {
-    let perimeter: f64 = edges(&outline.corners)
-        .map(|(p, q)| f64::hypot(q[0] - p[0], q[1] - p[1]))
-        .sum();
+    let perimeter: f64 = edges(&outline.corners).map(|(p, q)| distance(p, q)).sum();
     let limits = [0.2 * perimeter, OPENS_TO * perimeter];
-    within(
-        "length of the target outline",
-        target.length(),
-        limits,
-        "mm",
-    )
-    .map_err(|source| InvalidScene::TargetLength { source, perimeter })?;
-    let middle = |axis: usize| {
-        let corners = outline.corners.iter();
-        corners.map(|corner| 0.25 * corner[axis]).sum::<f64>()
-    };
-    let [x, y] = target.mean();
-    let away = f64::hypot(x - middle(0), y - middle(1));
+    within("length of the target outline", target.length, limits, "mm")
+        .map_err(|source| InvalidScene::TargetLength { source, perimeter })?;
+    let away = distance(target.mean(), mean(&outline.corners));
     within(
         "distance of the target from the sheet",
         away,

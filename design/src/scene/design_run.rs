@@ -17,6 +17,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
+use support::file_error::FileError;
 use support::sealed_json::{self, SealError};
 use support::{regular_file, whole_file};
 
@@ -43,10 +44,7 @@ pub struct Designed {
 
 /// Why a run failed.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum InverseDesignError {
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -61,11 +59,8 @@ pub enum InverseDesignError {
     ThinStart { thinnest: f64, minimum: f64 },
     #[error("the best design of the run cannot be evaluated again: {0}")]
     Best(DesignError),
-    #[error("cannot use {path}: {source}", path = .path.display())]
-    Folder {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    #[error("cannot use {0}")]
+    Folder(#[from] FileError),
     #[error(
         "{path} is neither the state of a run nor a design ({source}): give another file, or restart the \
          run",
@@ -126,10 +121,7 @@ pub fn stored_design(path: &Path, scene: &Scene) -> Result<DesignVector, Inverse
         Run { best: DesignVector },
         Alone(DesignVector),
     }
-    let text = regular_file::read(path).map_err(|source| InverseDesignError::Folder {
-        path: path.to_owned(),
-        source,
-    })?;
+    let text = regular_file::read(path).map_err(FileError::at(path))?;
     let stored = sealed_json::from_slice(&text).map_err(|source| InverseDesignError::State {
         path: path.to_owned(),
         source,
@@ -188,10 +180,7 @@ pub fn inverse_design(
 ) -> Result<Designed, InverseDesignError> {
     let problem = scene.problem()?;
     let folder = scene.output();
-    std::fs::create_dir_all(&folder).map_err(|source| InverseDesignError::Folder {
-        path: folder.clone(),
-        source,
-    })?;
+    std::fs::create_dir_all(&folder).map_err(FileError::at(&folder))?;
     let path = folder.join(STATE_FILE);
     let design = scene.start();
     let start = problem
@@ -232,7 +221,7 @@ pub fn inverse_design(
                 save(search)?;
                 saved = Instant::now();
             }
-            Ok::<_, InverseDesignError>(())
+            Ok::<_, FileError>(())
         },
     )?;
     save(&search)?;
@@ -266,12 +255,8 @@ impl State {
     /// The state in a file; `None` if there is no file.
     fn load(path: &Path) -> Result<Option<Self>, InverseDesignError> {
         let text = match regular_file::read(path) {
-            Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-            Err(source) => {
-                let path = path.to_owned();
-                return Err(InverseDesignError::Folder { path, source });
-            }
+            text => text.map_err(FileError::at(path))?,
         };
         let state = sealed_json::from_slice(&text);
         state.map(Some).map_err(|source| InverseDesignError::State {
@@ -327,13 +312,8 @@ impl State {
         Ok(Some(state))
     }
 
-    fn write(&self, path: &Path) -> Result<(), InverseDesignError> {
-        sealed_json::to_vec(self)
-            .map_err(std::io::Error::from)
-            .and_then(|text| whole_file::write(path, &text))
-            .map_err(|source| InverseDesignError::Folder {
-                path: path.to_owned(),
-                source,
-            })
+    fn write(&self, path: &Path) -> Result<(), FileError> {
+        let text = sealed_json::to_vec(self).map_err(FileError::at(path))?;
+        whole_file::write(path, &text).map_err(FileError::at(path))
     }
 }

@@ -1,6 +1,5 @@
 //! The hinge law as written in a scene.
 
-use crate::hinge_law::{Contact, InvalidContact};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -51,13 +50,6 @@ pub struct ContactConfig {
     pub phi_min_deg: f64,
     /// Void angle at which contact begins (deg), at most 0.
     pub phi_cut_deg: f64,
-}
-
-impl ContactConfig {
-    pub(super) fn contact(self) -> Result<Contact, InvalidContact> {
-        let [phi_min, phi_cut] = [self.phi_min_deg, self.phi_cut_deg].map(f64::to_radians);
-        Contact::new(self.stiffness, phi_min, phi_cut)
-    }
 }
 
 /// The weights of (14).

@@ -16,7 +16,7 @@ use crate::sheet::cut_sheet::{Centroid, HingePoint};
 use hinge::{HingeConstants, SheetMaterial};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The keys of a scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -115,6 +115,16 @@ pub struct OptimiserConfig {
     pub seed: u64,
 }
 
+/// The folder of a scene file.
+pub(super) fn folder(scene: &Path) -> &Path {
+    scene.parent().unwrap_or(Path::new(""))
+}
+
+/// A path written relative to the scene file, without `.` inside.
+pub(super) fn beside(scene: &Path, path: &Path) -> PathBuf {
+    folder(scene).join(path).components().collect()
+}
+
 fn default_load_steps() -> usize {
     10
 }
@@ -139,7 +149,8 @@ impl SceneConfig {
     /// Multiplies every load: on panels, on edges and on hinges.
     pub fn scale_loads(&mut self, factor: f64) {
         (self.loads.iter_mut()).for_each(|load| load.scale(factor));
-        (self.edge_loads.iter_mut()).for_each(|load| load.scale(factor));
+        (self.edge_loads.iter_mut())
+            .for_each(|load| load.traction = load.traction.map(|traction| factor * traction));
         (self.opening_couples.iter_mut()).for_each(|load| load.couple *= factor);
     }
 }

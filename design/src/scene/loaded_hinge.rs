@@ -2,10 +2,9 @@
 
 use crate::equilibrium::tangent::MIN_PIVOT_RATIO;
 use crate::hinge_law::{CondensedLaw, Contact, DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
-use crate::scene::hinge_model::{CondensedConfig, HingeModel, LinearConstants, PinConfig};
-use crate::scene::invalid_hinge::{InvalidHinge, WeightsMismatch};
-use crate::scene::keys::SceneConfig;
-use crate::scene::relative_path::beside;
+use crate::scene::hinge_model::{CondensedConfig, HingeModel, LinearConstants};
+use crate::scene::invalid_scene::{InvalidScene, WeightsMismatch};
+use crate::scene::keys::{SceneConfig, beside};
 use crate::scene::scene_error::SceneError;
 use crate::sheet::cut_sheet::HingePoint;
 use hinge::SheetMaterial;
@@ -33,8 +32,6 @@ pub struct LoadedHinge {
     pub(super) hinge_point: HingePoint,
     /// The networks that the law reads, its own first, then those of the ensemble.
     pub(super) networks: Vec<Surrogate>,
-    /// The file of the first network, as the scene names it.
-    pub weights_file: Option<PathBuf>,
 }
 
 /// How hinges open.
@@ -66,31 +63,14 @@ impl LoadedHinge {
         measured: &SheetMaterial,
         path: &Path,
     ) -> Result<Self, SceneError> {
-        let refuse = |source| SceneError::Hinge {
-            path: path.to_owned(),
-            source: Box::new(source),
-        };
-        let missing = |section| refuse(InvalidHinge::NoSection(section));
-        let networks = |section| networks(config, section, measured, path);
+        let networks = networks(config, measured, path)?;
         let hinge = match config.hinge {
-            HingeModel::Pin => {
-                let pin = config.pin.ok_or_else(|| missing("pin"))?;
-                pinned(config, pin).map_err(refuse)
-            }
-            HingeModel::Linear => match (&config.condensed, config.linear) {
-                (Some(file), _) => condensed(config, networks("condensed")?, file).map_err(refuse),
-                (None, Some(constants)) => linear(config, constants).map_err(refuse),
-                (None, None) => Err(missing("linear")),
-            },
-            HingeModel::Surrogate => {
-                config
-                    .surrogate
-                    .as_ref()
-                    .ok_or_else(|| missing("surrogate"))?;
-                learned(config, networks("surrogate")?).map_err(refuse)
-            }
-        }?;
-        hinge.check_objective(config).map_err(refuse)?;
+            HingeModel::Pin => pinned(config),
+            HingeModel::Linear => linear(config, networks),
+            HingeModel::Surrogate => learned(config, networks),
+        };
+        let hinge = hinge.map_err(SceneError::at(path))?;
+        (hinge.check_objective(config)).map_err(SceneError::at(path))?;
         Ok(hinge)
     }
 
@@ -116,10 +96,10 @@ impl LoadedHinge {
     }
 
     /// An error if the objective needs a prediction that the law does not make.
-    fn check_objective(&self, config: &SceneConfig) -> Result<(), InvalidHinge> {
+    fn check_objective(&self, config: &SceneConfig) -> Result<(), InvalidScene> {
         let objective = &config.objective;
         if objective.domain > 0.0 && self.predictors().is_empty() {
-            return Err(InvalidHinge::NoDomain);
+            return Err(InvalidScene::NoDomain);
         }
         let predicts = |measure| match &self.behaviour {
             HingeBehaviour::Pinned { .. } => false,
@@ -129,26 +109,30 @@ impl LoadedHinge {
             return Ok(());
         }
         Err(if predicts(DamageMeasure::Mean) {
-            InvalidHinge::NoPeakDamage
+            InvalidScene::NoPeakDamage
         } else {
-            InvalidHinge::NoDamage
+            InvalidScene::NoDamage
         })
     }
 }
 
-/// The networks that the hinge law reads, named in a section of the scene, at the thickness of the sheet.
+/// The networks that the hinge law reads, at the thickness of the sheet.
 fn networks(
     config: &SceneConfig,
-    section: &'static str,
     measured: &SheetMaterial,
     path: &Path,
 ) -> Result<Vec<Surrogate>, SceneError> {
     let load = |weights: PathBuf| {
         let file = beside(path, &weights);
         if !file.is_file() {
-            let path = path.to_owned();
-            let source = Box::new(InvalidHinge::NoWeights { section, file });
-            return Err(SceneError::Hinge { path, source });
+            let section = match config.hinge {
+                HingeModel::Surrogate => "surrogate",
+                HingeModel::Linear | HingeModel::Pin => "condensed",
+            };
+            return Err(SceneError::at(path)(InvalidScene::NoWeights {
+                section,
+                file,
+            }));
         }
         network(config, measured, path, &file)
     };
@@ -166,9 +150,7 @@ pub(super) fn network(
     let surrogate = Surrogate::load(weights)?;
     fitted(config, measured, surrogate).map_err(|source| {
         let file = weights.to_owned();
-        let path = path.to_owned();
-        let source = Box::new(InvalidHinge::OtherHinges { file, source });
-        SceneError::Hinge { path, source }
+        SceneError::at(path)(InvalidScene::OtherHinges { file, source })
     })
 }
 
@@ -178,39 +160,43 @@ fn condensed(
     config: &SceneConfig,
     networks: Vec<Surrogate>,
     file: &CondensedConfig,
-) -> Result<LoadedHinge, InvalidHinge> {
-    let secant = file.secant_deg;
-    let law = CondensedLaw::new(networks[0].clone(), secant.to_radians());
+) -> Result<LoadedHinge, InvalidScene> {
+    let law = CondensedLaw {
+        surrogate: networks[0].clone(),
+        secant: file.secant_deg.to_radians(),
+    };
     let constants = constants_at_start(config, &law);
     let [_, _, k_theta] = constants;
     if !constants.iter().all(|constant| *constant > 0.0) {
         let w_lig = config.ligament.start;
-        return Err(InvalidHinge::Condensed { w_lig, constants });
+        return Err(InvalidScene::Condensed { w_lig, constants });
     }
-    Ok(LoadedHinge {
-        networks,
-        weights_file: Some(file.weights.clone()),
-        ..springs(Arc::new(law), contact(config, k_theta, CONTACT_WALL)?)
-    })
+    let contact = contact(config, k_theta, CONTACT_WALL)?;
+    Ok(springs(Arc::new(law), contact, networks))
 }
 
 /// The learned law; the contact stiffness is relative to the secant stiffness of a hinge of the start.
-fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge, InvalidHinge> {
+fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge, InvalidScene> {
     same_training(&networks)?;
-    let surrogate = &networks[0];
+    let surrogate = networks.first();
+    let surrogate = surrogate.ok_or(InvalidScene::NoSection("surrogate"))?;
     let [_, _, [closed, _]] = surrogate.domain().bounds();
     let wall = if closed < 0.0 { closed } else { CONTACT_WALL };
-    let secant = CondensedLaw::new(surrogate.clone(), TYPICAL_SECANT);
+    let secant = CondensedLaw {
+        surrogate: surrogate.clone(),
+        secant: TYPICAL_SECANT,
+    };
     let [.., k_theta] = constants_at_start(config, &secant);
     Ok(LoadedHinge {
         label: "learned energy (14)",
         behaviour: HingeBehaviour::Elastic {
-            law: Arc::new(SurrogateLaw::new(surrogate.clone())),
+            law: Arc::new(SurrogateLaw {
+                surrogate: surrogate.clone(),
+            }),
             contact: contact(config, k_theta.abs().max(f64::MIN_POSITIVE), wall)?,
         },
         hinge_point: HingePoint::CutTip,
         networks,
-        weights_file: config.weights_files().into_iter().next(),
     })
 }
 
@@ -222,16 +208,19 @@ fn constants_at_start(config: &SceneConfig, law: &CondensedLaw) -> [f64; 3] {
 
 /// The contact of a scene, or by default one for hinges with the stiffness `k_theta` that becomes infinite at the
 /// void angle `wall` (rad).
-fn contact(config: &SceneConfig, k_theta: f64, wall: f64) -> Result<Contact, InvalidHinge> {
+fn contact(config: &SceneConfig, k_theta: f64, wall: f64) -> Result<Contact, InvalidScene> {
     let contact = match config.contact {
-        Some(contact) => contact.contact(),
+        Some(given) => {
+            let [wall, begin] = [given.phi_min_deg, given.phi_cut_deg].map(f64::to_radians);
+            Contact::new(given.stiffness, wall, begin)
+        }
         None => Contact::new(CONTACT_STIFFNESS * k_theta, wall, 0.0),
     };
     Ok(contact?)
 }
 
 /// The spread of networks trained on different data estimates the error of neither.
-fn same_training(networks: &[Surrogate]) -> Result<(), InvalidHinge> {
+fn same_training(networks: &[Surrogate]) -> Result<(), InvalidScene> {
     let data = |network: &Surrogate| {
         let card = network.card();
         (card.dataset_hash.clone(), card.split_hash.clone())
@@ -242,13 +231,14 @@ fn same_training(networks: &[Surrogate]) -> Result<(), InvalidHinge> {
     {
         return Ok(());
     }
-    Err(InvalidHinge::OtherTraining)
+    Err(InvalidScene::OtherTraining)
 }
 
-fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, InvalidHinge> {
+fn pinned(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
+    let pin = config.pin.ok_or(InvalidScene::NoSection("pin"))?;
     let held_or_loaded = !config.supports.is_empty() || config.has_loads();
     if held_or_loaded || config.drive.is_some() || config.contact.is_some() {
-        return Err(InvalidHinge::HeldPins);
+        return Err(InvalidScene::HeldPins);
     }
     Ok(LoadedHinge {
         label: "pins: kinematics without forces",
@@ -257,32 +247,34 @@ fn pinned(config: &SceneConfig, pin: PinConfig) -> Result<LoadedHinge, InvalidHi
         },
         hinge_point: HingePoint::Corner,
         networks: Vec::new(),
-        weights_file: None,
     })
 }
 
 /// A law of springs (11).
-fn springs(law: Arc<dyn HingeLaw>, contact: Contact) -> LoadedHinge {
+fn springs(law: Arc<dyn HingeLaw>, contact: Contact, networks: Vec<Surrogate>) -> LoadedHinge {
     LoadedHinge {
         label: "linear springs (11)",
         behaviour: HingeBehaviour::Elastic { law, contact },
         hinge_point: HingePoint::Corner,
-        networks: Vec::new(),
-        weights_file: None,
+        networks,
     }
 }
 
-fn linear(config: &SceneConfig, constants: LinearConstants) -> Result<LoadedHinge, InvalidHinge> {
+fn linear(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge, InvalidScene> {
+    if let Some(file) = &config.condensed {
+        return condensed(config, networks, file);
+    }
+    let constants = config.linear.ok_or(InvalidScene::NoSection("linear"))?;
     let LinearConstants { k_a, k_s, k_theta } = constants;
     let grid = config.sheet.grid();
     let panel = config.sheet.outline().area().abs() / grid.panel_count() as f64;
     let ratio = k_theta / (k_a.max(k_s) * panel);
     if ratio < MIN_PIVOT_RATIO {
-        return Err(InvalidHinge::Soft { ratio });
+        return Err(InvalidScene::Soft { ratio });
     }
-    let law = LinearLaw::uniform([k_a, k_s, k_theta], grid.hinge_count())?;
+    let law = LinearLaw::uniform([k_a, k_s, k_theta], grid.hinge_count());
     let contact = contact(config, k_theta, CONTACT_WALL)?;
-    Ok(springs(Arc::new(law), contact))
+    Ok(springs(Arc::new(law), contact, networks))
 }
 
 /// Relative difference of r_win from that of the weights that rounding in a scene file may cause.

@@ -1,5 +1,6 @@
 //! The deployed sheet in the position in which the objective compares it with the target.
 
+use crate::geometry::polygon::mean;
 use crate::objective::design_problem::Deployment;
 use crate::objective::shape::OutlinePoints;
 use crate::scene::checked_scene::Scene;
@@ -13,10 +14,9 @@ pub fn placed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> Confi
     let mut placed = configuration.to_vec();
     if scene.config.supports.is_empty() {
         let points = scene.config.objective.outline.corners(sheet);
-        let points = corners(sheet, points, configuration);
+        let middle = mean(&corners(sheet, points, configuration));
         for axis in 0..2 {
-            let sum: f64 = points.iter().map(|point| point[axis]).sum();
-            let shift = scene.target.mean()[axis] - sum / points.len() as f64;
+            let shift = scene.target.mean()[axis] - middle[axis];
             placed.iter_mut().for_each(|motion| motion[axis] += shift);
         }
     }

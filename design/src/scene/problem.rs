@@ -7,6 +7,7 @@ use crate::objective::terms::Setting;
 use crate::pattern::design_vector::{DesignVector, WidthChart};
 use crate::pattern::grid::Grid;
 use crate::scene::checked_scene::Scene;
+use crate::scene::invalid_scene::InvalidScene;
 use crate::scene::loaded_hinge::HingeBehaviour;
 use crate::scene::scene_error::SceneError;
 use rand::{RngExt, SeedableRng};
@@ -33,10 +34,8 @@ impl Scene {
             return Ok(problem);
         }
         let balanced = problem.balanced(&self.start());
-        balanced.map_err(|source| SceneError::Balance {
-            path: self.path.clone(),
-            source,
-        })
+        let balanced = balanced.map_err(InvalidScene::Balance);
+        balanced.map_err(SceneError::at(&self.path))
     }
 
     fn width_chart(&self) -> WidthChart {
@@ -66,20 +65,11 @@ impl Scene {
         design
     }
 
-    /// Area of the sheet divided by the number of panels (mm^2); the weights of the objective are relative to it.
-    pub fn mean_panel_area(&self) -> f64 {
-        self.config.sheet.mean_panel_area()
-    }
-
     fn objective(&self, model: &Model) -> Objective {
-        let law = match model {
-            Model::Ideal { .. } => None,
-            Model::Equilibrium(mechanics) => Some(&*mechanics.law),
-        };
         self.config.objective.objective(&Setting {
             target: &self.target,
-            law,
-            mean_panel_area: self.mean_panel_area(),
+            law: model.mechanics().map(|mechanics| &*mechanics.law),
+            mean_panel_area: self.config.sheet.mean_panel_area(),
             r_win: self.config.process.r_win,
         })
     }
@@ -89,10 +79,7 @@ impl Scene {
             HingeBehaviour::Pinned { opening } => return Ok(Model::Ideal { opening: *opening }),
             HingeBehaviour::Elastic { law, contact } => (law.clone(), *contact),
         };
-        let solver = self.solver().map_err(|source| SceneError::Equilibrium {
-            path: self.path.clone(),
-            source,
-        })?;
+        let solver = self.solver().map_err(SceneError::at(&self.path))?;
         Ok(Model::Equilibrium(Box::new(Mechanics {
             law,
             contact: Some(contact),

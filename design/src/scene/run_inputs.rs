@@ -11,12 +11,12 @@
 //! The state of the run holds the BLAKE3 hash of each of them.
 
 use crate::scene::checked_scene::Scene;
-use crate::scene::keys::SceneConfig;
-use crate::scene::relative_path::beside;
+use crate::scene::keys::{SceneConfig, beside};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
+use support::file_error::FileError;
 use support::sealed_json::{self, SealError};
 use support::{regular_file, whole_file};
 
@@ -31,13 +31,10 @@ pub(super) type InputHashes = BTreeMap<String, String>;
 
 /// Why the inputs of a run cannot be written or read.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum RunInputsError {
-    #[error("cannot use {path}: {source}", path = .path.display())]
-    File { path: PathBuf, source: io::Error },
+    #[error("cannot use {0}")]
+    File(#[from] FileError),
     #[error("{path} is a folder without the state of a run: name a scene, or the folder of a run", path = .path.display())]
     NoRun { path: PathBuf },
     #[error("{path} is not the state of a run: {source}", path = .path.display())]
@@ -93,13 +90,13 @@ pub fn scene_file(path: &Path) -> Result<PathBuf, RunInputsError> {
 }
 
 /// Copies the files that a scene reads to its run folder, and writes the scene that names the copies.
-pub(super) fn keep(scene: &Scene) -> Result<InputHashes, RunInputsError> {
+pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
     let mut kept = Kept {
         scene,
         hashes: InputHashes::new(),
     };
     let folder = scene.output().join(FOLDER);
-    whole_file::create_folder(&folder).map_err(at(&folder))?;
+    whole_file::create_folder(&folder).map_err(FileError::at(&folder))?;
     let mut config = scene.config.without_unread_weights();
     config.output = ".".into();
     config.material = kept.write(
@@ -131,17 +128,17 @@ struct Kept<'a> {
 
 impl Kept<'_> {
     /// Writes a file unless it has these contents already; returns its path relative to the run folder.
-    fn write(&mut self, name: &str, contents: &[u8]) -> Result<PathBuf, RunInputsError> {
+    fn write(&mut self, name: &str, contents: &[u8]) -> Result<PathBuf, FileError> {
         let path = self.scene.output().join(name);
         if !path.exists() || read(&path)? != contents {
-            whole_file::write(&path, contents).map_err(at(&path))?;
+            whole_file::write(&path, contents).map_err(FileError::at(&path))?;
         }
         let hash = blake3::hash(contents).to_hex().to_string();
         self.hashes.insert(name.to_owned(), hash);
         Ok(name.into())
     }
 
-    fn copy(&mut self, from: &Path, name: &str) -> Result<PathBuf, RunInputsError> {
+    fn copy(&mut self, from: &Path, name: &str) -> Result<PathBuf, FileError> {
         let contents = read(from)?;
         self.write(name, &contents)
     }
@@ -166,16 +163,11 @@ impl SceneConfig {
     }
 }
 
-fn toml(value: &impl Serialize, folder: &Path) -> Result<Vec<u8>, RunInputsError> {
+fn toml(value: &impl Serialize, folder: &Path) -> Result<Vec<u8>, FileError> {
     let text = toml::to_string(value).map_err(io::Error::other);
-    Ok(text.map_err(at(folder))?.into_bytes())
+    Ok(text.map_err(FileError::at(folder))?.into_bytes())
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, RunInputsError> {
-    regular_file::read(path).map_err(at(path))
-}
-
-fn at(path: &Path) -> impl FnOnce(io::Error) -> RunInputsError {
-    let path = path.to_owned();
-    |source| RunInputsError::File { path, source }
+fn read(path: &Path) -> Result<Vec<u8>, FileError> {
+    regular_file::read(path).map_err(FileError::at(path))
 }

@@ -28,7 +28,7 @@ impl SceneConfig {
     }
 
     /// The weights that the hinge law reads: its own first, then those of the ensemble.
-    pub(super) fn weights_files(&self) -> Vec<PathBuf> {
+    pub fn weights_files(&self) -> Vec<PathBuf> {
         let mut config = self.clone();
         config
             .weights_files_mut()

@@ -21,10 +21,7 @@ use serde::{Deserialize, Serialize};
 
 /// Why a pattern and its ligament widths do not define a sheet.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum SheetError {
     #[error("{found} ligament widths for {expected} hinges")]
     WidthCount { found: usize, expected: usize },

@@ -4,7 +4,7 @@
 //! from the tip O. Hinge energies are additive only if the windows are disjoint and lie within the two panels
 //! that their hinges join.
 
-use crate::geometry::polygon::{clip, common, contains, distance_to_polygon};
+use crate::geometry::polygon::{clip, common, contains, distance, distance_to_polygon};
 use crate::sheet::cut_sheet::{Hinge, Panel, Sheet};
 use std::f64::consts::PI;
 
@@ -78,7 +78,7 @@ impl Window {
     /// Whether the areas of two windows overlap.
     pub fn overlaps(&self, other: &Self) -> bool {
         let touch = TOUCH * self.radius.max(other.radius);
-        let apart = f64::hypot(other.foot[0] - self.foot[0], other.foot[1] - self.foot[1]);
+        let apart = distance(self.foot, other.foot);
         if apart >= self.radius + other.radius - touch {
             return false;
         }

@@ -55,9 +55,8 @@ pub fn deployed_pullback(
 
 /// The deformation (8) of every hinge.
 pub fn hinge_deformations(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<HingeDeformation> {
-    (0..sheet.hinges.len())
-        .map(|h| HingeMotion::new(sheet, h, configuration).deformation())
-        .collect()
+    let motions = HingeMotion::all(sheet, configuration);
+    motions.iter().map(HingeMotion::deformation).collect()
 }
 
 /// The kinematics of a hinge in one configuration: the terms of (8) from which its derivatives are computed.
@@ -97,6 +96,11 @@ pub struct HingeGeometryGradient {
 }
 
 impl HingeMotion {
+    pub(crate) fn all(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<Self> {
+        let hinges = 0..sheet.hinges.len();
+        hinges.map(|h| Self::new(sheet, h, configuration)).collect()
+    }
+
     /// The kinematics of one hinge, given by its index.
     pub fn new(sheet: &Sheet, hinge: usize, configuration: &[[f64; 3]]) -> Self {
         let hinge = &sheet.hinges[hinge];

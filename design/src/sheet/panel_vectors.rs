@@ -1,25 +1,7 @@
-//! Vectors in the degrees of freedom of the panels: all of them as (x, y, phi) per panel, the free
-//! ones as one vector, or the six of the two panels of a hinge.
+//! Vectors in the degrees of freedom of the panels: all of them as (x, y, phi) per panel, or the six of the two panels
+//! of a hinge.
 
 use crate::sheet::cut_sheet::Hinge;
-
-/// The vector of the free components; `free` holds their indices, three entries per panel.
-pub(crate) fn gather(free: &[Option<usize>], by_panel: &[[f64; 3]]) -> Vec<f64> {
-    let mut row = vec![0.0; free.iter().flatten().count()];
-    for (number, component) in std::iter::zip(free, by_panel.as_flattened()) {
-        if let Some(number) = number {
-            row[*number] = *component;
-        }
-    }
-    row
-}
-
-/// The inverse of [`gather`]; supported components are zero.
-pub(crate) fn spread(free: &[Option<usize>], row: &[f64]) -> Vec<[f64; 3]> {
-    free.chunks(3)
-        .map(|numbers| std::array::from_fn(|d| numbers[d].map_or(0.0, |i| row[i])))
-        .collect()
-}
 
 /// The components of the two panels of a hinge.
 pub(crate) fn at_hinge(hinge: &Hinge, by_panel: &[[f64; 3]]) -> [f64; 6] {

@@ -83,16 +83,8 @@ fn hinge_site(grid: Grid, i: usize, j: usize, endpoint: Endpoint) -> Option<Hing
 
 /// The panel whose given corner lies at vertex (i, j), if there is one.
 fn panel_with_corner(grid: Grid, i: usize, j: usize, corner: usize) -> Option<PanelCorner> {
-    let p = if corner == SW || corner == NW {
-        Some(i)
-    } else {
-        i.checked_sub(1)
-    }?;
-    let q = if corner == SW || corner == SE {
-        Some(j)
-    } else {
-        j.checked_sub(1)
-    }?;
+    let p = i.checked_sub(usize::from(corner == SE || corner == NE))?;
+    let q = j.checked_sub(usize::from(corner == NE || corner == NW))?;
     (p < grid.m && q < grid.n).then(|| (grid.panel(p, q), corner))
 }
 

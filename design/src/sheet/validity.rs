@@ -1,7 +1,7 @@
 //! Whether a pattern and its ligament widths can be cut and modelled: areas, overlaps, void
 //! sides, space for the windows, cut angles.
 
-use crate::geometry::polygon::{area, common};
+use crate::geometry::polygon::{area, common, distance};
 use crate::pattern::cut_pattern::CutPattern;
 use crate::pattern::grid::Grid;
 use crate::sheet::cut_sheet::{Panel, Sheet};
@@ -118,7 +118,7 @@ fn hinge_spacings(sheet: &Sheet) -> Vec<f64> {
         for (i, &one) in hinges.iter().enumerate() {
             for &other in &hinges[..i] {
                 let [p, q] = [one, other].map(|h| sheet.hinges[h].corner);
-                let apart = f64::hypot(q[0] - p[0], q[1] - p[1]);
+                let apart = distance(p, q);
                 spacings[one] = spacings[one].min(apart);
                 spacings[other] = spacings[other].min(apart);
             }

@@ -64,7 +64,7 @@ fn moments_in_balance_open_any_pattern_ideally() {
     let (k_theta, theta, steps) = (0.8, 1.2, 6);
     for name in ["p0_3x3_uniform", "p1_3x3_random", "p2_4x7_random"] {
         let sheet = cases::sheet(&case(name));
-        let law = LinearLaw::uniform([90.0, 40.0, k_theta], sheet.hinges.len()).unwrap();
+        let law = LinearLaw::uniform([90.0, 40.0, k_theta], sheet.hinges.len());
         let loads = opening_moments(&sheet, 4, k_theta * theta);
         let path = path(&sheet, &law, &clamp(4), &loads, steps);
         assert_eq!(path.len(), steps);
@@ -101,7 +101,7 @@ fn the_pitch_of_a_uniform_sheet_follows_its_panel_diagonal() {
 #[test]
 fn the_response_to_small_loads_is_linear() {
     let sheet = cases::sheet(&case("p1_3x3_random"));
-    let law = LinearLaw::uniform([90.0, 40.0, 0.8], sheet.hinges.len()).unwrap();
+    let law = LinearLaw::uniform([90.0, 40.0, 0.8], sheet.hinges.len());
     let response = |force: f64| {
         let load = Load {
             panel: 5,

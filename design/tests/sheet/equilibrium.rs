@@ -16,7 +16,9 @@ fn a_clamped_and_pulled_sheet() {
     let stiffness: Vec<[f64; 3]> = (0..sheet.hinges.len())
         .map(|h| [k_a[h], k_s[h], k_theta[h]])
         .collect();
-    let law = LinearLaw::new(stiffness.clone()).unwrap();
+    let law = LinearLaw {
+        stiffness: stiffness.clone(),
+    };
     let solver = EquilibriumSolver::new(
         sheet.grid,
         &cases::supports(&case),

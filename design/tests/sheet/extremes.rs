@@ -78,9 +78,12 @@ fn pull(value: f64) -> Load {
 #[test]
 fn no_load_leaves_the_sheet_flat() {
     let sheet = cases::sheet(&case("p1_3x3_random"));
-    let law = LinearLaw::uniform([90.0, 40.0, 0.8], 12).unwrap();
+    let law = LinearLaw::uniform([90.0, 40.0, 0.8], 12);
     for step in path(&sheet, &law, &clamp(3), &[], 3) {
-        assert_eq!((step.status, step.iterations), (Status::Converged, 0));
+        assert_eq!(
+            (step.status, step.effort.iterations),
+            (Status::Converged, 0)
+        );
         assert_eq!(step.configuration, vec![[0.0; 3]; 9]);
     }
 }
@@ -89,7 +92,7 @@ fn no_load_leaves_the_sheet_flat() {
 fn loads_of_any_size_and_sign_end_in_a_status() {
     let sheet = cases::sheet(&case("p1_3x3_random"));
     for stiffness in [[90.0, 40.0, 0.8], [1e4, 1e4, 1.0], [1.0, 1.0, 1e-6]] {
-        let law = LinearLaw::uniform(stiffness, 12).unwrap();
+        let law = LinearLaw::uniform(stiffness, 12);
         for force in [1e-12, -0.3, 3.0, -30.0, 1e4, -1e9] {
             assert_finite(&path(&sheet, &law, &clamp(3), &[pull(force)], 5));
         }
@@ -99,7 +102,7 @@ fn loads_of_any_size_and_sign_end_in_a_status() {
 #[test]
 fn a_load_that_no_wall_can_carry_diverges_and_keeps_the_last_equilibrium() {
     let sheet = cases::sheet(&case("p0_3x3_uniform"));
-    let law = LinearLaw::uniform([100.0, 100.0, 1.0], 12).unwrap();
+    let law = LinearLaw::uniform([100.0, 100.0, 1.0], 12);
     let loads = opening_moments(&sheet, 4, -1e18);
     let settings = SolverSettings::default();
     let solver = EquilibriumSolver::new(sheet.grid, &clamp(4), &loads, 4, settings).unwrap();
@@ -123,7 +126,7 @@ fn a_load_that_no_wall_can_carry_diverges_and_keeps_the_last_equilibrium() {
 #[test]
 fn contact_carries_a_load_that_closes_the_sheet() {
     let sheet = cases::sheet(&case("p0_3x3_uniform"));
-    let law = LinearLaw::uniform([100.0, 100.0, 1.0], 12).unwrap();
+    let law = LinearLaw::uniform([100.0, 100.0, 1.0], 12);
     let contact = Contact::new(10.0, -0.2, -0.01).unwrap();
     let loads = opening_moments(&sheet, 4, -5.0);
     let settings = SolverSettings::default();
@@ -156,7 +159,7 @@ fn an_energy_with_few_digits_converges_by_its_forces() {
     let sheet = cases::sheet(&case("p1_3x3_random"));
     for step in path(&sheet, &law, &clamp(3), &[pull(1e-2)], 5) {
         assert_eq!(step.status, Status::Converged);
-        assert!(step.iterations <= 6);
+        assert!(step.effort.iterations <= 6);
     }
 }
 
@@ -226,7 +229,7 @@ fn a_sheet_without_any_stiffness_is_reported_as_singular_or_diverged() {
 #[test]
 fn a_sheet_supported_everywhere_stays_at_its_supports() {
     let sheet = cases::sheet(&case("p1_3x3_random"));
-    let law = LinearLaw::uniform([90.0, 40.0, 0.8], 12).unwrap();
+    let law = LinearLaw::uniform([90.0, 40.0, 0.8], 12);
     let everywhere: Vec<Support> = (0..9).flat_map(clamp).collect();
     let path = path(&sheet, &law, &everywhere, &[], 2);
     assert!(path.iter().all(|step| step.status == Status::Converged));
@@ -308,14 +311,6 @@ fn impossible_supports_and_loads_are_named() {
         new(&twice, &[], 1),
         EquilibriumError::SupportedTwice { panel: 3, .. }
     ));
-    let hasty = SolverSettings {
-        tolerance: 0.0,
-        ..settings
-    };
-    assert_eq!(
-        EquilibriumSolver::new(grid, &clamp(3), &[], 1, hasty).unwrap_err(),
-        EquilibriumError::Settings(hasty)
-    );
     // A pin and a roller are sufficient supports.
     let statically = [(0, Dof::UX), (0, Dof::UY), (2, Dof::UY)];
     let statically = statically.map(|(panel, dof)| support(panel, dof, 0.0));

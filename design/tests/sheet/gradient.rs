@@ -24,7 +24,14 @@ fn functionals(case: &Value) -> Vec<Weighted> {
         temperature: temperature("shear"),
     };
     vec![
-        Weighted::new(weight("damage"), Damage::new(DamageMeasure::Mean, 1.0)),
+        Weighted::new(
+            weight("damage"),
+            Damage {
+                measure: DamageMeasure::Mean,
+                scale: 1.0,
+                temperature: 0.1,
+            },
+        ),
         Weighted::new(weight("comp"), compression),
         Weighted::new(weight("shear"), shear),
     ]
@@ -41,7 +48,7 @@ fn a_pulled_sheet_with_path_functionals() {
     };
     let [w_minus, w_plus] = get(theta, "w_minus_plus");
     let grid = cases::grid(&case);
-    let law = LinearLaw::uniform(get(&case, "k_a_k_s_k_theta"), grid.hinge_count()).unwrap();
+    let law = LinearLaw::uniform(get(&case, "k_a_k_s_k_theta"), grid.hinge_count());
     let problem = DesignProblem {
         grid,
         outline: cases::outline(&case),

@@ -69,7 +69,7 @@ fn another_unit_of_length_or_force_gives_the_same_shape() {
         };
         let sheet = cut(outline, 0.1 * length, HingePoint::CutTip, 0.02 * length);
         let constants = [k_a / length, k_s / length, k_theta * length].map(|k| force * k);
-        let law = LinearLaw::uniform(constants, 12).unwrap();
+        let law = LinearLaw::uniform(constants, 12);
         let path = pulled(
             &sheet,
             &law,
@@ -98,7 +98,7 @@ fn a_scene_rotated_as_a_whole_deploys_alike() {
     let square = Outline::rectangle(300.0, 300.0);
     let laws: [(&dyn HingeLaw, HingePoint, f64); 2] = [
         (
-            &LinearLaw::uniform([20.0, 12.0, 1500.0], 12).unwrap(),
+            &LinearLaw::uniform([20.0, 12.0, 1500.0], 12),
             HingePoint::Corner,
             12.0,
         ),
@@ -180,7 +180,7 @@ fn a_mirrored_sheet_deploys_as_the_mirror_image() {
             load(Dof::UY, 0.4),
             load(Dof::Phi, side * 0.1),
         ];
-        let law = LinearLaw::new(stiffness).unwrap();
+        let law = LinearLaw { stiffness };
         path(sheet, &law, &clamp(held), &loads, 4)
     };
     let [held, loaded] = [grid.m, 2 * grid.m - 1];
@@ -205,7 +205,7 @@ fn a_mirrored_sheet_deploys_as_the_mirror_image() {
 #[test]
 fn hinges_store_the_work_of_the_loads() {
     let sheet = on(Outline::rectangle(300.0, 300.0), 16.0, HingePoint::CutTip);
-    let linear = LinearLaw::uniform([20.0, 12.0, 1500.0], 12).unwrap();
+    let linear = LinearLaw::uniform([20.0, 12.0, 1500.0], 12);
     let laws: [(&dyn HingeLaw, f64); 2] = [(&linear, 12.0), (&tiny(), 0.5)];
     for (law, force) in laws {
         let lost = |steps: usize| {
@@ -236,7 +236,7 @@ fn hinges_store_the_work_of_the_loads() {
 #[test]
 fn a_moved_support_has_the_load_as_its_reaction() {
     let sheet = Sheet::new(&pattern(&case("p1_3x3_random")), &[0.1; 12], AT_CORNER).unwrap();
-    let law = LinearLaw::uniform(CONSTANTS, 12).unwrap();
+    let law = LinearLaw::uniform(CONSTANTS, 12);
     let loaded = pulled(&sheet, &law, [1.5, 0.0], 0.0, 6);
     let way = loaded[5].configuration[5][0];
     let moved = Support {

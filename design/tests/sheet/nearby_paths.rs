@@ -56,7 +56,7 @@ fn a_corrected_path_is_the_followed_path() {
         }
         let loss = corrected.loss / followed.loss - 1.0;
         assert!(loss.abs() < 1e-10, "{seed}: {loss:e}");
-        let gradients = [&followed, &corrected].map(|it| it.gradient.to_flat());
+        let gradients = [&followed, &corrected].map(|evaluation| evaluation.gradient.to_flat());
         let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
         let apart: Vec<f64> = std::iter::zip(&gradients[0], &gradients[1])
             .map(|(a, b)| a - b)

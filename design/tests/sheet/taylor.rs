@@ -33,7 +33,9 @@ pub fn tiny() -> SurrogateLaw {
         env!("CARGO_MANIFEST_DIR"),
         "/tests/cases/chi_tiny.safetensors"
     );
-    SurrogateLaw::new(Surrogate::load(Path::new(weights)).unwrap())
+    SurrogateLaw {
+        surrogate: Surrogate::load(Path::new(weights)).unwrap(),
+    }
 }
 
 /// Clamped in the middle of the west edge, with a moment at a corner; in the middle of the east edge
@@ -116,7 +118,11 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
             functionals: vec![
                 Weighted::new(
                     300.0,
-                    Damage::new(DamageMeasure::Mean, scale.unwrap_or(1.0)),
+                    Damage {
+                        measure: DamageMeasure::Mean,
+                        scale: scale.unwrap_or(1.0),
+                        temperature: 0.1,
+                    },
                 ),
                 Weighted::new(1e4, Compression { temperature: 0.02 }),
                 Weighted::new(1e4, Shear { temperature: 0.02 }),
@@ -254,7 +260,7 @@ fn the_curvature_of_the_shape_is_that_of_its_points() {
 }
 
 fn springs() -> LinearLaw {
-    LinearLaw::uniform([20.0, 12.0, 1500.0], GRID.hinge_count()).unwrap()
+    LinearLaw::uniform([20.0, 12.0, 1500.0], GRID.hinge_count())
 }
 
 #[test]
@@ -282,7 +288,10 @@ fn driven_sheets() {
 #[test]
 fn linear_law_condensed_from_the_surrogate() {
     for secant in [0.0, 0.35] {
-        let law = CondensedLaw::new(tiny().surrogate().clone(), secant);
+        let law = CondensedLaw {
+            surrogate: tiny().surrogate,
+            secant,
+        };
         let model = mechanics(law, 80.0, East::Pulled(4.0));
         assert_order_two(&problem(model, HingePoint::CutTip), &start());
     }

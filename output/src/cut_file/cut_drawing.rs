@@ -1,6 +1,7 @@
 //! Shapes on layers: what every cut file draws. The shapes of a layer are cut one after the other.
 
-use crate::display::{Colour, Shape, Style};
+use crate::display::{Colour, Shape, Style, Text};
+use design::geometry::polygon::{area, mean};
 
 /// The tool or the purpose of a shape, in the order of cutting: what is cut later holds what is cut before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -23,31 +24,27 @@ pub enum Layer {
     Errors,
 }
 
+/// All layers in the order of cutting: their names in DXF and SVG, red, green and blue, and the AutoCAD colour index.
+const LAYERS: [(Layer, &str, Colour, u8); 8] = [
+    (Layer::Holes, "HOLES", [0, 0, 255], 5),
+    (Layer::Cut, "CUT", [255, 0, 0], 1),
+    (Layer::Joint, "JOINT", [255, 0, 255], 6),
+    (Layer::Outline, "OUTLINE", [0, 0, 0], 7),
+    (Layer::Panels, "PANELS", [0, 0, 0], 7),
+    (Layer::Registration, "REGISTRATION", [0, 128, 0], 3),
+    (Layer::Annotation, "ANNOTATION", [128, 128, 128], 8),
+    (Layer::Errors, "ERRORS", [255, 128, 0], 30),
+];
+
 impl Layer {
     /// All layers in the order of cutting.
-    pub const ALL: [Self; 8] = [
-        Self::Holes,
-        Self::Cut,
-        Self::Joint,
-        Self::Outline,
-        Self::Panels,
-        Self::Registration,
-        Self::Annotation,
-        Self::Errors,
-    ];
+    pub fn all() -> impl Iterator<Item = Self> {
+        LAYERS.iter().map(|(layer, ..)| *layer)
+    }
 
     /// The name of the layer in DXF and SVG.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Holes => "HOLES",
-            Self::Cut => "CUT",
-            Self::Joint => "JOINT",
-            Self::Outline => "OUTLINE",
-            Self::Panels => "PANELS",
-            Self::Registration => "REGISTRATION",
-            Self::Annotation => "ANNOTATION",
-            Self::Errors => "ERRORS",
-        }
+        LAYERS[self as usize].1
     }
 
     /// Whether the tool cuts the shapes of the layer.
@@ -57,15 +54,11 @@ impl Layer {
 
     /// Red, green and blue, 0 to 255.
     pub(super) fn rgb(self) -> Colour {
-        match self {
-            Self::Holes => [0, 0, 255],
-            Self::Cut => [255, 0, 0],
-            Self::Joint => [255, 0, 255],
-            Self::Outline | Self::Panels => [0, 0, 0],
-            Self::Registration => [0, 128, 0],
-            Self::Annotation => [128, 128, 128],
-            Self::Errors => [255, 128, 0],
-        }
+        LAYERS[self as usize].2
+    }
+
+    pub(super) fn colour_index(self) -> u8 {
+        LAYERS[self as usize].3
     }
 }
 
@@ -105,7 +98,7 @@ impl CutDrawing {
             Shape::Text(_) => Style::fill(layer.rgb()),
             _ => Style::stroke(layer.rgb(), width),
         };
-        Layer::ALL.into_iter().flat_map(move |layer| {
+        Layer::all().flat_map(move |layer| {
             let shapes = self.on(layer);
             shapes.map(move |shape| (style(layer, shape), shape))
         })
@@ -117,4 +110,18 @@ impl CutDrawing {
             shape.shift(by);
         }
     }
+}
+
+/// The panels of a deployed sheet with the given corners (mm), and their numbers, at 1:1.
+pub fn deployed_panels(panels: &[[[f64; 2]; 4]]) -> CutDrawing {
+    let mut drawing = CutDrawing::default();
+    for corners in panels {
+        drawing.add(Layer::Panels, Shape::Polygon(corners.to_vec()));
+    }
+    for (k, corners) in panels.iter().enumerate() {
+        let height = 0.1 * area(corners).sqrt();
+        let text = Text::centred(mean(corners), height, format!("P{k}"));
+        drawing.add(Layer::Annotation, Shape::Text(text));
+    }
+    drawing
 }

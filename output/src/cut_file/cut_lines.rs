@@ -19,8 +19,8 @@
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::fabrication_error::FabricationError;
 use crate::cut_file::written_check;
-use crate::display::{Shape, distance};
-use design::geometry::polygon::{distance_to_segment, edges};
+use crate::display::Shape;
+use design::geometry::polygon::{distance, distance_to_segment, edges};
 use design::pattern::cut_pattern::CutPattern;
 use design::scene::CuttingConfig;
 use design::sheet::cut_sheet::Sheet;

@@ -4,7 +4,8 @@
 //! by 2-opt: a run of cuts is cut backwards wherever this reduces the travel between the cuts.
 
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
-use crate::display::{Shape, distance};
+use crate::display::Shape;
+use design::geometry::polygon::distance;
 
 /// Maximum number of cuts in a run that is reversed: it bounds the time of a sweep over large sheets.
 const RUN: usize = 1000;
@@ -17,7 +18,7 @@ impl CutDrawing {
     pub fn in_cutting_order(&self, home: [f64; 2]) -> Self {
         let mut at = home;
         let mut ordered = Self::default();
-        for layer in Layer::ALL {
+        for layer in Layer::all() {
             let mut shapes: Vec<Shape> = self.on(layer).cloned().collect();
             if layer.is_cut() {
                 shapes.iter_mut().for_each(|shape| shape.begin_near(at));
@@ -92,14 +93,8 @@ fn nearest_neighbours(legs: &[Leg], from: [f64; 2]) -> Vec<Leg> {
     let mut tour = Vec::with_capacity(legs.len());
     while !left.is_empty() {
         let to = |leg: &Leg| distance(at, leg.1[0]).min(distance(at, leg.1[1]));
-        let nearest = (1..left.len()).fold(0, |best, i| {
-            if to(&left[i]) < to(&left[best]) {
-                i
-            } else {
-                best
-            }
-        });
-        let (i, [a, b]) = left.swap_remove(nearest);
+        let nearest = (0..left.len()).min_by(|&i, &j| to(&left[i]).total_cmp(&to(&left[j])));
+        let (i, [a, b]) = left.swap_remove(nearest.unwrap_or_default());
         let ends = if distance(at, b) < distance(at, a) {
             [b, a]
         } else {

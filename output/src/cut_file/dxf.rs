@@ -38,6 +38,10 @@ impl Pairs {
         let _ = write!(self.text, "{code:>3}\n{value}\n");
     }
 
+    fn pairs<const N: usize>(&mut self, pairs: [(u16, &str); N]) {
+        (pairs.iter()).for_each(|(code, value)| self.pair(*code, value));
+    }
+
     fn handle(&mut self, code: u16, handle: u32) {
         self.pair(code, format_args!("{handle:X}"));
     }
@@ -50,8 +54,7 @@ impl Pairs {
     }
 
     fn section(&mut self, name: &str) {
-        self.pair(0, "SECTION");
-        self.pair(2, name);
+        self.pairs([(0, "SECTION"), (2, name)]);
     }
 
     /// Begins an object with a new handle, which is returned.
@@ -68,16 +71,12 @@ impl Pairs {
 
     fn header(&mut self, [low, high]: [[f64; 2]; 2], next_handle: u32) {
         self.section("HEADER");
-        let variable = |pairs: &mut Self, name: &str, code: u16, value: &str| {
-            pairs.pair(9, name);
-            pairs.pair(code, value);
-        };
-        variable(self, "$ACADVER", 1, "AC1015");
-        variable(self, "$DWGCODEPAGE", 3, "ANSI_1252");
-        variable(self, "$HANDSEED", 5, &format!("{next_handle:X}"));
+        self.pairs([(9, "$ACADVER"), (1, "AC1015")]);
+        self.pairs([(9, "$DWGCODEPAGE"), (3, "ANSI_1252")]);
+        self.pairs([(9, "$HANDSEED"), (5, &format!("{next_handle:X}"))]);
         // Millimetres, metric.
-        variable(self, "$INSUNITS", 70, "4");
-        variable(self, "$MEASUREMENT", 70, "1");
+        self.pairs([(9, "$INSUNITS"), (70, "4")]);
+        self.pairs([(9, "$MEASUREMENT"), (70, "1")]);
         for (name, corner) in [("$EXTMIN", low), ("$EXTMAX", high)] {
             self.pair(9, name);
             self.point(10, corner);
@@ -104,15 +103,12 @@ impl Pairs {
         let table = self.table("LTYPE", 3);
         for name in ["ByBlock", "ByLayer", "Continuous"] {
             self.record("LTYPE", table, "AcDbLinetypeTableRecord", name);
-            self.pair(3, "");
-            self.pair(72, 65);
-            self.pair(73, 0);
-            self.pair(40, 0.0);
+            self.pairs([(3, ""), (72, "65"), (73, "0"), (40, "0")]);
         }
         self.pair(0, "ENDTAB");
 
-        let table = self.table("LAYER", 1 + Layer::ALL.len());
-        let layers = Layer::ALL.map(|layer| (layer.name(), colour_index(layer)));
+        let table = self.table("LAYER", 1 + Layer::all().count());
+        let layers = Layer::all().map(|layer| (layer.name(), layer.colour_index()));
         for (name, colour) in [("0", 7)].into_iter().chain(layers) {
             self.record("LAYER", table, "AcDbLayerTableRecord", name);
             self.pair(62, colour);
@@ -122,12 +118,8 @@ impl Pairs {
 
         let table = self.table("STYLE", 1);
         self.record("STYLE", table, "AcDbTextStyleTableRecord", "Standard");
-        for (code, value) in [(40, "0"), (41, "1"), (50, "0"), (71, "0"), (42, "2.5")] {
-            self.pair(code, value);
-        }
-        self.pair(3, "txt");
-        self.pair(4, "");
-        self.pair(0, "ENDTAB");
+        self.pairs([(40, "0"), (41, "1"), (50, "0"), (71, "0"), (42, "2.5")]);
+        self.pairs([(3, "txt"), (4, ""), (0, "ENDTAB")]);
 
         for empty in ["VIEW", "UCS"] {
             self.table(empty, 0);
@@ -152,8 +144,7 @@ impl Pairs {
             self.pair(340, 0);
             (name, handle)
         });
-        self.pair(0, "ENDTAB");
-        self.pair(0, "ENDSEC");
+        self.pairs([(0, "ENDTAB"), (0, "ENDSEC")]);
         self.blocks(spaces);
         spaces[0].1
     }
@@ -171,8 +162,7 @@ impl Pairs {
 
     fn record(&mut self, kind: &str, table: u32, class: &str, name: &str) {
         self.object(kind, table, &["AcDbSymbolTableRecord", class]);
-        self.pair(2, name);
-        self.pair(70, 0);
+        self.pairs([(2, name), (70, "0")]);
     }
 
     fn blocks(&mut self, spaces: [(&str, u32); 2]) {
@@ -186,11 +176,9 @@ impl Pairs {
                 self.pair(8, 0);
                 self.pair(100, class);
                 if kind == "BLOCK" {
-                    self.pair(2, name);
-                    self.pair(70, 0);
+                    self.pairs([(2, name), (70, "0")]);
                     self.point(10, [0.0; 2]);
-                    self.pair(3, name);
-                    self.pair(1, "");
+                    self.pairs([(3, name), (1, "")]);
                 }
             }
         }
@@ -250,25 +238,10 @@ impl Pairs {
     fn objects(&mut self) {
         self.section("OBJECTS");
         let root = self.object("DICTIONARY", 0, &["AcDbDictionary"]);
-        self.pair(281, 1);
-        self.pair(3, "ACAD_GROUP");
+        self.pairs([(281, "1"), (3, "ACAD_GROUP")]);
         self.handle(350, root + 1);
         self.object("DICTIONARY", root, &["AcDbDictionary"]);
-        self.pair(281, 1);
-        self.pair(0, "ENDSEC");
-    }
-}
-
-/// AutoCAD colour index.
-fn colour_index(layer: Layer) -> u8 {
-    match layer {
-        Layer::Cut => 1,
-        Layer::Registration => 3,
-        Layer::Holes => 5,
-        Layer::Joint => 6,
-        Layer::Outline | Layer::Panels => 7,
-        Layer::Annotation => 8,
-        Layer::Errors => 30,
+        self.pairs([(281, "1"), (0, "ENDSEC")]);
     }
 }
 

@@ -2,10 +2,7 @@
 
 /// A sheet that cannot be cut, or a file that cannot be written.
 #[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum FabricationError {
     #[error(
         "the slit at hinge {hinge} would be {length:.3} mm long, but the holes at its ends take \
@@ -41,29 +38,13 @@ pub enum FabricationError {
     )]
     CutMeetsOutline { hinge: usize, gap: f64, least: f64 },
     #[error(
-        "the hole of hinge {hinge} is written with a diameter of {written:.6} mm and simulated with {simulated:.6} mm: \
-         this is an error of kirigami"
-    )]
-    HoleDiffers {
-        hinge: usize,
-        written: f64,
-        simulated: f64,
-    },
-    #[error(
-        "the ligament of hinge {hinge} is written {written:.6} mm wide and simulated {simulated:.6} mm wide: this is \
-         an error of kirigami"
-    )]
-    LigamentDiffers {
-        hinge: usize,
-        written: f64,
-        simulated: f64,
-    },
-    #[error(
-        "panel {panel} is written with {written:.3} mm^2 and simulated with {simulated:.3} mm^2: this is an error of \
+        "the {what} {index} is written as {written:.6} and simulated as {simulated:.6} (mm, mm^2): this is an error of \
          kirigami"
     )]
-    PanelDiffers {
-        panel: usize,
+    Differs {
+        what: &'static str,
+        /// The hinge or the panel.
+        index: usize,
         written: f64,
         simulated: f64,
     },

@@ -5,7 +5,7 @@
 
 use crate::cut_file::cut_lines::CutLines;
 use crate::display::{Text, rectangle};
-use design::geometry::polygon::edges;
+use design::geometry::polygon::{distance, edges, side};
 use design::sheet::cut_sheet::Sheet;
 
 /// Height of panel numbers relative to the root of the panel's area, and its maximum (mm).
@@ -103,11 +103,7 @@ impl Taken {
         let [low, high] = text.corners();
         let box_corners = rectangle([low, high]);
         let to_edges = edges(&self.corners).flat_map(|(p, q)| {
-            let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
-            let inside = move |[x, y]: [f64; 2]| {
-                (dx * (y - p[1]) - dy * (x - p[0])) / dx.hypot(dy) - self.edge
-            };
-            box_corners.map(inside)
+            box_corners.map(|corner| side((p, q), corner) / distance(p, q) - self.edge)
         });
         // Gap between two rectangles; a point is one without extent.
         let gap = |[from, to]: [[f64; 2]; 2]| {

@@ -9,8 +9,8 @@ use crate::cut_file::fabrication_error::FabricationError;
 use crate::cut_file::numbers::numbers;
 use crate::cut_file::seam::Seam;
 use crate::cut_file::sheet_drawing::note;
-use crate::display::{Shape, Text, distance};
-use design::geometry::polygon::{area, edges};
+use crate::display::{Shape, Text};
+use design::geometry::polygon::{area, distance, edges};
 use design::pattern::grid::Grid;
 use design::sheet::cut_sheet::Sheet;
 use std::ops::Range;
@@ -55,13 +55,13 @@ pub fn split(
         lap,
         numbers: numbers(cuts, sheet),
     };
+    let Grid { m, n } = sheet.grid;
     let whole = Block {
-        columns: 0..sheet.grid.m,
-        rows: 0..sheet.grid.n,
+        grid: sheet.grid,
+        ranges: [0..m, 0..n],
     };
     let blocks = splitter.fitting(whole, bed)?;
-    let inside = |block: &Block, panel| block.has(sheet.grid, panel);
-    let of = |panel| blocks.iter().position(|block| inside(block, panel));
+    let of = |panel| blocks.iter().position(|block| block.has(panel));
     let mut joints = Vec::new();
     for (h, hinge) in sheet.hinges.iter().enumerate() {
         let (a, b) = (hinge.panel_a(), hinge.panel_b());
@@ -78,7 +78,7 @@ pub fn split(
         }
     }
     let parts = (blocks.iter().enumerate())
-        .map(|(i, block)| splitter.part([i + 1, blocks.len()], |k| inside(block, k)))
+        .map(|(i, block)| splitter.part([i + 1, blocks.len()], block))
         .collect::<Result<_, _>>()?;
     Ok(Split { parts, joints, lap })
 }
@@ -111,31 +111,28 @@ impl Split {
 /// A block of panels.
 #[derive(Clone, Debug)]
 struct Block {
-    columns: Range<usize>,
-    rows: Range<usize>,
+    grid: Grid,
+    /// Columns and rows.
+    ranges: [Range<usize>; 2],
 }
 
 impl Block {
-    fn has(&self, grid: Grid, panel: usize) -> bool {
-        self.columns.contains(&(panel % grid.m)) && self.rows.contains(&(panel / grid.m))
+    fn has(&self, panel: usize) -> bool {
+        let [columns, rows] = &self.ranges;
+        columns.contains(&(panel % self.grid.m)) && rows.contains(&(panel / self.grid.m))
     }
 
     /// The two parts of the block along an axis (0: columns, 1: rows), for every line between panels: that nearest to the
     /// middle first. The upper or the left part comes first.
     fn halves(&self, axis: usize) -> Vec<[Self; 2]> {
-        let Range { start, end } = [&self.columns, &self.rows][axis].clone();
+        let Range { start, end } = self.ranges[axis];
         let mut lines: Vec<usize> = (start + 1..end).rev().collect();
         lines.sort_by_key(|line| (2 * line).abs_diff(start + end));
         let halves = lines.into_iter().map(|line| {
-            let part = |range: Range<usize>| match axis {
-                0 => Self {
-                    columns: range,
-                    rows: self.rows.clone(),
-                },
-                _ => Self {
-                    columns: self.columns.clone(),
-                    rows: range,
-                },
+            let part = |range: Range<usize>| {
+                let mut part = self.clone();
+                part.ranges[axis] = range;
+                part
             };
             match axis {
                 0 => [part(start..line), part(line..end)],
@@ -156,8 +153,7 @@ struct Splitter<'a> {
 impl Splitter<'_> {
     /// The block, halved until every part fits on the bed.
     fn fitting(&self, block: Block, bed: [f64; 2]) -> Result<Vec<Block>, FabricationError> {
-        let has = |block: &Block, k| block.has(self.sheet.grid, k);
-        let [low, high] = self.extent(|k| has(&block, k))?;
+        let [low, high] = self.extent(&block)?;
         let size = [high[0] - low[0], high[1] - low[1]];
         let excess = [size[0] / bed[0], size[1] / bed[1]];
         if excess[0].max(excess[1]) <= 1.0 {
@@ -169,10 +165,7 @@ impl Splitter<'_> {
         let mut no_room = None;
         for [one, other] in halves {
             // Both halves have the same seams between them.
-            match self
-                .extent(|k| has(&one, k))
-                .and(self.extent(|k| has(&other, k)))
-            {
+            match self.extent(&one).and(self.extent(&other)) {
                 Err(error) => no_room = no_room.or(Some(error)),
                 Ok(_) => {
                     let mut parts = self.fitting(one, bed)?;
@@ -181,13 +174,14 @@ impl Splitter<'_> {
                 }
             }
         }
-        let panel = self.sheet.grid.panel(block.columns.start, block.rows.start);
+        let [columns, rows] = &block.ranges;
+        let panel = block.grid.panel(columns.start, rows.start);
         Err(no_room.unwrap_or(FabricationError::PartTooLarge { panel, size, bed }))
     }
 
     /// The bounding box of a part with the reach of the tool beyond its edges (mm).
-    fn extent(&self, inside: impl Fn(usize) -> bool) -> Result<[[f64; 2]; 2], FabricationError> {
-        let pieces = self.pieces(&self.seams(&inside)?, inside);
+    fn extent(&self, part: &Block) -> Result<[[f64; 2]; 2], FabricationError> {
+        let pieces = self.pieces(&self.seams(part)?, part);
         let shapes: Vec<Shape> = pieces.into_iter().map(Shape::Polygon).collect();
         let [low, high] = Shape::extent(shapes.iter());
         let reach = f64::max(0.5 * self.cuts.kerf, self.cuts.cutting.over_run);
@@ -195,19 +189,19 @@ impl Splitter<'_> {
     }
 
     /// The seams at the hinges between the panels inside of a part and those outside.
-    fn seams(&self, inside: impl Fn(usize) -> bool) -> Result<Vec<Seam>, FabricationError> {
+    fn seams(&self, part: &Block) -> Result<Vec<Seam>, FabricationError> {
         let hinges = self.sheet.hinges.iter().enumerate();
         hinges
-            .filter(|(_, hinge)| inside(hinge.panel_a()) != inside(hinge.panel_b()))
+            .filter(|(_, hinge)| part.has(hinge.panel_a()) != part.has(hinge.panel_b()))
             .map(|(h, _)| Seam::new(self.sheet, h, self.lap))
             .collect()
     }
 
     /// The material of a part as counter-clockwise polygons: its panels without the corners that they give away, and the
     /// corners that it receives.
-    fn pieces(&self, seams: &[Seam], inside: impl Fn(usize) -> bool) -> Vec<Vec<[f64; 2]>> {
+    fn pieces(&self, seams: &[Seam], part: &Block) -> Vec<Vec<[f64; 2]>> {
         let panels = self.sheet.panels.iter().enumerate();
-        let own = panels.filter(|(k, _)| inside(*k)).map(|(k, panel)| {
+        let own = panels.filter(|(k, _)| part.has(*k)).map(|(k, panel)| {
             let given = |c: usize| {
                 seams
                     .iter()
@@ -222,7 +216,7 @@ impl Splitter<'_> {
             });
             corners.collect()
         });
-        let received = seams.iter().filter(|seam| !inside(seam.panel));
+        let received = seams.iter().filter(|seam| !part.has(seam.panel));
         let received = received.map(|seam| {
             let corner = self.sheet.panels[seam.panel].corners[seam.corner];
             vec![corner, seam.ends[0], seam.ends[1]]
@@ -230,19 +224,15 @@ impl Splitter<'_> {
         own.chain(received).collect()
     }
 
-    fn part(
-        &self,
-        [number, count]: [usize; 2],
-        inside: impl Fn(usize) -> bool,
-    ) -> Result<Part, FabricationError> {
-        let seams = self.seams(&inside)?;
-        let pieces = self.pieces(&seams, &inside);
+    fn part(&self, [number, count]: [usize; 2], part: &Block) -> Result<Part, FabricationError> {
+        let seams = self.seams(part)?;
+        let pieces = self.pieces(&seams, part);
         let borders: Vec<_> = pieces.iter().flat_map(|piece| edges(piece)).collect();
         let keeps = |h: usize| {
             let hinge = &self.sheet.hinges[h];
             match seams.iter().find(|seam| seam.hinge == h) {
-                Some(seam) => !inside(seam.panel),
-                None => inside(hinge.panel_a()),
+                Some(seam) => !part.has(seam.panel),
+                None => part.has(hinge.panel_a()),
             }
         };
         let cuts = self.cuts;
@@ -268,7 +258,7 @@ impl Splitter<'_> {
         let [low, high] = Shape::extent(drawing.cuts());
         let mut drawing = drawing.in_cutting_order(low);
         let (panels, hinges) = &self.numbers;
-        let panels = panels.iter().enumerate().filter(|(k, _)| inside(*k));
+        let panels = panels.iter().enumerate().filter(|(k, _)| part.has(*k));
         let hinges = hinges.iter().enumerate().filter(|(h, _)| keeps(*h));
         for (_, text) in panels.chain(hinges) {
             drawing.add(Layer::Annotation, Shape::Text(text.clone()));

@@ -12,7 +12,7 @@
 //! ```
 
 use crate::cut_file::fabrication_error::FabricationError;
-use crate::display::distance;
+use design::geometry::polygon::distance;
 use design::sheet::cut_sheet::{Hinge, Sheet};
 use design::sheet::topology::PanelCorner;
 
@@ -74,7 +74,6 @@ impl Seam {
         })
     }
 
-    /// The seam across a corner.
     fn across(sheet: &Sheet, hinge: &Hinge, (panel, corner): PanelCorner, lap: f64) -> Across {
         let corners = &sheet.panels[panel].corners;
         let from = corners[corner];

@@ -96,7 +96,7 @@ fn registration_marks(drawing: &mut CutDrawing, over_run: f64) {
 }
 
 /// The height of lines of text of which the longest is at most as wide as the cuts of a drawing (mm).
-pub(super) fn text_height(drawing: &CutDrawing, lines: &[String]) -> f64 {
+fn text_height(drawing: &CutDrawing, lines: &[String]) -> f64 {
     let [left, right] = Shape::extent(drawing.cuts()).map(|corner| corner[0]);
     let width = right - left;
     let widths = lines
@@ -128,5 +128,29 @@ pub(super) fn note(drawing: &mut CutDrawing, lines: &[String]) {
     for line in lines {
         y -= 2.0 * height;
         drawing.add(Layer::Annotation, text([left, y], height, line));
+    }
+}
+
+/// The first line of the mark of files that were written although the design has errors.
+pub const FORCED: &str = "FORCED, NOT TO BE CUT: the design has errors";
+
+/// Writes the errors of a design above its drawing, on a layer of their own, which is not cut. Without errors the drawing
+/// stays as it is.
+pub fn mark_errors(drawing: &mut CutDrawing, errors: &[String]) {
+    if errors.is_empty() {
+        return;
+    }
+    let lines: Vec<String> = std::iter::once(FORCED.to_owned())
+        .chain(errors.iter().cloned())
+        .collect();
+    let height = text_height(drawing, &lines);
+    let left = Shape::extent(drawing.cuts())[0][0];
+    let top = drawing.bounds()[1][1];
+    for (i, line) in lines.iter().rev().enumerate() {
+        let y = top + 2.0 * height * (i + 1) as f64;
+        drawing.add(
+            Layer::Errors,
+            Shape::Text(Text::line([left, y], height, line)),
+        );
     }
 }

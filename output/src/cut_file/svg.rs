@@ -12,9 +12,7 @@ const LINE: f64 = 0.1;
 pub fn svg(drawing: &CutDrawing) -> String {
     let [low, high] = drawing.bounds();
     let corners = [low.map(|x| x - MARGIN), high.map(|x| x + MARGIN)];
-    let used = Layer::ALL
-        .into_iter()
-        .filter(|layer| drawing.on(*layer).next().is_some());
+    let used = Layer::all().filter(|layer| drawing.on(*layer).next().is_some());
     let groups = used.map(|layer| group(layer.name(), layer.rgb(), LINE, drawing.on(layer)));
     document(
         corners,

@@ -7,15 +7,20 @@
 
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::fabrication_error::FabricationError;
-use crate::display::{Shape, distance};
+use crate::display::Shape;
 use design::geometry::polygon::{
-    area, distance_between_segments, distance_to_segment, edges, nearest_on_outline,
+    area, distance, distance_between_segments, distance_to_segment, edges, nearest_on_outline, side,
 };
 use design::sheet::cut_sheet::Sheet;
 use std::collections::BTreeMap;
 
 /// Rounding of lengths (mm), and of areas relative to the panel.
 const ROUNDING: f64 = 1e-6;
+
+/// What is compared, in messages.
+const HOLE: &str = "diameter of the hole of hinge";
+const LIGAMENT: &str = "width of the ligament of hinge";
+const PANEL: &str = "area of panel";
 
 /// A cut with the width of the tool: the points nearer than `radius` to the segment `ends`.
 struct Cut {
@@ -85,8 +90,9 @@ impl Finished {
             let hole = self.holes.iter().find(its);
             let written = hole.map_or(0.0, |hole| hole.radius);
             if (written - nominal).abs() > ROUNDING {
-                return Err(FabricationError::HoleDiffers {
-                    hinge,
+                return Err(FabricationError::Differs {
+                    what: HOLE,
+                    index: hinge,
                     written: 2.0 * written,
                     simulated: 2.0 * nominal,
                 });
@@ -98,8 +104,9 @@ impl Finished {
             let to_outline = to_outline.map(|[p, q]| distance_to_segment(tip, *p, *q));
             let written = to_slits.chain(to_outline).fold(f64::INFINITY, f64::min);
             if written > simulated.w_lig + ROUNDING {
-                return Err(FabricationError::LigamentDiffers {
-                    hinge,
+                return Err(FabricationError::Differs {
+                    what: LIGAMENT,
+                    index: hinge,
                     written,
                     simulated: simulated.w_lig,
                 });
@@ -122,8 +129,9 @@ impl Finished {
             });
             let simulated = simulated.area();
             if (written - simulated).abs() > ROUNDING * simulated {
-                return Err(FabricationError::PanelDiffers {
-                    panel,
+                return Err(FabricationError::Differs {
+                    what: PANEL,
+                    index: panel,
                     written,
                     simulated,
                 });
@@ -178,10 +186,8 @@ fn inwards(p: [f64; 2], q: [f64; 2], by: f64) -> [[f64; 2]; 2] {
 /// Whether an edge lies along a line, at least in part.
 fn carries(line: &[[f64; 2]; 2], edge: [[f64; 2]; 2]) -> bool {
     let [a, b] = *line;
-    let off = |[x, y]: [f64; 2]| {
-        ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / distance(a, b)
-    };
-    edge.iter().all(|end| off(*end).abs() < ROUNDING)
+    edge.iter()
+        .all(|end| (side((a, b), *end) / distance(a, b)).abs() < ROUNDING)
         && distance_between_segments(*line, edge) < ROUNDING
 }
 
@@ -236,7 +242,11 @@ mod tests {
         });
         assert!(matches!(
             error,
-            Err(FabricationError::HoleDiffers { hinge: 0, .. })
+            Err(FabricationError::Differs {
+                what: HOLE,
+                index: 0,
+                ..
+            })
         ));
     }
 
@@ -251,8 +261,10 @@ mod tests {
         assert!(
             matches!(
                 error,
-                Err(FabricationError::PanelDiffers { .. }
-                    | FabricationError::LigamentDiffers { .. })
+                Err(FabricationError::Differs {
+                    what: PANEL | LIGAMENT,
+                    ..
+                })
             ),
             "{error:?}"
         );
@@ -267,7 +279,14 @@ mod tests {
             }
         });
         assert!(
-            matches!(error, Err(FabricationError::PanelDiffers { panel: 0, .. })),
+            matches!(
+                error,
+                Err(FabricationError::Differs {
+                    what: PANEL,
+                    index: 0,
+                    ..
+                })
+            ),
             "{error:?}"
         );
     }

@@ -52,12 +52,10 @@ impl Canvas {
         self.add(style, text);
     }
 
-    /// A text.
     pub(crate) fn add(&mut self, style: Style, text: Text) {
         self.shapes.push((style, Shape::Text(text)));
     }
 
-    /// The shapes with their styles.
     pub(crate) fn styled(&self) -> impl Iterator<Item = (Style, &Shape)> {
         self.shapes.iter().map(|(style, shape)| (*style, shape))
     }
@@ -114,7 +112,6 @@ pub(crate) fn group<'a>(
     format!("<g id=\"{}\" {line}>\n{elements}</g>\n", escaped(id))
 }
 
-/// The SVG element of a shape.
 fn element(shape: &Shape, attributes: &str) -> String {
     let points = |points: &[[f64; 2]]| {
         let points = points.iter();
@@ -220,10 +217,14 @@ pub(crate) fn trimmed(value: f64, decimals: usize) -> String {
 }
 
 fn escaped(text: &str) -> String {
+    text_of_element(text).replace('"', "&quot;")
+}
+
+/// Text of an element of HTML or SVG.
+pub(crate) fn text_of_element(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
-        .replace('"', "&quot;")
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Shapes; lengths in mm, y upwards.
 
-use design::geometry::polygon::edges;
+use design::geometry::polygon::{bounds, distance, edges};
 use std::f64::consts::TAU;
 
 /// One shape.
@@ -154,23 +154,7 @@ impl Shape {
     }
 }
 
-/// The minimum and maximum coordinates.
-pub fn bounds(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
-    let nothing = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    points.into_iter().fold(nothing, |[low, high], [x, y]| {
-        [
-            [low[0].min(x), low[1].min(y)],
-            [high[0].max(x), high[1].max(y)],
-        ]
-    })
-}
-
 /// The corners of a rectangle, counter-clockwise from the lower left.
 pub(crate) fn rectangle([low, high]: [[f64; 2]; 2]) -> [[f64; 2]; 4] {
     [low, [high[0], low[1]], high, [low[0], high[1]]]
-}
-
-/// Distance of two points (mm).
-pub(crate) fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
-    f64::hypot(q[0] - p[0], q[1] - p[1])
 }

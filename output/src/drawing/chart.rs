@@ -25,31 +25,28 @@ impl Chart {
         let (axis, muted) = (sketch.stroke(MUTED, 1.0), Style::fill(MUTED));
         sketch.canvas.line(low, [high[0], low[1]], axis);
         sketch.canvas.line(low, [low[0], high[1]], axis);
-        for value in chart.ticks(0).into_iter().filter(|_| ticks[0]) {
-            let [x, y] = chart.at([value, ranges[1][0]]);
-            sketch.canvas.line([x, y], [x, y - 4.0 * u], axis);
-            let below = [x, y - 18.0 * u];
-            sketch
-                .canvas
-                .text(below, 12.0 * u, Anchor::Middle, muted, &trimmed(value, 3));
-        }
-        for value in chart.ticks(1).into_iter().filter(|_| ticks[1]) {
-            let [x, y] = chart.at([ranges[0][0], value]);
-            sketch.canvas.line([x, y], [x - 4.0 * u, y], axis);
-            let left = [x - 20.0 * u, y - 4.0 * u];
-            sketch
-                .canvas
-                .text(left, 12.0 * u, Anchor::Middle, muted, &trimmed(value, 3));
+        let offsets = [([0.0, -4.0], [0.0, -18.0]), ([-4.0, 0.0], [-20.0, -4.0])];
+        for (i, (end, label)) in offsets.into_iter().enumerate().filter(|(i, _)| ticks[*i]) {
+            for value in chart.ticks(i) {
+                let mut place = ranges.map(|[from, _]| from);
+                place[i] = value;
+                let [x, y] = chart.at(place);
+                let beside = |[dx, dy]: [f64; 2]| [x + dx * u, y + dy * u];
+                sketch.canvas.line([x, y], beside(end), axis);
+                sketch.text(
+                    beside(label),
+                    12.0 * u,
+                    Anchor::Middle,
+                    muted,
+                    &trimmed(value, 3),
+                );
+            }
         }
         let ink = Style::fill(INK);
         let middle = [(low[0] + high[0]) / 2.0, low[1] - 36.0 * u];
-        sketch
-            .canvas
-            .text(middle, 13.0 * u, Anchor::Middle, ink, names[0]);
+        sketch.text(middle, 13.0 * u, Anchor::Middle, ink, names[0]);
         let above = [low[0] - 30.0 * u, high[1] + 10.0 * u];
-        sketch
-            .canvas
-            .text(above, 13.0 * u, Anchor::Start, ink, names[1]);
+        sketch.text(above, 13.0 * u, Anchor::Start, ink, names[1]);
         chart
     }
 

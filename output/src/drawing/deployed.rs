@@ -98,7 +98,6 @@ pub(crate) fn deployed_on_paper(
     sketch
 }
 
-/// The drawn state.
 struct State<'a> {
     scene: &'a Scene,
     sheet: &'a Sheet,
@@ -144,7 +143,7 @@ impl<'a> State<'a> {
     /// Points that enclose everything drawn.
     fn extent(&self) -> Vec<[f64; 2]> {
         let mut points = deployed_corners(self.sheet, &self.configuration).concat();
-        points.extend(self.scene.target.points());
+        points.extend(&self.scene.target.points);
         points.extend(load_marks::extent(self.scene, self.sheet, self.step));
         points
     }
@@ -160,7 +159,7 @@ impl<'a> State<'a> {
 
     fn target(&self, sketch: &mut Sketch) {
         let style = sketch.dashed(ACCENT, 2.2, 9.0);
-        sketch.canvas.polygon(self.scene.target.points(), style);
+        sketch.canvas.polygon(&self.scene.target.points, style);
     }
 
     /// Draws each window in two parts, which move with their panels.
@@ -187,9 +186,7 @@ impl<'a> State<'a> {
                 Mark::Head(corners) => sketch.canvas.polygon(&corners, fill),
                 Mark::Label([x, y], text) => {
                     let (size, below) = (14.0 * sketch.unit, [x, y - 5.0 * sketch.unit]);
-                    sketch
-                        .canvas
-                        .text(below, size, Anchor::Middle, label, &text);
+                    sketch.text(below, size, Anchor::Middle, label, &text);
                 }
             }
         }

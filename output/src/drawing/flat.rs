@@ -54,9 +54,7 @@ fn panels(sketch: &mut Sketch, sheet: &Sheet) {
         let height = f64::min(16.0 * sketch.unit, 0.1 * panel.area().sqrt());
         let [x, y] = panel.centroid;
         let at = [x, y - 0.35 * height];
-        sketch
-            .canvas
-            .text(at, height, Anchor::Middle, muted, &format!("P{k}"));
+        sketch.text(at, height, Anchor::Middle, muted, &format!("P{k}"));
     }
 }
 
@@ -93,9 +91,7 @@ fn ligaments(sketch: &mut Sketch, sheet: &Sheet) {
         let height = f64::min(15.0 * sketch.unit, 0.3 * window.radius);
         let [x, y] = number_place(hinge, &window, 0.55 * window.radius);
         let at = [x, y - 0.35 * height];
-        sketch
-            .canvas
-            .text(at, height, Anchor::Middle, ink, &number.to_string());
+        sketch.text(at, height, Anchor::Middle, ink, &number.to_string());
     }
 }
 

@@ -133,7 +133,6 @@ pub(crate) fn marks(scene: &Scene, sheet: &Sheet, step: &LoadStep, unit: f64) ->
     marks
 }
 
-/// The symbols of the supports.
 fn supports(scene: &Scene, sheet: &Sheet, step: &LoadStep, unit: f64) -> Vec<Mark> {
     let placed = placed(scene, sheet, &step.configuration);
     let symbol = |support: &SupportedPanel| {

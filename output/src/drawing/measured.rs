@@ -1,13 +1,14 @@
 //! A measured sheet beside its prediction, after Fig. 10 (d)-(h) of the paper: outlines superposed with magnified
 //! residuals, hinge openings measured against predicted, errors of the panel centres against the floor.
 
-use crate::display::{Anchor, Style, bounds};
+use crate::display::{Anchor, Style};
 use crate::drawing::chart::Chart;
 use crate::drawing::page::{ACCENT, INK, MUTED, PANELS, Page, Sketch, TEAL};
 use crate::measurement::MeasurementReport;
 use design::analysis::marks::FittedPoint;
 use design::analysis::measured_openings::MeasuredOpening;
 use design::analysis::robust_pose::Fit;
+use design::geometry::polygon::bounds;
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::deployed_corners;
 use design::sheet::topology::is_even;
@@ -138,20 +139,20 @@ fn outliers(sketch: &mut Sketch, fit: &Fit, [low, high]: [[f64; 2]; 2]) {
             .line([x - arm, y + arm], [x + arm, y - arm], cross);
         if named.insert(panel) {
             let (beside, height) = ([x + 1.5 * arm, y + 0.5 * arm], 12.0 * sketch.unit);
-            sketch
-                .canvas
-                .text(beside, height, Anchor::Start, label, &format!("P{panel}"));
+            sketch.text(beside, height, Anchor::Start, label, &format!("P{panel}"));
         }
     }
 }
 
 /// Draws the openings measured against predicted, with two standard errors and the line of agreement.
 fn openings(sketch: &mut Sketch, corners: [[f64; 2]; 2], report: &MeasurementReport) {
-    let bar = |it: &MeasuredOpening| [-2.0, 2.0].map(|k| it.measured_deg + k * it.error_deg);
+    let bar = |opening: &MeasuredOpening| {
+        [-2.0, 2.0].map(|k| opening.measured_deg + k * opening.error_deg)
+    };
     let values = report
         .openings
         .iter()
-        .flat_map(|it| [bar(it)[0], bar(it)[1], it.predicted_deg]);
+        .flat_map(|opening| [bar(opening)[0], bar(opening)[1], opening.predicted_deg]);
     let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
         [low.min(x), high.max(x)]
     });
@@ -228,9 +229,7 @@ fn centres(sketch: &mut Sketch, corners: [[f64; 2]; 2], report: &MeasurementRepo
             // A number of three characters is about as wide as its font is high times two.
             let pitch = chart.at([1.0, 0.0])[0] - chart.at([0.0, 0.0])[0];
             let height = f64::min(11.0 * sketch.unit, 0.45 * pitch);
-            sketch
-                .canvas
-                .text(below, height, Anchor::Middle, muted, &number);
+            sketch.text(below, height, Anchor::Middle, muted, &number);
         }
     }
     if let Some(floor) = floor {

@@ -27,17 +27,13 @@ pub fn numbering(title: &str, sheet: &Sheet) -> String {
         sketch.canvas.line([x, y - arm], [x, y + arm], thin);
         let bold = Style::fill(INK).bold();
         let above = [x, y + 0.5 * height];
-        sketch
-            .canvas
-            .text(above, height, Anchor::Middle, bold, &format!("P{k}"));
+        sketch.text(above, height, Anchor::Middle, bold, &format!("P{k}"));
         let small = 0.75 * height;
         for (number, [cx, cy]) in panel.corners.into_iter().enumerate() {
             let at = [cx + INSET * (x - cx), cy + INSET * (y - cy) - 0.35 * small];
             let colour = if number == 0 { ACCENT } else { MUTED };
             let style = Style::fill(colour);
-            sketch
-                .canvas
-                .text(at, small, Anchor::Middle, style, &number.to_string());
+            sketch.text(at, small, Anchor::Middle, style, &number.to_string());
         }
     }
     page.finish()

@@ -1,8 +1,8 @@
 //! Common parts of the pictures: the page with its title and scale bar, the colours, the colour scale.
 
 use crate::cut_file::CutDrawing;
-use crate::display::{Anchor, Canvas, Colour, Style, Text, bounds, rectangle, trimmed};
-use design::geometry::polygon::area;
+use crate::display::{Anchor, Canvas, Colour, Style, Text, rectangle, trimmed};
+use design::geometry::polygon::{area, bounds, mean};
 
 /// Colour of main lines and titles.
 pub const INK: Colour = [31, 41, 51];
@@ -71,13 +71,16 @@ impl Sketch {
         self.stroke(colour, width).dashed(dash, 0.7 * dash)
     }
 
+    /// Writes a text in a font of the given size (mm).
+    pub fn text(&mut self, at: [f64; 2], size: f64, anchor: Anchor, style: Style, text: &str) {
+        self.canvas.text(at, size, anchor, style, text);
+    }
+
     /// A text that remains readable over lines.
     pub fn haloed(&self, colour: Colour) -> Style {
         Style::fill(colour).haloed(4.0 * self.unit)
     }
-}
 
-impl Sketch {
     /// Adds the paths of a tool in the colours of their layers.
     pub fn cut_drawing(&mut self, drawing: &CutDrawing) {
         let shapes = drawing.coloured(1.2 * self.unit);
@@ -87,9 +90,11 @@ impl Sketch {
 
     /// Writes the number of a panel with the given corners in its middle.
     pub fn panel_number(&mut self, k: usize, corners: &[[f64; 2]; 4]) {
-        let middle =
-            [0, 1].map(|axis| 0.25 * corners.iter().map(|corner| corner[axis]).sum::<f64>());
-        let text = Text::centred(middle, self.number_height(area(corners)), format!("P{k}"));
+        let text = Text::centred(
+            mean(corners),
+            self.number_height(area(corners)),
+            format!("P{k}"),
+        );
         self.canvas.add(Style::fill(MUTED), text);
     }
 
@@ -165,7 +170,6 @@ impl Page {
         ];
         let muted = Style::fill(MUTED);
         self.sketch
-            .canvas
             .text(at, 15.0 * self.sketch.unit, Anchor::Start, muted, &text);
     }
 
@@ -196,13 +200,10 @@ impl Page {
             self.sketch.canvas.line([x1, y], [x1 + 4.0 * u, y], stroke);
             let text = trimmed(value, 3);
             let at = [x1 + 9.0 * u, y - 5.0 * u];
-            self.sketch
-                .canvas
-                .text(at, 14.0 * u, Anchor::Start, muted, &text);
+            self.sketch.text(at, 14.0 * u, Anchor::Start, muted, &text);
         }
         let above = [(x0 + x1) / 2.0, at(1.0) + 16.0 * u];
         self.sketch
-            .canvas
             .text(above, 14.0 * u, Anchor::Middle, muted, name);
     }
 }

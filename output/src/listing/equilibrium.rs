@@ -4,7 +4,7 @@ use design::equilibrium::hinged_sheet::HingedSheet;
 use design::equilibrium::load_step::{Effort, LoadStep, Status};
 use design::equilibrium::solver::EquilibriumSolver;
 use design::hinge_law::{HingeEnergy, Order};
-use design::objective::design_problem::{Deployment, DesignError, DesignProblem, Model};
+use design::objective::design_problem::{Deployment, DesignError, DesignProblem};
 use design::pattern::design_vector::DesignVector;
 use design::sheet::kinematics::{Configuration, deployed_corners};
 use design::sheet::validity::overlap;
@@ -76,9 +76,7 @@ pub struct EnergyParts {
 impl EquilibriumListing {
     /// Follows the equilibrium path of a design; an error if the model has no equilibrium.
     pub fn new(problem: &DesignProblem, design: &DesignVector) -> Result<Self, DesignError> {
-        let Model::Equilibrium(mechanics) = &problem.model else {
-            return Err(DesignError::NoMechanics);
-        };
+        let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
         let Deployment { sheet, path, .. } = problem.deploy(design)?;
         let law = mechanics.law.prepare(&sheet.designs());
         let hinged = mechanics.hinged(&sheet, &*law, false);
@@ -111,7 +109,7 @@ impl StepListing {
             status: step.status,
             residual: step.residual,
             rounding: step.rounding,
-            iterations: step.iterations,
+            iterations: step.effort.iterations,
             effort: step.effort,
             negative_pivots: step.negative_pivots,
             condition: condition.is_finite().then_some(condition),
@@ -154,7 +152,7 @@ impl fmt::Display for EquilibriumListing {
                 step.load_factor,
                 format!("{:?}", step.status),
                 step.residual,
-                step.iterations,
+                step.effort.iterations,
                 step.effort.factorisations,
                 step.effort.rejected,
                 step.negative_pivots,

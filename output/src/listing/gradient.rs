@@ -1,13 +1,13 @@
 //! Objective and gradient in numbers.
 
 use design::geometry::intersection_over_union::intersection_over_union;
-use design::objective::design_problem::{DesignError, Evaluation, Sensitivities};
+use design::objective::design_problem::{DesignError, DesignProblem, Evaluation, Sensitivities};
 use design::objective::loss::TermValues;
-use design::objective::outline_error::outline_error;
+use design::objective::scores::outline_error;
 use design::objective::shape::OutlinePoints;
 use design::pattern::design_vector::DesignVector;
+use design::scene::Scene;
 use design::scene::placement::deployed_outline;
-use design::scene::{Scene, SceneError};
 use serde::Serialize;
 use std::fmt;
 
@@ -35,23 +35,13 @@ pub struct GradientListing {
     pub intersection_over_union: f64,
 }
 
-/// Why there is no gradient.
-#[derive(Debug, thiserror::Error)]
-#[allow(
-    missing_docs,
-    reason = "the message of each variant is its documentation"
-)]
-pub enum GradientListingError {
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    #[error(transparent)]
-    Design(#[from] DesignError),
-}
-
 impl GradientListing {
-    /// Evaluates a design of a scene.
-    pub fn new(scene: &Scene, design: &DesignVector) -> Result<Self, GradientListingError> {
-        let problem = scene.problem()?;
+    /// Evaluates a design of a scene and its problem.
+    pub fn new(
+        scene: &Scene,
+        problem: &DesignProblem,
+        design: &DesignVector,
+    ) -> Result<Self, DesignError> {
         let evaluation = problem.evaluate(design)?;
         let outline_error = outline_error(&problem.objective, &evaluation.deployment);
         let outline = deployed_outline(scene, &evaluation.deployment, OutlinePoints::All);
@@ -74,7 +64,7 @@ impl GradientListing {
             sensitivities,
             adjoint_residual,
             outline_error,
-            intersection_over_union: intersection_over_union(&outline, scene.target.points()),
+            intersection_over_union: intersection_over_union(&outline, &scene.target.points),
         })
     }
 }

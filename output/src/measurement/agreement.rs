@@ -4,6 +4,7 @@ use design::analysis::measured_openings::{MeasuredOpening, MeasuredPanel, openin
 use design::analysis::robust_pose::Fit;
 use design::sheet::cut_sheet::Sheet;
 use serde::Serialize;
+use support::statistics::root_mean_square;
 
 /// Agreement of the points without outliers with one state, after the rigid motion (and scale) is removed.
 #[derive(Clone, Debug, Serialize)]
@@ -73,8 +74,7 @@ impl Agreement {
 impl Spread {
     fn new(distances: Vec<(String, f64)>, size: f64) -> Option<Self> {
         let count = distances.len();
-        let squares: f64 = distances.iter().map(|(_, distance)| distance.powi(2)).sum();
-        let rms = (squares / count as f64).sqrt();
+        let rms = root_mean_square(distances.iter().map(|(_, distance)| *distance));
         let (max_at, max) = distances.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
         Some(Self {
             count,

@@ -72,44 +72,49 @@ impl MeasurementReport {
         )?;
         type Part = fn(&Agreement) -> Option<&Spread>;
         let parts: [(&str, Part); 2] = [
-            ("corners", |it| it.corners.as_ref()),
-            ("panel centres", |it| it.centres.as_ref()),
+            ("corners", |agreement| agreement.corners.as_ref()),
+            ("panel centres", |agreement| agreement.centres.as_ref()),
         ];
         for (name, part) in parts {
-            let value = |value: fn(&Spread) -> String| both(&|it| part(it).map(value));
+            let value =
+                |value: fn(&Spread) -> String| both(&|agreement| part(agreement).map(value));
             row(
                 &format!("{name}, rms (mm)"),
-                value(|it| format!("{:.2}", it.rms)),
+                value(|spread| format!("{:.2}", spread.rms)),
             )?;
             row(
                 &format!("{name}, rms (% of the sheet)"),
-                value(|it| format!("{:.3}", it.rms_percent)),
+                value(|spread| format!("{:.3}", spread.rms_percent)),
             )?;
             row(
                 &format!("{name}, maximum (mm)"),
-                value(|it| format!("{:.2}", it.max)),
+                value(|spread| format!("{:.2}", spread.max)),
             )?;
-            row("  at", value(|it| it.max_at.clone()))?;
+            row("  at", value(|spread| spread.max_at.clone()))?;
         }
-        let value =
-            |value: fn(&OpeningSpread) -> String| both(&|it| it.openings.as_ref().map(value));
+        let value = |value: fn(&OpeningSpread) -> String| {
+            both(&|agreement| agreement.openings.as_ref().map(value))
+        };
         row(
             "openings, mean measured (deg)",
-            value(|it| format!("{:.2}", it.measured_mean_deg)),
+            value(|spread| format!("{:.2}", spread.measured_mean_deg)),
         )?;
         row(
             "openings, mean predicted (deg)",
-            value(|it| format!("{:.2}", it.predicted_mean_deg)),
+            value(|spread| format!("{:.2}", spread.predicted_mean_deg)),
         )?;
         row(
             "openings, rms about the mean (deg)",
-            value(|it| format!("{:.2}", it.spread_deg)),
+            value(|spread| format!("{:.2}", spread.spread_deg)),
         )?;
         row(
             "openings, worst (deg)",
-            value(|it| format!("{:+.2}", it.max_deg)),
+            value(|spread| format!("{:+.2}", spread.max_deg)),
         )?;
-        row("  at", value(|it| format!("hinge {}", it.max_hinge)))
+        row(
+            "  at",
+            value(|spread| format!("hinge {}", spread.max_hinge)),
+        )
     }
 
     fn outliers(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -121,8 +126,11 @@ impl MeasurementReport {
         for renumbered in &self.renumbered {
             writeln!(f, "  {renumbered}: correct the numbers in the file")?;
         }
-        let explained = |panel| self.renumbered.iter().any(|it| it.panel == panel);
-        let single = self.outliers.iter().filter(|it| !explained(it.mark.panel));
+        let explained = |panel| self.renumbered.iter().any(|other| other.panel == panel);
+        let single = self
+            .outliers
+            .iter()
+            .filter(|outlier| !explained(outlier.mark.panel));
         for outlier in single.clone().take(LISTED) {
             let [x, y] = outlier.residual;
             let (mark, distance) = (outlier.mark.to_string(), outlier.distance);
@@ -153,16 +161,16 @@ impl MeasurementReport {
             f,
             "  hinge     panels   measured    +-  predicted  difference"
         )?;
-        for it in worst {
-            let panels = format!("P{} P{}", it.panels[0], it.panels[1]);
+        for opening in worst {
+            let panels = format!("P{} P{}", opening.panels[0], opening.panels[1]);
             writeln!(
                 f,
                 "  {:>5} {panels:>10} {:>10.2} {:>5.2} {:>10.2} {:>+11.2}",
-                it.hinge,
-                it.measured_deg,
-                it.error_deg,
-                it.predicted_deg,
-                it.difference_deg()
+                opening.hinge,
+                opening.measured_deg,
+                opening.error_deg,
+                opening.predicted_deg,
+                opening.difference_deg()
             )?;
         }
         Ok(())

@@ -1,13 +1,12 @@
 //! The facts of a run: what the sheet is made of, how far it opens under which load, what the hinge law rests on.
 
-use crate::display::bounds;
 use crate::report::columns::rounded;
 use crate::report::hinge_row::HingeRow;
 use crate::report::self_weight::SelfWeight;
 use design::analysis::actuation_curve::{ActuationCurve, LoadPeak, Mover};
 use design::equilibrium::load_step::Status;
-use design::geometry::polygon::area;
-use design::objective::design_problem::{Deployment, DesignProblem, Model};
+use design::geometry::polygon::{area, bounds};
+use design::objective::design_problem::{Deployment, DesignProblem};
 use design::scene::{HingeModel, Scene};
 use design::sheet::kinematics::deployed_corners;
 use serde::Serialize;
@@ -197,9 +196,7 @@ impl FactSheet {
 
 impl Reached {
     fn new(scene: &Scene, problem: &DesignProblem, deployment: &Deployment) -> Option<Self> {
-        let Model::Equilibrium(mechanics) = &problem.model else {
-            return None;
-        };
+        let mechanics = problem.model.mechanics()?;
         let curve = ActuationCurve::new(mechanics, deployment)?;
         let [displacement, load] = *curve.points.last()?;
         let last = deployment.final_step();
@@ -262,12 +259,12 @@ impl Reached {
 impl WeightFacts {
     fn new(scene: &Scene) -> Option<Self> {
         let surrogate = scene.weights()?;
-        let path = scene.hinge.weights_file.as_ref();
+        let files = scene.config.weights_files();
         let card = surrogate.card();
         let predicted = if card.peak_scale.is_some() { 6 } else { 5 };
         let errors = |of: &TestErrors| of.percents()[..predicted].to_vec();
         Some(Self {
-            file: (path.and_then(|path| path.file_name()))
+            file: (files.first().and_then(|path| path.file_name()))
                 .map_or(String::new(), |name| name.to_string_lossy().into_owned()),
             hash: surrogate.hash(),
             tier: card.tier.clone(),

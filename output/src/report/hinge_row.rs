@@ -2,7 +2,7 @@
 
 use design::analysis::localisation::gamma;
 use design::analysis::path_separation::PathSeparation;
-use design::geometry::polygon::edges;
+use design::geometry::polygon::{distance, edges};
 use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
 use design::scene::Scene;
@@ -41,7 +41,6 @@ pub struct HingeRow {
 }
 
 impl HingeRow {
-    /// The rows of all hinges.
     pub(super) fn all(scene: &Scene, deployment: &Deployment) -> Vec<Self> {
         let hinges = 0..deployment.sheet.hinges.len();
         hinges.map(|h| Self::new(scene, deployment, h)).collect()
@@ -77,6 +76,6 @@ fn shortest_edge(sheet: &Sheet, hinge: &Hinge) -> f64 {
     [hinge.panel_a(), hinge.panel_b()]
         .iter()
         .flat_map(|&panel| edges(&sheet.panels[panel].corners))
-        .map(|(p, q)| f64::hypot(q[0] - p[0], q[1] - p[1]))
+        .map(|(p, q)| distance(p, q))
         .fold(f64::INFINITY, f64::min)
 }

@@ -25,7 +25,6 @@ const SAFE_SEPARATION: f64 = 0.15;
 /// Rounding of lengths (mm).
 const ROUNDING: f64 = 1e-6;
 
-/// What the rules read.
 pub(super) struct Judged<'a> {
     pub scene: &'a Scene,
     pub deployment: &'a Deployment,
@@ -37,7 +36,6 @@ pub(super) struct Judged<'a> {
     pub run: Option<JudgedRun<'a>>,
 }
 
-/// A run whose best design is judged.
 pub(super) struct JudgedRun<'a> {
     pub designed: &'a Designed,
     pub facts: &'a FactSheet,
@@ -239,7 +237,7 @@ fn departure(step: &LoadStep) -> Option<String> {
 }
 
 fn target(judged: &Judged) -> Option<Warning> {
-    judged.scene.target.crossing().map(|[x, y]| {
+    judged.scene.target.crossing.map(|[x, y]| {
         Concern::TargetCrosses.of_sheet(format!(
             "the target outline crosses or touches itself near ({x:.1}, {y:.1}) mm: its inside is not defined; order \
              its vertices around the outline"

@@ -31,7 +31,6 @@ impl SelfWeight {
         }
     }
 
-    /// Weight and friction beside the load.
     pub(super) fn beside_load(&self) -> String {
         let of_load = |over_load: Option<f64>| {
             over_load.map_or(String::new(), |ratio| format!(", {}", of_the_load(ratio)))

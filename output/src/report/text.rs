@@ -35,7 +35,7 @@ impl fmt::Display for Report {
             writeln!(f, "{name:<width$}  {value}")?;
         }
         writeln!(f, "\n{}\n{LEGEND}", self.hinge_table())?;
-        let warned = (self.warnings.iter()).any(|it| it.severity > Severity::Note);
+        let warned = (self.warnings.iter()).any(|warning| warning.severity > Severity::Note);
         writeln!(f, "{}", if warned { "warnings" } else { "no warnings" })?;
         (self.warnings.iter()).try_for_each(|warning| writeln!(f, "- {warning}"))
     }
@@ -59,8 +59,8 @@ impl Report {
             further.push(("ensemble", text));
         }
         let count = |severity| {
-            let found = self.warnings.iter().filter(|it| it.severity == severity);
-            found.count()
+            let severities = self.warnings.iter().map(|warning| warning.severity);
+            severities.filter(|found| *found == severity).count()
         };
         let [errors, warnings, notes] =
             [Severity::Error, Severity::Warning, Severity::Note].map(count);

@@ -71,7 +71,6 @@ pub enum Concern {
 }
 
 impl Concern {
-    /// The severity of the concern.
     fn severity(self) -> Severity {
         match self {
             Self::WindowsLeavePanels
@@ -94,7 +93,6 @@ impl Concern {
         }
     }
 
-    /// A warning about the whole sheet.
     pub(super) fn of_sheet(self, message: String) -> Warning {
         Warning {
             concern: self,

@@ -6,7 +6,7 @@ use crate::run_page::packed::Packed;
 use design::analysis::actuation_curve::{ActuationCurve, holding_forces};
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::hinge_law::{DamageMeasure, Order};
-use design::objective::design_problem::{Deployment, Mechanics, Model};
+use design::objective::design_problem::{Deployment, Mechanics};
 use design::scene::Scene;
 use design::scene::design_run::Designed;
 use design::scene::placement::placed;
@@ -65,10 +65,7 @@ impl HingeStates {
         let size = OF_PANEL * sheet.panels.len() + OF_HINGE * sheet.hinges.len();
         let index = kept(all.len(), MOST_NUMBERS / size);
         let shown: Vec<&LoadStep> = index.iter().map(|&i| all[i]).collect();
-        let mechanics = match &problem.model {
-            Model::Ideal { .. } => None,
-            Model::Equilibrium(mechanics) => Some(mechanics),
-        };
+        let mechanics = problem.model.mechanics();
         let by_hinge = |of: &dyn Fn(usize, usize) -> f64| -> Packed {
             let numbers = |&i: &usize| (0..sheet.hinges.len()).map(move |h| of(i, h));
             index.iter().flat_map(numbers).collect()

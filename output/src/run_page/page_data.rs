@@ -83,7 +83,7 @@ struct Hinges {
 impl<'a> PageData<'a> {
     pub fn new(scene: &'a Scene, designed: &'a Designed, report: &'a Report) -> Self {
         let sheet = &designed.best.deployment.sheet;
-        let target = scene.target.points();
+        let target = &scene.target.points;
         let domain = scene.surrogate().map(|surrogate| surrogate.domain());
         let reached = report.facts.reached.as_ref();
         Self {

@@ -40,7 +40,7 @@ fn deployed() -> (DesignProblem, Deployment) {
     };
     let solver =
         EquilibriumSolver::new(GRID, &clamp, &[pull], 8, SolverSettings::default()).unwrap();
-    let law = LinearLaw::uniform([400.0, 250.0, 300.0], GRID.hinge_count()).unwrap();
+    let law = LinearLaw::uniform([400.0, 250.0, 300.0], GRID.hinge_count());
     let problem = DesignProblem {
         grid: GRID,
         outline: Outline::rectangle(500.0, 1000.0),

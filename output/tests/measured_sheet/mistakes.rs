@@ -18,7 +18,7 @@ fn three_of_200_points_that_are_wrong_by_20_mm_are_named() {
     let outliers = found.best.points.iter().enumerate();
     let outliers: Vec<usize> = outliers
         .filter(|(_, it)| it.outlier)
-        .map(|it| it.0)
+        .map(|pair| pair.0)
         .collect();
     assert_eq!(outliers, [11, 90, 173]);
     assert_eq!(found.renumbered, []);
@@ -171,23 +171,23 @@ fn points_that_cannot_be_compared_are_refused() {
     };
     let first = points[2].mark;
     assert_eq!(
-        changed(&|it| it.position[0] = f64::NAN),
+        changed(&|point| point.position[0] = f64::NAN),
         PointFault::NotFinite
     );
     assert_eq!(
-        changed(&|it| it.position[1] = f64::INFINITY),
+        changed(&|point| point.position[1] = f64::INFINITY),
         PointFault::NotFinite
     );
     assert_eq!(
-        changed(&|it| it.mark.panel = 50),
+        changed(&|point| point.mark.panel = 50),
         PointFault::NoSuchPanel { last: 49 }
     );
     assert_eq!(
-        changed(&|it| it.mark.corner = Some(4)),
+        changed(&|point| point.mark.corner = Some(4)),
         PointFault::NoSuchCorner
     );
     assert_eq!(
-        changed(&|it| it.mark = first),
+        changed(&|point| point.mark = first),
         PointFault::Repeated { first: 2 }
     );
     let mut same = points.clone();
@@ -207,7 +207,7 @@ fn one_panel_determines_no_load_factor() {
     assert!(
         points
             .iter()
-            .all(|it| it.mark.panel == points[0].mark.panel)
+            .all(|point| point.mark.panel == points[0].mark.panel)
     );
     let found = MeasuredSheet::new(&path, &points, Scale::Given).unwrap();
     assert_eq!(found.load_factor_error, None);

@@ -109,9 +109,9 @@ fn a_search_keeps_a_design_whose_path_was_followed() {
         let notes = report
             .warnings
             .iter()
-            .filter(|it| it.concern == Concern::OtherBranch);
+            .filter(|warning| warning.concern == Concern::OtherBranch);
         assert_eq!(
-            notes.map(|it| it.severity).collect::<Vec<_>>(),
+            notes.map(|note| note.severity).collect::<Vec<_>>(),
             [Severity::Note]
         );
     }
@@ -163,7 +163,7 @@ fn a_search_without_a_contradiction_is_not_noted() {
         report
             .warnings
             .iter()
-            .all(|it| it.concern != Concern::OtherBranch)
+            .all(|warning| warning.concern != Concern::OtherBranch)
     );
 }
 

@@ -210,7 +210,7 @@ fn a_spot_check_outside_the_domain_is_a_warning() {
         let outside = found(&report, Concern::WeakWeights);
         let outside: Vec<_> = outside
             .iter()
-            .filter(|it| it.message.contains("of 60 states"))
+            .filter(|warning| warning.message.contains("of 60 states"))
             .collect();
         assert_eq!(outside.len(), expected, "{:?}", report.warnings);
     }

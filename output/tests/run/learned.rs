@@ -164,8 +164,8 @@ fn a_path_that_departs_from_its_ray_is_named() {
         let warnings = warnings(&scene, deployment, &cuts);
         let bent = warnings
             .iter()
-            .find(|it| it.concern == Concern::PathDependence);
-        bent.map(|it| (it.severity, it.hinges.clone()))
+            .find(|warning| warning.concern == Concern::PathDependence);
+        bent.map(|warning| (warning.severity, warning.hinges.clone()))
     };
     assert_eq!(named(&deployment), None);
     deployment.path[middle].deformations[3].s += 0.5 * w_lig;

@@ -33,7 +33,7 @@ fn a_sound_design_writes_all_files_and_no_warning() {
     let found: Vec<_> = report
         .warnings
         .iter()
-        .map(|it| (it.concern, it.severity))
+        .map(|warning| (warning.concern, warning.severity))
         .collect();
     assert_eq!(found, [(Concern::TargetMissed, Severity::Note)]);
     assert_eq!((report.steps, report.hinges.len()), (25, 12));

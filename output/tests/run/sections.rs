@@ -107,8 +107,8 @@ fn a_target_is_drawn_in_an_svg_file() {
             "[target.svg]\nfile = \"outline.svg\"\ncentre = [700.0, 550.0]\nheight = 900.0",
         )]),
     );
-    assert!((scene.target.length() - 2.0 * (1800.0 + 900.0)).abs() < 1e-9);
-    for [x, y] in scene.target.points() {
+    assert!((scene.target.length - 2.0 * (1800.0 + 900.0)).abs() < 1e-9);
+    for [x, y] in &scene.target.points {
         let (x, y) = ((x - 700.0).abs() / 900.0, (y - 550.0).abs() / 450.0);
         assert!((x.max(y) - 1.0).abs() < 1e-9, "{x} {y}");
     }
@@ -136,7 +136,10 @@ fn constants_are_condensed_from_weights() {
         prepared.energies(&states, Order::Design)
     };
     let weights = Surrogate::load(Path::new(&folder.path().join("tiny.safetensors"))).unwrap();
-    let expected = CondensedLaw::new(weights, 20.0_f64.to_radians());
+    let expected = CondensedLaw {
+        surrogate: weights,
+        secant: 20.0_f64.to_radians(),
+    };
     assert_eq!(energies(&*mechanics.law), energies(&expected));
 }
 
@@ -147,10 +150,14 @@ fn both_methods_find_the_same_equilibria() {
     let mut problem = scene.problem().unwrap();
     let newton = problem.deploy(&scene.start()).unwrap().path;
     if let Model::Equilibrium(mechanics) = &mut problem.model {
-        mechanics.solver.use_lbfgs(20_000);
+        mechanics.solver.lbfgs = Some(20_000);
     }
     let lbfgs = problem.deploy(&scene.start()).unwrap().path;
-    let total = |path: &[LoadStep]| path.iter().map(|step| step.iterations).sum::<usize>();
+    let total = |path: &[LoadStep]| {
+        path.iter()
+            .map(|step| step.effort.iterations)
+            .sum::<usize>()
+    };
     assert!(total(&lbfgs) > 5 * total(&newton));
     for (x, y) in std::iter::zip(&newton[3].configuration, &lbfgs[3].configuration) {
         assert!((x[2] - y[2]).abs() < 1e-6, "{x:?} {y:?}");

@@ -73,7 +73,7 @@ fn path_columns(path: &[LoadStep]) -> Vec<(&'static str, Values)> {
         ("residual", numbers(|it| it.residual)),
         (
             "iterations",
-            Values::Counts(path.iter().map(|it| it.iterations as u32).collect()),
+            Values::Counts(path.iter().map(|it| it.effort.iterations as u32).collect()),
         ),
         (
             "theta_mean",

@@ -3,7 +3,7 @@
 
 use anyhow::{Context, Result};
 use design::analysis::threshold::least_passing;
-use design::objective::outline_error::outline_error;
+use design::objective::scores::outline_error;
 use design::objective::target::TargetShape;
 use design::scene::{Scene, SceneConfig};
 use std::path::Path;

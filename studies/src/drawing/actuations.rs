@@ -4,12 +4,13 @@
 
 use design::analysis::force_transmission::{ForceTransmission, Interface};
 use design::analysis::tension_routes::TensionRoute;
+use design::geometry::polygon::bounds;
 use design::objective::design_problem::Deployment;
 use design::scene::{Scene, SupportKind};
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::deployed_corners;
 use design::sheet::topology::is_even;
-use output::display::{Anchor, Canvas, Colour, Style, bounds};
+use output::display::{Anchor, Canvas, Colour, Style};
 use output::drawing::page::{ACCENT, INK, MUTED, PANELS, TEAL};
 
 /// A row of the picture.
@@ -71,7 +72,7 @@ pub fn actuations(rows: &[ActuationRow]) -> String {
             unit: u,
         };
         let flat = bounds(row.start.outline.corners);
-        let open = bounds(row.scene.target.points().iter().copied());
+        let open = bounds(row.scene.target.points.iter().copied());
         boundary_values(&mut canvas, &cell(0, flat), row);
         flat_areas(&mut canvas, &cell(1, flat), row);
         deployed(&mut canvas, &cell(2, open), row);
@@ -96,7 +97,7 @@ impl Layout {
     fn of(rows: &[ActuationRow], first: &ActuationRow) -> Self {
         let size = |[low, high]: [[f64; 2]; 2]| [high[0] - low[0], high[1] - low[1]];
         let flat = size(bounds(first.start.outline.corners));
-        let open = size(bounds(first.scene.target.points().iter().copied()));
+        let open = size(bounds(first.scene.target.points.iter().copied()));
         let gap = 0.12 * open[0];
         // Arrows extend beyond the flat sheet of the first column, which has labels at its left.
         let widths = [1.3 * flat[0], flat[0], open[0], open[0]];
@@ -219,7 +220,7 @@ fn deployed(canvas: &mut Canvas, cell: &Cell, row: &ActuationRow) {
     }
     let u = cell.unit;
     let style = cell.stroke(ACCENT, 1.2).dashed(5.0 * u, 3.5 * u);
-    cell.polygon(canvas, row.scene.target.points(), style);
+    cell.polygon(canvas, &row.scene.target.points, style);
 }
 
 fn forces(canvas: &mut Canvas, cell: &Cell, row: &ActuationRow) {

@@ -1,10 +1,10 @@
 //! Sheets side by side at one scale: flat above, deployed with their targets below.
 
 use crate::tessellation::{Defects, Tessellation};
-use design::geometry::polygon::{area, common};
+use design::geometry::polygon::{area, bounds, common};
 use design::pattern::grid::Grid;
 use design::sheet::topology::is_even;
-use output::display::{Anchor, Canvas, Colour, Style, bounds};
+use output::display::{Anchor, Canvas, Colour, Style};
 use output::drawing::page::{ACCENT, INK, MUTED, PANELS};
 
 /// Colour of area that the flat panels do not cover.

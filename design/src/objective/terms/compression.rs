@@ -11,13 +11,6 @@ pub struct Compression {
     pub temperature: f64,
 }
 
-impl Default for Compression {
-    /// With a temperature of a tenth of typical values.
-    fn default() -> Self {
-        Self { temperature: 0.01 }
-    }
-}
-
 impl Term for Compression {
     fn name(&self) -> &'static str {
         "compression"

@@ -16,17 +16,6 @@ pub struct Damage {
     pub temperature: f64,
 }
 
-impl Damage {
-    /// With a temperature of a tenth of typical values.
-    pub fn new(measure: DamageMeasure, scale: f64) -> Self {
-        Self {
-            measure,
-            scale,
-            temperature: 0.1,
-        }
-    }
-}
-
 impl Term for Damage {
     fn name(&self) -> &'static str {
         "damage"

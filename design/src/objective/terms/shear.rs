@@ -11,13 +11,6 @@ pub struct Shear {
     pub temperature: f64,
 }
 
-impl Default for Shear {
-    /// With a temperature of a tenth of typical values.
-    fn default() -> Self {
-        Self { temperature: 0.01 }
-    }
-}
-
 impl Term for Shear {
     fn name(&self) -> &'static str {
         "shear"
