@@ -15,6 +15,6 @@ pub mod robust_pose;
 pub mod shape_path;
 pub mod solution_set;
 pub mod taylor;
-pub mod tension_routes;
+pub mod tension_lines;
 pub mod threshold;
 pub mod void_families;

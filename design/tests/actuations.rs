@@ -3,7 +3,7 @@
 use design::analysis::degeneration::{Degeneration, last_jump};
 use design::analysis::force_transmission::ForceTransmission;
 use design::analysis::further_load::GivesWay;
-use design::analysis::tension_routes::tension_routes;
+use design::analysis::tension_lines::tension_lines;
 use design::equilibrium::hinged_sheet::HingedSheet;
 use design::equilibrium::load_step::Status;
 use design::equilibrium::supports::{Dof, Load};
@@ -34,7 +34,7 @@ fn changed(name: &str, change: impl Fn(&mut SceneConfig)) -> (DesignProblem, Dep
 #[test]
 fn the_interface_energies_sum_to_the_stored_energy_and_tension_reaches_the_load() {
     let (problem, deployment) = uniform(1.0);
-    assert_eq!(Degeneration::of(deployment.final_step()), None);
+    assert_eq!(Degeneration::new(deployment.final_step()), None);
     let transmission = ForceTransmission::new(&problem, &deployment).unwrap();
     let interfaces = transmission.interfaces.iter();
     let stored: f64 = interfaces
@@ -51,12 +51,8 @@ fn the_interface_energies_sum_to_the_stored_energy_and_tension_reaches_the_load(
     assert!((whole - 1.0).abs() < 1e-12);
     assert!(shares.rotation > 0.95 && shares.non_rotational > 1.0 - shares.rotation);
     // The loaded panel is [7, 5]: a tension path reaches it.
-    let routes = tension_routes(&transmission);
-    assert!(
-        routes
-            .iter()
-            .any(|route| route.panels.contains(&(5 * 15 + 7)))
-    );
+    let lines = tension_lines(&transmission);
+    assert!(lines.iter().any(|line| line.panels.contains(&(5 * 15 + 7))));
     // At a compressed hinge two corners overlap slightly; the paper's overlap is below this limit too.
     assert!(total_overlap(&deployment.sheet, &last.configuration) < 3e-6);
 }
@@ -64,7 +60,7 @@ fn the_interface_energies_sum_to_the_stored_energy_and_tension_reaches_the_load(
 #[test]
 fn a_sheet_that_is_pushed_closed_is_not_deployed() {
     let (_, deployment) = uniform(-0.1);
-    let hinges = match Degeneration::of(deployment.final_step()) {
+    let hinges = match Degeneration::new(deployment.final_step()) {
         Some(Degeneration::Contact { hinges }) => hinges,
         other => panic!("{other:?}"),
     };

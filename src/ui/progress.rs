@@ -38,10 +38,11 @@ impl Progress {
     pub fn new(total: usize, what: &'static str) -> Self {
         let style = ProgressStyle::with_template("{prefix:>14} [{bar:30}] {pos}/{len}  {msg}")
             .expect("the template is a constant");
-        let target = match verbose::is_shown() {
-            // A bar would overwrite the notes.
-            true => ProgressDrawTarget::hidden(),
-            false => ProgressDrawTarget::stderr(),
+        // A bar would overwrite the notes.
+        let target = if verbose::is_shown() {
+            ProgressDrawTarget::hidden()
+        } else {
+            ProgressDrawTarget::stderr()
         };
         // A message wider than the terminal is continued on the next line: a number that was cut would be another one.
         let bar = ProgressBar::with_draw_target(Some(total as u64), target)

@@ -9,7 +9,7 @@ use crate::shape_alone::shape_alone;
 use anyhow::Result;
 use clap::Args;
 use design::analysis::force_transmission::ForceTransmission;
-use design::analysis::tension_routes::{TensionRoute, tension_routes};
+use design::analysis::tension_lines::{TensionLine, tension_lines};
 use design::analysis::void_families::{VoidFamilies, disjoint_voids};
 use design::objective::loss::Objective;
 use design::objective::scores::outline_error;
@@ -51,7 +51,7 @@ struct Case {
     shape_alone: f64,
     objective: Objective,
     transmission: ForceTransmission,
-    routes: Vec<TensionRoute>,
+    lines: Vec<TensionLine>,
     /// Vertices and sides of the voids of disjoint unit cells.
     voids: Vec<([usize; 2], [f64; 2])>,
 }
@@ -94,7 +94,7 @@ impl ActuationStudy {
 
         let voids = || cases.iter().flat_map(|case| &case.voids);
         let sides: Vec<[f64; 2]> = voids().map(|(_, sides)| *sides).collect();
-        let families = VoidFamilies::of(&sides, FAMILIES);
+        let families = VoidFamilies::new(&sides, FAMILIES);
         let mut family = voids()
             .zip(&families.family)
             .map(|((cell, _), f)| (*cell, *f));
@@ -172,7 +172,7 @@ impl Case {
             label,
             drives,
             shape_alone,
-            routes: tension_routes(&transmission),
+            lines: tension_lines(&transmission),
             voids: disjoint_voids(&deployment.pattern),
             objective: problem.objective,
             transmission,
@@ -188,7 +188,7 @@ impl Case {
             start: &self.designed.start.deployment.sheet,
             deployment: &self.designed.best.deployment,
             transmission: &self.transmission,
-            routes: &self.routes,
+            lines: &self.lines,
             families,
         }
     }

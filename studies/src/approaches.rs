@@ -146,7 +146,7 @@ impl ApproachStudy {
             rate,
             steps: self.steps,
             loss: found.losses.iter().copied().fold(f64::INFINITY, f64::min),
-            fit: OutlineMatch::of(
+            fit: OutlineMatch::new(
                 &sheet,
                 &tessellation.deployed,
                 &problem.objective.shape.target,
@@ -167,7 +167,7 @@ impl ApproachStudy {
         let scene = Scene::new(config, &self.scene)?;
         remove_run(&scene)?;
         let designed = designed(&scene, &mut |_| {})?;
-        let tessellation = Tessellation::of(&scene, &designed.best.deployment);
+        let tessellation = Tessellation::from_deployment(&scene, &designed.best.deployment);
         let pattern = &designed.design.pattern;
         let opening = designed.design.opening.unwrap_or_default();
         let sheet = &designed.best.deployment.sheet;
@@ -181,7 +181,7 @@ impl ApproachStudy {
             rate,
             steps: designed.history.len() - 1,
             loss: designed.best.loss,
-            fit: OutlineMatch::of(sheet, &tessellation.deployed, &scene.target.points),
+            fit: OutlineMatch::new(sheet, &tessellation.deployed, &scene.target.points),
             defects: tessellation.defects_in(states),
             opening_deg: opening.to_degrees(),
             tessellation,

@@ -278,7 +278,7 @@ impl CapacityStudy {
             ],
             boundary: 100.0 * outline_error(&scene.problem()?.objective, &deployment)
                 / scene.target.width(),
-            degeneration: Degeneration::of(deployment.final_step()),
+            degeneration: Degeneration::new(deployment.final_step()),
             last_jump: last_jump(&deployment),
         })
     }

@@ -6,8 +6,8 @@ mod convergence;
 mod costs;
 mod front;
 mod growth;
+mod hinge_paths;
 mod rays;
-mod routes;
 mod solutions;
 mod taylor;
 
@@ -17,7 +17,7 @@ pub use convergence::{StudyPanel, studies};
 pub use costs::{CostPanel, costs};
 pub use front::{FrontPanel, front};
 pub use growth::{PathCost, growth};
+pub use hinge_paths::{PathPanel, hinge_paths};
 pub use rays::{Curve, against_rays};
-pub use routes::{RoutePanel, routes};
 pub use solutions::{SolutionChart, solutions};
 pub use taylor::{TaylorLine, taylor};

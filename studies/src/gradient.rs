@@ -97,7 +97,7 @@ impl GradientStudy {
             let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
             direction.iter_mut().for_each(|d| *d /= length);
             let loss = |x: &[f64]| problem.loss(&design.with_flat(x));
-            let taylor = TaylorRemainders::of(loss, &x, &gradient, &direction, FIRST, STEPS)?;
+            let taylor = TaylorRemainders::new(loss, &x, &gradient, &direction, FIRST, STEPS)?;
             for (sum, remainder) in remainders.iter_mut().zip(&taylor.remainders) {
                 *sum += remainder / self.directions as f64;
             }

@@ -28,18 +28,18 @@ pub struct Match {
 
 impl OutlineMatch {
     /// For the deployed corners of the panels of a sheet, in the position of the target.
-    pub fn of(sheet: &Sheet, deployed: &[[[f64; 2]; 4]], target: &[[f64; 2]]) -> Self {
+    pub fn new(sheet: &Sheet, deployed: &[[[f64; 2]; 4]], target: &[[f64; 2]]) -> Self {
         let [free, all] = [OutlinePoints::Free, OutlinePoints::All].map(|points| {
             let corners = points.corners(sheet).into_iter();
             let outline: Vec<_> = corners.map(|(k, corner)| deployed[k][corner]).collect();
-            Match::of(&outline, target)
+            Match::new(&outline, target)
         });
         Self { free, all }
     }
 }
 
 impl Match {
-    fn of(outline: &[[f64; 2]], target: &[[f64; 2]]) -> Self {
+    fn new(outline: &[[f64; 2]], target: &[[f64; 2]]) -> Self {
         let from_curve: Vec<f64> = (outline.iter())
             .map(|corner| distance(*corner, nearest_on_outline(*corner, target)))
             .collect();
@@ -73,11 +73,11 @@ mod tests {
     #[test]
     fn a_square_with_one_corner_off_its_target() {
         let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
-        let same = Match::of(&square, &square);
+        let same = Match::new(&square, &square);
         assert_eq!((same.mean, same.rms, same.uncovered), (0.0, 0.0, 0.0));
         assert!((same.shared - 1.0).abs() < 1e-12);
         let cut = [[0.0, 0.0], [2.0, 0.0], [1.0, 1.0], [0.0, 2.0]];
-        let off = Match::of(&cut, &square);
+        let off = Match::new(&cut, &square);
         assert!((off.mean - 0.25).abs() < 1e-12 && (off.rms - 0.5).abs() < 1e-12);
         assert!((off.uncovered - 0.5f64.sqrt()).abs() < 1e-12);
         assert!((off.shared - 0.5).abs() < 1e-3);

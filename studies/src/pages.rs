@@ -96,13 +96,11 @@ impl Book {
         let product = self.product.iter().find(|product| product.name == name);
         let product = product.with_context(|| format!("there is no product `{name}`"))?;
         product.needs.iter().try_for_each(|name| self.make(name))?;
-        match product.is_current() {
-            true => Ok(()),
-            false => product
-                .commands
-                .iter()
-                .try_for_each(|command| shell(command)),
+        if product.is_current() {
+            return Ok(());
         }
+        let mut commands = product.commands.iter();
+        commands.try_for_each(|command| shell(command))
     }
 }
 

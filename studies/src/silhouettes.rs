@@ -134,13 +134,13 @@ impl SilhouetteStudy {
         })?;
         let seconds = began.elapsed().as_secs_f64();
         let (deployment, target) = (&designed.best.deployment, &scene.target.points);
-        let tessellation = Tessellation::of(&scene, deployment);
+        let tessellation = Tessellation::from_deployment(&scene, deployment);
         let opening = designed.design.opening;
         let opening = opening.context("the scene has no opening angle: set hinge = \"pin\"")?;
         Ok(Fitted {
             name,
             aim,
-            fit: OutlineMatch::of(&deployment.sheet, &tessellation.deployed, target),
+            fit: OutlineMatch::new(&deployment.sheet, &tessellation.deployed, target),
             height,
             opening_deg: opening.to_degrees(),
             worst: tessellation.worst_panels(),

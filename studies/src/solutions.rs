@@ -115,7 +115,7 @@ impl SolutionStudy {
             .iter()
             .flat_map(|solution| [solution.start.clone(), solution.end.clone()])
             .collect();
-        let plane = PrincipalPlane::of(&points)
+        let plane = PrincipalPlane::new(&points)
             .context("too few runs for a principal plane: increase --runs")?;
         let families = families(&solutions);
         let best = families

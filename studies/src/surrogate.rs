@@ -87,10 +87,7 @@ impl SurrogateStudy {
             .filter(|&rays| rays < all)
             .chain([all])
             .collect();
-        let sizes = match self.quick {
-            true => &SIZES[..2],
-            false => &SIZES[..],
-        };
+        let sizes = if self.quick { &SIZES[..2] } else { &SIZES[..] };
         let mut cases = Vec::new();
         for size in sizes {
             let path = self.configs.join(format!("{size}.toml"));

@@ -50,7 +50,7 @@ pub struct WorstPanels {
 
 impl Tessellation {
     /// The tessellation of a sheet, deployed in the position in which the objective compares it with the target.
-    pub fn of(scene: &Scene, deployment: &Deployment) -> Self {
+    pub fn from_deployment(scene: &Scene, deployment: &Deployment) -> Self {
         let sheet = &deployment.sheet;
         let configuration = placed(scene, sheet, &deployment.final_step().configuration);
         Self {

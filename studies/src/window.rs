@@ -223,9 +223,10 @@ fn extrapolation(rows: &[Row]) -> Result<String> {
             } = richardson(sizes, states.map(|state| state[i]));
             let known = study_state(default, 45.0)[i];
             let error = 100.0 * (known / limit - 1.0);
-            let order = match observed {
-                true => format!("{order:.1}"),
-                false => "(2)".to_owned(),
+            let order = if observed {
+                format!("{order:.1}")
+            } else {
+                "(2)".to_owned()
             };
             writeln!(
                 text,
@@ -305,9 +306,12 @@ fn tradeoff(rows: &[Row]) -> Result<String> {
         for row in &solved {
             let differences = difference(row, rows);
             // A difference without a reference stays NaN.
-            worst = std::array::from_fn(|i| match differences[i].is_nan() {
-                true => f64::NAN,
-                false => (100.0 * differences[i]).max(worst[i]),
+            worst = std::array::from_fn(|i| {
+                if differences[i].is_nan() {
+                    f64::NAN
+                } else {
+                    (100.0 * differences[i]).max(worst[i])
+                }
             });
         }
         let [w, f_a, m, d, _] = worst;

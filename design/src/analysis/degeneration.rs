@@ -27,7 +27,7 @@ pub enum Degeneration {
 impl Degeneration {
     /// `None` for a sheet with every void open; `last` is the last state of a deployment, at full load if
     /// that was reached.
-    pub fn of(last: &LoadStep) -> Option<Self> {
+    pub fn new(last: &LoadStep) -> Option<Self> {
         if last.status == Status::Diverged {
             let reached = last.load_factor;
             return Some(Self::NoEquilibrium { reached });

@@ -67,7 +67,7 @@ impl FurtherLoad {
 impl GivesWay {
     /// The limit between one state and the next, if there is one.
     fn between(before: f64, step: &LoadStep) -> Option<Self> {
-        match (step.status, Degeneration::of(step)) {
+        match (step.status, Degeneration::new(step)) {
             (Status::Diverged, _) => Some(Self::NoEquilibrium),
             _ if step.jumps > 0 => Some(Self::Snaps),
             _ if step.load_factor < before => Some(Self::Falls),

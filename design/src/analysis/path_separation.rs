@@ -16,7 +16,7 @@ pub struct PathSeparation {
 impl PathSeparation {
     /// The separation of a path from the undeformed state through `states`, of a hinge with the ligament width `w_lig`
     /// (mm).
-    pub fn of(w_lig: f64, states: &[HingeDeformation]) -> Self {
+    pub fn new(w_lig: f64, states: &[HingeDeformation]) -> Self {
         let places = |turn: f64| {
             let place = |state: &HingeDeformation| {
                 let [eta_a, eta_s] = state.eta(w_lig);
@@ -57,7 +57,7 @@ mod tests {
 
     fn separation(states: &[[f64; 3]]) -> PathSeparation {
         let states: Vec<_> = states.iter().map(|state| (*state).into()).collect();
-        PathSeparation::of(10.0, &states)
+        PathSeparation::new(10.0, &states)
     }
 
     #[test]
@@ -79,6 +79,6 @@ mod tests {
         let found = separation(&[[3.0, 0.0, 0.0], [3.0, 4.0, 0.0]]);
         let gap = f64::hypot(0.3 - fraction * 0.3, fraction * 0.4);
         assert!((found.translation - gap).abs() < 1e-15 && found.whole == found.translation);
-        assert_eq!(PathSeparation::of(10.0, &[]), PathSeparation::default());
+        assert_eq!(PathSeparation::new(10.0, &[]), PathSeparation::default());
     }
 }

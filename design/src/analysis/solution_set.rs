@@ -106,7 +106,7 @@ pub struct PrincipalPlane {
 
 impl PrincipalPlane {
     /// For points of the same length; `None` for fewer than two coordinates or points.
-    pub fn of(points: &[Vec<f64>]) -> Option<Self> {
+    pub fn new(points: &[Vec<f64>]) -> Option<Self> {
         let (count, n) = (points.len(), points.first()?.len());
         if count < 2 || n < 2 {
             return None;
@@ -158,7 +158,7 @@ mod tests {
                 vec![1.0, 2.0 + angle.sin(), 3.0 + 5.0 * angle.cos()]
             })
             .collect();
-        let plane = PrincipalPlane::of(&points).unwrap();
+        let plane = PrincipalPlane::new(&points).unwrap();
         assert!((plane.axes[0][2].abs() - 1.0).abs() < 1e-12, "{plane:?}");
         assert!((plane.axes[1][1].abs() - 1.0).abs() < 1e-12, "{plane:?}");
         assert!((plane.shares[0] / plane.shares[1] - 25.0).abs() < 1e-9);
@@ -166,6 +166,6 @@ mod tests {
         assert!((along.abs() - 5.0).abs() < 1e-12 && across.abs() < 1e-12);
         let back = plane.point([along, across]);
         assert!((back[1] - 2.0).abs() < 1e-9 && (back[2] - 8.0).abs() < 1e-9);
-        assert_eq!(PrincipalPlane::of(&points[..1]), None);
+        assert_eq!(PrincipalPlane::new(&points[..1]), None);
     }
 }

@@ -20,7 +20,7 @@ pub struct TaylorRemainders {
 impl TaylorRemainders {
     /// Remainders of `f` about `x` along `direction` for `count` steps, beginning with `first` and halved each
     /// time.
-    pub fn of<E>(
+    pub fn new<E>(
         mut f: impl FnMut(&[f64]) -> Result<f64, E>,
         x: &[f64],
         gradient: &[f64],
@@ -71,7 +71,7 @@ mod tests {
 
     fn orders(gradient: [f64; 2]) -> Vec<f64> {
         let f = |x: &[f64]| Ok::<_, Infallible>(x[0].sin() * x[1].exp());
-        TaylorRemainders::of(f, &[0.3, 0.7], &gradient, &[0.8, -0.6], 1e-3, 4)
+        TaylorRemainders::new(f, &[0.3, 0.7], &gradient, &[0.8, -0.6], 1e-3, 4)
             .unwrap()
             .orders()
     }

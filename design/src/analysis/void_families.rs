@@ -32,7 +32,7 @@ impl VoidFamilies {
     /// At most `count` families of voids with the given sides (mm). The first start point is the void
     /// farthest from the mean, each further one the void farthest from the start points before it, so
     /// that the partition depends on the voids alone.
-    pub fn of(sides: &[[f64; 2]], count: usize) -> Self {
+    pub fn new(sides: &[[f64; 2]], count: usize) -> Self {
         let points: Vec<[f64; 2]> = sides.iter().map(|void| void.map(f64::ln)).collect();
         let mut centres = Vec::from_iter(mean(points.iter()));
         for k in 0..count {
@@ -108,7 +108,7 @@ mod tests {
         let around =
             |centre: [f64; 2]| [0.98, 1.0, 1.0 / 0.98].map(|f| centre.map(|side| side * f));
         let sides: Vec<[f64; 2]> = clouds.into_iter().flat_map(around).collect();
-        let families = VoidFamilies::of(&sides, 3);
+        let families = VoidFamilies::new(&sides, 3);
         assert_eq!(families.family, [2, 2, 2, 0, 0, 0, 1, 1, 1]);
         for (found, expected) in families.sides.iter().zip([clouds[1], clouds[2], clouds[0]]) {
             assert!((found[0] - expected[0]).abs() < 1e-9 * expected[0]);
@@ -118,8 +118,8 @@ mod tests {
 
     #[test]
     fn equal_voids_are_one_family_and_no_void_is_none() {
-        assert_eq!(VoidFamilies::of(&[[2.0, 1.0]; 5], 3).family, [0; 5]);
-        assert!(VoidFamilies::of(&[], 3).family.is_empty());
+        assert_eq!(VoidFamilies::new(&[[2.0, 1.0]; 5], 3).family, [0; 5]);
+        assert!(VoidFamilies::new(&[], 3).family.is_empty());
     }
 
     #[test]

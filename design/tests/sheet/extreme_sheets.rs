@@ -232,7 +232,7 @@ fn the_gradient_is_exact_where_the_tangent_is_indefinite() {
     let (x, gradient) = (design.to_flat(), evaluation.gradient.to_flat());
     let direction = Random::new(37).numbers(x.len(), 1.0);
     let loss = |x: &[f64]| problem.loss(&design.with_flat(x));
-    let remainders = TaylorRemainders::of(loss, &x, &gradient, &direction, 1e-3, 4).unwrap();
+    let remainders = TaylorRemainders::new(loss, &x, &gradient, &direction, 1e-3, 4).unwrap();
     let orders = remainders.orders();
     assert!(
         orders.iter().all(|order| (1.95..2.05).contains(order)),

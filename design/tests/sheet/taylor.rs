@@ -188,7 +188,7 @@ fn assert_order_two(problem: &DesignProblem, design: &DesignVector) {
         let values = Random::new(13).numbers(block.len(), 1.0);
         direction[block].copy_from_slice(&values);
         let loss = |x: &[f64]| problem.loss(&design.with_flat(x));
-        let remainders = TaylorRemainders::of(loss, &x, &gradient, &direction, 2e-3, 4).unwrap();
+        let remainders = TaylorRemainders::new(loss, &x, &gradient, &direction, 2e-3, 4).unwrap();
         let orders = remainders.orders();
         assert!(
             orders.iter().all(|order| (1.95..2.05).contains(order)),

@@ -110,12 +110,14 @@ impl TextRow {
 
 /// A finite number with a decimal point or a decimal comma.
 fn number(text: &str, decimal_comma: bool) -> Option<f64> {
-    let number = match decimal_comma {
-        true if text.contains('.') => None,
-        true => text.replace(',', ".").parse().ok(),
-        false => text.parse().ok(),
+    let number: f64 = if !decimal_comma {
+        text.parse().ok()?
+    } else if text.contains('.') {
+        return None;
+    } else {
+        text.replace(',', ".").parse().ok()?
     };
-    number.filter(|number: &f64| number.is_finite())
+    number.is_finite().then_some(number)
 }
 
 /// The text of a file in UTF-8, in UTF-16 with a byte order mark, or in Latin-1.

@@ -65,7 +65,7 @@ impl HingeRow {
             damage: deployment.damage_max(DamageMeasure::Mean, h),
             damage_peak: deployment.damage_max(DamageMeasure::Peak, h),
             inside: deployment.path.iter().all(|step| step.inside[h]),
-            path_separation: PathSeparation::of(hinge.w_lig, &states).whole,
+            path_separation: PathSeparation::new(hinge.w_lig, &states).whole,
             gamma: gamma(&scene.material, hinge.w_lig, shortest_edge(sheet, hinge)),
         }
     }

@@ -67,9 +67,9 @@ impl Numbers {
                 .map(|state| state.theta.to_degrees())
         };
         // A ring has no chord.
-        let bent: Vec<f64> = (case.routes.iter())
-            .filter(|route| route.panels.len() >= PATH)
-            .map(|route| route.arc_over_chord(&case.transmission))
+        let bent: Vec<f64> = (case.lines.iter())
+            .filter(|line| line.panels.len() >= PATH)
+            .map(|line| line.arc_over_chord(&case.transmission))
             .filter(|ratio| ratio.is_finite())
             .collect();
         let start = case
@@ -93,7 +93,7 @@ impl Numbers {
             ],
             rank_correlation: case.transmission.rank_correlation(),
             clustering: case.transmission.clustering(),
-            longest_path: case.routes.first().map_or(0, |route| route.panels.len()),
+            longest_path: case.lines.first().map_or(0, |line| line.panels.len()),
             arc_over_chord: (!bent.is_empty())
                 .then(|| bent.iter().sum::<f64>() / bent.len() as f64),
             moment_panels: [

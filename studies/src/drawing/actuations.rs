@@ -3,7 +3,7 @@
 //! coloured by the family of their void; the transmitted forces.
 
 use design::analysis::force_transmission::{ForceTransmission, Interface};
-use design::analysis::tension_routes::TensionRoute;
+use design::analysis::tension_lines::TensionLine;
 use design::geometry::polygon::bounds;
 use design::objective::design_problem::Deployment;
 use design::scene::{Scene, SupportKind};
@@ -21,7 +21,7 @@ pub struct ActuationRow<'a> {
     pub start: &'a Sheet,
     pub deployment: &'a Deployment,
     pub transmission: &'a ForceTransmission,
-    pub routes: &'a [TensionRoute],
+    pub lines: &'a [TensionLine],
     /// The vertices of the unit cells and the families of their voids.
     pub families: &'a [([usize; 2], usize)],
 }
@@ -49,7 +49,7 @@ pub fn actuations(rows: &[ActuationRow]) -> String {
     let Some(first) = rows.first() else {
         return String::new();
     };
-    let layout = Layout::of(rows, first);
+    let layout = Layout::new(rows, first);
     let page = [[0.0; 2], [layout.width, layout.height]];
     let mut canvas = Canvas::on_white(page);
     let bold = Style::fill(INK).bold();
@@ -94,7 +94,7 @@ struct Layout {
 }
 
 impl Layout {
-    fn of(rows: &[ActuationRow], first: &ActuationRow) -> Self {
+    fn new(rows: &[ActuationRow], first: &ActuationRow) -> Self {
         let size = |[low, high]: [[f64; 2]; 2]| [high[0] - low[0], high[1] - low[1]];
         let flat = size(bounds(first.start.outline.corners));
         let open = size(bounds(first.scene.target.points.iter().copied()));
@@ -247,8 +247,8 @@ fn forces(canvas: &mut Canvas, cell: &Cell, row: &ActuationRow) {
         (transmission.interfaces.iter().map(size)).fold(f64::MIN_POSITIVE, f64::max)
     };
     let most_tension = maximum(&|it| it.normal);
-    for route in row.routes {
-        for &h in &route.interfaces {
+    for line in row.lines {
+        for &h in &line.interfaces {
             let interface = &transmission.interfaces[h];
             let style = cell.stroke(ACCENT, 0.8 + 3.6 * interface.normal / most_tension);
             let hinge = cell.at(interface.at);

@@ -90,9 +90,9 @@ pub(super) fn table(study: &PolyesterStudy, config: &SceneConfig, load: f64) -> 
 }
 
 fn of(row: &Row) -> [Option<f64>; COLUMNS.len()] {
-    let states = row.paths.iter().flat_map(|route| {
-        let w_lig = route.design.w_lig;
-        route.states.iter().map(move |state| state.eta(w_lig)[0])
+    let states = row.paths.iter().flat_map(|path| {
+        let w_lig = path.design.w_lig;
+        path.states.iter().map(move |state| state.eta(w_lig)[0])
     });
     let forces = row.forces.iter();
     let known: Vec<f64> = row.damage.iter().flatten().copied().collect();

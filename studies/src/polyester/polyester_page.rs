@@ -1,7 +1,7 @@
 //! The tables and pictures of `kirigami-studies polyester`.
 
 use super::Row;
-use crate::charts::{self, RoutePanel};
+use crate::charts::{self, PathPanel};
 use anyhow::Result;
 use design::sheet::cut_sheet::HingePoint;
 use kirigami::ui::{picture, run_folder};
@@ -44,17 +44,17 @@ pub(super) fn write(
     let page = markdown(rows, tier, front)?;
     run_folder::write(out, "polyester.md", &page)?;
     run_folder::write(out, "polyester.csv", &csv(rows)?)?;
-    let panels: Vec<RoutePanel> = rows
+    let panels: Vec<PathPanel> = rows
         .iter()
-        .map(|row| RoutePanel {
+        .map(|row| PathPanel {
             title: format!("{}, {}", name(row.point), row.objective),
-            routes: row.paths.iter().map(eta).collect(),
+            paths: row.paths.iter().map(eta).collect(),
             monitored: row.monitored,
             domain: domain_slice(surrogate, row),
             damage: damage_plane(surrogate, row),
         })
         .collect();
-    picture::save(&charts::routes(&panels)?, &out.join("polyester"), 1700)?;
+    picture::save(&charts::hinge_paths(&panels)?, &out.join("polyester"), 1700)?;
     for (k, row) in rows.iter().enumerate() {
         let svg = std::fs::read_to_string(row.folder.join("deployed.svg"))?;
         picture::save(&svg, &out.join(format!("deployed-{}", k + 1)), 1000)?;
@@ -71,16 +71,16 @@ fn name(point: HingePoint) -> &'static str {
 }
 
 /// (eta_a, eta_s) of every state.
-fn eta(route: &RecordedPath) -> Vec<[f64; 2]> {
-    let states = route.states.iter();
-    states.map(|state| state.eta(route.design.w_lig)).collect()
+fn eta(path: &RecordedPath) -> Vec<[f64; 2]> {
+    let states = path.states.iter();
+    states.map(|state| state.eta(path.design.w_lig)).collect()
 }
 
 /// D / D_s over (eta_a, eta_s) for the design and the final opening of the monitored hinge.
 fn damage_plane(surrogate: &Surrogate, row: &Row) -> Box<dyn Fn([f64; 2]) -> f64> {
-    let (surrogate, route) = (surrogate.clone(), row.paths[row.monitored].clone());
+    let (surrogate, path) = (surrogate.clone(), row.paths[row.monitored].clone());
     Box::new(move |[eta_a, eta_s]| {
-        let (design, theta) = (route.design, route.end().theta);
+        let (design, theta) = (path.design, path.end().theta);
         let state = hinge::HingeDeformation::from_eta(eta_a, eta_s, theta, design.w_lig);
         surrogate.damage(&[design], &[state])[0].d / surrogate.damage_scale()
     })
@@ -88,10 +88,10 @@ fn damage_plane(surrogate: &Surrogate, row: &Row) -> Box<dyn Fn([f64; 2]) -> f64
 
 /// The boundary of the training domain for the design and the final opening of the monitored hinge.
 fn domain_slice(surrogate: &Surrogate, row: &Row) -> Vec<[f64; 2]> {
-    let route = &row.paths[row.monitored];
+    let path = &row.paths[row.monitored];
     surrogate
         .domain()
-        .slice(route.design.w_lig, route.end().theta)
+        .slice(path.design.w_lig, path.end().theta)
 }
 
 /// The quantities of the table, in the order of [`PAPER`].
@@ -164,7 +164,7 @@ fn markdown(rows: &[Row], tier: Tier, front: &str) -> Result<String> {
     }
     text += " | |\n| maximum opening, deg |";
     for row in rows {
-        let openings = row.paths.iter().map(|route| route.end().theta.to_degrees());
+        let openings = row.paths.iter().map(|path| path.end().theta.to_degrees());
         write!(text, " {:.1} |", openings.fold(0.0, f64::max))?;
     }
     text += " | |\n";
@@ -220,9 +220,9 @@ fn csv(rows: &[Row]) -> Result<String> {
         "point,objective,hinge,w_lig_mm,theta_deg,eta_a,eta_s,f_n,force,damage_over_ds\n"
             .to_owned();
     for row in rows {
-        for (hinge, route) in row.paths.iter().enumerate() {
-            let end = route.end();
-            let [eta_a, eta_s] = end.eta(route.design.w_lig);
+        for (hinge, path) in row.paths.iter().enumerate() {
+            let end = path.end();
+            let [eta_a, eta_s] = end.eta(path.design.w_lig);
             let [normal, force] = row.forces[hinge];
             writeln!(
                 text,

@@ -1,27 +1,27 @@
-//! The paths along which tension runs through a deployed sheet; section 3.2, Fig. 6 (d).
+//! The lines along which tension runs through a deployed sheet; section 3.2, Fig. 6 (d).
 //!
 //! The quarter of interfaces with the largest tension are links between panels. If several meet at a
-//! panel, the straightest pairs are joined, so that every link belongs to one path.
+//! panel, the straightest pairs are joined, so that every link belongs to one line.
 
 use crate::analysis::force_transmission::ForceTransmission;
 use crate::geometry::plane::{complex, point};
 use faer::c64;
 use std::f64::consts::FRAC_PI_3;
 
-/// Maximum turning angle of a path at a panel (rad).
+/// Maximum turning angle of a line at a panel (rad).
 const MAX_TURN: f64 = FRAC_PI_3;
 
 /// A chain of panels that transmit tension.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TensionRoute {
-    /// The panels along the path, in order; the first and the last are equal for a ring.
+pub struct TensionLine {
+    /// The panels along the line, in order; the first and the last are equal for a ring.
     pub panels: Vec<usize>,
     /// The interfaces between them.
     pub interfaces: Vec<usize>,
 }
 
-impl TensionRoute {
-    /// Length along the panels' centroids relative to the distance of its ends; 1 for a straight path.
+impl TensionLine {
+    /// Length along the panels' centroids relative to the distance of its ends; 1 for a straight line.
     pub fn arc_over_chord(&self, transmission: &ForceTransmission) -> f64 {
         let at = |panel: usize| complex(transmission.centroids[panel]);
         let arc: f64 = (self.panels.windows(2))
@@ -32,12 +32,12 @@ impl TensionRoute {
     }
 }
 
-/// All paths, in descending order of the number of panels.
-pub fn tension_routes(transmission: &ForceTransmission) -> Vec<TensionRoute> {
+/// All lines, in descending order of the number of panels.
+pub fn tension_lines(transmission: &ForceTransmission) -> Vec<TensionLine> {
     let links = transmission.strongest(|interface| interface.normal);
     let joined = joined(transmission, &links);
     let mut is_taken = vec![false; transmission.interfaces.len()];
-    let mut routes = Vec::new();
+    let mut lines = Vec::new();
     // A path begins at a link without predecessor; the remaining links form rings.
     let begins = |h: usize| [0, 1].into_iter().find(|&end| joined[h][end].is_none());
     let open = links.iter().filter_map(|&h| Some((h, begins(h)?)));
@@ -47,11 +47,11 @@ pub fn tension_routes(transmission: &ForceTransmission) -> Vec<TensionRoute> {
             continue;
         }
         let panels_of = |h: usize| transmission.interfaces[h].panels;
-        let (mut route, mut link) = (Vec::new(), first);
+        let (mut line, mut link) = (Vec::new(), first);
         let mut panels = vec![panels_of(first)[begin]];
         loop {
             is_taken[link] = true;
-            route.push(link);
+            line.push(link);
             let [a, b] = panels_of(link);
             let here = panels[panels.len() - 1];
             let end = usize::from(here == a);
@@ -61,13 +61,13 @@ pub fn tension_routes(transmission: &ForceTransmission) -> Vec<TensionRoute> {
                 _ => break,
             }
         }
-        routes.push(TensionRoute {
+        lines.push(TensionLine {
             panels,
-            interfaces: route,
+            interfaces: line,
         });
     }
-    routes.sort_by_key(|route| std::cmp::Reverse(route.panels.len()));
-    routes
+    lines.sort_by_key(|line| std::cmp::Reverse(line.panels.len()));
+    lines
 }
 
 /// The links that each link is joined to at its panels A and B.
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn the_straight_connection_through_a_crossing_is_one_route() {
+    fn the_straight_connection_through_a_crossing_is_one_line() {
         // Panel 0 in the middle, pulled from the west, the east and the north.
         let cross = transmission(
             &[
@@ -151,19 +151,19 @@ mod tests {
             ],
             &[[0.0; 2], [-2.0, 0.0], [2.0, 0.2], [0.0, 2.0]],
         );
-        let routes = tension_routes(&cross);
-        assert_eq!(routes.len(), 2);
-        assert_eq!(routes[0].panels, [1, 0, 2]);
-        assert_eq!(routes[0].interfaces, [0, 1]);
-        assert!((routes[0].arc_over_chord(&cross) - 1.0012).abs() < 1e-4);
+        let lines = tension_lines(&cross);
+        assert_eq!(lines.len(), 2);
+        assert_eq!(lines[0].panels, [1, 0, 2]);
+        assert_eq!(lines[0].interfaces, [0, 1]);
+        assert!((lines[0].arc_over_chord(&cross) - 1.0012).abs() < 1e-4);
         assert_eq!(
-            (routes[1].interfaces.as_slice(), routes[1].panels.len()),
+            (lines[1].interfaces.as_slice(), lines[1].panels.len()),
             (&[2][..], 2)
         );
     }
 
     #[test]
-    fn a_ring_is_a_route_too() {
+    fn a_ring_is_a_line_too() {
         let corner = |k: usize| {
             let (sin, cos) = (FRAC_PI_3 * k as f64 / 2.0).sin_cos();
             [10.0 * cos, 10.0 * sin]
@@ -176,15 +176,15 @@ mod tests {
             .map(|k| ([k, (k + 1) % 12], between(k), 1.0))
             .collect();
         let centroids: Vec<_> = (0..12).map(corner).collect();
-        let routes = tension_routes(&transmission(&links, &centroids));
-        assert_eq!(routes.len(), 1);
-        assert_eq!(routes[0].interfaces.len(), 12);
+        let lines = tension_lines(&transmission(&links, &centroids));
+        assert_eq!(lines.len(), 1);
+        assert_eq!(lines[0].interfaces.len(), 12);
     }
 
     #[test]
-    fn a_sheet_without_tension_has_no_route() {
+    fn a_sheet_without_tension_has_no_line() {
         assert!(
-            tension_routes(&transmission(&[([0, 1], [0.0; 2], -1.0)], &[[0.0; 2]; 2])).is_empty()
+            tension_lines(&transmission(&[([0, 1], [0.0; 2], -1.0)], &[[0.0; 2]; 2])).is_empty()
         );
     }
 }

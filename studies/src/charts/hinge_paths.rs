@@ -6,10 +6,10 @@ use plotters::prelude::*;
 use std::ops::Range;
 
 /// The hinges of one design.
-pub struct RoutePanel<'a> {
+pub struct PathPanel<'a> {
     pub title: String,
     /// States (eta_a, eta_s) of each hinge, from the first load step on.
-    pub routes: Vec<Vec<[f64; 2]>>,
+    pub paths: Vec<Vec<[f64; 2]>>,
     /// The hinge that is drawn with a thick line.
     pub monitored: usize,
     /// The boundary of the training domain at the monitored hinge's width and final rotation.
@@ -22,8 +22,8 @@ pub struct RoutePanel<'a> {
 const CELLS: usize = 60;
 
 /// The panels, two in a row, with the same range and damage scale.
-pub fn routes(panels: &[RoutePanel]) -> Result<String> {
-    let points = || panels.iter().flat_map(|it| it.routes.iter().flatten());
+pub fn hinge_paths(panels: &[PathPanel]) -> Result<String> {
+    let points = || panels.iter().flat_map(|it| it.paths.iter().flatten());
     let within = |k: usize| points().map(move |point| point[k]).chain([0.0]);
     let (across, up) = (padded(within(0)), padded(within(1)));
     let centres = |range: &Range<f64>| -> Vec<f64> {
@@ -45,15 +45,15 @@ pub fn routes(panels: &[RoutePanel]) -> Result<String> {
         let areas = root.split_evenly((rows, 2));
         for ((area, panel), plane) in areas.iter().zip(panels).zip(&planes) {
             let shades = plane.iter().map(|value| value / most).collect();
-            route_chart(area, panel, [across.clone(), up.clone()], shades)?;
+            path_chart(area, panel, [across.clone(), up.clone()], shades)?;
         }
         Ok(())
     })
 }
 
-fn route_chart(
+fn path_chart(
     area: &Area,
-    panel: &RoutePanel,
+    panel: &PathPanel,
     [across, up]: [Range<f64>; 2],
     shades: Vec<f64>,
 ) -> ChartResult {
@@ -82,11 +82,11 @@ fn route_chart(
     let edge = panel.domain.iter();
     let edge = edge.map(|[x, y]| (inside(*x, &across), inside(*y, &up)));
     chart.draw_series(LineSeries::new(edge, GUIDE))?;
-    for (hinge, route) in panel.routes.iter().enumerate() {
+    for (hinge, path) in panel.paths.iter().enumerate() {
         let width = if hinge == panel.monitored { 3 } else { 1 };
-        let points = std::iter::once((0.0, 0.0)).chain(route.iter().map(|[x, y]| (*x, *y)));
+        let points = std::iter::once((0.0, 0.0)).chain(path.iter().map(|[x, y]| (*x, *y)));
         chart.draw_series(LineSeries::new(points, POINT.stroke_width(width)))?;
-        let ends = route.last().map(|[x, y]| (*x, *y));
+        let ends = path.last().map(|[x, y]| (*x, *y));
         chart.draw_series(
             ends.into_iter()
                 .map(|end| Circle::new(end, 3, POINT.filled())),
@@ -107,15 +107,15 @@ mod tests {
 
     #[test]
     fn every_hinge_has_an_end() {
-        let panel = RoutePanel {
+        let panel = PathPanel {
             title: "shape alone".into(),
-            routes: vec![vec![[-0.1, 0.1], [-0.2, 0.1]], vec![[0.05, -0.1]]],
+            paths: vec![vec![[-0.1, 0.1], [-0.2, 0.1]], vec![[0.05, -0.1]]],
             monitored: 0,
             domain: vec![[-0.8, -0.4], [0.25, 0.4], [-0.8, 0.4], [-0.8, -0.4]],
             damage: Box::new(|[x, y]| x * x + y * y),
         };
-        let svg = routes(&[panel]).unwrap();
+        let svg = hinge_paths(&[panel]).unwrap();
         assert_eq!(svg.matches("<circle").count(), 2);
-        assert!(routes(&[]).is_ok());
+        assert!(hinge_paths(&[]).is_ok());
     }
 }
