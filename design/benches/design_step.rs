@@ -18,7 +18,7 @@ use design::objective::terms::{Compression, Damage, Shear};
 use design::pattern::cut_pattern::Outline;
 use design::pattern::design_vector::{DesignVector, WidthChart};
 use design::pattern::grid::Grid;
-use design::sheet::cut_sheet::{Centroid, HingePoint, SheetOptions};
+use design::sheet::cut_sheet::{HingePoint, SheetOptions};
 use divan::{Bencher, black_box};
 use hinge::{HingeConstants, TrainingDomain};
 use std::sync::Arc;
@@ -86,7 +86,6 @@ fn problem(
         },
         options: SheetOptions {
             hinge_point,
-            centroid: Centroid::Area,
             process: HingeConstants {
                 fillet_ratio: 0.16,
                 kerf: 0.2,

@@ -19,3 +19,4 @@ pub mod solver;
 pub mod sparse_ldl;
 pub mod supports;
 pub mod tangent;
+pub mod weight;

@@ -14,7 +14,7 @@ use design::objective::design_problem::Deployment;
 use design::objective::scores::outline_error;
 use design::scene::design_run::Designed;
 use design::scene::{HingeModel, Scene, SceneConfig};
-use design::sheet::cut_sheet::{HingePoint, Panel};
+use design::sheet::cut_sheet::HingePoint;
 use fe_driver::{SolvedWindow, WindowSolve};
 use hinge::HingeSample;
 use kirigami::commands::solve_args::{SolveArgs, task_error};
@@ -240,7 +240,7 @@ impl Row {
 
 fn areas(deployment: &Deployment) -> Vec<f64> {
     let panels = deployment.sheet.panels.iter();
-    panels.map(Panel::area).collect()
+    panels.map(|panel| panel.area).collect()
 }
 
 fn worst(damage: &[Option<f64>]) -> usize {

@@ -15,11 +15,13 @@
 use crate::equilibrium::displacement_control::{magnitude, work};
 use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::path_following::Increment;
+use crate::equilibrium::potential::Stage;
 use crate::equilibrium::solver::EquilibriumSolver;
+use crate::equilibrium::weight::panel_weights;
 use crate::hinge_law::Order;
 use crate::objective::design_problem::{Deployment, Mechanics};
 use crate::sheet::cut_sheet::Sheet;
-use crate::sheet::kinematics::HingeMotion;
+use crate::sheet::kinematics::{Configuration, HingeMotion};
 use crate::sheet::panel_vectors::add_at_hinge;
 use hinge::HingeDeformation;
 use serde::Serialize;
@@ -40,15 +42,22 @@ pub struct ActuationCurve {
     pub mover: Mover,
     /// Whether forces or translations move it; otherwise displacements are angles and loads are couples.
     pub translational: bool,
-    /// (displacement, load) of the flat sheet and of every load step: mm and N, or rad and N mm.
+    /// (displacement from the flat sheet, load) of the flat sheet, or of the sheet under its weight, and of every load step:
+    /// mm and N, or rad and N mm.
     pub points: Vec<[f64; 2]>,
 }
 
 impl ActuationCurve {
     /// The curve through the load steps of a deployment by `mechanics`; `None` if nothing moves the sheet.
     pub fn new(mechanics: &Mechanics, deployment: &Deployment) -> Option<Self> {
-        let states = deployment.path.iter().map(load_and_state);
-        Self::through(mechanics, &deployment.sheet, states)
+        let (solver, path) = (&mechanics.solver, &deployment.path);
+        let (weighed, loaded) = path.split_at(solver.weight_steps().min(path.len()));
+        let before = weighed.last().map_or_else(
+            || (0.0, solver.flat()),
+            |last| (last.load_factor, last.configuration.clone()),
+        );
+        let states = loaded.iter().map(load_and_state);
+        Self::through(mechanics, &deployment.sheet, &before, states)
     }
 
     /// The curve through the load steps and the increments of the path, and through states close together about the maximum
@@ -57,11 +66,12 @@ impl ActuationCurve {
         let law = mechanics.law.prepare(&sheet.designs());
         let hinged = mechanics.hinged(sheet, &*law, false);
         let solver = &mechanics.solver;
+        let before = solver.before_loads(hinged);
         let increments = solver.increments(hinged);
         let states = increments
             .iter()
             .map(|end| (end.load_factor, &*end.configuration));
-        let coarse = Self::through(mechanics, sheet, states)?.forwards();
+        let coarse = Self::through(mechanics, sheet, &before, states)?.forwards();
         let (top, reached) = (highest(&coarse), first_reached(&coarse));
         let mut readings = Vec::new();
         let mut from = 0.0;
@@ -74,17 +84,18 @@ impl ActuationCurve {
             from = to;
         }
         // The load steps may go on where the path cannot be followed.
-        readings.extend(solver.ends());
+        readings.extend(solver.ends(Stage::Actuation));
         readings.sort_by(f64::total_cmp);
         readings.dedup();
         let steps = solver.readings(hinged, &readings);
-        Self::through(mechanics, sheet, steps.iter().map(load_and_state))
+        Self::through(mechanics, sheet, &before, steps.iter().map(load_and_state))
     }
 
-    /// The curve through the load factors and configurations of states of the path.
+    /// The curve through the load factors and configurations of states of the path, beginning `before` the loads.
     fn through<'a>(
         mechanics: &Mechanics,
         sheet: &Sheet,
+        (load_factor, start): &'a (f64, Configuration),
         states: impl Iterator<Item = (f64, &'a [[f64; 3]])>,
     ) -> Option<Self> {
         let solver = &mechanics.solver;
@@ -96,15 +107,15 @@ impl ActuationCurve {
         let point = |(zeta, configuration): (f64, &[[f64; 3]])| match mover {
             Mover::Loads => [work(&direction, configuration) / size, zeta * size],
             Mover::Supports => {
-                let forces = holding_forces(mechanics, sheet, configuration);
+                let forces = holding_forces(mechanics, sheet, 1.0, configuration);
                 [zeta * size, work(&direction, &forces) / size]
             }
         };
-        let flat = std::iter::once([0.0; 2]);
+        let before = std::iter::once((*load_factor, &start[..]));
         Some(Self {
             mover,
             translational,
-            points: flat.chain(states.map(point)).collect(),
+            points: before.chain(states).map(point).collect(),
         })
     }
 
@@ -200,11 +211,12 @@ fn load_and_state(step: &LoadStep) -> (f64, &[[f64; 3]]) {
     (step.load_factor, &step.configuration)
 }
 
-/// The forces and couples (F_x, F_y, M) on every panel that hold the sheet in a configuration: the loads on free degrees
-/// of freedom, the reactions at supported ones (N, N mm).
+/// The forces and couples (F_x, F_y, M) on every panel that hold the sheet in a configuration with a part of its weight:
+/// the loads on free degrees of freedom, the reactions at supported ones (N, N mm).
 pub fn holding_forces(
     mechanics: &Mechanics,
     sheet: &Sheet,
+    weight: f64,
     configuration: &[[f64; 3]],
 ) -> Vec<[f64; 3]> {
     let law = mechanics.law.prepare(&sheet.designs());
@@ -216,6 +228,12 @@ pub fn holding_forces(
     let mut forces = vec![[0.0; 3]; sheet.panels.len()];
     for ((hinge, motion), energy) in sheet.hinges.iter().zip(&motions).zip(energies) {
         add_at_hinge(&mut forces, hinge, motion.forces(energy.forces));
+    }
+    let by_area = mechanics.solver.weight.map(|component| weight * component);
+    let weights = panel_weights(sheet, by_area, configuration);
+    for (force, weight) in std::iter::zip(&mut forces, weights) {
+        let weight = weight.force();
+        (0..3).for_each(|d| force[d] -= weight[d]);
     }
     forces
 }

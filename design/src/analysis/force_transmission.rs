@@ -46,11 +46,11 @@ pub struct ForceTransmission {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PanelMoment {
     /// Of the interfaces, each with its force and its rotational spring, and of the couple on the panel, which balances
-    /// them, about its centroid.
+    /// them, about its reference point.
     pub interfaces: f64,
     /// Of the rotational springs alone.
     pub springs: f64,
-    /// Of the forces of the interfaces alone, about the centroid.
+    /// Of the forces of the interfaces alone, about the reference point.
     pub forces: f64,
 }
 
@@ -129,7 +129,7 @@ impl ForceTransmission {
                 .map(centroid)
                 .collect(),
             moments,
-            areas: sheet.panels.iter().map(Panel::area).collect(),
+            areas: sheet.panels.iter().map(|panel| panel.area).collect(),
         })
     }
 

@@ -11,7 +11,7 @@ use std::fmt;
 pub struct Mark {
     /// Number of the panel, row by row from the lower left.
     pub panel: usize,
-    /// 0, 1, 2, 3: SW, SE, NE, NW in the flat sheet; `None` for the reference point of the panel, its centroid.
+    /// 0, 1, 2, 3: SW, SE, NE, NW in the flat sheet; `None` for the centroid of the panel.
     pub corner: Option<usize>,
 }
 

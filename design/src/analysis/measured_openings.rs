@@ -60,9 +60,9 @@ impl MeasuredPanel {
             }
         }
         let panels = marks.iter().enumerate().filter_map(|(panel, marks)| {
-            let centroid = complex(sheet.panels[panel].centroid);
+            let reference = complex(sheet.panels[panel].reference);
             let motion = Similarity::least_squares(marks, Scale::Given).filter(|_| marks.len() > 1);
-            let by_motion = || motion.map(|motion| point(motion.of(centroid)));
+            let by_motion = || motion.map(|motion| point(motion.of(reference)));
             let [x, y, _] = fit.shape.configuration[panel];
             let residuals = motion.map_or(0.0, |motion| {
                 marks.iter().map(|pair| motion.residual(pair).powi(2)).sum()
@@ -71,7 +71,7 @@ impl MeasuredPanel {
             Some(Self {
                 panel,
                 centre: centres[panel].or_else(by_motion)?,
-                predicted: [centroid.re + x, centroid.im + y],
+                predicted: [reference.re + x, reference.im + y],
                 rotation: motion.map(|motion| motion.rotation()),
                 lever: marks.iter().map(|[flat, _]| (flat - mean).norm_sqr()).sum(),
                 misfit: (residuals, (2.0 * marks.len() as f64 - 3.0).max(0.0)),

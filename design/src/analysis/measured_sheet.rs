@@ -77,7 +77,7 @@ impl MeasuredSheet {
             scale,
         };
         let (position, motion, level) = problem.start(points).ok_or(MeasurementError::Coincide)?;
-        let area: f64 = path.sheet.panels.iter().map(|panel| panel.area()).sum();
+        let area: f64 = path.sheet.panels.iter().map(|panel| panel.area).sum();
         let panel_size = (area / path.sheet.panels.len() as f64).sqrt();
         if level > SUSPICIOUS * panel_size {
             misread(&problem, level)?;

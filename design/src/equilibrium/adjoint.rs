@@ -6,7 +6,8 @@
 //!
 //! which is local to each hinge in p = (attachment point, centroids, angle of e_sec, w_lig, alpha). Each load
 //! step reuses the factors of its own tangent, refined against that tangent. For the constants
-//! of (11) the bracket is `eps_c e_c . D eps_h[lambda]`, for the loads it is `-zeta lambda`. Under displacement
+//! of (11) the bracket is `eps_c e_c . D eps_h[lambda]`, for the loads it is `-zeta lambda`, for the weight minus its
+//! virtual work. Under displacement
 //! control the system has the border of the stroke, whose condition (f . q)/F = stroke also depends on the loads.
 
 use crate::equilibrium::displacement_control::dot;
@@ -14,6 +15,7 @@ use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::refined_solve::refined_solve;
 use crate::equilibrium::solver::EquilibriumSolver;
+use crate::equilibrium::weight::add_weight_gradient;
 use crate::geometry::plane::{add, complex};
 use crate::hinge_law::Order;
 use crate::sheet::cut_sheet::SheetGradient;
@@ -92,6 +94,9 @@ pub(crate) fn adjoint(
                 (0..3).for_each(|d| sum[d] -= solution.mu * by_load[d]);
             }
         }
+        let weight = solver.weight.map(|component| step.weight * component);
+        let configuration = &step.configuration;
+        add_weight_gradient(by_sheet, sheet.sheet, weight, configuration, &lambda);
         let energies = match step.order {
             Order::Design => Cow::Borrowed(&step.hinges),
             _ => Cow::Owned(sheet.energies(&step.deformations, Order::Design)),
@@ -127,7 +132,7 @@ fn add_geometry(
 ) {
     let add_point = |sum: &mut [f64; 2], point| add(sum, sign * complex(point));
     add_point(&mut by_sheet.attachments[hinge], gradient.attachment);
-    add_point(&mut by_sheet.centroids[a], gradient.centroid_a);
-    add_point(&mut by_sheet.centroids[b], gradient.centroid_b);
+    add_point(&mut by_sheet.references[a], gradient.reference_a);
+    add_point(&mut by_sheet.references[b], gradient.reference_b);
     by_sheet.frame_angles[hinge] += sign * gradient.frame_angle;
 }

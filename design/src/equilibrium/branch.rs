@@ -16,10 +16,9 @@ use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::Effort;
 use crate::equilibrium::newton::Minimum;
 use crate::equilibrium::place::Place;
-use crate::equilibrium::potential::{Potential, State, moved};
+use crate::equilibrium::potential::{Potential, Stage, State, moved};
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::Order;
-use crate::sheet::cut_sheet::Panel;
 
 /// Maximum number of corrections.
 const CORRECTIONS: usize = 10;
@@ -41,6 +40,7 @@ const RATE: (f64, usize) = (1e-3, 3);
 /// The equilibria of a sheet under the loads, stroke and support motions of a solver.
 pub(crate) struct Branch<'a> {
     pub solver: &'a EquilibriumSolver,
+    pub stage: Stage,
     pub sheet: HingedSheet<'a>,
     /// Lower bound of the force that residuals are relative to (N).
     pub force: f64,
@@ -111,10 +111,11 @@ impl Point {
 }
 
 impl<'a> Branch<'a> {
-    pub fn new(solver: &'a EquilibriumSolver, sheet: HingedSheet<'a>) -> Self {
-        let area: f64 = sheet.sheet.panels.iter().map(Panel::area).sum();
+    pub fn new(solver: &'a EquilibriumSolver, sheet: HingedSheet<'a>, stage: Stage) -> Self {
+        let area: f64 = sheet.sheet.panels.iter().map(|panel| panel.area).sum();
         let mut branch = Self {
             solver,
+            stage,
             sheet,
             force: 0.0,
             panel_size: (area / sheet.sheet.panels.len() as f64).sqrt(),
@@ -132,6 +133,7 @@ impl<'a> Branch<'a> {
     pub fn potential(&self, at: f64) -> Potential<'a> {
         Potential {
             solver: self.solver,
+            stage: self.stage,
             sheet: self.sheet,
             at,
             force: self.force,
@@ -141,7 +143,10 @@ impl<'a> Branch<'a> {
 
     /// Moves supports and stroke of a place to their values at its load parameter, those of `known` being right.
     pub fn hold(&self, place: &mut Place, known: &Place) {
-        let ahead = place.at - known.at;
+        let ahead = match self.stage {
+            Stage::Weight => 0.0,
+            Stage::Actuation => place.at - known.at,
+        };
         for support in &self.solver.supports {
             let (panel, dof) = (support.panel, support.dof.index());
             place.configuration[panel][dof] =
@@ -400,14 +405,10 @@ impl<'a> Branch<'a> {
         mut rate: Vec<[f64; 3]>,
     ) -> Vec<[f64; 3]> {
         let pattern = &self.solver.pattern;
+        let driving = potential.driving(state);
         for _ in 0..RATE.1 {
             let resisted = potential.resistance(state, &rate);
-            let missing: Vec<[f64; 3]> = match &self.solver.drive {
-                None => std::iter::zip(&self.solver.loads, &resisted)
-                    .map(|(load, resisted)| std::array::from_fn(|d| load[d] - resisted[d]))
-                    .collect(),
-                Some(_) => resisted.iter().map(|force| force.map(|f| -f)).collect(),
-            };
+            let missing = moved(&driving, &resisted, -1.0);
             let change = pattern.spread(&factor.solve(pattern, &pattern.gather(&missing)));
             let [before, by] = [&rate, &change].map(|motion| potential.length(state, motion));
             rate = moved(&rate, &change, 1.0);
@@ -422,17 +423,15 @@ impl<'a> Branch<'a> {
     pub fn rate(&self, potential: &Potential, state: &State, factor: &HeldFactor) -> Vec<[f64; 3]> {
         let solver = self.solver;
         let mut supports = vec![[0.0; 3]; solver.grid.panel_count()];
-        for support in &solver.supports {
-            supports[support.panel][support.dof.index()] = support.value;
+        let mut stroke = 0.0;
+        if self.stage == Stage::Actuation {
+            for support in &solver.supports {
+                supports[support.panel][support.dof.index()] = support.value;
+            }
+            stroke = solver.drive.as_ref().map_or(0.0, |(_, stroke)| *stroke);
         }
-        let (loads, stroke) = match &solver.drive {
-            None => (1.0, 0.0),
-            Some((_, stroke)) => (0.0, *stroke),
-        };
-        let mut b: Vec<[f64; 3]> = (solver.loads.iter())
-            .map(|load| load.map(|load| loads * load))
-            .collect();
-        if solver.supports.iter().any(|support| support.value != 0.0) {
+        let mut b = potential.driving(state);
+        if supports.as_flattened().iter().any(|motion| *motion != 0.0) {
             b = moved(&b, &potential.resistance(state, &supports), -1.0);
         }
         let b = solver.pattern.gather(&b);

@@ -16,7 +16,7 @@ use crate::equilibrium::displacement_control::HeldFactor;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::newton::{Failure, Minimum};
 use crate::equilibrium::place::{Arc, Place, bisected};
-use crate::equilibrium::potential::{State, moved};
+use crate::equilibrium::potential::{Stage, State, moved};
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::Order;
 use crate::sheet::kinematics::Configuration;
@@ -65,9 +65,10 @@ impl<'a> Follower<'a> {
     pub fn new(
         solver: &'a EquilibriumSolver,
         sheet: HingedSheet<'a>,
+        stage: Stage,
         start: Configuration,
     ) -> Option<Self> {
-        let mut branch = Branch::new(solver, sheet);
+        let mut branch = Branch::new(solver, sheet, stage);
         let potential = branch.potential(0.0);
         let state = potential.state(start.clone())?;
         let place = Place {

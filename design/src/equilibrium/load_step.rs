@@ -70,8 +70,11 @@ pub struct Effort {
 /// The state at one load factor.
 #[derive(Clone, Debug)]
 pub struct LoadStep {
-    /// zeta: i/N, or under displacement control the multiplier of the stroke.
+    /// zeta: i/N, or under displacement control the multiplier of the stroke. 0 while the weight comes on, unless a stroke of
+    /// zero is prescribed meanwhile.
     pub load_factor: f64,
+    /// The part of the weight that is on; 1 once the loads act.
+    pub weight: f64,
     /// q: the motion of every panel.
     pub configuration: Configuration,
     /// (8) per hinge.
@@ -164,6 +167,7 @@ impl LoadStep {
         let hinges = sheet.hinges.len();
         Self {
             load_factor: 1.0,
+            weight: 0.0,
             deformations: hinge_deformations(sheet, &configuration),
             configuration,
             energies: vec![0.0; hinges],

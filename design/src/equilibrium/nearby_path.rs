@@ -16,6 +16,7 @@ use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{LoadStep, Status};
 use crate::equilibrium::place::Place;
+use crate::equilibrium::potential::Stage;
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::{HingeEnergy, Order, PreparedLaw};
 use hinge::{HingeDeformation, HingeDesign};
@@ -69,7 +70,7 @@ impl EquilibriumSolver {
         let smooth = |step: &LoadStep| {
             matches!(step.status, Status::Converged | Status::LeftDomain) && step.jumps == 0
         };
-        if known.steps.len() != self.steps
+        if known.steps.len() != self.weight_steps() + self.steps
             || !known.steps.iter().all(smooth)
             || self.lbfgs.is_some()
         {
@@ -78,10 +79,15 @@ impl EquilibriumSolver {
         let changes: Vec<[f64; 2]> = std::iter::zip(sheet.sheet.designs(), &known.designs)
             .map(|(to, from)| [to.w_lig - from.w_lig, to.alpha - from.alpha])
             .collect();
-        let mut branch = Branch::new(self, sheet);
-        std::iter::zip(self.ends(), &known.steps)
-            .map(|(at, known)| branch.load_step_near(at, known, &changes))
-            .collect()
+        let (weighed, loaded) = known.steps.split_at(self.weight_steps());
+        let mut path = Vec::with_capacity(known.steps.len());
+        for (stage, known) in [(Stage::Weight, weighed), (Stage::Actuation, loaded)] {
+            let mut branch = Branch::new(self, sheet, stage);
+            for (at, known) in std::iter::zip(self.ends(stage), known) {
+                path.push(branch.load_step_near(at, known, &changes)?);
+            }
+        }
+        Some(path)
     }
 }
 
@@ -115,7 +121,7 @@ impl Branch<'_> {
             damage_gradient: false,
             ..self.sheet
         };
-        let mut branch = Branch::new(self.solver, linearised);
+        let mut branch = Branch::new(self.solver, linearised, self.stage);
         let start = Place {
             at,
             configuration: known.configuration.clone(),

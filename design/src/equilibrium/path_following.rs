@@ -11,7 +11,7 @@ use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status, StepTangent};
 use crate::equilibrium::newton::{Failure, Minimum};
 use crate::equilibrium::place::Place;
-use crate::equilibrium::potential::{State, moved};
+use crate::equilibrium::potential::{Stage, State, moved};
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
 use crate::equilibrium::supports::{Load, Support};
 use crate::hinge_law::Order;
@@ -47,6 +47,8 @@ impl EquilibriumSolver {
         let held = std::iter::zip(&self.held, &self.loads);
         Ok(Self {
             lbfgs: self.lbfgs,
+            weight: self.weight,
+            grips: self.grips.clone(),
             held: held
                 .map(|(held, load)| std::array::from_fn(|d| held[d] + last.load_factor * load[d]))
                 .collect(),
@@ -54,45 +56,77 @@ impl EquilibriumSolver {
         })
     }
 
-    /// Follows the equilibrium path from the flat sheet. The path ends early if no equilibrium is found.
+    /// Follows the equilibrium path from the flat sheet: first the load steps of the weight, then those of the loads. The
+    /// path ends early if no equilibrium is found.
     ///
     /// # Panics
     /// If the grids of sheet and solver differ.
     pub fn path(&self, sheet: HingedSheet) -> Vec<LoadStep> {
-        self.path_from(sheet, self.flat())
+        let mut path = self.weighed(sheet);
+        let start = match path.last() {
+            Some(last) if last.status == Status::Diverged => return path,
+            Some(last) => last.configuration.clone(),
+            None => self.flat(),
+        };
+        path.extend(self.path_from(sheet, start));
+        path
     }
 
-    /// Follows the equilibrium path from a start that is an equilibrium without the loads of this solver; for a
+    /// The load steps of the weight; none without weight.
+    fn weighed(&self, sheet: HingedSheet) -> Vec<LoadStep> {
+        if self.weight_steps() == 0 {
+            return Vec::new();
+        }
+        let start = self.start(sheet.sheet).unwrap_or_else(|| self.flat());
+        self.read(sheet, Stage::Weight, start, self.ends(Stage::Weight))
+    }
+
+    /// Load factor and configuration of the sheet before the loads: flat, or under its weight.
+    pub(crate) fn before_loads(&self, sheet: HingedSheet) -> (f64, Configuration) {
+        let weighed = self.weighed(sheet).pop();
+        weighed.map_or_else(
+            || (0.0, self.flat()),
+            |last| (last.load_factor, last.configuration),
+        )
+    }
+
+    /// Follows the equilibrium path from a start that is an equilibrium under the weight alone; for a
     /// solver that follows another, from the end of that solver's path.
     ///
     /// # Panics
     /// If the sheet or the start has another grid than the solver.
     pub fn path_from(&self, sheet: HingedSheet, start: Configuration) -> Vec<LoadStep> {
-        self.read(sheet, start, self.ends())
+        self.read(sheet, Stage::Actuation, start, self.ends(Stage::Actuation))
     }
 
-    /// The load parameters of the load steps.
-    pub(crate) fn ends(&self) -> impl Iterator<Item = f64> {
-        (1..=self.steps).map(|i| i as f64 / self.steps as f64)
+    /// The load parameters of the load steps of a part of the path.
+    pub(crate) fn ends(&self, stage: Stage) -> impl Iterator<Item = f64> + use<> {
+        let steps = match stage {
+            Stage::Weight => self.weight_steps(),
+            Stage::Actuation => self.steps,
+        };
+        (1..=steps).map(move |i| i as f64 / steps as f64)
     }
 
-    /// The equilibria at load parameters, in ascending order, on the path from the flat sheet: fractions of the loads or,
+    /// The equilibria at load parameters, in ascending order, on the path from the sheet before the loads: fractions of the loads or,
     /// if they are prescribed, of the stroke and the support motions.
     ///
     /// # Panics
     /// If the grids of sheet and solver differ.
     pub fn readings(&self, sheet: HingedSheet, parameters: &[f64]) -> Vec<LoadStep> {
-        self.read(sheet, self.flat(), parameters.iter().copied())
+        let (_, start) = self.before_loads(sheet);
+        self.read(sheet, Stage::Actuation, start, parameters.iter().copied())
     }
 
     /// The load steps that end at load parameters in ascending order. The path ends early if no equilibrium is found.
     fn read(
         &self,
         sheet: HingedSheet,
+        stage: Stage,
         start: Configuration,
         ends: impl Iterator<Item = f64>,
     ) -> Vec<LoadStep> {
-        let Some(mut follower) = self.follower(sheet, start.clone()) else {
+        let Some(mut follower) = self.follower(sheet, stage, start.clone()) else {
             return vec![LoadStep {
                 load_factor: 0.0,
                 status: Status::Diverged,
@@ -113,12 +147,13 @@ impl EquilibriumSolver {
         path
     }
 
-    /// The ends of the increments of the path from the flat sheet, which are close together where it bends.
+    /// The ends of the increments of the path from the sheet before the loads, which are close together where it bends.
     ///
     /// # Panics
     /// If the grids of sheet and solver differ.
     pub fn increments(&self, sheet: HingedSheet) -> Vec<Increment> {
-        let follower = self.follower(sheet, self.flat());
+        let (_, start) = self.before_loads(sheet);
+        let follower = self.follower(sheet, Stage::Actuation, start);
         let ends = follower.into_iter().flat_map(|mut follower| {
             std::iter::from_fn(move || {
                 let goes_on = follower.last.place.at < 1.0 && follower.advance().is_some();
@@ -132,6 +167,7 @@ impl EquilibriumSolver {
     fn follower<'a>(
         &'a self,
         sheet: HingedSheet<'a>,
+        stage: Stage,
         start: Configuration,
     ) -> Option<Follower<'a>> {
         assert_eq!(
@@ -139,16 +175,7 @@ impl EquilibriumSolver {
             "the grids of solver and sheet must be the same"
         );
         assert_eq!(start.len(), self.grid.panel_count(), "one motion per panel");
-        Follower::new(self, sheet, start)
-    }
-
-    fn flat(&self) -> Configuration {
-        vec![[0.0; 3]; self.grid.panel_count()]
-    }
-
-    /// Work of the full loads and of the loads held constant (N mm).
-    fn works(&self, configuration: &[[f64; 3]]) -> [f64; 2] {
-        [&self.loads, &self.held].map(|loads| work(loads, configuration))
+        Follower::new(self, sheet, stage, start)
     }
 }
 
@@ -268,7 +295,11 @@ impl Branch<'_> {
         jumps: usize,
     ) -> LoadStep {
         let effort = std::mem::take(&mut self.effort);
-        let [work, held] = self.solver.works(&state.configuration);
+        // Under a drive the minimised function does not contain the work of the loads.
+        let driven = match self.solver.drive {
+            Some(_) => state.load_factor * work(&self.solver.loads, &state.configuration),
+            None => 0.0,
+        };
         let deformations = state.deformations();
         let factor = tangent.as_ref().and_then(|tangent| tangent.factor.as_ref());
         let factor = factor.map(|held| &held.factor);
@@ -279,7 +310,8 @@ impl Branch<'_> {
             damage: law.damage(&deformations, damage_gradient),
             deformations,
             energies: state.energies.iter().map(|energy| energy.w).collect(),
-            potential: state.stored - held - state.load_factor * work,
+            weight: state.weight,
+            potential: state.potential - driven,
             status,
             descent_end: None,
             residual: state.residual,

@@ -8,21 +8,32 @@
 //! ```
 //!
 //! The minimised function is then U alone, because the work of the loads is the same in every configuration with
-//! that stroke. If there are loads held constant, U contains their work with negative sign.
+//! that stroke. If there are a weight or loads held constant, U contains their work with negative sign.
 
 use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::solver::EquilibriumSolver;
+use crate::equilibrium::weight::{panel_weights, work_of_weight};
 use crate::hinge_law::{HingeEnergy, Order};
 use crate::sheet::kinematics::{Configuration, HingeMotion};
 use crate::sheet::panel_vectors::{add_at_hinge, at_hinge};
 use hinge::HingeDeformation;
 
+/// What grows along a part of the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stage {
+    /// The weight, without loads, motions of supports or a stroke.
+    Weight,
+    /// Loads, motions of supports and the stroke, under the whole weight.
+    Actuation,
+}
+
 /// The potential (10) at one point of the path.
 pub(crate) struct Potential<'a> {
     pub solver: &'a EquilibriumSolver,
     pub sheet: HingedSheet<'a>,
-    /// The load parameter: zeta, unless the stroke of the loads is prescribed.
+    pub stage: Stage,
+    /// The load parameter: the part of the weight that is on; then zeta, unless the stroke of the loads is prescribed.
     pub at: f64,
     /// Size of a panel, by which moments are divided (mm).
     pub panel_size: f64,
@@ -43,9 +54,9 @@ pub(crate) struct State {
     pub order: Order,
     /// zeta
     pub load_factor: f64,
-    /// Energy of the hinges.
-    pub stored: f64,
-    /// The minimised function: Pi, or U under displacement control, minus the work of the loads held constant.
+    /// The part of the weight that is on.
+    pub weight: f64,
+    /// The minimised function: Pi, or U under displacement control, minus the work of the weight and of the loads held constant.
     pub potential: f64,
     /// Sum of the magnitudes of the terms of `potential`.
     pub magnitude: f64,
@@ -110,12 +121,21 @@ impl Potential<'_> {
         for ((hinge, motion), energy) in sheet.hinges.iter().zip(&motions).zip(&energies) {
             add_at_hinge(&mut inner, hinge, motion.forces(energy.forces));
         }
-        for (inner, held) in std::iter::zip(inner.as_flattened_mut(), solver.held.as_flattened()) {
-            *inner -= held;
+        let weight = self.weight();
+        let mut constant = solver.held.to_vec();
+        for (sum, weight) in
+            std::iter::zip(&mut constant, panel_weights(sheet, weight, &configuration))
+        {
+            let weight = weight.force();
+            (0..3).for_each(|d| sum[d] += weight[d]);
         }
-        let (load_factor, worked) = match self.solver.drive {
-            None => (self.at, self.at),
-            Some(_) => (self.multiplier(&inner), 0.0),
+        for (inner, force) in std::iter::zip(inner.as_flattened_mut(), constant.as_flattened()) {
+            *inner -= force;
+        }
+        let (load_factor, worked) = match (&self.solver.drive, self.stage) {
+            (Some(_), _) => (self.multiplier(&inner), 0.0),
+            (None, Stage::Weight) => (0.0, 0.0),
+            (None, Stage::Actuation) => (self.at, self.at),
         };
         let unbalanced: Vec<[f64; 3]> = std::iter::zip(&inner, &solver.loads)
             .map(|(inner, load)| std::array::from_fn(|d| inner[d] - load_factor * load[d]))
@@ -124,11 +144,14 @@ impl Potential<'_> {
             .zip(solver.held.as_flattened())
             .zip(configuration.as_flattened())
             .map(|((load, held), u)| -(worked * load + held) * u);
-        let terms = energies.iter().map(|energy| energy.w).chain(works);
+        let weighed = std::iter::once(-work_of_weight(sheet, weight, &configuration));
+        let terms = (energies.iter().map(|energy| energy.w))
+            .chain(works)
+            .chain(weighed);
         let gradient = self.solver.pattern.gather(&unbalanced);
         let left = self.largest(solver.pattern.spread(&gradient).into_iter());
-        let held = self.largest(solver.held.iter().copied());
-        let loads = held + load_factor.abs() * self.largest(solver.loads.iter().copied());
+        let constant = self.largest(constant.into_iter());
+        let loads = constant + load_factor.abs() * self.largest(solver.loads.iter().copied());
         let hinges = self.largest(energies.iter().map(|energy| energy.forces));
         let force = self.force.max(loads).max(hinges);
         let over_force = |unbalanced: f64| match unbalanced {
@@ -136,7 +159,7 @@ impl Potential<'_> {
             _ => unbalanced / force,
         };
         let state = State {
-            stored: energies.iter().map(|energy| energy.w).sum(),
+            weight: self.weight_on(),
             potential: terms.clone().sum(),
             magnitude: terms.map(f64::abs).sum(),
             residual: over_force(left),
@@ -188,12 +211,47 @@ impl Potential<'_> {
 
     /// H of (20); away from an equilibrium with the predicted hinge forces.
     pub fn tangent(&self, state: &State) -> Vec<f64> {
+        let pattern = &self.solver.pattern;
         let hinges = state.motions.iter().zip(&state.energies).enumerate();
-        self.solver
-            .pattern
-            .assemble(hinges.map(|(h, (motion, energy))| {
-                motion.stiffness(&energy.tangent, state.expected_forces(h))
-            }))
+        let values = pattern.assemble(hinges.map(|(h, (motion, energy))| {
+            motion.stiffness(&energy.tangent, state.expected_forces(h))
+        }));
+        if self.solver.weight == [0.0; 2] {
+            return values;
+        }
+        let turning: Vec<[f64; 3]> =
+            panel_weights(self.sheet.sheet, self.weight(), &state.configuration)
+                .map(|weight| [0.0, 0.0, weight.stiffness()])
+                .collect();
+        pattern.shifted(&values, pattern.gather(&turning).into_iter())
+    }
+
+    /// Weight of a unit of area at this point of the path (N/mm^2).
+    fn weight(&self) -> [f64; 2] {
+        let on = self.weight_on();
+        self.solver.weight.map(|component| on * component)
+    }
+
+    /// The part of the weight that is on.
+    fn weight_on(&self) -> f64 {
+        match self.stage {
+            Stage::Weight => self.at,
+            Stage::Actuation => 1.0,
+        }
+    }
+
+    /// The forces on the panels (F_x, F_y, M) that grow with the load parameter in a state, by their rates.
+    pub fn driving(&self, state: &State) -> Vec<[f64; 3]> {
+        let solver = self.solver;
+        match (self.stage, &solver.drive) {
+            (Stage::Weight, _) => {
+                panel_weights(self.sheet.sheet, solver.weight, &state.configuration)
+                    .map(|weight| weight.force())
+                    .collect()
+            }
+            (Stage::Actuation, None) => solver.loads.to_vec(),
+            (Stage::Actuation, Some(_)) => vec![[0.0; 3]; solver.loads.len()],
+        }
     }
 
     /// The rates of the hinge forces under a motion of all panels.
@@ -217,6 +275,10 @@ impl Potential<'_> {
                 .stiffness(&energy.tangent, forces_of_hinge)
                 .map(|row| dot(&row, &motions));
             add_at_hinge(&mut forces, hinge, force);
+        }
+        let weights = panel_weights(self.sheet.sheet, self.weight(), &state.configuration);
+        for ((force, weight), motion) in std::iter::zip(&mut forces, weights).zip(motion) {
+            force[2] += weight.stiffness() * motion[2];
         }
         forces
     }

@@ -4,14 +4,17 @@
 //! min over q of  Pi(q) = sum_h W(eps_h(q); g_h) - zeta sum_k (F_k . u_k + M_k phi_k)
 //! ```
 //!
-//! If the path follows another, minus the work of the loads held constant.
+//! If the sheet has a weight in its plane, minus the work of that; it comes on before the loads, the supports resting and a
+//! prescribed stroke being zero meanwhile. If the path follows another, minus the work of the loads held constant.
 
 use crate::equilibrium::displacement_control::Stroke;
 use crate::equilibrium::settings::SolverSettings;
 use crate::equilibrium::supports::{Dof, Load, Support, hold_rigid_body};
 use crate::equilibrium::tangent::TangentPattern;
+use crate::equilibrium::weight::hung_from;
 use crate::pattern::grid::Grid;
-use crate::sheet::cut_sheet::Sheet;
+use crate::sheet::cut_sheet::{Grip, Sheet};
+use crate::sheet::kinematics::Configuration;
 
 /// Supports, loads or settings that do not define an equilibrium problem.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -37,9 +40,12 @@ pub enum EquilibriumError {
     LoadOnSupport { panel: usize, dof: Dof },
     #[error(
         "the supports leave the sheet free to move as a rigid body: support at least three \
-         degrees of freedom, such as one clamp or a pin and a roller"
+         degrees of freedom, such as one clamp or a pin and a roller; one pin is enough for a sheet that hangs by its \
+         weight, without a prescribed stroke, from a point beside its centre of gravity"
     )]
     Unsupported,
+    #[error("the weight {0:?} N/mm^2 is not finite")]
+    Weight([f64; 2]),
     #[error("the stroke {0} mm is not a finite number")]
     Stroke(f64),
     #[error("displacement control needs a load, whose stroke is prescribed")]
@@ -47,6 +53,9 @@ pub enum EquilibriumError {
     #[error("{0} load steps: use at least 1")]
     NoSteps(usize),
 }
+
+/// Number of load steps in which the weight comes on.
+const WEIGHT_STEPS: usize = 2;
 
 /// Supports and loads of a sheet, with everything that depends on its topology alone.
 #[derive(Debug)]
@@ -61,6 +70,10 @@ pub struct EquilibriumSolver {
     pub(crate) supports: Box<[Support]>,
     /// (F_x, F_y, M) per panel at full load.
     pub(crate) loads: Box<[[f64; 3]]>,
+    /// Weight of a unit of area (N/mm^2), zero without weight.
+    pub(crate) weight: [f64; 2],
+    /// The points at which panels are held or pulled; the others have their centroids as reference points.
+    pub(crate) grips: Box<[Grip]>,
     /// Loads held constant from the beginning of the path.
     pub(crate) held: Box<[[f64; 3]]>,
     /// Under displacement control, the direction of the stroke and its value at full load.
@@ -117,6 +130,8 @@ impl EquilibriumSolver {
             lbfgs: None,
             pattern: Box::new(TangentPattern::new(grid, supported.as_flattened())),
             supports: supports.into(),
+            weight: [0.0; 2],
+            grips: Box::default(),
             held: vec![[0.0; 3]; total.len()].into(),
             loads: total.into(),
             drive: None,
@@ -145,17 +160,67 @@ impl EquilibriumSolver {
         Ok(self)
     }
 
+    /// The same problem for panels that are held or pulled at the points of `grips`, to which supports and loads refer.
+    pub fn gripping(mut self, grips: Vec<Grip>) -> Self {
+        self.grips = grips.into();
+        self
+    }
+
+    /// The points at which panels are held or pulled.
+    pub fn grips(&self) -> &[Grip] {
+        &self.grips
+    }
+
+    /// The same problem with a weight of `by_area` (N/mm^2) in the plane of the sheet.
+    pub fn with_weight(mut self, by_area: [f64; 2]) -> Result<Self, EquilibriumError> {
+        if !by_area.iter().all(|component| component.is_finite()) {
+            return Err(EquilibriumError::Weight(by_area));
+        }
+        self.weight = by_area;
+        Ok(self)
+    }
+
+    /// Weight of a unit of area in the plane of the sheet (N/mm^2); zero without weight.
+    pub fn weight(&self) -> [f64; 2] {
+        self.weight
+    }
+
+    /// The number of load steps in which the weight comes on.
+    pub fn weight_steps(&self) -> usize {
+        if self.weight == [0.0; 2] {
+            0
+        } else {
+            WEIGHT_STEPS
+        }
+    }
+
     /// Number of stored entries of the factors of a tangent, zeros of merged columns included.
     pub fn factor_entries(&self) -> usize {
         self.pattern.factor_entries()
     }
 
-    /// An error if the supports leave a sheet free to move as a rigid body.
+    /// An error if the supports leave a sheet free to move as a rigid body and its weight does not hold it.
     pub fn check_supports(&self, sheet: &Sheet) -> Result<(), EquilibriumError> {
+        self.start(sheet)
+            .map(|_| ())
+            .ok_or(EquilibriumError::Unsupported)
+    }
+
+    /// The unloaded sheet: flat, and turned about a nail from which it hangs; `None` if it is free to move.
+    pub(crate) fn start(&self, sheet: &Sheet) -> Option<Configuration> {
         if hold_rigid_body(&self.supports, sheet) {
-            Ok(())
-        } else {
-            Err(EquilibriumError::Unsupported)
+            return Some(self.flat());
         }
+        match (self.supports.as_ref(), &self.drive) {
+            ([x, y], None) if x.panel == y.panel && x.dof != Dof::Phi && y.dof != Dof::Phi => {
+                hung_from(sheet, sheet.panels[x.panel].reference, self.weight)
+            }
+            _ => None,
+        }
+    }
+
+    /// The configuration of the flat sheet.
+    pub(crate) fn flat(&self) -> Configuration {
+        vec![[0.0; 3]; self.grid.panel_count()]
     }
 }

@@ -14,11 +14,11 @@ const MIN_LEVER: f64 = 1e-6;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Dof {
-    /// Translation of the centroid along x (mm).
+    /// Translation of the reference point along x (mm).
     UX,
-    /// Translation of the centroid along y (mm).
+    /// Translation of the reference point along y (mm).
     UY,
-    /// Rotation about the centroid, counter-clockwise (rad).
+    /// Rotation about the reference point, counter-clockwise (rad).
     Phi,
 }
 
@@ -33,7 +33,7 @@ pub struct Support {
     pub value: f64,
 }
 
-/// A dead load at a panel's centroid.
+/// A dead load at a panel's reference point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
     /// Index of the panel.
@@ -60,7 +60,7 @@ pub(crate) fn hold_rigid_body(supports: &[Support], sheet: &Sheet) -> bool {
     let [x_0, y_0] = sheet.outline.corners[0];
     // Two translations and the rotation about a corner, which moves a point as far away as the sheet is large by one.
     let rows = supports.iter().map(|support| {
-        let [x, y] = sheet.panels[support.panel].centroid;
+        let [x, y] = sheet.panels[support.panel].reference;
         match support.dof {
             Dof::UX => [1.0, 0.0, (y_0 - y) / size],
             Dof::UY => [0.0, 1.0, (x - x_0) / size],

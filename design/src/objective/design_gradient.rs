@@ -166,7 +166,7 @@ fn outline_pullback(
     let mut by_last = vec![[0.0; 3]; sheet.panels.len()];
     for (&(panel, corner), &gradient) in std::iter::zip(partials.outline, partials.by_outline) {
         let flat = sheet.panels[panel].corners[corner];
-        let (by_motion, by_flat, by_centroid) = deployed_pullback(
+        let (by_motion, by_flat, by_reference) = deployed_pullback(
             &sheet.panels[panel],
             last.configuration[panel],
             flat,
@@ -174,7 +174,7 @@ fn outline_pullback(
         );
         (0..3).for_each(|c| by_last[panel][c] += by_motion[c]);
         add(&mut by_sheet.corners[panel][corner], by_flat);
-        add(&mut by_sheet.centroids[panel], by_centroid);
+        add(&mut by_sheet.references[panel], by_reference);
     }
     by_last
 }

@@ -203,7 +203,8 @@ impl DesignProblem {
             .map(|&omega| self.widths.width(omega))
             .collect();
         let sheet = Sheet::new(&pattern, &w_lig, self.options)?;
-        Ok((pattern, sheet))
+        let grips = (self.model.mechanics()).map_or(&[][..], |mechanics| mechanics.solver.grips());
+        Ok((pattern, sheet.gripped(grips)))
     }
 
     /// Lines 2-5 of Algorithm 1. A path that diverges ends early; see [`LoadStep::status`].

@@ -163,7 +163,7 @@ mod tests {
     use crate::pattern::coordinates::PatternCoordinates;
     use crate::pattern::cut_pattern::{CutPattern, Outline};
     use crate::pattern::grid::Grid;
-    use crate::sheet::cut_sheet::{Centroid, HingePoint, Sheet, SheetOptions};
+    use crate::sheet::cut_sheet::{HingePoint, Sheet, SheetOptions};
     use hinge::{HingeConstants, HingeDeformation, HingeDesign, TrainingDomain};
     use std::path::Path;
 
@@ -229,7 +229,6 @@ mod tests {
         let pattern = CutPattern::new(GRID, outline, &PatternCoordinates::uniform(GRID)).unwrap();
         let options = SheetOptions {
             hinge_point: HingePoint::Corner,
-            centroid: Centroid::Area,
             process: HingeConstants::PAPER,
         };
         Sheet::new(&pattern, &vec![2.0; GRID.hinge_count()], options).unwrap()

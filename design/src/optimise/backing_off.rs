@@ -65,7 +65,7 @@ mod tests {
     use crate::pattern::cut_pattern::Outline;
     use crate::pattern::design_vector::WidthChart;
     use crate::pattern::grid::Grid;
-    use crate::sheet::cut_sheet::{Centroid, HingePoint, SheetOptions};
+    use crate::sheet::cut_sheet::{HingePoint, SheetOptions};
     use hinge::HingeConstants;
 
     fn problem(grid: Grid) -> DesignProblem {
@@ -78,7 +78,6 @@ mod tests {
             },
             options: SheetOptions {
                 hinge_point: HingePoint::Corner,
-                centroid: Centroid::Area,
                 process: HingeConstants {
                     fillet_ratio: 0.16,
                     kerf: 0.01,

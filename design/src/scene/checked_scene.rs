@@ -119,7 +119,6 @@ impl Scene {
     pub fn sheet_options(&self) -> SheetOptions {
         SheetOptions {
             hinge_point: (self.config.hinge_point).unwrap_or(self.hinge.hinge_point),
-            centroid: self.config.centroid,
             process: self.config.process,
         }
     }

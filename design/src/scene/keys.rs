@@ -12,7 +12,7 @@ use crate::scene::hinge_model::{
     CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
 };
 use crate::scene::sheet_config::{LigamentConfig, SheetConfig, StartConfig};
-use crate::sheet::cut_sheet::{Centroid, HingePoint};
+use crate::sheet::cut_sheet::HingePoint;
 use hinge::{HingeConstants, SheetMaterial};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -34,9 +34,6 @@ pub struct SceneConfig {
     pub hinge: HingeModel,
     /// The attachment points of the panels; by default those that the hinge model was measured with.
     pub hinge_point: Option<HingePoint>,
-    /// The reference point of a panel's rotation: the `area` centroid or the mean of the `vertices`.
-    #[serde(default)]
-    pub centroid: Centroid,
     /// N of the load steps zeta_i = i/N, where the path is read for pictures and path functionals. The solver chooses its
     /// own increments between them.
     #[schemars(range(min = 1, max = 10_000))]

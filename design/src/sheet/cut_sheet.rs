@@ -47,15 +47,25 @@ pub enum HingePoint {
     CutTip,
 }
 
-/// The reference point of a panel's rotation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Centroid {
+/// A point of a panel in the flat sheet.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum PanelPoint {
     /// The centroid of the area.
     #[default]
-    Area,
-    /// The mean of the four corners.
-    Vertices,
+    Centroid,
+    /// The middle between two corners.
+    Middle([usize; 2]),
+    /// A point that does not move with the cuts (mm).
+    Fixed([f64; 2]),
+}
+
+/// The point at which a panel is held or pulled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grip {
+    /// Index of the panel.
+    pub panel: usize,
+    /// The point of the panel.
+    pub point: PanelPoint,
 }
 
 /// Options of the sheet that a pattern defines.
@@ -63,8 +73,6 @@ pub enum Centroid {
 pub struct SheetOptions {
     /// The point at which (8) is measured.
     pub hinge_point: HingePoint,
-    /// The reference point of a panel's rotation.
-    pub centroid: Centroid,
     /// The cutting tool and the windows.
     pub process: HingeConstants,
 }
@@ -74,8 +82,14 @@ pub struct SheetOptions {
 pub struct Panel {
     /// SW, SE, NE, NW (mm).
     pub corners: [[f64; 2]; 4],
-    /// The reference point of its rotation (mm).
+    /// The point whose motion is (u_x, u_y), where the panel is held or pulled.
+    pub point: PanelPoint,
+    /// Its position (mm).
+    pub reference: [f64; 2],
+    /// The centroid of the area (mm).
     pub centroid: [f64; 2],
+    /// mm^2
+    pub area: f64,
 }
 
 /// The ligament that joins two panels.
@@ -123,10 +137,14 @@ pub struct Sheet {
 /// The gradient of a function of the sheet with respect to all quantities of the sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SheetGradient {
-    /// With respect to the corners SW, SE, NE, NW of every panel, at a fixed centroid.
+    /// With respect to the corners SW, SE, NE, NW of every panel, at fixed reference, centroid and area.
     pub corners: Vec<[[f64; 2]; 4]>,
-    /// With respect to the centroid of every panel.
+    /// With respect to the reference point of every panel.
+    pub references: Vec<[f64; 2]>,
+    /// With respect to the centroid of every panel, at a fixed reference point.
     pub centroids: Vec<[f64; 2]>,
+    /// With respect to the area of every panel.
+    pub areas: Vec<f64>,
     /// With respect to the attachment point of every hinge.
     pub attachments: Vec<[f64; 2]>,
     /// With respect to the angle of e_sec, per hinge.
@@ -143,7 +161,9 @@ impl SheetGradient {
         let (panels, hinges) = (grid.panel_count(), grid.hinge_count());
         Self {
             corners: vec![[[0.0; 2]; 4]; panels],
+            references: vec![[0.0; 2]; panels],
             centroids: vec![[0.0; 2]; panels],
+            areas: vec![0.0; panels],
             attachments: vec![[0.0; 2]; hinges],
             frame_angles: vec![0.0; hinges],
             alphas: vec![0.0; hinges],
@@ -170,7 +190,7 @@ impl Sheet {
         let panels = std::iter::zip(0.., &panel_endpoints)
             .map(|(k, endpoints)| {
                 let corners = endpoints.map(|endpoint| pattern.points[endpoint]);
-                Panel::new(k, corners, options.centroid)
+                Panel::new(k, corners)
             })
             .collect::<Result<_, _>>()?;
         let hinges = std::iter::zip(hinge_sites(grid), w_lig)
@@ -195,6 +215,19 @@ impl Sheet {
             panel_endpoints,
             points: pattern.points.clone(),
         })
+    }
+
+    /// The same sheet, held or pulled at other points than the centroids of its panels.
+    ///
+    /// # Panics
+    /// If a grip is on a panel that the sheet does not have.
+    pub fn gripped(mut self, grips: &[Grip]) -> Self {
+        for &Grip { panel, point } in grips {
+            let panel = &mut self.panels[panel];
+            panel.point = point;
+            panel.reference = panel.position(point);
+        }
+        self
     }
 
     /// The design vectors g of the hinges; (7).
@@ -235,10 +268,15 @@ impl Sheet {
     pub fn pullback(&self, gradient: &SheetGradient) -> (Vec<[f64; 2]>, Vec<f64>) {
         let mut points = vec![[0.0; 2]; self.points.len()];
         for (k, panel) in self.panels.iter().enumerate() {
-            let by_centroid = panel.centroid_pullback(gradient.centroids[k], self.options.centroid);
+            let by_parts = [
+                gradient.corners[k].map(complex),
+                panel.pullback(panel.point, gradient.references[k]),
+                panel.pullback(PanelPoint::Centroid, gradient.centroids[k]),
+                panel.area_pullback(gradient.areas[k]),
+            ];
             for (corner, &endpoint) in self.panel_endpoints[k].iter().enumerate() {
-                add(&mut points[endpoint], complex(gradient.corners[k][corner]));
-                add(&mut points[endpoint], by_centroid[corner]);
+                let by_corner = by_parts.iter().map(|by_corners| by_corners[corner]);
+                add(&mut points[endpoint], by_corner.sum::<c64>());
             }
         }
         let mut widths = gradient.widths.clone();
@@ -273,7 +311,7 @@ impl Sheet {
 }
 
 impl Panel {
-    fn new(panel: usize, corners: [[f64; 2]; 4], centroid: Centroid) -> Result<Self, SheetError> {
+    fn new(panel: usize, corners: [[f64; 2]; 4]) -> Result<Self, SheetError> {
         let mean = corners.map(complex).iter().sum::<c64>() / 4.0;
         let arms = corners.map(|corner| complex(corner) - mean);
         let sectors = sectors(&arms);
@@ -281,24 +319,28 @@ impl Panel {
         if !(area > 0.0 && area.is_finite()) {
             return Err(SheetError::PanelArea { panel, area });
         }
-        let offset = match centroid {
-            Centroid::Vertices => c64::ZERO,
-            Centroid::Area => {
-                let moment: c64 = (0..4)
-                    .map(|j| (arms[j] + arms[(j + 1) % 4]) * sectors[j])
-                    .sum();
-                moment / (6.0 * area)
-            }
-        };
+        let moment: c64 = (0..4)
+            .map(|j| (arms[j] + arms[(j + 1) % 4]) * sectors[j])
+            .sum();
+        let centroid = point(mean + moment / (6.0 * area));
         Ok(Self {
             corners,
-            centroid: point(mean + offset),
+            point: PanelPoint::Centroid,
+            reference: centroid,
+            centroid,
+            area,
         })
     }
 
-    /// The area of the panel (mm^2).
-    pub fn area(&self) -> f64 {
-        0.5 * sectors(&self.arms()).iter().sum::<f64>()
+    /// The position of a point of the panel in the flat sheet (mm).
+    pub fn position(&self, point: PanelPoint) -> [f64; 2] {
+        match point {
+            PanelPoint::Centroid => self.centroid,
+            PanelPoint::Middle([from, to]) => {
+                [0, 1].map(|c| 0.5 * (self.corners[from][c] + self.corners[to][c]))
+            }
+            PanelPoint::Fixed(position) => position,
+        }
     }
 
     /// Centroid-to-corner vectors.
@@ -307,15 +349,33 @@ impl Panel {
             .map(|corner| complex(corner) - complex(self.centroid))
     }
 
+    /// The gradient in the corners of a function with the given gradient in a point.
+    fn pullback(&self, point: PanelPoint, gradient: [f64; 2]) -> [c64; 4] {
+        match point {
+            PanelPoint::Centroid => self.centroid_pullback(gradient),
+            PanelPoint::Middle(ends) => {
+                let mut corners = [c64::ZERO; 4];
+                for corner in ends {
+                    corners[corner] += complex(gradient) / 2.0;
+                }
+                corners
+            }
+            PanelPoint::Fixed(_) => [c64::ZERO; 4],
+        }
+    }
+
+    /// The gradient in the corners of a function with the given derivative in the area.
+    fn area_pullback(&self, derivative: f64) -> [c64; 4] {
+        let corner = |j: usize| complex(self.corners[j % 4]);
+        std::array::from_fn(|j| -0.5 * derivative * I * (corner(j + 1) - corner(j + 3)))
+    }
+
     /// The gradient in the corners of a function with the given gradient in the centroid.
     ///
     /// With the vectors p_j from the centroid and S_j = p_j x p_(j+1), the area centroid moves by
     /// sum_j [(dp_j + dp_(j+1)) S_j + (p_j + p_(j+1)) dS_j] / (3 sum_j S_j).
-    fn centroid_pullback(&self, gradient: [f64; 2], centroid: Centroid) -> [c64; 4] {
+    fn centroid_pullback(&self, gradient: [f64; 2]) -> [c64; 4] {
         let gradient = complex(gradient);
-        if centroid == Centroid::Vertices {
-            return [gradient / 4.0; 4];
-        }
         let arms = self.arms();
         let sectors = sectors(&arms);
         let scaled = gradient / (3.0 * sectors.iter().sum::<f64>());

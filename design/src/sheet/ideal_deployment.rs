@@ -1,7 +1,7 @@
 //! The ideal deployment in closed form: hinges are pins at the ideal corners, even panels rotate by
 //! -theta/2 and odd ones by +theta/2; section 2.1.
 //!
-//! Panel 0 keeps its centroid. Across a hinge with the corner C
+//! Panel 0 keeps its reference point. Across a hinge with the corner C
 //!
 //! ```text
 //! u_l = u_k + (1 - R_k)(c_k - C) - (1 - R_l)(c_l - C)
@@ -23,7 +23,7 @@ pub fn ideal_deployment(sheet: &Sheet, theta: f64) -> Configuration {
         let corner = complex(sheet.hinges[link.hinge].corner);
         let lag = |panel: usize| {
             (1.0 - turn(rotation(sheet, panel, theta)))
-                * (complex(sheet.panels[panel].centroid) - corner)
+                * (complex(sheet.panels[panel].reference) - corner)
         };
         translations[link.child] = translations[link.parent] + lag(link.parent) - lag(link.child);
     }
@@ -52,9 +52,9 @@ pub fn ideal_deployment_pullback(
         let (corner_panel, corner_index) = hinge.site.a;
         for (panel, sign) in [(link.parent, 1.0), (link.child, -1.0)] {
             let spin = turn(rotation(sheet, panel, theta));
-            let arm = complex(sheet.panels[panel].centroid) - corner;
+            let arm = complex(sheet.panels[panel].reference) - corner;
             let by_arm = sign * (1.0 - spin).conj() * force;
-            add(&mut by_sheet.centroids[panel], by_arm);
+            add(&mut by_sheet.references[panel], by_arm);
             add(&mut by_sheet.corners[corner_panel][corner_index], -by_arm);
             by_rotation[panel] -= sign * dot(force, I * spin * arm);
         }

@@ -2,7 +2,7 @@
 //! derivatives.
 //!
 //! Let O be the attachment point of the hinge, rho = e^(-i beta)(O - c) its position relative to a panel's
-//! centroid in the cut frame (beta: the angle of e_sec), phibar and theta the mean and relative
+//! reference point c in the cut frame (beta: the angle of e_sec), phibar and theta the mean and relative
 //! rotation, and Delta = (c_l + u_l) - (c_k + u_k). In complex numbers
 //!
 //! ```text
@@ -23,8 +23,8 @@ pub type Configuration = Vec<[f64; 3]>;
 /// The deployed position of a point of a panel with the motion `motion`.
 pub fn deployed(panel: &Panel, motion: [f64; 3], flat: [f64; 2]) -> [f64; 2] {
     let [u_x, u_y, phi] = motion;
-    let centroid = complex(panel.centroid);
-    point(c64::new(u_x, u_y) + centroid + turn(phi) * (complex(flat) - centroid))
+    let reference = complex(panel.reference);
+    point(c64::new(u_x, u_y) + reference + turn(phi) * (complex(flat) - reference))
 }
 
 /// The deployed corners SW, SE, NE, NW of every panel (mm).
@@ -34,7 +34,7 @@ pub fn deployed_corners(sheet: &Sheet, configuration: &[[f64; 3]]) -> Vec<[[f64;
         .collect()
 }
 
-/// The gradient in (motion, flat point, centroid) of a function with the given gradient in the deployed
+/// The gradient in (motion, flat point, reference point) of a function with the given gradient in the deployed
 /// position of the point.
 pub fn deployed_pullback(
     panel: &Panel,
@@ -44,7 +44,7 @@ pub fn deployed_pullback(
 ) -> ([f64; 3], c64, c64) {
     let force = complex(gradient);
     let spin = turn(motion[2]);
-    let arm = spin * (complex(flat) - complex(panel.centroid));
+    let arm = spin * (complex(flat) - complex(panel.reference));
     let by_flat = force * spin.conj();
     (
         [force.re, force.im, cross(arm, force)],
@@ -87,10 +87,10 @@ pub struct HingeMotion {
 pub struct HingeGeometryGradient {
     /// With respect to the attachment point.
     pub attachment: [f64; 2],
-    /// With respect to the centroid of panel A.
-    pub centroid_a: [f64; 2],
-    /// With respect to the centroid of panel B.
-    pub centroid_b: [f64; 2],
+    /// With respect to the reference point of panel A.
+    pub reference_a: [f64; 2],
+    /// With respect to the reference point of panel B.
+    pub reference_b: [f64; 2],
     /// With respect to the angle of e_sec.
     pub frame_angle: f64,
 }
@@ -106,8 +106,8 @@ impl HingeMotion {
         let hinge = &sheet.hinges[hinge];
         let (a, b) = (hinge.panel_a(), hinge.panel_b());
         let (c_a, c_b) = (
-            complex(sheet.panels[a].centroid),
-            complex(sheet.panels[b].centroid),
+            complex(sheet.panels[a].reference),
+            complex(sheet.panels[b].reference),
         );
         let ([ax, ay, phi_a], [bx, by, phi_b]) = (configuration[a], configuration[b]);
         let (theta, phibar) = (phi_b - phi_a, 0.5 * (phi_a + phi_b));
@@ -234,8 +234,8 @@ impl HingeMotion {
         let back = force * self.frame.conj();
         HingeGeometryGradient {
             attachment: point(back * (self.half - self.half.conj()).conj()),
-            centroid_a: point(force * (self.frame * self.half.conj() - self.mean).conj()),
-            centroid_b: point(force * (self.mean - self.frame * self.half).conj()),
+            reference_a: point(force * (self.frame * self.half.conj() - self.mean).conj()),
+            reference_b: point(force * (self.mean - self.frame * self.half).conj()),
             frame_angle: cross(force, self.translation),
         }
     }
@@ -252,8 +252,8 @@ impl HingeMotion {
         let (spin, open) = (-I * mean * self.mean, 0.5 * I * relative * self.frame);
         HingeGeometryGradient {
             attachment: point(force * (open * (self.half + self.half.conj())).conj()),
-            centroid_a: point(force * (-spin - open * self.half.conj()).conj()),
-            centroid_b: point(force * (spin - open * self.half).conj()),
+            reference_a: point(force * (-spin - open * self.half.conj()).conj()),
+            reference_b: point(force * (spin - open * self.half).conj()),
             frame_angle: cross(force, c64::new(a, s)),
         }
     }

@@ -41,7 +41,7 @@ impl Span {
             let configuration = ideal_deployment(sheet, theta);
             let centre = |k: usize| {
                 let [x, y, _] = configuration[k];
-                complex(sheet.panels[k].centroid) + c64::new(x, y)
+                complex(sheet.panels[k].reference) + c64::new(x, y)
             };
             centre(to) - centre(from)
         };

@@ -4,7 +4,7 @@
 use crate::geometry::polygon::{area, common, distance};
 use crate::pattern::cut_pattern::CutPattern;
 use crate::pattern::grid::Grid;
-use crate::sheet::cut_sheet::{Panel, Sheet};
+use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::kinematics::deployed_corners;
 use hinge::{HingeDesign, TrainingDomain};
 use serde::Serialize;
@@ -38,7 +38,7 @@ pub struct Validity {
 impl Validity {
     /// `domain` is the training domain of the hinge law, if it has one.
     pub fn new(pattern: &CutPattern, sheet: &Sheet, domain: Option<&TrainingDomain>) -> Self {
-        let areas = sheet.panels.iter().map(Panel::area);
+        let areas = sheet.panels.iter().map(|panel| panel.area);
         let outline = sheet.outline.area();
         let alphas = sheet.hinges.iter().map(|hinge| hinge.alpha.to_degrees());
         let spacings = hinge_spacings(sheet);

@@ -4,7 +4,7 @@ use design::equilibrium::supports::{Dof, Load, Support};
 use design::pattern::coordinates::PatternCoordinates;
 use design::pattern::cut_pattern::{CutPattern, Outline};
 use design::pattern::grid::Grid;
-use design::sheet::cut_sheet::{Centroid, HingePoint, Sheet, SheetOptions};
+use design::sheet::cut_sheet::{HingePoint, Sheet, SheetOptions};
 use hinge::HingeConstants;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -18,7 +18,6 @@ pub const PROCESS: HingeConstants = HingeConstants {
 
 pub const AT_CORNER: SheetOptions = SheetOptions {
     hinge_point: HingePoint::Corner,
-    centroid: Centroid::Area,
     process: PROCESS,
 };
 

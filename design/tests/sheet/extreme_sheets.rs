@@ -77,7 +77,7 @@ fn r_and_tau_close_to_their_limits_make_a_sheet_or_an_error() {
                 }
                 Err(other) => panic!("{other}"),
             };
-            let area: f64 = sheet.panels.iter().map(|panel| panel.area()).sum();
+            let area: f64 = sheet.panels.iter().map(|panel| panel.area).sum();
             assert!((area / outline.area() - 1.0).abs() < 1e-12);
             let law = LinearLaw::uniform([90.0, 40.0, 0.8], grid.hinge_count());
             assert_finite(&path(&sheet, &law, &clamp(0), &[pull(m * n - 1, 0.5)], 3));

@@ -397,7 +397,7 @@ fn random_patterns_of_every_small_size_tile_and_deploy() {
                 let pattern = CutPattern::new(grid, outline, &coordinates).unwrap();
                 let widths = vec![0.02; grid.hinge_count()];
                 let sheet = Sheet::new(&pattern, &widths, AT_CORNER).unwrap();
-                let area: f64 = sheet.panels.iter().map(|panel| panel.area()).sum();
+                let area: f64 = sheet.panels.iter().map(|panel| panel.area).sum();
                 assert!((area / shoelace(&outline.corners) - 1.0).abs() < 1e-13);
                 assert_voids_open_as_parallelograms(&sheet, 1.0 + random.number(0.9));
             }

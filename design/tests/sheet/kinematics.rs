@@ -93,21 +93,21 @@ fn derivatives_in_the_flat_geometry() {
     let mut random = Random::new(3);
     let q = random.arrays(flat.panels.len(), 0.7);
     for h in 0..flat.hinges.len() {
-        // x: attachment point, two centroids, angle of e_sec.
+        // x: attachment point, two reference points, angle of e_sec.
         let (a, b) = (flat.hinges[h].panel_a(), flat.hinges[h].panel_b());
         let moved = |x: &[f64]| {
             let mut sheet = flat.clone();
             sheet.hinges[h].attachment = [x[0], x[1]];
-            sheet.panels[a].centroid = [x[2], x[3]];
-            sheet.panels[b].centroid = [x[4], x[5]];
+            sheet.panels[a].reference = [x[2], x[3]];
+            sheet.panels[b].reference = [x[4], x[5]];
             sheet.hinges[h].e_sec = [x[6].cos(), x[6].sin()];
             sheet
         };
         let [e_x, e_y] = flat.hinges[h].e_sec;
         let mut x = [0.0; 7];
         x[..2].copy_from_slice(&flat.hinges[h].attachment);
-        x[2..4].copy_from_slice(&flat.panels[a].centroid);
-        x[4..6].copy_from_slice(&flat.panels[b].centroid);
+        x[2..4].copy_from_slice(&flat.panels[a].reference);
+        x[4..6].copy_from_slice(&flat.panels[b].reference);
         x[6] = e_y.atan2(e_x);
         let (weights, virtual_motion) = (random.arrays(1, 1.0)[0], random.arrays(1, 1.0)[0]);
         let weighted = |eps: [f64; 3]| -> f64 {
@@ -133,7 +133,7 @@ fn derivatives_in_the_flat_geometry() {
 
 fn flattened(gradient: HingeGeometryGradient) -> [f64; 7] {
     let [ox, oy] = gradient.attachment;
-    let ([ax, ay], [bx, by]) = (gradient.centroid_a, gradient.centroid_b);
+    let ([ax, ay], [bx, by]) = (gradient.reference_a, gradient.reference_b);
     [ox, oy, ax, ay, bx, by, gradient.frame_angle]
 }
 
@@ -145,7 +145,7 @@ fn a_rigid_motion_of_the_whole_sheet_deforms_no_hinge() {
         let (sin, cos) = f64::sin_cos(angle);
         let turned: Configuration = std::iter::zip(&sheet.panels, &q)
             .map(|(panel, [u_x, u_y, phi])| {
-                let [c_x, c_y] = panel.centroid;
+                let [c_x, c_y] = panel.reference;
                 let (x, y) = (c_x + u_x, c_y + u_y);
                 [
                     cos * x - sin * y + shift[0] - c_x,

@@ -18,3 +18,4 @@ mod pullbacks;
 mod random;
 mod sensitivities;
 mod taylor;
+mod weight;

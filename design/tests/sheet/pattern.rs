@@ -40,7 +40,7 @@ fn panels_and_hinges() {
         for (k, panel) in sheet.panels.iter().enumerate() {
             assert!(difference(&panel.corners, &corners[k]) < 1e-12);
             assert!(difference(&[panel.centroid], &[centroids[k]]) < 1e-12);
-            assert!((panel.area() - areas[k]).abs() < 1e-12);
+            assert!((panel.area - areas[k]).abs() < 1e-12);
         }
         let hinges: Vec<Value> = get(&case, "hinges");
         assert_eq!(sheet.hinges.len(), hinges.len());

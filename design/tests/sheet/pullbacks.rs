@@ -5,7 +5,7 @@ use crate::random::Random;
 use design::analysis::taylor::central_slope;
 use design::pattern::cut_pattern::{CutPattern, Outline};
 use design::pattern::design_vector::{DesignVector, WidthChart};
-use design::sheet::cut_sheet::{Centroid, HingePoint, Sheet, SheetGradient, SheetOptions};
+use design::sheet::cut_sheet::{Grip, HingePoint, PanelPoint, Sheet, SheetGradient, SheetOptions};
 use design::sheet::ideal_deployment::{ideal_deployment, ideal_deployment_pullback};
 
 const WIDTHS: WidthChart = WidthChart {
@@ -73,26 +73,38 @@ fn gradients_in_the_sheet_are_pulled_back_to_the_design() {
     let design = start();
     let given = outline(&case("p1_3x3_random"));
     for hinge_point in [HingePoint::Corner, HingePoint::CutTip] {
-        for centroid in [Centroid::Area, Centroid::Vertices] {
-            for outline in [given, TAPERED] {
-                let options = SheetOptions {
-                    hinge_point,
-                    centroid,
-                    ..AT_CORNER
-                };
-                let (pattern, sheet) = cut(&design, outline, options);
-                let weights = random_weights(&sheet);
-                let value =
-                    |design: &DesignVector| weighted(&cut(design, outline, options).1, &weights);
-                assert_gradient(
-                    value,
-                    &design,
-                    &pulled_back(&pattern, &sheet, &weights, &design),
-                );
-            }
+        for outline in [given, TAPERED] {
+            let options = SheetOptions {
+                hinge_point,
+                ..AT_CORNER
+            };
+            let gripped = |design: &DesignVector| {
+                let (pattern, sheet) = cut(design, outline, options);
+                (pattern, sheet.gripped(&GRIPS))
+            };
+            let (pattern, sheet) = gripped(&design);
+            let weights = random_weights(&sheet);
+            let value = |design: &DesignVector| weighted(&gripped(design).1, &weights);
+            assert_gradient(
+                value,
+                &design,
+                &pulled_back(&pattern, &sheet, &weights, &design),
+            );
         }
     }
 }
+
+/// One point of each kind besides the centroid.
+const GRIPS: [Grip; 2] = [
+    Grip {
+        panel: 1,
+        point: PanelPoint::Middle([0, 1]),
+    },
+    Grip {
+        panel: 5,
+        point: PanelPoint::Fixed([2.5, 1.5]),
+    },
+];
 
 fn random_weights(sheet: &Sheet) -> SheetGradient {
     let mut random = Random::new(7);
@@ -101,7 +113,9 @@ fn random_weights(sheet: &Sheet) -> SheetGradient {
         corners: (0..panels)
             .map(|_| std::array::from_fn(|_| random.arrays(1, 1.0)[0]))
             .collect(),
+        references: random.arrays(panels, 1.0),
         centroids: random.arrays(panels, 1.0),
+        areas: random.numbers(panels, 1.0),
         attachments: random.arrays(hinges, 1.0),
         frame_angles: random.numbers(hinges, 1.0),
         alphas: random.numbers(hinges, 1.0),
@@ -117,7 +131,9 @@ fn weighted(sheet: &Sheet, weights: &SheetGradient) -> f64 {
             panel.corners.as_flattened(),
             weights.corners[k].as_flattened(),
         );
+        sum += product(&panel.reference, &weights.references[k]);
         sum += product(&panel.centroid, &weights.centroids[k]);
+        sum += panel.area * weights.areas[k];
     }
     for (h, hinge) in sheet.hinges.iter().enumerate() {
         sum += product(&hinge.attachment, &weights.attachments[h]);

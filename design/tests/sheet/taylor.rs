@@ -18,7 +18,7 @@ use design::pattern::coordinates::PatternCoordinates;
 use design::pattern::cut_pattern::Outline;
 use design::pattern::design_vector::{DesignVector, WidthChart};
 use design::pattern::grid::Grid;
-use design::sheet::cut_sheet::{Centroid, HingePoint, SheetOptions};
+use design::sheet::cut_sheet::{Grip, HingePoint, PanelPoint, SheetOptions};
 use hinge::TrainingDomain;
 use std::path::Path;
 use std::sync::Arc;
@@ -100,7 +100,6 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
         },
         options: SheetOptions {
             hinge_point,
-            centroid: Centroid::Area,
             process: PROCESS,
         },
         model,
@@ -301,4 +300,67 @@ fn linear_law_condensed_from_the_surrogate() {
 fn surrogate_law_at_the_tip() {
     let model = mechanics(tiny(), 40.0, East::Pulled(2.0));
     assert_order_two(&problem(model, HingePoint::CutTip), &start());
+}
+
+/// The same problem for a sheet with a weight, held and pulled at other points than centroids.
+fn hung(model: Model, by_area: [f64; 2]) -> Model {
+    let Model::Equilibrium(mechanics) = model else {
+        panic!("pins have no weight");
+    };
+    let grip = |panel, point| Grip { panel, point };
+    let grips = vec![
+        grip(3, PanelPoint::Middle([3, 0])),
+        grip(5, PanelPoint::Fixed([0.95 * SIDE, 0.45 * SIDE])),
+        grip(8, PanelPoint::Middle([2, 3])),
+    ];
+    let Mechanics {
+        law,
+        contact,
+        solver,
+    } = *mechanics;
+    let solver = solver.gripping(grips).with_weight(by_area).unwrap();
+    Model::Equilibrium(Box::new(Mechanics {
+        law,
+        contact,
+        solver,
+    }))
+}
+
+#[test]
+fn hanging_sheets() {
+    let weight = [1e-5, -5e-5];
+    for east in [
+        East::Pulled(12.0),
+        East::Moved(40.0),
+        East::Driven(12.0, 60.0),
+    ] {
+        let model = hung(mechanics(springs(), 240.0, east), weight);
+        assert_order_two(&problem(model, HingePoint::Corner), &start());
+    }
+    let learned = mechanics(tiny(), 40.0, East::Driven(2.0, 12.0));
+    let learned = hung(learned, [0.0, -1e-5]);
+    assert_order_two(&problem(learned, HingePoint::CutTip), &start());
+}
+
+#[test]
+fn a_sheet_on_a_nail() {
+    let pin = [Dof::UX, Dof::UY].map(|dof| Support {
+        panel: 6,
+        dof,
+        value: 0.0,
+    });
+    let load = Load {
+        panel: 5,
+        dof: Dof::UY,
+        value: -0.5,
+    };
+    let settings = SolverSettings::default();
+    let solver = EquilibriumSolver::new(GRID, &pin, &[load], 4, settings).unwrap();
+    let model = Model::Equilibrium(Box::new(Mechanics {
+        law: Arc::new(springs()),
+        contact: None,
+        solver,
+    }));
+    let model = hung(model, [0.0, -5e-5]);
+    assert_order_two(&problem(model, HingePoint::Corner), &start());
 }

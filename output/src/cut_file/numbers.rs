@@ -29,7 +29,7 @@ pub(super) fn numbers(cuts: &CutLines, sheet: &Sheet) -> (Vec<Text>, Vec<Text>) 
         .map(|k| Taken::new(cuts, sheet, k))
         .collect();
     let of_panels = std::iter::zip(0.., &sheet.panels).map(|(k, panel)| {
-        let height = f64::min(PANEL_HEIGHT * panel.area().sqrt(), MAX_HEIGHT);
+        let height = f64::min(PANEL_HEIGHT * panel.area.sqrt(), MAX_HEIGHT);
         let at = |height| Text::centred(panel.centroid, height, format!("P{k}"));
         let free = |text: &Text| panels[k].clearance(text);
         widest(HEIGHTS.map(|scale| at(scale * height)), free)
@@ -41,7 +41,7 @@ pub(super) fn numbers(cuts: &CutLines, sheet: &Sheet) -> (Vec<Text>, Vec<Text>) 
     let of_hinges = std::iter::zip(0.., &sheet.hinges).map(|(number, hinge)| {
         let sides = [hinge.panel_b(), hinge.panel_a()];
         let candidates = HEIGHTS.iter().flat_map(|scale| {
-            let room = sides.map(|k| PANEL_HEIGHT * sheet.panels[k].area().sqrt());
+            let room = sides.map(|k| PANEL_HEIGHT * sheet.panels[k].area.sqrt());
             let height = f64::max(HINGE_HEIGHT * hinge.w_lig, MIN_HEIGHT).min(room[0].min(room[1]));
             let places = DISTANCES.iter().flat_map(move |d| {
                 DIRECTIONS_DEG

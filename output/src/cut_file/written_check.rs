@@ -127,7 +127,7 @@ impl Finished {
                     std::array::from_fn(|k| crossing(carriers[(k + 3) % 4], carriers[k]));
                 area(&corners)
             });
-            let simulated = simulated.area();
+            let simulated = simulated.area;
             if (written - simulated).abs() > ROUNDING * simulated {
                 return Err(FabricationError::Differs {
                     what: PANEL,
@@ -206,7 +206,7 @@ mod tests {
     use design::pattern::cut_pattern::{CutPattern, Outline};
     use design::pattern::grid::Grid;
     use design::scene::CuttingConfig;
-    use design::sheet::cut_sheet::{Centroid, HingePoint, SheetOptions};
+    use design::sheet::cut_sheet::{HingePoint, SheetOptions};
     use hinge::HingeConstants;
 
     /// The uniform sheet of 3 x 3 panels of 400 mm, and its drawing.
@@ -216,7 +216,6 @@ mod tests {
         let pattern = CutPattern::new(grid, outline, &PatternCoordinates::uniform(grid)).unwrap();
         let options = SheetOptions {
             hinge_point: HingePoint::CutTip,
-            centroid: Centroid::Area,
             process: HingeConstants::PAPER,
         };
         let sheet = Sheet::new(&pattern, &[18.0; 12], options).unwrap();

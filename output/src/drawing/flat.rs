@@ -36,7 +36,7 @@ pub(crate) fn flat_on_paper(sheet: &Sheet, cuts: &CutLines, unit: f64) -> Sketch
         sketch.panel_number(k, &panel.corners);
     }
     for (number, (hinge, window)) in sheet.hinges.iter().zip(Window::of_sheet(sheet)).enumerate() {
-        let height = sketch.number_height(sheet.panels[hinge.panel_b()].area());
+        let height = sketch.number_height(sheet.panels[hinge.panel_b()].area);
         let reach = f64::max(0.55 * window.radius, 1.3 * height);
         let at = number_place(hinge, &window, reach);
         let text = Text::centred(at, height, number.to_string());
@@ -51,7 +51,7 @@ fn panels(sketch: &mut Sketch, sheet: &Sheet) {
         let parity = usize::from(!is_even(sheet.grid, k));
         let fill = Style::fill(PANELS[parity]);
         sketch.canvas.polygon(&panel.corners, fill);
-        let height = f64::min(16.0 * sketch.unit, 0.1 * panel.area().sqrt());
+        let height = f64::min(16.0 * sketch.unit, 0.1 * panel.area.sqrt());
         let [x, y] = panel.centroid;
         let at = [x, y - 0.35 * height];
         sketch.text(at, height, Anchor::Middle, muted, &format!("P{k}"));

@@ -32,7 +32,7 @@ const RADIUS: f64 = 22.0;
 const OPEN: f64 = 0.3 * PI;
 /// Loads below this fraction of the largest one are rounding.
 const NEGLIGIBLE: f64 = 1e-6;
-/// Reach of an arrow and its label from the centroid of its panel, over the size of the sheet.
+/// Reach of an arrow and its label from the point at which it acts, over the size of the sheet.
 const REACH: f64 = 0.16;
 
 /// The force (N, N) and the couple (N mm) of the loads on a panel in a state.
@@ -63,7 +63,7 @@ impl PanelLoad {
         };
         (sums.iter().enumerate())
             .map(|(k, &[x, y, moment])| Self {
-                at: moved(&sheet.panels[k], placed[k], sheet.panels[k].centroid),
+                at: moved(&sheet.panels[k], placed[k], sheet.panels[k].reference),
                 force: [x, y].map(|component| kept(component, x.hypot(y), force)),
                 couple: kept(moment, moment.abs(), couple),
             })
@@ -137,7 +137,7 @@ fn supports(scene: &Scene, sheet: &Sheet, step: &LoadStep, unit: f64) -> Vec<Mar
     let placed = placed(scene, sheet, &step.configuration);
     let symbol = |support: &SupportedPanel| {
         let k = support.panel;
-        let [x, y] = moved(&sheet.panels[k], placed[k], sheet.panels[k].centroid);
+        let [x, y] = moved(&sheet.panels[k], placed[k], sheet.panels[k].reference);
         let around = |[a, b]: &[f64; 2]| [x + a * SUPPORT * unit, y + b * SUPPORT * unit];
         Mark::Support(support.symbol.iter().map(around).collect())
     };

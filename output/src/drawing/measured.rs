@@ -24,7 +24,7 @@ const NUMBERED: usize = 16;
 /// The picture of a report; `fit` is its best state.
 pub fn measured(sheet: &Sheet, fit: &Fit, report: &MeasurementReport) -> String {
     let corners = deployed_corners(sheet, &fit.shape.configuration);
-    let area: f64 = sheet.panels.iter().map(|panel| panel.area()).sum();
+    let area: f64 = sheet.panels.iter().map(|panel| panel.area).sum();
     let panel_size = (area / sheet.panels.len() as f64).sqrt();
     let factor = magnification(fit, panel_size);
     let residuals_drawn = fit.kept().map(|point| residual(point, factor)[1]);

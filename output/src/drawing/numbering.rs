@@ -18,7 +18,7 @@ pub fn numbering(title: &str, sheet: &Sheet) -> String {
         let fill = PANELS[usize::from(!is_even(sheet.grid, k))];
         sketch.canvas.polygon(&panel.corners, Style::fill(fill));
         sketch.canvas.polygon(&panel.corners, edge);
-        let size = panel.area().sqrt();
+        let size = panel.area.sqrt();
         let height = f64::min(22.0 * sketch.unit, 0.16 * size);
         let [x, y] = panel.centroid;
         let arm = 0.3 * height;

@@ -5,7 +5,7 @@ use design::pattern::coordinates::PatternCoordinates;
 use design::pattern::cut_pattern::CutPattern;
 use design::pattern::design_vector::DesignVector;
 use design::pattern::grid::Endpoint;
-use design::sheet::cut_sheet::{Hinge, Panel};
+use design::sheet::cut_sheet::Hinge;
 use design::sheet::opening_limits::Span;
 use design::sheet::validity::Validity;
 use serde::Serialize;
@@ -94,7 +94,7 @@ impl PatternListing {
             points_x: side(CutPattern::x),
             points_xp: side(CutPattern::x_prime),
             panel_corners: sheet.panels.iter().map(|panel| panel.corners).collect(),
-            panel_area: sheet.panels.iter().map(Panel::area).collect(),
+            panel_area: sheet.panels.iter().map(|panel| panel.area).collect(),
             panel_centroid: sheet.panels.iter().map(|panel| panel.centroid).collect(),
             hinges: sheet.hinges.iter().map(HingeListing::new).collect(),
             void_sides: pattern.void_sides(),

@@ -17,7 +17,7 @@ function unpack(object, names) {
   for (const name of names) if (typeof object[name] === "string") object[name] = floats(object[name]);
 }
 unpack(run, ["target"]);
-unpack(run.panels, ["corners", "centroids"]);
+unpack(run.panels, ["corners", "references"]);
 unpack(run.hinges, ["w_lig", "alpha_deg", "gamma", "damage", "damage_peak"]);
 unpack(run.states, ["motions", "deformations", "inside", "energy", "forces", "damage", "damage_peak", "spread", "reactions"]);
 

@@ -119,7 +119,7 @@ impl HingeStates {
 fn reactions(scene: &Scene, mechanics: &Mechanics, sheet: &Sheet, states: &[&LoadStep]) -> Packed {
     let supports = &scene.actuation().supports;
     let of_state = |state: &&LoadStep| {
-        let forces = holding_forces(mechanics, sheet, &state.configuration);
+        let forces = holding_forces(mechanics, sheet, state.weight, &state.configuration);
         let supports = supports.iter();
         supports.flat_map(move |support| {
             let held = std::iter::zip(support.motion, forces[support.panel]);

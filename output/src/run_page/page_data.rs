@@ -61,7 +61,7 @@ struct Panels {
     /// Corners SW, SE, NE, NW of every panel (mm).
     corners: Packed,
     /// The reference point of every panel's rotation (mm).
-    centroids: Packed,
+    references: Packed,
 }
 
 #[derive(Serialize)]
@@ -151,7 +151,7 @@ impl Panels {
         Self {
             grid: [sheet.grid.m, sheet.grid.n],
             corners: panels().flat_map(|panel| panel.corners).flatten().collect(),
-            centroids: panels().flat_map(|panel| panel.centroid).collect(),
+            references: panels().flat_map(|panel| panel.reference).collect(),
         }
     }
 }

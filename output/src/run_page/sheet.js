@@ -8,7 +8,7 @@ const marks = byId("marks");
 function moved(state, k, x, y) {
   const at = 3 * (state * panelCount + k);
   const [ux, uy, phi] = [states.motions[at], states.motions[at + 1], states.motions[at + 2]];
-  const [cx, cy] = [run.panels.centroids[2 * k], run.panels.centroids[2 * k + 1]];
+  const [cx, cy] = [run.panels.references[2 * k], run.panels.references[2 * k + 1]];
   const [cos, sin] = [Math.cos(phi), Math.sin(phi)];
   return [cx + ux + cos * (x - cx) - sin * (y - cy), cy + uy + sin * (x - cx) + cos * (y - cy)];
 }
@@ -18,9 +18,9 @@ function corner(state, k, c) {
   return moved(state, k, run.panels.corners[at], run.panels.corners[at + 1]);
 }
 
-function centroid(state, k) {
+function reference(state, k) {
   const at = 3 * (state * panelCount + k);
-  return [run.panels.centroids[2 * k] + states.motions[at], run.panels.centroids[2 * k + 1] + states.motions[at + 1]];
+  return [run.panels.references[2 * k] + states.motions[at], run.panels.references[2 * k + 1] + states.motions[at + 1]];
 }
 
 /** The rectangle that holds the sheet in every state, its outline and the target (mm). */
@@ -162,7 +162,7 @@ function drawMarks(state, selected) {
 /** The symbols of the supports, those that roll with their rails. */
 function drawSupports(state, obstacles) {
   for (const { panel, symbol, rail } of run.actuation.supports) {
-    const [x, y] = toPixels(centroid(state, panel));
+    const [x, y] = toPixels(reference(state, panel));
     if (rail) {
       const [dx, dy] = rail.map((part) => 14 * part);
       draw(marks, "line", { x1: x - dx, y1: y + dy, x2: x + dx, y2: y - dy, stroke: INK, "stroke-width": 2 });
@@ -220,7 +220,7 @@ function drawLoads(state, labels, obstacles) {
       labelled.add(value);
     };
     for (const [panel, [fx, fy, couple]] of panels) {
-      const at = toPixels(centroid(state, panel));
+      const at = toPixels(reference(state, panel));
       const force = Math.hypot(fx, fy);
       if (force > noticeable.force) {
         ends.push(drawArrow(at, [fx, fy], colour, obstacles, radius ? 62 : 26));

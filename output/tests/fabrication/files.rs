@@ -48,7 +48,7 @@ impl Read {
                 assert!(off < error, "{off}");
             }
         }
-        let area: f64 = sheet.panels.iter().map(|panel| panel.area()).sum();
+        let area: f64 = sheet.panels.iter().map(|panel| panel.area).sum();
         let [low, high] = [f64::min, f64::max]
             .map(|of| [0, 1].map(|axis| self.outline.iter().map(|p| p[axis]).reduce(of).unwrap()));
         let written = (high[0] - low[0] - KERF) * (high[1] - low[1] - KERF);

@@ -17,7 +17,7 @@ use design::pattern::coordinates::PatternCoordinates;
 use design::pattern::cut_pattern::{CutPattern, Outline};
 use design::pattern::grid::Grid;
 use design::scene::CuttingConfig;
-use design::sheet::cut_sheet::{Centroid, HingePoint, Sheet, SheetOptions};
+use design::sheet::cut_sheet::{HingePoint, Sheet, SheetOptions};
 use hinge::{HingeConstants, SheetMaterial};
 use output::cut_file::{CutLines, FabricationError, SheetDrawing, Slit};
 use rand::{RngExt, SeedableRng};
@@ -44,7 +44,6 @@ fn sheet(grid: Grid, coordinates: &PatternCoordinates, w_lig: f64) -> (CutPatter
     let pattern = CutPattern::new(grid, Outline::rectangle(width, height), coordinates).unwrap();
     let options = SheetOptions {
         hinge_point: HingePoint::CutTip,
-        centroid: Centroid::Area,
         process: HingeConstants {
             fillet_ratio: FILLET_RATIO,
             kerf: KERF,

@@ -12,7 +12,7 @@ use design::equilibrium::settings::SolverSettings;
 use design::equilibrium::supports::{Dof, Load, Support};
 use design::geometry::similarity::Scale;
 use design::objective::design_problem::Deployment;
-use design::sheet::cut_sheet::{Centroid, HingePoint, SheetOptions};
+use design::sheet::cut_sheet::{HingePoint, SheetOptions};
 use design::sheet::kinematics::hinge_deformations;
 use design::*;
 use hinge::HingeConstants;
@@ -50,7 +50,6 @@ fn deployed() -> (DesignProblem, Deployment) {
         },
         options: SheetOptions {
             hinge_point: HingePoint::Corner,
-            centroid: Centroid::Area,
             process: HingeConstants::PAPER,
         },
         model: Model::Equilibrium(Box::new(Mechanics {

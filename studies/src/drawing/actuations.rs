@@ -200,7 +200,7 @@ fn boundary_values(canvas: &mut Canvas, cell: &Cell, row: &ActuationRow) {
 fn flat_areas(canvas: &mut Canvas, cell: &Cell, row: &ActuationRow) {
     let edge = cell.stroke(INK, 0.5);
     for (panel, start) in std::iter::zip(&row.deployment.sheet.panels, &row.start.panels) {
-        let colour = area_colour(panel.area() / start.area());
+        let colour = area_colour(panel.area / start.area);
         cell.polygon(canvas, &panel.corners, edge.filled(colour));
     }
 }

@@ -15,7 +15,7 @@ use design::pattern::coordinates::logit;
 use design::pattern::cut_pattern::Outline;
 use design::pattern::design_vector::{DesignVector, WidthChart};
 use design::pattern::grid::Grid;
-use design::sheet::cut_sheet::{Centroid, HingePoint, SheetOptions};
+use design::sheet::cut_sheet::{HingePoint, SheetOptions};
 use hinge::HingeConstants;
 use std::fmt::Write;
 use std::sync::Arc;
@@ -83,7 +83,6 @@ fn problem(grid: Grid, load: f64) -> Result<(DesignProblem, usize)> {
         },
         options: SheetOptions {
             hinge_point: HingePoint::Corner,
-            centroid: Centroid::Vertices,
             process: HingeConstants::PAPER,
         },
         model: Model::Equilibrium(Box::new(Mechanics {

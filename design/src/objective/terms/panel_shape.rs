@@ -100,11 +100,15 @@ fn crowded(panel: &Panel, min_distance: f64, gradient: &mut [[f64; 2]; 4]) -> f6
 mod tests {
     use super::*;
     use crate::analysis::taylor::central_slope;
+    use crate::sheet::cut_sheet::PanelPoint;
 
     fn panel(corners: [[f64; 2]; 4]) -> Panel {
         Panel {
             corners,
+            point: PanelPoint::Centroid,
+            reference: [0.0; 2],
             centroid: [0.0; 2],
+            area: 0.0,
         }
     }
 

@@ -104,11 +104,15 @@ fn barrier(x: f64) -> (f64, f64) {
 mod tests {
     use super::*;
     use crate::analysis::taylor::central_slope;
+    use crate::sheet::cut_sheet::PanelPoint;
 
     fn panel(corners: [[f64; 2]; 4]) -> Panel {
         Panel {
             corners,
+            point: PanelPoint::Centroid,
+            reference: [0.0; 2],
             centroid: [0.0; 2],
+            area: 0.0,
         }
     }
 
