@@ -4,6 +4,7 @@
 pub mod actuation_curve;
 pub mod degeneration;
 pub mod force_transmission;
+pub mod friction_effect;
 pub mod further_load;
 pub mod localisation;
 pub mod marks;

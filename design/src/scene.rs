@@ -14,6 +14,7 @@ mod invalid_scene;
 mod keys;
 mod loaded_hinge;
 pub mod placement;
+mod posture;
 mod problem;
 mod ratios;
 pub mod run_inputs;
@@ -23,10 +24,10 @@ mod weights_files;
 
 pub use crate::objective::terms::ObjectiveConfig;
 pub use actuation::{
-    DriveConfig, EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SheetEdge, SupportConfig,
-    SupportKind,
+    At, DriveConfig, EdgeLoadConfig, LoadConfig, NamedPoint, OpeningCoupleConfig, SheetEdge,
+    SupportConfig, SupportKind,
 };
-pub use boundary_values::{Actuation, AppliedLoad, SupportedPanel};
+pub use boundary_values::{Actuation, AppliedLoad, Attachment, SupportedPanel};
 pub use checked_scene::Scene;
 pub use cutting::CuttingConfig;
 pub use hinge_model::{
@@ -35,6 +36,7 @@ pub use hinge_model::{
 pub use invalid_scene::{InvalidScene, WeightsMismatch};
 pub use keys::{OptimiserConfig, SceneConfig};
 pub use loaded_hinge::LoadedHinge;
+pub use posture::{Posture, PostureConfig};
 pub use ratios::{Ratios, rounded};
 pub use scene_error::SceneError;
 pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};

@@ -46,7 +46,7 @@ pub use deformation::{HingeDeformation, HingeForces};
 pub use design::{HingeConstants, HingeDesign, InvalidDesign};
 pub use domain::{InvalidDomain, TrainingDomain};
 pub use jet::Jet;
-pub use material::{InvalidMaterial, MaterialError, SheetMaterial};
+pub use material::{InvalidMaterial, MaterialError, STANDARD_GRAVITY, SheetMaterial};
 pub use sample::HingeSample;
 pub use strain_volumes::{NoHistogram, StrainVolumes};
 pub use tensile::TensileError;

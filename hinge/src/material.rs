@@ -7,6 +7,9 @@ use std::path::{Path, PathBuf};
 use support::key_limits;
 use support::toml_file::{self, ConfigError};
 
+/// Standard acceleration of gravity, rounded (m/s^2 = N/kg).
+pub const STANDARD_GRAVITY: f64 = 9.81;
+
 /// A uniform sheet: thickness, isotropic elasticity, tabulated J2 hardening, fracture strain.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -19,7 +22,7 @@ pub struct SheetMaterial {
     pub young: f64,
     /// Poisson's ratio, in [0, 0.5).
     pub poisson: f64,
-    /// Density (kg/m^3, the unit of data sheets); used only in (21)-(22).
+    /// Density (kg/m^3, the unit of data sheets): the weight of the sheet, and (21)-(22). No window solve uses it.
     pub density_kg_m3: f64,
     /// Equivalent plastic strain at fracture, eps_f of (12).
     pub fracture_strain: f64,
@@ -42,7 +45,7 @@ struct MaterialFile {
     /// Poisson's ratio.
     #[schemars(range(min = 0.0, max = 0.499))]
     poisson: f64,
-    /// Density (kg/m^3); used only in (21)-(22).
+    /// Density (kg/m^3): the weight of the sheet, and (21)-(22). No window solve uses it.
     #[schemars(range(min = 50.0, max = 25e3))]
     density_kg_m3: f64,
     /// Equivalent plastic strain at fracture, eps_f of (12).
@@ -118,6 +121,16 @@ impl SheetMaterial {
                 source,
             }),
         }
+    }
+
+    /// Mass of a unit of area (kg/mm^2).
+    pub fn mass_by_area(&self) -> f64 {
+        1e-9 * self.density_kg_m3 * self.thickness
+    }
+
+    /// Weight of a unit of area (N/mm^2).
+    pub fn weight_by_area(&self) -> f64 {
+        STANDARD_GRAVITY * self.mass_by_area()
     }
 
     /// Identifies the material law independently of its name: BLAKE3 hash of all material parameters that a window

@@ -16,7 +16,7 @@ pub(crate) use text::worst_first;
 pub use estimate::Estimate;
 pub use fact_sheet::{FactSheet, Reached, SpotCheck, WeightFacts};
 pub use hinge_row::HingeRow;
-pub use self_weight::SelfWeight;
+pub use self_weight::{Lying, SelfWeight};
 pub use warning::{Concern, Severity, Warning};
 
 use crate::cut_file::{CutLines, FabricationError};

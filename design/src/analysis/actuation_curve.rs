@@ -17,7 +17,7 @@ use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::path_following::Increment;
 use crate::equilibrium::potential::Stage;
 use crate::equilibrium::solver::EquilibriumSolver;
-use crate::equilibrium::weight::panel_weights;
+use crate::equilibrium::weight::weights_of_panels;
 use crate::hinge_law::Order;
 use crate::objective::design_problem::{Deployment, Mechanics};
 use crate::sheet::cut_sheet::Sheet;
@@ -98,24 +98,34 @@ impl ActuationCurve {
         (load_factor, start): &'a (f64, Configuration),
         states: impl Iterator<Item = (f64, &'a [[f64; 3]])>,
     ) -> Option<Self> {
-        let solver = &mechanics.solver;
-        let (mover, direction) = match magnitude(&solver.loads) {
-            Some(_) => (Mover::Loads, solver.loads.to_vec()),
-            None => (Mover::Supports, prescribed(solver)),
-        };
-        let (size, translational) = magnitude(&direction)?;
-        let point = |(zeta, configuration): (f64, &[[f64; 3]])| match mover {
-            Mover::Loads => [work(&direction, configuration) / size, zeta * size],
-            Mover::Supports => {
-                let forces = holding_forces(mechanics, sheet, 1.0, configuration);
-                [zeta * size, work(&direction, &forces) / size]
-            }
-        };
+        let (mover, direction) = moving(&mechanics.solver);
+        let (_, translational) = magnitude(&direction)?;
         let before = std::iter::once((*load_factor, &start[..]));
+        let points = before.chain(states).map(|(load_factor, configuration)| {
+            Self::point(mechanics, sheet, load_factor, configuration)
+        });
         Some(Self {
             mover,
             translational,
-            points: before.chain(states).map(point).collect(),
+            points: points.collect::<Option<_>>()?,
+        })
+    }
+
+    /// (displacement, load) of a state of the path; `None` if nothing moves the sheet.
+    pub fn point(
+        mechanics: &Mechanics,
+        sheet: &Sheet,
+        load_factor: f64,
+        configuration: &[[f64; 3]],
+    ) -> Option<[f64; 2]> {
+        let (mover, direction) = moving(&mechanics.solver);
+        let (size, _) = magnitude(&direction)?;
+        Some(match mover {
+            Mover::Loads => [work(&direction, configuration) / size, load_factor * size],
+            Mover::Supports => {
+                let forces = holding_forces(mechanics, sheet, 1.0, configuration);
+                [load_factor * size, work(&direction, &forces) / size]
+            }
         })
     }
 
@@ -230,12 +240,19 @@ pub fn holding_forces(
         add_at_hinge(&mut forces, hinge, motion.forces(energy.forces));
     }
     let by_area = mechanics.solver.weight.map(|component| weight * component);
-    let weights = panel_weights(sheet, by_area, configuration);
+    let weights = weights_of_panels(sheet, by_area, configuration);
     for (force, weight) in std::iter::zip(&mut forces, weights) {
-        let weight = weight.force();
-        (0..3).for_each(|d| force[d] -= weight[d]);
+        (0..3).for_each(|d| force[d] -= weight.force[d]);
     }
     forces
+}
+
+/// What moves the sheet, and the loads or motions by which it does.
+fn moving(solver: &EquilibriumSolver) -> (Mover, Vec<[f64; 3]>) {
+    match magnitude(&solver.loads) {
+        Some(_) => (Mover::Loads, solver.loads.to_vec()),
+        None => (Mover::Supports, prescribed(solver)),
+    }
 }
 
 /// The motions (u_x, u_y, phi) of the panels that the supports prescribe at full load.

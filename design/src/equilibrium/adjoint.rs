@@ -96,7 +96,9 @@ pub(crate) fn adjoint(
         }
         let weight = solver.weight.map(|component| step.weight * component);
         let configuration = &step.configuration;
-        add_weight_gradient(by_sheet, sheet.sheet, weight, configuration, &lambda);
+        if weight != [0.0; 2] {
+            add_weight_gradient(by_sheet, sheet.sheet, weight, configuration, &lambda);
+        }
         let energies = match step.order {
             Order::Design => Cow::Borrowed(&step.hinges),
             _ => Cow::Owned(sheet.energies(&step.deformations, Order::Design)),

@@ -8,12 +8,15 @@
 //! ```
 //!
 //! The minimised function is then U alone, because the work of the loads is the same in every configuration with
-//! that stroke. If there are a weight or loads held constant, U contains their work with negative sign.
+//! that stroke. If there are a weight or loads held constant, U contains their work with negative sign; the potential of
+//! friction belongs to it, too.
 
 use crate::equilibrium::displacement_control::dot;
+use crate::equilibrium::friction::Friction;
 use crate::equilibrium::hinged_sheet::HingedSheet;
+use crate::equilibrium::panel_force::PanelForce;
 use crate::equilibrium::solver::EquilibriumSolver;
-use crate::equilibrium::weight::{panel_weights, work_of_weight};
+use crate::equilibrium::weight::weights_of_panels;
 use crate::hinge_law::{HingeEnergy, Order};
 use crate::sheet::kinematics::{Configuration, HingeMotion};
 use crate::sheet::panel_vectors::{add_at_hinge, at_hinge};
@@ -37,6 +40,8 @@ pub(crate) struct Potential<'a> {
     pub at: f64,
     /// Size of a panel, by which moments are divided (mm).
     pub panel_size: f64,
+    /// Friction since a known configuration; `None` without.
+    pub friction: Option<&'a Friction>,
     /// Lower bound of the force that residuals are relative to (N): if the path passes a state without forces,
     /// the force of the states before.
     pub force: f64,
@@ -121,13 +126,10 @@ impl Potential<'_> {
         for ((hinge, motion), energy) in sheet.hinges.iter().zip(&motions).zip(&energies) {
             add_at_hinge(&mut inner, hinge, motion.forces(energy.forces));
         }
-        let weight = self.weight();
+        let on_panels = self.on_panels(&configuration);
         let mut constant = solver.held.to_vec();
-        for (sum, weight) in
-            std::iter::zip(&mut constant, panel_weights(sheet, weight, &configuration))
-        {
-            let weight = weight.force();
-            (0..3).for_each(|d| sum[d] += weight[d]);
+        for (sum, on_panel) in std::iter::zip(&mut constant, &on_panels) {
+            (0..3).for_each(|d| sum[d] += on_panel.force[d]);
         }
         for (inner, force) in std::iter::zip(inner.as_flattened_mut(), constant.as_flattened()) {
             *inner -= force;
@@ -144,10 +146,9 @@ impl Potential<'_> {
             .zip(solver.held.as_flattened())
             .zip(configuration.as_flattened())
             .map(|((load, held), u)| -(worked * load + held) * u);
-        let weighed = std::iter::once(-work_of_weight(sheet, weight, &configuration));
         let terms = (energies.iter().map(|energy| energy.w))
             .chain(works)
-            .chain(weighed);
+            .chain(on_panels.iter().map(|on_panel| on_panel.potential));
         let gradient = self.solver.pattern.gather(&unbalanced);
         let left = self.largest(solver.pattern.spread(&gradient).into_iter());
         let constant = self.largest(constant.into_iter());
@@ -211,19 +212,37 @@ impl Potential<'_> {
 
     /// H of (20); away from an equilibrium with the predicted hinge forces.
     pub fn tangent(&self, state: &State) -> Vec<f64> {
-        let pattern = &self.solver.pattern;
-        let hinges = state.motions.iter().zip(&state.energies).enumerate();
-        let values = pattern.assemble(hinges.map(|(h, (motion, energy))| {
-            motion.stiffness(&energy.tangent, state.expected_forces(h))
-        }));
-        if self.solver.weight == [0.0; 2] {
-            return values;
+        // A panel belongs to the block of the first of its hinges.
+        let mut on_panels = self.on_panels(&state.configuration);
+        let mut take = |panel: usize| on_panels.get_mut(panel).map(std::mem::take);
+        let hinges = self.sheet.sheet.hinges.iter().enumerate();
+        self.solver.pattern.assemble(hinges.map(|(h, hinge)| {
+            let (motion, energy) = (&state.motions[h], &state.energies[h]);
+            let mut block = motion.stiffness(&energy.tangent, state.expected_forces(h));
+            for (first, panel) in [(0, hinge.panel_a()), (3, hinge.panel_b())] {
+                if let Some(on_panel) = take(panel) {
+                    for (i, row) in on_panel.stiffness.iter().enumerate() {
+                        (0..3).for_each(|j| block[first + i][first + j] += row[j]);
+                    }
+                }
+            }
+            block
+        }))
+    }
+
+    /// Weight and friction of every panel; empty if there is neither.
+    fn on_panels(&self, configuration: &[[f64; 3]]) -> Vec<PanelForce> {
+        let (sheet, weight) = (self.sheet.sheet, self.weight());
+        let mut sums = Vec::new();
+        if weight != [0.0; 2] {
+            sums.extend(weights_of_panels(sheet, weight, configuration));
         }
-        let turning: Vec<[f64; 3]> =
-            panel_weights(self.sheet.sheet, self.weight(), &state.configuration)
-                .map(|weight| [0.0, 0.0, weight.stiffness()])
-                .collect();
-        pattern.shifted(&values, pattern.gather(&turning).into_iter())
+        if let Some(friction) = self.friction {
+            sums.resize_with(sheet.panels.len(), PanelForce::default);
+            let frictions = friction.on_panels(sheet, configuration);
+            std::iter::zip(&mut sums, frictions).for_each(|(sum, force)| sum.add(&force));
+        }
+        sums
     }
 
     /// Weight of a unit of area at this point of the path (N/mm^2).
@@ -245,8 +264,8 @@ impl Potential<'_> {
         let solver = self.solver;
         match (self.stage, &solver.drive) {
             (Stage::Weight, _) => {
-                panel_weights(self.sheet.sheet, solver.weight, &state.configuration)
-                    .map(|weight| weight.force())
+                weights_of_panels(self.sheet.sheet, solver.weight, &state.configuration)
+                    .map(|weight| weight.force)
                     .collect()
             }
             (Stage::Actuation, None) => solver.loads.to_vec(),
@@ -276,9 +295,10 @@ impl Potential<'_> {
                 .map(|row| dot(&row, &motions));
             add_at_hinge(&mut forces, hinge, force);
         }
-        let weights = panel_weights(self.sheet.sheet, self.weight(), &state.configuration);
-        for ((force, weight), motion) in std::iter::zip(&mut forces, weights).zip(motion) {
-            force[2] += weight.stiffness() * motion[2];
+        let on_panels = self.on_panels(&state.configuration);
+        for ((force, on_panel), motion) in std::iter::zip(&mut forces, on_panels).zip(motion) {
+            let resistance = on_panel.resistance(motion);
+            (0..3).for_each(|d| force[d] += resistance[d]);
         }
         forces
     }

@@ -7,6 +7,7 @@
 //! F = w A,     M = (R(phi) (c - r)) x F,     -dM/dphi = (R(phi) (c - r)) . F
 //! ```
 
+use crate::equilibrium::panel_force::PanelForce;
 use crate::geometry::plane::{I, add, complex, cross, dot, turn};
 use crate::sheet::cut_sheet::{Panel, Sheet, SheetGradient};
 use crate::sheet::kinematics::Configuration;
@@ -18,7 +19,7 @@ const BALANCED: f64 = 1e-6;
 
 /// The weight of a panel in one of its rotations.
 #[derive(Clone, Copy)]
-pub(crate) struct PanelWeight {
+struct PanelWeight {
     /// w A
     force: c64,
     /// R(phi) (c - r)
@@ -26,56 +27,39 @@ pub(crate) struct PanelWeight {
 }
 
 impl PanelWeight {
-    pub fn new(panel: &Panel, by_area: [f64; 2], phi: f64) -> Self {
+    fn new(panel: &Panel, by_area: [f64; 2], phi: f64) -> Self {
         Self {
             force: panel.area * complex(by_area),
             arm: turn(phi) * (complex(panel.centroid) - complex(panel.reference)),
         }
     }
 
-    /// (F_x, F_y, M)
-    pub fn force(&self) -> [f64; 3] {
-        [self.force.re, self.force.im, cross(self.arm, self.force)]
-    }
-
-    /// -dM/dphi
-    pub fn stiffness(&self) -> f64 {
-        dot(self.arm, self.force)
-    }
-
-    /// The work from the flat sheet, in which the arm is `flat`.
-    fn work(&self, [u_x, u_y, _]: [f64; 3], flat: c64) -> f64 {
-        dot(self.force, c64::new(u_x, u_y) + self.arm - flat)
+    fn on(&self, panel: &Panel, [u_x, u_y, _]: [f64; 3]) -> PanelForce {
+        let flat = complex(panel.centroid) - complex(panel.reference);
+        let mut stiffness = [[0.0; 3]; 3];
+        stiffness[2][2] = dot(self.arm, self.force);
+        PanelForce {
+            force: [self.force.re, self.force.im, cross(self.arm, self.force)],
+            stiffness,
+            potential: -dot(self.force, c64::new(u_x, u_y) + self.arm - flat),
+        }
     }
 }
 
-/// The weight of every panel in a configuration, if there is any; `by_area` is that of a unit of area (N/mm^2).
-pub(crate) fn panel_weights<'a>(
+/// The weight of every panel in a configuration; `by_area` is that of a unit of area (N/mm^2).
+pub(crate) fn weights_of_panels<'a>(
     sheet: &'a Sheet,
     by_area: [f64; 2],
     configuration: &'a [[f64; 3]],
-) -> impl Iterator<Item = PanelWeight> + 'a {
-    let weighing = if by_area == [0.0; 2] {
-        0
-    } else {
-        sheet.panels.len()
-    };
+) -> impl Iterator<Item = PanelForce> + 'a {
     std::iter::zip(&sheet.panels, configuration)
-        .take(weighing)
-        .map(move |(panel, motion)| PanelWeight::new(panel, by_area, motion[2]))
+        .map(move |(panel, &motion)| PanelWeight::new(panel, by_area, motion[2]).on(panel, motion))
 }
 
 /// The work of the weight from the flat sheet to a configuration (N mm).
 pub fn work_of_weight(sheet: &Sheet, by_area: [f64; 2], configuration: &[[f64; 3]]) -> f64 {
-    let weights = panel_weights(sheet, by_area, configuration);
-    let works = weights
-        .zip(configuration)
-        .zip(&sheet.panels)
-        .map(|((weight, motion), panel)| {
-            let flat = complex(panel.centroid) - complex(panel.reference);
-            weight.work(*motion, flat)
-        });
-    works.sum()
+    let weights = weights_of_panels(sheet, by_area, configuration);
+    -weights.map(|weight| weight.potential).sum::<f64>()
 }
 
 /// Adds the gradient, with respect to the sheet, of the work of the weight in virtual motions `lambda` of the panels.
@@ -86,8 +70,8 @@ pub(crate) fn add_weight_gradient(
     configuration: &[[f64; 3]],
     lambda: &[[f64; 3]],
 ) {
-    let weights = panel_weights(sheet, by_area, configuration);
-    for (k, (weight, [x, y, turned])) in weights.zip(lambda).enumerate() {
+    for (k, (panel, [x, y, turned])) in std::iter::zip(&sheet.panels, lambda).enumerate() {
+        let weight = PanelWeight::new(panel, by_area, configuration[k][2]);
         let spin = I * turn(configuration[k][2]) * *turned;
         let motion = c64::new(*x, *y) + I * weight.arm * *turned;
         by_sheet.areas[k] += dot(complex(by_area), motion);

@@ -1,6 +1,7 @@
 //! Supports and loads as written in a scene, with panels named by [column, row].
 
-use crate::pattern::grid::Grid;
+use crate::pattern::grid::{EDGES, Grid};
+use crate::sheet::cut_sheet::PanelPoint;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -11,8 +12,18 @@ use std::f64::consts::TAU;
 pub struct SupportConfig {
     /// The panel [column, row], counted from [0, 0] at the lower left.
     pub panel: [usize; 2],
-    /// Which motions of the panel's centroid are prescribed.
+    /// Which motions of the point are prescribed, and whether the panel may turn about it.
     pub kind: SupportKind,
+    /// The point of the panel that is held: `"centroid"`, the middle of its edge `"bottom"`, `"right"`, `"top"` or
+    /// `"left"`, or a point [x, y] of the flat sheet (mm).
+    #[serde(default)]
+    pub at: At,
+    /// Diameter of a hole at the point for a nail or a hook (mm).
+    #[schemars(range(min = 0.2, max = 200.0))]
+    pub hole: Option<f64>,
+    /// Width of a clip that holds the edge `at` of a clamped panel (mm).
+    #[schemars(range(min = 1.0, max = 2e3))]
+    pub clip: Option<f64>,
     /// Displacement [x, y] of the supported translations at full load (mm); zero for free ones.
     #[serde(default)]
     #[schemars(inner(range(min = -1e5, max = 1e5)))]
@@ -23,7 +34,7 @@ pub struct SupportConfig {
     pub rotation_deg: f64,
 }
 
-/// Which motions of a panel's centroid a support prescribes.
+/// Which motions of a point of a panel a support prescribes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SupportKind {
@@ -37,12 +48,54 @@ pub enum SupportKind {
     RollerY,
 }
 
-/// A dead load at the centroid of a panel.
+/// A point of a panel.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(
+    untagged,
+    expecting = "expected \"centroid\", \"bottom\", \"right\", \"top\", \"left\" or a point [x, y] of the flat sheet (mm)"
+)]
+#[schemars(inline)]
+pub enum At {
+    /// By its name.
+    Named(NamedPoint),
+    /// [x, y] in the flat sheet (mm); it does not move with the cuts.
+    Point([f64; 2]),
+}
+
+/// A point of a panel that moves with its cuts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum NamedPoint {
+    /// The centroid of the panel.
+    Centroid,
+    /// The middle of its lower edge.
+    Bottom,
+    /// The middle of its right edge.
+    Right,
+    /// The middle of its upper edge.
+    Top,
+    /// The middle of its left edge.
+    Left,
+}
+
+/// A dead load at a point of a panel: it keeps its direction, and its point moves with the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LoadConfig {
     /// The panel [column, row], counted from [0, 0] at the lower left.
     pub panel: [usize; 2],
+    /// The point of the panel that is pulled, as for supports.
+    #[serde(default)]
+    pub at: At,
+    /// Diameter of a hole at the point for a hook (mm).
+    #[schemars(range(min = 0.2, max = 200.0))]
+    pub hole: Option<f64>,
+    /// Width of a clip on the edge `at`, from which the load hangs (mm).
+    #[schemars(range(min = 1.0, max = 2e3))]
+    pub clip: Option<f64>,
+    /// Mass of a weight (g) that hangs from the point of a `hanging` sheet, besides `force`.
+    #[schemars(range(min = 1e-3, max = 1e7))]
+    pub mass_g: Option<f64>,
     /// Force [x, y] at full load (N); zero along supported translations.
     #[serde(default)]
     #[schemars(inner(range(min = -1e5, max = 1e5)))]
@@ -141,9 +194,31 @@ impl SupportConfig {
     }
 }
 
+impl Default for At {
+    fn default() -> Self {
+        Self::Named(NamedPoint::Centroid)
+    }
+}
+
+impl At {
+    /// The point of a panel of a sheet.
+    pub(super) fn point(self) -> PanelPoint {
+        let edge = match self {
+            Self::Named(NamedPoint::Centroid) => return PanelPoint::Centroid,
+            Self::Point(position) => return PanelPoint::Fixed(position),
+            Self::Named(NamedPoint::Bottom) => SheetEdge::Bottom,
+            Self::Named(NamedPoint::Right) => SheetEdge::Right,
+            Self::Named(NamedPoint::Top) => SheetEdge::Top,
+            Self::Named(NamedPoint::Left) => SheetEdge::Left,
+        };
+        PanelPoint::Middle(EDGES[edge as usize])
+    }
+}
+
 impl LoadConfig {
-    /// Multiplies force and couple.
+    /// Multiplies force, mass and couple.
     pub fn scale(&mut self, factor: f64) {
+        self.mass_g = self.mass_g.map(|mass| factor * mass);
         self.force = self.force.map(|force| factor * force);
         self.couple *= factor;
     }

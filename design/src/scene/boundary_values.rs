@@ -5,7 +5,9 @@ use crate::geometry::polygon::distance;
 use crate::pattern::grid::{EDGES, Grid};
 use crate::scene::actuation::{EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, SupportConfig};
 use crate::scene::checked_scene::Scene;
+use crate::sheet::cut_sheet::{Grip, PanelPoint};
 use crate::sheet::topology::{HingeSite, hinge_sites};
+use hinge::STANDARD_GRAVITY;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -16,8 +18,26 @@ pub struct Actuation {
     pub supports: Vec<SupportedPanel>,
     /// Loads on panels, on edges and on hinges.
     pub loads: Vec<AppliedLoad>,
+    /// The points of panels at which supports and loads of single panels act, in that order.
+    #[serde(skip)]
+    pub attachments: Vec<Attachment>,
     /// What symbols and curved arrows mean.
     pub legend: String,
+}
+
+/// A point at which a panel is held or pulled.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attachment {
+    /// What is attached.
+    pub name: String,
+    /// Index of the panel.
+    pub panel: usize,
+    /// The point of the panel.
+    pub point: PanelPoint,
+    /// Diameter of a hole for a nail or a hook (mm).
+    pub hole: Option<f64>,
+    /// Width of a clip on an edge of the panel (mm).
+    pub clip: Option<f64>,
 }
 
 /// A supported panel.
@@ -29,7 +49,7 @@ pub struct SupportedPanel {
     pub panel: usize,
     /// The prescribed ones of (u_x, u_y, phi) (mm, mm, rad).
     pub motion: [Option<f64>; 3],
-    /// Outline of its symbol about the centroid of the panel, in halves of the symbol's size.
+    /// Outline of its symbol about the point that is held, in halves of the symbol's size.
     pub symbol: Vec<[f64; 2]>,
     /// The direction in which it rolls.
     pub rail: Option<[f64; 2]>,
@@ -42,7 +62,7 @@ pub struct AppliedLoad {
     pub name: String,
     /// The loaded panel [column, row], if it is a single one.
     pub place: Option<[usize; 2]>,
-    /// (F_x, F_y, M) at the centroids of panels, by their indices (N, N, N mm).
+    /// (F_x, F_y, M) at the reference points of panels, by their indices (N, N, N mm).
     pub on_panels: Vec<(usize, [f64; 3])>,
     /// Resultant (N), and the couple of each loaded hinge or panel (N mm).
     pub total: [f64; 3],
@@ -67,14 +87,21 @@ impl Scene {
             held.all(|support| support.motion[2].is_none())
         };
         let corners = config.sheet.outline().corners;
-        let panels = config.loads.iter().map(|load| load.on(grid));
+        let down = config.posture.and_then(|posture| posture.down());
+        let panels = config.loads.iter().map(|load| load.on(grid, down));
         let edges = config.edge_loads.iter();
         let edges = edges.map(|load| load.on(grid, EDGES[load.edge as usize].map(|k| corners[k])));
         let openings = config
             .opening_couples
             .iter()
             .map(|load| load.on(grid, turns));
+        let held = config
+            .supports
+            .iter()
+            .map(|support| support.attachment(grid));
+        let pulled = config.loads.iter().map(|load| load.attachment(grid));
         Actuation {
+            attachments: held.chain(pulled).collect(),
             loads: panels.chain(edges).chain(openings).collect(),
             legend: if config.opening_couples.is_empty() {
                 SYMBOLS.to_owned()
@@ -95,6 +122,15 @@ impl Actuation {
                 .filter_map(move |(dof, value)| value.map(|value| Support { panel, dof, value }))
         });
         supports.collect()
+    }
+
+    /// The points at which panels are held or pulled, if they are not their centroids.
+    pub(super) fn grips(&self) -> Vec<Grip> {
+        let moved = |attachment: &&Attachment| attachment.point != PanelPoint::Centroid;
+        let attachments = self.attachments.iter().filter(moved);
+        attachments
+            .map(|&Attachment { panel, point, .. }| Grip { panel, point })
+            .collect()
     }
 
     /// The sum of all loads on free degrees of freedom, by panels.
@@ -137,11 +173,25 @@ impl SupportConfig {
             rail: self.kind.rail(),
         }
     }
+
+    fn attachment(&self, grid: Grid) -> Attachment {
+        let [column, row] = self.panel;
+        Attachment {
+            name: format!("{}, panel [{column},{row}]", name(self.kind)),
+            panel: grid.panel(column, row),
+            point: self.at.point(),
+            hole: self.hole,
+            clip: self.clip,
+        }
+    }
 }
 
 impl LoadConfig {
-    fn on(&self, grid: Grid) -> AppliedLoad {
-        let ([column, row], [x, y]) = (self.panel, self.force);
+    /// `down` is the direction of gravity in the plane of the sheet.
+    fn on(&self, grid: Grid, down: Option<[f64; 2]>) -> AppliedLoad {
+        let hung = 1e-3 * STANDARD_GRAVITY * self.mass_g.unwrap_or(0.0);
+        let [column, row] = self.panel;
+        let [x, y] = [0, 1].map(|c| self.force[c] + down.map_or(0.0, |down| hung * down[c]));
         let load = [x, y, self.couple];
         AppliedLoad {
             name: format!("load, panel [{column},{row}]"),
@@ -149,6 +199,17 @@ impl LoadConfig {
             on_panels: vec![(grid.panel(column, row), load)],
             total: load,
             label: None,
+        }
+    }
+
+    fn attachment(&self, grid: Grid) -> Attachment {
+        let [column, row] = self.panel;
+        Attachment {
+            name: format!("load, panel [{column},{row}]"),
+            panel: grid.panel(column, row),
+            point: self.at.point(),
+            hole: self.hole,
+            clip: self.clip,
         }
     }
 }

@@ -4,6 +4,7 @@ use crate::objective::target::Target;
 use crate::scene::checks;
 use crate::scene::keys::{SceneConfig, beside, folder};
 use crate::scene::loaded_hinge::{LoadedHinge, network};
+use crate::scene::posture::PostureConfig;
 use crate::scene::scene_error::SceneError;
 use crate::sheet::cut_sheet::SheetOptions;
 use hinge::SheetMaterial;
@@ -15,8 +16,8 @@ use surrogate::Surrogate;
 ///
 /// 1: O stands half a kerf further from the line of the secondary cut. 2: the path is followed in increments of its own, so
 /// that a sheet that jumps may end on another branch. 3: where it cannot be followed, it goes on from a minimum that does not
-/// depend on the load steps.
-const MODEL_VERSION: u32 = 3;
+/// depend on the load steps. 4: a hanging sheet has weight; supports and loads act at their points.
+const MODEL_VERSION: u32 = 4;
 
 /// What the parts of [`Scene::model_hash`] identify, in their order.
 pub(super) const MODEL_PARTS: [&str; 4] = ["version of kirigami", "material", "target", WEIGHTS];
@@ -111,8 +112,24 @@ impl Scene {
     pub fn model_hash(&self) -> String {
         let weights = self.weights().map_or(String::new(), Surrogate::hash);
         let target = self.target.hash();
-        let material = self.material.law_hash();
+        let material = if self.weight_by_area() == [0.0; 2] {
+            self.material.law_hash()
+        } else {
+            format!(
+                "{}/{}",
+                self.material.law_hash(),
+                self.material.density_kg_m3
+            )
+        };
         format!("{MODEL_VERSION}-{material}-{target}-{weights}")
+    }
+
+    /// The weight of a unit of area in the plane of the sheet (N/mm^2); zero unless it hangs and its weight is modelled.
+    pub fn weight_by_area(&self) -> [f64; 2] {
+        let posture = self.config.posture.filter(PostureConfig::is_heavy);
+        let down = posture.and_then(|posture| posture.down());
+        let weight = self.material.weight_by_area();
+        down.map_or([0.0; 2], |down| down.map(|component| weight * component))
     }
 
     /// The options that turn a pattern into the sheet of this scene.

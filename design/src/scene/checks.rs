@@ -2,14 +2,19 @@
 //!
 //! The ranges are wider than those of any real sheet, and narrower than an error by a factor of 1000.
 
-use crate::geometry::polygon::{distance, edges, mean};
+use crate::geometry::polygon::{contains, distance, edges, mean};
 use crate::objective::target::Target;
-use crate::pattern::cut_pattern::Outline;
+use crate::pattern::cut_pattern::{CutPattern, Outline};
 use crate::pattern::pattern_error::PatternError;
+use crate::scene::actuation::{At, EdgeLoadConfig, SupportKind};
 use crate::scene::hinge_model::HingeModel;
 use crate::scene::invalid_scene::InvalidScene;
 use crate::scene::keys::SceneConfig;
+use crate::scene::posture::Posture;
 use crate::scene::sheet_config::SheetConfig;
+use crate::sheet::cut_sheet::PanelPoint;
+use crate::sheet::topology::panel_endpoints;
+use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 use support::key_limits::{self, within};
 
@@ -20,8 +25,10 @@ pub(super) fn config(scene: &SceneConfig) -> Result<(), InvalidScene> {
     sheet(scene)?;
     ligament(scene)?;
     start(scene)?;
+    posture(scene)?;
     supports(scene)?;
     loads(scene)?;
+    attachments(scene)?;
     objective(scene)
 }
 
@@ -135,6 +142,86 @@ fn start(scene: &SceneConfig) -> Result<(), InvalidScene> {
     })
 }
 
+fn posture(scene: &SceneConfig) -> Result<(), InvalidScene> {
+    let Some(posture) = &scene.posture else {
+        let learned = scene.hinge == HingeModel::Surrogate;
+        return if learned {
+            Err(InvalidScene::NoPosture)
+        } else {
+            Ok(())
+        };
+    };
+    let (hanging, lying) = (Posture::Hanging, Posture::Lying);
+    for (key, is_given, kind) in [
+        ("down", posture.down.is_some(), hanging),
+        ("weight", posture.weight.is_some(), hanging),
+        ("friction", posture.friction.is_some(), lying),
+    ] {
+        if is_given && posture.kind != kind {
+            return Err(InvalidScene::OtherPosture(key, posture.kind));
+        }
+    }
+    if posture.kind == hanging && posture.down().is_none() {
+        return Err(InvalidScene::NoDown);
+    }
+    Ok(())
+}
+
+/// The points at which panels are held or pulled: one for each panel, inside it in the start pattern.
+fn attachments(scene: &SceneConfig) -> Result<(), InvalidScene> {
+    let supports = scene.supports.iter().enumerate().map(|(i, support)| {
+        let key = format!("supports[{i}]");
+        (key, support.panel, support.at, support.clip)
+    });
+    let loads = scene.loads.iter().enumerate().map(|(i, load)| {
+        let key = format!("loads[{i}]");
+        (key, load.panel, load.at, load.clip)
+    });
+    let mut points: BTreeMap<[usize; 2], At> = BTreeMap::new();
+    for (key, panel, at, clip) in supports.chain(loads) {
+        if points.insert(panel, at).is_some_and(|other| other != at) {
+            return Err(InvalidScene::TwoPoints { panel });
+        }
+        if clip.is_some() && !matches!(at.point(), PanelPoint::Middle(_)) {
+            return Err(InvalidScene::ClipOffEdge { key });
+        }
+        inside(scene, key, panel, at)?;
+    }
+    let grid = scene.sheet.grid();
+    for (panel, at) in points {
+        let loaded = |edge: &EdgeLoadConfig| {
+            let panels = edge.edge.panels(grid);
+            panels.contains(&grid.panel(panel[0], panel[1]))
+        };
+        if at != At::default() && scene.edge_loads.iter().any(loaded) {
+            return Err(InvalidScene::EdgeAndPoint { panel });
+        }
+    }
+    Ok(())
+}
+
+fn inside(scene: &SceneConfig, key: String, panel: [usize; 2], at: At) -> Result<(), InvalidScene> {
+    let At::Point(at) = at else {
+        return Ok(());
+    };
+    let grid = scene.sheet.grid();
+    let start = scene.start.pattern(grid).map_err(InvalidScene::Start)?;
+    let pattern = CutPattern::new(grid, scene.sheet.outline(), &start);
+    let pattern = pattern.map_err(InvalidScene::Start)?;
+    let endpoints = panel_endpoints(grid)[grid.panel(panel[0], panel[1])];
+    let corners = endpoints.map(|endpoint| pattern.points[endpoint]);
+    if contains(&corners, at) {
+        return Ok(());
+    }
+    let corners = corners.map(|[x, y]| format!("({x:.1}, {y:.1})")).join(" ");
+    Err(InvalidScene::PointOutside {
+        key,
+        at,
+        panel,
+        corners,
+    })
+}
+
 fn supports(scene: &SceneConfig) -> Result<(), InvalidScene> {
     if scene.supports.is_empty() && scene.hinge != HingeModel::Pin {
         return Err(InvalidScene::NoSupports);
@@ -149,6 +236,9 @@ fn supports(scene: &SceneConfig) -> Result<(), InvalidScene> {
         if motions.any(|(motion, held)| motion != 0.0 && !held) {
             return Err(InvalidScene::FreeMotion { i });
         }
+        if support.clip.is_some() && support.kind != SupportKind::Clamp {
+            return Err(InvalidScene::ClipTurns { i });
+        }
     }
     Ok(())
 }
@@ -156,6 +246,12 @@ fn supports(scene: &SceneConfig) -> Result<(), InvalidScene> {
 fn loads(scene: &SceneConfig) -> Result<(), InvalidScene> {
     for (i, load) in scene.loads.iter().enumerate() {
         panel(scene, || format!("loads[{i}].panel"), load.panel)?;
+        let falls = scene
+            .posture
+            .is_some_and(|posture| posture.down().is_some());
+        if load.mass_g.is_some() && !falls {
+            return Err(InvalidScene::NoGravity { i });
+        }
         let mut supports = scene.supports.iter();
         let support = supports.find(|support| support.panel == load.panel);
         let values = [load.force[0], load.force[1], load.couple];

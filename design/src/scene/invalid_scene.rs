@@ -6,6 +6,7 @@ use crate::hinge_law::InvalidContact;
 use crate::objective::design_problem::DesignError;
 use crate::objective::target::TargetError;
 use crate::pattern::pattern_error::PatternError;
+use crate::scene::posture::Posture;
 use hinge::{InvalidDesign, InvalidMaterial};
 use std::path::PathBuf;
 use support::key_limits::OutOfRange;
@@ -56,6 +57,50 @@ pub enum InvalidScene {
     Start(PatternError),
     #[error("start.w_lig has {found} entries; the sheet has {hinges} hinges")]
     StartWidths { found: usize, hinges: usize },
+    #[error(
+        "posture: say what keeps the panels in their plane: [posture] with kind = \"held-flat\" (plates, a frame), \
+         \"lying\" (on a horizontal surface), \"hanging\" (upright) or \"free\""
+    )]
+    NoPosture,
+    #[error(
+        "posture.down: a hanging sheet needs the direction of gravity in its plane, such as down = [0.0, -1.0]"
+    )]
+    NoDown,
+    #[error(
+        "posture.{0} belongs to another kind than {1:?}: `down` and `weight` are of a sheet that is hanging, with gravity in \
+         its plane, `friction` of one that is lying: remove the key or change `kind`"
+    )]
+    OtherPosture(&'static str, Posture),
+    #[error(
+        "loads[{i}].mass_g: a weight pulls along gravity, which is in the plane of a hanging sheet only: set \
+         posture.kind = \"hanging\" with `down`, or give a force"
+    )]
+    NoGravity { i: usize },
+    #[error(
+        "panel {panel:?} is held or pulled at two points: give its supports and loads the same `at`"
+    )]
+    TwoPoints { panel: [usize; 2] },
+    #[error(
+        "edge_loads act at the centroids of the panels of their edge, but panel {panel:?} has a support or a load at \
+         another point: remove its `at`, or load the panels of the edge by [[loads]]"
+    )]
+    EdgeAndPoint { panel: [usize; 2] },
+    #[error(
+        "{key}.clip: a clip holds an edge: set at = \"bottom\", \"right\", \"top\" or \"left\""
+    )]
+    ClipOffEdge { key: String },
+    #[error("supports[{i}].clip: a clip keeps its panel from turning: set kind = \"clamp\"")]
+    ClipTurns { i: usize },
+    #[error(
+        "{key}.at = [{}, {}] mm is outside panel {panel:?} of the start, which has the corners {corners}",
+        at[0], at[1]
+    )]
+    PointOutside {
+        key: String,
+        at: [f64; 2],
+        panel: [usize; 2],
+        corners: String,
+    },
     #[error("supports: a sheet without supports has no equilibrium: add [[supports]]")]
     NoSupports,
     #[error("supports[{i}].panel = {panel:?} is supported twice")]

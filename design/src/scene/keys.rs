@@ -11,6 +11,7 @@ use crate::scene::cutting::CuttingConfig;
 use crate::scene::hinge_model::{
     CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
 };
+use crate::scene::posture::PostureConfig;
 use crate::scene::sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 use crate::sheet::cut_sheet::HingePoint;
 use hinge::{HingeConstants, SheetMaterial};
@@ -62,7 +63,10 @@ pub struct SceneConfig {
     pub condensed: Option<CondensedConfig>,
     /// Read if `hinge = "surrogate"`.
     pub surrogate: Option<SurrogateFile>,
-    /// The supported panels; they must prevent the rigid motions of the sheet. Empty if `hinge = "pin"`.
+    /// What keeps the panels in their plane; required if `hinge = "surrogate"`.
+    pub posture: Option<PostureConfig>,
+    /// The supported panels; they must prevent the rigid motions of the sheet, except that a `hanging` sheet may swing about
+    /// a single pin. Empty if `hinge = "pin"`.
     #[serde(default)]
     pub supports: Vec<SupportConfig>,
     /// Contact of panel edges; by default with ten times the k_theta of a hinge with the start width, from 0 to

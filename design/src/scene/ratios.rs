@@ -5,6 +5,7 @@
 //! e lambda^3, so couples do too, forces with e lambda^3 / mu, and the stiffnesses k_a and k_s with e lambda.
 
 use crate::objective::target::TargetShape;
+use crate::scene::actuation::At;
 use crate::scene::keys::SceneConfig;
 
 /// Ratios of a new sheet to the original one.
@@ -19,7 +20,8 @@ pub struct Ratios {
 }
 
 impl Ratios {
-    /// Scales a scene. Its thickness, material, hinge law and kerf, and the files of its target, remain as they are.
+    /// Scales a scene. Its thickness, material, hinge law and kerf, its holes and clips, and the files of its target, remain
+    /// as they are.
     pub fn apply(self, config: &mut SceneConfig) {
         let Self {
             thickness,
@@ -41,8 +43,11 @@ impl Ratios {
         config.process.r_win *= thickness;
         for support in &mut config.supports {
             support.displacement = support.displacement.map(by(size));
+            scale_point(&mut support.at, size);
         }
         for load in &mut config.loads {
+            scale_point(&mut load.at, size);
+            load.mass_g = load.mass_g.map(by(energy / size));
             load.force = load.force.map(by(energy / size));
             load.couple = by(energy)(load.couple);
         }
@@ -66,6 +71,12 @@ impl Ratios {
         config.objective.min_panel_width = by(size)(config.objective.min_panel_width);
         config.objective.smoothing = by(size.powi(2))(config.objective.smoothing);
         scale_target(&mut config.target, size);
+    }
+}
+
+fn scale_point(at: &mut At, factor: f64) {
+    if let At::Point(position) = at {
+        *position = position.map(|x| rounded(factor * x));
     }
 }
 

@@ -98,6 +98,7 @@ impl Window {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sheet::cut_sheet::PanelPoint;
 
     fn window(foot: [f64; 2], angle_deg: f64) -> Window {
         let (sin, cos) = f64::to_radians(angle_deg).sin_cos();

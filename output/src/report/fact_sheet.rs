@@ -33,7 +33,7 @@ pub struct FactSheet {
     pub thickness: f64,
     /// Mass of the uncut sheet (kg).
     pub mass_kg: f64,
-    /// Weight and friction of the uncut sheet, which are not in the model.
+    /// The weight of the uncut sheet and how it acts.
     pub self_weight: SelfWeight,
     /// [columns, rows]
     pub panels: [usize; 2],
@@ -43,8 +43,8 @@ pub struct FactSheet {
     pub deployed_size: [f64; 2],
     /// Load and stroke at the end of the path; `None` without equilibrium, or if nothing moves the sheet.
     pub reached: Option<Reached>,
-    /// Minimum of Gamma (21) over the hinges; it is of a sheet that lies on a surface.
-    pub gamma_min: f64,
+    /// Minimum of Gamma (21) over the hinges; `None` for a sheet that does not lie on a surface.
+    pub gamma_min: Option<f64>,
     /// Fraction of the hinge states of the path that are inside the training domain of the hinge law.
     pub share_inside: f64,
     /// The weights that the hinge law reads.
@@ -119,7 +119,7 @@ impl FactSheet {
         let material = &scene.material;
         let flat = &deployment.sheet.outline.corners;
         let corners = deployed_corners(&deployment.sheet, &deployment.final_step().configuration);
-        let mass_kg = 1e-9 * material.density_kg_m3 * area(flat).abs() * material.thickness;
+        let mass_kg = material.mass_by_area() * area(flat).abs();
         let reached = Reached::new(scene, problem, deployment);
         Self {
             version: env!("CARGO_PKG_VERSION"),
@@ -130,15 +130,20 @@ impl FactSheet {
             material: material.name.clone(),
             thickness: material.thickness,
             mass_kg,
-            self_weight: SelfWeight::new(mass_kg, reached.as_ref().and_then(Reached::force)),
+            self_weight: SelfWeight::new(
+                scene,
+                problem,
+                deployment,
+                mass_kg,
+                reached.as_ref().and_then(Reached::force),
+            ),
             panels: scene.config.sheet.panels,
             flat_size: extent(flat.iter().copied()),
             deployed_size: extent(corners.into_iter().flatten()),
             reached,
-            gamma_min: hinges
-                .iter()
-                .map(|row| row.gamma)
-                .fold(f64::INFINITY, f64::min),
+            gamma_min: (hinges.iter())
+                .filter_map(|row| row.gamma)
+                .min_by(f64::total_cmp),
             share_inside: deployment.share_inside(),
             weights: WeightFacts::new(scene),
             scene_hash: scene.hash(),
@@ -170,14 +175,15 @@ impl FactSheet {
             facts.extend(reached.rows());
         }
         if self.carries_load {
-            let weight = self.self_weight.beside_load();
-            facts.push(("weight", format!("{weight}; neither is modelled")));
+            facts.extend(self.self_weight.rows());
         }
-        let gamma = rounded(self.gamma_min, 4);
-        facts.push((
-            "minimum Gamma",
-            format!("{gamma}, for a sheet that lies on a surface"),
-        ));
+        if let Some(gamma) = self.gamma_min {
+            let gamma = rounded(gamma, 4);
+            facts.push((
+                "minimum Gamma",
+                format!("{gamma}, for a sheet that lies on a surface"),
+            ));
+        }
         if let Some(weights) = &self.weights {
             let inside = rounded(100.0 * self.share_inside, 4);
             if self.has_domain {

@@ -5,7 +5,7 @@ use design::analysis::path_separation::PathSeparation;
 use design::geometry::polygon::{distance, edges};
 use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
-use design::scene::Scene;
+use design::scene::{Posture, Scene};
 use design::sheet::cut_sheet::{Hinge, Sheet};
 use serde::Serialize;
 
@@ -36,8 +36,8 @@ pub struct HingeRow {
     /// Maximum distance of the path from the straight ray to its end, in ligament widths; see
     /// [`PathSeparation::whole`].
     pub path_separation: f64,
-    /// (21), with the shortest edge of the two panels.
-    pub gamma: f64,
+    /// (21), with the shortest edge of the two panels; `None` for a sheet that does not lie on a surface.
+    pub gamma: Option<f64>,
 }
 
 impl HingeRow {
@@ -66,7 +66,9 @@ impl HingeRow {
             damage_peak: deployment.damage_max(DamageMeasure::Peak, h),
             inside: deployment.path.iter().all(|step| step.inside[h]),
             path_separation: PathSeparation::new(hinge.w_lig, &states).whole,
-            gamma: gamma(&scene.material, hinge.w_lig, shortest_edge(sheet, hinge)),
+            gamma: (scene.config.posture)
+                .is_none_or(|posture| posture.kind == Posture::Lying)
+                .then(|| gamma(&scene.material, hinge.w_lig, shortest_edge(sheet, hinge))),
         }
     }
 }

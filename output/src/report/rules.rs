@@ -8,14 +8,20 @@ use crate::report::self_weight::of_the_load;
 use crate::report::warning::{Concern, Severity, Warning};
 use design::analysis::localisation::critical_edge;
 use design::equilibrium::load_step::{LoadStep, Status};
+use design::geometry::polygon::contains;
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
-use design::scene::Scene;
 use design::scene::design_run::Designed;
+use design::scene::{Posture, Scene};
+use design::sheet::cut_sheet::PanelPoint;
 use design::sheet::hinge_window::Window;
 
-/// Weight over load above which the sheet may not open as computed.
-const HEAVY: f64 = 0.1;
+/// Weight or friction over load from which a sheet opens otherwise than without it.
+const HEAVY: f64 = 0.05;
+/// Mass of hung weights over that of the sheet from which they are probably given in another unit.
+const HUNG: f64 = 50.0;
+/// Ligament width over thickness up to which free panels stay in the plane, by finite elements of whole sheets.
+const FLAT: f64 = 0.9;
 /// Distance of the outline from the target over the longer side of the flat sheet from which the target is missed.
 const MISSED: f64 = 0.01;
 /// Relative error of a force (%) above which a law is inaccurate.
@@ -47,7 +53,7 @@ type Rule = fn(&Judged) -> Option<Warning>;
 
 /// First those about a design, then those about a run as a whole: what its model leaves out, what its weights are worth,
 /// how well it meets its target.
-const RULES: [Rule; 18] = [
+const RULES: [Rule; 22] = [
     windows_overlap,
     windows_leave_panels,
     cutting,
@@ -59,8 +65,12 @@ const RULES: [Rule; 18] = [
     overstrained,
     path,
     target,
+    point_outside,
     not_modelled,
-    heavy,
+    leaves_plane,
+    weightless,
+    friction,
+    hung_weight,
     load_peak,
     inaccurate,
     outside,
@@ -139,7 +149,7 @@ fn cutting(judged: &Judged) -> Option<Warning> {
 }
 
 fn tilting(judged: &Judged) -> Option<Warning> {
-    let tilting = judged.those(|row| row.gamma < 1.0);
+    let tilting = judged.those(|row| row.gamma.is_some_and(|gamma| gamma < 1.0));
     let critical = |h: &usize| critical_edge(&judged.scene.material, judged.hinges[*h].w_lig);
     let edge = tilting.iter().map(critical).fold(0.0, f64::max);
     let message = format!(
@@ -245,24 +255,116 @@ fn target(judged: &Judged) -> Option<Warning> {
     })
 }
 
+/// A point at which a panel is held or pulled does not move with its cuts.
+fn point_outside(judged: &Judged) -> Option<Warning> {
+    let panels = &judged.deployment.sheet.panels;
+    let attachments = judged.scene.actuation().attachments;
+    let outside: Vec<String> = (attachments.iter())
+        .filter(|attachment| matches!(attachment.point, PanelPoint::Fixed(_)))
+        .filter(|attachment| {
+            let panel = &panels[attachment.panel];
+            !contains(&panel.corners, panel.reference)
+        })
+        .map(|attachment| attachment.name.clone())
+        .collect();
+    (!outside.is_empty()).then(|| {
+        Concern::PointOutside.of_sheet(format!(
+            "the design has moved a panel away from the point at which it is held or pulled ({}): move the point, or name \
+             one that moves with the cuts, such as at = \"bottom\"",
+            outside.join("; ")
+        ))
+    })
+}
+
 fn not_modelled(judged: &Judged) -> Option<Warning> {
     judged.scene.surrogate()?;
-    let facts = judged.run.as_ref()?.facts;
+    let weight = &judged.run.as_ref()?.facts.self_weight;
+    let missing = match weight.posture? {
+        Posture::HeldFlat => {
+            "what holds the panels flat, and its friction; the weight of the sheet, if its plane is not horizontal"
+        }
+        Posture::Lying => {
+            "panels that lift off the surface, as those of a thin sheet do near their ligaments; in the design, friction"
+        }
+        Posture::Hanging if weight.is_modelled => {
+            "panels that leave the plane, as those of a thin sheet do"
+        }
+        Posture::Hanging | Posture::Free => {
+            "panels that leave the plane, as those of a thin sheet do; the weight of the sheet"
+        }
+    };
     Some(Concern::NotModelled.of_sheet(format!(
-        "the panels are held flat in the model. Not modelled: panels that leave the plane, as those of a thin sheet do where \
-         nothing holds them; the weight of the sheet, {}",
-        facts.self_weight.beside_load()
+        "the panels are held flat in the model. Not modelled: {missing}"
     )))
 }
 
-fn heavy(judged: &Judged) -> Option<Warning> {
+/// Nothing keeps the panels of a sheet that hangs or is free in the plane but their own stiffness.
+fn leaves_plane(judged: &Judged) -> Option<Warning> {
+    judged.scene.surrogate()?;
+    let posture = judged.run.as_ref()?.facts.self_weight.posture?;
+    if !matches!(posture, Posture::Hanging | Posture::Free) {
+        return None;
+    }
+    let thickness = judged.scene.material.thickness;
+    let wide = judged.those(|row| row.w_lig > FLAT * thickness);
+    let message = format!(
+        "nothing keeps the panels in the plane, and these ligaments are wider than {FLAT} times the thickness of {thickness} \
+         mm: by finite elements of whole sheets such panels tilt out of the plane, and the sheet opens less; hold it flat, or \
+         use a thicker sheet with narrower ligaments"
+    );
+    about(Concern::LeavesPlane, wide, message)
+}
+
+/// A weight that acts in the plane of the sheet but not in the model.
+fn weightless(judged: &Judged) -> Option<Warning> {
     judged.scene.surrogate()?;
     let weight = &judged.run.as_ref()?.facts.self_weight;
-    let ratio = weight.over_load.filter(|ratio| *ratio > HEAVY)?;
+    let left_out =
+        !weight.is_modelled && matches!(weight.posture?, Posture::Hanging | Posture::Free);
+    let ratio = weight
+        .over_load
+        .filter(|ratio| left_out && *ratio > HEAVY)?;
     Some(Concern::Weight.of_sheet(format!(
-        "the weight of the sheet is {} and not modelled: a sheet that hangs or stands deploys otherwise, and one that lies \
-         is also held by friction",
+        "the weight of the sheet is {} and not modelled: if it hangs, set posture.kind = \"hanging\" with `down`, and without \
+         weight = false",
         of_the_load(ratio)
+    )))
+}
+
+/// Friction that the design does not know of.
+fn friction(judged: &Judged) -> Option<Warning> {
+    judged.scene.surrogate()?;
+    let weight = &judged.run.as_ref()?.facts.self_weight;
+    let lying = weight.lying.as_ref()?;
+    let ratio = lying.coefficient * weight.over_load?;
+    if ratio <= HEAVY {
+        return None;
+    }
+    let effect = match (&lying.effect, lying.ended) {
+        (Some(effect), _) => {
+            let [rms, most] = effect.corners.map(|length| rounded(length, 3));
+            format!("with it the corners are off by {rms} mm (root mean square), {most} mm at most")
+        }
+        (None, Some((at, _))) => format!(
+            "with it no equilibrium was found beyond {} of the path",
+            rounded(at, 3)
+        ),
+        (None, None) => "its effect is not known".to_owned(),
+    };
+    Some(Concern::Friction.of_sheet(format!(
+        "friction on the surface, at mu = {}, is {}, and the design does not contain it: {effect}; lift or shake the sheet \
+         while it opens, or let it float on rollers",
+        lying.coefficient,
+        of_the_load(ratio)
+    )))
+}
+
+fn hung_weight(judged: &Judged) -> Option<Warning> {
+    let weight = &judged.run.as_ref()?.facts.self_weight;
+    let ratio = weight.hung.filter(|ratio| *ratio > HUNG)?;
+    Some(Concern::HungWeight.of_sheet(format!(
+        "the weights that hang from the sheet have {} times its mass: mass_g is in grams",
+        rounded(ratio, 2)
     )))
 }
 

@@ -1,47 +1,149 @@
-//! The weight of a sheet and the friction of a sheet that lies on a surface. Neither is in the model; beside the load they
-//! say whether they can be left out.
+//! The weight of a sheet beside its load, and what follows from how the sheet is held out of its plane.
 
 use crate::report::columns::rounded;
-use design::analysis::localisation::GRAVITY;
+use design::analysis::friction_effect::FrictionEffect;
+use design::analysis::localisation::elasto_gravity_length;
+use design::equilibrium::load_step::DescentEnd;
+use design::objective::design_problem::{Deployment, DesignProblem};
+use design::scene::{Posture, Scene};
 use serde::Serialize;
 
-/// Coefficient of friction between a sheet and a floor or a table.
-const FRICTION: f64 = 0.3;
-
-/// Weight and friction of the uncut sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+/// The weight of the uncut sheet and how it acts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SelfWeight {
+    /// What keeps the panels in their plane; `None` if the scene does not say.
+    pub posture: Option<Posture>,
     /// Weight (N).
     pub weight: f64,
-    /// Friction that the sheet has on a horizontal surface while all its panels slide, with the coefficient 0.3 (N).
-    pub friction: f64,
     /// Weight over the load at the end of the path; `None` if that is zero or no force, or without equilibrium.
     pub over_load: Option<f64>,
+    /// Whether the weight acts in the model.
+    pub is_modelled: bool,
+    /// Mass of the weights that hang from the sheet over that of the sheet; `None` if none does.
+    pub hung: Option<f64>,
+    /// Friction and bending of a sheet that lies on a surface.
+    pub lying: Option<Lying>,
+}
+
+/// A sheet that lies on a surface.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Lying {
+    /// Coefficient of friction.
+    pub coefficient: f64,
+    /// Friction while all panels slide (N).
+    pub friction: f64,
+    /// The length l_eg at which the weight of a plate bends it as much as its stiffness resists (mm).
+    pub bending_length: f64,
+    /// The radius of the windows of hinges (mm).
+    pub window: f64,
+    /// What friction changes; `None` if the path with friction ends early, or without equilibrium.
+    pub effect: Option<FrictionEffect>,
+    /// Where the path with friction ends early, and why.
+    #[serde(skip)]
+    pub ended: Option<(f64, DescentEnd)>,
 }
 
 impl SelfWeight {
-    /// Of a sheet with the given mass, beside a force (N) if there is one.
-    pub(super) fn new(mass_kg: f64, load: Option<f64>) -> Self {
-        let weight = 1e-3 * GRAVITY * mass_kg;
+    /// Of a sheet with the given mass (kg), beside a force (N) if there is one.
+    pub(super) fn new(
+        scene: &Scene,
+        problem: &DesignProblem,
+        deployment: &Deployment,
+        mass_kg: f64,
+        load: Option<f64>,
+    ) -> Self {
+        let weight = hinge::STANDARD_GRAVITY * mass_kg;
         let load = load.map(f64::abs).filter(|load| *load > 0.0);
+        let hung: f64 = (scene.config.loads.iter())
+            .filter_map(|load| load.mass_g)
+            .sum();
         Self {
+            posture: scene.config.posture.map(|posture| posture.kind),
             weight,
-            friction: FRICTION * weight,
             over_load: load.map(|load| weight / load),
+            is_modelled: scene.weight_by_area() != [0.0; 2],
+            hung: (hung > 0.0).then(|| 1e-3 * hung / mass_kg),
+            lying: Lying::new(scene, problem, deployment, weight),
         }
     }
 
-    pub(super) fn beside_load(&self) -> String {
-        let of_load = |over_load: Option<f64>| {
-            over_load.map_or(String::new(), |ratio| format!(", {}", of_the_load(ratio)))
+    /// Names and values with units.
+    pub(super) fn rows(&self) -> Vec<(&'static str, String)> {
+        let modelled = if self.is_modelled {
+            "modelled"
+        } else {
+            "not modelled"
         };
-        format!(
-            "{} N{}; friction on a surface, at mu = {FRICTION}, {} N{}",
-            rounded(self.weight, 3),
-            of_load(self.over_load),
-            rounded(self.friction, 3),
-            of_load(self.over_load.map(|ratio| FRICTION * ratio)),
-        )
+        let weight = self.beside_load(self.weight);
+        let mut rows = vec![("weight", format!("{weight}; {modelled}"))];
+        if let Some(lying) = &self.lying {
+            rows.extend(lying.rows(self));
+        }
+        rows
+    }
+
+    /// A force beside the load at the end of the path.
+    pub(super) fn beside_load(&self, force: f64) -> String {
+        let ratio = self.over_load.map(|ratio| ratio * force / self.weight);
+        let beside = ratio.map_or(String::new(), |ratio| format!(", {}", of_the_load(ratio)));
+        format!("{} N{beside}", rounded(force, 3))
+    }
+}
+
+impl Lying {
+    fn new(
+        scene: &Scene,
+        problem: &DesignProblem,
+        deployment: &Deployment,
+        weight: f64,
+    ) -> Option<Self> {
+        let coefficient = scene.config.posture?.friction()?;
+        let by_area = coefficient * scene.material.weight_by_area();
+        let effect = (problem.model.mechanics())
+            .map(|mechanics| FrictionEffect::new(mechanics, deployment, by_area));
+        let (effect, ended) = match effect {
+            Some(Ok(effect)) => (Some(effect), None),
+            Some(Err(ended)) => (None, Some(ended)),
+            None => (None, None),
+        };
+        Some(Self {
+            coefficient,
+            friction: coefficient * weight,
+            bending_length: elasto_gravity_length(&scene.material),
+            window: scene.config.process.r_win,
+            effect,
+            ended,
+        })
+    }
+
+    fn rows(&self, of: &SelfWeight) -> Vec<(&'static str, String)> {
+        let mu = self.coefficient;
+        let force = of.beside_load(self.friction);
+        let mut rows = vec![(
+            "friction",
+            format!("{force}, while all panels slide at mu = {mu}; not in the design"),
+        )];
+        if let Some(effect) = &self.effect {
+            let [rms, most] = effect.corners.map(|length| rounded(length, 3));
+            let slip = effect.slips.iter().copied().fold(0.0, f64::max);
+            let slip = rounded(slip, 3);
+            let text = format!(
+                "corners off by {rms} mm (root mean square), {most} mm at most; panels slide by up to {slip} mm"
+            );
+            rows.push(("with friction", text));
+        }
+        if let Some((at, end)) = self.ended {
+            let text = format!(
+                "no equilibrium found beyond {} of the path: {end}",
+                rounded(at, 3)
+            );
+            rows.push(("with friction", text));
+        }
+        let length = rounded(self.bending_length, 3);
+        let ratio = rounded(self.bending_length / self.window, 2);
+        let text = format!("l_eg {length} mm, {ratio} times the radius of a window");
+        rows.push(("bending by weight", text));
+        rows
     }
 }
 
@@ -58,30 +160,33 @@ pub(super) fn of_the_load(ratio: f64) -> String {
 mod tests {
     use super::*;
 
+    fn weight(weight: f64, over_load: Option<f64>) -> SelfWeight {
+        SelfWeight {
+            posture: None,
+            weight,
+            over_load,
+            is_modelled: false,
+            hung: None,
+            lying: None,
+        }
+    }
+
     #[test]
-    fn weight_and_friction_stand_beside_the_load() {
+    fn a_force_stands_beside_the_load() {
         // The A4 sheet of film: 0.00867 kg, pulled by 0.525 N.
-        let film = SelfWeight::new(0.008_67, Some(-0.525));
-        assert!((film.over_load.unwrap() - 0.162).abs() < 5e-4);
-        assert_eq!(
-            film.beside_load(),
-            "0.0851 N, 16 % of the load; friction on a surface, at mu = 0.3, 0.0255 N, 4.9 % of the load"
-        );
+        let film = weight(0.0851, Some(0.162));
+        assert_eq!(film.beside_load(0.0851), "0.0851 N, 16 % of the load");
+        assert_eq!(film.beside_load(0.02553), "0.0255 N, 4.9 % of the load");
         // The bell: 161 kg and 28 N.
-        let bell = SelfWeight::new(161.0, Some(28.0)).beside_load();
+        let bell = weight(1579.0, Some(56.4)).rows();
         assert!(
-            bell.contains("56 times the load") && bell.contains("17 times"),
-            "{bell}"
+            bell[0].1.contains("56 times the load; not modelled"),
+            "{bell:?}"
         );
     }
 
     #[test]
     fn without_a_load_there_is_no_ratio() {
-        for load in [None, Some(0.0)] {
-            let weight = SelfWeight::new(1.0, load);
-            assert_eq!(weight.over_load, None);
-            assert!((weight.weight - 9.81).abs() < 1e-12);
-            assert!(!weight.beside_load().contains("load"));
-        }
+        assert_eq!(weight(9.81, None).beside_load(9.81), "9.81 N");
     }
 }

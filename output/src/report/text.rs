@@ -134,7 +134,8 @@ impl HingeRow {
             damage,
             peak,
             if self.inside { "inside" } else { "left" }.to_owned(),
-            format!("{:.3e}", self.gamma),
+            self.gamma
+                .map_or("-".to_owned(), |gamma| format!("{gamma:.3e}")),
         ]
     }
 

@@ -60,10 +60,18 @@ pub enum Concern {
     TargetCrosses,
     /// The outline is further from the target than 1 % of the sheet.
     TargetMissed,
-    /// What the model of every learned law leaves out: panels that leave the plane, weight and friction.
+    /// What the model leaves out of a sheet that is held as the scene says.
     NotModelled,
-    /// The weight of the sheet is more than a tenth of the load.
+    /// Nothing keeps the panels of a thin sheet in the plane.
+    LeavesPlane,
+    /// The weight of the sheet acts in its plane, is more than a twentieth of the load and not modelled.
     Weight,
+    /// Friction is more than a twentieth of the load.
+    Friction,
+    /// The weights that hang from the sheet have more than fifty times its mass.
+    HungWeight,
+    /// A panel is held or pulled at a point outside of it.
+    PointOutside,
     /// The load has a maximum on the path: a dead load of the final size does not open the sheet.
     LoadPeak,
     /// The weights state errors above 10 % in a force, or a spot check that mostly lies outside their domain.
@@ -84,12 +92,17 @@ impl Concern {
             | Self::StatesOutsideDomain
             | Self::Path
             | Self::TargetCrosses
+            | Self::LeavesPlane
             | Self::Weight
+            | Self::Friction
+            | Self::HungWeight
             | Self::LoadPeak
             | Self::WeakWeights => Severity::Warning,
-            Self::Tearing | Self::Overstrained | Self::CutsTooClose | Self::CannotBeCut => {
-                Severity::Error
-            }
+            Self::Tearing
+            | Self::Overstrained
+            | Self::CutsTooClose
+            | Self::CannotBeCut
+            | Self::PointOutside => Severity::Error,
         }
     }
 

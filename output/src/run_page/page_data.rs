@@ -168,7 +168,10 @@ impl Hinges {
                 .collect(),
             w_lig: rows.iter().map(|row| row.w_lig).collect(),
             alpha_deg: rows.iter().map(|row| row.alpha_deg).collect(),
-            gamma: rows.iter().map(|row| row.gamma).collect(),
+            gamma: rows
+                .iter()
+                .map(|row| row.gamma.unwrap_or(f64::NAN))
+                .collect(),
             damage: rows.iter().map(|row| known(row.damage)).collect(),
             damage_peak: rows.iter().map(|row| known(row.damage_peak)).collect(),
             worst: worst.map_or(0, |row| row.hinge),

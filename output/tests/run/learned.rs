@@ -33,7 +33,7 @@ pub fn learned(changes: &[(&str, &str)]) -> String {
         ("hinge = \"linear\"", "hinge = \"surrogate\""),
         (
             "[linear]\nk_a = 400.0\nk_s = 250.0\nk_theta = 300.0",
-            "[surrogate]\nweights = \"tiny.safetensors\"",
+            "[surrogate]\nweights = \"tiny.safetensors\"\n\n[posture]\nkind = \"held-flat\"",
         ),
         (
             "compression = 0.01",

@@ -1,0 +1,57 @@
+//! How the sheet is held out of its plane, as written in a scene.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Coefficient of friction of a sheet on a surface where a scene gives none: typical of plastics and metals on smooth dry
+/// surfaces; ISO 8295 and ASTM D1894 measure it.
+pub const FRICTION: f64 = 0.3;
+
+/// How the sheet is held out of its plane, and in which direction it is heavy.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PostureConfig {
+    /// What keeps the panels in their plane.
+    pub kind: Posture,
+    /// The direction [x, y] of gravity in the plane of the flat sheet, such as [0.0, -1.0]; required for `hanging`.
+    #[schemars(inner(range(min = -1e3, max = 1e3)))]
+    pub down: Option<[f64; 2]>,
+    /// Whether the weight of the panels is modelled if the sheet is `hanging`; by default it is.
+    pub weight: Option<bool>,
+    /// Coefficient of friction on the surface if the sheet is `lying`; by default 0.3.
+    #[schemars(range(min = 0.0, max = 2.0))]
+    pub friction: Option<f64>,
+}
+
+/// What keeps the panels in their plane. In the model all panels stay in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Posture {
+    /// Plates, a frame or a fabric keep every panel flat.
+    HeldFlat,
+    /// It lies on a horizontal surface: its weight presses the panels down, and friction resists the motion.
+    Lying,
+    /// Its plane is upright: its weight acts along `down`, and nothing keeps thin panels in the plane.
+    Hanging,
+    /// Nothing keeps thin panels in the plane; its weight is left out.
+    Free,
+}
+
+impl PostureConfig {
+    /// The unit vector along gravity; `None` without a direction.
+    pub(super) fn down(&self) -> Option<[f64; 2]> {
+        let [x, y] = self.down?;
+        let length = x.hypot(y);
+        (length > 0.0).then(|| [x / length, y / length])
+    }
+
+    /// Whether the weight of the panels is modelled.
+    pub fn is_heavy(&self) -> bool {
+        self.kind == Posture::Hanging && self.weight != Some(false)
+    }
+
+    /// The coefficient of friction of a lying sheet.
+    pub fn friction(&self) -> Option<f64> {
+        (self.kind == Posture::Lying).then(|| self.friction.unwrap_or(FRICTION))
+    }
+}
