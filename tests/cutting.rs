@@ -39,6 +39,7 @@ fn a_designed_sheet_is_cut_on_paper_and_in_parts() {
         "cut.dxf",
         "cut.svg",
         "cut-list.csv",
+        "attachments.csv",
         "cut-summary.csv",
         "tiles-a3.pdf",
         "part-4.dxf",

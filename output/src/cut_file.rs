@@ -4,6 +4,7 @@
 //! order, with numbers and instructions; [`dxf()`], [`svg()`] and [`tiles_pdf`] are its files. [`split`] divides a sheet
 //! that is larger than the bed of the machine.
 
+mod attachments;
 mod cut_drawing;
 mod cut_lines;
 mod cut_list;
@@ -20,9 +21,10 @@ mod tiling;
 mod totals;
 mod written_check;
 
+pub use attachments::PlacedAttachment;
 pub use cut_drawing::{CutDrawing, Layer, deployed_panels};
 pub use cut_lines::{CutLines, Hole, Slit};
-pub use cut_list::{cut_list, cut_summary};
+pub use cut_list::{attachment_list, cut_list, cut_summary};
 pub use dxf::dxf;
 pub use fabrication_error::FabricationError;
 pub use parts::{Part, Split, split};

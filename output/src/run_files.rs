@@ -1,8 +1,8 @@
 //! The files of a run folder: `design` writes them from this table, `--restart` deletes by it, docs/TUTORIAL.md lists it.
 
 use crate::cut_file::{
-    CutDrawing, CutLines, FabricationError, SheetDrawing, cut_list, cut_summary, deployed_panels,
-    dxf, mark_errors, svg,
+    CutDrawing, CutLines, FabricationError, SheetDrawing, attachment_list, cut_list, cut_summary,
+    deployed_panels, dxf, mark_errors, svg,
 };
 use crate::drawing;
 use crate::report::{Report, Warning};
@@ -49,7 +49,7 @@ pub struct Results<'a> {
 
 /// The files in the order in which they are written: the report first, so that there is never a cut file without its
 /// report. The copies of the inputs, `scene.toml` and `inputs/`, are not among them: a run may be started from them.
-pub const RUN_FILES: [RunFile; 17] = [
+pub const RUN_FILES: [RunFile; 18] = [
     RunFile {
         name: STATE_FILE,
         contents: "state of the search, from which a stopped run continues, and the hashes of the copies of its inputs",
@@ -88,6 +88,11 @@ pub const RUN_FILES: [RunFile; 17] = [
                 .cut()
                 .map(|(cuts, _)| cut_list(&run.best().sheet, cuts).into()))
         },
+    ),
+    result(
+        "attachments.csv",
+        "where panels are held and pulled in the flat sheet, with holes and clips",
+        |run| Ok(run.cut().map(|(cuts, _)| attachment_list(cuts).into())),
     ),
     result(
         "cut-summary.csv",

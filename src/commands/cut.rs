@@ -8,8 +8,8 @@ use clap::Args;
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
 use output::cut_file::{
-    CutDrawing, CutLines, OVERLAP, Paper, SheetDrawing, Split, Tiling, cut_list, cut_summary, dxf,
-    mark_errors, split, svg, tiles_pdf,
+    CutDrawing, CutLines, OVERLAP, Paper, SheetDrawing, Split, Tiling, attachment_list, cut_list,
+    cut_summary, dxf, mark_errors, split, svg, tiles_pdf,
 };
 use output::display::Shape;
 use output::report::{Severity, Warning, warnings};
@@ -60,6 +60,7 @@ struct Pieces {
     /// The whole sheet with marks and notes, for a machine.
     annotated: CutDrawing,
     list: String,
+    attachments: String,
     summary: String,
     tiling: Option<Tiling>,
     split: Option<Split>,
@@ -83,7 +84,12 @@ impl CutCommand {
     fn pieces(&self, scene: &Scene, design: &DesignVector) -> Result<Pieces> {
         let deployment = scene.problem()?.deploy(design)?;
         let (pattern, sheet) = (&deployment.pattern, &deployment.sheet);
-        let cuts = CutLines::new(pattern, sheet, scene.config.cutting);
+        let cuts = CutLines::new(
+            pattern,
+            sheet,
+            scene.config.cutting,
+            &scene.actuation().attachments,
+        );
         let found = warnings(scene, &deployment, &cuts);
         let cuts = cuts?;
         let errors = found.iter().filter(|it| it.severity == Severity::Error);
@@ -108,6 +114,7 @@ impl CutCommand {
         }
         Ok(Pieces {
             list: cut_list(sheet, &cuts),
+            attachments: attachment_list(&cuts),
             summary: cut_summary(&cuts, &whole.totals),
             whole,
             annotated,
@@ -119,6 +126,7 @@ impl CutCommand {
     fn write(&self, pieces: &Pieces, title: &str, out: &Path) -> Result<()> {
         write_drawing(out, "cut", &pieces.annotated)?;
         run_folder::write(out, "cut-list.csv", &pieces.list)?;
+        run_folder::write(out, "attachments.csv", &pieces.attachments)?;
         run_folder::write(out, "cut-summary.csv", &pieces.summary)?;
         if let (Some((_, paper)), Some(tiling)) = (self.paper, &pieces.tiling) {
             let whole = &pieces.whole;

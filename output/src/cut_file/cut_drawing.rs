@@ -8,6 +8,8 @@ use design::geometry::polygon::{area, mean};
 pub enum Layer {
     /// The drilled ends of the slits.
     Holes,
+    /// Holes for the nails and hooks of attachments.
+    AttachmentHoles,
     /// The slits.
     Cut,
     /// The seams between two parts of a sheet.
@@ -16,6 +18,8 @@ pub enum Layer {
     Outline,
     /// The panels of a deployed sheet, which are not cut.
     Panels,
+    /// Clips, and points at which panels are held or pulled without a hole.
+    Attachments,
     /// Marks outside of the outline.
     Registration,
     /// Numbers, scale and cutting instructions.
@@ -25,12 +29,14 @@ pub enum Layer {
 }
 
 /// All layers in the order of cutting: their names in DXF and SVG, red, green and blue, and the AutoCAD colour index.
-const LAYERS: [(Layer, &str, Colour, u8); 8] = [
+const LAYERS: [(Layer, &str, Colour, u8); 10] = [
     (Layer::Holes, "HOLES", [0, 0, 255], 5),
+    (Layer::AttachmentHoles, "ATTACHMENT_HOLES", [0, 128, 128], 4),
     (Layer::Cut, "CUT", [255, 0, 0], 1),
     (Layer::Joint, "JOINT", [255, 0, 255], 6),
     (Layer::Outline, "OUTLINE", [0, 0, 0], 7),
     (Layer::Panels, "PANELS", [0, 0, 0], 7),
+    (Layer::Attachments, "ATTACHMENTS", [0, 128, 128], 4),
     (Layer::Registration, "REGISTRATION", [0, 128, 0], 3),
     (Layer::Annotation, "ANNOTATION", [128, 128, 128], 8),
     (Layer::Errors, "ERRORS", [255, 128, 0], 30),

@@ -16,13 +16,14 @@
 //! **Over-run.** A slit that is open on the outline is cut beyond the finished edge, so that no web is left between
 //! the two cuts.
 
+use crate::cut_file::attachments::PlacedAttachment;
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::fabrication_error::FabricationError;
 use crate::cut_file::written_check;
 use crate::display::Shape;
 use design::geometry::polygon::{distance, distance_to_segment, edges};
 use design::pattern::cut_pattern::CutPattern;
-use design::scene::CuttingConfig;
+use design::scene::{Attachment, CuttingConfig};
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::topology::hinge_sites;
 use std::collections::BTreeMap;
@@ -58,15 +59,18 @@ pub struct CutLines {
     pub kerf: f64,
     /// How the sheet is cut.
     pub cutting: CuttingConfig,
+    /// Where panels are held and pulled.
+    pub attachments: Vec<PlacedAttachment>,
 }
 
 impl CutLines {
-    /// The cuts of `sheet`, which must come from `pattern`. They are checked to be those of the simulated sheet, to
-    /// meet nowhere and to leave the sheet in one piece.
+    /// The cuts of `sheet`, which must come from `pattern`, held and pulled at `attachments`. They are checked to be those
+    /// of the simulated sheet, to meet nowhere and to leave the sheet in one piece.
     pub fn new(
         pattern: &CutPattern,
         sheet: &Sheet,
         cutting: CuttingConfig,
+        attachments: &[Attachment],
     ) -> Result<Self, FabricationError> {
         let process = sheet.options.process;
         let holes: Vec<Hole> = sheet
@@ -92,6 +96,9 @@ impl CutLines {
             outline: sheet.outline.corners,
             kerf: process.kerf,
             cutting,
+            attachments: (attachments.iter())
+                .map(|attachment| PlacedAttachment::new(sheet, attachment))
+                .collect::<Result<_, _>>()?,
         };
         written_check::check(&cuts.drawing(), sheet)?;
         Ok(cuts)
@@ -103,6 +110,9 @@ impl CutLines {
         for hole in &self.holes {
             let (centre, radius) = (hole.centre, self.tool_radius(hole));
             drawing.add(Layer::Holes, Shape::Circle { centre, radius });
+        }
+        for attachment in &self.attachments {
+            attachment.draw(&mut drawing, self.kerf);
         }
         for slit in &self.slits {
             drawing.add(Layer::Cut, Shape::Line(self.tool_slit(slit)));

@@ -2,6 +2,7 @@
 
 use crate::cut_file::cut_lines::CutLines;
 use crate::cut_file::totals::{Totals, holes_by_diameter};
+use design::geometry::polygon::distance;
 use design::sheet::cut_sheet::Sheet;
 
 /// One row a hinge: its hole, its ligament as designed and as measured by a caliper beside the hole, and its panels.
@@ -11,6 +12,20 @@ pub fn cut_list(sheet: &Sheet, cuts: &CutLines) -> String {
         let (diameter, caliper) = (2.0 * hole.radius, cuts.caliper(h));
         let (w_lig, a, b) = (hinge.w_lig, hinge.panel_a(), hinge.panel_b());
         text += &format!("{h},{diameter:.3},{w_lig:.3},{caliper:.3},{a},{b}\n");
+    }
+    text
+}
+
+/// One row an attachment: what holds or pulls which panel, where in the flat sheet, its hole and its clip.
+pub fn attachment_list(cuts: &CutLines) -> String {
+    let mut text = "attachment,panel,x_mm,y_mm,hole_diameter_mm,clip_width_mm\n".to_owned();
+    let or_nothing = |size: Option<f64>| size.map_or(String::new(), |size| format!("{size:.3}"));
+    for attachment in &cuts.attachments {
+        let ([x, y], name) = (attachment.at, &attachment.name);
+        let hole = or_nothing(attachment.hole);
+        let clip = or_nothing(attachment.clip.map(|[p, q]| distance(p, q)));
+        let panel = attachment.panel;
+        text += &format!("\"{name}\",{panel},{x:.3},{y:.3},{hole},{clip}\n");
     }
     text
 }

@@ -38,6 +38,18 @@ pub enum FabricationError {
     )]
     CutMeetsOutline { hinge: usize, gap: f64, least: f64 },
     #[error(
+        "the hole of {name} leaves {gap:.1} mm to {what}, less than {least:.1} mm: move its `at` away from there, or make the \
+         hole smaller"
+    )]
+    HoleTooNear {
+        name: String,
+        what: String,
+        gap: f64,
+        least: f64,
+    },
+    #[error("the clip of {name} is {width} mm wide, its edge {room:.1} mm: use a narrower clip")]
+    ClipTooWide { name: String, width: f64, room: f64 },
+    #[error(
         "the {what} {index} is written as {written:.6} and simulated as {simulated:.6} (mm, mm^2): this is an error of \
          kirigami"
     )]

@@ -241,6 +241,11 @@ impl Splitter<'_> {
             let (centre, radius) = (hole.centre, cuts.tool_radius(hole));
             drawing.add(Layer::Holes, Shape::Circle { centre, radius });
         }
+        for attachment in &cuts.attachments {
+            if part.has(attachment.panel) {
+                attachment.draw(&mut drawing, cuts.kerf);
+            }
+        }
         for slit in &cuts.slits {
             for piece in covered(slit.ends, cuts.tool_slit(slit), &borders) {
                 drawing.add(Layer::Cut, Shape::Line(piece));

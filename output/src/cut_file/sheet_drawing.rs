@@ -54,7 +54,12 @@ impl SheetDrawing {
                 0.5 * kerf
             ),
             format!(
-                "Order: HOLES, CUT, OUTLINE. Slits over-run the outline by {} mm.",
+                "Order: HOLES, {}CUT, OUTLINE. Slits over-run the outline by {} mm.",
+                if numbered.on(Layer::AttachmentHoles).next().is_some() {
+                    "ATTACHMENT_HOLES, "
+                } else {
+                    ""
+                },
                 cutting.over_run
             ),
             format!("{totals}."),

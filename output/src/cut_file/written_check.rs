@@ -219,7 +219,7 @@ mod tests {
             process: HingeConstants::PAPER,
         };
         let sheet = Sheet::new(&pattern, &[18.0; 12], options).unwrap();
-        let cuts = CutLines::new(&pattern, &sheet, CuttingConfig::default()).unwrap();
+        let cuts = CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[]).unwrap();
         (sheet, cuts.drawing())
     }
 

@@ -81,6 +81,14 @@ fn cut_lines(sketch: &mut Sketch, cuts: &CutLines) {
     for drilled in &cuts.holes {
         sketch.canvas.circle(drilled.centre, drilled.radius, hole);
     }
+    let mark = sketch.stroke(ACCENT, 3.2);
+    for attachment in &cuts.attachments {
+        let radius = attachment.hole.map_or(3.0 * sketch.unit, |hole| 0.5 * hole);
+        sketch.canvas.circle(attachment.at, radius, hole);
+        if let Some([from, to]) = attachment.clip {
+            sketch.canvas.line(from, to, mark);
+        }
+    }
 }
 
 fn ligaments(sketch: &mut Sketch, sheet: &Sheet) {

@@ -9,6 +9,7 @@
 //!   800 |--o  |  -------- o      o: a hinge on the outline, |: a slit open on it
 //! ```
 
+mod attachments;
 mod files;
 mod order_and_numbers;
 mod parts;
@@ -66,7 +67,7 @@ fn uniform_cuts() -> CutLines {
 }
 
 fn cut_lines(pattern: &CutPattern, sheet: &Sheet) -> CutLines {
-    CutLines::new(pattern, sheet, CuttingConfig::default()).unwrap()
+    CutLines::new(pattern, sheet, CuttingConfig::default(), &[]).unwrap()
 }
 
 /// The cut lines of irregular sheets of several sizes, with their drawings.
@@ -241,13 +242,13 @@ fn a_ligament_has_the_width_of_the_window_model() {
 #[test]
 fn ligaments_that_leave_no_slit_are_refused() {
     let (pattern, sheet) = uniform(398.0);
-    let error = CutLines::new(&pattern, &sheet, CuttingConfig::default()).unwrap_err();
+    let error = CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[]).unwrap_err();
     assert!(
         matches!(error, FabricationError::SlitVanishes { .. }),
         "{error}"
     );
     let (pattern, sheet) = uniform(0.6);
-    let error = CutLines::new(&pattern, &sheet, CuttingConfig::default()).unwrap_err();
+    let error = CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[]).unwrap_err();
     assert!(
         matches!(error, FabricationError::HoleTooSmall { .. }),
         "{error}"

@@ -54,6 +54,7 @@ fn a_sound_design_writes_all_files_and_no_warning() {
     assert_eq!(
         names,
         [
+            "attachments.csv",
             "cut-list.csv",
             "cut-summary.csv",
             "cut.dxf",
@@ -206,6 +207,7 @@ fn a_load_far_too_large_leaves_no_cut_file_unless_it_is_forced() {
         "cut.dxf",
         "cut.svg",
         "cut-list.csv",
+        "attachments.csv",
         "cut-summary.csv",
         "deployed.dxf",
     ] {
