@@ -32,7 +32,7 @@
 //! ```
 //! use design::equilibrium::settings::SolverSettings;
 //! use design::equilibrium::supports::{Dof, Load, Support};
-//! use design::sheet::cut_sheet::{Centroid, HingePoint, SheetOptions};
+//! use design::sheet::cut_sheet::{HingePoint, SheetOptions};
 //! use design::*;
 //! use hinge::HingeConstants;
 //! use std::sync::Arc;
@@ -50,7 +50,6 @@
 //!     widths: WidthChart { w_minus: 10.0, w_plus: 26.0 },
 //!     options: SheetOptions {
 //!         hinge_point: HingePoint::Corner,
-//!         centroid: Centroid::Area,
 //!         process: HingeConstants::PAPER,
 //!     },
 //!     model: Model::Equilibrium(Box::new(Mechanics {

@@ -157,7 +157,7 @@ fn a_hinge_law_without_what_it_needs_is_refused() {
     let message = refusal(
         "linear-7x7.toml",
         "hinge = \"linear\"",
-        "hinge = \"surrogate\"",
+        "hinge = \"surrogate\"\nposture = { kind = \"free\" }",
     );
     assert!(
         message.contains("needs the section [surrogate]"),
@@ -170,6 +170,96 @@ fn a_hinge_law_without_what_it_needs_is_refused() {
     );
     assert!(
         message.contains("only the learned hinge law predicts damage"),
+        "{message}"
+    );
+}
+
+/// How the sheet is held and where it is pulled: each of these keys excludes others.
+#[test]
+fn a_sheet_that_is_held_in_no_way_is_refused() {
+    let posture = "kind = \"held-flat\"         # between plates or in a frame; or \"lying\", \"hanging\", \"free\"";
+    for (from, to, expected) in [
+        (
+            "[posture]\nkind = \"held-flat\"",
+            "[cutting]\nover_run = 1.0 # ",
+            "say what keeps the panels in their plane",
+        ),
+        (
+            posture,
+            "kind = \"hanging\"",
+            "posture.down: a hanging sheet needs",
+        ),
+        (
+            posture,
+            "kind = \"hanging\"\ndown = [0.0, 0.0]",
+            "posture.down: a hanging sheet needs",
+        ),
+        (
+            posture,
+            "kind = \"lying\"\ndown = [0.0, -1.0]",
+            "posture.down belongs to another kind than Lying",
+        ),
+        (
+            posture,
+            "kind = \"free\"\nfriction = 0.3",
+            "posture.friction belongs to another kind than Free",
+        ),
+        (
+            posture,
+            "kind = \"lying\"\nfriction = 2.5",
+            "posture.friction = 2.5 violates 0 <= posture.friction <= 2",
+        ),
+        (
+            "at = \"bottom\"",
+            "at = \"middle\"",
+            "expected \"centroid\", \"bottom\"",
+        ),
+        (
+            "at = \"bottom\"",
+            "at = [1.0, 2.0, 3.0]",
+            "expected \"centroid\", \"bottom\"",
+        ),
+        (
+            "at = \"bottom\"              # the force acts at the middle of its lower edge, about which the panel may turn\nclip = 10.0",
+            "at = [105.0, 80.0]\nhole = 4.0",
+            "loads[0].at = [105, 80] mm is outside panel [1, 0] of the start, which has the corners (70.0, 0.0)",
+        ),
+        (
+            "at = \"bottom\"              # the force",
+            "# the force",
+            "loads[0].clip: a clip holds an edge",
+        ),
+        (
+            "kind = \"clamp\"             # or",
+            "kind = \"pin\" # or",
+            "supports[0].clip: a clip keeps its panel from turning",
+        ),
+        (
+            "force = [0.0, -1.0]",
+            "mass_g = 50.0",
+            "loads[0].mass_g: a weight pulls along gravity",
+        ),
+        (
+            "[[loads]]",
+            "[[loads]]\npanel = [1, 0]\nforce = [1.0, 0.0]\n\n[[loads]]",
+            "panel [1, 0] is held or pulled at two points",
+        ),
+        (
+            "[[loads]]",
+            "[[edge_loads]]\nedge = \"bottom\"\ntraction = [0.0, -0.1]\n\n[[loads]]",
+            "edge_loads act at the centroids",
+        ),
+    ] {
+        let message = refusal("a4-polyester.toml", from, to);
+        assert!(message.contains(expected), "{to}: {message}");
+    }
+    let message = refusal(
+        "linear-7x7.toml",
+        "coverage = 0.5",
+        "coverage = 0.5\npeak_load = 1.0",
+    );
+    assert!(
+        message.contains("objective.peak_load needs [drive]"),
         "{message}"
     );
 }

@@ -137,7 +137,7 @@ fn drawings(
     let carries_load = scene.hinge.carries_load();
     let deployed = if carries_load {
         let factor = last.load_factor;
-        format!("Deployed, panels held flat, load factor {factor:.4}")
+        format!("Deployed, panels in the plane, load factor {factor:.4}")
     } else {
         "Deployed".to_owned()
     };
@@ -163,25 +163,20 @@ fn drawings(
         }
     }
     let bottom = top - 2.5 * CAPTION - layout.height - 4.0;
-    let shown = if carries_load {
-        "dashed: target; loads and supports act at the centroids of their panels"
-    } else {
-        "dashed: target"
-    };
-    scale_bar(&mut captions, [BORDER, bottom], scale, shown);
+    scale_bar(&mut captions, [BORDER, bottom], scale);
     draw(content, captions.styled());
     bottom
 }
 
-/// A scale bar, and what the drawings above it show.
-fn scale_bar(canvas: &mut Canvas, [x, y]: [f64; 2], scale: f64, shown: &str) {
+/// A scale bar, and what the dashes of the drawings above it show.
+fn scale_bar(canvas: &mut Canvas, [x, y]: [f64; 2], scale: f64) {
     let length = round_below(40.0 / scale);
     let (end, line) = (x + scale * length, Style::stroke(INK, 0.25));
     canvas.line([x, y], [end, y], line);
     for x in [x, end] {
         canvas.line([x, y - 1.0], [x, y + 1.0], line);
     }
-    let label = format!("{length} mm; {shown}");
+    let label = format!("{length} mm; dashed: target");
     canvas.add(
         Style::fill(INK),
         Text::line([end + 2.0, y - 0.9], CAPTION, &label),

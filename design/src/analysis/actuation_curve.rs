@@ -50,10 +50,10 @@ pub struct ActuationCurve {
 impl ActuationCurve {
     /// The curve through the load steps of a deployment by `mechanics`; `None` if nothing moves the sheet.
     pub fn new(mechanics: &Mechanics, deployment: &Deployment) -> Option<Self> {
-        let (solver, path) = (&mechanics.solver, &deployment.path);
-        let (weighed, loaded) = path.split_at(solver.weight_steps().min(path.len()));
+        let weighed = deployment.weight_steps();
+        let loaded = &deployment.path[weighed.len()..];
         let before = weighed.last().map_or_else(
-            || (0.0, solver.flat()),
+            || (0.0, mechanics.solver.flat()),
             |last| (last.load_factor, last.configuration.clone()),
         );
         let states = loaded.iter().map(load_and_state);
@@ -133,10 +133,7 @@ impl ActuationCurve {
     pub fn peak(&self) -> LoadPeak {
         let (points, sense) = (self.forwards(), self.sense());
         let top = highest(&points);
-        let [displacement, load] = match points.get(top.wrapping_sub(1)..top + 2) {
-            Some(&[before, top, after]) => vertex(before, top, after),
-            _ => points[top],
-        };
+        let [displacement, load] = self.vertex_at(&points, top);
         let [_, last] = points[points.len() - 1];
         let reached = first_reached(&points).map_or(0.0, |i| {
             let [[x, f], [next, higher]] = [points[i], points[i + 1]];
@@ -146,6 +143,41 @@ impl ActuationCurve {
             displacement: sense * displacement,
             load: sense * load,
             dead_load_reaches: (load > (1.0 + SAME_LOAD) * last).then_some(sense * reached),
+        }
+    }
+
+    /// The maxima and minima of the load on the way, in turn: there a dead load would make the sheet jump. Changes of the load
+    /// below a thousandth of its maximum do not count.
+    pub fn limit_points(&self) -> Vec<LimitPoint> {
+        let (points, sense) = (self.forwards(), self.sense());
+        let largest = points.iter().map(|point| point[1].abs());
+        let least = SAME_LOAD * largest.fold(0.0, f64::max);
+        let mut found = Vec::new();
+        let (mut rises, mut extreme) = (true, 0);
+        for (i, [_, load]) in points.iter().enumerate() {
+            let beyond = load - points[extreme][1];
+            if (beyond >= 0.0) == rises {
+                extreme = i;
+            } else if beyond.abs() > least {
+                if extreme > 0 {
+                    let [displacement, load] = self.vertex_at(&points, extreme);
+                    found.push(LimitPoint {
+                        is_maximum: rises,
+                        displacement: sense * displacement,
+                        load: sense * load,
+                    });
+                }
+                (rises, extreme) = (!rises, i);
+            }
+        }
+        found
+    }
+
+    /// An extreme of the load near a point, between its neighbours.
+    fn vertex_at(&self, points: &[[f64; 2]], i: usize) -> [f64; 2] {
+        match points.get(i.wrapping_sub(1)..i + 2) {
+            Some(&[before, top, after]) => vertex(before, top, after),
+            _ => points[i],
         }
     }
 
@@ -183,6 +215,17 @@ pub struct LoadPeak {
     /// The displacement at which the path first carries the load of its end, if it exceeds that load before its end: a
     /// dead load of that size moves the sheet no further. 0 if the sheet must be held back at the end.
     pub dead_load_reaches: Option<f64>,
+}
+
+/// A maximum or minimum of the load along a path on which a displacement is prescribed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LimitPoint {
+    /// Whether the load is larger there than on both sides.
+    pub is_maximum: bool,
+    /// Displacement: mm or rad.
+    pub displacement: f64,
+    /// Load: N or N mm.
+    pub load: f64,
 }
 
 /// Relative difference below which two loads count as equal.
@@ -316,6 +359,29 @@ mod tests {
         let peak = curve(f64::sin, 1.5 * PI).peak();
         assert!((peak.load - 1.0).abs() < 1e-4);
         assert_eq!(peak.dead_load_reaches, Some(0.0));
+    }
+
+    #[test]
+    fn limit_points_separate_the_stable_parts() {
+        // x + 1.5 sin 2x rises to x = 0.955, falls to 2.186, and rises again.
+        for sense in [1.0, -1.0] {
+            let found = curve(|x| x + 1.5 * (2.0 * x).sin(), sense * 3.0).limit_points();
+            let [maximum, minimum] = found[..] else {
+                panic!("{found:?}");
+            };
+            assert!(maximum.is_maximum && !minimum.is_maximum);
+            let at = 0.5 * (-1.0_f64 / 3.0).acos();
+            assert!(
+                (maximum.displacement - sense * at).abs() < 2e-3,
+                "{found:?}"
+            );
+            assert!(
+                (minimum.displacement - sense * (PI - at)).abs() < 2e-3,
+                "{found:?}"
+            );
+        }
+        assert!(curve(|x| x * x, 2.0).limit_points().is_empty());
+        assert!(curve(|_| 0.0, 1.0).limit_points().is_empty());
     }
 
     #[test]

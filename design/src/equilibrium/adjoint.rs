@@ -8,7 +8,8 @@
 //! step reuses the factors of its own tangent, refined against that tangent. For the constants
 //! of (11) the bracket is `eps_c e_c . D eps_h[lambda]`, for the loads it is `-zeta lambda`, for the weight minus its
 //! virtual work. Under displacement
-//! control the system has the border of the stroke, whose condition (f . q)/F = stroke also depends on the loads.
+//! control the system has the border of the stroke, whose condition (f . q)/F = stroke also depends on the loads. A function
+//! that depends on the load factor zeta_i, by g_zeta, has the condition (f . lambda_i)/F = -g_zeta/F.
 
 use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::hinged_sheet::HingedSheet;
@@ -34,6 +35,16 @@ pub struct SingularTangent {
     pub load_factor: f64,
 }
 
+/// The gradient of a function of the path.
+pub(crate) struct PathGradient<'a> {
+    /// `by_states[h][i]`: in (a, s, theta, w_lig, alpha) of hinge h at load step i.
+    pub by_states: &'a [Vec<[f64; 5]>],
+    /// In the load factor of each load step; read under displacement control only.
+    pub by_load_factors: &'a [f64],
+    /// In the last configuration.
+    pub by_last: Vec<[f64; 3]>,
+}
+
 /// What the adjoint computes besides the gradient with respect to the sheet.
 pub(crate) struct AdjointSums {
     /// Gradient with respect to (F_x, F_y, M) of every panel at full load.
@@ -45,16 +56,16 @@ pub(crate) struct AdjointSums {
 }
 
 /// The gradient, with respect to the sheet, of a function of the path: the direct dependence through the hinge
-/// states, and the dependence through the equilibria.
-///
-/// `by_path[h][i]` is the gradient of the function in (a, s, theta, w_lig, alpha) of hinge h at load step i, and
-/// `by_last` that in the last configuration. The result is added to `by_sheet`.
+/// states, and the dependence through the equilibria. The result is added to `by_sheet`.
 pub(crate) fn adjoint(
     solver: &EquilibriumSolver,
     sheet: HingedSheet,
     path: &[LoadStep],
-    by_path: &[Vec<[f64; 5]>],
-    by_last: Vec<[f64; 3]>,
+    PathGradient {
+        by_states,
+        by_load_factors,
+        by_last,
+    }: PathGradient,
     by_sheet: &mut SheetGradient,
 ) -> Result<AdjointSums, SingularTangent> {
     let mut by_configurations = vec![vec![[0.0; 3]; by_last.len()]; path.len()];
@@ -65,20 +76,22 @@ pub(crate) fn adjoint(
         residual: 0.0,
     };
     for (i, (step, mut by_q)) in std::iter::zip(path, by_configurations).enumerate() {
-        let is_read = by_path.iter().any(|hinge| hinge[i] != [0.0; 5]);
+        let is_read =
+            by_load_factors[i] != 0.0 || by_states.iter().any(|hinge| hinge[i] != [0.0; 5]);
         if !is_read && i + 1 < path.len() {
             continue;
         }
         let hinges = || sheet.sheet.hinges.iter().enumerate();
         let motions = HingeMotion::all(sheet.sheet, &step.configuration);
         for (h, hinge) in hinges() {
-            let [a, s, theta, ..] = by_path[h][i];
+            let [a, s, theta, ..] = by_states[h][i];
             add_at_hinge(&mut by_q, hinge, motions[h].forces([a, s, theta]));
         }
         let rhs = solver.pattern.gather(&by_q);
         let stroke = solver.stroke();
+        let slack = stroke.map_or(0.0, |stroke| stroke.slack(by_load_factors[i]));
         let solution = (step.tangent.as_ref())
-            .and_then(|tangent| refined_solve(&solver.pattern, tangent, stroke, &rhs))
+            .and_then(|tangent| refined_solve(&solver.pattern, tangent, stroke, (&rhs, slack)))
             .filter(|solution| solution.error < SINGULAR)
             .ok_or(SingularTangent {
                 load_factor: step.load_factor,
@@ -107,7 +120,7 @@ pub(crate) fn adjoint(
             let virtual_motion = at_hinge(hinge, &lambda);
             let (energy, rates) = (&energies[h], motions[h].rates(virtual_motion));
             let against = |row: [f64; 3]| dot(&row, &rates);
-            let by_state = by_path[h][i];
+            let by_state = by_states[h][i];
             let weights = std::array::from_fn(|c| by_state[c] - against(energy.tangent[c]));
             let turning = motions[h].rates_geometry_gradient(energy.forces, virtual_motion);
             let stretching = motions[h].geometry_gradient(weights);

@@ -60,6 +60,11 @@ impl Stroke {
         std::iter::zip(loads, configuration).map(by_load).collect()
     }
 
+    /// The stroke of the adjoint of a function with the given derivative in the load factor.
+    pub fn slack(&self, by_load_factor: f64) -> f64 {
+        -by_load_factor / self.size
+    }
+
     /// A motion with the given stroke, used when no better prediction is known.
     pub fn motion(&self, stroke: f64) -> Vec<f64> {
         let square = dot(&self.direction, &self.direction);

@@ -17,7 +17,7 @@ const ENOUGH: f64 = 1e-13;
 /// but its factors are less accurate.
 const SHIFTS: [f64; 3] = [1e-13, 100.0, 1e-5];
 
-/// The solution of H x + mu c = b, c . x = 0.
+/// The solution of H x + mu c = b, c . x = d.
 pub(crate) struct Refined {
     pub x: Vec<f64>,
     /// 0 under load control.
@@ -26,12 +26,12 @@ pub(crate) struct Refined {
     pub error: f64,
 }
 
-/// `None` if not even a shifted tangent can be factorised.
+/// For the right-hand sides (b, d). `None` if not even a shifted tangent can be factorised.
 pub(crate) fn refined_solve(
     pattern: &TangentPattern,
     tangent: &StepTangent,
     stroke: Option<&Stroke>,
-    b: &[f64],
+    b: (&[f64], f64),
 ) -> Option<Refined> {
     let with = |factor: &HeldFactor| refined(pattern, &tangent.values, factor, stroke, b);
     let own = tangent.factor.as_ref().map(with);
@@ -61,20 +61,20 @@ fn refined(
     values: &[f64],
     factor: &HeldFactor,
     stroke: Option<&Stroke>,
-    b: &[f64],
+    (b, d): (&[f64], f64),
 ) -> Refined {
     let mut refined = Refined {
         x: vec![0.0; b.len()],
         mu: 0.0,
         error: f64::INFINITY,
     };
-    let (mut remainder, mut slack) = (b.to_vec(), 0.0);
+    let (mut remainder, mut slack) = (b.to_vec(), d);
     for _ in 0..=REFINEMENTS {
         let (dx, dmu) = factor.solve_bordered(pattern, &remainder, slack);
         let x: Vec<f64> = std::iter::zip(&refined.x, dx).map(|(x, d)| x + d).collect();
         let mu = refined.mu + dmu;
         let (mut product, mut bound) = pattern.product(values, &x);
-        slack = 0.0;
+        slack = d;
         for (i, c) in stroke
             .iter()
             .flat_map(|stroke| stroke.direction())
@@ -137,7 +137,7 @@ mod tests {
     fn error_of(pattern: &TangentPattern, tangent: &StepTangent) -> (f64, f64) {
         let expected = wave(pattern.diagonal(&tangent.values).len());
         let (b, _) = pattern.product(&tangent.values, &expected);
-        let solution = refined_solve(pattern, tangent, None, &b).unwrap();
+        let solution = refined_solve(pattern, tangent, None, (&b, 0.0)).unwrap();
         let errors = std::iter::zip(&solution.x, &expected).map(|(x, e)| (x - e).abs());
         (solution.error, errors.fold(0.0, f64::max))
     }
@@ -200,7 +200,11 @@ mod tests {
             values,
             factor: None,
         };
-        let solve = |b: Vec<f64>| refined_solve(&pattern, &singular, None, &b).unwrap().error;
+        let solve = |b: Vec<f64>| {
+            refined_solve(&pattern, &singular, None, (&b, 0.0))
+                .unwrap()
+                .error
+        };
         assert!(solve(wave(dimension)) > 1e-2);
         let solvable = std::iter::zip(wave(dimension), 0..).map(|(b, i)| b * one(i));
         assert!(solve(solvable.collect()) < 1e-15);

@@ -1,6 +1,6 @@
 //! The objective and its gradient in the design by the forward chain in reverse: lines 6-7 of Algorithm 1.
 
-use crate::equilibrium::adjoint::adjoint;
+use crate::equilibrium::adjoint::{PathGradient, adjoint};
 use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::nearby_path::KnownPath;
 use crate::geometry::plane::add;
@@ -23,7 +23,9 @@ struct Partials<'a> {
     /// In their deployed positions.
     by_outline: &'a [[f64; 2]],
     /// In (a, s, theta, w_lig, alpha) per hinge and step of `path`.
-    by_path: &'a [Vec<[f64; 5]>],
+    by_states: &'a [Vec<[f64; 5]>],
+    /// In the load factor of each step of `path`.
+    by_load_factors: &'a [f64],
     /// In the flat corners of every panel; `None` if all are zero.
     by_corners: Option<&'a [[[f64; 2]; 4]]>,
 }
@@ -49,7 +51,8 @@ impl DesignProblem {
             path: &deployment.path,
             outline: &outline,
             by_outline: &judgement.gradient.by_outline,
-            by_path: &judgement.gradient.by_states,
+            by_states: &judgement.gradient.by_states,
+            by_load_factors: &judgement.gradient.by_load_factors,
             by_corners: Some(&judgement.gradient.by_corners),
         };
         let (gradient, sensitivities, adjoint_residual) =
@@ -86,14 +89,15 @@ impl DesignProblem {
             }
             law = Some(prepared);
         }
-        let by_path = vec![vec![[0.0; 5]]; sheet.hinges.len()];
+        let by_states = vec![vec![[0.0; 5]]; sheet.hinges.len()];
         let vectors = shape.curvature(&deployment.outline(&outline));
         let gradients = vectors.iter().map(|by_outline| {
             let partials = Partials {
                 path: std::slice::from_ref(&last),
                 outline: &outline,
                 by_outline,
-                by_path: &by_path,
+                by_states: &by_states,
+                by_load_factors: &[0.0],
                 by_corners: None,
             };
             let (gradient, ..) =
@@ -132,8 +136,11 @@ impl DesignProblem {
                     &mechanics.solver,
                     mechanics.hinged(sheet, law, true),
                     partials.path,
-                    partials.by_path,
-                    by_last,
+                    PathGradient {
+                        by_states: partials.by_states,
+                        by_load_factors: partials.by_load_factors,
+                        by_last,
+                    },
                     &mut by_sheet,
                 )?;
                 adjoint_residual = sums.residual;

@@ -151,6 +151,19 @@ impl Deployment {
         }
     }
 
+    /// The load steps of the weight alone; none without weight.
+    pub fn weight_steps(&self) -> &[LoadStep] {
+        let partial = self
+            .path
+            .iter()
+            .take_while(|step| step.weight < 1.0)
+            .count();
+        match partial {
+            0 => &[],
+            partial => &self.path[..(partial + 1).min(self.path.len())],
+        }
+    }
+
     /// The state at full load.
     pub fn final_step(&self) -> &LoadStep {
         self.path.last().expect("a path has at least one step")

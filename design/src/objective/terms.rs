@@ -5,6 +5,7 @@ mod damage;
 mod domain;
 mod panel_shape;
 pub mod panel_width;
+mod peak_load;
 mod shear;
 
 pub use compression::Compression;
@@ -12,6 +13,7 @@ pub use damage::Damage;
 pub use domain::DomainPenalty;
 pub use panel_shape::PanelShape;
 pub use panel_width::PanelWidth;
+pub use peak_load::PeakLoad;
 pub use shear::Shear;
 
 use crate::geometry::chamfer::{Chamfer, Precision};
@@ -83,6 +85,12 @@ pub struct ObjectiveConfig {
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e9))]
     pub domain: f64,
+    /// Weight of the peak of the load, for a sheet that a dead load of the final size shall open: the maximum of the load at the
+    /// load steps over that at the end, less one. Needs `[drive]`, and as many load steps as resolve the peak. Never relative to
+    /// a gradient.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e9))]
+    pub peak_load: f64,
 }
 
 /// The sheet that an objective is for.
@@ -115,6 +123,17 @@ impl ObjectiveConfig {
             scale: scale.unwrap_or(1.0),
             temperature: 0.1,
         };
+        let mut penalties = vec![
+            Weighted::new(self.panel_shape * area, PanelShape { min_distance }),
+            Weighted::new(limited, PanelWidth { minimum }),
+            Weighted::new(self.domain * area, DomainPenalty { domain }),
+        ];
+        if self.peak_load > 0.0 {
+            penalties.push(Weighted::new(
+                self.peak_load * area,
+                PeakLoad { temperature },
+            ));
+        }
         Objective {
             shape: self.shape(setting),
             functionals: vec![
@@ -122,11 +141,7 @@ impl ObjectiveConfig {
                 Weighted::new(self.compression * unit, Compression { temperature }),
                 Weighted::new(self.shear * unit, Shear { temperature }),
             ],
-            penalties: vec![
-                Weighted::new(self.panel_shape * area, PanelShape { min_distance }),
-                Weighted::new(limited, PanelWidth { minimum }),
-                Weighted::new(self.domain * area, DomainPenalty { domain }),
-            ],
+            penalties,
         }
     }
 
@@ -205,6 +220,7 @@ mod tests {
             panel_shape: 0.4,
             min_panel_width: 6.0,
             domain: 0.6,
+            peak_load: 0.0,
         };
         let circle = TargetShape::Circle {
             centre: [90.0, 10.0],

@@ -5,6 +5,7 @@ use crate::sheet::cut_sheet::PanelPoint;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+use std::fmt;
 
 /// A supported panel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -212,6 +213,20 @@ impl At {
             Self::Named(NamedPoint::Left) => SheetEdge::Left,
         };
         PanelPoint::Middle(EDGES[edge as usize])
+    }
+}
+
+/// The point before the name of its panel; empty for its centroid.
+impl fmt::Display for At {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Named(NamedPoint::Centroid) => Ok(()),
+            Self::Named(NamedPoint::Bottom) => f.write_str("the middle of the lower edge of "),
+            Self::Named(NamedPoint::Right) => f.write_str("the middle of the right edge of "),
+            Self::Named(NamedPoint::Top) => f.write_str("the middle of the upper edge of "),
+            Self::Named(NamedPoint::Left) => f.write_str("the middle of the left edge of "),
+            Self::Point([x, y]) => write!(f, "the point ({x}, {y}) of "),
+        }
     }
 }
 

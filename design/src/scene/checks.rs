@@ -281,6 +281,9 @@ fn objective(scene: &SceneConfig) -> Result<(), InvalidScene> {
     let (key, width) = ("objective.min_panel_width", scene.objective.min_panel_width);
     let side = scene.sheet.mean_panel_area().sqrt();
     within(key, width, [0.0, side / 3.0], "mm")?;
+    if scene.objective.peak_load > 0.0 && scene.drive.is_none() {
+        return Err(InvalidScene::NoDrive);
+    }
     Ok(())
 }
 

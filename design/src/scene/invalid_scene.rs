@@ -160,6 +160,10 @@ pub enum InvalidScene {
          sections, or use hinge = \"linear\""
     )]
     HeldPins,
+    #[error(
+        "objective.peak_load needs [drive]: only under a prescribed stroke does the load have a maximum before its end"
+    )]
+    NoDrive,
     #[error("objective.domain needs hinge = \"surrogate\": no other law has a domain")]
     NoDomain,
     #[error(

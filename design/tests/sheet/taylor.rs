@@ -13,7 +13,7 @@ use design::objective::design_problem::{Deployment, DesignProblem, Mechanics, Mo
 use design::objective::loss::Objective;
 use design::objective::shape::{OutlinePoints, Shape};
 use design::objective::term::Weighted;
-use design::objective::terms::{Compression, Damage, DomainPenalty, PanelShape, Shear};
+use design::objective::terms::{Compression, Damage, DomainPenalty, PanelShape, PeakLoad, Shear};
 use design::pattern::coordinates::PatternCoordinates;
 use design::pattern::cut_pattern::Outline;
 use design::pattern::design_vector::{DesignVector, WidthChart};
@@ -363,4 +363,21 @@ fn a_sheet_on_a_nail() {
     }));
     let model = hung(model, [0.0, -5e-5]);
     assert_order_two(&problem(model, HingePoint::Corner), &start());
+}
+
+/// A weight in the direction of the stroke and a target load that is reached early: the largest load is not the last.
+#[test]
+fn the_peak_of_the_load() {
+    for weight in [[0.0; 2], [1e-5, -5e-5]] {
+        let model = hung(
+            mechanics(springs(), 240.0, East::Driven(12.0, 60.0)),
+            weight,
+        );
+        let mut problem = problem(model, HingePoint::Corner);
+        let peak = Weighted::new(1e5, PeakLoad { temperature: 0.2 });
+        problem.objective.penalties.push(peak);
+        let value = problem.evaluate(&start()).unwrap().terms["peak_load"];
+        assert!(value.abs() > 1e-3, "{value}");
+        assert_order_two(&problem, &start());
+    }
 }

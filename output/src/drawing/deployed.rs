@@ -26,7 +26,7 @@ pub fn deployed(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> String {
         .copied()
         .fold(f64::NEG_INFINITY, f64::max);
     let actuation = if scene.hinge.carries_load() {
-        ". Panels held flat, loads and supports at their centroids"
+        ". Panels in the plane"
     } else {
         ""
     };

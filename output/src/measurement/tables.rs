@@ -181,10 +181,7 @@ impl fmt::Display for MeasurementReport {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let used = self.points - self.outliers.len();
         writeln!(f, "{}: measured against predicted\n", self.title)?;
-        writeln!(
-            f,
-            "predicted with panels held flat, without weight and friction"
-        )?;
+        writeln!(f, "predicted with panels in the plane and without friction")?;
         writeln!(
             f,
             "{} points, {used} used; sheet of {:.1} mm",

@@ -3,7 +3,7 @@
 use crate::report::columns::rounded;
 use crate::report::hinge_row::HingeRow;
 use crate::report::self_weight::SelfWeight;
-use design::analysis::actuation_curve::{ActuationCurve, LoadPeak, Mover};
+use design::analysis::actuation_curve::{ActuationCurve, LimitPoint, LoadPeak, Mover};
 use design::equilibrium::load_step::Status;
 use design::geometry::polygon::{area, bounds};
 use design::objective::design_problem::{Deployment, DesignProblem};
@@ -74,6 +74,8 @@ pub struct Reached {
     pub units: [&'static str; 2],
     /// The maximum of the load along the path; `None` under dead loads, whose maximum is the load at the end.
     pub peak: Option<LoadPeak>,
+    /// The maxima and minima of the load on the way; empty under dead loads.
+    pub limit_points: Vec<LimitPoint>,
     /// Increment of the load for an increment of the displacement; `None` if supports move the sheet, or if the
     /// tangent is singular.
     pub stiffness: Option<f64>,
@@ -220,7 +222,8 @@ impl Reached {
             displacement,
             load,
             units: curve.units(),
-            peak: resolved.map(|curve| curve.peak()),
+            peak: resolved.as_ref().map(ActuationCurve::peak),
+            limit_points: resolved.map_or_else(Vec::new, |curve| curve.limit_points()),
             stiffness: by_loads,
         })
     }
@@ -250,6 +253,9 @@ impl Reached {
             let text = format!("{load} {force} at a stroke of {stroke} {length}");
             rows.push(("largest load", text));
         }
+        if !self.limit_points.is_empty() {
+            rows.push(("stable parts", self.stable_parts()));
+        }
         let stroke = rounded(self.displacement, 4);
         let text = format!("{stroke} {length}, {}", self.stroke_of);
         rows.push(("stroke reached", text));
@@ -259,6 +265,32 @@ impl Reached {
             rows.push(("stiffness", text));
         }
         rows
+    }
+}
+
+impl Reached {
+    /// The parts of the stroke in which the load rises, so that a dead load holds the sheet there.
+    fn stable_parts(&self) -> String {
+        let [length, force] = self.units;
+        let mut parts = Vec::new();
+        let mut from = Some("0".to_owned());
+        for point in &self.limit_points {
+            let [at, load] = [point.displacement, point.load].map(|value| rounded(value, 4));
+            match from.take() {
+                Some(from) if point.is_maximum => {
+                    parts.push(format!("{from} to {at} {length} (up to {load} {force})"));
+                }
+                _ => from = Some(at),
+            }
+        }
+        if let Some(from) = from {
+            let end = rounded(self.displacement, 4);
+            parts.push(format!("{from} to {end} {length}"));
+        }
+        format!(
+            "a dead load holds the sheet at strokes of {}",
+            parts.join(", ")
+        )
     }
 }
 
@@ -329,12 +361,14 @@ fn stroke_of(scene: &Scene, curve: &ActuationCurve) -> String {
     if curve.mover == Mover::Supports {
         return format!("{way} of the moved supports");
     }
-    let place = match scene.actuation().loads.as_slice() {
-        [only] => only.place,
+    let place = match (scene.actuation().loads.as_slice(), &*scene.config.loads) {
+        ([only], [load]) => only.place.zip(Some(load.at)),
         _ => None,
     };
     match place {
-        Some([column, row]) => format!("{way} of panel [{column}, {row}] along its {load}"),
+        Some(([column, row], at)) => {
+            format!("{way} of {at}panel [{column}, {row}] along its {load}")
+        }
         None => format!("mean {way} along the loads, weighted by their {load}s"),
     }
 }

@@ -9,6 +9,7 @@ use crate::report::warning::{Concern, Severity, Warning};
 use design::analysis::localisation::critical_edge;
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::geometry::polygon::contains;
+use design::hinge_law::{DamageMeasure, HingeDamage};
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
 use design::scene::design_run::Designed;
@@ -199,7 +200,17 @@ fn tearing(judged: &Judged) -> Option<Warning> {
             .or(row.damage)
             .is_some_and(|damage| damage >= 1.0)
     });
-    let message = "predicted peak damage of 1 or more: the ligament tears".into();
+    let tears = |damage: &HingeDamage| {
+        let peak = DamageMeasure::Peak.known(damage);
+        peak.unwrap_or(damage.d) >= 1.0
+    };
+    let mut weighed = judged.deployment.weight_steps().iter();
+    let cause = if weighed.any(|step| step.damage.iter().any(tears)) {
+        ", under the weight of the sheet alone: hang it from more points, or use wider ligaments"
+    } else {
+        ""
+    };
+    let message = format!("predicted peak damage of 1 or more: the ligament tears{cause}");
     about(Concern::Tearing, torn, message)
 }
 
@@ -214,13 +225,18 @@ fn overstrained(judged: &Judged) -> Option<Warning> {
 
 fn path(judged: &Judged) -> Option<Warning> {
     let path = &judged.deployment.path;
-    let steps: Vec<String> = path.iter().filter_map(departure).collect();
-    if steps.is_empty() {
+    let mut before = "0".to_owned();
+    let mut found = Vec::new();
+    for step in path {
+        found.extend(departure(step, &before));
+        before = place(step);
+    }
+    if found.is_empty() {
         return None;
     }
     let message = format!(
         "the equilibrium path is not smooth and stable: {}",
-        steps.join(", ")
+        found.join(", ")
     );
     let mut warning = Concern::Path.of_sheet(message);
     if judged.deployment.final_step().status == Status::Diverged {
@@ -229,13 +245,24 @@ fn path(judged: &Judged) -> Option<Warning> {
     Some(warning)
 }
 
-/// How a step of the path is not a stable equilibrium; `None` if it is one.
-fn departure(step: &LoadStep) -> Option<String> {
-    let place = format!("load factor {:.3}", step.load_factor);
+/// A place on the path.
+fn place(step: &LoadStep) -> String {
+    if step.weight < 1.0 {
+        format!("{} of the weight", rounded(step.weight, 2))
+    } else {
+        format!("load factor {:.3}", step.load_factor)
+    }
+}
+
+/// How a step of the path is not a stable equilibrium, with the place `before` it; `None` if it is one.
+fn departure(step: &LoadStep, before: &str) -> Option<String> {
+    let place = place(step);
     Some(match step.status {
         Status::Converged | Status::LeftDomain => return None,
         Status::Almost => format!("residual {:.0e} at {place}", step.residual),
-        Status::LimitPoint => format!("a jump past a limit point at {place}"),
+        Status::LimitPoint => {
+            format!("the load peaks between {before} and {place}, where the sheet jumps")
+        }
         Status::Diverged => {
             let end = step.descent_end.map(|end| format!(": {end}"));
             format!(
@@ -381,18 +408,22 @@ fn load_peak(judged: &Judged) -> Option<Warning> {
         carried,
     ]
     .map(|value| rounded(value, 4));
+    let hung = if force == "N" {
+        "hung weight"
+    } else {
+        "dead load"
+    };
     let consequence = if reached.load * reached.displacement > 0.0 {
         format!(
-            "a dead load of {last} {force}, such as a hung weight, opens this sheet by {carried} {length} and not by {end} \
-             {length}"
+            "a {hung} of {last} {force} does not open this sheet: it moves it by {carried} {length} and not by {end} {length}"
         )
     } else {
         format!(
-            "no dead load opens this sheet by {end} {length}: the load has changed its direction there, to {last} {force}"
+            "no {hung} opens this sheet by {end} {length}: the load has changed its direction there, to {last} {force}"
         )
     };
     Some(Concern::LoadPeak.of_sheet(format!(
-        "the load has a maximum of {maximum} {force} at a stroke of {at} {length}: {consequence}"
+        "{consequence}; the load peaks at {maximum} {force} at a stroke of {at} {length}"
     )))
 }
 

@@ -18,8 +18,9 @@ eta      a / w_lig and s / w_lig there: axial opening and shear of the ligament 
 D        maximum along the path of the mean damage of the ligament, and D_peak of its most strained 1 %,
          which tears at 1; ?: not known, since the hinge left the training domain of its law; -: no prediction
 domain   whether every state of the path is inside the training domain
-Gamma    (21), for a sheet that lies on a surface: moment of a panel's weight over that of its folded ligament
 ";
+
+const GAMMA: &str = "Gamma    (21): moment of the weight of a panel that lies on a surface over that of its folded ligament\n";
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -34,7 +35,8 @@ impl fmt::Display for Report {
         for (name, value) in facts {
             writeln!(f, "{name:<width$}  {value}")?;
         }
-        writeln!(f, "\n{}\n{LEGEND}", self.hinge_table())?;
+        let gamma = if self.states_gamma() { GAMMA } else { "" };
+        writeln!(f, "\n{}\n{LEGEND}{gamma}", self.hinge_table())?;
         let warned = (self.warnings.iter()).any(|warning| warning.severity > Severity::Note);
         writeln!(f, "{}", if warned { "warnings" } else { "no warnings" })?;
         (self.warnings.iter()).try_for_each(|warning| writeln!(f, "- {warning}"))
@@ -91,6 +93,11 @@ impl Report {
         columns(&table)
     }
 
+    /// Whether Gamma is stated, which is of a sheet that lies on a surface.
+    fn states_gamma(&self) -> bool {
+        self.facts.gamma_min.is_some()
+    }
+
     /// The hinges; of a large sheet those that are nearest to failure.
     fn hinge_table(&self) -> String {
         let mut listed: Vec<&HingeRow> = self.hinges.iter().collect();
@@ -114,6 +121,12 @@ impl Report {
             units.map(str::to_owned).to_vec(),
         ];
         table.extend(listed.into_iter().map(HingeRow::cells));
+        if !self.states_gamma() {
+            // The last column.
+            table
+                .iter_mut()
+                .for_each(|row| row.truncate(names.len() - 1));
+        }
         head + &columns(&table)
     }
 }

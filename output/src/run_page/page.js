@@ -68,7 +68,7 @@ function writeWarnings() {
 function legend() {
   const parts = ["Dashed orange: target."];
   if (!run.carries_load) parts.push("Pins carry no load; the sheet is centred on its target.");
-  else parts.push("Fine dashes: flat sheet. Panels are held flat. Arrows: loads (orange) and reactions (teal) at the centroids of their panels.", run.actuation.legend);
+  else parts.push("Fine dashes: flat sheet. Panels stay in the plane. Arrows: loads (orange) and reactions (teal) at the points where they act.", run.actuation.legend);
   parts.push("A panel has the fainter colour of its hinge with the largest value.");
   return parts.join(" ");
 }
@@ -88,7 +88,7 @@ function writeForces(state) {
     write(tr, "td", clean(couple, noticeable.couple));
   }
   if (rows.length > MOST) write(write(table, "tr"), "td", `and ${rows.length - MOST} more`).colSpan = 4;
-  byId("forces-state").textContent = `${stateName(state)}, on the sheet, at the panels' centroids`;
+  byId("forces-state").textContent = `${stateName(state)}, on the sheet, at the points where they act`;
 }
 
 /** Shows a state, a quantity or a hinge; what is not named remains. */

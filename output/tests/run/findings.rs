@@ -215,7 +215,7 @@ fn the_largest_load_of_a_driven_path_is_stated() {
     };
     assert_eq!(warning.severity, Severity::Warning);
     assert!(
-        warning.message.contains("a dead load of"),
+        warning.message.contains("a hung weight of"),
         "{}",
         warning.message
     );

@@ -24,6 +24,9 @@ const R_WIN: f64 = 20.0;
 const PANEL: f64 = 3.5;
 /// theta (rad): 25 degrees.
 const OPENING: f64 = 0.436;
+/// Widths of the clips at the top and at the bottom over those of their edges.
+const HELD: f64 = 0.57;
+const PULLED: f64 = 0.14;
 /// Fewest panels along a side: below three, no panel has a neighbour on both sides.
 const FEWEST: usize = 3;
 
@@ -65,8 +68,8 @@ impl FirstScene {
         heading(
             &mut scene,
             "# A sheet whose middle panel at the bottom is moved away from that at the top, written by `kirigami init`.\n\
-             # The panels are held flat, as between two clear plates: a thin sheet that nothing holds leaves its plane and\n\
-             # opens less. Its weight and friction are not modelled.\n\
+             # The panels are held flat, as between two clear plates that lie: a thin sheet that nothing holds leaves its plane\n\
+             # and opens less. Friction on the plates is not modelled.\n\
              # Lengths in mm, forces in N, couples in N mm; paths are relative to this file.\n\n",
         );
         set(&mut scene["title"], "My first sheet");
@@ -84,8 +87,13 @@ impl FirstScene {
         if let Some(surrogate) = surrogate.as_table_mut() {
             surrogate.remove("ensemble");
         }
-        set(&mut scene["supports"][0]["panel"], whole(held));
-        set(&mut scene["loads"][0]["panel"], whole(pulled));
+        // Clips as wide, relative to the edge that they hold, as those of the template.
+        let edge = self.size[0] / self.panels[0] as f64;
+        for (list, panel, part) in [("supports", held, HELD), ("loads", pulled, PULLED)] {
+            let attached = &mut scene[list][0];
+            set(&mut attached["panel"], whole(panel));
+            set(&mut attached["clip"], rounded(part * edge));
+        }
         let Target {
             centre,
             size,
@@ -101,7 +109,7 @@ impl FirstScene {
     }
 
     /// The rectangle of the sheet opened by [`OPENING`] with the panel `held` fixed, and the distance by which the
-    /// panel at the other end of its column moves along it.
+    /// middle of the lower edge of its column moves along it.
     fn target(&self, held: [usize; 2]) -> Target {
         let panel: [f64; 2] = std::array::from_fn(|i| self.size[i] / self.panels[i] as f64);
         let (sin, cos) = (0.5 * OPENING).sin_cos();
@@ -120,7 +128,11 @@ impl FirstScene {
             (0.5 * (self.panels[i] as f64 - 1.0) - held[i] as f64) * pitch[i]
         });
         let (sin, cos) = rotation.sin_cos();
-        let length = (self.panels[1] - 1) as f64;
+        let steps = self.panels[1] - 1;
+        let length = steps as f64;
+        // An odd number of panels away, the pulled panel turns by the opening, and the middle of its lower edge with it.
+        let turned = if steps % 2 == 1 { OPENING } else { 0.0 };
+        let lifted = 0.5 * panel[1] * (1.0 - turned.cos());
         Target {
             centre: [
                 fixed[0] + cos * arm[0] - sin * arm[1],
@@ -128,7 +140,7 @@ impl FirstScene {
             ],
             size: std::array::from_fn(|i| self.panels[i] as f64 * pitch[i]),
             rotation_deg: rotation.to_degrees(),
-            stroke: length * (pitch[1] * cos - panel[1]),
+            stroke: length * (pitch[1] * cos - panel[1]) - lifted,
         }
     }
 }
