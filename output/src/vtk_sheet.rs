@@ -3,6 +3,7 @@
 //! Points are those of the flat sheet; the point data `displacement (mm)` moves them to the deployed one.
 
 use crate::hinge_states::{HingeState, hinge_states};
+use design::equilibrium::load_step::LoadStep;
 use design::objective::design_problem::Deployment;
 use design::sheet::cut_sheet::Sheet;
 use design::sheet::kinematics::{deployed, deployed_corners};
@@ -11,8 +12,8 @@ use support::vtk::{CellKind, Field, UnstructuredGrid};
 /// A state of the deployment.
 #[derive(Clone, Debug)]
 pub struct VtkState {
-    /// zeta.
-    pub load_factor: f64,
+    /// zeta; while the weight comes on, the part of it that is on, less one.
+    pub time: f64,
     /// Four points and one cell for each panel; cell data: number and rotation.
     pub panels: UnstructuredGrid,
     /// One point and one cell for each hinge, at its reference point; point data: number, (8), energy, damage.
@@ -28,17 +29,31 @@ pub fn vtk_states(deployment: &Deployment) -> Vec<VtkState> {
     let steps = deployment
         .path
         .iter()
-        .map(|step| (step.load_factor, &step.configuration));
+        .map(|step| (time(step), &step.configuration));
     let hinges = std::iter::once(&flat[..]).chain(states.chunks(sheet.hinges.len()));
-    std::iter::once((0.0, &still))
+    let start = if deployment.weight_steps().is_empty() {
+        0.0
+    } else {
+        -1.0
+    };
+    std::iter::once((start, &still))
         .chain(steps)
         .zip(hinges)
-        .map(|((load_factor, configuration), states)| VtkState {
-            load_factor,
+        .map(|((time, configuration), states)| VtkState {
+            time,
             panels: panels(sheet, configuration),
             hinges: hinge_points(sheet, configuration, states),
         })
         .collect()
+}
+
+/// The time of a load step in an animation.
+fn time(step: &LoadStep) -> f64 {
+    if step.weight < 1.0 {
+        step.weight - 1.0
+    } else {
+        step.load_factor
+    }
 }
 
 fn flat(state: &HingeState) -> HingeState {

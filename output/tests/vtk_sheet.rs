@@ -28,7 +28,7 @@ fn displaced_points_are_the_deployed_sheet() {
     let all = hinge_states(&deployment);
     assert_eq!(all.len(), 12 * deployment.path.len());
     for (number, (state, step)) in states[1..].iter().zip(&deployment.path).enumerate() {
-        assert_eq!(state.load_factor, step.load_factor);
+        assert_eq!(state.time, step.load_factor);
         let corners = deployed_corners(&deployment.sheet, &step.configuration);
         for ([x, y, z], expected) in moved(&state.panels)
             .into_iter()

@@ -43,7 +43,7 @@ impl ExportCommand {
             {
                 let name = format!("{kind}-{i:03}.vtu");
                 run_folder::write(&folder, &name, &grid.to_vtu())?;
-                grids.push((state.load_factor, part, format!("vtk/{name}")));
+                grids.push((state.time, part, format!("vtk/{name}")));
             }
         }
         run_folder::write(&self.out, "sheet.pvd", &vtk::collection(&grids))?;

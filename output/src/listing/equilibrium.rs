@@ -23,6 +23,8 @@ pub struct EquilibriumListing {
 pub struct StepListing {
     /// zeta.
     pub load_factor: f64,
+    /// The part of the weight of a hanging sheet that is on; 1 once the loads act.
+    pub weight: f64,
     /// How the step ended.
     pub status: Status,
     /// Maximum unbalanced force, relative to the maximum force.
@@ -106,6 +108,7 @@ impl StepListing {
         };
         Self {
             load_factor: step.load_factor,
+            weight: step.weight,
             status: step.status,
             residual: step.residual,
             rounding: step.rounding,
@@ -140,7 +143,7 @@ impl fmt::Display for EquilibriumListing {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         writeln!(
             f,
-            "    zeta  status       residual  its  fac  rej  neg  condition     U (N mm)    Pi (N mm)  opening (deg)"
+            "    zeta  weight  status       residual  its  fac  rej  neg  condition     U (N mm)    Pi (N mm)  opening (deg)"
         )?;
         for step in &self.steps {
             let openings = step.hinge_deformation.iter().map(|eps| eps[2].abs());
@@ -148,8 +151,9 @@ impl fmt::Display for EquilibriumListing {
             let condition = step.condition.unwrap_or(f64::INFINITY);
             writeln!(
                 f,
-                "{:>8.4}  {:<11} {:>9.1e} {:>4} {:>4} {:>4} {:>4}  {condition:>9.1e} {:>12.5e} {:>12.5e} {open_deg:>14.2}",
+                "{:>8.4}  {:>6.2}  {:<11} {:>9.1e} {:>4} {:>4} {:>4} {:>4}  {condition:>9.1e} {:>12.5e} {:>12.5e} {open_deg:>14.2}",
                 step.load_factor,
+                step.weight,
                 format!("{:?}", step.status),
                 step.residual,
                 step.effort.iterations,

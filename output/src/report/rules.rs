@@ -321,7 +321,7 @@ fn not_modelled(judged: &Judged) -> Option<Warning> {
         }
     };
     Some(Concern::NotModelled.of_sheet(format!(
-        "the panels are held flat in the model. Not modelled: {missing}"
+        "the panels stay in the plane in the model. Not modelled: {missing}"
     )))
 }
 

@@ -102,15 +102,16 @@ function nameLines(svg, names, x, top, bottom) {
 function drawCurve(state) {
   if (!states.curve) return;
   const [what, [length, force]] = run.stroke;
-  const jumps = states.curve.filter((_, i) => states.status[states.index.indexOf(i)] === "limit-point");
-  const marks = states.curve.map(([x, y]) => ({ x, y, colour: TEAL, r: 2.5 }));
+  const points = states.curve.filter(Boolean);
+  const jumps = states.curve.filter((point, i) => point && states.status[states.index.indexOf(i)] === "limit-point");
+  const marks = points.map(([x, y]) => ({ x, y, colour: TEAL, r: 2.5 }));
   marks.push(...jumps.map(([x, y]) => ({ x, y, colour: ACCENT, hollow: true })));
-  const last = states.curve[states.curve.length - 1];
+  const last = points[points.length - 1];
   const peak = run.peak && Math.abs(run.peak[0]) < Math.abs(last[0]) ? run.peak : null;
-  const path = peak ? [...states.curve, peak].sort((a, b) => Math.abs(a[0]) - Math.abs(b[0])) : states.curve;
+  const path = peak ? [...points, peak].sort((a, b) => Math.abs(a[0]) - Math.abs(b[0])) : points;
   if (peak) marks.push({ x: peak[0], y: peak[1], colour: ACCENT, r: 3.5 });
-  const [x, y] = states.curve[states.index[state]];
-  marks.push({ x, y, colour: INK, r: 5 });
+  const here = states.curve[states.index[state]];
+  if (here) marks.push({ x: here[0], y: here[1], colour: INK, r: 5 });
   const named = { x: `${what.startsWith("rotation") || length === "rad" ? "rotation" : "displacement"} (${length})`, y: `${force === "N" ? "load" : "couple"} (${force})` };
   chart(byId("curve"), 250, named, [{ points: path, colour: TEAL }], marks);
   byId("curve-note").textContent =

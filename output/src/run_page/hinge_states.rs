@@ -27,10 +27,12 @@ pub(super) struct HingeStates {
     of: usize,
     index: Vec<usize>,
     load_factor: Vec<f64>,
+    /// Number of load steps in which the weight comes on, before those of the loads.
+    weight_steps: usize,
     status: Vec<Status>,
-    /// (displacement, load) of what moves the sheet, for all states of the path.
+    /// (displacement, load) of what moves the sheet, for all states of the path; `None` before the whole weight is on.
     #[serde(skip_serializing_if = "Option::is_none")]
-    curve: Option<Vec<[f64; 2]>>,
+    curve: Option<Vec<Option<[f64; 2]>>>,
     /// (u_x, u_y, phi) of the panels (mm, mm, rad).
     motions: Packed,
     /// (a, s, theta) of the hinges (mm, mm, rad).
@@ -74,12 +76,17 @@ impl HingeStates {
             let known = known_damage(deployment, before.len(), measure)?;
             Some(by_hinge(&|i, h| known[i][h]))
         };
+        let weight_steps = deployment.weight_steps().len();
         let curve = mechanics.and_then(|mechanics| ActuationCurve::new(mechanics, deployment));
         Self {
             of: all.len(),
             load_factor: shown.iter().map(|state| state.load_factor).collect(),
             status: shown.iter().map(|state| state.status).collect(),
-            curve: curve.map(|curve| curve.points),
+            weight_steps,
+            curve: curve.map(|curve| {
+                let before = std::iter::repeat_n(None, weight_steps);
+                before.chain(curve.points.into_iter().map(Some)).collect()
+            }),
             motions: (shown.iter())
                 .flat_map(|state| placed(scene, sheet, &state.configuration))
                 .flatten()

@@ -6,13 +6,14 @@ const shownNow = { state: stateCount - 1, quantity: "rotation", hinge: run.hinge
 function stateName(i) {
   if (states.index[i] === 0) return "the flat sheet";
   if (!run.carries_load) return `an opening of ${fixed(deformation(i, 0)[2] * DEG, 1)} deg`;
-  return `load step ${states.index[i]} of ${states.of - 1}`;
+  const [step, all] = [states.index[i] - states.weight_steps, states.of - 1 - states.weight_steps];
+  return step > 0 ? `load step ${step} of ${all}` : `weight step ${states.index[i]} of ${states.weight_steps}`;
 }
 
 function stateText(i) {
   const parts = [stateName(i)];
   if (run.carries_load) parts.push(`load factor ${shown(states.load_factor[i])}`);
-  if (states.curve) {
+  if (states.curve?.[states.index[i]]) {
     const [displacement, load] = states.curve[states.index[i]];
     const [length, force] = run.stroke[1];
     parts.push(`load ${shown(load)} ${force}`, `${length === "rad" ? "rotation" : "stroke"} ${shown(displacement)} ${length}`);

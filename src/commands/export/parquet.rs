@@ -67,6 +67,7 @@ fn path_columns(path: &[LoadStep]) -> Vec<(&'static str, Values)> {
     vec![
         ("step", Values::Counts((1..=path.len() as u32).collect())),
         ("load_factor", numbers(|it| it.load_factor)),
+        ("weight", numbers(|it| it.weight)),
         ("status", Values::Texts(status.collect())),
         ("U", numbers(|it| it.energies.iter().sum())),
         ("Pi", numbers(|it| it.potential)),
