@@ -8,14 +8,14 @@ use crate::equilibrium::friction::Friction;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{DescentEnd, Effort};
 use crate::equilibrium::place::Place;
-use crate::equilibrium::potential::{Potential, Stage};
+use crate::equilibrium::potential::{Potential, Stage, moved};
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::sheet::kinematics::{Configuration, deployed};
 
 /// Number of increments of a load step.
 const INCREMENTS: usize = 4;
 /// Creeps of the regularised friction, over the size of a panel, each the start of the next.
-const CREEPS: [f64; 3] = [1e-3, 1e-4, 1e-5];
+const CREEPS: [f64; 2] = [1e-3, 1e-5];
 
 /// The end of a path with friction.
 #[derive(Clone, Debug)]
@@ -50,9 +50,20 @@ impl EquilibriumSolver {
             forces: vec![[0.0; 3]; sheet.sheet.hinges.len()],
         };
         let increments = INCREMENTS * self.steps;
-        for i in 1..=increments {
+        let ends: Vec<f64> = (1..=increments)
+            .map(|i| i as f64 / increments as f64)
+            .collect();
+        let mut before = self.flat();
+        for (at, free) in std::iter::zip(&ends, self.readings(sheet, &ends)) {
+            if let Some(end) = free.descent_end {
+                return Err((last.at, end));
+            }
+            // The sheet without friction shows where to begin.
+            let motion = moved(&free.configuration, &before, -1.0);
+            before = free.configuration;
             let mut next = Place {
-                at: i as f64 / increments as f64,
+                at: *at,
+                configuration: moved(&last.configuration, &motion, 1.0),
                 ..last.clone()
             };
             branch.hold(&mut next, &last);
