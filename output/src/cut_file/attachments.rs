@@ -26,8 +26,8 @@ pub struct PlacedAttachment {
 }
 
 impl PlacedAttachment {
-    /// An attachment on its sheet; an error if the hole is too near to an edge of its panel or to a hinge, or if the clip
-    /// is longer than its edge.
+    /// An attachment on its sheet; an error if its hole is too near to an edge of its panel, its hole or clip to a hinge, or
+    /// if the clip is longer than its edge.
     pub(super) fn new(sheet: &Sheet, attachment: &Attachment) -> Result<Self, FabricationError> {
         let panel = &sheet.panels[attachment.panel];
         let placed = Self {
@@ -49,41 +49,60 @@ impl PlacedAttachment {
                 _ => None,
             },
         };
-        placed.check_hole(sheet)?;
+        placed.check_edges(sheet)?;
+        placed.check_hinges(sheet)?;
         Ok(placed)
     }
 
-    fn check_hole(&self, sheet: &Sheet) -> Result<(), FabricationError> {
+    /// A hole leaves at least its radius to the edges of its panel.
+    fn check_edges(&self, sheet: &Sheet) -> Result<(), FabricationError> {
         let Some(diameter) = self.hole else {
             return Ok(());
-        };
-        let refuse = |what: String, gap: f64, least: f64| {
-            Err(FabricationError::HoleTooNear {
-                name: self.name.clone(),
-                what,
-                gap,
-                least,
-            })
         };
         let half_kerf = 0.5 * sheet.options.process.kerf;
         let to_edges = edges(&sheet.panels[self.panel].corners)
             .map(|(p, q)| distance_to_segment(self.at, p, q))
             .fold(f64::INFINITY, f64::min);
         let (gap, least) = (to_edges - half_kerf - 0.5 * diameter, 0.5 * diameter);
-        if gap < least {
-            return refuse("the edge of its panel".to_owned(), gap, least);
-        }
-        for (h, hinge) in sheet.hinges.iter().enumerate() {
-            if ![hinge.panel_a(), hinge.panel_b()].contains(&self.panel) {
-                continue;
+        self.check("hole", "the edge of its panel".to_owned(), gap, least)
+    }
+
+    /// Hole and clip are outside of the windows of the hinges of their panel.
+    fn check_hinges(&self, sheet: &Sheet) -> Result<(), FabricationError> {
+        let hinges = sheet.hinges.iter().enumerate();
+        let of_panel =
+            hinges.filter(|(_, hinge)| [hinge.panel_a(), hinge.panel_b()].contains(&self.panel));
+        for (h, hinge) in of_panel {
+            let (what, least) = (format!("the tip of hinge {h}"), sheet.options.process.r_win);
+            if let Some(diameter) = self.hole {
+                let gap = distance(self.at, hinge.tip) - 0.5 * diameter;
+                self.check("hole", what.clone(), gap, least)?;
             }
-            let gap = distance(self.at, hinge.tip) - 0.5 * diameter;
-            let least = sheet.options.process.r_win;
-            if gap < least {
-                return refuse(format!("the tip of hinge {h}"), gap, least);
+            if let Some([p, q]) = self.clip {
+                self.check("clip", what, distance_to_segment(hinge.tip, p, q), least)?;
             }
         }
         Ok(())
+    }
+
+    fn check(
+        &self,
+        part: &'static str,
+        what: String,
+        gap: f64,
+        least: f64,
+    ) -> Result<(), FabricationError> {
+        if gap >= least {
+            return Ok(());
+        }
+        let name = self.name.clone();
+        Err(FabricationError::TooNear {
+            part,
+            name,
+            what,
+            gap,
+            least,
+        })
     }
 
     /// Adds hole and mark to a drawing of the paths of a tool with the given kerf (mm).

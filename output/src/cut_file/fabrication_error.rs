@@ -38,10 +38,11 @@ pub enum FabricationError {
     )]
     CutMeetsOutline { hinge: usize, gap: f64, least: f64 },
     #[error(
-        "the hole of {name} leaves {gap:.1} mm to {what}, less than {least:.1} mm: move its `at` away from there, or make the \
-         hole smaller"
+        "the {part} of {name} leaves {gap:.1} mm to {what}, less than {least:.1} mm: move its `at` away from there, or make the \
+         {part} smaller"
     )]
-    HoleTooNear {
+    TooNear {
+        part: &'static str,
         name: String,
         what: String,
         gap: f64,

@@ -70,7 +70,15 @@ fn a_clip_lies_on_its_edge_and_is_not_cut() {
     }
     assert!(!Layer::Attachments.is_cut() && Layer::AttachmentHoles.is_cut());
     let error = cuts(clip(2.1 * half)).unwrap_err().to_string();
-    assert!(error.contains("clip of load, panel [1,1]"), "{error}");
+    assert!(
+        error.contains("the clip of load, panel [1,1] is"),
+        "{error}"
+    );
+    let error = cuts(clip(1.5 * half)).unwrap_err().to_string();
+    assert!(
+        error.contains("the clip of load, panel [1,1] leaves"),
+        "{error}"
+    );
 }
 
 #[test]

@@ -25,7 +25,7 @@ const PANEL: f64 = 3.5;
 /// theta (rad): 25 degrees.
 const OPENING: f64 = 0.436;
 /// Widths of the clips at the top and at the bottom over those of their edges.
-const HELD: f64 = 0.57;
+const HELD: f64 = 0.21;
 const PULLED: f64 = 0.14;
 /// Fewest panels along a side: below three, no panel has a neighbour on both sides.
 const FEWEST: usize = 3;
