@@ -7,7 +7,7 @@ use design::analysis::actuation_curve::{ActuationCurve, LimitPoint, LoadPeak, Mo
 use design::equilibrium::load_step::Status;
 use design::geometry::polygon::{area, bounds};
 use design::objective::design_problem::{Deployment, DesignProblem};
-use design::scene::{HingeModel, Scene};
+use design::scene::{Attachment, HingeModel, Scene};
 use design::sheet::kinematics::deployed_corners;
 use serde::Serialize;
 use surrogate::TestErrors;
@@ -24,6 +24,8 @@ pub struct FactSheet {
     /// Whether the hinges carry load.
     #[serde(skip)]
     carries_load: bool,
+    /// What holds and pulls panels, where in the flat sheet (mm).
+    pub attachments: Vec<String>,
     /// Whether the hinge law has a training domain.
     #[serde(skip)]
     pub has_domain: bool,
@@ -128,6 +130,7 @@ impl FactSheet {
             hinge: scene.config.hinge,
             hinge_label: scene.hinge.label,
             carries_load: scene.hinge.carries_load(),
+            attachments: attachments(scene, deployment),
             has_domain: scene.surrogate().is_some(),
             material: material.name.clone(),
             thickness: material.thickness,
@@ -177,7 +180,13 @@ impl FactSheet {
             facts.extend(reached.rows());
         }
         if self.carries_load {
-            facts.extend(self.self_weight.rows());
+            facts.extend(
+                self.attachments
+                    .iter()
+                    .map(|text| ("attachment", text.clone())),
+            );
+            let units = self.reached.as_ref().map(|reached| reached.units);
+            facts.extend(self.self_weight.rows(units));
         }
         if let Some(gamma) = self.gamma_min {
             let gamma = rounded(gamma, 4);
@@ -349,6 +358,23 @@ fn errors(percents: &[f64], states: usize, kind: &str) -> String {
         })
         .collect();
     format!("{} % (rms, {states} {kind} states)", errors.join(", "))
+}
+
+/// Every support and every load of a single panel, with its place in the flat sheet.
+fn attachments(scene: &Scene, deployment: &Deployment) -> Vec<String> {
+    let attachments = scene.actuation().attachments.into_iter();
+    let text = |attachment: Attachment| {
+        let panel = &deployment.sheet.panels[attachment.panel];
+        let [x, y] = panel.position(attachment.point).map(|x| rounded(x, 5));
+        let size = |what: &str, size: Option<f64>| {
+            size.map_or(String::new(), |size| {
+                format!(", {what} {} mm", rounded(size, 4))
+            })
+        };
+        let (hole, clip) = (size("hole", attachment.hole), size("clip", attachment.clip));
+        format!("{}, at ({x}, {y}) mm{hole}{clip}", attachment.name)
+    };
+    attachments.map(text).collect()
 }
 
 /// What moves the sheet, and what its displacement means.

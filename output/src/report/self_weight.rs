@@ -67,8 +67,8 @@ impl SelfWeight {
         }
     }
 
-    /// Names and values with units.
-    pub(super) fn rows(&self) -> Vec<(&'static str, String)> {
+    /// Names and values; `units` are those of displacement and load.
+    pub(super) fn rows(&self, units: Option<[&str; 2]>) -> Vec<(&'static str, String)> {
         let modelled = if self.is_modelled {
             "modelled"
         } else {
@@ -77,7 +77,7 @@ impl SelfWeight {
         let weight = self.beside_load(self.weight);
         let mut rows = vec![("weight", format!("{weight}; {modelled}"))];
         if let Some(lying) = &self.lying {
-            rows.extend(lying.rows(self));
+            rows.extend(lying.rows(self, units));
         }
         rows
     }
@@ -116,7 +116,7 @@ impl Lying {
         })
     }
 
-    fn rows(&self, of: &SelfWeight) -> Vec<(&'static str, String)> {
+    fn rows(&self, of: &SelfWeight, units: Option<[&str; 2]>) -> Vec<(&'static str, String)> {
         let mu = self.coefficient;
         let force = of.beside_load(self.friction);
         let mut rows = vec![(
@@ -127,8 +127,18 @@ impl Lying {
             let [rms, most] = effect.corners.map(|length| rounded(length, 3));
             let slip = effect.slips.iter().copied().fold(0.0, f64::max);
             let slip = rounded(slip, 3);
+            let end = match (effect.ends, units) {
+                (Some([without, with]), Some([length, force])) => {
+                    let [from, to] = [without, with].map(|end| end.map(|value| rounded(value, 4)));
+                    format!(
+                        "{} {force} at a stroke of {} {length} in place of {} {force} at {} {length}; ",
+                        to[1], to[0], from[1], from[0]
+                    )
+                }
+                _ => String::new(),
+            };
             let text = format!(
-                "corners off by {rms} mm (root mean square), {most} mm at most; panels slide by up to {slip} mm"
+                "{end}corners off by {rms} mm (root mean square), {most} mm at most; panels slide by up to {slip} mm"
             );
             rows.push(("with friction", text));
         }
@@ -178,7 +188,7 @@ mod tests {
         assert_eq!(film.beside_load(0.0851), "0.0851 N, 16 % of the load");
         assert_eq!(film.beside_load(0.02553), "0.0255 N, 4.9 % of the load");
         // The bell: 161 kg and 28 N.
-        let bell = weight(1579.0, Some(56.4)).rows();
+        let bell = weight(1579.0, Some(56.4)).rows(None);
         assert!(
             bell[0].1.contains("56 times the load; not modelled"),
             "{bell:?}"

@@ -1,6 +1,6 @@
 //! Findings about a run as a whole: what the model leaves out, the load of a driven path, weights that are inaccurate.
 
-use super::learned::{learned, weights};
+use super::learned::{brittle, learned, weights};
 use super::{read, run};
 use design::DesignError;
 use design::analysis::actuation_curve::ActuationCurve;
@@ -36,7 +36,7 @@ const WEIGHTLESS: (&str, &str) = (
     "kind = \"hanging\"\ndown = [0.0, -1.0]\nweight = false",
 );
 
-fn one<'a>(report: &'a Report, concern: Concern) -> &'a Warning {
+fn one(report: &Report, concern: Concern) -> &Warning {
     let [warning] = found(report, concern)[..] else {
         panic!("{concern:?}: {:?}", report.warnings);
     };
@@ -114,6 +114,9 @@ fn friction_is_a_warning_with_its_effect() {
     assert!(with < 0.5 * without, "{with} {without}");
     assert!(effect.corners[1] > 0.5 * without, "{effect:?}");
     assert_eq!(effect.slips.len(), 9);
+    let text = heavy.to_string();
+    assert!(text.contains("2 N at a stroke of"), "{text}");
+    assert!(text.contains("clamp, panel [0,1], at ("), "{text}");
     // At 4.9 % of the load it is none.
     let light = report(&[], &[LYING, ("[2.0, 0.0]", "[40.5, 0.0]"), SHORT]);
     assert!(found(&light, Concern::Friction).is_empty());
@@ -139,6 +142,26 @@ fn a_hanging_sheet_has_load_steps_of_its_weight() {
         "{:?}",
         path[1].configuration[5]
     );
+}
+
+/// Weights that predict a large damage: the weight of the sheet is enough.
+#[test]
+fn a_ligament_that_tears_under_the_weight_alone_is_named() {
+    // Along the pull, where the sheet is stiff.
+    let aside = (HELD_FLAT, "kind = \"hanging\"\ndown = [1.0, 0.0]");
+    for (posture, alone) in [(aside, true), ((HELD_FLAT, HELD_FLAT), false)] {
+        let folder = tempfile::tempdir().unwrap();
+        brittle(folder.path(), 1e4);
+        let scene = read(folder.path(), &learned(&[posture, SHORT]));
+        let designed = run(&scene, None).unwrap();
+        let report = write_results(&scene, &designed, false).unwrap();
+        let message = &one(&report, Concern::Tearing).message;
+        assert_eq!(
+            message.contains("under the weight of the sheet alone"),
+            alone,
+            "{message}"
+        );
+    }
 }
 
 /// 7 kg in place of 7 g.

@@ -177,22 +177,25 @@ fn a_path_that_departs_from_its_ray_is_named() {
     assert_eq!(named(&deployment), Some((Severity::Note, vec![3])));
 }
 
-/// Weights that predict ten times the peak strain at fracture.
-#[test]
-fn a_ligament_that_tears_is_reported_before_the_cut_file_is_written() {
-    let folder = tempfile::tempdir().unwrap();
+/// Writes weights beside the scene that predict D_peak in proportion to `peak_scale`.
+pub fn brittle(folder: &Path, peak_scale: f64) {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../surrogate/tests/cases");
     let random = Surrogate::load(&cases.join("chi_domain.safetensors")).unwrap();
     let mut card = random.card().clone();
     card.material = "film".into();
     card.material_hash = None;
+    card.peak_scale = Some(peak_scale);
+    let weights = Surrogate::from_parts(random.layers(), card).unwrap();
+    weights.save(&folder.join("tiny.safetensors")).unwrap();
+}
+
+/// Weights that predict ten times the peak strain at fracture.
+#[test]
+fn a_ligament_that_tears_is_reported_before_the_cut_file_is_written() {
+    let folder = tempfile::tempdir().unwrap();
     let scene = learned(&[("damage = 0.2", "damage = 0.2\ndamage_measure = \"peak\"")]);
-    let mut report = |peak_scale: f64| {
-        card.peak_scale = Some(peak_scale);
-        let weights = Surrogate::from_parts(random.layers(), card.clone()).unwrap();
-        weights
-            .save(&folder.path().join("tiny.safetensors"))
-            .unwrap();
+    let report = |peak_scale: f64| {
+        brittle(folder.path(), peak_scale);
         let scene = read(folder.path(), &scene);
         remove_run(&scene).unwrap();
         let designed = run(&scene, None).unwrap();
