@@ -3,8 +3,9 @@
 use crate::analysis::actuation_curve::ActuationCurve;
 use crate::equilibrium::load_step::DescentEnd;
 use crate::geometry::polygon::distance;
+use crate::hinge_law::Order;
 use crate::objective::design_problem::{Deployment, Mechanics};
-use crate::sheet::kinematics::deployed_corners;
+use crate::sheet::kinematics::{deployed_corners, hinge_deformations};
 use serde::Serialize;
 use support::statistics::root_mean_square;
 
@@ -15,6 +16,8 @@ pub struct FrictionEffect {
     pub ends: Option<[[f64; 2]; 2]>,
     /// Root mean square and maximum of the distances of panel corners between the two (mm).
     pub corners: [f64; 2],
+    /// Work done against friction, and stored in the hinges, at the end of the path with friction (N mm).
+    pub work: [f64; 2],
     /// Length of the way of every panel's centroid over the surface (mm).
     pub slips: Vec<f64>,
 }
@@ -32,6 +35,10 @@ impl FrictionEffect {
         let sheet = &deployment.sheet;
         let law = mechanics.law.prepare(&sheet.designs());
         let slid = (mechanics.solver).slid(mechanics.hinged(sheet, &*law, false), by_area)?;
+        let deformations = hinge_deformations(sheet, &slid.configuration);
+        let energies =
+            (mechanics.hinged(sheet, &*law, false)).energies(&deformations, Order::Value);
+        let stored = energies.iter().map(|energy| energy.w).sum();
         let without = deployment.final_step();
         let end = |load_factor: f64, configuration: &[[f64; 3]]| {
             ActuationCurve::point(mechanics, sheet, load_factor, configuration)
@@ -54,6 +61,7 @@ impl FrictionEffect {
                 root_mean_square(apart.iter().copied()),
                 apart.into_iter().fold(0.0, f64::max),
             ],
+            work: [slid.dissipated, stored],
             slips: slid.slips,
         })
     }

@@ -26,6 +26,8 @@ pub struct Slid {
     pub configuration: Configuration,
     /// Length of the way of every panel's centroid over the surface (mm).
     pub slips: Vec<f64>,
+    /// Work done against friction (N mm).
+    pub dissipated: f64,
     /// Maximum unbalanced force of the last increment, relative to the maximum force.
     pub residual: f64,
 }
@@ -42,6 +44,7 @@ impl EquilibriumSolver {
             load_factor: 0.0,
             configuration: self.flat(),
             slips: vec![0.0; panels],
+            dissipated: 0.0,
             residual: 0.0,
         };
         let mut last = Place {
@@ -67,6 +70,7 @@ impl EquilibriumSolver {
                 ..last.clone()
             };
             branch.hold(&mut next, &last);
+            let mut rubbed = 0.0;
             for creep in CREEPS {
                 let friction = Friction {
                     by_area,
@@ -81,8 +85,11 @@ impl EquilibriumSolver {
                 let state = found.map_err(|failure| (last.at, failure.end))?.state;
                 (slid.load_factor, slid.residual) = (state.load_factor, state.residual);
                 branch.force = state.force;
+                let on_panels = friction.on_panels(sheet.sheet, &state.configuration);
+                rubbed = on_panels.map(|on_panel| on_panel.potential).sum();
                 next.configuration = state.configuration;
             }
+            slid.dissipated += rubbed;
             for (k, (slip, panel)) in
                 std::iter::zip(&mut slid.slips, &sheet.sheet.panels).enumerate()
             {

@@ -137,8 +137,10 @@ impl Lying {
                 }
                 _ => String::new(),
             };
+            let [rubbed, stored] = effect.work.map(|work| rounded(1e-3 * work, 3));
             let text = format!(
-                "{end}corners off by {rms} mm (root mean square), {most} mm at most; panels slide by up to {slip} mm"
+                "{end}corners off by {rms} mm (root mean square), {most} mm at most; panels slide by up to {slip} mm, which takes \
+                 {rubbed} J beside {stored} J stored"
             );
             rows.push(("with friction", text));
         }
