@@ -245,6 +245,31 @@ fn a_sheet_that_is_held_in_no_way_is_refused() {
             "panel [1, 0] is held or pulled at two points",
         ),
         (
+            "clip = 10.0",
+            "hole = 4.0 #",
+            "loads[0].hole: a hole at the edge of a panel would be open",
+        ),
+        (
+            "at = \"bottom\"              # the force acts at the middle of its lower edge, about which the panel may turn\nclip = 10.0",
+            "at = [100.0, 30.0]\nhole = 0.1",
+            "violates hole > process.kerf",
+        ),
+        (
+            "panel = [1, 3]             # the middle one at the top, fixed",
+            "panel = [1, 2]",
+            "supports[0].clip: a clip holds an edge of the sheet",
+        ),
+        (
+            "[[loads]]",
+            "[[loads]]\npanel = [1, 0]\nat = \"bottom\"\nclip = 5.0\nforce = [1.0, 0.0]\n\n[[loads]]",
+            "panel [1, 0] has two holes or clips",
+        ),
+        (
+            "force = [0.0, -1.0]        # N; its direction, as the stroke is prescribed\n",
+            "force = [0.0, -1.0]\n\n[[loads]]\npanel = [1, 3]\nat = \"top\"\nforce = [0.0, 1.0]\n",
+            "prevents the motion of this load",
+        ),
+        (
             "[[loads]]",
             "[[edge_loads]]\nedge = \"bottom\"\ntraction = [0.0, -0.1]\n\n[[loads]]",
             "edge_loads act at the centroids",
@@ -253,6 +278,14 @@ fn a_sheet_that_is_held_in_no_way_is_refused() {
         let message = refusal("a4-polyester.toml", from, to);
         assert!(message.contains(expected), "{to}: {message}");
     }
+    // A hung mass on a panel that is held does no work, no more than a force.
+    let hanging = "kind = \"hanging\"\ndown = [0.0, -1.0]";
+    let held = format!("{hanging}\n\n[[loads]]\npanel = [1, 3]\nat = \"top\"\nmass_g = 20.0");
+    let message = refusal("a4-polyester.toml", posture, &held);
+    assert!(
+        message.contains("prevents the motion of this load"),
+        "{message}"
+    );
     let message = refusal(
         "linear-7x7.toml",
         "coverage = 0.5",

@@ -142,7 +142,7 @@ impl ActuationCurve {
         LoadPeak {
             displacement: sense * displacement,
             load: sense * load,
-            dead_load_reaches: (load > (1.0 + SAME_LOAD) * last).then_some(sense * reached),
+            dead_load_reaches: (load - last > self.least()).then_some(sense * reached),
         }
     }
 
@@ -150,8 +150,7 @@ impl ActuationCurve {
     /// below a thousandth of its maximum do not count.
     pub fn limit_points(&self) -> Vec<LimitPoint> {
         let (points, sense) = (self.forwards(), self.sense());
-        let largest = points.iter().map(|point| point[1].abs());
-        let least = SAME_LOAD * largest.fold(0.0, f64::max);
+        let least = self.least();
         let mut found = Vec::new();
         let (mut rises, mut extreme) = (true, 0);
         for (i, [_, load]) in points.iter().enumerate() {
@@ -171,6 +170,12 @@ impl ActuationCurve {
             }
         }
         found
+    }
+
+    /// The least difference of two loads that counts.
+    fn least(&self) -> f64 {
+        let sizes = self.points.iter().map(|point| point[1].abs());
+        SAME_LOAD * sizes.fold(0.0, f64::max)
     }
 
     /// An extreme of the load near a point, between its neighbours.
@@ -228,7 +233,7 @@ pub struct LimitPoint {
     pub load: f64,
 }
 
-/// Relative difference below which two loads count as equal.
+/// Difference, over the largest load, below which two loads count as equal.
 const SAME_LOAD: f64 = 1e-3;
 
 /// Number of parts into which an interval between two increments is divided.
@@ -352,6 +357,13 @@ mod tests {
                 .dead_load_reaches,
             None
         );
+    }
+
+    /// The weight of a hanging sheet may hold its hook down all the way.
+    #[test]
+    fn a_load_that_only_rises_has_no_peak_before_its_end_even_if_it_is_negative() {
+        let peak = curve(|x| x - 3.0, 2.0).peak();
+        assert_eq!((peak.load, peak.dead_load_reaches), (-1.0, None));
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! H_i lambda_i = g_i,     dL/dp -= sum_i sum_h d/dp [ grad W(eps_h(q_i, p); p) . D eps_h(q_i, p)[lambda_i] ]
 //! ```
 //!
-//! which is local to each hinge in p = (attachment point, centroids, angle of e_sec, w_lig, alpha). Each load
+//! which is local to each hinge in p = (attachment point, reference points, angle of e_sec, w_lig, alpha). Each load
 //! step reuses the factors of its own tangent, refined against that tangent. For the constants
 //! of (11) the bracket is `eps_c e_c . D eps_h[lambda]`, for the loads it is `-zeta lambda`, for the weight minus its
 //! virtual work. Under displacement

@@ -8,7 +8,7 @@
 //! mu N (sqrt(d^2 + c^2) - c),     force  -mu N d / sqrt(d^2 + c^2)
 //! ```
 //!
-//! so that a point that sticks creeps by less than c before it slides. Minimising energy and friction over increments that
+//! so that a point that sticks creeps by the order of c in every increment. Minimising energy and friction over increments that
 //! are small is the usual incremental formulation of dry friction; it depends on the path, and its tangent is symmetric.
 
 use crate::equilibrium::panel_force::PanelForce;

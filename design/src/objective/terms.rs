@@ -86,8 +86,8 @@ pub struct ObjectiveConfig {
     #[schemars(range(min = 0.0, max = 1e9))]
     pub domain: f64,
     /// Weight of the peak of the load, for a sheet that a dead load of the final size shall open: the maximum of the load at the
-    /// load steps over that at the end, less one. Needs `[drive]`, and as many load steps as resolve the peak. Never relative to
-    /// a gradient.
+    /// load steps over that at the end, less one. Needs `[drive]`, a start that is pulled and not held back at its end, and as
+    /// many load steps as resolve the peak. Never relative to a gradient.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e9))]
     pub peak_load: f64,
@@ -103,6 +103,8 @@ pub struct Setting<'a> {
     pub mean_panel_area: f64,
     /// Radius of the windows of the hinges (mm).
     pub r_win: f64,
+    /// The prescribed stroke of the loads, if there is one.
+    pub stroke: Option<f64>,
 }
 
 impl ObjectiveConfig {
@@ -128,11 +130,12 @@ impl ObjectiveConfig {
             Weighted::new(limited, PanelWidth { minimum }),
             Weighted::new(self.domain * area, DomainPenalty { domain }),
         ];
-        if self.peak_load > 0.0 {
-            penalties.push(Weighted::new(
-                self.peak_load * area,
-                PeakLoad { temperature },
-            ));
+        if let Some(stroke) = setting.stroke.filter(|_| self.peak_load > 0.0) {
+            let peak = PeakLoad {
+                temperature,
+                stroke,
+            };
+            penalties.push(Weighted::new(self.peak_load * area, peak));
         }
         Objective {
             shape: self.shape(setting),
@@ -236,6 +239,7 @@ mod tests {
             ))),
             mean_panel_area: 10.0,
             r_win: 10.0,
+            stroke: None,
         })
     }
 

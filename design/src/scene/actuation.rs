@@ -2,6 +2,7 @@
 
 use crate::pattern::grid::{EDGES, Grid};
 use crate::sheet::cut_sheet::PanelPoint;
+use hinge::STANDARD_GRAVITY;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -20,7 +21,7 @@ pub struct SupportConfig {
     #[serde(default)]
     pub at: At,
     /// Diameter of a hole at the point for a nail or a hook (mm).
-    #[schemars(range(min = 0.2, max = 200.0))]
+    #[schemars(range(min = 0.05, max = 200.0))]
     pub hole: Option<f64>,
     /// Width of a clip that holds the edge `at` of a clamped panel (mm).
     #[schemars(range(min = 1.0, max = 2e3))]
@@ -89,7 +90,7 @@ pub struct LoadConfig {
     #[serde(default)]
     pub at: At,
     /// Diameter of a hole at the point for a hook (mm).
-    #[schemars(range(min = 0.2, max = 200.0))]
+    #[schemars(range(min = 0.05, max = 200.0))]
     pub hole: Option<f64>,
     /// Width of a clip on the edge `at`, from which the load hangs (mm).
     #[schemars(range(min = 1.0, max = 2e3))]
@@ -204,15 +205,22 @@ impl Default for At {
 impl At {
     /// The point of a panel of a sheet.
     pub(super) fn point(self) -> PanelPoint {
-        let edge = match self {
-            Self::Named(NamedPoint::Centroid) => return PanelPoint::Centroid,
-            Self::Point(position) => return PanelPoint::Fixed(position),
-            Self::Named(NamedPoint::Bottom) => SheetEdge::Bottom,
-            Self::Named(NamedPoint::Right) => SheetEdge::Right,
-            Self::Named(NamedPoint::Top) => SheetEdge::Top,
-            Self::Named(NamedPoint::Left) => SheetEdge::Left,
-        };
-        PanelPoint::Middle(EDGES[edge as usize])
+        match (self, self.edge()) {
+            (Self::Point(position), _) => PanelPoint::Fixed(position),
+            (_, Some(edge)) => PanelPoint::Middle(EDGES[edge as usize]),
+            (_, None) => PanelPoint::Centroid,
+        }
+    }
+
+    /// The edge of the panel in whose middle the point is.
+    pub(super) fn edge(self) -> Option<SheetEdge> {
+        match self {
+            Self::Point(_) | Self::Named(NamedPoint::Centroid) => None,
+            Self::Named(NamedPoint::Bottom) => Some(SheetEdge::Bottom),
+            Self::Named(NamedPoint::Right) => Some(SheetEdge::Right),
+            Self::Named(NamedPoint::Top) => Some(SheetEdge::Top),
+            Self::Named(NamedPoint::Left) => Some(SheetEdge::Left),
+        }
     }
 }
 
@@ -231,6 +239,13 @@ impl fmt::Display for At {
 }
 
 impl LoadConfig {
+    /// (F_x, F_y, M), with the hung mass along `down` (N, N, N mm).
+    pub(super) fn values(&self, down: Option<[f64; 2]>) -> [f64; 3] {
+        let hung = 1e-3 * STANDARD_GRAVITY * self.mass_g.unwrap_or(0.0);
+        let [x, y] = [0, 1].map(|c| self.force[c] + down.map_or(0.0, |down| hung * down[c]));
+        [x, y, self.couple]
+    }
+
     /// Multiplies force, mass and couple.
     pub fn scale(&mut self, factor: f64) {
         self.mass_g = self.mass_g.map(|mass| factor * mass);

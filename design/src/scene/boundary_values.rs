@@ -7,7 +7,6 @@ use crate::scene::actuation::{EdgeLoadConfig, LoadConfig, OpeningCoupleConfig, S
 use crate::scene::checked_scene::Scene;
 use crate::sheet::cut_sheet::{Grip, PanelPoint};
 use crate::sheet::topology::{HingeSite, hinge_sites};
-use hinge::STANDARD_GRAVITY;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -189,10 +188,8 @@ impl SupportConfig {
 impl LoadConfig {
     /// `down` is the direction of gravity in the plane of the sheet.
     fn on(&self, grid: Grid, down: Option<[f64; 2]>) -> AppliedLoad {
-        let hung = 1e-3 * STANDARD_GRAVITY * self.mass_g.unwrap_or(0.0);
         let [column, row] = self.panel;
-        let [x, y] = [0, 1].map(|c| self.force[c] + down.map_or(0.0, |down| hung * down[c]));
-        let load = [x, y, self.couple];
+        let load = self.values(down);
         AppliedLoad {
             name: format!("load, panel [{column},{row}]"),
             place: Some(self.panel),

@@ -12,9 +12,8 @@ use crate::scene::invalid_scene::InvalidScene;
 use crate::scene::keys::SceneConfig;
 use crate::scene::posture::Posture;
 use crate::scene::sheet_config::SheetConfig;
-use crate::sheet::cut_sheet::PanelPoint;
 use crate::sheet::topology::panel_endpoints;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
 use support::key_limits::{self, within};
 
@@ -167,25 +166,44 @@ fn posture(scene: &SceneConfig) -> Result<(), InvalidScene> {
     Ok(())
 }
 
-/// The points at which panels are held or pulled: one for each panel, inside it in the start pattern.
+/// A support or a load of a panel, as far as it is attached to a point.
+struct Attached {
+    key: String,
+    panel: [usize; 2],
+    at: At,
+    hole: Option<f64>,
+    clip: Option<f64>,
+}
+
+/// The points at which panels are held or pulled: one for each panel, inside it in the start pattern, with one hole or clip.
 fn attachments(scene: &SceneConfig) -> Result<(), InvalidScene> {
-    let supports = scene.supports.iter().enumerate().map(|(i, support)| {
-        let key = format!("supports[{i}]");
-        (key, support.panel, support.at, support.clip)
+    let supports = scene.supports.iter().enumerate();
+    let supports = supports.map(|(i, support)| Attached {
+        key: format!("supports[{i}]"),
+        panel: support.panel,
+        at: support.at,
+        hole: support.hole,
+        clip: support.clip,
     });
-    let loads = scene.loads.iter().enumerate().map(|(i, load)| {
-        let key = format!("loads[{i}]");
-        (key, load.panel, load.at, load.clip)
+    let loads = scene.loads.iter().enumerate().map(|(i, load)| Attached {
+        key: format!("loads[{i}]"),
+        panel: load.panel,
+        at: load.at,
+        hole: load.hole,
+        clip: load.clip,
     });
-    let mut points: BTreeMap<[usize; 2], At> = BTreeMap::new();
-    for (key, panel, at, clip) in supports.chain(loads) {
+    let (mut points, mut fastened) = (BTreeMap::new(), BTreeSet::new());
+    for attached in supports.chain(loads) {
+        let Attached { panel, at, .. } = attached;
         if points.insert(panel, at).is_some_and(|other| other != at) {
             return Err(InvalidScene::TwoPoints { panel });
         }
-        if clip.is_some() && !matches!(at.point(), PanelPoint::Middle(_)) {
-            return Err(InvalidScene::ClipOffEdge { key });
+        let has_fastening = attached.hole.or(attached.clip).is_some();
+        if has_fastening && !fastened.insert(panel) {
+            return Err(InvalidScene::TwoFastenings { panel });
         }
-        inside(scene, key, panel, at)?;
+        fastening(scene, &attached)?;
+        inside(scene, attached.key, panel, at)?;
     }
     let grid = scene.sheet.grid();
     for (panel, at) in points {
@@ -195,6 +213,32 @@ fn attachments(scene: &SceneConfig) -> Result<(), InvalidScene> {
         };
         if at != At::default() && scene.edge_loads.iter().any(loaded) {
             return Err(InvalidScene::EdgeAndPoint { panel });
+        }
+    }
+    Ok(())
+}
+
+/// A clip is on an edge of the sheet, a hole inside its panel and wider than the kerf.
+fn fastening(scene: &SceneConfig, attached: &Attached) -> Result<(), InvalidScene> {
+    let (key, grid) = (attached.key.clone(), scene.sheet.grid());
+    let edge = attached.at.edge();
+    if attached.clip.is_some() {
+        let panel = attached.panel;
+        let Some(edge) = edge else {
+            return Err(InvalidScene::ClipOffEdge { key });
+        };
+        let outer = edge.panels(grid);
+        if !outer.contains(&grid.panel(panel[0], panel[1])) {
+            return Err(InvalidScene::ClipInside { key, panel });
+        }
+    }
+    if let Some(hole) = attached.hole {
+        if edge.is_some() {
+            return Err(InvalidScene::HoleOnEdge { key });
+        }
+        let kerf = scene.process.kerf;
+        if hole <= kerf {
+            return Err(InvalidScene::HoleBelowKerf { key, hole, kerf });
         }
     }
     Ok(())
@@ -246,15 +290,13 @@ fn supports(scene: &SceneConfig) -> Result<(), InvalidScene> {
 fn loads(scene: &SceneConfig) -> Result<(), InvalidScene> {
     for (i, load) in scene.loads.iter().enumerate() {
         panel(scene, || format!("loads[{i}].panel"), load.panel)?;
-        let falls = scene
-            .posture
-            .is_some_and(|posture| posture.down().is_some());
-        if load.mass_g.is_some() && !falls {
+        let down = scene.posture.and_then(|posture| posture.down());
+        if load.mass_g.is_some() && down.is_none() {
             return Err(InvalidScene::NoGravity { i });
         }
         let mut supports = scene.supports.iter();
         let support = supports.find(|support| support.panel == load.panel);
-        let values = [load.force[0], load.force[1], load.couple];
+        let values = load.values(down);
         let held = support.map_or([false; 3], |support| support.kind.holds());
         let mut held = held.iter().zip(values);
         if held.any(|(held, value)| *held && value != 0.0) {

@@ -89,6 +89,20 @@ pub enum InvalidScene {
         "{key}.clip: a clip holds an edge: set at = \"bottom\", \"right\", \"top\" or \"left\""
     )]
     ClipOffEdge { key: String },
+    #[error(
+        "{key}.clip: a clip holds an edge of the sheet, and this edge of panel {panel:?} is inside: clip another panel or edge"
+    )]
+    ClipInside { key: String, panel: [usize; 2] },
+    #[error(
+        "{key}.hole: a hole at the edge of a panel would be open: set `at` to a point [x, y] inside the panel, or use a clip"
+    )]
+    HoleOnEdge { key: String },
+    #[error("{key}.hole = {hole} mm violates hole > process.kerf = {kerf} mm")]
+    HoleBelowKerf { key: String, hole: f64, kerf: f64 },
+    #[error(
+        "panel {panel:?} has two holes or clips at one point: give one of its supports and loads a hole or a clip"
+    )]
+    TwoFastenings { panel: [usize; 2] },
     #[error("supports[{i}].clip: a clip keeps its panel from turning: set kind = \"clamp\"")]
     ClipTurns { i: usize },
     #[error(

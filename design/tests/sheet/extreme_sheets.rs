@@ -147,7 +147,7 @@ fn a_learned_sheet_has_a_status_under_loads_of_any_size() {
     );
     let options = design::sheet::cut_sheet::SheetOptions {
         hinge_point: HingePoint::CutTip,
-        ..AT_CORNER
+        process: AT_CORNER.process,
     };
     let sheet = Sheet::new(&pattern.unwrap(), &[16.0; 12], options).unwrap();
     let law = tiny();

@@ -32,7 +32,6 @@ fn cut(outline: Outline, w_lig: f64, hinge_point: HingePoint, kerf: f64) -> Shee
             kerf,
             ..AT_CORNER.process
         },
-        ..AT_CORNER
     };
     Sheet::new(&pattern, &[w_lig; 12], options).unwrap()
 }

@@ -13,7 +13,7 @@ fn sheet(hinge_point: HingePoint) -> Sheet {
     let pattern = pattern(&case("p1_3x3_random"));
     let options = SheetOptions {
         hinge_point,
-        ..AT_CORNER
+        process: AT_CORNER.process,
     };
     let widths = Random::new(1).numbers(pattern.grid.hinge_count(), 0.05);
     let widths: Vec<f64> = widths.iter().map(|w| 0.1 + w).collect();

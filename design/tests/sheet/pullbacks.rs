@@ -1,6 +1,6 @@
 //! Vector-Jacobian products of pattern, sheet and ideal deployment against finite differences.
 
-use crate::cases::{AT_CORNER, case, coordinates, grid, outline};
+use crate::cases::{AT_CORNER, PROCESS, case, coordinates, grid, outline};
 use crate::random::Random;
 use design::analysis::taylor::central_slope;
 use design::pattern::cut_pattern::{CutPattern, Outline};
@@ -76,7 +76,7 @@ fn gradients_in_the_sheet_are_pulled_back_to_the_design() {
         for outline in [given, TAPERED] {
             let options = SheetOptions {
                 hinge_point,
-                ..AT_CORNER
+                process: PROCESS,
             };
             let gripped = |design: &DesignVector| {
                 let (pattern, sheet) = cut(design, outline, options);

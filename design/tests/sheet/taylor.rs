@@ -374,7 +374,13 @@ fn the_peak_of_the_load() {
             weight,
         );
         let mut problem = problem(model, HingePoint::Corner);
-        let peak = Weighted::new(1e5, PeakLoad { temperature: 0.2 });
+        let peak = Weighted::new(
+            1e5,
+            PeakLoad {
+                temperature: 0.2,
+                stroke: 60.0,
+            },
+        );
         problem.objective.penalties.push(peak);
         let value = problem.evaluate(&start()).unwrap().terms["peak_load"];
         assert!(value.abs() > 1e-3, "{value}");

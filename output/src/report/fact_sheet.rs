@@ -41,7 +41,7 @@ pub struct FactSheet {
     pub panels: [usize; 2],
     /// Extent of the flat sheet along x and y (mm).
     pub flat_size: [f64; 2],
-    /// Extent of the deployed sheet along x and y with all panels held flat (mm).
+    /// Extent of the deployed sheet along x and y with all panels in the plane (mm).
     pub deployed_size: [f64; 2],
     /// Load and stroke at the end of the path; `None` without equilibrium, or if nothing moves the sheet.
     pub reached: Option<Reached>,
@@ -76,7 +76,7 @@ pub struct Reached {
     pub units: [&'static str; 2],
     /// The maximum of the load along the path; `None` under dead loads, whose maximum is the load at the end.
     pub peak: Option<LoadPeak>,
-    /// The maxima and minima of the load on the way; empty under dead loads.
+    /// The maxima and minima of the load on the way; empty under dead loads, or if the sheet jumps.
     pub limit_points: Vec<LimitPoint>,
     /// Increment of the load for an increment of the displacement; `None` if supports move the sheet, or if the
     /// tangent is singular.
@@ -172,7 +172,7 @@ impl FactSheet {
             ("flat size", size(self.flat_size)),
             (
                 "deployed size",
-                format!("{}, panels held flat", size(self.deployed_size)),
+                format!("{}, panels in the plane", size(self.deployed_size)),
             ),
             ("hinge law", self.hinge_label.to_owned()),
         ];
@@ -225,14 +225,21 @@ impl Reached {
             .then(|| ActuationCurve::resolved(mechanics, &deployment.sheet))
             .flatten();
         Some(Self {
-            stroke_of: stroke_of(scene, &curve),
+            stroke_of: if scene.weight_by_area() == [0.0; 2] {
+                stroke_of(scene, &curve)
+            } else {
+                stroke_of(scene, &curve) + ", from the flat sheet before its weight came on"
+            },
             load_factor: last.load_factor,
             ended_early: last.status == Status::Diverged,
             displacement,
             load,
             units: curve.units(),
             peak: resolved.as_ref().map(ActuationCurve::peak),
-            limit_points: resolved.map_or_else(Vec::new, |curve| curve.limit_points()),
+            // Beyond a jump the curve is another branch.
+            limit_points: resolved
+                .filter(|_| deployment.path.iter().all(|step| step.jumps == 0))
+                .map_or_else(Vec::new, |curve| curve.limit_points()),
             stiffness: by_loads,
         })
     }

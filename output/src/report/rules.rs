@@ -224,12 +224,25 @@ fn overstrained(judged: &Judged) -> Option<Warning> {
 }
 
 fn path(judged: &Judged) -> Option<Warning> {
-    let path = &judged.deployment.path;
-    let mut before = "0".to_owned();
+    let weighed = judged.deployment.weight_steps().len();
+    // Under a prescribed stroke or motion a jump is no maximum of the load.
+    let dead = judged.scene.config.has_loads() && judged.scene.config.drive.is_none();
+    let mut before = "the beginning".to_owned();
     let mut found = Vec::new();
-    for step in path {
-        found.extend(departure(step, &before));
-        before = place(step);
+    for (i, step) in judged.deployment.path.iter().enumerate() {
+        let by_weight = i < weighed;
+        let place = match (by_weight, step.weight == 1.0) {
+            (true, true) => "the whole weight".to_owned(),
+            (true, false) => format!("{} of the weight", rounded(step.weight, 2)),
+            (false, _) => format!("load factor {:.3}", step.load_factor),
+        };
+        let peaks = if by_weight || !dead {
+            ""
+        } else {
+            "the load peaks and "
+        };
+        found.extend(departure(step, peaks, &before, &place));
+        before = place;
     }
     if found.is_empty() {
         return None;
@@ -245,24 +258,12 @@ fn path(judged: &Judged) -> Option<Warning> {
     Some(warning)
 }
 
-/// A place on the path.
-fn place(step: &LoadStep) -> String {
-    if step.weight < 1.0 {
-        format!("{} of the weight", rounded(step.weight, 2))
-    } else {
-        format!("load factor {:.3}", step.load_factor)
-    }
-}
-
-/// How a step of the path is not a stable equilibrium, with the place `before` it; `None` if it is one.
-fn departure(step: &LoadStep, before: &str) -> Option<String> {
-    let place = place(step);
+/// How a step of the path at a place is not a stable equilibrium; `None` if it is one.
+fn departure(step: &LoadStep, peaks: &str, before: &str, place: &str) -> Option<String> {
     Some(match step.status {
         Status::Converged | Status::LeftDomain => return None,
         Status::Almost => format!("residual {:.0e} at {place}", step.residual),
-        Status::LimitPoint => {
-            format!("the load peaks between {before} and {place}, where the sheet jumps")
-        }
+        Status::LimitPoint => format!("{peaks}the sheet jumps between {before} and {place}"),
         Status::Diverged => {
             let end = step.descent_end.map(|end| format!(": {end}"));
             format!(
@@ -380,7 +381,7 @@ fn friction(judged: &Judged) -> Option<Warning> {
     };
     Some(Concern::Friction.of_sheet(format!(
         "friction on the surface, at mu = {}, is {}, and the design does not contain it: {effect}; lift or shake the sheet \
-         while it opens, or let it float on rollers",
+         while it opens, or reduce the friction",
         lying.coefficient,
         of_the_load(ratio)
     )))
@@ -390,7 +391,7 @@ fn hung_weight(judged: &Judged) -> Option<Warning> {
     let weight = &judged.run.as_ref()?.facts.self_weight;
     let ratio = weight.hung.filter(|ratio| *ratio > HUNG)?;
     Some(Concern::HungWeight.of_sheet(format!(
-        "the weights that hang from the sheet have {} times its mass: mass_g is in grams",
+        "the weights that hang from the sheet have {} times its mass: mass_g is in grams; write 2 for two grams",
         rounded(ratio, 2)
     )))
 }
@@ -408,18 +409,18 @@ fn load_peak(judged: &Judged) -> Option<Warning> {
         carried,
     ]
     .map(|value| rounded(value, 4));
-    let hung = if force == "N" {
-        "hung weight"
+    let such = if force == "N" {
+        ", such as a hung weight,"
     } else {
-        "dead load"
+        ""
     };
     let consequence = if reached.load * reached.displacement > 0.0 {
         format!(
-            "a {hung} of {last} {force} does not open this sheet: it moves it by {carried} {length} and not by {end} {length}"
+            "a dead load of {last} {force}{such} does not open this sheet: it moves it by {carried} {length} and not by {end} {length}"
         )
     } else {
         format!(
-            "no {hung} opens this sheet by {end} {length}: the load has changed its direction there, to {last} {force}"
+            "no dead load opens this sheet by {end} {length}: the load has changed its direction there, to {last} {force}"
         )
     };
     Some(Concern::LoadPeak.of_sheet(format!(

@@ -54,7 +54,10 @@ impl SelfWeight {
     ) -> Self {
         let weight = hinge::STANDARD_GRAVITY * mass_kg;
         let load = load.map(f64::abs).filter(|load| *load > 0.0);
+        // Under a prescribed stroke a mass is a direction only.
+        let dead = scene.config.drive.is_none();
         let hung: f64 = (scene.config.loads.iter())
+            .filter(|_| dead)
             .filter_map(|load| load.mass_g)
             .sum();
         Self {

@@ -238,7 +238,9 @@ fn the_largest_load_of_a_driven_path_is_stated() {
     };
     assert_eq!(warning.severity, Severity::Warning);
     assert!(
-        warning.message.contains("a hung weight of"),
+        warning
+            .message
+            .contains("such as a hung weight, does not open this sheet"),
         "{}",
         warning.message
     );

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! over the load steps under the whole weight. Where it is zero, a dead load of the final size opens the sheet; where it is
-//! positive, the sheet needs more on the way. It is infinite if the load at the end acts against the largest one.
+//! positive, the sheet needs more on the way. It is infinite if the load at the end acts against the stroke.
 
 use crate::geometry::smooth_extrema::smooth_max;
 use crate::objective::term::{Deployed, Term, TermGradient};
@@ -16,6 +16,8 @@ use crate::objective::term::{Deployed, Term, TermGradient};
 pub struct PeakLoad {
     /// tau, in units of the load at the end.
     pub temperature: f64,
+    /// The prescribed stroke, of which the sign counts.
+    pub stroke: f64,
 }
 
 impl Term for PeakLoad {
@@ -31,11 +33,7 @@ impl Term for PeakLoad {
         let (Some(&last), Some(&end)) = (loaded.last(), loads.last()) else {
             return f64::INFINITY;
         };
-        let largest = loads
-            .iter()
-            .copied()
-            .max_by(|p, q| p.abs().total_cmp(&q.abs()));
-        if largest.is_none_or(|largest| largest * end <= 0.0) {
+        if self.stroke * end <= 0.0 {
             return f64::INFINITY;
         }
         let ratios: Vec<f64> = loads.iter().map(|load| load / end).collect();
