@@ -1,7 +1,7 @@
 //! The path of a sheet that lies on a surface with friction, in increments of the load parameter.
 //!
-//! Every increment minimises the potential (10) and the friction of the panels since the state before
-//! ([`Friction`](crate::equilibrium::friction::Friction)). It has no gradient in the design.
+//! Every increment minimises the potential (10) and the friction of the panels since the state before. It has no gradient
+//! in the design.
 
 use crate::equilibrium::branch::Branch;
 use crate::equilibrium::friction::Friction;
