@@ -233,7 +233,11 @@ impl fmt::Display for At {
             Self::Named(NamedPoint::Right) => f.write_str("the middle of the right edge of "),
             Self::Named(NamedPoint::Top) => f.write_str("the middle of the upper edge of "),
             Self::Named(NamedPoint::Left) => f.write_str("the middle of the left edge of "),
-            Self::Point([x, y]) => write!(f, "the point ({x}, {y}) of "),
+            Self::Point(at) => {
+                // To a thousandth of a millimetre.
+                let [x, y] = at.map(|x| (1e3 * x).round() / 1e3);
+                write!(f, "the point ({x}, {y}) of ")
+            }
         }
     }
 }
