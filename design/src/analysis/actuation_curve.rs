@@ -91,41 +91,31 @@ impl ActuationCurve {
         Self::through(mechanics, sheet, &before, steps.iter().map(load_and_state))
     }
 
-    /// The curve through the load factors and configurations of states of the path, beginning `before` the loads.
-    fn through<'a>(
+    /// The curve through the load factors and configurations of states, beginning `before` the loads; `None` if nothing
+    /// moves the sheet.
+    pub(crate) fn through<'a>(
         mechanics: &Mechanics,
         sheet: &Sheet,
         (load_factor, start): &'a (f64, Configuration),
         states: impl Iterator<Item = (f64, &'a [[f64; 3]])>,
     ) -> Option<Self> {
-        let (mover, direction) = moving(&mechanics.solver);
-        let (_, translational) = magnitude(&direction)?;
+        let (mover, direction) = match magnitude(&mechanics.solver.loads) {
+            Some(_) => (Mover::Loads, mechanics.solver.loads.to_vec()),
+            None => (Mover::Supports, prescribed(&mechanics.solver)),
+        };
+        let (size, translational) = magnitude(&direction)?;
+        let point = |(zeta, configuration): (f64, &[[f64; 3]])| match mover {
+            Mover::Loads => [work(&direction, configuration) / size, zeta * size],
+            Mover::Supports => {
+                let forces = holding_forces(mechanics, sheet, 1.0, configuration);
+                [zeta * size, work(&direction, &forces) / size]
+            }
+        };
         let before = std::iter::once((*load_factor, &start[..]));
-        let points = before.chain(states).map(|(load_factor, configuration)| {
-            Self::point(mechanics, sheet, load_factor, configuration)
-        });
         Some(Self {
             mover,
             translational,
-            points: points.collect::<Option<_>>()?,
-        })
-    }
-
-    /// (displacement, load) of a state of the path; `None` if nothing moves the sheet.
-    pub fn point(
-        mechanics: &Mechanics,
-        sheet: &Sheet,
-        load_factor: f64,
-        configuration: &[[f64; 3]],
-    ) -> Option<[f64; 2]> {
-        let (mover, direction) = moving(&mechanics.solver);
-        let (size, _) = magnitude(&direction)?;
-        Some(match mover {
-            Mover::Loads => [work(&direction, configuration) / size, load_factor * size],
-            Mover::Supports => {
-                let forces = holding_forces(mechanics, sheet, 1.0, configuration);
-                [load_factor * size, work(&direction, &forces) / size]
-            }
+            points: before.chain(states).map(point).collect(),
         })
     }
 
@@ -293,14 +283,6 @@ pub fn holding_forces(
         (0..3).for_each(|d| force[d] -= weight.force[d]);
     }
     forces
-}
-
-/// What moves the sheet, and the loads or motions by which it does.
-fn moving(solver: &EquilibriumSolver) -> (Mover, Vec<[f64; 3]>) {
-    match magnitude(&solver.loads) {
-        Some(_) => (Mover::Loads, solver.loads.to_vec()),
-        None => (Mover::Supports, prescribed(solver)),
-    }
 }
 
 /// The motions (u_x, u_y, phi) of the panels that the supports prescribe at full load.

@@ -34,29 +34,25 @@ impl FrictionEffect {
     ) -> Result<Self, (f64, DescentEnd)> {
         let sheet = &deployment.sheet;
         let law = mechanics.law.prepare(&sheet.designs());
-        let slid = (mechanics.solver).slid(mechanics.hinged(sheet, &*law, false), by_area)?;
+        let hinged = mechanics.hinged(sheet, &*law, false);
+        let slid = mechanics.solver.slid(hinged, by_area)?;
         let deformations = hinge_deformations(sheet, &slid.configuration);
-        let energies =
-            (mechanics.hinged(sheet, &*law, false)).energies(&deformations, Order::Value);
+        let energies = hinged.energies(&deformations, Order::Value);
         let stored = energies.iter().map(|energy| energy.w).sum();
         let without = deployment.final_step();
-        let end = |load_factor: f64, configuration: &[[f64; 3]]| {
-            ActuationCurve::point(mechanics, sheet, load_factor, configuration)
-        };
-        let ends = [
-            end(without.load_factor, &without.configuration),
-            end(slid.load_factor, &slid.configuration),
-        ];
+        let ends = ActuationCurve::through(
+            mechanics,
+            sheet,
+            &(without.load_factor, without.configuration.clone()),
+            std::iter::once((slid.load_factor, &*slid.configuration)),
+        );
         let [free, held] = [&without.configuration, &slid.configuration]
             .map(|configuration| deployed_corners(sheet, configuration));
         let apart: Vec<f64> = std::iter::zip(free.as_flattened(), held.as_flattened())
             .map(|(p, q)| distance(*p, *q))
             .collect();
         Ok(Self {
-            ends: match ends {
-                [Some(without), Some(with)] => Some([without, with]),
-                _ => None,
-            },
+            ends: ends.map(|curve| [curve.points[0], curve.points[1]]),
             corners: [
                 root_mean_square(apart.iter().copied()),
                 apart.into_iter().fold(0.0, f64::max),
