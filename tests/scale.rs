@@ -6,7 +6,7 @@ mod common;
 
 use common::Workplace;
 use dataset::Database;
-use fe_driver::{Campaign, CollectedWindow, ToolVersions, WindowSolve, restore};
+use fe_driver::{Campaign, CollectedWindow, Solve, ToolVersions, WindowSolve, restore};
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 use std::process::{Command, Stdio};

@@ -1,32 +1,39 @@
-//! Window solves by finite elements: the service that makes them, and campaigns of thousands of them.
+//! Solves by finite elements: the service that makes them, and campaigns of thousands of window solves.
 //!
-//! **Solve.** A [`WindowSolve`] drives one hinge design along one path, from the undeformed state to a deformation
-//! (a, s, theta). Every converged increment is a sample (W, grad W, D) of section 2.4. A *ray* is a straight path.
+//! **Solve.** A [`Solve`] is a problem with everything that determines its result, driven along a path of increments from
+//! lambda = 0 to 1. What is kept of the converged increments is a [`SolvedPath`]. A further kind of problem is one more
+//! implementation of the two traits.
 //!
-//! **Identity.** Hinge, path, material, tier and mesh, increments, versions of the programs and of this crate determine the
-//! result. The id of a solve is a hash of them.
+//! **Window.** A [`WindowSolve`] drives one hinge design along one path, from the undeformed state to a deformation
+//! (a, s, theta). Every converged increment is a sample (W, grad W, D) of section 2.4. A *ray* is a straight path. Types
+//! that work for any kind of solve are those of windows where no kind is named.
 //!
-//! **Solver.** A [`WindowSolver`] makes one attempt at a solve. [`CalculiX`] is one, the deterministic [`FakeSolver`] of the
-//! tests another; a further program is one more implementation.
+//! **Identity.** The id of a solve is a hash of the problem: for a window, of hinge, path, material, tier and mesh,
+//! increments, versions of the programs and of this crate.
 //!
-//! **Attempts.** A solve that fails is attempted again, at most three times ([`AttemptKind`]) and depending on the
-//! [`FailureKind`]: the same again, shorter increments, a finer mesh. The samples of the attempt that reaches furthest are kept.
+//! **Solver.** A [`Solver`] makes one attempt at a solve of its kind. [`CalculiX`] is one, the deterministic [`FakeSolver`]
+//! of the tests another; a further program is one more implementation.
+//!
+//! **Attempts.** A solve that fails is attempted again, depending on the [`FailureKind`] and as its kind of problem says
+//! ([`Solve::next_attempt`]). A window is, at most three times: the same again, shorter increments, a finer mesh
+//! ([`AttemptKind`]). The samples of the attempt that reaches furthest are kept.
 //!
 //! **Store.** Every solve has one folder in a [`SolveStore`], named by its id, whose files appear whole or not at all. A
-//! solve without its result is not done. What is done is not solved again.
+//! solve without its result is not done. What is done is not solved again. Folders of several kinds of problem can be in
+//! one store.
 //!
-//! **List.** [`WindowService::solve`] works through a list of solves on parallel workers and promises: every result, in
-//! order, or an error that halts the whole list (a missing program, a full disk, a stop), after which the same list
-//! continues where it ended. A window that fails ends no list: it is a [`SolvedWindow`] that names its failure and its
+//! **List.** [`SolveService::solve`] works through a list of solves of one kind on parallel workers and promises: every
+//! result, in order, or an error that halts the whole list (a missing program, a full disk, a stop), after which the same
+//! list continues where it ended. A solve that fails ends no list: it is a [`Solved`] that names its failure and its
 //! folder.
 //!
-//! **Campaign.** A [`Campaign`] is a list of solves with a ledger: [`plan`] counts what is left, [`run`] solves it,
+//! **Campaign.** A [`Campaign`] is a list of window solves with a ledger: [`plan`] counts what is left, [`run`] solves it,
 //! [`finished_windows`] returns the results, and [`restore`] recreates the store from collected samples.
 //!
 //! One ray, with gmsh and CalculiX on the PATH:
 //!
 //! ```no_run
-//! use fe_driver::{CalculiX, Ray, WindowProblem, WindowSolve, WindowSolver};
+//! use fe_driver::{CalculiX, Ray, Solver, WindowProblem, WindowSolve};
 //! use hinge::{HingeConstants, HingeDeformation, SheetMaterial};
 //! use mesher::Tier;
 //! use std::path::Path;
@@ -53,6 +60,7 @@
 mod calculix;
 mod campaign;
 mod record_file;
+mod sheet;
 mod solve;
 
 pub use calculix::calculix_solver::{CalculiX, reached};
@@ -75,18 +83,24 @@ pub use campaign::slurm::{
 };
 pub use campaign::solve_again::{Difference, SolvedAgain, solve_again};
 pub use campaign::status::{Status, Tally, Throughput, refuse_changed, status};
+pub use sheet::invalid_sheet_problem::InvalidSheetProblem;
+pub use sheet::sheet_problem::{Held, History, Keeping, Place, Pulled, SheetProblem, SheetSolve};
+pub use sheet::sheet_solver::sheet_reached;
+pub use sheet::sheet_states::{HingeState, PanelState, SheetState, SheetStates, SheetSurface};
 pub use solve::attempts::SolveListError;
 pub use solve::deformation_path::{DeformationPath, PathError};
 pub use solve::failure::{FailureKind, UnknownFailure};
 pub use solve::fake_solver::{FakeSolver, Fault};
 pub use solve::hinge_path::{HingePath, Ray};
 pub use solve::ladder::AttemptKind;
-pub use solve::service::WindowService;
+pub use solve::problem::{Solve, SolvedPath};
+pub use solve::service::SolveService;
+pub use solve::solve_error::SolveError;
 pub use solve::solve_folder::{SolveFolder, SolveRecord, SolveStore};
-pub use solve::solved_window::{SolvedWindow, UnsolvedWindow};
+pub use solve::solved::{Solved, Unsolved};
+pub use solve::solver::{Solution, Solver};
 pub use solve::step_control::StepControl;
 pub use solve::tool_versions::ToolVersions;
 pub use solve::window_solve::{WindowProblem, WindowSolve};
-pub use solve::window_solver::{SolveError, WindowSolution, WindowSolver};
 pub use support::file_error::FileError;
 pub use support::shard::Shard;

@@ -1,4 +1,4 @@
-//! The service that solves windows: identity, solver, attempts, store, lists.
+//! The service of solves of any kind: problem, solver, attempts, store, lists. The window solve is one kind.
 
 pub(crate) mod attempts;
 pub(crate) mod deformation_path;
@@ -7,10 +7,13 @@ pub(crate) mod fake_solver;
 pub(crate) mod hinge_path;
 pub(crate) mod host;
 pub(crate) mod ladder;
+pub(crate) mod problem;
+mod rows_csv;
 pub(crate) mod service;
+pub(crate) mod solve_error;
 pub(crate) mod solve_folder;
-pub(crate) mod solved_window;
+pub(crate) mod solved;
+pub(crate) mod solver;
 pub(crate) mod step_control;
 pub(crate) mod tool_versions;
 pub(crate) mod window_solve;
-pub(crate) mod window_solver;

@@ -4,8 +4,7 @@ mod common;
 
 use common::{TWO_WORKERS, campaign, fake_ccx, history, job_folder, jobs, run_with};
 use fe_driver::{
-    CalculiX, Campaign, CampaignError, Ccx, FailureKind, SolveListError, WindowSolver, plan, run,
-    status,
+    CalculiX, Campaign, CampaignError, Ccx, FailureKind, SolveListError, plan, run, status,
 };
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};

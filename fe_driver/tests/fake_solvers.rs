@@ -4,16 +4,14 @@
 mod common;
 
 use common::{fake_ccx, problem};
-use fe_driver::{
-    CalculiX, Ccx, FailureKind, SolveError, WindowSolution, WindowSolve, WindowSolver,
-};
+use fe_driver::{CalculiX, Ccx, FailureKind, Solution, SolveError, Solver, WindowSolve};
 use mesher::Gmsh;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use support::program::ToolError;
 
-fn solve(body: &str, folder: &Path, limit: Duration) -> Result<WindowSolution, SolveError> {
+fn solve(body: &str, folder: &Path, limit: Duration) -> Result<Solution, SolveError> {
     let solver = CalculiX {
         gmsh: Gmsh::find().unwrap(),
         ccx: Ccx::at(&fake_ccx(folder, body)).unwrap(),

@@ -7,8 +7,7 @@ use common::processes::left_running;
 use common::{TWO_WORKERS, campaign, fake_ccx, history, job_folder, jobs, run_with};
 use fe_driver::{
     CalculiX, Campaign, CampaignError, Ccx, CollectedWindow, FailureKind, Restored, RunOptions,
-    Shard, SolveListError, SolveRecord, SolvedWindow, Tally, WindowSolver, plan, restore, retry,
-    solve_again, status,
+    Shard, SolveListError, SolveRecord, Solved, Tally, plan, restore, retry, solve_again, status,
 };
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -20,7 +19,7 @@ const RAYS: usize = 3;
 /// Real solves with their recorded output.
 struct Recording {
     outputs: PathBuf,
-    jobs: Vec<SolvedWindow>,
+    jobs: Vec<Solved>,
 }
 
 /// Recorded once for all tests.
@@ -70,8 +69,8 @@ fn run_whole(campaign: &Campaign, folder: &Path, tools: &CalculiX) -> Tally {
 }
 
 /// The solves without their costs and their numbers of attempts.
-fn timeless(windows: &[SolvedWindow]) -> Vec<SolvedWindow> {
-    let timeless = |window: &SolvedWindow| {
+fn timeless(windows: &[Solved]) -> Vec<Solved> {
+    let timeless = |window: &Solved| {
         let mut window = window.clone();
         window.record = SolveRecord {
             failure: window.record.failure,
@@ -85,8 +84,8 @@ fn timeless(windows: &[SolvedWindow]) -> Vec<SolvedWindow> {
 }
 
 /// What a database contains of the solves.
-fn in_database(windows: &[SolvedWindow]) -> Vec<CollectedWindow> {
-    let collected = |window: &SolvedWindow| CollectedWindow {
+fn in_database(windows: &[Solved]) -> Vec<CollectedWindow> {
+    let collected = |window: &Solved| CollectedWindow {
         id: window.id.clone(),
         tools: window.solve.tools.clone(),
         solved_tier: window.record.tier,

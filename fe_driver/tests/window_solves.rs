@@ -5,14 +5,14 @@ mod common;
 
 use common::problem;
 use fe_driver::{
-    CalculiX, DeformationPath, HingePath, WindowProblem, WindowSolution, WindowSolve, WindowSolver,
+    CalculiX, DeformationPath, HingePath, Solution, Solver, WindowProblem, WindowSolve,
 };
 use mesher::{Tier, WindowShape};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-fn solve(problem: &WindowProblem) -> WindowSolution {
+fn solve(problem: &WindowProblem) -> Solution {
     solve_in(
         tempfile::tempdir().unwrap().path(),
         &CalculiX::find().unwrap(),
@@ -20,7 +20,7 @@ fn solve(problem: &WindowProblem) -> WindowSolution {
     )
 }
 
-fn solve_in(folder: &Path, solver: &CalculiX, problem: &WindowProblem) -> WindowSolution {
+fn solve_in(folder: &Path, solver: &CalculiX, problem: &WindowProblem) -> Solution {
     let solve = WindowSolve::new(problem.clone(), &solver.versions());
     let limit = Duration::from_secs(300);
     let solution = solver

@@ -5,7 +5,7 @@ use libfuzzer_sys::fuzz_target;
 use mesher::{ElementKind, read_msh};
 
 fuzz_target!(|bytes: &[u8]| {
-    if let Ok(mesh) = read_msh(bytes, ElementKind::Brick) {
+    if let Ok(mesh) = read_msh(bytes, &[ElementKind::Brick]) {
         let edges = mesh.edges.iter().flat_map(|(_, nodes)| nodes);
         let mut indices = mesh.faces.iter().flatten().chain(edges);
         assert!(indices.all(|index| *index < mesh.nodes.len()));

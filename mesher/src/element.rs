@@ -20,6 +20,22 @@ pub enum ElementKind {
 }
 
 impl ElementKind {
+    /// The kind of an element with these nodes.
+    pub fn of_element(nodes: &[usize]) -> Self {
+        match nodes.len() {
+            15 => Self::Wedge,
+            _ => Self::Brick,
+        }
+    }
+
+    /// The kind of the elements above a face of a plane mesh.
+    pub(crate) fn of_face(face: &[usize]) -> Self {
+        match face.len() {
+            6 => Self::Wedge,
+            _ => Self::Brick,
+        }
+    }
+
     /// The name in CalculiX.
     pub fn name(self) -> &'static str {
         match self {

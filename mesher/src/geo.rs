@@ -1,34 +1,51 @@
-//! Generates the gmsh script of the window.
+//! Generates the gmsh scripts of a window and of a sheet.
 
+mod sheet_script;
 mod structured;
 mod unstructured;
 
+pub(crate) use sheet_script::sheet_script;
+
+use crate::frame::Frame;
 use crate::msh::Boundary;
 use crate::tier::PlaneRecipe;
 use crate::window::Window;
 use std::fmt::Write;
+use std::ops::RangeInclusive;
+
+/// Physical tag of the faces of a window.
+const WINDOW: usize = 100;
 
 /// The script that meshes `window` according to `recipe`.
 pub(crate) fn script(window: &Window, recipe: &PlaneRecipe) -> String {
     let mut geo = Script::default();
     match recipe {
-        PlaneRecipe::Structured(recipe) => structured::add(&mut geo, window, recipe),
+        PlaneRecipe::Structured(recipe) => {
+            let curves = structured::add(&mut geo, window, recipe);
+            geo.boundary(Boundary::Hole, &curves.hole);
+            geo.boundary(Boundary::ArcA, &curves.rim_a.arcs);
+            geo.boundary(Boundary::ArcB, &curves.rim_b.arcs);
+        }
         PlaneRecipe::Unstructured(recipe) => unstructured::add(&mut geo, window, recipe),
     }
-    geo.finish()
+    geo.faces(WINDOW, 1..=geo.patches);
+    geo.text
 }
 
 /// A .geo script under construction. The sign of a curve's number gives its direction.
 #[derive(Default)]
 struct Script {
     text: String,
+    /// The frame in which points are given.
+    frame: Frame,
     points: i32,
     curves: i32,
     patches: i32,
 }
 
 impl Script {
-    fn point(&mut self, [x, y]: [f64; 2]) -> i32 {
+    fn point(&mut self, local: [f64; 2]) -> i32 {
+        let [x, y] = self.frame.point(local);
         self.points += 1;
         let id = self.points;
         self.add(format_args!("Point({id}) = {{{x:?}, {y:?}, 0}};"));
@@ -74,7 +91,12 @@ impl Script {
     fn patch(&mut self, curves: [i32; 4]) {
         let id = self.surface(&curves);
         self.add(format_args!("Transfinite Surface {{{id}}};"));
-        self.add(format_args!("Recombine Surface {{{id}}};"));
+        self.recombine(id);
+    }
+
+    /// Joins the triangles of a surface to quadrilaterals.
+    fn recombine(&mut self, surface: i32) {
+        self.add(format_args!("Recombine Surface {{{surface}}};"));
     }
 
     fn boundary(&mut self, boundary: Boundary, curves: &[i32]) {
@@ -82,13 +104,15 @@ impl Script {
         self.add(format_args!("Physical Curve({tag}) = {{{list}}};"));
     }
 
-    /// The finished script. gmsh ignores a last statement without a newline, so every statement ends with one.
-    fn finish(mut self) -> String {
-        let patches = self.patches;
-        self.add(format_args!("Physical Surface(100) = {{1:{patches}}};"));
-        self.text
+    /// Names the faces of surfaces.
+    fn faces(&mut self, tag: usize, surfaces: RangeInclusive<i32>) {
+        let (first, last) = surfaces.into_inner();
+        self.add(format_args!(
+            "Physical Surface({tag}) = {{{first}:{last}}};"
+        ));
     }
 
+    /// gmsh ignores a last statement without a newline, so every statement ends with one.
     fn add(&mut self, statement: std::fmt::Arguments) {
         writeln!(self.text, "{statement}").expect("writing to a string cannot fail");
     }

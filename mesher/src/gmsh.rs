@@ -13,7 +13,7 @@ pub static GMSH: ToolKind = ToolKind {
     install: "apt-get install gmsh",
 };
 
-/// Maximum time limit: gmsh meshes a window in milliseconds, so a longer run hangs.
+/// Maximum time limit: gmsh meshes a window in milliseconds and a sheet in seconds, so a longer run hangs.
 const LIMIT: Duration = Duration::from_secs(60);
 
 /// The gmsh program.
@@ -31,14 +31,16 @@ impl Gmsh {
         Tool::at(&GMSH, program).map(Self)
     }
 
-    /// Meshes `folder/window.geo` with 8-node quadrilaterals, to `folder/window.msh`.
+    /// Meshes `folder/<name>.geo` with 8-node quadrilaterals, to `folder/<name>.msh`.
     pub(crate) fn mesh(
         &self,
         folder: &Path,
+        name: &str,
         limit: Duration,
         stop: &AtomicBool,
     ) -> Result<(), ToolError> {
         let log = folder.join("gmsh.log");
+        let [msh, geo] = ["msh", "geo"].map(|kind| format!("{name}.{kind}"));
         let arguments = [
             "-2",
             "-order",
@@ -51,8 +53,8 @@ impl Gmsh {
             "-format",
             "msh22",
             "-o",
-            "window.msh",
-            "window.geo",
+            &msh,
+            &geo,
         ];
         let limit = limit.min(LIMIT);
         let run = self.0.run(&arguments, folder, &log, limit, stop)?;

@@ -1,9 +1,11 @@
-//! The hinge window: geometry, mesh tiers, the gmsh process and the checks that a mesh must pass.
+//! The hinge window and the sheet of windows and panels: geometry, mesh tiers, the gmsh process and the checks that a mesh
+//! must pass.
 //!
 //! The window is the half-disc of sheet assigned to one hinge (section 2.4). gmsh generates its plane
 //! mesh from a script, either from transfinite patches that move smoothly with (w_lig, alpha), or from free
 //! triangles as in the paper. This crate extrudes the plane mesh to layers of solid elements, adds the
-//! imperfection that initiates buckling, and rejects a mesh that is unsuitable for the solver.
+//! imperfection that initiates buckling, and rejects a mesh that is unsuitable for the solver. In a whole sheet
+//! ([`SheetShape`]) every hinge has the mesh of its window, and every panel is meshed between its windows and its edges.
 //!
 //! ```no_run
 //! use hinge::HingeConstants;
@@ -23,23 +25,31 @@
 #![warn(missing_docs)]
 
 mod element;
+mod extrusion;
+mod frame;
 mod geo;
 mod gmsh;
 mod mesh;
 mod meshing;
 mod msh;
 mod quality;
+mod sheet_mesh;
+mod sheet_shape;
 mod svg;
 mod tier;
+mod vectors;
 mod vtk_cells;
 mod window;
 
 pub use element::ElementKind;
+pub use frame::Frame;
 pub use gmsh::{GMSH, Gmsh};
 pub use mesh::WindowMesh;
 pub use meshing::{MeshError, WindowShape};
 pub use msh::{Boundary, MshError, PlaneMesh, read_msh};
 pub use quality::{MeshDefect, MeshQuality};
+pub use sheet_mesh::{Part, SheetMesh};
+pub use sheet_shape::{InvalidSheet, PanelShape, PlacedWindow, SheetShape};
 pub use svg::plane_mesh_svg;
 pub use tier::{
     Imperfection, MeshRecipe, PlaneRecipe, Structured, Tier, UnknownTier, Unstructured,

@@ -5,6 +5,7 @@
 //! thickness is the value that the paper measured on a cut hinge (section 4.1). The recipe sets the amplitude and the
 //! widths of the bump.
 
+use crate::extrusion::Extrusion;
 use crate::msh::{Boundary, PlaneMesh};
 use crate::tier::MeshRecipe;
 use hinge::HingeDesign;
@@ -42,108 +43,26 @@ impl WindowMesh {
         recipe: MeshRecipe,
         plane: PlaneMesh,
     ) -> Self {
-        let layers = recipe.layers;
-        let levels = Levels::new(&plane, layers);
-        let nodes: Vec<_> = levels
-            .nodes
-            .iter()
-            .map(|(level, node)| {
-                let [x, y] = plane.nodes[*node];
-                let z = thickness * (*level as f64 / (2 * layers) as f64 - 0.5);
-                [
-                    x,
-                    y,
-                    z + recipe.imperfection.height(&design, thickness, x, y),
-                ]
-            })
-            .collect();
-        let elements: Vec<_> = (0..layers)
-            .flat_map(|layer| plane.faces.iter().map(move |face| (layer, face)))
-            .map(|(layer, face)| levels.element(layer, face))
-            .collect();
-        let gauss_volumes = elements
-            .iter()
-            .map(|element| {
-                let positions: Vec<_> = element.iter().map(|node| nodes[*node]).collect();
-                recipe.element().gauss_volumes(&positions)
-            })
-            .collect();
+        let bump = |[x, y]: [f64; 2]| recipe.imperfection.height(&design, thickness, x, y);
+        let solid = Extrusion::new(&plane, thickness, recipe.layers, |node| {
+            bump(plane.nodes[node])
+        });
         Self {
             design,
             thickness,
             recipe,
-            arc_a: levels.through(&plane.nodes_on(Boundary::ArcA)),
-            arc_b: levels.through(&plane.nodes_on(Boundary::ArcB)),
+            arc_a: solid.levels.through(&plane.nodes_on(Boundary::ArcA)),
+            arc_b: solid.levels.through(&plane.nodes_on(Boundary::ArcB)),
             bottom: (0..plane.nodes.len()).collect(),
             plane,
-            nodes,
-            elements,
-            gauss_volumes,
+            nodes: solid.nodes,
+            elements: solid.elements,
+            gauss_volumes: solid.gauss_volumes,
         }
     }
 
     /// Volume of the meshed window (mm^3).
     pub fn volume(&self) -> f64 {
         self.gauss_volumes.iter().flatten().sum()
-    }
-}
-
-/// Numbering of the extruded nodes, level by level from the bottom. Even levels contain every plane
-/// node; odd levels, in the middle of the layers, contain only the corner nodes.
-struct Levels {
-    /// Level and plane node of each extruded node.
-    nodes: Vec<(usize, usize)>,
-    /// The extruded node on each level above each plane node.
-    ids: Vec<Vec<Option<usize>>>,
-}
-
-impl Levels {
-    fn new(plane: &PlaneMesh, layers: usize) -> Self {
-        let mut is_corner = vec![false; plane.nodes.len()];
-        for face in &plane.faces {
-            let corners = face.len() / 2;
-            face[..corners]
-                .iter()
-                .for_each(|node| is_corner[*node] = true);
-        }
-        let mut nodes = Vec::new();
-        let ids = (0..=2 * layers)
-            .map(|level| {
-                let mut number = |node| {
-                    nodes.push((level, node));
-                    nodes.len() - 1
-                };
-                let carries = |node: &usize| level % 2 == 0 || is_corner[*node];
-                (0..plane.nodes.len())
-                    .map(|node| carries(&node).then(|| number(node)))
-                    .collect()
-            })
-            .collect();
-        Self { nodes, ids }
-    }
-
-    /// The element above a face: bottom and top corners, bottom and top mid-sides, verticals.
-    fn element(&self, layer: usize, face: &[usize]) -> Vec<usize> {
-        let (bottom, middle, top) = (2 * layer, 2 * layer + 1, 2 * layer + 2);
-        let (corners, mid_sides) = face.split_at(face.len() / 2);
-        [
-            (bottom, corners),
-            (top, corners),
-            (bottom, mid_sides),
-            (top, mid_sides),
-            (middle, corners),
-        ]
-        .into_iter()
-        .flat_map(|(level, nodes)| nodes.iter().map(move |node| (level, *node)))
-        .map(|(level, node)| {
-            self.ids[level][node].expect("corners are on all levels, mid-sides on even levels")
-        })
-        .collect()
-    }
-
-    /// The extruded nodes above plane nodes, on all levels.
-    fn through(&self, plane: &[usize]) -> Vec<usize> {
-        let on_level = |ids: &Vec<Option<usize>>| plane.iter().filter_map(|n| ids[*n]).collect();
-        self.ids.iter().flat_map::<Vec<_>, _>(on_level).collect()
     }
 }

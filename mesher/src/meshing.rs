@@ -1,10 +1,13 @@
-//! Meshes the window of a hinge design with gmsh, and checks the mesh.
+//! Meshes the window of a hinge design, or a whole sheet, with gmsh, and checks the mesh.
 
+use crate::element::ElementKind;
 use crate::geo;
 use crate::gmsh::Gmsh;
 use crate::mesh::WindowMesh;
-use crate::msh::{MshError, read_msh};
+use crate::msh::{MshError, PlaneMesh, read_msh};
 use crate::quality::MeshDefect;
+use crate::sheet_mesh::SheetMesh;
+use crate::sheet_shape::{InvalidSheet, SheetShape};
 use crate::tier::MeshRecipe;
 use crate::window::Window;
 use hinge::{HingeDesign, InvalidDesign};
@@ -40,6 +43,10 @@ pub enum MeshError {
         defect: MeshDefect,
     },
     #[error(transparent)]
+    Sheet(#[from] InvalidSheet),
+    #[error("the mesh of the sheet is rejected: {0}; try a finer mesh tier")]
+    SheetDefect(MeshDefect),
+    #[error(transparent)]
     File(#[from] FileError),
 }
 
@@ -70,23 +77,13 @@ impl WindowShape<'_> {
             return Err(MeshError::Thickness(self.thickness));
         }
         let script = geo::script(&Window(self.design), &self.recipe.plane);
-        let geo = folder.join("window.geo");
-        std::fs::write(&geo, script).map_err(FileError::at(&geo))?;
-        let msh = folder.join(MESH_FILE);
-        program::remove_stale(&msh).map_err(FileError::at(&msh))?;
-        gmsh.mesh(folder, limit, stop)?;
+        generate(&script, folder, WINDOW, gmsh, limit, stop)?;
         self.read(folder)
     }
 
     /// Reads the mesh that gmsh has written to `folder`.
     pub fn read(&self, folder: &Path) -> Result<WindowMesh, MeshError> {
-        let msh = folder.join(MESH_FILE);
-        let bytes = match std::fs::read(&msh) {
-            // gmsh exited with status zero but wrote no mesh: the reader reports what is missing.
-            Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
-            read => read.map_err(FileError::at(&msh))?,
-        };
-        let plane = read_msh(&bytes, self.recipe.element())?;
+        let plane = read_plane(folder, WINDOW, &[self.recipe.element()])?;
         let mesh = WindowMesh::extrude(*self.design, self.thickness, *self.recipe, plane);
         match mesh.quality() {
             Ok(_) => Ok(mesh),
@@ -99,5 +96,57 @@ impl WindowShape<'_> {
     }
 }
 
-/// The file of gmsh's mesh.
-const MESH_FILE: &str = "window.msh";
+impl SheetShape {
+    /// Meshes the sheet. The script, log and mesh of gmsh are written to `folder`.
+    ///
+    /// gmsh is terminated after `limit`, and soon after `stop` becomes true.
+    pub fn mesh(
+        &self,
+        folder: &Path,
+        gmsh: &Gmsh,
+        limit: Duration,
+        stop: &AtomicBool,
+    ) -> Result<SheetMesh, MeshError> {
+        for window in &self.windows {
+            window.design.validate()?;
+        }
+        if !(self.thickness.is_finite() && self.thickness > 0.0) {
+            return Err(MeshError::Thickness(self.thickness));
+        }
+        let script = geo::sheet_script(self)?;
+        generate(&script, folder, SHEET, gmsh, limit, stop)?;
+        let kinds = [ElementKind::Brick, ElementKind::Wedge];
+        let plane = read_plane(folder, SHEET, &kinds)?;
+        SheetMesh::new(self, plane).map_err(MeshError::SheetDefect)
+    }
+}
+
+/// Runs gmsh on a script in `folder`.
+fn generate(
+    script: &str,
+    folder: &Path,
+    name: &str,
+    gmsh: &Gmsh,
+    limit: Duration,
+    stop: &AtomicBool,
+) -> Result<(), MeshError> {
+    let [geo, msh] = ["geo", "msh"].map(|kind| folder.join(name).with_extension(kind));
+    std::fs::write(&geo, script).map_err(FileError::at(&geo))?;
+    program::remove_stale(&msh).map_err(FileError::at(&msh))?;
+    Ok(gmsh.mesh(folder, name, limit, stop)?)
+}
+
+/// Reads the mesh that gmsh has written to `folder`.
+fn read_plane(folder: &Path, name: &str, kinds: &[ElementKind]) -> Result<PlaneMesh, MeshError> {
+    let msh = folder.join(name).with_extension("msh");
+    let bytes = match std::fs::read(&msh) {
+        // gmsh exited with status zero but wrote no mesh: the reader reports what is missing.
+        Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
+        read => read.map_err(FileError::at(&msh))?,
+    };
+    Ok(read_msh(&bytes, kinds)?)
+}
+
+/// Names of gmsh's files, without their extensions.
+const WINDOW: &str = "window";
+const SHEET: &str = "sheet";

@@ -1,4 +1,4 @@
-//! Reader of gmsh's .msh files (version 2.2, text): second-order faces of one kind and named
+//! Reader of gmsh's .msh files (version 2.2, text): second-order faces with the physical tags of their surfaces, and named
 //! boundary curves. Any input gives either a mesh or an error that names the line.
 
 use crate::element::ElementKind;
@@ -28,13 +28,15 @@ impl Boundary {
     }
 }
 
-/// A second-order mesh of the window in its plane; indices count from 0.
+/// A second-order mesh of a window or a sheet in its plane; indices count from 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlaneMesh {
-    /// Node positions in the hinge frame (mm).
+    /// Node positions (mm), those of a window in the hinge frame.
     pub nodes: Vec<[f64; 2]>,
     /// Corner nodes counter-clockwise, then the same number of mid-side nodes: of edge 01, 12, and so on.
     pub faces: Vec<Vec<usize>>,
+    /// The physical tag of the surface of each face.
+    pub surfaces: Vec<u32>,
     /// Edges of the named boundaries: two end nodes, then the mid-side node.
     pub edges: Vec<(Boundary, [usize; 3])>,
 }
@@ -88,8 +90,8 @@ fn face_number(element: ElementKind) -> u32 {
     }
 }
 
-/// Reads the bytes of a .msh file with faces for `element`; nodes that belong to no face are dropped.
-pub fn read_msh(bytes: &[u8], element: ElementKind) -> Result<PlaneMesh, MshError> {
+/// Reads the bytes of a .msh file with faces for `elements`; nodes that belong to no face are dropped.
+pub fn read_msh(bytes: &[u8], elements: &[ElementKind]) -> Result<PlaneMesh, MshError> {
     let text = std::str::from_utf8(bytes).map_err(|e| MshError::NotText(e.valid_up_to()))?;
     let lines: Vec<_> = text.lines().enumerate().collect();
     let mut positions = HashMap::new();
@@ -119,7 +121,10 @@ pub fn read_msh(bytes: &[u8], element: ElementKind) -> Result<PlaneMesh, MshErro
         for _ in 1..tags {
             fields.next::<u64>()?;
         }
-        if kind == face_number(element) {
+        let element = elements
+            .iter()
+            .find(|element| kind == face_number(**element));
+        if let Some(element) = element {
             let mut face = vec![0; 2 * element.corners()];
             for node in &mut face {
                 let id: u64 = fields.next()?;
@@ -132,6 +137,7 @@ pub fn read_msh(bytes: &[u8], element: ElementKind) -> Result<PlaneMesh, MshErro
                 });
             }
             mesh.faces.push(face);
+            mesh.surfaces.push(physical);
         } else if kind == LINE_3 {
             let Some(boundary) = Boundary::ALL.into_iter().find(|b| b.tag() == physical) else {
                 return Err(fields.error("the boundary curve has an unknown physical tag"));
@@ -211,15 +217,15 @@ mod tests {
         $Elements\n2\n1 8 2 2 7 2 3 6\n2 16 2 100 1 1 2 3 4 5 6 7 8\n$EndElements\n";
 
     fn read(bytes: &[u8]) -> Result<PlaneMesh, MshError> {
-        read_msh(bytes, ElementKind::Brick)
+        read_msh(bytes, &[ElementKind::Brick])
     }
 
     #[test]
     fn a_triangle_is_read_where_one_is_expected() {
         let triangle = SQUARE.replace("2 16 2 100 1 1 2 3 4 5 6 7 8", "2 9 2 100 1 1 2 3 5 6 8");
-        let mesh = read_msh(triangle.as_bytes(), ElementKind::Wedge).unwrap();
+        let mesh = read_msh(triangle.as_bytes(), &[ElementKind::Wedge]).unwrap();
         assert_eq!(mesh.faces, [[0, 1, 2, 3, 4, 5]]);
-        let error = read_msh(SQUARE.as_bytes(), ElementKind::Wedge).unwrap_err();
+        let error = read_msh(SQUARE.as_bytes(), &[ElementKind::Wedge]).unwrap_err();
         assert!(matches!(error, MshError::Line { line: 18, .. }), "{error}");
     }
 
@@ -258,7 +264,7 @@ mod tests {
         ) {
             let lines: Vec<_> = SQUARE.split_inclusive('\n').collect();
             let shuffled: String = order.iter().map(|index| *index.get(&lines)).collect();
-            if let Ok(mesh) = read_msh(shuffled.as_bytes(), ElementKind::Brick) {
+            if let Ok(mesh) = read_msh(shuffled.as_bytes(), &[ElementKind::Brick]) {
                 prop_assert!(mesh.faces.iter().flatten().all(|index| *index < mesh.nodes.len()));
             }
         }
@@ -266,7 +272,7 @@ mod tests {
         #[test]
         fn any_bytes_give_a_mesh_or_an_error(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
             // A mesh needs section markers, which random bytes do not contain.
-            prop_assert!(read_msh(&bytes, ElementKind::Brick).is_err());
+            prop_assert!(read_msh(&bytes, &[ElementKind::Brick]).is_err());
         }
 
         #[test]

@@ -1,14 +1,15 @@
 //! The checks that a mesh must pass before it is solved.
 
+use crate::element::ElementKind;
 use crate::mesh::WindowMesh;
-use crate::msh::{Boundary, sides};
+use crate::msh::{Boundary, PlaneMesh, sides};
 use crate::window::Window;
 
 /// Maximum accepted ratio of the longest to the shortest in-plane edge of an element.
 const MAX_ASPECT: f64 = 40.0;
 /// Maximum accepted relative error of the meshed area. A quadratic edge over an arc of 80 deg, the
 /// coarsest in use, has an error of 0.3 % of the window.
-const MAX_AREA_ERROR: f64 = 0.01;
+pub(crate) const MAX_AREA_ERROR: f64 = 0.01;
 
 /// Quality measures of a mesh that passed the checks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +39,7 @@ pub enum MeshDefect {
          {aspect} > {MAX_ASPECT}"
     )]
     Sliver { element: usize, aspect: f64 },
-    #[error("the area of the mesh is {area} mm^2, but that of the window is {exact} mm^2")]
+    #[error("the area of the mesh is {area} mm^2, but that of its shape is {exact} mm^2")]
     Area { area: f64, exact: f64 },
     #[error("the mesh has no edge on {0:?}")]
     NoBoundary(Boundary),
@@ -52,33 +53,7 @@ impl WindowMesh {
                 return Err(MeshDefect::NoBoundary(boundary));
             }
         }
-        let kind = self.recipe.element();
-        let mut jacobian_ratio = 1.0_f64;
-        for (element, volumes) in self.gauss_volumes.iter().enumerate() {
-            let jacobians = (0..)
-                .zip(volumes)
-                .map(|(point, v)| v / kind.gauss_weight(point));
-            let minimum = jacobians.clone().fold(f64::INFINITY, f64::min);
-            let maximum = jacobians.fold(0.0, f64::max);
-            if minimum <= 0.0 || minimum.is_nan() {
-                let jacobian = minimum;
-                return Err(MeshDefect::Folded { element, jacobian });
-            }
-            jacobian_ratio = jacobian_ratio.min(minimum / maximum);
-        }
-        let mut largest_aspect = 1.0_f64;
-        for (element, face) in self.plane.faces.iter().enumerate() {
-            let lengths = sides(face).map(|[from, to, _]| {
-                let [p, q] = [from, to].map(|node| self.plane.nodes[node]);
-                (q[0] - p[0]).hypot(q[1] - p[1])
-            });
-            let longest = lengths.clone().fold(0.0, f64::max);
-            let aspect = longest / lengths.fold(f64::INFINITY, f64::min);
-            if aspect > MAX_ASPECT {
-                return Err(MeshDefect::Sliver { element, aspect });
-            }
-            largest_aspect = largest_aspect.max(aspect);
-        }
+        let (jacobian_ratio, largest_aspect) = check_elements(&self.plane, &self.gauss_volumes)?;
         let (area, exact) = (self.volume() / self.thickness, Window(&self.design).area());
         let area_error = (area - exact).abs() / exact;
         if area_error > MAX_AREA_ERROR {
@@ -91,4 +66,40 @@ impl WindowMesh {
             area_error,
         })
     }
+}
+
+/// The minimum ratio of Jacobians and the maximum aspect ratio of solid elements, layers of the faces of a plane mesh, or
+/// their first defect.
+pub(crate) fn check_elements(
+    plane: &PlaneMesh,
+    gauss_volumes: &[Vec<f64>],
+) -> Result<(f64, f64), MeshDefect> {
+    let mut jacobian_ratio = 1.0_f64;
+    for (element, volumes) in gauss_volumes.iter().enumerate() {
+        let kind = ElementKind::of_face(&plane.faces[element % plane.faces.len()]);
+        let jacobians = (0..)
+            .zip(volumes)
+            .map(|(point, v)| v / kind.gauss_weight(point));
+        let minimum = jacobians.clone().fold(f64::INFINITY, f64::min);
+        let maximum = jacobians.fold(0.0, f64::max);
+        if minimum <= 0.0 || minimum.is_nan() {
+            let jacobian = minimum;
+            return Err(MeshDefect::Folded { element, jacobian });
+        }
+        jacobian_ratio = jacobian_ratio.min(minimum / maximum);
+    }
+    let mut largest_aspect = 1.0_f64;
+    for (element, face) in plane.faces.iter().enumerate() {
+        let lengths = sides(face).map(|[from, to, _]| {
+            let [p, q] = [from, to].map(|node| plane.nodes[node]);
+            (q[0] - p[0]).hypot(q[1] - p[1])
+        });
+        let longest = lengths.clone().fold(0.0, f64::max);
+        let aspect = longest / lengths.fold(f64::INFINITY, f64::min);
+        if aspect > MAX_ASPECT {
+            return Err(MeshDefect::Sliver { element, aspect });
+        }
+        largest_aspect = largest_aspect.max(aspect);
+    }
+    Ok((jacobian_ratio, largest_aspect))
 }

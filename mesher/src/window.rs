@@ -4,6 +4,7 @@
 //! Arc A runs from (-r_win, 0) to the kerf face on panel A, arc B from the kerf face on panel B
 //! to (r_win, 0). All coordinates are in the hinge frame, in mm.
 
+use crate::vectors::{cross, dot};
 use hinge::HingeDesign;
 use std::f64::consts::PI;
 
@@ -84,14 +85,6 @@ impl Window<'_> {
 /// Polar angle about the origin (rad), in (-pi, pi].
 pub(crate) fn polar_angle([x, y]: [f64; 2]) -> f64 {
     y.atan2(x)
-}
-
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
 }
 
 /// Half of the contour integral of x dy - y dx along a straight segment.

@@ -7,6 +7,7 @@ mod load_marks;
 mod measured;
 mod numbering;
 pub mod page;
+mod surface;
 
 pub(crate) use deployed::deployed_on_paper;
 pub use deployed::{deployed, deployment_frames};
@@ -14,3 +15,4 @@ pub use flat::flat;
 pub(crate) use flat::flat_on_paper;
 pub use measured::measured;
 pub use numbering::numbering;
+pub use surface::{Surface, View, surface};

@@ -9,7 +9,7 @@ use anyhow::{Result, bail};
 use clap::Args;
 use comfy_table::Table;
 use fe_driver::{
-    CalculiX, DeformationPath, HingePath, WindowProblem, WindowSolve, WindowSolver, reached,
+    CalculiX, DeformationPath, HingePath, Solver, WindowProblem, WindowSolve, reached,
 };
 use hinge::{HingeDeformation, HingeDesign, HingeSample, SheetMaterial};
 use mesher::Tier;

@@ -6,7 +6,7 @@ use crate::ui::processors;
 use crate::ui::progress::Progress;
 use anyhow::Result;
 use clap::Args;
-use fe_driver::{CalculiX, SolveListError, SolveStore, WindowService};
+use fe_driver::{CalculiX, Solve, SolveListError, SolveService, SolveStore, Solver};
 use std::cell::RefCell;
 use std::num::NonZeroUsize;
 use std::path::Path;
@@ -39,7 +39,7 @@ impl SolveArgs {
     }
 
     /// Solves windows with CalculiX, shows their progress, and keeps them in the folder `solves` of `folder`.
-    pub fn service(&self, folder: &Path) -> Result<WindowService<'static>> {
+    pub fn service(&self, folder: &Path) -> Result<SolveService<'static>> {
         let bar = RefCell::new(None);
         let progress = move |done: usize, all: usize| {
             let mut bar = bar.borrow_mut();
@@ -50,13 +50,23 @@ impl SolveArgs {
                 bar.finish();
             }
         };
-        Ok(WindowService {
-            solver: Box::new(CalculiX::find()?),
+        self.service_of(CalculiX::find()?, folder, Box::new(progress))
+    }
+
+    /// Solves problems of one kind, and keeps them in the folder `solves` of `folder`.
+    pub fn service_of<S: Solve>(
+        &self,
+        solver: impl Solver<S> + 'static,
+        folder: &Path,
+        progress: Box<dyn Fn(usize, usize)>,
+    ) -> Result<SolveService<'static, S>> {
+        Ok(SolveService {
+            solver: Box::new(solver),
             store: SolveStore(folder.join("solves")),
             workers: self.workers(),
             limit: Duration::from_secs(self.time_limit_s),
             stop: interrupt::stop_flag()?,
-            progress: Box::new(progress),
+            progress,
         })
     }
 }

@@ -1,6 +1,7 @@
 //! `kirigami verify`: the hinges of a designed sheet solved by finite elements, compared with the surrogate.
 
 mod polished;
+mod whole_sheet;
 
 use crate::commands::compared_states;
 use crate::commands::inspect::judged_design::DESIGN_TO_JUDGE;
@@ -10,7 +11,7 @@ use crate::ui::run_folder;
 use anyhow::{Context, Result};
 use clap::Args;
 use design::pattern::design_vector::DesignVector;
-use design::scene::Scene;
+use design::scene::{Posture, Scene};
 use mesher::Tier;
 use output::drawing;
 use serde::Serialize;
@@ -30,7 +31,8 @@ use verification::{
 /// error of the whole chain on one design. Writes replay.md, replay.csv and a chart. With --equilibrium the sheet is
 /// balanced with the forces of the finite elements: the error of its deployed shape. Writes equilibrium.md. With
 /// --polish N the design is searched for N more steps with these forces. Writes polish.md, design.json and the files of
-/// a run. Without --design the design of the scene's run is verified, or the start design if the scene has no run.
+/// a run. With --sheet the whole sheet is solved: whether its panels stay in their plane, and what that changes. Writes sheet.md.
+/// Without --design the design of the scene's run is verified, or the start design if the scene has no run.
 /// Example: kirigami verify configs/scenes/demo.toml --equilibrium
 #[derive(Args)]
 #[command(mut_arg("design", |arg| arg.help(DESIGN_TO_JUDGE)))]
@@ -49,7 +51,7 @@ pub struct VerifyCommand {
     #[arg(long, value_name = "TIER")]
     tier: Option<Tier>,
     /// Deploy the sheet with finite elements for its hinges, which are solved several times
-    #[arg(long, conflicts_with_all = ["ensemble", "sample"])]
+    #[arg(long, group = "of_sheet", conflicts_with_all = ["ensemble", "sample"])]
     equilibrium: bool,
     /// Maximum number of times that all hinges are solved
     #[arg(long, value_name = "N", default_value_t = 6, requires = "equilibrium")]
@@ -61,8 +63,21 @@ pub struct VerifyCommand {
     /// Write the cut files of a polished design even if its report has errors
     #[arg(long, requires = "polish")]
     force: bool,
+    /// Solve the whole sheet, every window and every panel: minutes to an hour. Compares corners, load, openings and energies,
+    /// and says whether the panels stay in their plane. Writes sheet.md, sheet.vtu and pictures from above and from the side
+    #[arg(long, group = "of_sheet", conflicts_with_all = ["ensemble", "sample"])]
+    sheet: bool,
+    /// What keeps the panels of the whole sheet in their plane: held-flat, lying (on a table), hanging, free [default: the
+    /// posture of the scene]
+    #[arg(long, value_name = "SUPPORT", requires = "sheet", value_parser = whole_sheet::support)]
+    support: Option<Posture>,
+    /// Number of patterns of the imperfection that the whole sheet is solved with, from 1 to 4: ligaments that buckle to
+    /// other sides may lead to another state
+    #[arg(long, value_name = "N", requires = "sheet", default_value_t = 1,
+        value_parser = clap::value_parser!(u8).range(1..=4))]
+    branches: u8,
     /// Print JSON instead of text
-    #[arg(long, requires = "equilibrium")]
+    #[arg(long, requires = "of_sheet")]
     json: bool,
     /// Folder for the tables, the chart and the solutions
     #[arg(long, value_name = "FOLDER", default_value = "runs/verify")]
@@ -74,6 +89,9 @@ pub struct VerifyCommand {
 impl VerifyCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let (scene, design, name) = self.judged.read_judged()?;
+        if self.sheet {
+            return self.whole_sheet(&scene, &design, &name);
+        }
         let surrogate = scene
             .surrogate()
             .context("only a surrogate can be verified: set hinge = \"surrogate\" in the scene")?;

@@ -9,6 +9,7 @@ mod choices;
 mod designed;
 mod drawing;
 mod extremes;
+mod flatness;
 mod free_panels;
 mod gradient;
 mod keys;
@@ -58,6 +59,7 @@ enum Study {
     Capacity(capacity::CapacityStudy),
     Localisation(localisation::LocalisationStudy),
     Extremes(extremes::ExtremesStudy),
+    Flatness(flatness::FlatnessStudy),
     Surrogate(surrogate::SurrogateStudy),
     Tradeoff(tradeoff::TradeoffCommand),
     Pages(pages::PagesCommand),
@@ -81,6 +83,7 @@ impl Study {
             Self::Capacity(study) => study.run(),
             Self::Localisation(study) => study.run(),
             Self::Extremes(study) => study.run(),
+            Self::Flatness(study) => study.run(),
             Self::Surrogate(study) => study.run(),
             Self::Tradeoff(command) => command.run(),
             Self::Pages(command) => command.run(),

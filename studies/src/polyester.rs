@@ -15,7 +15,7 @@ use design::objective::scores::outline_error;
 use design::scene::design_run::Designed;
 use design::scene::{HingeModel, Scene, SceneConfig};
 use design::sheet::cut_sheet::HingePoint;
-use fe_driver::{SolvedWindow, WindowSolve};
+use fe_driver::{Solved, WindowSolve};
 use hinge::HingeSample;
 use kirigami::commands::solve_args::{SolveArgs, task_error};
 use kirigami::ui::run_folder;
@@ -255,7 +255,7 @@ fn learned(surrogate: &Surrogate, path: &RecordedPath) -> [f64; 4] {
     figures(&surrogate.samples(&[path.design], &[path.end()])[0])
 }
 
-fn replayed(window: &SolvedWindow) -> Option<[f64; 4]> {
+fn replayed(window: &Solved) -> Option<[f64; 4]> {
     window.complete().ok()?.last().map(figures)
 }
 

@@ -8,7 +8,7 @@ use crate::window::convergence::{
 };
 use anyhow::{Result, ensure};
 use clap::Args;
-use fe_driver::SolvedWindow;
+use fe_driver::Solved;
 use hinge::{HingeConstants, HingeDesign, SheetMaterial};
 use kirigami::commands::solve_args::{SolveArgs, task_error};
 use kirigami::ui::{picture, run_folder};
@@ -43,7 +43,7 @@ pub struct WindowStudy {
 }
 
 /// A case with its solution.
-type Row = (StudyCase, SolvedWindow);
+type Row = (StudyCase, Solved);
 
 impl WindowStudy {
     pub fn run(&self) -> Result<()> {
@@ -120,7 +120,7 @@ fn hinge_name(design: &HingeDesign) -> String {
 }
 
 /// CPU time of the solver (s).
-fn cpu_seconds(solution: &SolvedWindow) -> f64 {
+fn cpu_seconds(solution: &Solved) -> f64 {
     solution.record.cpu_seconds
 }
 
@@ -239,7 +239,7 @@ fn extrapolation(rows: &[Row]) -> Result<String> {
 
 /// The solved two-layer tiers of a hinge with the element size relative to that of the default
 /// tier, in descending order of size.
-fn similar_meshes<'a>(rows: &'a [Row], hinge: &str) -> Vec<(f64, &'a SolvedWindow)> {
+fn similar_meshes<'a>(rows: &'a [Row], hinge: &str) -> Vec<(f64, &'a Solved)> {
     let fold_size = |recipe: MeshRecipe| match recipe.plane {
         PlaneRecipe::Structured(plane) if recipe.layers == 2 => Some(plane.fold_size),
         _ => None,
@@ -257,7 +257,7 @@ fn of_tiers<'a>(rows: &'a [Row], hinge: &str) -> impl Iterator<Item = &'a Row> {
     })
 }
 
-fn tier<'a>(rows: &'a [Row], hinge: &str, name: &str) -> Option<&'a SolvedWindow> {
+fn tier<'a>(rows: &'a [Row], hinge: &str, name: &str) -> Option<&'a Solved> {
     let mut found = of_tiers(rows, hinge).filter(|(case, _)| case.value == name);
     found.next().map(|(_, solution)| solution)
 }
@@ -293,7 +293,7 @@ fn tradeoff(rows: &[Row]) -> Result<String> {
         let Some((_, first)) = solved.first() else {
             continue;
         };
-        let sum = |of: fn(&SolvedWindow) -> f64| solved.iter().map(|(_, s)| of(s)).sum::<f64>();
+        let sum = |of: fn(&Solved) -> f64| solved.iter().map(|(_, s)| of(s)).sum::<f64>();
         let cpu = sum(cpu_seconds);
         let ray = cpu / solved.len() as f64;
         let row = cpu / sum(|s| s.samples.len() as f64);

@@ -1,6 +1,6 @@
 //! Domain-independent utilities: configuration files, ranges of their keys, misspelt names, input files, CSV tables, VTK
 //! files, atomic file writes, lock files, external programs, temporary folders, notes of what a command does, a pool of
-//! threads, shards of a list of jobs.
+//! threads, shards of a list of jobs, memory of the machine.
 //!
 //! ```
 //! use support::table::{Cell, Table};
@@ -17,6 +17,7 @@ pub mod csv_table;
 pub mod file_error;
 pub mod key_limits;
 pub mod lock_file;
+pub mod memory;
 pub mod nearest;
 pub mod processes;
 pub mod program;

@@ -12,6 +12,8 @@ use std::fmt::Write;
 pub enum CellKind {
     /// One point.
     Vertex = 1,
+    /// Three corners or more, counter-clockwise.
+    Polygon = 7,
     /// Four corners, counter-clockwise.
     Quad = 9,
     /// 20 nodes: lower corners, upper corners, middles of the lower, the upper and the vertical edges.

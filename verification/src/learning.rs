@@ -5,7 +5,7 @@
 use crate::rows::collected;
 use crate::verification_error::VerificationError;
 use dataset::{Database, Row};
-use fe_driver::{Campaign, Progress, RunOptions, Shard, WindowSolver, run, status};
+use fe_driver::{Campaign, Progress, RunOptions, Shard, Solver, run, status};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -20,7 +20,7 @@ pub struct LearningTask<'a> {
     /// Folder of the campaign.
     pub folder: &'a Path,
     /// What solves the rays.
-    pub solver: &'a dyn WindowSolver,
+    pub solver: &'a dyn Solver,
     /// Number of solves that run in parallel.
     pub workers: usize,
     /// Number of rays of the first round.

@@ -6,15 +6,16 @@
 //! | the hinges of a sheet solved along their paths, against a surrogate | [`recorded_paths`], [`Replay`] |
 //! | a sheet in equilibrium with the forces of finite elements | [`balanced`], [`SheetErrors`] |
 //! | a design searched on with these forces | [`polish`] |
+//! | the whole sheet, every window and every panel | [`SheetTask`], [`SheetCheck`] |
 //! | errors of weights at random states | [`random_paths`], [`spot_check`] |
 //! | rays where the training data is thin | [`rays_on_paths`], [`doubtful_states`], [`rays_through`] |
 //! | rays of a campaign solved in rounds until weights are accurate | [`learn`] |
 //!
-//! Windows are solved by a [`WindowService`](fe_driver::WindowService). One that fails ends no task: it is named in the
+//! Windows are solved by a [`SolveService`](fe_driver::SolveService). One that fails ends no task: it is named in the
 //! result, which says what it leaves unknown. The example checks weights at eight states, by a solver without a program:
 //!
 //! ```
-//! use fe_driver::{FakeSolver, SolveStore, WindowService};
+//! use fe_driver::{FakeSolver, SolveService, SolveStore};
 //! use hinge::SheetMaterial;
 //! use mesher::Tier;
 //! use std::path::Path;
@@ -27,7 +28,7 @@
 //! # let folder = tempfile::tempdir()?;
 //! let weights = Surrogate::load(&repository.join("data/pet-0.5mm/small.safetensors"))?;
 //! let film = SheetMaterial::load(&repository.join("configs/materials/pet-0.5mm.toml"))?;
-//! let windows = WindowService {
+//! let windows = SolveService {
 //!     solver: Box::new(FakeSolver::new([6.0, 12.0, 120.0], |_| None)),
 //!     store: SolveStore(folder.path().to_owned()),
 //!     workers: 2,
@@ -56,9 +57,13 @@ mod replay;
 mod replay_page;
 mod round_table;
 mod rows;
+mod sheet_check;
+mod sheet_cost;
 mod sheet_errors;
+mod sheet_page;
 mod spot_check;
 mod verification_error;
+mod whole_sheet;
 
 pub use balanced_sheet::{BALANCED, BalanceEnd, Balanced, Round, balanced, movements, size};
 pub use compared_states::{SCALE, each_relative, spread_table};
@@ -71,6 +76,11 @@ pub use recorded_path::{RecordedPath, paths_of, recorded_paths};
 pub use region::{distillation_states, region};
 pub use replay::{ElementWindows, Replay, ReplayedHinge, UnsolvedHinge};
 pub use rows::{InvalidRow, collected, collected_windows, rows};
+pub use sheet_check::{
+    BranchCheck, HingeCheck, PanelCheck, SheetCheck, SheetFinding, SheetTask, StateCheck,
+};
+pub use sheet_cost::SheetCost;
 pub use sheet_errors::SheetErrors;
 pub use spot_check::{SpotCheck, SpotPath, random_paths, spot_check};
 pub use verification_error::VerificationError;
+pub use whole_sheet::{Branch, sheet_problem};

@@ -3,7 +3,7 @@
 use crate::recorded_path::RecordedPath;
 use crate::verification_error::VerificationError;
 use dataset::ComparedState;
-use fe_driver::{SolvedWindow, WindowService, WindowSolve};
+use fe_driver::{SolveService, Solved, WindowSolve};
 use hinge::{HingeDeformation, HingeSample, SheetMaterial};
 use mesher::Tier;
 use serde::Serialize;
@@ -55,7 +55,7 @@ pub struct ElementWindows<'a> {
     /// Tier of the meshes.
     pub tier: Tier,
     /// Solves the windows.
-    pub service: &'a WindowService<'a>,
+    pub service: &'a SolveService<'a>,
 }
 
 impl ElementWindows<'_> {
@@ -64,7 +64,7 @@ impl ElementWindows<'_> {
         &self,
         paths: &[RecordedPath],
         material: &SheetMaterial,
-    ) -> Result<Vec<SolvedWindow>, VerificationError> {
+    ) -> Result<Vec<Solved>, VerificationError> {
         let versions = self.service.versions();
         let solve = |path: &RecordedPath| {
             let problem = path.problem(material, self.tier)?;

@@ -4,7 +4,7 @@
 use crate::verification_error::VerificationError;
 use dataset::{Database, Gates, Row, SplitPlan};
 use fe_driver::{
-    CollectedWindow, FailureKind, SolvedWindow, ToolVersions, UnknownFailure, finished_windows,
+    CollectedWindow, FailureKind, Solved, ToolVersions, UnknownFailure, finished_windows,
 };
 use hinge::HingeSample;
 use mesher::{Tier, UnknownTier};
@@ -12,7 +12,7 @@ use std::path::Path;
 
 /// Rows with these samples of a solved window.
 pub fn rows(
-    window: &SolvedWindow,
+    window: &Solved,
     samples: impl IntoIterator<Item = HingeSample>,
 ) -> impl Iterator<Item = Row> {
     let (solve, record) = (&window.solve, &window.record);

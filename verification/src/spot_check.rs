@@ -7,9 +7,7 @@
 use crate::rows::rows;
 use crate::verification_error::VerificationError;
 use dataset::Row;
-use fe_driver::{
-    HingePath, Ray, SolvedWindow, UnsolvedWindow, WindowProblem, WindowService, WindowSolve,
-};
+use fe_driver::{HingePath, Ray, SolveService, Solved, Unsolved, WindowProblem, WindowSolve};
 use hinge::{
     HingeConstants, HingeDeformation, HingeDesign, HingeSample, SheetMaterial, TrainingDomain,
 };
@@ -33,7 +31,7 @@ pub struct SpotCheck {
     /// One row a state; the rows of a window have one job.
     pub rows: Vec<Row>,
     /// The windows of the other paths.
-    pub unsolved: Vec<UnsolvedWindow>,
+    pub unsolved: Vec<Unsolved>,
     /// Number of states on the other paths, at which nothing is known.
     pub unknown_states: usize,
     /// Solver CPU time of the paths that it followed to their end (s).
@@ -61,7 +59,7 @@ pub fn random_paths(
 
 /// Solves the windows of the paths.
 pub fn spot_check(
-    windows: &WindowService,
+    windows: &SolveService,
     paths: &[SpotPath],
     material: &SheetMaterial,
     tier: Tier,
@@ -85,7 +83,7 @@ pub fn spot_check(
 
 impl SpotCheck {
     /// Adds the states on a path.
-    fn add(&mut self, path: &SpotPath, window: &SolvedWindow) {
+    fn add(&mut self, path: &SpotPath, window: &Solved) {
         match window.complete() {
             Ok(samples) => {
                 let states = path.fractions.iter();

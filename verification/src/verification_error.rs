@@ -4,6 +4,7 @@ use dataset::DatasetError;
 use design::objective::design_problem::DesignError;
 use design::scene::SceneError;
 use fe_driver::{CampaignError, SolveListError};
+use mesher::Tier;
 use std::path::PathBuf;
 
 /// Why a task has no result.
@@ -46,6 +47,26 @@ pub enum VerificationError {
          tier to compare with as --tier"
     )]
     NoTier { trained_on: String },
+    #[error(
+        "the scene has no [posture]: say how the sheet is held out of its plane, such as kind = \"held-flat\""
+    )]
+    NoPosture,
+    #[error(
+        "the scene does not say in which direction its sheet hangs: set posture.kind = \"hanging\" and posture.down"
+    )]
+    NoDown,
+    #[error(
+        "couples on panels have no counterpart in a whole sheet of finite elements, whose panels bend: pull panels by forces"
+    )]
+    Couples,
+    #[error("{0}: a support that turns has no counterpart in a whole sheet of finite elements")]
+    TurnedSupport(String),
+    #[error(
+        "the tier {0} has no structured mesh: whole sheets are meshed with tiny, small, default, fine or reference"
+    )]
+    NoSheetTier(Tier),
+    #[error("whole sheets need supports and loads: the scene has hinge = \"pin\"")]
+    NoLoads,
     #[error("the campaign has no region of rays")]
     NoRegion,
     #[error(

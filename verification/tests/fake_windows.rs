@@ -4,7 +4,7 @@ use design::objective::design_problem::Deployment;
 use design::pattern::design_vector::DesignVector;
 use design::scene::{Scene, SceneConfig};
 use fe_driver::{
-    Campaign, FakeSolver, Fault, Progress, SolveStore, WindowService, WindowSolve, WindowSolver,
+    Campaign, FakeSolver, Fault, Progress, SolveService, SolveStore, Solver, WindowSolve,
 };
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -39,8 +39,8 @@ fn start(scene: &Scene) -> DesignVector {
     scene.start()
 }
 
-fn service<'a>(solver: impl WindowSolver + 'a, folder: &TempDir) -> WindowService<'a> {
-    WindowService {
+fn service<'a>(solver: impl Solver + 'a, folder: &TempDir) -> SolveService<'a> {
+    SolveService {
         solver: Box::new(solver),
         store: SolveStore(folder.path().join("solves")),
         workers: 2,
@@ -57,7 +57,7 @@ fn healthy() -> FakeSolver<fn(&WindowSolve) -> Option<Fault>> {
 
 fn balance(
     scene: &Scene,
-    solver: impl WindowSolver,
+    solver: impl Solver,
     folder: &TempDir,
     rounds: usize,
 ) -> Result<Balanced, VerificationError> {
@@ -163,7 +163,7 @@ fn a_replay_compares_every_state_and_names_what_failed() {
     let hangs = FakeSolver::new(STIFFNESS, |solve: &WindowSolve| {
         (solve.problem.hinge.path.at(1.0) == lost).then_some(Fault::Hangs)
     });
-    let replayed = |solver: &dyn WindowSolver| {
+    let replayed = |solver: &dyn Solver| {
         let (tier, networks) = (mesher::Tier::Tiny, [surrogate.clone()]);
         let service = &service(solver, &folder);
         let windows = ElementWindows { tier, service };
@@ -210,7 +210,7 @@ fn a_spot_check_keeps_the_states_of_the_windows_that_are_solved() {
     let tier = mesher::Tier::Tiny;
     let check = spot_check(&windows, &paths, &scene.material, tier).unwrap();
     assert_eq!((check.rows.len(), check.unknown_states), (9, 3));
-    assert_eq!(check.unsolved[0].hinge, first);
+    assert_eq!(check.unsolved[0].solve.problem.hinge, first);
     assert_eq!(check.unsolved[0].attempts, 3);
     let row = &check.rows[0];
     assert_eq!((row.tier.as_str(), row.ccx.as_str()), ("tiny", "fake"));

@@ -52,18 +52,30 @@ pub enum DatError {
     Incomplete { lambda: f64 },
 }
 
-#[derive(Clone, Copy)]
-enum Block {
+/// What the rows of a block are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Block {
+    /// Total internal energy of a set of elements.
     Energy,
+    /// Total kinetic energy of a set of elements.
+    KineticEnergy,
+    /// Forces at the nodes of a set.
     Reactions,
+    /// Sum of the forces at the nodes of a set.
+    TotalForce,
+    /// Displacements of the nodes of a set.
     Displacements,
+    /// Equivalent plastic strain at Gauss points.
     PlasticStrain,
+    /// Stress at Gauss points.
     Stress,
 }
 
 /// The headings that ccx writes, up to the name of the set.
-const HEADINGS: [(&str, Block); 5] = [
+const HEADINGS: [(&str, Block); 7] = [
     ("total internal energy for set", Block::Energy),
+    ("total kinetic energy for set", Block::KineticEnergy),
+    ("total force (fx,fy,fz) for set", Block::TotalForce),
     ("forces (fx,fy,fz) for set", Block::Reactions),
     ("displacements (vx,vy,vz) for set", Block::Displacements),
     (
@@ -76,12 +88,40 @@ const HEADINGS: [(&str, Block); 5] = [
     ),
 ];
 
-/// Reads the complete frames, in order of lambda.
+/// The printed output of one increment of some kind of problem.
+pub(crate) trait Printed: Sized {
+    /// What a complete increment prints.
+    type Layout;
+    /// An increment of which nothing is known but its time.
+    fn begin(time: f64) -> Self;
+    /// Its time.
+    fn time(&self) -> f64;
+    /// Adds a row of the block of a set; `None` if it does not belong there.
+    fn add(
+        &mut self,
+        block: Block,
+        set: &str,
+        fields: &[&str],
+        layout: &Self::Layout,
+    ) -> Option<()>;
+    /// Whether nothing is missing.
+    fn is_complete(&self, layout: &Self::Layout) -> bool;
+}
+
+/// Reads the complete frames of a window, in order of lambda.
 pub fn read_dat(bytes: &[u8], layout: Layout) -> Result<Vec<Frame>, DatError> {
+    read_printed(bytes, &layout)
+}
+
+/// Reads the complete increments, in order of time.
+pub(crate) fn read_printed<F: Printed>(
+    bytes: &[u8],
+    layout: &F::Layout,
+) -> Result<Vec<F>, DatError> {
     // An unterminated last line may contain a truncated number.
     let end = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
     let text = String::from_utf8_lossy(&bytes[..end]);
-    let mut frames: Vec<Frame> = Vec::new();
+    let mut frames: Vec<F> = Vec::new();
     let mut block = None;
     for (number, line) in text.lines().enumerate() {
         let line_error = |what| DatError::Line {
@@ -92,77 +132,89 @@ pub fn read_dat(bytes: &[u8], layout: Layout) -> Result<Vec<Frame>, DatError> {
         if line.is_empty() {
             continue;
         }
-        if let Some((_, time)) = line.rsplit_once(" and time ") {
-            let found = HEADINGS.iter().find(|(start, _)| line.starts_with(start));
-            let (_, kind) = found.ok_or_else(|| line_error("unknown heading"))?;
-            let lambda: f64 =
+        if let Some((heading, time)) = line.rsplit_once(" and time ") {
+            let found = HEADINGS
+                .iter()
+                .find_map(|(start, kind)| Some((*kind, heading.strip_prefix(start)?.trim())));
+            block = Some(found.ok_or_else(|| line_error("unknown heading"))?);
+            let time: f64 =
                 number_in(time).ok_or_else(|| line_error("the heading has no valid time"))?;
-            block = Some(*kind);
-            let last = frames.last().map(|frame| frame.lambda);
-            if last.is_none_or(|last| lambda > last) {
-                frames.push(Frame {
-                    lambda,
-                    ..Frame::default()
-                });
-            } else if last != Some(lambda) {
+            let last = frames.last().map(Printed::time);
+            if last.is_none_or(|last| time > last) {
+                frames.push(F::begin(time));
+            } else if last != Some(time) {
                 return Err(line_error("the time is smaller than in the block before"));
             }
             continue;
         }
-        let (Some(block), Some(frame)) = (block, frames.last_mut()) else {
+        let (Some((block, set)), Some(frame)) = (block, frames.last_mut()) else {
             return Err(line_error("row before the first heading"));
         };
+        let fields: Vec<_> = line.split_whitespace().collect();
         frame
-            .add(block, line, layout)
+            .add(block, set, &fields, layout)
             .ok_or_else(|| line_error("malformed or unexpected row"))?;
     }
     if frames.last().is_some_and(|last| !last.is_complete(layout)) {
         frames.pop();
     }
     match frames.iter().find(|frame| !frame.is_complete(layout)) {
-        Some(Frame { lambda, .. }) => Err(DatError::Incomplete { lambda: *lambda }),
+        Some(frame) => Err(DatError::Incomplete {
+            lambda: frame.time(),
+        }),
         None => Ok(frames),
     }
 }
 
-impl Frame {
-    /// Adds a row of `block`; `None` if it does not belong there.
-    fn add(&mut self, block: Block, line: &str, layout: Layout) -> Option<()> {
-        let fields: Vec<_> = line.split_whitespace().collect();
+impl Printed for Frame {
+    type Layout = Layout;
+
+    fn begin(lambda: f64) -> Self {
+        Self {
+            lambda,
+            ..Self::default()
+        }
+    }
+
+    fn time(&self) -> f64 {
+        self.lambda
+    }
+
+    fn add(&mut self, block: Block, _set: &str, fields: &[&str], layout: &Layout) -> Option<()> {
         match block {
             Block::Energy => {
-                let [energy] = numbers(&fields)?;
+                let [energy] = numbers(fields)?;
                 self.energy = energy;
                 self.energies += 1;
             }
             Block::Reactions => {
-                let (node, values) = fields.split_first()?;
-                let node = node.parse::<usize>().ok()?.checked_sub(1)?;
+                let (node, force) = at_node(fields)?;
                 if node >= layout.nodes {
                     return None;
                 }
-                self.reactions.push((node, numbers(values)?));
+                self.reactions.push((node, force));
             }
             Block::Displacements => {
-                let (node, values) = fields.split_first()?;
-                if node.parse() != Ok(self.displacements.len() + 1) {
+                let (node, values) = at_node(fields)?;
+                if node != self.displacements.len() {
                     return None;
                 }
-                self.displacements.push(numbers(values)?);
+                self.displacements.push(values);
             }
             Block::PlasticStrain => {
-                let [peeq] = numbers(in_order(&fields, self.peeq.len(), layout)?)?;
+                let [peeq] = numbers(in_order(fields, self.peeq.len(), layout)?)?;
                 self.peeq.push(peeq);
             }
             Block::Stress => {
-                let stress = numbers(in_order(&fields, self.stress.len(), layout)?)?;
+                let stress = numbers(in_order(fields, self.stress.len(), layout)?)?;
                 self.stress.push(stress);
             }
+            Block::KineticEnergy | Block::TotalForce => return None,
         }
         Some(())
     }
 
-    fn is_complete(&self, layout: Layout) -> bool {
+    fn is_complete(&self, layout: &Layout) -> bool {
         let points = layout.points * layout.elements;
         self.energies == 1
             && self.reactions.len() == layout.arc_nodes
@@ -172,8 +224,17 @@ impl Frame {
     }
 }
 
+/// A node, counted from 0, and the values at it.
+pub(crate) fn at_node<const N: usize>(fields: &[&str]) -> Option<(usize, [f64; N])> {
+    let (node, values) = fields.split_first()?;
+    Some((
+        node.parse::<usize>().ok()?.checked_sub(1)?,
+        numbers(values)?,
+    ))
+}
+
 /// The values of a row, which must belong to Gauss point `index`, counted over all elements.
-fn in_order<'a, 't>(fields: &'a [&'t str], index: usize, layout: Layout) -> Option<&'a [&'t str]> {
+fn in_order<'a, 't>(fields: &'a [&'t str], index: usize, layout: &Layout) -> Option<&'a [&'t str]> {
     let [element, point, values @ ..] = fields else {
         return None;
     };
@@ -183,7 +244,7 @@ fn in_order<'a, 't>(fields: &'a [&'t str], index: usize, layout: Layout) -> Opti
 }
 
 /// Exactly N finite numbers.
-fn numbers<const N: usize>(fields: &[&str]) -> Option<[f64; N]> {
+pub(crate) fn numbers<const N: usize>(fields: &[&str]) -> Option<[f64; N]> {
     let mut values = [0.0; N];
     if fields.len() != N {
         return None;
@@ -295,7 +356,7 @@ mod tests {
             let lines: Vec<_> = text.split_inclusive('\n').collect();
             let shuffled: String = order.iter().map(|index| *index.get(&lines)).collect();
             if let Ok(frames) = read_dat(shuffled.as_bytes(), LAYOUT) {
-                prop_assert!(frames.iter().all(|frame| frame.is_complete(LAYOUT)));
+                prop_assert!(frames.iter().all(|frame| frame.is_complete(&LAYOUT)));
                 prop_assert!(frames.windows(2).all(|pair| pair[0].lambda < pair[1].lambda));
             }
         }
@@ -303,7 +364,7 @@ mod tests {
         #[test]
         fn any_bytes_give_frames_or_an_error(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
             if let Ok(frames) = read_dat(&bytes, LAYOUT) {
-                prop_assert!(frames.iter().all(|frame| frame.is_complete(LAYOUT)));
+                prop_assert!(frames.iter().all(|frame| frame.is_complete(&LAYOUT)));
             }
         }
 

@@ -3,7 +3,9 @@
 use crate::calculix::dat::Frame;
 use crate::calculix::model::WindowModel;
 use crate::calculix::panel_motion::{PanelMotion, rotated};
-use hinge::{HingeDeformation, HingeForces, HingeSample, SheetMaterial, StrainVolumes};
+use hinge::{
+    HingeDeformation, HingeDesign, HingeForces, HingeSample, SheetMaterial, StrainVolumes,
+};
 use mesher::WindowMesh;
 use std::f64::consts::PI;
 
@@ -25,7 +27,9 @@ pub(crate) fn samples(model: &WindowModel, frames: &[Frame]) -> Vec<HingeSample>
             let forces = arc_forces(mesh, &deformation, &frame.reactions);
             w_work += trapezoid(before, (deformation, forces));
             before = (deformation, forces);
-            let damage = Damage::new(mesh, material, &frame.peeq);
+            let volumes = mesh.gauss_volumes.iter().flatten().copied();
+            let points = frame.peeq.iter().copied().zip(volumes).collect();
+            let damage = Damage::new(points, &mesh.design, mesh.thickness, material);
             HingeSample {
                 lambda: frame.lambda,
                 a: deformation.a,
@@ -39,7 +43,7 @@ pub(crate) fn samples(model: &WindowModel, frames: &[Frame]) -> Vec<HingeSample>
                 m_theta: forces.m_theta,
                 plastic_integral: damage.plastic_integral,
                 d: damage.d,
-                d_window: damage.d_window,
+                d_window: damage.plastic_integral / (material.fracture_strain * mesh.volume()),
                 d_peak: Some(damage.d_peak),
                 strain_max: Some(damage.strain_max),
                 strain_volumes: Some(damage.strain_volumes),
@@ -95,28 +99,30 @@ fn elastic_energy(mesh: &WindowMesh, material: &SheetMaterial, stress: &[[f64; 6
         .sum()
 }
 
-/// Damage measures from the accumulated plastic strain; see the fields of [`HingeSample`].
-struct Damage {
+/// Damage measures of a hinge from its accumulated plastic strain; see the fields of [`HingeSample`].
+pub(crate) struct Damage {
     plastic_integral: f64,
-    d: f64,
-    d_window: f64,
-    d_peak: f64,
+    pub d: f64,
+    pub d_peak: f64,
     strain_max: f64,
     strain_volumes: StrainVolumes,
 }
 
 impl Damage {
-    fn new(mesh: &WindowMesh, material: &SheetMaterial, peeq: &[f64]) -> Self {
-        let volumes = mesh.gauss_volumes.iter().flatten().copied();
-        let mut points: Vec<_> = peeq.iter().copied().zip(volumes).collect();
+    /// From (strain, volume) at the Gauss points of its window.
+    pub fn new(
+        mut points: Vec<(f64, f64)>,
+        design: &HingeDesign,
+        thickness: f64,
+        material: &SheetMaterial,
+    ) -> Self {
         points.sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
         let plastic_integral = points.iter().map(|(strain, volume)| strain * volume).sum();
-        let ligament = 0.5 * PI * mesh.design.w_lig.powi(2) * mesh.thickness;
+        let ligament = 0.5 * PI * design.w_lig.powi(2) * thickness;
         let fracture = material.fracture_strain;
         Self {
             plastic_integral,
             d: plastic_integral / (fracture * ligament),
-            d_window: plastic_integral / (fracture * mesh.volume()),
             d_peak: mean_of_first(&points, PEAK_FRACTION * ligament) / fracture,
             strain_max: points.first().map_or(0.0, |(strain, _)| *strain),
             strain_volumes: StrainVolumes::from_points(points),

@@ -11,6 +11,7 @@ use crate::campaign::definition::CampaignError;
 use crate::campaign::history::{History, history_name, overlaps};
 use crate::record_file::{entries, read_json, write_json};
 use crate::solve::host::host;
+use crate::solve::problem::Solve;
 use crate::solve::solve_folder::SolveStore;
 use crate::solve::tool_versions::ToolVersions;
 use crate::solve::window_solve::WindowSolve;

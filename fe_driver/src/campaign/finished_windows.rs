@@ -2,7 +2,7 @@
 
 use crate::campaign::campaign_folder::CampaignFolder;
 use crate::campaign::definition::CampaignError;
-use crate::solve::solved_window::SolvedWindow;
+use crate::solve::solved::Solved;
 use std::path::Path;
 use support::file_error::FileError;
 
@@ -12,12 +12,12 @@ use support::file_error::FileError;
 /// Stale jobs are omitted. Neither gmsh nor ccx needs to be installed.
 pub fn finished_windows(
     folder: &Path,
-) -> Result<impl Iterator<Item = Result<SolvedWindow, FileError>>, CampaignError> {
+) -> Result<impl Iterator<Item = Result<Solved, FileError>>, CampaignError> {
     let folder = CampaignFolder(folder.to_owned());
     let mut ids = folder.index()?.jobs;
     ids.sort_unstable();
     let store = folder.store();
     let windows = ids.into_iter().map(move |id| store.solve(&id).result());
-    let has_samples = |window: &SolvedWindow| !window.samples.is_empty();
+    let has_samples = |window: &Solved| !window.samples.is_empty();
     Ok(windows.filter_map(move |window| window.map(|found| found.filter(has_samples)).transpose()))
 }

@@ -4,6 +4,7 @@ use crate::campaign::campaign_folder::{CampaignFolder, Index};
 use crate::campaign::definition::{Campaign, CampaignError};
 use crate::campaign::status::Tally;
 use crate::record_file::{or_damage, short_hash};
+use crate::solve::problem::Solve;
 use crate::solve::solve_folder::{SolveRecord, SolveState, SolveStore};
 use crate::solve::tool_versions::ToolVersions;
 use crate::solve::window_solve::WindowSolve;
@@ -85,7 +86,7 @@ fn stale(store: &SolveStore, requested: &HashSet<String>) -> Result<Stale, Campa
         .filter(|id| !requested.contains(id))
     {
         // A damaged job of another campaign is ignored.
-        if let Ok(Some(solve)) = or_damage(store.solve(&id).solve())? {
+        if let Ok(Some(solve)) = or_damage(store.solve(&id).solve::<WindowSolve>())? {
             stale.count += 1;
             let ray = short_hash(&solve.problem.hinge);
             stale.rays.insert(ray, solve);

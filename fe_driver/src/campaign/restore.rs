@@ -81,7 +81,10 @@ pub fn restore(
             continue;
         };
         let home = store.solve(&window.id);
-        if home.ended()?.is_some_and(|record| record.is_closed()) {
+        if home
+            .ended::<WindowSolve>()?
+            .is_some_and(|record| record.is_closed())
+        {
             restored.there += 1;
             continue;
         }

@@ -4,6 +4,7 @@ use crate::campaign::campaign_folder::CampaignFolder;
 use crate::campaign::definition::CampaignError;
 use crate::campaign::history::Event;
 use crate::solve::failure::FailureKind;
+use crate::solve::window_solve::WindowSolve;
 use std::path::Path;
 use support::shard::Shard;
 
@@ -17,7 +18,7 @@ pub fn retry(folder: &Path, only: Option<FailureKind>) -> Result<usize, Campaign
     let mut reopened = 0;
     for id in &index.jobs {
         let is_meant = |kind| only.is_none_or(|only| kind == only);
-        if store.solve(id).reopen(is_meant)? {
+        if store.solve(id).reopen::<WindowSolve>(is_meant)? {
             history.note(id, Event::Reopened)?;
             reopened += 1;
         }

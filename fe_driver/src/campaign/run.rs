@@ -6,8 +6,8 @@ use crate::campaign::history::{Event, History};
 use crate::campaign::status::Tally;
 use crate::solve::attempts::{Job, SolveEvent, Workers};
 use crate::solve::solve_folder::SolveRecord;
+use crate::solve::solver::Solver;
 use crate::solve::window_solve::WindowSolve;
-use crate::solve::window_solver::WindowSolver;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -42,7 +42,7 @@ pub struct Progress {
 pub fn run(
     campaign: &Campaign,
     folder: &Path,
-    solver: &dyn WindowSolver,
+    solver: &dyn Solver,
     options: &RunOptions,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(&Progress),
@@ -88,7 +88,7 @@ struct Ledger<'a> {
 
 impl<'a> Ledger<'a> {
     fn new(history: History, jobs: &'a [Job]) -> Result<Self, FileError> {
-        let records = jobs.iter().map(|job| job.folder.ended());
+        let records = jobs.iter().map(|job| job.folder.ended::<WindowSolve>());
         let records = records.collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
             jobs,

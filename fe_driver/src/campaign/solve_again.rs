@@ -5,8 +5,8 @@ use crate::campaign::campaign_folder::CampaignFolder;
 use crate::campaign::definition::{Campaign, CampaignError};
 use crate::campaign::status::refuse_changed;
 use crate::solve::attempts::SolveListError;
-use crate::solve::solved_window::SolvedWindow;
-use crate::solve::window_solver::WindowSolver;
+use crate::solve::solved::Solved;
+use crate::solve::solver::Solver;
 use hinge::HingeSample;
 use serde::Serialize;
 use std::path::Path;
@@ -49,7 +49,7 @@ impl Difference {
 }
 
 /// Whether the samples are those of a complete first attempt. A restored job may have been solved by a later one.
-fn is_of_first_attempt(window: &SolvedWindow) -> bool {
+fn is_of_first_attempt(window: &Solved) -> bool {
     let record = &window.record;
     record.failure.is_none()
         && record.attempts == 1
@@ -64,7 +64,7 @@ fn is_of_first_attempt(window: &SolvedWindow) -> bool {
 pub fn solve_again(
     campaign: &Campaign,
     folder: &Path,
-    solver: &dyn WindowSolver,
+    solver: &dyn Solver,
     every: usize,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(usize, usize),

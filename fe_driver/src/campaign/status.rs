@@ -3,7 +3,9 @@
 use crate::campaign::campaign_folder::{CampaignFolder, Index};
 use crate::campaign::definition::{Campaign, CampaignError};
 use crate::solve::failure::FailureKind;
+use crate::solve::problem::Solve;
 use crate::solve::solve_folder::{SolveRecord, SolveState};
+use crate::solve::window_solve::WindowSolve;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -161,7 +163,7 @@ pub fn refuse_changed(campaign: &Campaign, folder: &Path) -> Result<(), Campaign
     folder.belongs_to(&campaign.name)?;
     let ids = folder.index()?.jobs;
     let store = folder.store();
-    let mut known = ids.iter().map(|id| store.solve(id).solve());
+    let mut known = ids.iter().map(|id| store.solve(id).solve::<WindowSolve>());
     let Some(known) = known.find_map(Result::transpose).transpose()? else {
         return Ok(());
     };

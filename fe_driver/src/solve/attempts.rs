@@ -5,9 +5,11 @@
 
 use crate::solve::failure::FailureKind;
 use crate::solve::ladder::AttemptKind;
+use crate::solve::problem::{Solve, SolvedPath};
+use crate::solve::solve_error::SolveError;
 use crate::solve::solve_folder::{SolveFolder, SolveRecord};
+use crate::solve::solver::{Solution, Solver};
 use crate::solve::window_solve::WindowSolve;
-use crate::solve::window_solver::{SolveError, WindowSolution, WindowSolver};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use support::file_error::FileError;
@@ -35,16 +37,15 @@ pub enum SolveListError {
 
 /// One solve of a list.
 #[derive(Clone, Debug)]
-pub(crate) struct Job {
+pub(crate) struct Job<S: Solve = WindowSolve> {
     pub id: String,
-    pub solve: WindowSolve,
+    pub solve: S,
     pub folder: SolveFolder,
 }
 
 /// How a list is worked through.
-#[derive(Clone, Copy)]
-pub(crate) struct Workers<'a> {
-    pub solver: &'a dyn WindowSolver,
+pub(crate) struct Workers<'a, S: Solve = WindowSolve> {
+    pub solver: &'a dyn Solver<S>,
     /// Number of solves that run in parallel.
     pub count: usize,
     /// Time limit of one attempt.
@@ -61,14 +62,14 @@ pub(crate) enum SolveEvent {
     Ended(AttemptKind, SolveRecord),
 }
 
-impl Workers<'_> {
+impl<S: Solve> Workers<'_, S> {
     /// Makes the attempts that are left at every job, each until it is closed. `note` hears of every event at a job, by
     /// its place in the list.
     ///
     /// When `stop` becomes true, the attempts in flight are terminated and not counted. A later run continues from there.
     pub fn work_through(
         &self,
-        jobs: &[Job],
+        jobs: &[Job<S>],
         stop: &AtomicBool,
         note: &mut dyn FnMut(usize, SolveEvent) -> Result<(), FileError>,
     ) -> Result<(), SolveListError> {
@@ -89,7 +90,7 @@ impl Workers<'_> {
     /// Makes the attempts at one job until it is closed or the run ends.
     fn solve(
         &self,
-        job: &Job,
+        job: &Job<S>,
         halt: &AtomicBool,
         report: &dyn Fn(SolveEvent),
     ) -> Result<(), SolveListError> {
@@ -100,7 +101,7 @@ impl Workers<'_> {
         if !may_start() {
             return Ok(());
         }
-        let mut record = job.folder.ended()?;
+        let mut record = job.folder.ended::<S>()?;
         report(SolveEvent::Found(record.clone()));
         while may_start()
             && let Some(attempt) =
@@ -118,17 +119,17 @@ impl Workers<'_> {
 
     /// Makes one attempt at a job and records its result; `None` if it was stopped on request.
     ///
-    /// The rows of the attempt that reached the largest lambda are kept. If another host has recorded an attempt in the
+    /// The samples of the attempt that reached the largest lambda are kept. If another host has recorded an attempt in the
     /// meantime, its record is returned, and that of this attempt is dropped.
     fn attempt(
         &self,
-        job: &Job,
+        job: &Job<S>,
         attempt: AttemptKind,
         before: Option<SolveRecord>,
         halt: &AtomicBool,
     ) -> Result<Option<SolveRecord>, SolveListError> {
         let start = Instant::now();
-        let solve = attempt.solve(&job.solve);
+        let solve = job.solve.attempted(attempt);
         job.folder.write_solve(&job.solve)?;
         let work = job.folder.fresh_work()?;
         let (solution, error) = match self.solver.attempt(&solve, &work, self.limit, halt) {
@@ -136,7 +137,7 @@ impl Workers<'_> {
                 let stopped = solution.stopped.take();
                 (solution, stopped)
             }
-            Err(error) => (WindowSolution::default(), Some(error)),
+            Err(error) => (Solution::default(), Some(error)),
         };
         let failure = match error {
             None => None,
@@ -149,23 +150,22 @@ impl Workers<'_> {
                 }
             },
         };
-        let now = job.folder.ended()?;
+        let now = job.folder.ended::<S>()?;
         if let Some(theirs) = now.filter(|now| before.as_ref() != Some(now)) {
             job.folder.remove_work()?;
             return Ok(Some(theirs));
         }
         let mut record = before.unwrap_or_default();
-        if let Some(last) = solution.samples.last()
-            && last.lambda > record.lambda
-        {
+        let reached = solution.samples.reached();
+        if reached > record.lambda {
             record.rows_hash = job.folder.write_samples(&solution.samples)?;
             record.rows = solution.samples.len();
-            record.lambda = last.lambda;
-            record.tier = solve.problem.tier;
+            record.lambda = reached;
+            record.tier = solve.tier();
             record.elements = solution.elements;
         }
-        record.next =
-            (failure.as_ref()).and_then(|(kind, _)| attempt.next(*kind, &job.solve, record.lambda));
+        record.next = (failure.as_ref())
+            .and_then(|(kind, _)| job.solve.next_attempt(attempt, *kind, record.lambda));
         (record.failure, record.message) = failure.unzip();
         record.attempts += 1;
         record.add_cost(&solution, start.elapsed());
@@ -179,7 +179,7 @@ impl Workers<'_> {
 
 impl SolveRecord {
     /// Adds what an attempt that has just ended has cost.
-    fn add_cost(&mut self, solution: &WindowSolution, wall: Duration) {
+    fn add_cost<S: Solve>(&mut self, solution: &Solution<S>, wall: Duration) {
         self.iterations += solution.iterations;
         self.cpu_seconds += solution.cpu_seconds.unwrap_or(0.0);
         self.wall_seconds += wall.as_secs_f64();

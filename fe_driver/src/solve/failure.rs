@@ -1,6 +1,6 @@
-//! Kinds of failure of a window solve.
+//! Kinds of failure of a solve.
 
-use crate::solve::window_solver::SolveError;
+use crate::solve::solve_error::SolveError;
 use mesher::MeshError;
 use serde::{Deserialize, Serialize};
 use strum::VariantNames;
@@ -63,10 +63,12 @@ impl FailureKind {
     /// run: a missing tool, a full disk, a stop request.
     pub fn from_error(error: &SolveError) -> Option<Self> {
         match error {
-            SolveError::Material(_) | SolveError::Ray(_) => Some(Self::InvalidInput),
-            SolveError::Mesh(MeshError::Design(_) | MeshError::Thickness(_)) => {
+            SolveError::Material(_) | SolveError::Ray(_) | SolveError::Sheet(_) => {
                 Some(Self::InvalidInput)
             }
+            SolveError::Mesh(
+                MeshError::Design(_) | MeshError::Thickness(_) | MeshError::Sheet(_),
+            ) => Some(Self::InvalidInput),
             SolveError::Diverged { tail, .. }
             | SolveError::NotStarted { tail, .. }
             | SolveError::Mesh(MeshError::Gmsh(ToolError::Failed { tail, .. }))
@@ -77,6 +79,7 @@ impl FailureKind {
             SolveError::Mesh(
                 MeshError::Read(_)
                 | MeshError::Defect { .. }
+                | MeshError::SheetDefect(_)
                 | MeshError::Gmsh(ToolError::Failed { .. }),
             ) => Some(Self::MeshFailed),
             // Killed or too slow, gmsh says nothing of the mesh: it is tried again as it was.

@@ -3,9 +3,10 @@
 //! W = (k_a a^2 + k_s s^2 + k_theta theta^2) / 2, D = theta^2 / 100, D_peak = 10 D, in ten equal increments. Nothing is
 //! written to the folder of an attempt.
 
+use crate::solve::solve_error::SolveError;
+use crate::solve::solver::{Solution, Solver};
 use crate::solve::tool_versions::ToolVersions;
 use crate::solve::window_solve::WindowSolve;
-use crate::solve::window_solver::{SolveError, WindowSolution, WindowSolver};
 use hinge::{HingeDeformation, HingeSample};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -73,7 +74,7 @@ impl<F: Fn(&WindowSolve) -> Option<Fault>> FakeSolver<F> {
     }
 }
 
-impl<F: Fn(&WindowSolve) -> Option<Fault> + Sync> WindowSolver for FakeSolver<F> {
+impl<F: Fn(&WindowSolve) -> Option<Fault> + Sync> Solver for FakeSolver<F> {
     fn versions(&self) -> ToolVersions {
         let [gmsh, ccx] = ["none", "fake"].map(str::to_owned);
         ToolVersions { gmsh, ccx }
@@ -85,7 +86,7 @@ impl<F: Fn(&WindowSolve) -> Option<Fault> + Sync> WindowSolver for FakeSolver<F>
         _work: &Path,
         limit: Duration,
         stop: &AtomicBool,
-    ) -> Result<WindowSolution, SolveError> {
+    ) -> Result<Solution, SolveError> {
         let start = Instant::now();
         self.attempts.fetch_add(1, Ordering::Relaxed);
         let (end, stopped) = match (self.fault)(solve) {
@@ -116,7 +117,7 @@ impl<F: Fn(&WindowSolve) -> Option<Fault> + Sync> WindowSolver for FakeSolver<F>
         let lambdas = (1..=INCREMENTS).map(|k| f64::from(k) / f64::from(INCREMENTS));
         let samples = lambdas.take_while(|lambda| *lambda <= end);
         let path = &solve.problem.hinge.path;
-        Ok(WindowSolution {
+        Ok(Solution {
             samples: samples
                 .map(|lambda| self.sample(lambda, path.at(lambda)))
                 .collect(),
@@ -124,7 +125,7 @@ impl<F: Fn(&WindowSolve) -> Option<Fault> + Sync> WindowSolver for FakeSolver<F>
             elements: 1,
             cpu_seconds: Some(1.0),
             wall_seconds: start.elapsed().as_secs_f64(),
-            ..WindowSolution::default()
+            ..Solution::default()
         })
     }
 }
@@ -133,6 +134,7 @@ impl<F: Fn(&WindowSolve) -> Option<Fault> + Sync> WindowSolver for FakeSolver<F>
 pub mod tests {
     use super::*;
     use crate::solve::hinge_path::Ray;
+    use crate::solve::problem::Solve;
     use crate::solve::window_solve::WindowProblem;
     use hinge::{HingeConstants, SheetMaterial};
     use mesher::Tier;

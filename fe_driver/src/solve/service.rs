@@ -1,19 +1,20 @@
 //! Lists of solves whose results are needed at once: a replay, a spot check, a round of an equilibrium, a study.
 
 use crate::solve::attempts::{Job, SolveEvent, SolveListError, Workers};
+use crate::solve::problem::Solve;
 use crate::solve::solve_folder::SolveStore;
-use crate::solve::solved_window::SolvedWindow;
+use crate::solve::solved::Solved;
+use crate::solve::solver::Solver;
 use crate::solve::tool_versions::ToolVersions;
 use crate::solve::window_solve::WindowSolve;
-use crate::solve::window_solver::WindowSolver;
 use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-/// Solves lists of windows and keeps every result in a store: what is in the store is not solved again.
-pub struct WindowService<'a> {
-    /// What solves the windows.
-    pub solver: Box<dyn WindowSolver + 'a>,
+/// Solves lists of problems of one kind and keeps every result in a store: what is in the store is not solved again.
+pub struct SolveService<'a, S: Solve = WindowSolve> {
+    /// What solves them.
+    pub solver: Box<dyn Solver<S> + 'a>,
     /// Where solves are kept.
     pub store: SolveStore,
     /// Number of solves that run in parallel.
@@ -26,13 +27,13 @@ pub struct WindowService<'a> {
     pub progress: Box<dyn Fn(usize, usize) + 'a>,
 }
 
-impl WindowService<'_> {
+impl<S: Solve> SolveService<'_, S> {
     /// The versions that the solves of this service must have.
     pub fn versions(&self) -> ToolVersions {
         self.solver.versions()
     }
 
-    /// The results of `solves`, in the same order; equal solves are made once. A window that fails is a result too, after
+    /// The results of `solves`, in the same order; equal solves are made once. A solve that fails is a result too, after
     /// all attempts of the ladder.
     ///
     /// A result of an earlier list is read from the store. A failure that the mechanics did not cause, as a time limit, is
@@ -40,9 +41,9 @@ impl WindowService<'_> {
     ///
     /// # Errors
     /// [`SolveListError::Stopped`] if `stop` becomes true before the last solve is done.
-    pub fn solve(&self, solves: &[WindowSolve]) -> Result<Vec<SolvedWindow>, SolveListError> {
+    pub fn solve(&self, solves: &[S]) -> Result<Vec<Solved<S>>, SolveListError> {
         let mut places = HashMap::new();
-        let mut jobs: Vec<Job> = Vec::new();
+        let mut jobs: Vec<Job<S>> = Vec::new();
         let mut order = Vec::with_capacity(solves.len());
         for solve in solves {
             let id = solve.id();
@@ -50,7 +51,7 @@ impl WindowService<'_> {
             order.push(place);
             if place == jobs.len() {
                 let folder = self.store.solve(&id);
-                folder.reopen(|failure| !failure.is_repeatable())?;
+                folder.reopen::<S>(|failure| !failure.is_repeatable())?;
                 let solve = solve.clone();
                 jobs.push(Job { id, solve, folder });
             }
@@ -73,7 +74,7 @@ impl WindowService<'_> {
             Ok(())
         })?;
         let solved = jobs.iter().map(|job| job.folder.result());
-        let solved: Vec<Option<SolvedWindow>> = solved.collect::<Result<_, _>>()?;
+        let solved: Vec<Option<Solved<S>>> = solved.collect::<Result<_, _>>()?;
         let left = solved.iter().filter(|result| result.is_none()).count();
         if left > 0 {
             return Err(SolveListError::Stopped { left });
@@ -90,7 +91,15 @@ mod tests {
     use crate::solve::failure::FailureKind;
     use crate::solve::fake_solver::tests::{STIFFNESS, healthy, solve_to};
     use crate::solve::fake_solver::{FakeSolver, Fault};
+    use crate::solve::ladder::AttemptKind;
+    use crate::solve::problem::SolvedPath;
+    use crate::solve::solve_error::SolveError;
+    use crate::solve::solver::Solution;
     use crate::solve::step_control::StepControl;
+    use mesher::Tier;
+    use serde::{Deserialize, Serialize};
+    use std::io;
+    use std::path::Path;
     use std::sync::atomic::Ordering;
     use tempfile::TempDir;
 
@@ -105,11 +114,11 @@ mod tests {
     }
 
     fn service<'a>(
-        solver: &'a (dyn WindowSolver + 'a),
+        solver: &'a (dyn Solver + 'a),
         folder: &TempDir,
         stop: &'a AtomicBool,
-    ) -> WindowService<'a> {
-        WindowService {
+    ) -> SolveService<'a> {
+        SolveService {
             solver: Box::new(solver),
             store: SolveStore(folder.path().join("solves")),
             workers: 1,
@@ -119,10 +128,7 @@ mod tests {
         }
     }
 
-    fn solve(
-        solver: &dyn WindowSolver,
-        folder: &TempDir,
-    ) -> Result<Vec<SolvedWindow>, SolveListError> {
+    fn solve(solver: &dyn Solver, folder: &TempDir) -> Result<Vec<Solved>, SolveListError> {
         service(solver, folder, &AtomicBool::new(false)).solve(&solves())
     }
 
@@ -182,7 +188,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let stop = AtomicBool::new(false);
         let hangs = FakeSolver::new(STIFFNESS, |solve| is_second(solve).then_some(Fault::Hangs));
-        let stopped = WindowService {
+        let stopped = SolveService {
             limit: Duration::from_secs(60),
             progress: Box::new(|done, _| stop.store(done == 1, Ordering::Relaxed)),
             ..service(&hangs, &folder, &stop)
@@ -239,5 +245,124 @@ mod tests {
             (&again[0].samples, solver.attempts()),
             (&windows[0].samples, 3)
         );
+    }
+
+    /// Another kind of problem: a bar that is stretched in steps.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    struct Bar {
+        stiffness: f64,
+        steps: u32,
+    }
+
+    /// The force at each step.
+    #[derive(Clone, Debug, Default, PartialEq)]
+    struct Forces(Vec<f64>);
+
+    impl Solve for Bar {
+        type Samples = Forces;
+
+        fn tier(&self) -> Tier {
+            Tier::Tiny
+        }
+
+        fn description(&self) -> String {
+            format!("bar of {} N", self.stiffness)
+        }
+
+        fn next_attempt(
+            &self,
+            attempt: AttemptKind,
+            _: FailureKind,
+            _: f64,
+        ) -> Option<AttemptKind> {
+            (attempt == AttemptKind::Requested).then_some(AttemptKind::ShorterIncrements)
+        }
+
+        fn attempted(&self, attempt: AttemptKind) -> Self {
+            let mut bar = self.clone();
+            bar.steps *= 1 + u32::from(attempt == AttemptKind::ShorterIncrements);
+            bar
+        }
+    }
+
+    impl SolvedPath for Forces {
+        const FILE: &'static str = "forces.json";
+
+        fn len(&self) -> usize {
+            self.0.len()
+        }
+
+        fn reached(&self) -> f64 {
+            f64::from(u8::from(!self.is_empty()))
+        }
+
+        fn to_bytes(&self) -> io::Result<Vec<u8>> {
+            Ok(serde_json::to_vec(&self.0)?)
+        }
+
+        fn from_bytes(bytes: &[u8]) -> io::Result<Self> {
+            Ok(Self(serde_json::from_slice(bytes)?))
+        }
+    }
+
+    /// Needs at least four steps.
+    struct BarSolver;
+
+    impl Solver<Bar> for BarSolver {
+        fn versions(&self) -> ToolVersions {
+            healthy().versions()
+        }
+
+        fn attempt(
+            &self,
+            bar: &Bar,
+            _: &Path,
+            _: Duration,
+            _: &AtomicBool,
+        ) -> Result<Solution<Bar>, SolveError> {
+            let steps = f64::from(bar.steps);
+            if bar.steps < 4 {
+                let (lambda, tail) = (0.0, String::new());
+                return Err(SolveError::Diverged { lambda, tail });
+            }
+            let force = |step| bar.stiffness * f64::from(step) / steps;
+            Ok(Solution {
+                samples: Forces((1..=bar.steps).map(force).collect()),
+                ..Solution::default()
+            })
+        }
+    }
+
+    #[test]
+    fn another_kind_of_problem_is_attempted_kept_and_read_back() {
+        let (folder, stop) = (tempfile::tempdir().unwrap(), AtomicBool::new(false));
+        let windows = healthy();
+        let windows = service(&windows, &folder, &stop);
+        let bars = SolveService {
+            solver: Box::new(BarSolver),
+            store: windows.store.clone(),
+            workers: 2,
+            limit: Duration::from_secs(60),
+            stop: &stop,
+            progress: Box::new(|_, _| {}),
+        };
+        let [needs_more, fails] = [3, 1].map(|steps| Bar {
+            stiffness: 0.3,
+            steps,
+        });
+        let list = [needs_more.clone(), fails];
+        let solved = bars.solve(&list).unwrap();
+        assert_eq!(solved[0].complete().unwrap().len(), 6);
+        let record = &solved[0].record;
+        assert_eq!((record.attempts, record.lambda), (2, 1.0));
+        let message = solved[1].complete().unwrap_err().to_string();
+        assert!(message.starts_with("bar of 0.3 N: "), "{message}");
+        assert!(message.contains("diverged"), "{message}");
+        // The store keeps windows beside it.
+        assert_eq!(windows.solve(&solves()).unwrap().len(), 3);
+        let kept = windows.store.solve(&needs_more.id());
+        assert!(kept.0.join("forces.json").exists());
+        assert_eq!(kept.solve().unwrap(), Some(needs_more));
+        assert_eq!(bars.solve(&list).unwrap(), solved);
     }
 }

@@ -1,16 +1,16 @@
 //! The store of solves on disk: one folder a solve, whole or open.
 //!
 //! The folder of a solve is `<first two digits of its id>/<id>/`, so that no folder has 10^5 entries. It contains `job.json`
-//! (all inputs of the result; its hash is the id), `rows.csv` (the samples) and `result.json`. `result.json` is written
-//! last: a solve without it is not done. These files are written atomically. Deck and log of an attempt remain only if it
-//! failed: the deck follows from `job.json`.
+//! (all inputs of the result; its hash is the id), the file of the samples (`rows.csv` for a window) and `result.json`.
+//! `result.json` is written last: a solve without it is not done. These files are written atomically. Deck and log of an
+//! attempt remain only if it failed: the deck follows from `job.json`.
 
 use crate::record_file::{entries, or_damage, read_json, write_json};
 use crate::solve::failure::FailureKind;
 use crate::solve::host::host;
 use crate::solve::ladder::AttemptKind;
+use crate::solve::problem::{Solve, SolvedPath};
 use crate::solve::window_solve::WindowSolve;
-use hinge::HingeSample;
 use mesher::Tier;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -30,15 +30,15 @@ pub struct SolveRecord {
     pub next: Option<AttemptKind>,
     /// Number of attempts.
     pub attempts: u32,
-    /// Tier of the attempt that produced the rows.
+    /// Tier of the attempt that produced the samples.
     pub tier: Tier,
     /// Number of elements of its mesh.
     pub elements: usize,
-    /// Number of rows in `rows.csv`.
+    /// Number of samples, one per converged increment.
     pub rows: usize,
-    /// Hash of `rows.csv`.
+    /// Hash of the file of the samples.
     pub rows_hash: String,
-    /// Lambda of the last row; 1 for a complete path.
+    /// Lambda of the last sample; 1 for a complete path.
     pub lambda: f64,
     /// Newton iterations over all attempts.
     pub iterations: usize,
@@ -68,11 +68,11 @@ impl SolveRecord {
 
 /// The state of a solve in its folder.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum SolveState {
+pub(crate) enum SolveState<S: Solve = WindowSolve> {
     /// No attempt has ended; `started` if an attempt was started.
     Open { started: bool },
     /// An attempt has ended.
-    Ended(Box<(WindowSolve, SolveRecord)>),
+    Ended(Box<(S, SolveRecord)>),
     /// The files of the folder are damaged or inconsistent, with the reason. The solve counts as open: the next run
     /// solves it again.
     Damaged(String),
@@ -119,10 +119,10 @@ pub struct SolveFolder(pub PathBuf);
 
 impl SolveFolder {
     /// The state of the solve. The consistency of its files is checked: the name of the folder must be the hash of
-    /// `job.json`, and `result.json` contains the hash of `rows.csv`.
-    pub(crate) fn state(&self) -> Result<SolveState, FileError> {
+    /// `job.json`, and `result.json` contains the hash of the file of the samples.
+    pub(crate) fn state<S: Solve>(&self) -> Result<SolveState<S>, FileError> {
         let damaged = |reason: &str| Ok(SolveState::Damaged(reason.to_owned()));
-        let solve = match or_damage(self.solve())? {
+        let solve = match or_damage(self.solve::<S>())? {
             Ok(solve) => solve,
             Err(_) => return damaged("job.json cannot be read"),
         };
@@ -140,12 +140,12 @@ impl SolveFolder {
             }),
             (None, Some(_)) => damaged("job.json is missing"),
             (Some(solve), Some(record)) => {
-                let rows = self.0.join("rows.csv");
-                if record.rows > 0 && !rows.exists() {
-                    return damaged("rows.csv is missing");
+                let name = S::Samples::FILE;
+                if record.rows > 0 && !self.0.join(name).exists() {
+                    return damaged(&format!("{name} is missing"));
                 }
-                if record.rows > 0 && or_damage(self.rows(&record))?.is_err() {
-                    return damaged("rows.csv does not match result.json");
+                if record.rows > 0 && or_damage(self.bytes(name, &record))?.is_err() {
+                    return damaged(&format!("{name} does not match result.json"));
                 }
                 Ok(SolveState::Ended(Box::new((solve, record))))
             }
@@ -153,7 +153,7 @@ impl SolveFolder {
     }
 
     /// Reads the inputs of the solve; `None` if it was never started.
-    pub fn solve(&self) -> Result<Option<WindowSolve>, FileError> {
+    pub fn solve<S: Solve>(&self) -> Result<Option<S>, FileError> {
         read_json(&self.0.join("job.json"))
     }
 
@@ -163,18 +163,15 @@ impl SolveFolder {
     }
 
     /// Reads the samples; an error if their hash is not the one in `record`.
-    pub fn samples(&self, record: &SolveRecord) -> Result<Vec<HingeSample>, FileError> {
-        let bytes = self.rows(record)?;
-        let rows = csv::Reader::from_reader(&bytes[..]).into_deserialize();
-        rows.collect::<Result<_, csv::Error>>().map_err(|error| {
-            let damage = io::Error::new(io::ErrorKind::InvalidData, error);
-            FileError::at(&self.0.join("rows.csv"))(damage)
-        })
+    pub fn samples<S: Solve>(&self, record: &SolveRecord) -> Result<S::Samples, FileError> {
+        let name = S::Samples::FILE;
+        let bytes = self.bytes(name, record)?;
+        S::Samples::from_bytes(&bytes).map_err(FileError::at(&self.0.join(name)))
     }
 
-    /// The bytes of `rows.csv`, which must have the hash in `record`.
-    fn rows(&self, record: &SolveRecord) -> Result<Vec<u8>, FileError> {
-        let path = self.0.join("rows.csv");
+    /// The bytes of the file of the samples, which must have the hash in `record`.
+    fn bytes(&self, name: &str, record: &SolveRecord) -> Result<Vec<u8>, FileError> {
+        let path = self.0.join(name);
         let bytes = regular_file::read(&path).map_err(FileError::at(&path))?;
         if blake3::hash(&bytes).to_hex().as_str() != record.rows_hash {
             let changed =
@@ -185,20 +182,15 @@ impl SolveFolder {
         Ok(bytes)
     }
 
-    pub(crate) fn write_solve(&self, solve: &WindowSolve) -> Result<(), FileError> {
+    pub(crate) fn write_solve<S: Solve>(&self, solve: &S) -> Result<(), FileError> {
         whole_file::create_folder(&self.0).map_err(FileError::at(&self.0))?;
         write_json(&self.0.join("job.json"), solve)
     }
 
     /// Writes the samples so that every number is read back exactly; returns the hash of the file.
-    pub(crate) fn write_samples(&self, samples: &[HingeSample]) -> Result<String, FileError> {
-        let path = self.0.join("rows.csv");
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        samples
-            .iter()
-            .try_for_each(|sample| writer.serialize(sample))
-            .map_err(FileError::at(&path))?;
-        let bytes = writer.into_inner().expect("a vector takes every byte");
+    pub(crate) fn write_samples<P: SolvedPath>(&self, samples: &P) -> Result<String, FileError> {
+        let path = self.0.join(P::FILE);
+        let bytes = samples.to_bytes().map_err(FileError::at(&path))?;
         whole_file::write(&path, &bytes).map_err(FileError::at(&path))?;
         Ok(blake3::hash(&bytes).to_hex().to_string())
     }
@@ -208,8 +200,8 @@ impl SolveFolder {
     }
 
     /// The record of the solve if its files are consistent; `None` if no attempt has ended, or if the files are damaged.
-    pub(crate) fn ended(&self) -> Result<Option<SolveRecord>, FileError> {
-        Ok(match self.state()? {
+    pub(crate) fn ended<S: Solve>(&self) -> Result<Option<SolveRecord>, FileError> {
+        Ok(match self.state::<S>()? {
             SolveState::Ended(ended) => Some(ended.1),
             SolveState::Open { .. } | SolveState::Damaged(_) => None,
         })
@@ -217,8 +209,11 @@ impl SolveFolder {
 
     /// Starts the ladder of a closed solve again if it failed in one of the ways that `may` accepts; returns whether it did.
     /// Its samples are kept until an attempt reaches a larger lambda.
-    pub(crate) fn reopen(&self, may: impl Fn(FailureKind) -> bool) -> Result<bool, FileError> {
-        let Some(mut record) = self.ended()? else {
+    pub(crate) fn reopen<S: Solve>(
+        &self,
+        may: impl Fn(FailureKind) -> bool,
+    ) -> Result<bool, FileError> {
+        let Some(mut record) = self.ended::<S>()? else {
             return Ok(false);
         };
         let reopened = record.is_closed() && record.failure.is_some_and(may);
@@ -257,6 +252,7 @@ impl SolveFolder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hinge::HingeSample;
     use proptest::prelude::*;
 
     fn folder() -> (tempfile::TempDir, SolveFolder) {
@@ -271,11 +267,11 @@ mod tests {
             numbers in proptest::array::uniform4(proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL)
         ) {
             let [w, f_a, f_s, m_theta] = numbers;
-            let rows = [HingeSample { w, f_a, f_s, m_theta, ..HingeSample::default() }; 2];
+            let rows = vec![HingeSample { w, f_a, f_s, m_theta, ..HingeSample::default() }; 2];
             let (_root, folder) = folder();
             let rows_hash = folder.write_samples(&rows).unwrap();
             let record = SolveRecord { rows_hash, ..SolveRecord::default() };
-            prop_assert_eq!(&folder.samples(&record).unwrap()[..], &rows[..]);
+            prop_assert_eq!(folder.samples::<WindowSolve>(&record).unwrap(), rows);
         }
     }
 

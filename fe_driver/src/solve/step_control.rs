@@ -1,4 +1,4 @@
-//! Automatic increments of a window solve.
+//! Automatic increments of a solve.
 
 use serde::{Deserialize, Serialize};
 

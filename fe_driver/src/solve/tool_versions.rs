@@ -1,4 +1,4 @@
-//! Versions of the programs that determine the result of a window solve.
+//! Versions of the programs that determine the result of a solve.
 
 use serde::{Deserialize, Serialize};
 

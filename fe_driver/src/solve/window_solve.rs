@@ -1,10 +1,13 @@
-//! The identity of a window solve.
+//! A window solve: its identity, and its ladder of attempts.
 
 use crate::record_file::short_hash;
+use crate::solve::failure::FailureKind;
 use crate::solve::hinge_path::HingePath;
+use crate::solve::ladder::AttemptKind;
+use crate::solve::problem::Solve;
 use crate::solve::step_control::StepControl;
 use crate::solve::tool_versions::ToolVersions;
-use hinge::SheetMaterial;
+use hinge::{HingeSample, SheetMaterial};
 use mesher::{MeshRecipe, Tier};
 use serde::{Deserialize, Serialize};
 
@@ -28,7 +31,7 @@ pub struct WindowProblem {
     pub step: StepControl,
 }
 
-/// All inputs of the result of a window solve. Its id is a hash of them: two solves of one id have the same result.
+/// All inputs of the result of a window solve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WindowSolve {
     /// The window problem.
@@ -64,11 +67,6 @@ impl WindowSolve {
         }
     }
 
-    /// The id: 16 hexadecimal digits.
-    pub fn id(&self) -> String {
-        short_hash(self)
-    }
-
     /// Hash of the settings that all solves of a campaign share, except the material: mesh, increments, programs.
     pub fn settings_hash(&self) -> String {
         let WindowProblem { tier, step, .. } = &self.problem;
@@ -90,5 +88,126 @@ impl WindowSolve {
         ];
         let different = settings.into_iter().filter(|(_, differs)| *differs);
         different.map(|(name, _)| name).collect()
+    }
+
+    /// Whether it has the mesh of its tier and the usual increments.
+    fn is_usual(&self) -> bool {
+        let problem = &self.problem;
+        self.mesh == problem.tier.recipe() && problem.step == StepControl::default()
+    }
+}
+
+/// A path that diverges beyond this lambda is not solved on a finer mesh.
+const LONG: f64 = 0.5;
+
+impl Solve for WindowSolve {
+    type Samples = Vec<HingeSample>;
+
+    fn tier(&self) -> Tier {
+        self.problem.tier
+    }
+
+    fn description(&self) -> String {
+        let HingePath { design, path } = &self.problem.hinge;
+        let end = path.at(1.0);
+        let [eta_a, eta_s] = end.eta(design.w_lig);
+        format!(
+            "w_lig {:.2} mm, alpha {:.1} deg, path to (eta_a, eta_s, theta) = ({eta_a:.3}, {eta_s:.3}, {:.2} deg)",
+            design.w_lig,
+            design.alpha.to_degrees(),
+            end.theta.to_degrees(),
+        )
+    }
+
+    /// A solve with a mesh or increments of its own, as a study of them has, is never solved with others.
+    fn next_attempt(
+        &self,
+        attempt: AttemptKind,
+        failure: FailureKind,
+        lambda: f64,
+    ) -> Option<AttemptKind> {
+        use AttemptKind::{Again, Dynamic, FinerTier, Requested, ShorterIncrements};
+        let next = match (failure, attempt) {
+            (FailureKind::InvalidInput, _) | (_, FinerTier | Dynamic) => None,
+            (FailureKind::MeshFailed, _) => Some(FinerTier),
+            (
+                FailureKind::NotStarted | FailureKind::Killed | FailureKind::OutputTruncated,
+                Requested,
+            ) => Some(Again),
+            (FailureKind::NotStarted, _) => None,
+            (_, Requested | Again) => Some(ShorterIncrements),
+            // The usual cause is a snap of the ligament, which also occurs on a finer mesh.
+            (FailureKind::Diverged, ShorterIncrements) if lambda > LONG => None,
+            // A finer mesh would take even longer.
+            (FailureKind::TimedOut, ShorterIncrements) => None,
+            (_, ShorterIncrements) => Some(FinerTier),
+        };
+        next.filter(|next| match next {
+            Requested | Again => true,
+            ShorterIncrements => self.is_usual(),
+            Dynamic => false,
+            FinerTier => self.is_usual() && self.problem.tier.finer().is_some(),
+        })
+    }
+
+    fn attempted(&self, attempt: AttemptKind) -> Self {
+        let mut solve = self.clone();
+        if matches!(
+            attempt,
+            AttemptKind::ShorterIncrements | AttemptKind::FinerTier
+        ) {
+            solve.problem.step = StepControl::patient();
+        }
+        if attempt == AttemptKind::FinerTier {
+            let tier = self.problem.tier;
+            solve.problem.tier = tier.finer().unwrap_or(tier);
+            solve.mesh = solve.problem.tier.recipe();
+        }
+        solve
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::fake_solver::tests::solve_on;
+    use strum::VariantNames;
+
+    #[test]
+    fn every_retry_ladder_ends() {
+        let next = |tier, lambda| {
+            let shorter = AttemptKind::ShorterIncrements;
+            solve_on(tier).next_attempt(shorter, FailureKind::Diverged, lambda)
+        };
+        assert_eq!(next(Tier::Reference, 0.0), None);
+        assert_eq!(next(Tier::Default, 0.4), Some(AttemptKind::FinerTier));
+        assert_eq!(next(Tier::Default, 0.6), None);
+        for name in FailureKind::VARIANTS {
+            let kind: FailureKind = name.parse().unwrap();
+            assert_eq!(kind.to_string(), *name);
+            let mut attempt = AttemptKind::Requested;
+            let mut attempts = 1;
+            while let Some(next) = solve_on(Tier::Default).next_attempt(attempt, kind, 0.0) {
+                assert_ne!(next, attempt);
+                attempt = next;
+                attempts += 1;
+            }
+            assert!(attempts <= 4, "{kind}: {attempts}");
+        }
+    }
+
+    #[test]
+    fn a_mesh_or_increments_of_a_study_are_not_replaced() {
+        let mut meshed = solve_on(Tier::Default);
+        meshed.mesh.layers = 3;
+        let mut stepped = solve_on(Tier::Default);
+        stepped.problem.step.greatest = 0.07;
+        for solve in [meshed, stepped] {
+            let next = |attempt, failure| solve.next_attempt(attempt, failure, 0.0);
+            assert_eq!(next(AttemptKind::Requested, FailureKind::Diverged), None);
+            let again = next(AttemptKind::Requested, FailureKind::Killed);
+            assert_eq!(again, Some(AttemptKind::Again));
+            assert_eq!(next(AttemptKind::Again, FailureKind::Killed), None);
+        }
     }
 }

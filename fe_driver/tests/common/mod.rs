@@ -4,8 +4,8 @@
 pub mod processes;
 
 use fe_driver::{
-    CalculiX, Campaign, CampaignError, Ccx, Ray, RunOptions, Shard, SolvedWindow, Tally,
-    WindowProblem, finished_windows, run,
+    CalculiX, Campaign, CampaignError, Ccx, Ray, RunOptions, Shard, Solved, Tally, WindowProblem,
+    finished_windows, run,
 };
 use hinge::{HingeDeformation, HingeDesign, SheetMaterial};
 use mesher::Tier;
@@ -52,7 +52,7 @@ pub fn campaign(count: usize) -> Campaign {
     campaign
 }
 
-pub fn jobs(folder: &Path) -> Vec<SolvedWindow> {
+pub fn jobs(folder: &Path) -> Vec<Solved> {
     finished_windows(folder)
         .unwrap()
         .collect::<Result<_, _>>()

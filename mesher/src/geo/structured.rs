@@ -6,7 +6,6 @@
 //! elements at small alpha.
 
 use super::Script;
-use crate::msh::Boundary;
 use crate::tier::Structured;
 use crate::window::{Side, Window, polar_angle};
 use std::f64::consts::PI;
@@ -17,8 +16,29 @@ const INNER_RADIUS: f64 = 1.5;
 /// Weight of the true polar angle, relative to equal angles, in the spacing of columns at the hole.
 const ANGLE_BLEND: f64 = 0.5;
 
+/// The boundary of a window that was added to a script.
+pub(super) struct WindowCurves {
+    /// The hole about the tip.
+    pub hole: Vec<i32>,
+    /// The arc on panel A.
+    pub rim_a: Rim,
+    /// The arc on panel B.
+    pub rim_b: Rim,
+}
+
+/// An arc of a window, counter-clockwise about its origin.
+#[derive(Clone)]
+pub(super) struct Rim {
+    /// Its points in the script, one more than arcs.
+    pub points: Vec<i32>,
+    /// Its curves in the script.
+    pub arcs: Vec<i32>,
+    /// Its ends in the hinge frame (mm).
+    pub ends: [[f64; 2]; 2],
+}
+
 /// Adds the patches of `window`.
-pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Structured) {
+pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Structured) -> WindowCurves {
     let centre = geo.point([0.0, 0.0]);
     let tip = geo.point(window.0.tip());
 
@@ -58,19 +78,12 @@ pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Structured) {
     for c in 0..columns {
         geo.patch([rays[c], outer_edges[c], -rays[c + 1], -hole_arcs[c]]);
     }
-    geo.boundary(Boundary::Hole, &hole_arcs);
-
     let growth =
         (window.0.r_win / (INNER_RADIUS * window.0.w_lig)).powf(1.0 / recipe.outer_rings as f64);
-    for (boundary, side, start) in [
-        (Boundary::ArcB, Side::B, 0),
-        (Boundary::ArcA, Side::A, top.end),
-    ] {
-        let rim: Vec<_> = panel_arc(window, side, window.0.r_win, recipe.arc_columns)
-            .into_iter()
-            .map(|p| geo.point(p))
-            .collect();
-        let rays: Vec<_> = rim
+    let mut rim = |side, start: usize| {
+        let positions = panel_arc(window, side, window.0.r_win, recipe.arc_columns);
+        let points: Vec<_> = positions.iter().map(|p| geo.point(*p)).collect();
+        let rays: Vec<_> = points
             .iter()
             .enumerate()
             .map(|(j, p)| {
@@ -78,7 +91,7 @@ pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Structured) {
                 geo.divide(ray, recipe.outer_rings, growth)
             })
             .collect();
-        let arcs: Vec<_> = rim
+        let arcs: Vec<_> = points
             .windows(2)
             .map(|pair| {
                 let arc = geo.arc(pair[0], centre, pair[1]);
@@ -88,7 +101,13 @@ pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Structured) {
         for j in 0..recipe.arc_columns {
             geo.patch([rays[j], arcs[j], -rays[j + 1], -outer_edges[start + j]]);
         }
-        geo.boundary(boundary, &arcs);
+        let ends = [positions[0], positions[recipe.arc_columns]];
+        Rim { points, arcs, ends }
+    };
+    WindowCurves {
+        rim_b: rim(Side::B, 0),
+        rim_a: rim(Side::A, top.end),
+        hole: hole_arcs,
     }
 }
 

@@ -6,7 +6,7 @@ use crate::ui::progress::Progress;
 use crate::ui::table::table;
 use anyhow::{Result, ensure};
 use clap::Args;
-use fe_driver::{CalculiX, WindowSolver, solve_again};
+use fe_driver::{CalculiX, solve_again};
 use std::num::NonZeroUsize;
 use std::sync::atomic::Ordering;
 

@@ -6,7 +6,7 @@ use crate::ui::progress::duration;
 use crate::ui::table::table;
 use anyhow::Result;
 use clap::Args;
-use fe_driver::{CalculiX, WindowSolver};
+use fe_driver::CalculiX;
 
 /// Print what a run would solve, why, and the estimated time
 #[derive(Args)]

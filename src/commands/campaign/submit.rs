@@ -4,7 +4,7 @@ use crate::commands::campaign::campaign_args::CampaignArgs;
 use crate::ui::progress::duration;
 use anyhow::{Context, Result};
 use clap::Args;
-use fe_driver::{ArrayScript, CalculiX, SLURM, WindowSolver, slurm_folder, submit_array};
+use fe_driver::{ArrayScript, CalculiX, SLURM, slurm_folder, submit_array};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf, absolute};
 use support::regular_file;

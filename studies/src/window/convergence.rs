@@ -3,7 +3,7 @@
 //! The error of a choice is the root mean square, over the ray, of the difference that it makes
 //! to W, F_a, M_theta and D, divided by the root mean square of the reference solution.
 
-use fe_driver::{Ray, SolvedWindow, ToolVersions, WindowProblem, WindowSolve};
+use fe_driver::{Ray, Solved, ToolVersions, WindowProblem, WindowSolve};
 use hinge::{HingeDeformation, HingeDesign, HingeSample, SheetMaterial};
 use mesher::Tier;
 use std::f64::consts::FRAC_PI_2;
@@ -100,14 +100,14 @@ pub fn study_cases(
 pub type StudyState = [f64; 5];
 
 /// The state of a complete ray of the study at the rotation `theta_deg`.
-pub fn study_state(solution: &SolvedWindow, theta_deg: f64) -> StudyState {
+pub fn study_state(solution: &Solved, theta_deg: f64) -> StudyState {
     let x = HingeSample::at(&solution.samples, theta_deg / STUDY_THETA_DEG).unwrap_or_default();
     [x.w, x.f_a, x.m_theta, x.d, x.uz_max]
 }
 
 /// Relative difference of two solutions in each component of the state: the root mean square of the difference
 /// over the ray from 3 deg on, divided by the root mean square of `against`.
-pub fn study_difference(solution: &SolvedWindow, against: &SolvedWindow) -> StudyState {
+pub fn study_difference(solution: &Solved, against: &Solved) -> StudyState {
     let (mut off, mut all) = ([0.0; 5], [0.0; 5]);
     for degrees in 3..=STUDY_THETA_DEG as u32 {
         let [x, y] = [solution, against].map(|window| study_state(window, degrees.into()));
@@ -186,7 +186,7 @@ mod tests {
         ToolVersions { gmsh, ccx }
     }
 
-    fn solution(scale: f64) -> SolvedWindow {
+    fn solution(scale: f64) -> Solved {
         let sample = |lambda: f64| HingeSample {
             lambda,
             w: scale * lambda * lambda,
@@ -196,7 +196,7 @@ mod tests {
             uz_max: scale,
             ..HingeSample::default()
         };
-        SolvedWindow {
+        Solved {
             id: String::new(),
             solve: study_cases(design(), &film(), &versions(), true)
                 .remove(0)

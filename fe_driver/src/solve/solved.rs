@@ -1,33 +1,32 @@
-//! The result of a window solve: its samples, or why and where it failed.
+//! The result of a solve: its samples, or why and where it failed.
 
-use crate::solve::hinge_path::HingePath;
+use crate::solve::problem::Solve;
 use crate::solve::solve_folder::{SolveFolder, SolveRecord, SolveState};
 use crate::solve::window_solve::WindowSolve;
-use hinge::HingeSample;
 use std::fmt;
 use std::path::PathBuf;
 use support::file_error::FileError;
 
 /// A solve with its record and its samples.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SolvedWindow {
+pub struct Solved<S: Solve = WindowSolve> {
     /// Id of the solve.
     pub id: String,
     /// What was to be solved.
-    pub solve: WindowSolve,
+    pub solve: S,
     /// How it ended.
     pub record: SolveRecord,
-    /// One sample per converged increment of the attempt that reached furthest; empty without one.
-    pub samples: Vec<HingeSample>,
+    /// The converged increments of the attempt that reached furthest; empty without one.
+    pub samples: S::Samples,
     /// Folder of its last attempt, which remains if the solve failed.
     pub work: PathBuf,
 }
 
-/// A window that was not solved to the end of its path.
+/// What was not solved to the end of its path.
 #[derive(Clone, Debug, PartialEq)]
-pub struct UnsolvedWindow {
-    /// The hinge and its path.
-    pub hinge: HingePath,
+pub struct Unsolved<S: Solve = WindowSolve> {
+    /// What was to be solved.
+    pub solve: S,
     /// Number of attempts.
     pub attempts: u32,
     /// Lambda of the last converged increment of any attempt.
@@ -40,8 +39,8 @@ pub struct UnsolvedWindow {
 
 impl SolveFolder {
     /// The closed solve with its samples; `None` if it is not closed.
-    pub(crate) fn result(&self) -> Result<Option<SolvedWindow>, FileError> {
-        let SolveState::Ended(ended) = self.state()? else {
+    pub(crate) fn result<S: Solve>(&self) -> Result<Option<Solved<S>>, FileError> {
+        let SolveState::<S>::Ended(ended) = self.state()? else {
             return Ok(None);
         };
         let (solve, record) = *ended;
@@ -49,10 +48,10 @@ impl SolveFolder {
             return Ok(None);
         }
         let samples = match record.rows {
-            0 => Vec::new(),
-            _ => self.samples(&record)?,
+            0 => S::Samples::default(),
+            _ => self.samples::<S>(&record)?,
         };
-        Ok(Some(SolvedWindow {
+        Ok(Some(Solved {
             id: solve.id(),
             solve,
             record,
@@ -62,13 +61,13 @@ impl SolveFolder {
     }
 }
 
-impl SolvedWindow {
+impl<S: Solve> Solved<S> {
     /// The samples, or why the path was not followed to its end.
-    pub fn complete(&self) -> Result<&[HingeSample], Box<UnsolvedWindow>> {
+    pub fn complete(&self) -> Result<&S::Samples, Box<Unsolved<S>>> {
         match self.record.failure {
             None => Ok(&self.samples),
-            Some(failure) => Err(Box::new(UnsolvedWindow {
-                hinge: self.solve.problem.hinge.clone(),
+            Some(failure) => Err(Box::new(Unsolved {
+                solve: self.solve.clone(),
                 attempts: self.record.attempts,
                 lambda: self.record.lambda,
                 reason: (self.record.message.clone()).unwrap_or_else(|| failure.to_string()),
@@ -83,20 +82,14 @@ impl SolvedWindow {
     }
 }
 
-impl fmt::Display for UnsolvedWindow {
+impl<S: Solve> fmt::Display for Unsolved<S> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let HingePath { design, path } = &self.hinge;
-        let end = path.at(1.0);
-        let [eta_a, eta_s] = end.eta(design.w_lig);
         // The first line: the others quote the end of the solver's log, which is in the folder.
         let reason = self.reason.lines().next().unwrap_or_default();
         write!(
             f,
-            "w_lig {:.2} mm, alpha {:.1} deg, path to (eta_a, eta_s, theta) = ({eta_a:.3}, {eta_s:.3}, {:.2} deg): {reason} \
-             ({} attempts, the furthest to lambda = {:.3}; {})",
-            design.w_lig,
-            design.alpha.to_degrees(),
-            end.theta.to_degrees(),
+            "{}: {reason} ({} attempts, the furthest to lambda = {:.3}; {})",
+            self.solve.description(),
             self.attempts,
             self.lambda,
             self.work.display()

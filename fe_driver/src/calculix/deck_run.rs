@@ -1,0 +1,152 @@
+//! A deck worked on by CalculiX: its output, and why it ended before its end.
+//!
+//! A run is successful if the exit status is zero, the log contains the end marker, the output contains every converged
+//! increment of the .sta file, and it ends at lambda = 1.
+
+use crate::calculix::ccx::{Ccx, CcxRun};
+use crate::calculix::sta::{Increment, read_sta};
+use crate::solve::problem::Solve;
+use crate::solve::solve_error::SolveError;
+use crate::solve::solver::Solution;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+use support::file_error::FileError;
+use support::program::{ToolError, remove_stale, tail};
+
+/// What CalculiX has made of a deck.
+pub(crate) struct DeckRun {
+    /// The process; an error if it was terminated, after which the increments that converged are valid.
+    run: Result<CcxRun, ToolError>,
+    /// The increments in the .sta file.
+    increments: Vec<Increment>,
+    /// The printed output.
+    pub output: Vec<u8>,
+    log: PathBuf,
+}
+
+impl DeckRun {
+    /// Writes the deck `folder/<job>.inp` and runs it.
+    pub fn new(
+        ccx: &Ccx,
+        deck: &str,
+        folder: &Path,
+        job: &str,
+        limit: Duration,
+        stop: &AtomicBool,
+    ) -> Result<Self, SolveError> {
+        let [input, output, status, log] =
+            ["inp", "dat", "sta", "log"].map(|kind| folder.join(job).with_extension(kind));
+        std::fs::write(&input, deck).map_err(FileError::at(&input))?;
+        for stale in [&output, &status] {
+            remove_stale(stale).map_err(FileError::at(stale))?;
+        }
+        let run = match ccx.run(folder, job, limit, stop) {
+            Err(
+                error @ (ToolError::TimedOut { .. }
+                | ToolError::Killed { .. }
+                | ToolError::TooMuchOutput { .. }),
+            ) => Err(error),
+            other => Ok(other?),
+        };
+        Ok(Self {
+            run,
+            increments: read_sta(&read_if_there(&status)?),
+            output: read_if_there(&output)?,
+            log,
+        })
+    }
+
+    /// A solution without samples that says what the run has cost.
+    pub fn costs<S: Solve>(&self) -> Solution<S> {
+        let (cpu_seconds, solver_seconds, peak_memory_mib) = match &self.run {
+            Ok(CcxRun { run, .. }) => (run.cpu_seconds, run.wall_seconds, run.peak_memory_mib),
+            Err(error) => (error.cpu_seconds(), 0.0, None),
+        };
+        let iterations = self.increments.iter().map(|increment| increment.iterations);
+        Solution {
+            cpu_seconds,
+            solver_seconds,
+            peak_memory_mib,
+            iterations: iterations.sum(),
+            ..Solution::default()
+        }
+    }
+
+    /// An error if the output does not have the converged increments of the .sta file; `times` are those in the output.
+    pub fn check_increments(&self, times: impl Iterator<Item = f64>) -> Result<(), SolveError> {
+        match skipped(times, &self.increments) {
+            Some(lambda) => Err(SolveError::Skipped { lambda }),
+            None => Ok(()),
+        }
+    }
+
+    /// Why the path ends at `lambda`; `None` if that is its end.
+    pub fn stopped_at(self, lambda: f64) -> Option<SolveError> {
+        let finished = self.run.as_ref().is_ok_and(|run| run.finished);
+        match self.run {
+            Err(error) => Some(error.into()),
+            Ok(CcxRun { run, .. }) if !finished && self.increments.is_empty() => {
+                Some(SolveError::NotStarted {
+                    status: run.status,
+                    tail: tail(&self.log),
+                })
+            }
+            Ok(_) if !finished => Some(SolveError::Diverged {
+                lambda,
+                tail: tail(&self.log),
+            }),
+            Ok(_) if lambda < 1.0 => Some(SolveError::Truncated { lambda }),
+            Ok(_) => None,
+        }
+    }
+}
+
+/// The time that the deck which runs in `folder` has reached.
+pub(crate) fn time_reached(folder: &Path, job: &str) -> f64 {
+    let status = std::fs::read(folder.join(job).with_extension("sta")).unwrap_or_default();
+    let increments = read_sta(&status);
+    increments.last().map_or(0.0, |increment| increment.lambda)
+}
+
+/// The first increment at which the output and the converged increments of the .sta file disagree: it is missing
+/// in the output, or it was printed although it did not converge.
+///
+/// A solver that was terminated may not have written all increments to both files: only those in both are
+/// compared. Increments missing at the end are detected by the last lambda.
+fn skipped(times: impl Iterator<Item = f64>, increments: &[Increment]) -> Option<f64> {
+    let converged = increments.iter().filter(|increment| increment.converged);
+    let mut pairs = times.zip(converged).map(|(time, a)| (time, a.lambda));
+    // Numbers in the .sta file have six digits.
+    let found = pairs.find(|(printed, expected)| (printed - expected).abs() > 1e-5 * printed);
+    found.map(|(printed, expected)| printed.min(expected))
+}
+
+/// The bytes of a file; empty if ccx did not write it.
+pub(crate) fn read_if_there(path: &Path) -> Result<Vec<u8>, FileError> {
+    match std::fs::read(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Vec::new()),
+        read => read.map_err(FileError::at(path)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_missing_or_surplus_increment_is_found() {
+        let status = [(0.0, false), (0.25, true), (0.333333, true), (1.0, true)];
+        let increments = status.map(|(lambda, converged)| Increment {
+            lambda,
+            iterations: 3,
+            converged,
+        });
+        let skipped = |printed: &[f64]| skipped(printed.iter().copied(), &increments);
+        assert_eq!(skipped(&[0.25, 1.0 / 3.0, 1.0]), None);
+        assert_eq!(skipped(&[0.25, 1.0 / 3.0]), None);
+        assert_eq!(skipped(&[0.25, 1.0]), Some(0.333333));
+        assert_eq!(skipped(&[0.25, 0.3, 1.0 / 3.0, 1.0]), Some(0.3));
+    }
+}

@@ -1,0 +1,11 @@
+//! Whole sheets by finite elements: every window and every panel, nothing rigid.
+
+pub(crate) mod invalid_sheet_problem;
+pub(crate) mod rigid_motion;
+pub(crate) mod sheet_deck;
+pub(crate) mod sheet_nodes;
+pub(crate) mod sheet_output;
+pub(crate) mod sheet_problem;
+pub(crate) mod sheet_response;
+pub(crate) mod sheet_solver;
+pub(crate) mod sheet_states;

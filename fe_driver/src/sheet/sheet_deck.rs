@@ -1,0 +1,265 @@
+//! The CalculiX input deck of a whole sheet.
+//!
+//! A prescribed stroke is one linear constraint on the displacements of all loaded nodes; the displacement of a control node
+//! without elements is the stroke. All output is printed in every increment, because CalculiX accumulates the total
+//! internal energy between *printed* increments.
+
+use crate::calculix::cards::{
+    real, write_amplitude, write_element, write_increments, write_material, write_nodes, write_set,
+};
+use crate::sheet::sheet_nodes::SheetNodes;
+use crate::sheet::sheet_problem::{Held, SECONDS, SheetProblem};
+use hinge::STANDARD_GRAVITY;
+use mesher::{ElementKind, Part, SheetMesh};
+use std::fmt::{self, Write};
+
+/// Stiffness of the table below a node (N/mm).
+const TABLE_STIFFNESS: f64 = 0.2;
+/// Distance of the other ends of the springs that are the table (mm): so large that they stay upright.
+const TABLE_DEPTH: f64 = 1e5;
+/// Height of a node at which the table lets go (mm). Exactly zero would let the first iteration take the open branch.
+const TABLE_KINK: f64 = 1e-5;
+/// Numerical damping of the dynamic steps, near the most that the method has.
+const DAMPING: f64 = -0.3;
+
+/// A meshed sheet and all other data of its input deck.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SheetModel<'a> {
+    pub problem: &'a SheetProblem,
+    pub mesh: &'a SheetMesh,
+    pub nodes: &'a SheetNodes,
+}
+
+/// Name of the set of a hinge's elements.
+pub(crate) fn hinge_set(hinge: usize) -> String {
+    format!("H{hinge}")
+}
+
+impl SheetModel<'_> {
+    /// The deck.
+    pub fn deck(&self) -> String {
+        let mut text = String::new();
+        self.write(&mut text)
+            .expect("writing to a string cannot fail");
+        text
+    }
+
+    /// Duration of the step: lambda is the time over it.
+    pub fn duration(&self) -> f64 {
+        if self.problem.dynamic { SECONDS } else { 1.0 }
+    }
+
+    /// The node whose displacement is the stroke, counted from 0.
+    fn control(&self) -> usize {
+        self.mesh.nodes.len()
+    }
+
+    /// The first node below the table, counted from 0.
+    fn ground(&self) -> usize {
+        self.control() + 1
+    }
+
+    fn write(&self, d: &mut String) -> fmt::Result {
+        let problem = self.problem;
+        write_nodes(d, &self.mesh.nodes)?;
+        self.write_elements(d)?;
+        write_set(d, "NSET", "MIDDLE", &self.mesh.middle)?;
+        for (i, nodes) in self.nodes.held.iter().enumerate() {
+            write_set(d, "NSET", &format!("HELD{i}"), nodes)?;
+        }
+        let fixed: Vec<usize> = self.nodes.held.concat();
+        write_set(d, "NSET", "HELD", &fixed)?;
+        write_set(d, "NSET", "PULLED", &self.nodes.pulled)?;
+        write_material(d, &problem.material)?;
+        // kg/m^3 to t/mm^3.
+        let density = 1e-12 * problem.material.density_kg_m3;
+        writeln!(d, "*DENSITY\n{}", real(density))?;
+        writeln!(d, "*SOLID SECTION,ELSET=EALL,MATERIAL=SHEET")?;
+        self.write_table(d)?;
+        self.write_stroke(d)?;
+        self.write_history(d)?;
+        writeln!(d, "*STEP,NLGEOM,INC={}", problem.step.max_increments)?;
+        if problem.dynamic {
+            writeln!(d, "*DYNAMIC,ALPHA={DAMPING}")?;
+        } else {
+            writeln!(d, "*STATIC")?;
+        }
+        write_increments(d, &problem.step, self.duration())?;
+        self.write_boundary(d)?;
+        self.write_loads(d)?;
+        self.write_output(d)
+    }
+
+    fn write_elements(&self, d: &mut String) -> fmt::Result {
+        let mesh = self.mesh;
+        for kind in [ElementKind::Brick, ElementKind::Wedge] {
+            let mut of_kind = (mesh.elements.iter().enumerate())
+                .filter(|(_, nodes)| ElementKind::of_element(nodes) == kind)
+                .peekable();
+            if of_kind.peek().is_some() {
+                writeln!(d, "*ELEMENT,TYPE={},ELSET=EALL", kind.name())?;
+                of_kind.try_for_each(|(element, nodes)| write_element(d, element, nodes))?;
+            }
+        }
+        let of = |wanted: &dyn Fn(Part) -> bool| -> Vec<usize> {
+            let elements = 0..mesh.elements.len();
+            elements.filter(|e| wanted(mesh.part(*e))).collect()
+        };
+        write_set(
+            d,
+            "ELSET",
+            "PANELS",
+            &of(&|part| matches!(part, Part::Panel(_))),
+        )?;
+        write_set(
+            d,
+            "ELSET",
+            "WINDOWS",
+            &of(&|part| matches!(part, Part::Window(_))),
+        )?;
+        (0..self.problem.shape.windows.len()).try_for_each(|hinge| {
+            let elements = of(&|part| part == Part::Window(hinge));
+            write_set(d, "ELSET", &hinge_set(hinge), &elements)
+        })
+    }
+
+    /// One spring below each supported node, which pushes and does not pull.
+    fn write_table(&self, d: &mut String) -> fmt::Result {
+        let held = self.nodes.held.concat();
+        let mut first = self.mesh.elements.len();
+        let supported = match self.nodes.on_table.as_slice() {
+            // CalculiX 2.20 crashes in a dynamic step if the elements are few and their numbers small. A spring with a large
+            // number at a node that does not move has no other effect.
+            [] if self.problem.dynamic => {
+                first += self.mesh.nodes.len();
+                held.get(..1).unwrap_or_default()
+            }
+            supported => supported,
+        };
+        if supported.is_empty() {
+            return Ok(());
+        }
+        let ground = self.ground();
+        writeln!(d, "*NODE,NSET=GROUND")?;
+        for (i, node) in supported.iter().enumerate() {
+            let [x, y, z] = self.mesh.nodes[*node];
+            let number = ground + i + 1;
+            writeln!(
+                d,
+                "{number},{},{},{}",
+                real(x),
+                real(y),
+                real(z - TABLE_DEPTH)
+            )?;
+        }
+        writeln!(d, "*ELEMENT,TYPE=SPRINGA,ELSET=TABLE")?;
+        for (i, node) in supported.iter().enumerate() {
+            write_element(d, first + i, &[ground + i, *node])?;
+        }
+        // (force, elongation); CalculiX 2.20 reads an empty line before them.
+        writeln!(
+            d,
+            "*SPRING,ELSET=TABLE,NONLINEAR\n\n{},{}\n0.,{}\n{},1000.",
+            real(-100.0 * TABLE_STIFFNESS),
+            real(TABLE_KINK - 100.0),
+            real(TABLE_KINK),
+            real(1e-3 * TABLE_STIFFNESS)
+        )?;
+        writeln!(d, "*BOUNDARY\nGROUND,1,3,0.")
+    }
+
+    /// The loaded degrees of freedom of nodes, counted from 1, with the direction of the stroke in them.
+    fn loaded(&self) -> Vec<(usize, usize, f64)> {
+        let total = self.problem.total_load();
+        let pulled = std::iter::zip(&self.nodes.pulled, &self.problem.pulled);
+        pulled
+            .flat_map(|(node, pulled)| [0, 1].map(|i| (node + 1, i + 1, pulled.force[i] / total)))
+            .filter(|(.., share)| *share != 0.0)
+            .collect()
+    }
+
+    fn write_stroke(&self, d: &mut String) -> fmt::Result {
+        if self.problem.stroke.is_none() {
+            return Ok(());
+        }
+        let control = self.control() + 1;
+        writeln!(d, "*NODE,NSET=CONTROL\n{control},0.,0.,0.")?;
+        let mut terms = self.loaded();
+        // The first term is eliminated: the largest is the safest.
+        terms.sort_by(|one, other| other.2.abs().total_cmp(&one.2.abs()));
+        writeln!(d, "*EQUATION\n{}", terms.len() + 1)?;
+        for (node, freedom, share) in terms {
+            writeln!(d, "{node},{freedom},{}", real(share))?;
+        }
+        writeln!(d, "{control},1,-1.")
+    }
+
+    fn write_history(&self, d: &mut String) -> fmt::Result {
+        let history = self.problem.history();
+        let in_time = |pairs: Vec<[f64; 2]>| {
+            let duration = self.duration();
+            (pairs.into_iter()).map(move |[lambda, fraction]| [duration * lambda, fraction])
+        };
+        write_amplitude(d, "WEIGHT", in_time(history.weight))?;
+        write_amplitude(d, "LOADS", in_time(history.loads))
+    }
+
+    fn write_boundary(&self, d: &mut String) -> fmt::Result {
+        for (i, Held { motion, .. }) in self.problem.held.iter().enumerate() {
+            writeln!(d, "*BOUNDARY,AMPLITUDE=LOADS")?;
+            for (axis, value) in motion.iter().enumerate() {
+                if let Some(value) = value {
+                    let freedom = axis + 1;
+                    writeln!(d, "HELD{i},{freedom},{freedom},{}", real(*value))?;
+                }
+            }
+            writeln!(d, "*BOUNDARY\nHELD{i},3,3,0.")?;
+        }
+        if !self.nodes.flat.is_empty() {
+            writeln!(d, "*BOUNDARY")?;
+            let mut flat = self.nodes.flat.iter();
+            flat.try_for_each(|node| writeln!(d, "{},3,3,0.", node + 1))?;
+        }
+        if let Some(stroke) = self.problem.stroke {
+            let control = self.control() + 1;
+            writeln!(d, "*BOUNDARY\n{control},2,3,0.")?;
+            writeln!(
+                d,
+                "*BOUNDARY,AMPLITUDE=LOADS\n{control},1,1,{}",
+                real(stroke)
+            )?;
+        }
+        Ok(())
+    }
+
+    fn write_loads(&self, d: &mut String) -> fmt::Result {
+        if self.problem.stroke.is_none() {
+            let total = self.problem.total_load();
+            writeln!(d, "*CLOAD,AMPLITUDE=LOADS")?;
+            for (node, freedom, share) in self.loaded() {
+                writeln!(d, "{node},{freedom},{}", real(total * share))?;
+            }
+        }
+        if let Some([x, y, z]) = self.problem.down {
+            // m/s^2 to mm/s^2.
+            let gravity = real(1e3 * STANDARD_GRAVITY);
+            writeln!(d, "*DLOAD,AMPLITUDE=WEIGHT")?;
+            writeln!(d, "EALL,GRAV,{gravity},{},{},{}", real(x), real(y), real(z))?;
+        }
+        Ok(())
+    }
+
+    fn write_output(&self, d: &mut String) -> fmt::Result {
+        writeln!(d, "*NODE PRINT,NSET=MIDDLE,FREQUENCY=1\nU")?;
+        writeln!(d, "*NODE PRINT,NSET=PULLED,FREQUENCY=1\nRF")?;
+        writeln!(d, "*NODE PRINT,NSET=HELD,FREQUENCY=1,TOTALS=ONLY\nRF")?;
+        let hinges = (0..self.problem.shape.windows.len()).map(hinge_set);
+        for set in hinges.chain(["PANELS".to_owned()]) {
+            writeln!(d, "*EL PRINT,ELSET={set},TOTALS=ONLY,FREQUENCY=1\nELSE")?;
+        }
+        if self.problem.dynamic {
+            writeln!(d, "*EL PRINT,ELSET=EALL,TOTALS=ONLY,FREQUENCY=1\nELKE")?;
+        }
+        writeln!(d, "*EL PRINT,ELSET=WINDOWS,FREQUENCY=1\nPEEQ\n*END STEP")
+    }
+}

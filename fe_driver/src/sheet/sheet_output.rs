@@ -1,0 +1,145 @@
+//! What CalculiX prints of a sheet in an increment.
+
+use crate::calculix::dat::{Block, Printed, at_node, numbers};
+use crate::sheet::sheet_deck::{SheetModel, hinge_set};
+use mesher::{ElementKind, Part};
+
+/// What a complete increment of a sheet prints.
+#[derive(Clone, Debug)]
+pub(crate) struct SheetLayout {
+    /// The nodes in the middle of the thickness, in their order.
+    middle: Vec<usize>,
+    /// The loaded nodes.
+    pulled: Vec<usize>,
+    hinges: usize,
+    /// Gauss points of each element of a window; 0 for those of panels.
+    points: Vec<usize>,
+    is_dynamic: bool,
+}
+
+/// The printed output of one converged increment of a sheet.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SheetFrame {
+    /// Time of the step.
+    pub time: f64,
+    /// Displacements of the nodes in the middle of the thickness (mm), in the order of the plane nodes.
+    pub displacements: Vec<[f64; 3]>,
+    /// Forces on the loaded nodes (N), in the order of the loads.
+    pub pulls: Vec<Option<[f64; 3]>>,
+    /// Sum of the reactions of the supports (N).
+    pub support_force: Option<[f64; 3]>,
+    /// Internal energy of each window, then of the panels (N mm).
+    pub energies: Vec<Option<f64>>,
+    /// Kinetic energy (N mm).
+    pub kinetic_energy: Option<f64>,
+    /// Equivalent plastic strain at the Gauss points of each element; empty for panels.
+    pub peeq: Vec<Vec<f64>>,
+}
+
+impl SheetLayout {
+    pub fn new(model: &SheetModel) -> Self {
+        let mesh = model.mesh;
+        let points = mesh.elements.iter().enumerate();
+        Self {
+            middle: mesh.middle.clone(),
+            pulled: model.nodes.pulled.clone(),
+            hinges: model.problem.shape.windows.len(),
+            points: points
+                .map(|(element, nodes)| match mesh.part(element) {
+                    Part::Window(_) => ElementKind::of_element(nodes).gauss_points(),
+                    Part::Panel(_) => 0,
+                })
+                .collect(),
+            is_dynamic: model.problem.dynamic,
+        }
+    }
+
+    /// The place of a set of elements in [`SheetFrame::energies`].
+    fn place(&self, set: &str) -> Option<usize> {
+        if set == "PANELS" {
+            return Some(self.hinges);
+        }
+        let hinge = set.strip_prefix('H')?.parse().ok()?;
+        (hinge < self.hinges && hinge_set(hinge) == set).then_some(hinge)
+    }
+}
+
+impl Printed for SheetFrame {
+    type Layout = SheetLayout;
+
+    fn begin(time: f64) -> Self {
+        Self {
+            time,
+            ..Self::default()
+        }
+    }
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn add(
+        &mut self,
+        block: Block,
+        set: &str,
+        fields: &[&str],
+        layout: &SheetLayout,
+    ) -> Option<()> {
+        match block {
+            Block::Displacements => {
+                let (node, values) = at_node(fields)?;
+                if layout.middle.get(self.displacements.len()) != Some(&node) {
+                    return None;
+                }
+                self.displacements.push(values);
+            }
+            Block::Reactions => {
+                let (node, force) = at_node(fields)?;
+                self.pulls.resize(layout.pulled.len(), None);
+                // Two loads at one point have the same node.
+                let mut known = false;
+                for (pull, loaded) in std::iter::zip(&mut self.pulls, &layout.pulled) {
+                    if *loaded == node {
+                        *pull = Some(force);
+                        known = true;
+                    }
+                }
+                return known.then_some(());
+            }
+            Block::TotalForce => self.support_force = Some(numbers(fields)?),
+            Block::Energy => {
+                let [energy] = numbers(fields)?;
+                self.energies.resize(layout.hinges + 1, None);
+                self.energies[layout.place(set)?] = Some(energy);
+            }
+            Block::KineticEnergy => self.kinetic_energy = Some(numbers::<1>(fields)?[0]),
+            Block::PlasticStrain => {
+                let [element, point, value] = fields else {
+                    return None;
+                };
+                let element = element.parse::<usize>().ok()?.checked_sub(1)?;
+                self.peeq.resize(layout.points.len(), Vec::new());
+                let strains = self.peeq.get_mut(element)?;
+                if point.parse() != Ok(strains.len() + 1) || strains.len() == layout.points[element]
+                {
+                    return None;
+                }
+                strains.push(numbers::<1>(&[value])?[0]);
+            }
+            Block::Stress => return None,
+        }
+        Some(())
+    }
+
+    fn is_complete(&self, layout: &SheetLayout) -> bool {
+        let strains = self.peeq.iter().map(Vec::len);
+        self.displacements.len() == layout.middle.len()
+            && self.pulls.len() == layout.pulled.len()
+            && self.pulls.iter().all(Option::is_some)
+            && self.support_force.is_some()
+            && self.energies.len() == layout.hinges + 1
+            && self.energies.iter().all(Option::is_some)
+            && self.kinetic_energy.is_some() == layout.is_dynamic
+            && strains.eq(layout.points.iter().copied())
+    }
+}

@@ -1,0 +1,238 @@
+//! A whole sheet with its supports and loads, and everything that determines the result of its solve.
+//!
+//! The path leads from the flat sheet, lambda = 0, to full load or the full stroke, lambda = 1. How the weight comes on
+//! depends on what keeps the panels in their plane ([`SheetProblem::history`]).
+
+use crate::sheet::invalid_sheet_problem::InvalidSheetProblem;
+use crate::solve::step_control::StepControl;
+use crate::solve::tool_versions::ToolVersions;
+use hinge::SheetMaterial;
+use mesher::{SheetShape, Tier};
+use serde::{Deserialize, Serialize};
+
+/// Version of the geometry, the input deck and the evaluation of sheets. It is increased when a change of the code changes
+/// results; solves of an older version are then stale.
+const RECIPE_VERSION: u32 = 1;
+
+/// What keeps the panels in their plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Keeping {
+    /// The panels cannot leave it; the ligaments can.
+    HeldFlat,
+    /// A table, from below, without friction.
+    Table,
+    /// Nothing but their own stiffness.
+    Nothing,
+}
+
+/// Where a panel is held.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Place {
+    /// Outside of its windows.
+    Panel,
+    /// At a point, through the thickness (mm).
+    Point([f64; 2]),
+    /// Along a straight line between two points of an edge (mm).
+    Line([[f64; 2]; 2]),
+}
+
+/// A panel that is held.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Held {
+    /// Index of the panel.
+    pub panel: usize,
+    /// The part of it that is held; also out of the plane.
+    pub place: Place,
+    /// The prescribed ones of (u_x, u_y) at full load (mm).
+    pub motion: [Option<f64>; 2],
+}
+
+/// A panel that is pulled.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pulled {
+    /// Index of the panel.
+    pub panel: usize,
+    /// The pulled point of its middle surface (mm).
+    pub at: [f64; 2],
+    /// Force at full load (N).
+    pub force: [f64; 2],
+}
+
+/// A sheet problem, without what solves it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SheetProblem {
+    /// The sheet.
+    pub shape: SheetShape,
+    /// Mesh tier of its windows.
+    pub tier: Tier,
+    /// The sheet material.
+    pub material: SheetMaterial,
+    /// What keeps the panels in their plane.
+    pub keeping: Keeping,
+    /// Supports.
+    pub held: Vec<Held>,
+    /// Loads.
+    pub pulled: Vec<Pulled>,
+    /// The stroke at the end of the path (mm) if it is prescribed: the work of the full loads over the sum of their
+    /// magnitudes. Without it the loads grow.
+    pub stroke: Option<f64>,
+    /// Unit vector along gravity; `None` without weight.
+    pub down: Option<[f64; 3]>,
+    /// The increments of the solve.
+    pub step: StepControl,
+    /// Whether inertia carries the sheet over a snap that has no static path. The path then takes [`SECONDS`].
+    pub dynamic: bool,
+}
+
+/// All inputs of the result of a sheet solve. Its id is a hash of them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SheetSolve {
+    /// The sheet problem.
+    pub problem: SheetProblem,
+    /// Versions of the external programs.
+    pub tools: ToolVersions,
+    /// Version of the geometry, the input deck and the evaluation.
+    pub recipe_version: u32,
+}
+
+/// Duration of a dynamic path (s): long against the periods of a sheet of paper size, so that it moves nearly at rest.
+pub const SECONDS: f64 = 10.0;
+
+/// When the weight comes on, and the loads after it: (lambda, fraction) with straight lines between.
+#[derive(Clone, Debug, PartialEq)]
+pub struct History {
+    /// Of the weight.
+    pub weight: Vec<[f64; 2]>,
+    /// Of the loads, the stroke and the motions of supports.
+    pub loads: Vec<[f64; 2]>,
+}
+
+/// The part of the path in which the weight comes on before the loads.
+const WEIGHT_FIRST: f64 = 0.1;
+/// The part of a dynamic path in which a table takes up the weight.
+const TABLE_FIRST: f64 = 0.02;
+
+impl SheetProblem {
+    /// When weight and loads come on. Before the loads on a sheet whose panels are held flat, as in the model. On a table at
+    /// once, because only the weight holds the panels down. On a sheet that nothing keeps in its plane together with the loads:
+    /// alone it would buckle the sheet between its grips.
+    pub fn history(&self) -> History {
+        let even = || vec![[0.0, 0.0], [1.0, 1.0]];
+        let first = |part: f64| History {
+            weight: vec![[0.0, 0.0], [part, 1.0], [1.0, 1.0]],
+            loads: vec![[0.0, 0.0], [part, 0.0], [1.0, 1.0]],
+        };
+        match (self.keeping, self.down) {
+            (Keeping::Table, _) if self.dynamic => first(TABLE_FIRST),
+            (Keeping::Table, _) => History {
+                weight: vec![[0.0, 1.0], [1.0, 1.0]],
+                loads: even(),
+            },
+            (Keeping::HeldFlat, Some(_)) => first(WEIGHT_FIRST),
+            (Keeping::HeldFlat, None) | (Keeping::Nothing, _) => History {
+                weight: even(),
+                loads: even(),
+            },
+        }
+    }
+
+    /// An error if the problem has no solution.
+    pub fn validate(&self) -> Result<(), InvalidSheetProblem> {
+        if self.total_load() == 0.0 {
+            return Err(InvalidSheetProblem::NoLoad);
+        }
+        if self.held.is_empty() {
+            return Err(InvalidSheetProblem::NothingHeld);
+        }
+        let clamped = |held: &Held| !matches!(held.place, Place::Point(_));
+        if self.keeping == Keeping::Nothing && !self.held.iter().any(clamped) {
+            return Err(InvalidSheetProblem::Falls);
+        }
+        Ok(())
+    }
+
+    /// The sum of the magnitudes of the loads (N).
+    pub fn total_load(&self) -> f64 {
+        let magnitudes = self.pulled.iter().map(|pulled| {
+            let [x, y] = pulled.force;
+            x.hypot(y)
+        });
+        magnitudes.sum()
+    }
+
+    /// The increments of a sheet: short at first where it may leave its plane.
+    pub fn usual_step(keeping: Keeping) -> StepControl {
+        StepControl {
+            initial: match keeping {
+                Keeping::HeldFlat => 0.004,
+                Keeping::Table | Keeping::Nothing => 0.001,
+            },
+            // A panel that snaps on a table has no static path beyond: shorter increments do not find one.
+            least: match keeping {
+                Keeping::Table => 1e-4,
+                Keeping::HeldFlat | Keeping::Nothing => 1e-6,
+            },
+            greatest: 0.04,
+            max_increments: 600,
+            ..StepControl::default()
+        }
+    }
+}
+
+impl SheetProblem {
+    /// The increments of a dynamic path: a snap takes milliseconds of its seconds.
+    pub(crate) fn dynamic_step() -> StepControl {
+        StepControl {
+            initial: 1e-4,
+            least: 1e-9,
+            greatest: 0.02,
+            max_increments: 3000,
+            ..StepControl::default()
+        }
+    }
+}
+
+impl History {
+    /// The fraction of the loads at `lambda`.
+    pub fn load_fraction(&self, lambda: f64) -> f64 {
+        let after = self.loads.partition_point(|[at, _]| *at < lambda);
+        let (from, to) = (
+            self.loads[after.saturating_sub(1)],
+            self.loads[after.min(self.loads.len() - 1)],
+        );
+        if to[0] > from[0] {
+            from[1] + (lambda - from[0]) / (to[0] - from[0]) * (to[1] - from[1])
+        } else {
+            to[1]
+        }
+    }
+}
+
+impl SheetSolve {
+    /// The solve of a problem with programs of these versions.
+    pub fn new(problem: SheetProblem, tools: &ToolVersions) -> Self {
+        Self {
+            problem,
+            tools: tools.clone(),
+            recipe_version: RECIPE_VERSION,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn loads_follow_the_weight_where_the_model_has_it_first() {
+        let history = History {
+            weight: vec![[0.0, 0.0], [0.1, 1.0], [1.0, 1.0]],
+            loads: vec![[0.0, 0.0], [0.1, 0.0], [1.0, 1.0]],
+        };
+        let at = |lambda| history.load_fraction(lambda);
+        assert_eq!([at(0.0), at(0.05), at(0.1), at(1.0)], [0.0, 0.0, 0.0, 1.0]);
+        assert!((at(0.55) - 0.5).abs() < 1e-15);
+    }
+}

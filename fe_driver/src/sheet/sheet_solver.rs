@@ -1,0 +1,125 @@
+//! CalculiX as a solver of sheets: mesh, input deck, process, states.
+
+use crate::calculix::calculix_solver::CalculiX;
+use crate::calculix::dat::read_printed;
+use crate::calculix::deck_run::{DeckRun, time_reached};
+use crate::sheet::sheet_deck::SheetModel;
+use crate::sheet::sheet_nodes::SheetNodes;
+use crate::sheet::sheet_output::{SheetFrame, SheetLayout};
+use crate::sheet::sheet_problem::{SECONDS, SheetProblem, SheetSolve};
+use crate::sheet::sheet_response::states;
+use crate::sheet::sheet_states::SheetStates;
+use crate::solve::failure::FailureKind;
+use crate::solve::ladder::AttemptKind;
+use crate::solve::problem::Solve;
+use crate::solve::solve_error::SolveError;
+use crate::solve::solver::{Solution, Solver};
+use crate::solve::tool_versions::ToolVersions;
+use mesher::Tier;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+/// Name of the deck and its output in the folder of an attempt.
+const JOB: &str = "sheet";
+
+/// The lambda that the running attempt of a sheet in `folder` has reached.
+pub fn sheet_reached(folder: &Path) -> f64 {
+    let time = time_reached(folder, JOB);
+    // A static path ends at 1; a dynamic one has passed that after its first tenth.
+    let dynamic = std::fs::read_to_string(folder.join(JOB).with_extension("inp"))
+        .is_ok_and(|deck| deck.contains("*DYNAMIC"));
+    if dynamic { time / SECONDS } else { time }
+}
+
+impl Solve for SheetSolve {
+    type Samples = SheetStates;
+
+    fn tier(&self) -> Tier {
+        self.problem.tier
+    }
+
+    fn description(&self) -> String {
+        let SheetProblem { shape, keeping, .. } = &self.problem;
+        format!(
+            "sheet of {} panels and {} hinges, {keeping:?}, tier {}",
+            shape.panels.len(),
+            shape.windows.len(),
+            self.problem.tier
+        )
+    }
+
+    /// A sheet that snaps has no static path beyond: inertia carries it on.
+    fn next_attempt(
+        &self,
+        attempt: AttemptKind,
+        failure: FailureKind,
+        _lambda: f64,
+    ) -> Option<AttemptKind> {
+        match (failure, attempt) {
+            (
+                FailureKind::NotStarted | FailureKind::Killed | FailureKind::OutputTruncated,
+                AttemptKind::Requested,
+            ) => Some(AttemptKind::Again),
+            (FailureKind::Diverged, AttemptKind::Requested | AttemptKind::Again) => {
+                (!self.problem.dynamic).then_some(AttemptKind::Dynamic)
+            }
+            _ => None,
+        }
+    }
+
+    fn attempted(&self, attempt: AttemptKind) -> Self {
+        let mut solve = self.clone();
+        if attempt == AttemptKind::Dynamic {
+            solve.problem.dynamic = true;
+            solve.problem.step = SheetProblem::dynamic_step();
+        }
+        solve
+    }
+}
+
+impl Solver<SheetSolve> for CalculiX {
+    fn versions(&self) -> ToolVersions {
+        CalculiX::versions(self)
+    }
+
+    fn attempt(
+        &self,
+        solve: &SheetSolve,
+        work: &Path,
+        limit: Duration,
+        stop: &AtomicBool,
+    ) -> Result<Solution<SheetSolve>, SolveError> {
+        let start = Instant::now();
+        let problem = &solve.problem;
+        problem.material.validate()?;
+        problem.validate()?;
+        let mesh = problem.shape.mesh(work, &self.gmsh, limit, stop)?;
+        let nodes = SheetNodes::new(problem, &mesh)?;
+        let model = SheetModel {
+            problem,
+            mesh: &mesh,
+            nodes: &nodes,
+        };
+        let run = DeckRun::new(&self.ccx, &model.deck(), work, JOB, limit, stop)?;
+        let mut solution: Solution<SheetSolve> = Solution {
+            elements: mesh.elements.len(),
+            ..run.costs()
+        };
+        let frames: Result<Vec<SheetFrame>, _> =
+            read_printed(&run.output, &SheetLayout::new(&model));
+        solution.stopped = match frames {
+            Err(error) => Some(error.into()),
+            Ok(frames) => match run.check_increments(frames.iter().map(|frame| frame.time)) {
+                Err(error) => Some(error),
+                Ok(()) => {
+                    solution.samples = states(&model, &frames);
+                    let last = solution.samples.states.last();
+                    run.stopped_at(last.map_or(0.0, |state| state.lambda))
+                }
+            },
+        };
+        solution.wall_seconds = start.elapsed().as_secs_f64();
+        Ok(solution)
+    }
+}

@@ -1,0 +1,203 @@
+//! The mesh of a sheet: the structured mesh of every window, and one surface a panel between windows and edges.
+
+use super::Script;
+use super::structured::{self, Rim};
+use crate::frame::Frame;
+use crate::sheet_shape::{InvalidSheet, PlacedWindow, SheetShape};
+use crate::vectors::{cross, dot, minus, unit};
+use crate::window::Window;
+
+/// Names of the edges of a panel, each from its corner to the next.
+const EDGES: [&str; 4] = ["lower", "right", "upper", "left"];
+/// Largest distance of the end of an arc from the edge of its panel (mm).
+const ON_EDGE: f64 = 1e-6;
+/// Shortest part of an edge over r_win: a shorter one would give slivers.
+const LEAST: f64 = 0.02;
+/// Largest size of a panel's elements over the size at its edges.
+const COARSEST: f64 = 1.1;
+
+/// The script of a sheet. Its faces are named after the panels, 1 and those after it, and then after the windows.
+pub(crate) fn sheet_script(shape: &SheetShape) -> Result<String, InvalidSheet> {
+    let mut geo = Script::default();
+    let size = COARSEST * shape.element_size;
+    geo.add(format_args!("Mesh.MeshSizeMax = {size:?};"));
+    // The frontal-Delaunay algorithm, whose triangles recombine to good quadrilaterals.
+    geo.add(format_args!("Mesh.Algorithm = 6;"));
+    geo.add(format_args!("Mesh.RecombinationAlgorithm = 1;"));
+    let mut rims = vec![[const { None }; 4]; shape.panels.len()];
+    let mut faces = Vec::new();
+    for (number, window) in shape.windows.iter().enumerate() {
+        let first = geo.patches + 1;
+        geo.frame = window.frame;
+        let curves = structured::add(&mut geo, &Window(&window.design), &shape.plane);
+        faces.push(first..=geo.patches);
+        let sides = [curves.rim_a, curves.rim_b];
+        for (rim, place) in std::iter::zip(sides, window.panels) {
+            if let Some((panel, corner)) = place {
+                let ends = rim.ends.map(|end| window.frame.point(end));
+                rims[panel][corner] = Some(Arc { number, rim, ends });
+            }
+        }
+    }
+    geo.frame = Frame::default();
+    for (panel, rims) in rims.into_iter().enumerate() {
+        let outline = PanelOutline { shape, panel, rims };
+        let surface = outline.add(&mut geo)?;
+        geo.faces(panel + 1, surface..=surface);
+    }
+    for (window, faces) in faces.into_iter().enumerate() {
+        geo.faces(shape.panels.len() + 1 + window, faces);
+    }
+    Ok(geo.text)
+}
+
+/// The arc of a window about a corner of a panel.
+#[derive(Clone)]
+struct Arc {
+    /// Number of the window.
+    number: usize,
+    rim: Rim,
+    /// Its ends in the sheet (mm), counter-clockwise about the window's origin.
+    ends: [[f64; 2]; 2],
+}
+
+/// The boundary of a panel without its windows.
+struct PanelOutline<'a> {
+    shape: &'a SheetShape,
+    panel: usize,
+    /// The arcs about its corners.
+    rims: [Option<Arc>; 4],
+}
+
+impl PanelOutline<'_> {
+    /// Adds the panel as one surface, and returns its number.
+    fn add(&self, geo: &mut Script) -> Result<i32, InvalidSheet> {
+        let panel = &self.shape.panels[self.panel];
+        // Where the outline reaches and leaves each corner, counter-clockwise: one point, or the ends of an arc, which is
+        // passed clockwise.
+        let mut ends = Vec::with_capacity(4);
+        for (corner, arc) in self.rims.iter().enumerate() {
+            ends.push(match arc {
+                Some(arc) => {
+                    self.check_arc(corner, arc)?;
+                    let last = arc.rim.points.len() - 1;
+                    [
+                        (arc.rim.points[last], arc.ends[1]),
+                        (arc.rim.points[0], arc.ends[0]),
+                    ]
+                }
+                None => [(geo.point(panel.corners[corner]), panel.corners[corner]); 2],
+            });
+        }
+        let mut marks = panel.marks.clone();
+        let mut outline = Vec::new();
+        for corner in 0..4 {
+            if let Some(arc) = &self.rims[corner] {
+                outline.extend(arc.rim.arcs.iter().rev().map(|curve| -curve));
+            }
+            let (from, to) = (ends[corner][1], ends[(corner + 1) % 4][0]);
+            outline.extend(self.edge(geo, corner, [from, to], &mut marks)?);
+        }
+        let surface = geo.surface(&outline);
+        geo.recombine(surface);
+        let size = self.shape.element_size;
+        for mark in marks {
+            self.check_mark(mark)?;
+            let id = geo.point(mark);
+            geo.add(format_args!("MeshSize {{{id}}} = {size:?};"));
+            geo.add(format_args!("Point{{{id}}} In Surface{{{surface}}};"));
+        }
+        Ok(surface)
+    }
+
+    /// Adds the straight edge from a corner to the next, divided at the marks that lie on it, which are removed.
+    fn edge(
+        &self,
+        geo: &mut Script,
+        corner: usize,
+        [from, to]: [(i32, [f64; 2]); 2],
+        marks: &mut Vec<[f64; 2]>,
+    ) -> Result<Vec<i32>, InvalidSheet> {
+        let panel = &self.shape.panels[self.panel];
+        let direction = unit(panel.corners[corner], panel.corners[(corner + 1) % 4]);
+        let along = |point: [f64; 2]| dot(minus(point, from.1), direction);
+        let length = along(to.1);
+        let windows = &self.shape.windows;
+        let design = (self.rims.iter().flatten().next()).map(|arc| &windows[arc.number].design);
+        let (least, snap) = design.map_or((0.0, 0.0), |design| (LEAST * design.r_win, design.kerf));
+        if length <= least {
+            return Err(InvalidSheet::SmallPanel {
+                panel: self.panel,
+                edge: EDGES[corner],
+                short: least - length,
+            });
+        }
+        let across = |point: [f64; 2]| cross(direction, minus(point, from.1)).abs();
+        let mut stops: Vec<f64> = Vec::new();
+        marks.retain(|mark| {
+            let at = along(*mark);
+            let on = across(*mark) <= snap.max(ON_EDGE) && at > least && at < length - least;
+            if on {
+                stops.push(at);
+            }
+            !on
+        });
+        stops.sort_unstable_by(f64::total_cmp);
+        stops.dedup_by(|next, kept| *next - *kept < ON_EDGE);
+        let mut points = vec![(from.0, 0.0)];
+        for at in stops {
+            let position = [0, 1].map(|i| from.1[i] + at * direction[i]);
+            points.push((geo.point(position), at));
+        }
+        points.push((to.0, length));
+        let lines = points.windows(2).map(|pair| {
+            let [(start, near), (end, far)] = [pair[0], pair[1]];
+            let elements = ((far - near) / self.shape.element_size).round().max(1.0);
+            let line = geo.line(start, end);
+            geo.divide(line, elements as usize, 1.0)
+        });
+        Ok(lines.collect())
+    }
+
+    /// The arc about a corner ends on the two edges that meet there.
+    fn check_arc(&self, corner: usize, arc: &Arc) -> Result<(), InvalidSheet> {
+        let corners = &self.shape.panels[self.panel].corners;
+        let edges = [(corner + 3) % 4, corner];
+        for (edge, end) in std::iter::zip(edges, [arc.ends[1], arc.ends[0]]) {
+            let direction = unit(corners[edge], corners[(edge + 1) % 4]);
+            let off = cross(direction, minus(end, corners[edge])).abs();
+            if off > ON_EDGE {
+                return Err(InvalidSheet::BesideEdge {
+                    window: arc.number,
+                    panel: self.panel,
+                    off,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// A mark in the interior lies in the panel and outside of its windows.
+    fn check_mark(&self, mark: [f64; 2]) -> Result<(), InvalidSheet> {
+        let corners = &self.shape.panels[self.panel].corners;
+        let inside = (0..4).all(|corner| {
+            let direction = unit(corners[corner], corners[(corner + 1) % 4]);
+            cross(direction, minus(mark, corners[corner])) > 0.0
+        });
+        let in_window = |arc: &Arc| {
+            let PlacedWindow { design, frame, .. } = &self.shape.windows[arc.number];
+            let [x, y] = frame.local(mark);
+            x.hypot(y) < (1.0 + LEAST) * design.r_win
+        };
+        let what = if !inside {
+            "is not inside the panel"
+        } else if self.rims.iter().flatten().any(in_window) {
+            "lies in the window of a hinge"
+        } else {
+            return Ok(());
+        };
+        let [x, y] = mark;
+        let panel = self.panel;
+        Err(InvalidSheet::Mark { panel, x, y, what })
+    }
+}

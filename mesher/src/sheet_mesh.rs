@@ -1,0 +1,164 @@
+//! A sheet as solid elements: its plane mesh extruded to layers, with a bump at every hinge.
+
+use crate::extrusion::{Extrusion, Levels};
+use crate::msh::PlaneMesh;
+use crate::quality::{MAX_AREA_ERROR, MeshDefect, check_elements};
+use crate::sheet_shape::{PlacedWindow, SheetShape};
+use crate::tier::Imperfection;
+use crate::vectors::{cross, minus};
+use crate::window::{Side, Window, polar_angle};
+use std::f64::consts::PI;
+
+/// What a face or an element of a sheet belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The part of a panel outside of all windows.
+    Panel(usize),
+    /// A window.
+    Window(usize),
+}
+
+/// A sheet of solid elements; indices count from 0.
+#[derive(Clone, Debug)]
+pub struct SheetMesh {
+    /// The plane mesh that was extruded.
+    pub plane: PlaneMesh,
+    /// The part of each face, and of each element of each layer above it.
+    pub parts: Vec<Part>,
+    /// Node positions, bumps included (mm).
+    pub nodes: Vec<[f64; 3]>,
+    /// Elements in the node order of their [`ElementKind`](crate::ElementKind), layer by layer in the order of the faces.
+    pub elements: Vec<Vec<usize>>,
+    /// The nodes in the middle of the thickness above the plane nodes, in their order.
+    pub middle: Vec<usize>,
+    /// The nodes of the lower face, in the order of the plane nodes.
+    pub bottom: Vec<usize>,
+    /// Undeformed volume of each Gauss point of each element (mm^3).
+    pub gauss_volumes: Vec<Vec<f64>>,
+    levels: Levels,
+}
+
+impl SheetMesh {
+    pub(crate) fn new(shape: &SheetShape, plane: PlaneMesh) -> Result<Self, MeshDefect> {
+        let panels = shape.panels.len();
+        let parts: Vec<Part> = (plane.surfaces.iter())
+            .map(|tag| match (*tag as usize).saturating_sub(1) {
+                panel if panel < panels => Part::Panel(panel),
+                window => Part::Window(window - panels),
+            })
+            .collect();
+        let mut height = vec![0.0; plane.nodes.len()];
+        for (face, part) in std::iter::zip(&plane.faces, &parts) {
+            if let Part::Window(window) = part {
+                let window = &shape.windows[*window];
+                for node in face {
+                    height[*node] = window.height(shape.thickness, plane.nodes[*node]);
+                }
+            }
+        }
+        let solid = Extrusion::new(&plane, shape.thickness, shape.layers, |node| height[node]);
+        check_elements(&plane, &solid.gauss_volumes)?;
+        let volume: f64 = solid.gauss_volumes.iter().flatten().sum();
+        let (area, exact) = (volume / shape.thickness, shape.area());
+        if (area - exact).abs() > MAX_AREA_ERROR * exact {
+            return Err(MeshDefect::Area { area, exact });
+        }
+        Ok(Self {
+            middle: solid.levels.level(shape.layers),
+            bottom: solid.levels.level(0),
+            nodes: solid.nodes,
+            elements: solid.elements,
+            gauss_volumes: solid.gauss_volumes,
+            levels: solid.levels,
+            plane,
+            parts,
+        })
+    }
+
+    /// The part of an element.
+    pub fn part(&self, element: usize) -> Part {
+        self.parts[element % self.parts.len()]
+    }
+
+    /// The plane nodes of a part, in increasing order.
+    pub fn plane_nodes(&self, part: Part) -> Vec<usize> {
+        let faces = std::iter::zip(&self.plane.faces, &self.parts);
+        let mut nodes: Vec<usize> = faces
+            .filter(|(_, of)| **of == part)
+            .flat_map(|(face, _)| face.iter().copied())
+            .collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    /// The nodes above plane nodes, through the thickness.
+    pub fn through(&self, plane: &[usize]) -> Vec<usize> {
+        self.levels.through(plane)
+    }
+
+    /// The corner node of a part's faces that is nearest to a point.
+    pub fn nearest(&self, part: Part, point: [f64; 2]) -> Option<usize> {
+        let distance = |node: &usize| {
+            let [x, y] = minus(self.plane.nodes[*node], point);
+            x.hypot(y)
+        };
+        let faces = std::iter::zip(&self.plane.faces, &self.parts);
+        let corners = faces
+            .filter(|(_, of)| **of == part)
+            .flat_map(|(face, _)| face[..face.len() / 2].iter().copied());
+        corners.min_by(|one, other| distance(one).total_cmp(&distance(other)))
+    }
+}
+
+impl PlacedWindow {
+    /// Height (mm) of the bump at a point of the window.
+    fn height(&self, thickness: f64, point: [f64; 2]) -> f64 {
+        let [x, y] = self.frame.local(point);
+        let bump = Imperfection {
+            amplitude: self.bump,
+            ..Imperfection::default()
+        };
+        bump.height(&self.design, thickness, x, y)
+    }
+}
+
+impl SheetShape {
+    /// Area of the sheet (mm^2): windows, and panels without the sectors of their windows.
+    fn area(&self) -> f64 {
+        let windows = self.windows.iter().map(|window| {
+            let of_window = Window(&window.design).area();
+            // What the finished panels have in the half-disc is not theirs: the two sectors from the crossing of their
+            // edges to the arcs.
+            let in_panels = (0..2).filter_map(|side| {
+                let (panel, corner) = window.panels[side]?;
+                Some(self.sector(window, side, panel, corner))
+            });
+            of_window - in_panels.sum::<f64>()
+        });
+        let panels = self.panels.iter().map(|panel| {
+            let corners = panel.corners;
+            let twice = (0..4).map(|k| cross(corners[k], corners[(k + 1) % 4]));
+            0.5 * twice.sum::<f64>()
+        });
+        windows.sum::<f64>() + panels.sum::<f64>()
+    }
+
+    /// Area (mm^2) between the corner of a panel and the arc of its window.
+    fn sector(&self, window: &PlacedWindow, side: usize, panel: usize, corner: usize) -> f64 {
+        let radius = window.design.r_win;
+        let shape = Window(&window.design);
+        let (kerf, free) = match side {
+            0 => (shape.kerf_at_radius(Side::A, radius), [-radius, 0.0]),
+            _ => (shape.kerf_at_radius(Side::B, radius), [radius, 0.0]),
+        };
+        let apex = window.frame.local(self.panels[panel].corners[corner]);
+        let angle = match side {
+            0 => polar_angle(kerf) + PI,
+            _ => -polar_angle(kerf),
+        };
+        let triangle = 0.5 * cross(minus(kerf, apex), minus(free, apex)).abs();
+        let segment = 0.5 * radius * radius * (angle - angle.sin());
+        triangle + segment
+    }
+}

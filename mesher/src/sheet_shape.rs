@@ -1,0 +1,82 @@
+//! A cut sheet of panels and the windows that join them, or a part of one.
+//!
+//! A panel is bounded by finished edges, half a kerf inside of the lines of its cuts, and ends at the arcs of its windows.
+
+use crate::frame::Frame;
+use crate::tier::Structured;
+use hinge::HingeDesign;
+use serde::{Deserialize, Serialize};
+
+/// All that determines the mesh of a sheet.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SheetShape {
+    /// Sheet thickness (mm).
+    pub thickness: f64,
+    /// The panels.
+    pub panels: Vec<PanelShape>,
+    /// The windows of the hinges.
+    pub windows: Vec<PlacedWindow>,
+    /// Plane mesh of the windows.
+    pub plane: Structured,
+    /// Layers of elements through the thickness; even, so that the middle of the sheet has nodes.
+    pub layers: usize,
+    /// Size of the elements of the panels (mm).
+    pub element_size: f64,
+}
+
+/// A panel in the flat sheet.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PanelShape {
+    /// Where its finished edges meet: SW, SE, NE, NW (mm).
+    pub corners: [[f64; 2]; 4],
+    /// Points at which the mesh has nodes (mm). One that is nearer to an edge than a kerf lies on the edge.
+    pub marks: Vec<[f64; 2]>,
+}
+
+/// A window in the flat sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlacedWindow {
+    /// The hinge design.
+    pub design: HingeDesign,
+    /// The hinge frame: its origin is the foot of the ligament on the finished edge of the secondary cut.
+    pub frame: Frame,
+    /// Panels A and B, each with the number of its corner; `None` for a panel that is not a part of the sheet.
+    pub panels: [Option<(usize, usize)>; 2],
+    /// Height of the bump that initiates buckling, over the thickness; its sign is the side to which it points.
+    pub bump: f64,
+}
+
+/// Why a sheet has no mesh.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(
+    missing_docs,
+    reason = "the message of each variant is its documentation"
+)]
+pub enum InvalidSheet {
+    #[error(
+        "panel {panel} is too small for its windows: its {edge} edge is {short} mm too short; use a smaller r_win or \
+         larger panels"
+    )]
+    SmallPanel {
+        panel: usize,
+        edge: &'static str,
+        short: f64,
+    },
+    #[error(
+        "the window of hinge {window} does not end on the edges of panel {panel}: it is {off} mm beside them"
+    )]
+    BesideEdge {
+        window: usize,
+        panel: usize,
+        off: f64,
+    },
+    #[error(
+        "the point ({x:.3}, {y:.3}) mm at which panel {panel} is held or pulled {what}: move it"
+    )]
+    Mark {
+        panel: usize,
+        x: f64,
+        y: f64,
+        what: &'static str,
+    },
+}

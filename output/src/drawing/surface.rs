@@ -1,0 +1,61 @@
+//! A surface in space, seen along an axis, with the faces in colours.
+
+use crate::display::Style;
+use crate::drawing::page::{ColourScale, INK, Page};
+
+/// From where a surface is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// From above the sheet: x to the right, y up.
+    Above,
+    /// Along the plane of the sheet, against y: x to the right, z up.
+    Front,
+    /// Along the plane of the sheet, against x: y to the right, z up.
+    Side,
+}
+
+/// Faces in space.
+pub struct Surface<'a> {
+    /// Positions of the points (mm).
+    pub points: &'a [[f64; 3]],
+    /// Points of each face.
+    pub faces: &'a [Vec<usize>],
+    /// The value of each face, which its colour shows.
+    pub values: &'a [f64],
+    /// Name and unit of the values.
+    pub name: &'a str,
+}
+
+impl View {
+    /// Position on the picture, and depth: what has more is in front.
+    fn of(self, [x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
+        match self {
+            Self::Above => ([x, y], z),
+            Self::Front => ([x, z], -y),
+            Self::Side => ([y, z], x),
+        }
+    }
+}
+
+/// The picture of a surface. What is nearer is drawn over what is further away.
+pub fn surface(surface: &Surface, view: View, title: &str, subtitle: &str) -> String {
+    let seen: Vec<_> = surface.points.iter().map(|point| view.of(*point)).collect();
+    let corners = seen.iter().map(|(at, _)| *at);
+    let mut page = Page::around(corners, title, subtitle, true);
+    let scale = ColourScale::covering(surface.values.iter().copied());
+    let depth = |face: &Vec<usize>| {
+        let sum: f64 = face.iter().map(|point| seen[*point].1).sum();
+        sum / face.len() as f64
+    };
+    let mut order: Vec<usize> = (0..surface.faces.len()).collect();
+    order.sort_by(|a, b| depth(&surface.faces[*a]).total_cmp(&depth(&surface.faces[*b])));
+    for face in order {
+        let outline: Vec<_> = surface.faces[face].iter().map(|p| seen[*p].0).collect();
+        let fill = Style::fill(scale.colour(surface.values[face]));
+        page.sketch.canvas.polygon(&outline, fill);
+        let edge = page.sketch.stroke(INK, 0.15);
+        page.sketch.canvas.polygon(&outline, edge);
+    }
+    page.colour_scale(&scale, surface.name);
+    page.finish()
+}

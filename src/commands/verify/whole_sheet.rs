@@ -1,0 +1,162 @@
+//! `kirigami verify --sheet`: the whole sheet by finite elements.
+
+use crate::commands::solve_args::task_error;
+use crate::commands::verify::VerifyCommand;
+use crate::ui::progress::{Progress, announce, duration};
+use crate::ui::{interrupt, picture, run_folder};
+use anyhow::{Result, anyhow, bail};
+use design::pattern::design_vector::DesignVector;
+use design::scene::{Posture, Scene};
+use fe_driver::{CalculiX, SheetSolve, SolveService, Solved, sheet_reached};
+use mesher::Tier;
+use output::drawing::{Surface, View, surface};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+use support::memory;
+use verification::{SheetCheck, SheetCost, SheetTask};
+
+/// Width of the pictures (px).
+const WIDTH: u32 = 1400;
+/// Parts of the path on the progress bar.
+const PARTS: f64 = 1000.0;
+
+/// Reads the value of `--support`.
+pub(super) fn support(text: &str) -> Result<Posture, String> {
+    serde_json::from_value(text.into())
+        .map_err(|_| "choose held-flat, lying, hanging or free".to_owned())
+}
+
+impl VerifyCommand {
+    /// Solves the whole sheet, and writes what it found.
+    pub(super) fn whole_sheet(
+        &self,
+        scene: &Scene,
+        design: &DesignVector,
+        name: &str,
+    ) -> Result<()> {
+        let tier = self.tier.unwrap_or(Tier::Small);
+        let branches = usize::from(self.branches);
+        let task = SheetTask::new(scene, design, self.support, tier, branches);
+        let task = task.map_err(task_error)?;
+        let calculix = CalculiX::find()?;
+        let solves = task.solves(&calculix.versions()).map_err(task_error)?;
+        let _held = run_folder::hold(&self.out)?;
+        self.state_cost(&calculix, &solves)?;
+        let service = self
+            .solve
+            .service_of(calculix, &self.out, Box::new(|_, _| {}))?;
+        let solved = watched(&service, &solves)?;
+        let check = task.check(name, &solved);
+        run_folder::write(&self.out, "sheet.md", &check.to_string())?;
+        let json = serde_json::to_string_pretty(&check)?;
+        run_folder::write(&self.out, "sheet.json", &json)?;
+        self.draw(scene, &check)?;
+        self.print(&check)?;
+        if check.branches.iter().all(|branch| branch.path.is_empty()) {
+            bail!(
+                "no increment of the sheet converged; see {}",
+                self.out.display()
+            );
+        }
+        Ok(())
+    }
+
+    /// Meshes the sheet once, and says what its solves cost before they begin.
+    fn state_cost(&self, calculix: &CalculiX, solves: &[SheetSolve]) -> Result<()> {
+        let folder = self.out.join("mesh");
+        crate::ui::output_file::create_folder(&folder)?;
+        let limit = Duration::from_secs(600);
+        let stop = interrupt::stop_flag()?;
+        let problem = &solves[0].problem;
+        let mesh = problem.shape.mesh(&folder, &calculix.gmsh, limit, stop)?;
+        let cost = SheetCost::of(&mesh, problem.keeping);
+        let together = self.solve.workers().min(solves.len());
+        announce(&format!(
+            "{} unknowns; about {} of CPU time and {:.0} MiB of memory for each of {} solves, {together} at a time; kept in {}",
+            cost.unknowns,
+            duration(cost.cpu_seconds),
+            cost.memory_mib,
+            solves.len(),
+            self.out.join("solves").display()
+        ));
+        let needed = cost.memory_mib * together as f64;
+        match memory::available_mib() {
+            Some(available) if needed > available => Err(anyhow!(
+                "the solves need about {needed:.0} MiB of memory, and {available:.0} MiB are available: use a coarser --tier, fewer \
+                 --jobs, or a part of the sheet"
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// Pictures and the ParaView file of every branch.
+    fn draw(&self, scene: &Scene, check: &SheetCheck) -> Result<()> {
+        for (i, branch) in check.branches.iter().enumerate() {
+            let Some(last) = branch.last() else {
+                continue;
+            };
+            let suffix = if i == 0 {
+                String::new()
+            } else {
+                format!("-{}", i + 1)
+            };
+            let (points, tilts) = (branch.surface.deformed(), branch.surface.tilts_deg());
+            let seen = Surface {
+                points: &points,
+                faces: &branch.surface.faces,
+                values: &tilts,
+                name: "tilt (deg)",
+            };
+            let subtitle = format!(
+                "Whole sheet by finite elements, {}, {:.0} % of the path: panels tilt by up to {:.1}\u{b0}",
+                check.kept(),
+                100.0 * last.fraction,
+                last.tilt_deg
+            );
+            for (view, name) in [
+                (View::Above, "above"),
+                (View::Front, "front"),
+                (View::Side, "side"),
+            ] {
+                let svg = surface(&seen, view, &scene.config.title, &subtitle);
+                let stem = self.out.join(format!("sheet-{name}{suffix}"));
+                picture::save(&svg, &stem, WIDTH)?;
+            }
+            let vtu = branch.surface.grid().to_vtu();
+            run_folder::write(&self.out, &format!("sheet{suffix}.vtu"), &vtu)?;
+        }
+        Ok(())
+    }
+}
+
+/// Solves the sheets and shows how far they have come.
+fn watched(
+    service: &SolveService<SheetSolve>,
+    solves: &[SheetSolve],
+) -> Result<Vec<Solved<SheetSolve>>> {
+    let done = AtomicBool::new(false);
+    let folders: Vec<_> = solves
+        .iter()
+        .map(|solve| service.store.solve(&fe_driver::Solve::id(solve)))
+        .collect();
+    let found = std::thread::scope(|scope| {
+        let show = || {
+            let bar = Progress::new((PARTS * solves.len() as f64) as usize, "1000 lambda");
+            while !done.load(Ordering::Relaxed) {
+                let reached = folders.iter().map(|folder| match folder.record() {
+                    Ok(Some(record)) if record.is_closed() => 1.0,
+                    _ => sheet_reached(&folder.work()),
+                });
+                bar.show((PARTS * reached.sum::<f64>()) as usize, None, "");
+                std::thread::sleep(Duration::from_millis(300));
+            }
+            bar.finish();
+        };
+        // Without a further thread there is no progress, but a result.
+        let _ = std::thread::Builder::new().spawn_scoped(scope, show);
+        let found = service.solve(solves);
+        done.store(true, Ordering::Relaxed);
+        found
+    });
+    found.map_err(|error| task_error(error.into()))
+}

@@ -1,0 +1,466 @@
+//! A whole sheet by finite elements beside the deployment that the hinge law predicts.
+
+use crate::verification_error::VerificationError;
+use crate::whole_sheet::{Branch, sheet_problem, with_support};
+use design::analysis::actuation_curve::ActuationCurve;
+use design::hinge_law::{DamageMeasure, Order};
+use design::objective::design_problem::{Deployment, DesignProblem};
+use design::pattern::design_vector::DesignVector;
+use design::scene::{Posture, Scene};
+use design::sheet::kinematics::{Configuration, deployed_corners, hinge_deformations};
+use fe_driver::{SheetSolve, SheetState, SheetSurface, Solved, ToolVersions};
+use mesher::Tier;
+use output::report::Severity;
+use serde::Serialize;
+use support::statistics::root_mean_square;
+
+/// Tilt of a panel (deg) above which a sheet does not stay flat.
+const TILTED: f64 = 5.0;
+/// Error of the corners over the longer side of the flat sheet above which the model does not hold.
+const OFF: f64 = 0.01;
+/// Difference of the loads over that of finite elements above which a finding names it.
+const OTHER_LOAD: f64 = 0.05;
+/// Kinetic over internal energy up to which a dynamic path is nearly at rest.
+const AT_REST: f64 = 0.02;
+
+/// A deployed sheet that finite elements solve as a whole.
+pub struct SheetTask {
+    /// The scene with the support under which it is solved.
+    scene: Scene,
+    problem: DesignProblem,
+    /// Its deployment by the hinge law.
+    deployment: Deployment,
+    /// What keeps the panels in their plane.
+    support: Posture,
+    tier: Tier,
+    branches: Vec<Branch>,
+    /// Displacement and load by the law, before the loads and at every load step.
+    curve: Vec<[f64; 2]>,
+}
+
+/// The result of a task.
+#[derive(Debug, Serialize)]
+pub struct SheetCheck {
+    /// The design that is judged, for a person.
+    pub design: String,
+    /// What keeps the panels in their plane.
+    pub support: Posture,
+    /// Mesh tier of the windows.
+    pub tier: Tier,
+    /// Numbers of panels and of hinges.
+    pub counts: [usize; 2],
+    /// Longer side of the flat sheet (mm).
+    pub size: f64,
+    /// Smallest and largest ligament width over the thickness.
+    pub slenderness: [f64; 2],
+    /// Whether the stroke is prescribed; otherwise loads are.
+    pub driven: bool,
+    /// One result a branch, in the order of the task.
+    pub branches: Vec<BranchCheck>,
+    /// What a person should know.
+    pub findings: Vec<SheetFinding>,
+}
+
+/// A finding about a sheet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SheetFinding {
+    /// The consequence.
+    pub severity: Severity,
+    /// In words.
+    pub message: String,
+}
+
+/// One solve, with one pattern of bumps.
+#[derive(Debug, Serialize)]
+pub struct BranchCheck {
+    /// To which sides the bumps of the hinges point.
+    pub bumps: &'static str,
+    /// Why the path was not followed to its end; `None` if it was.
+    pub stopped: Option<String>,
+    /// Whether inertia was needed to follow it.
+    pub dynamic: bool,
+    /// Number of unknowns of the mesh.
+    pub unknowns: usize,
+    /// CPU time of all attempts (s).
+    pub cpu_seconds: f64,
+    /// Memory of the solver (MiB), if it is known.
+    pub memory_mib: Option<f64>,
+    /// The states along the path.
+    pub path: Vec<StateCheck>,
+    /// The hinges at its end.
+    pub hinges: Vec<HingeCheck>,
+    /// The panels at its end.
+    pub panels: Vec<PanelCheck>,
+    /// Internal energy of the panels outside of the windows over that of all (1) at its end.
+    pub panel_energy: f64,
+    /// The middle surface at its end.
+    #[serde(skip)]
+    pub surface: SheetSurface,
+}
+
+/// A state of a path. Pairs are by the hinge law and by finite elements.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StateCheck {
+    /// Fraction of the stroke or of the loads.
+    pub fraction: f64,
+    /// Stroke of the loads (mm).
+    pub stroke: [f64; 2],
+    /// Load (N).
+    pub load: [f64; 2],
+    /// Distance of the panel corners in space (mm): root mean square and maximum.
+    pub corners: [f64; 2],
+    /// Mean rotation of the hinges (deg).
+    pub opening_deg: [f64; 2],
+    /// Largest tilt of a panel (deg).
+    pub tilt_deg: f64,
+    /// Lowest and highest point of the panels (mm).
+    pub z: [f64; 2],
+    /// Largest bending of a panel (mm).
+    pub bending: f64,
+    /// Kinetic over internal energy; zero on a static path.
+    pub kinetic: f64,
+}
+
+/// A hinge at the end of a path. Pairs are by the hinge law and by finite elements.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HingeCheck {
+    /// Ligament width (mm).
+    pub w_lig: f64,
+    /// Rotation (deg).
+    pub theta_deg: [f64; 2],
+    /// Energy (N mm).
+    pub energy: [f64; 2],
+    /// D_peak; by the law `None` if it is not known.
+    pub d_peak: [Option<f64>; 2],
+}
+
+/// A panel at the end of a path.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PanelCheck {
+    /// Tilt (deg).
+    pub tilt_deg: f64,
+    /// Largest distance of a corner from where the law has it (mm).
+    pub off: f64,
+    /// Lowest and highest point (mm).
+    pub z: [f64; 2],
+    /// Largest bending (mm).
+    pub bending: f64,
+}
+
+impl SheetTask {
+    /// The design of a scene, kept in its plane as `support` says, or as its posture does. The first `branches` patterns of
+    /// bumps are tried.
+    pub fn new(
+        scene: &Scene,
+        design: &DesignVector,
+        support: Option<Posture>,
+        tier: Tier,
+        branches: usize,
+    ) -> Result<Self, VerificationError> {
+        let scene = with_support(scene, support)?;
+        let posture = scene.config.posture.map(|posture| posture.kind);
+        let problem = scene.problem()?;
+        let mechanics = (problem.model.mechanics()).ok_or(VerificationError::NoLoads)?;
+        let deployment = problem.deploy(design)?;
+        deployment.at_full_load()?;
+        let curve = ActuationCurve::new(mechanics, &deployment);
+        let curve = curve.ok_or(VerificationError::NoLoads)?.points;
+        Ok(Self {
+            support: support.or(posture).ok_or(VerificationError::NoPosture)?,
+            tier,
+            branches: Branch::ALL.into_iter().take(branches).collect(),
+            curve,
+            deployment,
+            problem,
+            scene,
+        })
+    }
+
+    /// The solves, one a branch.
+    pub fn solves(&self, versions: &ToolVersions) -> Result<Vec<SheetSolve>, VerificationError> {
+        let solve = |branch: &Branch| {
+            let (scene, sheet) = (&self.scene, &self.deployment.sheet);
+            let problem = sheet_problem(scene, sheet, self.support, self.tier, *branch)?;
+            Ok(SheetSolve::new(problem, versions))
+        };
+        self.branches.iter().map(solve).collect()
+    }
+
+    /// Compares the solved sheets, one a branch, with the deployment by the law; `design` is its name for a person.
+    pub fn check(&self, design: &str, solved: &[Solved<SheetSolve>]) -> SheetCheck {
+        let sheet = &self.deployment.sheet;
+        let thickness = self.scene.material.thickness;
+        let widths = sheet.hinges.iter().map(|hinge| hinge.w_lig / thickness);
+        let branches: Vec<BranchCheck> = std::iter::zip(&self.branches, solved)
+            .map(|(branch, solved)| self.branch(*branch, solved))
+            .collect();
+        let mut check = SheetCheck {
+            design: design.to_owned(),
+            support: self.support,
+            tier: self.tier,
+            counts: [sheet.panels.len(), sheet.hinges.len()],
+            size: self.size(),
+            slenderness: [
+                widths.clone().fold(f64::INFINITY, f64::min),
+                widths.fold(0.0, f64::max),
+            ],
+            driven: self.scene.config.drive.is_some(),
+            branches,
+            findings: Vec::new(),
+        };
+        check.findings = findings(&check);
+        check
+    }
+
+    /// Longer side of the flat sheet (mm).
+    fn size(&self) -> f64 {
+        let corners = self.deployment.sheet.outline.corners;
+        let side = |i: usize| {
+            let along = corners.iter().map(|corner| corner[i]);
+            along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+        };
+        f64::max(side(0), side(1))
+    }
+
+    fn branch(&self, branch: Branch, solved: &Solved<SheetSolve>) -> BranchCheck {
+        let samples = &solved.samples;
+        let path = samples.states.iter().map(|state| self.state(state));
+        let last = samples.states.last();
+        let (hinges, panels) = last.map_or_else(Default::default, |last| self.end(last));
+        let of_hinges = last.map_or(0.0, |last| {
+            last.hinges.iter().map(|hinge| hinge.energy).sum::<f64>()
+        });
+        let of_panels = last.map_or(0.0, |last| last.panel_energy);
+        BranchCheck {
+            bumps: branch.name(),
+            stopped: (solved.complete().err()).map(|unsolved| unsolved.to_string()),
+            dynamic: last.is_some_and(|last| last.kinetic_energy != 0.0),
+            unknowns: samples.unknowns,
+            cpu_seconds: solved.record.cpu_seconds,
+            memory_mib: solved.record.peak_memory_mib,
+            path: path.collect(),
+            hinges,
+            panels,
+            panel_energy: of_panels / (of_hinges + of_panels).max(f64::MIN_POSITIVE),
+            surface: samples.surface.clone().unwrap_or_default(),
+        }
+    }
+
+    /// What the law predicts at a fraction of the loads: motions of the panels, and (displacement, load).
+    fn by_law(&self, fraction: f64) -> (Configuration, [f64; 2]) {
+        let weighed = self.deployment.weight_steps();
+        let loaded = &self.deployment.path[weighed.len()..];
+        let flat = vec![[0.0; 3]; self.deployment.sheet.panels.len()];
+        let start = weighed.last().map_or(&flat, |step| &step.configuration);
+        let place = fraction.clamp(0.0, 1.0) * loaded.len() as f64;
+        let after = (place.ceil() as usize).clamp(1, loaded.len());
+        let share = place - (after - 1) as f64;
+        let mix = |from: f64, to: f64| from + share * (to - from);
+        let from = match after {
+            1 => start,
+            _ => &loaded[after - 2].configuration,
+        };
+        let to = &loaded[after - 1].configuration;
+        let configuration = std::iter::zip(from, to)
+            .map(|(from, to)| std::array::from_fn(|i| mix(from[i], to[i])))
+            .collect();
+        let (from, to) = (self.curve[after - 1], self.curve[after]);
+        (configuration, [0, 1].map(|i| mix(from[i], to[i])))
+    }
+
+    /// Distances in space of the corners of the panels between a configuration and finite elements (mm).
+    fn corner_errors(&self, configuration: &[[f64; 3]], state: &SheetState) -> Vec<[f64; 4]> {
+        let sheet = &self.deployment.sheet;
+        let deployed = deployed_corners(sheet, configuration);
+        let panels = std::iter::zip(&sheet.panels, deployed).zip(&state.panels);
+        panels
+            .map(|((panel, corners), moved)| {
+                std::array::from_fn(|corner| {
+                    let [x, y, z] = moved.moved(panel.corners[corner]);
+                    let [u, v] = corners[corner];
+                    (x - u).hypot(y - v).hypot(z)
+                })
+            })
+            .collect()
+    }
+
+    fn state(&self, state: &SheetState) -> StateCheck {
+        let sheet = &self.deployment.sheet;
+        let (configuration, [displacement, load]) = self.by_law(state.fraction);
+        let errors = self.corner_errors(&configuration, state).concat();
+        let openings = hinge_deformations(sheet, &configuration);
+        let by_law: f64 = openings.iter().map(|state| state.theta).sum();
+        let by_elements: f64 = (0..sheet.hinges.len())
+            .map(|h| self.opening(state, h))
+            .sum();
+        let mean = |sum: f64| (sum / sheet.hinges.len() as f64).to_degrees();
+        let panels = || state.panels.iter();
+        let internal: f64 = state.hinges.iter().map(|hinge| hinge.energy).sum();
+        let total = self.full_load();
+        StateCheck {
+            fraction: state.fraction,
+            stroke: [displacement, state.stroke],
+            load: [load, state.load_factor * total],
+            corners: [
+                root_mean_square(errors.iter().copied()),
+                errors.iter().copied().fold(0.0, f64::max),
+            ],
+            opening_deg: [mean(by_law), mean(by_elements)],
+            tilt_deg: (panels().map(|panel| panel.tilt().to_degrees())).fold(0.0, f64::max),
+            z: [
+                panels()
+                    .map(|panel| panel.z[0])
+                    .fold(f64::INFINITY, f64::min),
+                (panels().map(|panel| panel.z[1])).fold(f64::NEG_INFINITY, f64::max),
+            ],
+            bending: panels().map(|panel| panel.bending).fold(0.0, f64::max),
+            kinetic: state.kinetic_energy / (internal + state.panel_energy).max(f64::MIN_POSITIVE),
+        }
+    }
+
+    /// The sum of the magnitudes of the full loads (N).
+    fn full_load(&self) -> f64 {
+        let mut forces = vec![[0.0; 2]; self.deployment.sheet.panels.len()];
+        for load in self.scene.actuation().boundary_loads() {
+            if let Some(force) = forces[load.panel].get_mut(load.dof.index()) {
+                *force += load.value;
+            }
+        }
+        forces.into_iter().map(|[x, y]| x.hypot(y)).sum()
+    }
+
+    /// Rotation of a hinge in the plane by finite elements (rad).
+    fn opening(&self, state: &SheetState, hinge: usize) -> f64 {
+        let hinge = &self.deployment.sheet.hinges[hinge];
+        let [a, b] = [hinge.panel_a(), hinge.panel_b()].map(|panel| state.panels[panel].turn());
+        b - a
+    }
+
+    /// Hinges and panels in the last state.
+    fn end(&self, last: &SheetState) -> (Vec<HingeCheck>, Vec<PanelCheck>) {
+        let sheet = &self.deployment.sheet;
+        let (configuration, _) = self.by_law(last.fraction);
+        let states = hinge_deformations(sheet, &configuration);
+        let designs = sheet.designs();
+        let energies = (self.problem.model.mechanics()).map(|mechanics| {
+            let law = mechanics.law.prepare(&designs);
+            law.energies(&states, Order::Value)
+        });
+        let full = last.fraction >= 1.0;
+        let hinges = std::iter::zip(&sheet.hinges, &last.hinges).enumerate();
+        let hinges = hinges.map(|(h, (hinge, found))| HingeCheck {
+            w_lig: hinge.w_lig,
+            theta_deg: [states[h].theta, self.opening(last, h)].map(f64::to_degrees),
+            energy: [
+                energies.as_ref().map_or(f64::NAN, |energies| energies[h].w),
+                found.energy,
+            ],
+            d_peak: [
+                full.then(|| self.deployment.damage_max(DamageMeasure::Peak, h))
+                    .flatten(),
+                Some(found.d_peak),
+            ],
+        });
+        let errors = self.corner_errors(&configuration, last);
+        let panels = std::iter::zip(&last.panels, errors);
+        let panels = panels.map(|(panel, errors)| PanelCheck {
+            tilt_deg: panel.tilt().to_degrees(),
+            off: errors.into_iter().fold(0.0, f64::max),
+            z: panel.z,
+            bending: panel.bending,
+        });
+        (hinges.collect(), panels.collect())
+    }
+}
+
+impl BranchCheck {
+    /// The last state of the path.
+    pub fn last(&self) -> Option<&StateCheck> {
+        self.path.last()
+    }
+}
+
+fn findings(check: &SheetCheck) -> Vec<SheetFinding> {
+    let mut found = Vec::new();
+    let mut add = |severity, message: String| found.push(SheetFinding { severity, message });
+    for branch in &check.branches {
+        let of = if check.branches.len() > 1 {
+            format!(" (bumps {})", branch.bumps)
+        } else {
+            String::new()
+        };
+        let Some(last) = branch.last() else {
+            let reason = branch
+                .stopped
+                .as_deref()
+                .unwrap_or("no increment converged");
+            add(
+                Severity::Error,
+                format!("the sheet was not solved{of}: {reason}"),
+            );
+            continue;
+        };
+        if let Some(reason) = &branch.stopped {
+            add(
+                Severity::Error,
+                format!(
+                    "the path was followed to {:.1} % only{of}; what happens beyond is not known: {reason}",
+                    100.0 * last.fraction
+                ),
+            );
+        }
+        let [rms, most] = last.corners;
+        let percent = 100.0 * rms / check.size;
+        let errors = format!(
+            "the panels tilt by up to {:.1} deg, and the corners are {rms:.2} mm (root mean square) from where the hinge law \
+             has them, {most:.2} mm at most: {percent:.2} % of the sheet{of}",
+            last.tilt_deg
+        );
+        if last.tilt_deg > TILTED {
+            let severity = Severity::Error;
+            add(severity, format!("the sheet does not stay flat: {errors}"));
+        } else if rms > OFF * check.size {
+            add(
+                Severity::Error,
+                format!("the sheet opens otherwise than predicted: {errors}"),
+            );
+        } else {
+            add(Severity::Note, format!("the sheet stays flat: {errors}"));
+        }
+        let [by_law, by_elements] = last.load;
+        let difference = (by_law - by_elements) / by_elements.abs().max(f64::MIN_POSITIVE);
+        if check.driven && difference.abs() > OTHER_LOAD {
+            add(
+                Severity::Warning,
+                format!(
+                    "the load is {by_elements:.4} N by finite elements and {by_law:.4} N by the hinge law{of}"
+                ),
+            );
+        }
+        let torn = branch.hinges.iter().enumerate();
+        let torn: Vec<String> = torn
+            .filter(|(_, hinge)| hinge.d_peak[1].is_some_and(|peak| peak >= 1.0))
+            .map(|(h, _)| h.to_string())
+            .collect();
+        if !torn.is_empty() {
+            add(
+                Severity::Error,
+                format!(
+                    "ligaments tear{of}: D_peak is 1 or more (hinges {})",
+                    torn.join(", ")
+                ),
+            );
+        }
+        if last.kinetic > AT_REST {
+            add(
+                Severity::Warning,
+                format!(
+                    "the sheet still moves at the end of its dynamic path{of}: kinetic energy is {:.1} % of the internal energy",
+                    100.0 * last.kinetic
+                ),
+            );
+        }
+    }
+    found.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
+    found
+}

@@ -1,0 +1,139 @@
+//! The page of a whole sheet by finite elements.
+
+use crate::sheet_check::{BranchCheck, SheetCheck, StateCheck};
+use design::scene::Posture;
+use std::fmt;
+
+/// Number of rows of a path on the page.
+const ROWS: usize = 12;
+
+impl SheetCheck {
+    /// How the panels are kept in their plane, in words.
+    pub fn kept(&self) -> &'static str {
+        match self.support {
+            Posture::HeldFlat => "panels held flat",
+            Posture::Lying => "lying on a table without friction, under its own weight",
+            Posture::Hanging => "hanging under its own weight, nothing in the way out of the plane",
+            Posture::Free => "free, nothing in the way out of the plane, without weight",
+        }
+    }
+}
+
+impl fmt::Display for SheetCheck {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let ([panels, hinges], [least, most]) = (self.counts, self.slenderness);
+        writeln!(
+            f,
+            "# The whole sheet, by finite elements\n\n\
+             The {}, {}: {panels} panels, {hinges} hinges, windows of tier {}, ligaments {least:.2} to {most:.2} times as wide as the \
+             sheet is thick. Every window and every panel is meshed, and nothing is rigid. By law: the equilibrium with the \
+             scene's hinge law, whose panels are rigid and stay in the plane.\n",
+            self.design,
+            self.kept(),
+            self.tier,
+        )?;
+        for finding in &self.findings {
+            writeln!(f, "* {}: {}", finding.severity, finding.message)?;
+        }
+        writeln!(
+            f,
+            "\nNot modelled here: contact of the flanks of the cuts, friction, creep. Corners: distance in space between the rigid \
+             motion that the nodes of a panel follow best and its place by law; per cent of the longer side of the flat sheet, {:.0} mm.\n\n\
+             | bumps of the hinges | reached | load, N | by law | mean opening, deg | by law | corners, mm | max | % | tilt, deg | lift, mm | \
+             bending, mm | unknowns | CPU s |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|",
+            self.size
+        )?;
+        for branch in &self.branches {
+            self.write_branch(f, branch)?;
+        }
+        for branch in self.branches.iter().filter(|branch| branch.path.len() > 1) {
+            self.write_path(f, branch)?;
+        }
+        Ok(())
+    }
+}
+
+impl SheetCheck {
+    fn write_branch(&self, f: &mut fmt::Formatter, branch: &BranchCheck) -> fmt::Result {
+        let Some(last) = branch.last() else {
+            return writeln!(
+                f,
+                "| {} | 0 % | - | - | - | - | - | - | - | - | - | - | {} | {:.0} |",
+                branch.bumps, branch.unknowns, branch.cpu_seconds
+            );
+        };
+        let ([load, found], [opening, opened]) = (last.load, last.opening_deg);
+        let ([rms, most], [_, high]) = (last.corners, last.z);
+        writeln!(
+            f,
+            "| {}{} | {:.0} % | {found:.4} | {load:.4} | {opened:.2} | {opening:.2} | {rms:.3} | {most:.3} | {:.3} | {:.2} | {high:.2} | \
+             {:.3} | {} | {:.0} |",
+            branch.bumps,
+            if branch.dynamic { ", dynamic" } else { "" },
+            100.0 * last.fraction,
+            100.0 * rms / self.size,
+            last.tilt_deg,
+            last.bending,
+            branch.unknowns,
+            branch.cpu_seconds,
+        )
+    }
+
+    fn write_path(&self, f: &mut fmt::Formatter, branch: &BranchCheck) -> fmt::Result {
+        writeln!(
+            f,
+            "\n## Bumps {}\n\n\
+             | stroke, mm | by law | load, N | by law | mean opening, deg | by law | corners, mm | max | tilt, deg | lift, mm |\n\
+             |---|---|---|---|---|---|---|---|---|---|",
+            branch.bumps
+        )?;
+        let stride = branch.path.len().div_ceil(ROWS).max(1);
+        let kept = (branch.path.iter().enumerate())
+            .filter(|(i, _)| (branch.path.len() - 1 - i).is_multiple_of(stride));
+        for (_, state) in kept {
+            let StateCheck {
+                stroke: [stroke, moved],
+                load: [load, found],
+                opening_deg: [opening, opened],
+                corners: [rms, most],
+                tilt_deg,
+                z: [_, high],
+                ..
+            } = state;
+            writeln!(
+                f,
+                "| {moved:.3} | {stroke:.3} | {found:.4} | {load:.4} | {opened:.2} | {opening:.2} | {rms:.3} | {most:.3} | {tilt_deg:.2} | {high:.2} |"
+            )?;
+        }
+        writeln!(
+            f,
+            "\nPanels outside of the windows hold {:.2} % of the energy.\n\n\
+             | hinge | w_lig, mm | theta, deg | by law | W, N mm | by law | D_peak | by law |\n|---|---|---|---|---|---|---|---|",
+            100.0 * branch.panel_energy
+        )?;
+        for (h, hinge) in branch.hinges.iter().enumerate() {
+            let ([theta, opened], [energy, found]) = (hinge.theta_deg, hinge.energy);
+            let [peak, found_peak] = hinge
+                .d_peak
+                .map(|peak| peak.map_or("?".into(), |peak| format!("{peak:.3}")));
+            writeln!(
+                f,
+                "| {h} | {:.2} | {opened:.2} | {theta:.2} | {found:.4} | {energy:.4} | {found_peak} | {peak} |",
+                hinge.w_lig
+            )?;
+        }
+        writeln!(
+            f,
+            "\n| panel | tilt, deg | corner furthest off, mm | lowest, mm | highest, mm | bending, mm |\n|---|---|---|---|---|---|"
+        )?;
+        for (k, panel) in branch.panels.iter().enumerate() {
+            let [low, high] = panel.z;
+            writeln!(
+                f,
+                "| {k} | {:.2} | {:.3} | {low:.2} | {high:.2} | {:.3} |",
+                panel.tilt_deg, panel.off, panel.bending
+            )?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,270 @@
+//! A designed sheet as a finite-element problem: every window and every panel.
+
+use crate::verification_error::VerificationError;
+use design::pattern::grid::{Endpoint, Grid};
+use design::scene::{Attachment, Posture, Scene, SupportKind};
+use design::sheet::cut_sheet::{Hinge, PanelPoint, Sheet};
+use design::sheet::hinge_window::Window;
+use fe_driver::{Held, Keeping, Place, Pulled, SheetProblem};
+use mesher::{Frame, PanelShape, PlacedWindow, PlaneRecipe, SheetShape, Tier};
+
+/// Size of the elements of panels over r_win.
+const ELEMENT_SIZE: f64 = 0.8;
+/// Layers of elements through the thickness.
+const LAYERS: usize = 2;
+/// Ligament width over thickness up to which a ligament bends in the plane of the sheet and has no bump to speak of.
+const IN_PLANE: f64 = 2.0;
+/// Height of the bump of such a ligament over the thickness; that of others is one thickness, as the paper measured.
+const SLIGHT_BUMP: f64 = 0.02;
+
+/// To which sides the bumps of the hinges point: each pattern may lead to another branch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Branch {
+    /// All to one side.
+    OneSide,
+    /// The neighbours along and across to opposite sides.
+    Alternating,
+    /// Those at the two ends of each cut to opposite sides.
+    Pairs,
+    /// Rows of cuts to opposite sides in turn.
+    Rows,
+}
+
+impl Branch {
+    /// All patterns, in the order in which they are tried.
+    pub const ALL: [Self; 4] = [Self::OneSide, Self::Alternating, Self::Pairs, Self::Rows];
+
+    /// The pattern in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::OneSide => "all to one side",
+            Self::Alternating => "alternating",
+            Self::Pairs => "the two ends of a cut to opposite sides",
+            Self::Rows => "rows in turn",
+        }
+    }
+
+    fn sign(self, hinge: &Hinge) -> f64 {
+        let [i, j] = hinge.site.vertex;
+        let end = usize::from(hinge.site.endpoint != Endpoint::X);
+        let other = match self {
+            Self::OneSide => 0,
+            Self::Alternating => i + j + end,
+            Self::Pairs => end,
+            Self::Rows => j,
+        };
+        if other % 2 == 0 { 1.0 } else { -1.0 }
+    }
+}
+
+/// The scene with another support of its panels, as its model must know it.
+pub fn with_support(scene: &Scene, support: Option<Posture>) -> Result<Scene, VerificationError> {
+    let mut scene = scene.clone();
+    let posture = (scene.config.posture.as_mut()).ok_or(VerificationError::NoPosture)?;
+    match support {
+        // What holds it flat does not change its weight.
+        None | Some(Posture::HeldFlat) => {}
+        Some(Posture::Hanging) if posture.down.is_none() => {
+            return Err(VerificationError::NoDown);
+        }
+        Some(kind) => posture.kind = kind,
+    }
+    Ok(scene)
+}
+
+/// A sheet of a scene as a finite-element problem, kept in its plane as `support` says.
+pub fn sheet_problem(
+    scene: &Scene,
+    sheet: &Sheet,
+    support: Posture,
+    tier: Tier,
+    branch: Branch,
+) -> Result<SheetProblem, VerificationError> {
+    let actuation = scene.actuation();
+    let mut pulls = vec![[0.0; 3]; sheet.panels.len()];
+    for load in actuation.boundary_loads() {
+        pulls[load.panel][load.dof.index()] += load.value;
+    }
+    if pulls.iter().any(|[.., couple]| *couple != 0.0) {
+        return Err(VerificationError::Couples);
+    }
+    let pulled: Vec<Pulled> = (pulls.into_iter().enumerate())
+        .filter(|(_, [x, y, _])| x.hypot(*y) > 0.0)
+        .map(|(panel, [x, y, _])| Pulled {
+            panel,
+            at: on_finished_edge(sheet, panel, sheet.panels[panel].reference),
+            force: [x, y],
+        })
+        .collect();
+    let held = std::iter::zip(&scene.config.supports, &actuation.attachments)
+        .map(|(support, attachment)| {
+            if support.rotation_deg != 0.0 {
+                return Err(VerificationError::TurnedSupport(attachment.name.clone()));
+            }
+            let holds = support.kind.holds();
+            Ok(Held {
+                panel: attachment.panel,
+                place: place(sheet, attachment, support.kind),
+                motion: [0, 1].map(|axis| holds[axis].then_some(support.displacement[axis])),
+            })
+        })
+        .collect::<Result<Vec<Held>, _>>()?;
+    let down = match support {
+        Posture::Lying => Some([0.0, 0.0, -1.0]),
+        Posture::HeldFlat | Posture::Hanging | Posture::Free => {
+            let [x, y] = scene.weight_by_area();
+            let length = x.hypot(y);
+            (length > 0.0).then(|| [x / length, y / length, 0.0])
+        }
+    };
+    let keeping = match support {
+        Posture::HeldFlat => Keeping::HeldFlat,
+        Posture::Lying => Keeping::Table,
+        Posture::Hanging | Posture::Free => Keeping::Nothing,
+    };
+    let mut shape = sheet_shape(sheet, scene.material.thickness, tier, branch)?;
+    for pulled in &pulled {
+        shape.panels[pulled.panel].marks.push(pulled.at);
+    }
+    for held in &held {
+        let marks = &mut shape.panels[held.panel].marks;
+        match held.place {
+            Place::Panel => {}
+            Place::Point(at) => marks.push(at),
+            Place::Line(ends) => marks.extend(ends),
+        }
+    }
+    for panel in &mut shape.panels {
+        let marks = std::mem::take(&mut panel.marks);
+        for mark in marks {
+            if !panel.marks.contains(&mark) {
+                panel.marks.push(mark);
+            }
+        }
+    }
+    Ok(SheetProblem {
+        shape,
+        tier,
+        material: scene.material.clone(),
+        keeping,
+        held,
+        pulled,
+        stroke: scene.config.drive.map(|drive| drive.stroke),
+        down,
+        step: SheetProblem::usual_step(keeping),
+        dynamic: false,
+    })
+}
+
+/// The part of a panel that a support holds: its clip, the whole panel of a clamp without one, or a point.
+fn place(sheet: &Sheet, attachment: &Attachment, kind: SupportKind) -> Place {
+    let panel = &sheet.panels[attachment.panel];
+    match (attachment.clip, attachment.point, kind) {
+        (Some(width), PanelPoint::Middle([from, to]), _) => {
+            let [p, q] = [from, to].map(|corner| panel.corners[corner]);
+            let length = f64::hypot(q[0] - p[0], q[1] - p[1]);
+            let middle = panel.position(attachment.point);
+            let end = |sign: f64| {
+                let half = 0.5 * sign * width / length;
+                let at = [0, 1].map(|i| middle[i] + half * (q[i] - p[i]));
+                on_finished_edge(sheet, attachment.panel, at)
+            };
+            Place::Line([end(-1.0), end(1.0)])
+        }
+        (_, _, SupportKind::Clamp) => Place::Panel,
+        (_, point, _) => Place::Point(on_finished_edge(
+            sheet,
+            attachment.panel,
+            panel.position(point),
+        )),
+    }
+}
+
+/// A point of a panel; if it lies on the line of a cut, the nearest point of the finished edge, half a kerf inside.
+fn on_finished_edge(sheet: &Sheet, panel: usize, point: [f64; 2]) -> [f64; 2] {
+    let kerf = sheet.options.process.kerf;
+    let corners = finished_corners(sheet, panel);
+    let mut moved = point;
+    for edge in 0..4 {
+        let (p, q) = (corners[edge], corners[(edge + 1) % 4]);
+        let along = [q[0] - p[0], q[1] - p[1]];
+        let length = along[0].hypot(along[1]);
+        let inward = [-along[1] / length, along[0] / length];
+        let depth = (moved[0] - p[0]) * inward[0] + (moved[1] - p[1]) * inward[1];
+        if depth.abs() <= kerf {
+            moved = [0, 1].map(|i| moved[i] - depth * inward[i]);
+        }
+    }
+    moved
+}
+
+/// The corners of a panel between its finished edges: those of cuts are half a kerf inside of their lines.
+fn finished_corners(sheet: &Sheet, panel: usize) -> [[f64; 2]; 4] {
+    let Grid { m, n } = sheet.grid;
+    let (column, row) = (panel % m, panel / m);
+    let on_outline = [row == 0, column == m - 1, row == n - 1, column == 0];
+    let corners = sheet.panels[panel].corners;
+    let lines: [([f64; 2], [f64; 2]); 4] = std::array::from_fn(|edge| {
+        let (p, q) = (corners[edge], corners[(edge + 1) % 4]);
+        let along = [q[0] - p[0], q[1] - p[1]];
+        let length = along[0].hypot(along[1]);
+        let direction = along.map(|x| x / length);
+        let inside = if on_outline[edge] {
+            0.0
+        } else {
+            0.5 * sheet.options.process.kerf
+        };
+        let start = [p[0] - inside * direction[1], p[1] + inside * direction[0]];
+        (start, direction)
+    });
+    std::array::from_fn(|corner| {
+        let ((p, d), (q, e)) = (lines[(corner + 3) % 4], lines[corner]);
+        let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
+        let along = cross([q[0] - p[0], q[1] - p[1]], e) / cross(d, e);
+        [p[0] + along * d[0], p[1] + along * d[1]]
+    })
+}
+
+/// The finished sheet with its windows.
+fn sheet_shape(
+    sheet: &Sheet,
+    thickness: f64,
+    tier: Tier,
+    branch: Branch,
+) -> Result<SheetShape, VerificationError> {
+    let PlaneRecipe::Structured(plane) = tier.recipe().plane else {
+        return Err(VerificationError::NoSheetTier(tier));
+    };
+    let windows = Window::of_sheet(sheet);
+    let placed = (sheet.hinges.iter().zip(sheet.designs()))
+        .zip(&windows)
+        .map(|((hinge, design), window)| {
+            let bump = if design.w_lig <= IN_PLANE * thickness {
+                SLIGHT_BUMP
+            } else {
+                1.0
+            };
+            PlacedWindow {
+                design,
+                frame: Frame {
+                    origin: window.foot,
+                    e_x: window.e_sec,
+                },
+                panels: [Some(hinge.site.a), Some(hinge.site.b)],
+                bump: branch.sign(hinge) * bump,
+            }
+        });
+    Ok(SheetShape {
+        thickness,
+        panels: (0..sheet.panels.len())
+            .map(|panel| PanelShape {
+                corners: finished_corners(sheet, panel),
+                marks: Vec::new(),
+            })
+            .collect(),
+        windows: placed.collect(),
+        plane,
+        layers: LAYERS,
+        element_size: ELEMENT_SIZE * sheet.options.process.r_win,
+    })
+}
