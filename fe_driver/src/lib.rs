@@ -84,7 +84,9 @@ pub use campaign::slurm::{
 pub use campaign::solve_again::{Difference, SolvedAgain, solve_again};
 pub use campaign::status::{Status, Tally, Throughput, refuse_changed, status};
 pub use sheet::invalid_sheet_problem::InvalidSheetProblem;
-pub use sheet::sheet_problem::{Held, History, Keeping, Place, Pulled, SheetProblem, SheetSolve};
+pub use sheet::sheet_problem::{
+    DrivenRim, Held, History, Keeping, Place, Pulled, SheetProblem, SheetSolve,
+};
 pub use sheet::sheet_solver::sheet_reached;
 pub use sheet::sheet_states::{HingeState, PanelState, SheetState, SheetStates, SheetSurface};
 pub use solve::attempts::SolveListError;

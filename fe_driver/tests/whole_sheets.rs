@@ -81,6 +81,7 @@ fn problem(keeping: Keeping, stroke: f64) -> SheetProblem {
             at,
             force: [2.0, 0.0],
         }],
+        rims: Vec::new(),
         stroke: Some(stroke),
         down: None,
         step: SheetProblem::usual_step(keeping),

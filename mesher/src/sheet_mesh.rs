@@ -5,9 +5,12 @@ use crate::msh::PlaneMesh;
 use crate::quality::{MAX_AREA_ERROR, MeshDefect, check_elements};
 use crate::sheet_shape::{PlacedWindow, SheetShape};
 use crate::tier::Imperfection;
-use crate::vectors::{cross, minus};
+use crate::vectors::{cross, dot, minus};
 use crate::window::{Side, Window, polar_angle};
 use std::f64::consts::PI;
+
+/// Largest distance of a node from the arc of its window, over r_win.
+const ON_RIM: f64 = 1e-6;
 
 /// What a face or an element of a sheet belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,6 +98,26 @@ impl SheetMesh {
     /// The nodes above plane nodes, through the thickness.
     pub fn through(&self, plane: &[usize]) -> Vec<usize> {
         self.levels.through(plane)
+    }
+
+    /// The plane nodes on the arc of a window on one of its panels.
+    pub fn rim(&self, shape: &SheetShape, window: usize, side: Side) -> Vec<usize> {
+        let placed = &shape.windows[window];
+        let (design, frame) = (&placed.design, &placed.frame);
+        let (of_window, tip) = (Window(design), design.tip());
+        let on_rim = |node: &usize| {
+            let local = frame.local(self.plane.nodes[*node]);
+            let [x, y] = local;
+            let across = dot(minus(local, tip), of_window.normal());
+            let on_side = match side {
+                Side::A => across < 0.0,
+                Side::B => across > 0.0,
+            };
+            on_side && (x.hypot(y) / design.r_win - 1.0).abs() < ON_RIM
+        };
+        let mut nodes = self.plane_nodes(Part::Window(window));
+        nodes.retain(on_rim);
+        nodes
     }
 
     /// The corner node of a part's faces that is nearest to a point.

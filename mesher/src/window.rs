@@ -6,10 +6,12 @@
 
 use crate::vectors::{cross, dot};
 use hinge::HingeDesign;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// The two panels of a hinge: A on the -x side of the main cut, B on the +x side.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Side {
     /// Panel A, on the -x side of the main cut.
     A,

@@ -76,6 +76,10 @@ pub struct VerifyCommand {
     #[arg(long, value_name = "N", requires = "sheet", default_value_t = 1,
         value_parser = clap::value_parser!(u8).range(1..=4))]
     branches: u8,
+    /// Solve the panel COLUMN,ROW and those around it instead of the whole sheet, for sheets that are too large; the other panels
+    /// move as the hinge law predicts
+    #[arg(long, value_name = "COLUMN,ROW", requires = "sheet", value_parser = whole_sheet::panel)]
+    patch: Option<[usize; 2]>,
     /// Print JSON instead of text
     #[arg(long, requires = "of_sheet")]
     json: bool,

@@ -50,6 +50,7 @@ mod doubtful_states;
 mod extension;
 mod learning;
 mod networks;
+mod patch;
 mod polish;
 mod recorded_path;
 mod region;

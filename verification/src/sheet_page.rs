@@ -32,6 +32,20 @@ impl fmt::Display for SheetCheck {
             self.kept(),
             self.tier,
         )?;
+        if self.is_patch {
+            writeln!(
+                f,
+                "A patch of a larger sheet: the panels around it move as the hinge law predicts.\n"
+            )?;
+        }
+        let [meshed, of_law] = self.radius;
+        if meshed < of_law {
+            writeln!(
+                f,
+                "The windows of {of_law} mm of the hinge law have no room between each other: those of the mesh have {meshed:.1} mm and more, and \
+                 the energies of hinges below lack what is outside of that.\n"
+            )?;
+        }
         for finding in &self.findings {
             writeln!(f, "* {}: {}", finding.severity, finding.message)?;
         }
@@ -53,6 +67,14 @@ impl fmt::Display for SheetCheck {
     }
 }
 
+/// Two numbers that may not be known.
+fn known(pair: Option<[f64; 2]>, decimals: usize) -> [String; 2] {
+    match pair {
+        Some(pair) => pair.map(|value| format!("{value:.decimals$}")),
+        None => ["-", "-"].map(str::to_owned),
+    }
+}
+
 impl SheetCheck {
     fn write_branch(&self, f: &mut fmt::Formatter, branch: &BranchCheck) -> fmt::Result {
         let Some(last) = branch.last() else {
@@ -62,11 +84,12 @@ impl SheetCheck {
                 branch.bumps, branch.unknowns, branch.cpu_seconds
             );
         };
-        let ([load, found], [opening, opened]) = (last.load, last.opening_deg);
+        let [load, found] = known(last.load, 4);
+        let [opening, opened] = last.opening_deg;
         let ([rms, most], [_, high]) = (last.corners, last.z);
         writeln!(
             f,
-            "| {}{} | {:.0} % | {found:.4} | {load:.4} | {opened:.2} | {opening:.2} | {rms:.3} | {most:.3} | {:.3} | {:.2} | {high:.2} | \
+            "| {}{} | {:.0} % | {found} | {load} | {opened:.2} | {opening:.2} | {rms:.3} | {most:.3} | {:.3} | {:.2} | {high:.2} | \
              {:.3} | {} | {:.0} |",
             branch.bumps,
             if branch.dynamic { ", dynamic" } else { "" },
@@ -83,8 +106,8 @@ impl SheetCheck {
         writeln!(
             f,
             "\n## Bumps {}\n\n\
-             | stroke, mm | by law | load, N | by law | mean opening, deg | by law | corners, mm | max | tilt, deg | lift, mm |\n\
-             |---|---|---|---|---|---|---|---|---|---|",
+             | path, % | stroke, mm | by law | load, N | by law | mean opening, deg | by law | corners, mm | max | tilt, deg | lift, mm |\n\
+             |---|---|---|---|---|---|---|---|---|---|---|",
             branch.bumps
         )?;
         let stride = branch.path.len().div_ceil(ROWS).max(1);
@@ -92,17 +115,20 @@ impl SheetCheck {
             .filter(|(i, _)| (branch.path.len() - 1 - i).is_multiple_of(stride));
         for (_, state) in kept {
             let StateCheck {
-                stroke: [stroke, moved],
-                load: [load, found],
+                fraction,
+                stroke,
+                load,
                 opening_deg: [opening, opened],
                 corners: [rms, most],
                 tilt_deg,
                 z: [_, high],
                 ..
             } = state;
+            let ([stroke, moved], [load, found]) = (known(*stroke, 3), known(*load, 4));
             writeln!(
                 f,
-                "| {moved:.3} | {stroke:.3} | {found:.4} | {load:.4} | {opened:.2} | {opening:.2} | {rms:.3} | {most:.3} | {tilt_deg:.2} | {high:.2} |"
+                "| {:.1} | {moved} | {stroke} | {found} | {load} | {opened:.2} | {opening:.2} | {rms:.3} | {most:.3} | {tilt_deg:.2} | {high:.2} |",
+                100.0 * fraction,
             )?;
         }
         writeln!(
@@ -111,27 +137,27 @@ impl SheetCheck {
              | hinge | w_lig, mm | theta, deg | by law | W, N mm | by law | D_peak | by law |\n|---|---|---|---|---|---|---|---|",
             100.0 * branch.panel_energy
         )?;
-        for (h, hinge) in branch.hinges.iter().enumerate() {
+        for hinge in &branch.hinges {
             let ([theta, opened], [energy, found]) = (hinge.theta_deg, hinge.energy);
             let [peak, found_peak] = hinge
                 .d_peak
                 .map(|peak| peak.map_or("?".into(), |peak| format!("{peak:.3}")));
             writeln!(
                 f,
-                "| {h} | {:.2} | {opened:.2} | {theta:.2} | {found:.4} | {energy:.4} | {found_peak} | {peak} |",
-                hinge.w_lig
+                "| {} | {:.2} | {opened:.2} | {theta:.2} | {found:.4} | {energy:.4} | {found_peak} | {peak} |",
+                hinge.hinge, hinge.w_lig
             )?;
         }
         writeln!(
             f,
             "\n| panel | tilt, deg | corner furthest off, mm | lowest, mm | highest, mm | bending, mm |\n|---|---|---|---|---|---|"
         )?;
-        for (k, panel) in branch.panels.iter().enumerate() {
+        for panel in &branch.panels {
             let [low, high] = panel.z;
             writeln!(
                 f,
-                "| {k} | {:.2} | {:.3} | {low:.2} | {high:.2} | {:.3} |",
-                panel.tilt_deg, panel.off, panel.bending
+                "| {} | {:.2} | {:.3} | {low:.2} | {high:.2} | {:.3} |",
+                panel.panel, panel.tilt_deg, panel.off, panel.bending
             )?;
         }
         Ok(())

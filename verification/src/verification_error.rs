@@ -65,6 +65,27 @@ pub enum VerificationError {
         "the tier {0} has no structured mesh: whole sheets are meshed with tiny, small, default, fine or reference"
     )]
     NoSheetTier(Tier),
+    #[error(
+        "the panels are too small for windows of {least:.1} mm radius, the smallest that are meshed: use larger panels or narrower ligaments"
+    )]
+    NoRoom { least: f64 },
+    #[error(
+        "there is no panel [{column}, {row}]: the sheet has {m} columns and {n} rows, counted from 0"
+    )]
+    NoSuchPanel {
+        column: usize,
+        row: usize,
+        m: usize,
+        n: usize,
+    },
+    #[error(
+        "the patch contains a panel that is pulled by a prescribed stroke, whose load it does not know: choose another patch"
+    )]
+    DrivenPatch,
+    #[error(
+        "a patch of a hanging sheet must be held flat: its weight comes on before the loads. Use --support held-flat"
+    )]
+    HangingPatch,
     #[error("whole sheets need supports and loads: the scene has hinge = \"pin\"")]
     NoLoads,
     #[error("the campaign has no region of rays")]

@@ -6,10 +6,17 @@ use design::scene::{Attachment, Posture, Scene, SupportKind};
 use design::sheet::cut_sheet::{Hinge, PanelPoint, Sheet};
 use design::sheet::hinge_window::Window;
 use fe_driver::{Held, Keeping, Place, Pulled, SheetProblem};
+use hinge::HingeDesign;
 use mesher::{Frame, PanelShape, PlacedWindow, PlaneRecipe, SheetShape, Tier};
 
 /// Size of the elements of panels over r_win.
 const ELEMENT_SIZE: f64 = 0.8;
+/// The radius at which windows must be apart over that at which they are meshed.
+const APART: f64 = 1.04;
+/// Factor by which windows become smaller until they are apart.
+const SHRINK: f64 = 0.93;
+/// Smallest radius of a meshed window over the ligament width; a window has more than 2.5.
+const LEAST_RADIUS: f64 = 2.52;
 /// Layers of elements through the thickness.
 const LAYERS: usize = 2;
 /// Ligament width over thickness up to which a ligament bends in the plane of the sheet and has no bump to speak of.
@@ -149,6 +156,7 @@ pub fn sheet_problem(
         keeping,
         held,
         pulled,
+        rims: Vec::new(),
         stroke: scene.config.drive.map(|drive| drive.stroke),
         down,
         step: SheetProblem::usual_step(keeping),
@@ -225,6 +233,38 @@ fn finished_corners(sheet: &Sheet, panel: usize) -> [[f64; 2]; 4] {
     })
 }
 
+/// The radius of each window in the mesh (mm): r_win, or as much less as the windows need to be apart. The mesh of a smaller
+/// window is a part of that of a larger one.
+pub(crate) fn meshed_radii(sheet: &Sheet) -> Result<Vec<f64>, VerificationError> {
+    let r_win = sheet.options.process.r_win;
+    let widths = || sheet.hinges.iter().map(|hinge| hinge.w_lig);
+    let mut ratio = r_win / widths().fold(f64::INFINITY, f64::min);
+    loop {
+        let radii: Vec<f64> = widths().map(|w_lig| r_win.min(ratio * w_lig)).collect();
+        let windows: Vec<Window> = std::iter::zip(Window::of_sheet(sheet), &radii)
+            .map(|(window, radius)| Window {
+                radius: APART * radius,
+                ..window
+            })
+            .collect();
+        let apart = (windows.iter().enumerate())
+            .all(|(h, one)| windows[..h].iter().all(|other| !one.overlaps(other)));
+        let inside = std::iter::zip(&windows, &sheet.hinges).all(|(window, hinge)| {
+            let [a, b] = [hinge.panel_a(), hinge.panel_b()].map(|k| &sheet.panels[k]);
+            window.within(a, b)
+        });
+        if apart && inside {
+            return Ok(radii);
+        }
+        if ratio <= LEAST_RADIUS {
+            return Err(VerificationError::NoRoom {
+                least: radii.into_iter().fold(f64::INFINITY, f64::min),
+            });
+        }
+        ratio = (SHRINK * ratio).max(LEAST_RADIUS);
+    }
+}
+
 /// The finished sheet with its windows.
 fn sheet_shape(
     sheet: &Sheet,
@@ -235,17 +275,21 @@ fn sheet_shape(
     let PlaneRecipe::Structured(plane) = tier.recipe().plane else {
         return Err(VerificationError::NoSheetTier(tier));
     };
-    let windows = Window::of_sheet(sheet);
-    let placed = (sheet.hinges.iter().zip(sheet.designs()))
-        .zip(&windows)
-        .map(|((hinge, design), window)| {
+    let radii = meshed_radii(sheet)?;
+    let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
+    let windows = std::iter::zip(Window::of_sheet(sheet), &radii);
+    let placed = (sheet.hinges.iter().zip(sheet.designs())).zip(windows).map(
+        |((hinge, design), (window, radius))| {
             let bump = if design.w_lig <= IN_PLANE * thickness {
                 SLIGHT_BUMP
             } else {
                 1.0
             };
             PlacedWindow {
-                design,
+                design: HingeDesign {
+                    r_win: *radius,
+                    ..design
+                },
                 frame: Frame {
                     origin: window.foot,
                     e_x: window.e_sec,
@@ -253,7 +297,8 @@ fn sheet_shape(
                 panels: [Some(hinge.site.a), Some(hinge.site.b)],
                 bump: branch.sign(hinge) * bump,
             }
-        });
+        },
+    );
     Ok(SheetShape {
         thickness,
         panels: (0..sheet.panels.len())
@@ -265,6 +310,6 @@ fn sheet_shape(
         windows: placed.collect(),
         plane,
         layers: LAYERS,
-        element_size: ELEMENT_SIZE * sheet.options.process.r_win,
+        element_size: ELEMENT_SIZE * smallest,
     })
 }

@@ -8,7 +8,7 @@ use crate::calculix::cards::{
     real, write_amplitude, write_element, write_increments, write_material, write_nodes, write_set,
 };
 use crate::sheet::sheet_nodes::SheetNodes;
-use crate::sheet::sheet_problem::{Held, SECONDS, SheetProblem};
+use crate::sheet::sheet_problem::{DrivenRim, Held, SECONDS, SheetProblem, interpolated};
 use hinge::STANDARD_GRAVITY;
 use mesher::{ElementKind, Part, SheetMesh};
 use std::fmt::{self, Write};
@@ -19,6 +19,9 @@ const TABLE_STIFFNESS: f64 = 0.2;
 const TABLE_DEPTH: f64 = 1e5;
 /// Height of a node at which the table lets go (mm). Exactly zero would let the first iteration take the open branch.
 const TABLE_KINK: f64 = 1e-5;
+/// Number of intervals of the motion of a rim: the chord shortens a panel by its size times the square of the rotation in an
+/// interval over 8.
+const RIM_INTERVALS: u32 = 720;
 /// Numerical damping of the dynamic steps, near the most that the method has.
 const DAMPING: f64 = -0.3;
 
@@ -54,9 +57,16 @@ impl SheetModel<'_> {
         self.mesh.nodes.len()
     }
 
+    /// The two nodes that drive a rim, counted from 0: their first two displacements are (cos phi - 1, sin phi) and
+    /// (u_x, u_y).
+    fn drivers(&self, rim: usize) -> [usize; 2] {
+        let first = self.control() + 1 + 2 * rim;
+        [first, first + 1]
+    }
+
     /// The first node below the table, counted from 0.
     fn ground(&self) -> usize {
-        self.control() + 1
+        self.drivers(self.problem.rims.len())[0]
     }
 
     fn write(&self, d: &mut String) -> fmt::Result {
@@ -67,9 +77,12 @@ impl SheetModel<'_> {
         for (i, nodes) in self.nodes.held.iter().enumerate() {
             write_set(d, "NSET", &format!("HELD{i}"), nodes)?;
         }
-        let fixed: Vec<usize> = self.nodes.held.concat();
-        write_set(d, "NSET", "HELD", &fixed)?;
-        write_set(d, "NSET", "PULLED", &self.nodes.pulled)?;
+        if !self.nodes.held.is_empty() {
+            write_set(d, "NSET", "HELD", &self.nodes.held.concat())?;
+        }
+        if !self.nodes.pulled.is_empty() {
+            write_set(d, "NSET", "PULLED", &self.nodes.pulled)?;
+        }
         write_material(d, &problem.material)?;
         // kg/m^3 to t/mm^3.
         let density = 1e-12 * problem.material.density_kg_m3;
@@ -78,6 +91,9 @@ impl SheetModel<'_> {
         self.write_table(d)?;
         self.write_stroke(d)?;
         self.write_history(d)?;
+        for rim in 0..self.problem.rims.len() {
+            self.write_rim(d, rim)?;
+        }
         writeln!(d, "*STEP,NLGEOM,INC={}", problem.step.max_increments)?;
         if problem.dynamic {
             writeln!(d, "*DYNAMIC,ALPHA={DAMPING}")?;
@@ -204,6 +220,46 @@ impl SheetModel<'_> {
         write_amplitude(d, "LOADS", in_time(history.loads))
     }
 
+    /// The nodes of a rim move with a rigid panel: see the deck of a window. A straight line between two of its states would
+    /// shorten the panel; the table is as fine as the rotation needs.
+    fn write_rim(&self, d: &mut String, rim: usize) -> fmt::Result {
+        let [turner, mover] = self.drivers(rim).map(|node| node + 1);
+        writeln!(d, "*NODE\n{turner},0.,0.,0.\n{mover},0.,0.,0.\n*EQUATION")?;
+        let DrivenRim { about, path, .. } = &self.problem.rims[rim];
+        for index in &self.nodes.rims[rim] {
+            let node = index + 1;
+            let [x, y] = [0, 1].map(|i| self.mesh.nodes[*index][i] - about[i]);
+            for (freedom, by_cos, by_sin) in [(1, -x, y), (2, -y, -x)] {
+                let (by_cos, by_sin) = (real(by_cos), real(by_sin));
+                writeln!(
+                    d,
+                    "4\n{node},{freedom},1.,{turner},1,{by_cos},{turner},2,{by_sin},{mover},{freedom},-1."
+                )?;
+            }
+        }
+        let column =
+            |i: usize| -> Vec<[f64; 2]> { path.iter().map(|state| [state[0], state[i]]).collect() };
+        let [u_x, u_y, phi] = [1, 2, 3].map(column);
+        let value = |i: usize, lambda: f64| {
+            let phi = interpolated(&phi, lambda);
+            match i {
+                // cos(phi) - 1 without cancellation.
+                0 => -2.0 * (0.5 * phi).sin().powi(2),
+                1 => phi.sin(),
+                2 => interpolated(&u_x, lambda),
+                _ => interpolated(&u_y, lambda),
+            }
+        };
+        for i in 0..4 {
+            let pairs = (0..=RIM_INTERVALS).map(|k| {
+                let lambda = f64::from(k) / f64::from(RIM_INTERVALS);
+                [self.duration() * lambda, value(i, lambda)]
+            });
+            write_amplitude(d, &format!("R{rim}Q{i}"), pairs)?;
+        }
+        Ok(())
+    }
+
     fn write_boundary(&self, d: &mut String) -> fmt::Result {
         for (i, Held { motion, .. }) in self.problem.held.iter().enumerate() {
             writeln!(d, "*BOUNDARY,AMPLITUDE=LOADS")?;
@@ -220,6 +276,19 @@ impl SheetModel<'_> {
             let mut flat = self.nodes.flat.iter();
             flat.try_for_each(|node| writeln!(d, "{},3,3,0.", node + 1))?;
         }
+        for (rim, nodes) in self.nodes.rims.iter().enumerate() {
+            let [turner, mover] = self.drivers(rim).map(|node| node + 1);
+            writeln!(d, "*BOUNDARY\n{turner},3,3,0.\n{mover},3,3,0.")?;
+            let mut nodes = nodes.iter();
+            nodes.try_for_each(|node| writeln!(d, "{},3,3,0.", node + 1))?;
+            let freedoms = [(turner, 1), (turner, 2), (mover, 1), (mover, 2)];
+            for (i, (node, freedom)) in freedoms.into_iter().enumerate() {
+                writeln!(
+                    d,
+                    "*BOUNDARY,AMPLITUDE=R{rim}Q{i}\n{node},{freedom},{freedom},1."
+                )?;
+            }
+        }
         if let Some(stroke) = self.problem.stroke {
             let control = self.control() + 1;
             writeln!(d, "*BOUNDARY\n{control},2,3,0.")?;
@@ -233,7 +302,7 @@ impl SheetModel<'_> {
     }
 
     fn write_loads(&self, d: &mut String) -> fmt::Result {
-        if self.problem.stroke.is_none() {
+        if self.problem.stroke.is_none() && !self.nodes.pulled.is_empty() {
             let total = self.problem.total_load();
             writeln!(d, "*CLOAD,AMPLITUDE=LOADS")?;
             for (node, freedom, share) in self.loaded() {
@@ -251,8 +320,12 @@ impl SheetModel<'_> {
 
     fn write_output(&self, d: &mut String) -> fmt::Result {
         writeln!(d, "*NODE PRINT,NSET=MIDDLE,FREQUENCY=1\nU")?;
-        writeln!(d, "*NODE PRINT,NSET=PULLED,FREQUENCY=1\nRF")?;
-        writeln!(d, "*NODE PRINT,NSET=HELD,FREQUENCY=1,TOTALS=ONLY\nRF")?;
+        if !self.nodes.pulled.is_empty() {
+            writeln!(d, "*NODE PRINT,NSET=PULLED,FREQUENCY=1\nRF")?;
+        }
+        if !self.nodes.held.is_empty() {
+            writeln!(d, "*NODE PRINT,NSET=HELD,FREQUENCY=1,TOTALS=ONLY\nRF")?;
+        }
         let hinges = (0..self.problem.shape.windows.len()).map(hinge_set);
         for set in hinges.chain(["PANELS".to_owned()]) {
             writeln!(d, "*EL PRINT,ELSET={set},TOTALS=ONLY,FREQUENCY=1\nELSE")?;

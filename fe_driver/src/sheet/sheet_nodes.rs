@@ -18,6 +18,8 @@ pub(crate) struct SheetNodes {
     pub held: Vec<Vec<usize>>,
     /// The node of each load, in the middle of the thickness.
     pub pulled: Vec<usize>,
+    /// The nodes of each driven rim, in the order of the problem.
+    pub rims: Vec<Vec<usize>>,
     /// Nodes that cannot leave the plane, besides those of supports.
     pub flat: Vec<usize>,
     /// Nodes of the lower face that a table supports.
@@ -36,7 +38,12 @@ impl SheetNodes {
             Ok(mesh.middle[node])
         });
         let pulled = pulled.collect::<Result<_, InvalidSheetProblem>>()?;
-        let fixed: BTreeSet<usize> = held.iter().flatten().copied().collect();
+        let rims = problem.rims.iter().map(|rim| {
+            let nodes = mesh.rim(&problem.shape, rim.window, rim.side);
+            mesh.through(&nodes)
+        });
+        let rims: Vec<Vec<usize>> = rims.collect();
+        let fixed: BTreeSet<usize> = held.iter().chain(&rims).flatten().copied().collect();
         let panels = || {
             let panels = 0..problem.shape.panels.len();
             panels.flat_map(|panel| mesh.plane_nodes(Part::Panel(panel)))
@@ -45,6 +52,7 @@ impl SheetNodes {
         let mut found = Self {
             held,
             pulled,
+            rims,
             flat: Vec::new(),
             on_table: Vec::new(),
         };

@@ -12,6 +12,7 @@ pub(crate) struct SheetLayout {
     /// The loaded nodes.
     pulled: Vec<usize>,
     hinges: usize,
+    is_held: bool,
     /// Gauss points of each element of a window; 0 for those of panels.
     points: Vec<usize>,
     is_dynamic: bool,
@@ -44,6 +45,7 @@ impl SheetLayout {
             middle: mesh.middle.clone(),
             pulled: model.nodes.pulled.clone(),
             hinges: model.problem.shape.windows.len(),
+            is_held: !model.nodes.held.is_empty(),
             points: points
                 .map(|(element, nodes)| match mesh.part(element) {
                     Part::Window(_) => ElementKind::of_element(nodes).gauss_points(),
@@ -136,7 +138,7 @@ impl Printed for SheetFrame {
         self.displacements.len() == layout.middle.len()
             && self.pulls.len() == layout.pulled.len()
             && self.pulls.iter().all(Option::is_some)
-            && self.support_force.is_some()
+            && self.support_force.is_some() == layout.is_held
             && self.energies.len() == layout.hinges + 1
             && self.energies.iter().all(Option::is_some)
             && self.kinetic_energy.is_some() == layout.is_dynamic

@@ -7,7 +7,7 @@ use crate::sheet::invalid_sheet_problem::InvalidSheetProblem;
 use crate::solve::step_control::StepControl;
 use crate::solve::tool_versions::ToolVersions;
 use hinge::SheetMaterial;
-use mesher::{SheetShape, Tier};
+use mesher::{SheetShape, Side, Tier};
 use serde::{Deserialize, Serialize};
 
 /// Version of the geometry, the input deck and the evaluation of sheets. It is increased when a change of the code changes
@@ -60,6 +60,19 @@ pub struct Pulled {
     pub force: [f64; 2],
 }
 
+/// The arc of a window on a panel that is not a part of the sheet, and the motion of that panel in the plane.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DrivenRim {
+    /// Index of the window.
+    pub window: usize,
+    /// The panel of the window that is missing.
+    pub side: Side,
+    /// The point of the panel that its motion refers to, in the flat sheet (mm).
+    pub about: [f64; 2],
+    /// (lambda, u_x, u_y, phi), with lambda increasing from 0 to 1 and straight lines between (mm, rad).
+    pub path: Vec<[f64; 4]>,
+}
+
 /// A sheet problem, without what solves it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SheetProblem {
@@ -75,6 +88,9 @@ pub struct SheetProblem {
     pub held: Vec<Held>,
     /// Loads.
     pub pulled: Vec<Pulled>,
+    /// Where a part of a sheet is joined to the rest; none in a whole sheet.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rims: Vec<DrivenRim>,
     /// The stroke at the end of the path (mm) if it is prescribed: the work of the full loads over the sum of their
     /// magnitudes. Without it the loads grow.
     pub stroke: Option<f64>,
@@ -140,14 +156,17 @@ impl SheetProblem {
 
     /// An error if the problem has no solution.
     pub fn validate(&self) -> Result<(), InvalidSheetProblem> {
-        if self.total_load() == 0.0 {
+        if self.total_load() == 0.0 && self.rims.is_empty() {
             return Err(InvalidSheetProblem::NoLoad);
         }
-        if self.held.is_empty() {
+        if self.held.is_empty() && self.rims.is_empty() {
             return Err(InvalidSheetProblem::NothingHeld);
         }
         let clamped = |held: &Held| !matches!(held.place, Place::Point(_));
-        if self.keeping == Keeping::Nothing && !self.held.iter().any(clamped) {
+        if self.keeping == Keeping::Nothing
+            && self.rims.is_empty()
+            && !self.held.iter().any(clamped)
+        {
             return Err(InvalidSheetProblem::Falls);
         }
         Ok(())
@@ -171,7 +190,7 @@ impl SheetProblem {
             },
             // A panel that snaps on a table has no static path beyond: shorter increments do not find one.
             least: match keeping {
-                Keeping::Table => 1e-4,
+                Keeping::Table => 1e-5,
                 Keeping::HeldFlat | Keeping::Nothing => 1e-6,
             },
             greatest: 0.04,
@@ -179,9 +198,7 @@ impl SheetProblem {
             ..StepControl::default()
         }
     }
-}
 
-impl SheetProblem {
     /// The increments of a dynamic path: a snap takes milliseconds of its seconds.
     pub(crate) fn dynamic_step() -> StepControl {
         StepControl {
@@ -197,16 +214,37 @@ impl SheetProblem {
 impl History {
     /// The fraction of the loads at `lambda`.
     pub fn load_fraction(&self, lambda: f64) -> f64 {
-        let after = self.loads.partition_point(|[at, _]| *at < lambda);
-        let (from, to) = (
-            self.loads[after.saturating_sub(1)],
-            self.loads[after.min(self.loads.len() - 1)],
-        );
-        if to[0] > from[0] {
-            from[1] + (lambda - from[0]) / (to[0] - from[0]) * (to[1] - from[1])
+        interpolated(&self.loads, lambda)
+    }
+
+    /// The lambda at which a fraction of the loads is on, or of the weight if that comes on before them.
+    pub fn lambda_of(&self, weight: f64, loads: f64) -> f64 {
+        let table = if weight < 1.0 {
+            &self.weight
         } else {
-            to[1]
-        }
+            &self.loads
+        };
+        let inverse: Vec<[f64; 2]> = (table.iter())
+            .map(|[lambda, fraction]| [*fraction, *lambda])
+            .collect();
+        // Of the lambdas at which nothing is on, the last.
+        let from = inverse.iter().rposition(|[fraction, _]| *fraction == 0.0);
+        let wanted = if weight < 1.0 { weight } else { loads };
+        interpolated(&inverse[from.unwrap_or(0)..], wanted)
+    }
+}
+
+/// The value at `x` of a table of (x, value), with straight lines between.
+pub(crate) fn interpolated(table: &[[f64; 2]], x: f64) -> f64 {
+    let after = table.partition_point(|[at, _]| *at < x);
+    let (from, to) = (
+        table[after.saturating_sub(1)],
+        table[after.min(table.len() - 1)],
+    );
+    if to[0] > from[0] {
+        from[1] + (x - from[0]) / (to[0] - from[0]) * (to[1] - from[1])
+    } else {
+        to[1]
     }
 }
 
@@ -234,5 +272,8 @@ mod tests {
         let at = |lambda| history.load_fraction(lambda);
         assert_eq!([at(0.0), at(0.05), at(0.1), at(1.0)], [0.0, 0.0, 0.0, 1.0]);
         assert!((at(0.55) - 0.5).abs() < 1e-15);
+        let of = |weight, loads| history.lambda_of(weight, loads);
+        assert!((of(0.5, 0.0) - 0.05).abs() < 1e-15 && (of(1.0, 0.5) - 0.55).abs() < 1e-15);
+        assert_eq!([of(1.0, 0.0), of(1.0, 1.0)], [0.1, 1.0]);
     }
 }

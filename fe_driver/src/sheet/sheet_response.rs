@@ -49,7 +49,11 @@ impl SheetModel<'_> {
             lambda,
             fraction: problem.history().load_fraction(lambda),
             stroke,
-            load_factor: load / square / total,
+            load_factor: if total > 0.0 {
+                load / square / total
+            } else {
+                0.0
+            },
             panels: panels
                 .iter()
                 .map(|nodes| self.panel(frame, nodes))

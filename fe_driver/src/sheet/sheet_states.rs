@@ -24,9 +24,9 @@ pub struct SheetState {
     pub lambda: f64,
     /// Fraction of the loads or of the stroke that is on.
     pub fraction: f64,
-    /// Stroke of the loads (mm).
+    /// Stroke of the loads (mm); 0 without loads.
     pub stroke: f64,
-    /// Load factor: the measured loads over the full ones.
+    /// Load factor: the measured loads over the full ones; 0 without loads.
     pub load_factor: f64,
     /// The motion of every panel.
     pub panels: Vec<PanelState>,

@@ -36,8 +36,6 @@ pub enum Concern {
     WindowsOverlap,
     /// Panels are too small for the windows of their hinges.
     WindowsLeavePanels,
-    /// Gamma < 1 (21): on a surface, the weight of panels does not hold them down.
-    GammaBelowOne,
     /// w_lig or alpha is outside the training domain of the hinge law.
     LigamentsOutsideDomain,
     /// The path leaves the training domain of the hinge law.
@@ -62,7 +60,7 @@ pub enum Concern {
     TargetMissed,
     /// What the model leaves out of a sheet that is held as the scene says.
     NotModelled,
-    /// Nothing keeps the panels of a thin sheet in the plane.
+    /// Whether the panels of a sheet that is not held flat stay in the plane, and what follows if not.
     LeavesPlane,
     /// The weight of the sheet acts in its plane, is more than a twentieth of the load and not modelled.
     Weight,
@@ -87,7 +85,6 @@ impl Concern {
             | Self::TargetMissed
             | Self::NotModelled => Severity::Note,
             Self::WindowsOverlap
-            | Self::GammaBelowOne
             | Self::LigamentsOutsideDomain
             | Self::StatesOutsideDomain
             | Self::Path

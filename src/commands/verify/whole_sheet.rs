@@ -26,6 +26,15 @@ pub(super) fn support(text: &str) -> Result<Posture, String> {
         .map_err(|_| "choose held-flat, lying, hanging or free".to_owned())
 }
 
+/// Reads the value of `--patch`.
+pub(super) fn panel(text: &str) -> Result<[usize; 2], String> {
+    let numbers: Result<Vec<usize>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+    numbers
+        .ok()
+        .and_then(|numbers| numbers.try_into().ok())
+        .ok_or_else(|| "write a column and a row, counted from 0, such as 3,2".to_owned())
+}
+
 impl VerifyCommand {
     /// Solves the whole sheet, and writes what it found.
     pub(super) fn whole_sheet(
@@ -36,7 +45,7 @@ impl VerifyCommand {
     ) -> Result<()> {
         let tier = self.tier.unwrap_or(Tier::Small);
         let branches = usize::from(self.branches);
-        let task = SheetTask::new(scene, design, self.support, tier, branches);
+        let task = SheetTask::new(scene, design, self.support, tier, branches, self.patch);
         let task = task.map_err(task_error)?;
         let calculix = CalculiX::find()?;
         let solves = task.solves(&calculix.versions()).map_err(task_error)?;

@@ -1,0 +1,86 @@
+//! How far the corners of a sheet are from where the model has them because its panels leave the plane.
+//!
+//! The criterion is from finite elements of whole sheets of 2 x 2 panels (docs/results/flatness), and was checked against larger
+//! ones. Panels held flat do not leave the plane. If nothing holds them, ligaments that are no wider than the sheet is thick
+//! bend in the plane, and the panels stay there; wider ones buckle and tilt them. On a table the weight presses the panels
+//! down about the ligaments, over the elasto-gravity length.
+
+use crate::analysis::localisation::elasto_gravity_length;
+use crate::scene::Posture;
+use hinge::SheetMaterial;
+
+/// (w_lig / t of the widest ligament, error of the corners over the longer side of the flat sheet), root mean square, at openings
+/// of 27 deg with nothing that holds the panels. At 64 deg it is two to three times as much.
+const NOTHING: [[f64; 2]; 4] = [[0.9, 0.001], [1.2, 0.0027], [1.8, 0.013], [3.6, 0.157]];
+
+/// Error on a table, for each elasto-gravity length in the radius of a window.
+const TABLE: f64 = 0.01;
+
+/// The expected error of the panel corners (root mean square) over the longer side of the flat sheet, for hinges that open by about 27 deg. Beyond
+/// the widest ligaments that were solved, a lower bound.
+pub fn expected_departure(
+    posture: Posture,
+    material: &SheetMaterial,
+    widest_ligament: f64,
+    r_win: f64,
+) -> f64 {
+    let free = between(widest_ligament / material.thickness);
+    match posture {
+        Posture::HeldFlat => 0.0,
+        Posture::Lying => free.min(TABLE * elasto_gravity_length(material) / r_win),
+        Posture::Hanging | Posture::Free => free,
+    }
+}
+
+/// The error at a ratio, with straight lines between the logarithms.
+fn between(ratio: f64) -> f64 {
+    let [first, .., last] = NOTHING;
+    if ratio <= first[0] {
+        return first[1];
+    }
+    if ratio >= last[0] {
+        return last[1];
+    }
+    let after = NOTHING.partition_point(|[at, _]| *at < ratio);
+    let ([x0, y0], [x1, y1]) = (NOTHING[after - 1], NOTHING[after]);
+    let share = (ratio / x0).ln() / (x1 / x0).ln();
+    y0 * (share * (y1 / y0).ln()).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn film(thickness: f64) -> SheetMaterial {
+        SheetMaterial {
+            name: "film".into(),
+            thickness,
+            young: 3000.0,
+            poisson: 0.4,
+            density_kg_m3: 1390.0,
+            fracture_strain: 1.784,
+            plastic: vec![[44.0, 0.0]],
+        }
+    }
+
+    #[test]
+    fn plates_with_narrow_ligaments_stay_flat_and_films_do_not() {
+        let of = |posture, thickness| expected_departure(posture, &film(thickness), 3.6, 20.0);
+        for [ratio, error] in NOTHING {
+            let found = of(Posture::Free, 3.6 / ratio);
+            assert!((found / error - 1.0).abs() < 1e-12, "{ratio}");
+        }
+        assert_eq!(of(Posture::HeldFlat, 0.1), 0.0);
+        assert_eq!(of(Posture::Hanging, 40.0), 0.001);
+        assert_eq!(of(Posture::Free, 0.01), 0.157);
+        let mut before = 0.0;
+        for ratio in 5..40 {
+            let found = of(Posture::Free, 36.0 / f64::from(ratio));
+            assert!(found >= before);
+            before = found;
+        }
+        // On a table, a film by its weight, and a plate because it stays flat by itself.
+        assert!((of(Posture::Lying, 0.1) - 0.03).abs() < 2e-3);
+        assert_eq!(of(Posture::Lying, 4.0), 0.001);
+    }
+}
