@@ -48,7 +48,7 @@ pub enum VerificationError {
     )]
     NoTier { trained_on: String },
     #[error(
-        "the scene has no [posture]: say how the sheet is held out of its plane, such as kind = \"held-flat\""
+        "the scene has no [posture]: say how the sheet is held out of its plane, such as kind = \"held-flat\", or pass --support"
     )]
     NoPosture,
     #[error(

@@ -2,7 +2,7 @@
 
 use crate::verification_error::VerificationError;
 use design::pattern::grid::{Endpoint, Grid};
-use design::scene::{Attachment, Posture, Scene, SupportKind};
+use design::scene::{Attachment, Posture, PostureConfig, Scene, SupportKind};
 use design::sheet::cut_sheet::{Hinge, PanelPoint, Sheet};
 use design::sheet::hinge_window::Window;
 use fe_driver::{Held, Keeping, Place, Pulled, SheetProblem};
@@ -67,14 +67,22 @@ impl Branch {
 /// The scene with another support of its panels, as its model must know it.
 pub fn with_support(scene: &Scene, support: Option<Posture>) -> Result<Scene, VerificationError> {
     let mut scene = scene.clone();
-    let posture = (scene.config.posture.as_mut()).ok_or(VerificationError::NoPosture)?;
-    match support {
+    match (support, &mut scene.config.posture) {
+        (None, None) => return Err(VerificationError::NoPosture),
         // What holds it flat does not change its weight.
-        None | Some(Posture::HeldFlat) => {}
-        Some(Posture::Hanging) if posture.down.is_none() => {
+        (None | Some(Posture::HeldFlat), Some(_)) => {}
+        (Some(Posture::Hanging), posture) if posture.and_then(|posture| posture.down).is_none() => {
             return Err(VerificationError::NoDown);
         }
-        Some(kind) => posture.kind = kind,
+        (Some(kind), Some(posture)) => posture.kind = kind,
+        (Some(kind), posture @ None) => {
+            *posture = Some(PostureConfig {
+                kind,
+                down: None,
+                weight: None,
+                friction: None,
+            });
+        }
     }
     Ok(scene)
 }

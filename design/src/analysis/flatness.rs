@@ -1,7 +1,7 @@
 //! How far the corners of a sheet are from where the model has them because its panels leave the plane.
 //!
-//! The criterion is from finite elements of whole sheets of 2 x 2 panels (docs/results/flatness), and was checked against larger
-//! ones. Panels held flat do not leave the plane. If nothing holds them, ligaments that are no wider than the sheet is thick
+//! The criterion is from finite elements of whole sheets of 2 x 2 panels (docs/results/flatness). Panels held flat do not leave
+//! the plane. If nothing holds them, ligaments that are no wider than the sheet is thick
 //! bend in the plane, and the panels stay there; wider ones buckle and tilt them. On a table the weight presses the panels
 //! down about the ligaments, over the elasto-gravity length.
 
@@ -15,6 +15,8 @@ const NOTHING: [[f64; 2]; 4] = [[0.9, 0.001], [1.2, 0.0027], [1.8, 0.013], [3.6,
 
 /// Error on a table, for each elasto-gravity length in the radius of a window.
 const TABLE: f64 = 0.01;
+/// The ratio of these lengths up to which the weight holds the panels down; a stiffer sheet counts as one that nothing holds.
+const PRESSED: f64 = 3.2;
 
 /// The expected error of the panel corners (root mean square) over the longer side of the flat sheet, for hinges that open by about 27 deg. Beyond
 /// the widest ligaments that were solved, a lower bound.
@@ -27,7 +29,14 @@ pub fn expected_departure(
     let free = between(widest_ligament / material.thickness);
     match posture {
         Posture::HeldFlat => 0.0,
-        Posture::Lying => free.min(TABLE * elasto_gravity_length(material) / r_win),
+        Posture::Lying => {
+            let ratio = elasto_gravity_length(material) / r_win;
+            if ratio <= PRESSED {
+                free.min(TABLE * ratio)
+            } else {
+                free
+            }
+        }
         Posture::Hanging | Posture::Free => free,
     }
 }
@@ -82,5 +91,7 @@ mod tests {
         // On a table, a film by its weight, and a plate because it stays flat by itself.
         assert!((of(Posture::Lying, 0.1) - 0.03).abs() < 2e-3);
         assert_eq!(of(Posture::Lying, 4.0), 0.001);
+        // Too stiff for its weight, and too thin for its ligaments.
+        assert_eq!(of(Posture::Lying, 0.5), 0.157);
     }
 }
