@@ -27,7 +27,7 @@ impl fmt::Display for SheetCheck {
             "# The whole sheet, by finite elements\n\n\
              The {}, {}: {panels} panels, {hinges} hinges, windows of tier {}, ligaments {least:.2} to {most:.2} times as wide as the \
              sheet is thick. Every window and every panel is meshed, and nothing is rigid. By law: the equilibrium with the \
-             scene's hinge law, whose panels are rigid and stay in the plane.\n",
+             scene's hinge law, whose panels are rigid and stay in the plane; between its load steps it is interpolated.\n",
             self.design,
             self.kept(),
             self.tier,

@@ -98,7 +98,7 @@ pub struct SheetProblem {
     pub down: Option<[f64; 3]>,
     /// The increments of the solve.
     pub step: StepControl,
-    /// Whether inertia carries the sheet over a snap that has no static path. The path then takes [`SECONDS`].
+    /// Whether inertia carries the sheet over a snap that has no static path; the path then takes ten seconds.
     pub dynamic: bool,
 }
 
@@ -114,7 +114,7 @@ pub struct SheetSolve {
 }
 
 /// Duration of a dynamic path (s): long against the periods of a sheet of paper size, so that it moves nearly at rest.
-pub const SECONDS: f64 = 10.0;
+pub(crate) const SECONDS: f64 = 10.0;
 
 /// When the weight comes on, and the loads after it: (lambda, fraction) with straight lines between.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,6 +2,7 @@
 
 use crate::display::Style;
 use crate::drawing::page::{ColourScale, INK, Page};
+use design::geometry::polygon::bounds;
 
 /// From where a surface is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,10 +38,17 @@ impl View {
     }
 }
 
+/// Least height of a picture over its width.
+const LEAST_HEIGHT: f64 = 0.25;
+
 /// The picture of a surface. What is nearer is drawn over what is further away.
 pub fn surface(surface: &Surface, view: View, title: &str, subtitle: &str) -> String {
     let seen: Vec<_> = surface.points.iter().map(|point| view.of(*point)).collect();
-    let corners = seen.iter().map(|(at, _)| *at);
+    let corners: Vec<[f64; 2]> = seen.iter().map(|(at, _)| *at).collect();
+    let [low, high] = bounds(corners.iter().copied());
+    // A sheet seen from its edge is flat: the colour scale needs a height.
+    let room = (LEAST_HEIGHT * (high[0] - low[0]) - (high[1] - low[1])).max(0.0) / 2.0;
+    let corners = [[low[0], low[1] - room], [high[0], high[1] + room]];
     let mut page = Page::around(corners, title, subtitle, true);
     let scale = ColourScale::covering(surface.values.iter().copied());
     let depth = |face: &Vec<usize>| {
