@@ -6,6 +6,7 @@ pub(crate) mod ccx;
 pub(crate) mod dat;
 pub(crate) mod deck;
 pub(crate) mod deck_run;
+pub(crate) mod driven_arc;
 pub(crate) mod fields;
 pub(crate) mod model;
 pub(crate) mod panel_motion;

@@ -73,9 +73,7 @@ impl WindowShape<'_> {
         stop: &AtomicBool,
     ) -> Result<WindowMesh, MeshError> {
         self.design.validate()?;
-        if !(self.thickness.is_finite() && self.thickness > 0.0) {
-            return Err(MeshError::Thickness(self.thickness));
-        }
+        check_thickness(self.thickness)?;
         let script = geo::script(&Window(self.design), &self.recipe.plane);
         generate(&script, folder, WINDOW, gmsh, limit, stop)?;
         self.read(folder)
@@ -110,14 +108,19 @@ impl SheetShape {
         for window in &self.windows {
             window.design.validate()?;
         }
-        if !(self.thickness.is_finite() && self.thickness > 0.0) {
-            return Err(MeshError::Thickness(self.thickness));
-        }
+        check_thickness(self.thickness)?;
         let script = geo::sheet_script(self)?;
         generate(&script, folder, SHEET, gmsh, limit, stop)?;
         let kinds = [ElementKind::Brick, ElementKind::Wedge];
         let plane = read_plane(folder, SHEET, &kinds)?;
         SheetMesh::new(self, plane).map_err(MeshError::SheetDefect)
+    }
+}
+
+fn check_thickness(thickness: f64) -> Result<(), MeshError> {
+    match thickness {
+        t if t.is_finite() && t > 0.0 => Ok(()),
+        t => Err(MeshError::Thickness(t)),
     }
 }
 

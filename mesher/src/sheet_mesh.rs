@@ -6,8 +6,7 @@ use crate::quality::{MAX_AREA_ERROR, MeshDefect, check_elements};
 use crate::sheet_shape::{PlacedWindow, SheetShape};
 use crate::tier::Imperfection;
 use crate::vectors::{cross, dot, minus};
-use crate::window::{Side, Window, polar_angle};
-use std::f64::consts::PI;
+use crate::window::{Side, Window};
 
 /// Largest distance of a node from the arc of its window, over r_win.
 const ON_RIM: f64 = 1e-6;
@@ -109,11 +108,7 @@ impl SheetMesh {
             let local = frame.local(self.plane.nodes[*node]);
             let [x, y] = local;
             let across = dot(minus(local, tip), of_window.normal());
-            let on_side = match side {
-                Side::A => across < 0.0,
-                Side::B => across > 0.0,
-            };
-            on_side && (x.hypot(y) / design.r_win - 1.0).abs() < ON_RIM
+            across * side.sign() > 0.0 && (x.hypot(y) / design.r_win - 1.0).abs() < ON_RIM
         };
         let mut nodes = self.plane_nodes(Part::Window(window));
         nodes.retain(on_rim);
@@ -153,10 +148,15 @@ impl SheetShape {
             let of_window = Window(&window.design).area();
             // What the finished panels have in the half-disc is not theirs: the two sectors from the crossing of their
             // edges to the arcs.
-            let in_panels = (0..2).filter_map(|side| {
-                let (panel, corner) = window.panels[side]?;
-                Some(self.sector(window, side, panel, corner))
-            });
+            let in_panels =
+                std::iter::zip(Side::BOTH, window.panels).filter_map(|(side, place)| {
+                    let (panel, corner) = place?;
+                    Some(Self::sector(
+                        window,
+                        side,
+                        self.panels[panel].corners[corner],
+                    ))
+                });
             of_window - in_panels.sum::<f64>()
         });
         let panels = self.panels.iter().map(|panel| {
@@ -168,18 +168,12 @@ impl SheetShape {
     }
 
     /// Area (mm^2) between the corner of a panel and the arc of its window.
-    fn sector(&self, window: &PlacedWindow, side: usize, panel: usize, corner: usize) -> f64 {
-        let radius = window.design.r_win;
-        let shape = Window(&window.design);
-        let (kerf, free) = match side {
-            0 => (shape.kerf_at_radius(Side::A, radius), [-radius, 0.0]),
-            _ => (shape.kerf_at_radius(Side::B, radius), [radius, 0.0]),
-        };
-        let apex = window.frame.local(self.panels[panel].corners[corner]);
-        let angle = match side {
-            0 => polar_angle(kerf) + PI,
-            _ => -polar_angle(kerf),
-        };
+    fn sector(placed: &PlacedWindow, side: Side, corner: [f64; 2]) -> f64 {
+        let (window, radius) = (Window(&placed.design), placed.design.r_win);
+        let kerf = window.kerf_at_radius(side, radius);
+        let free = [radius * side.sign(), 0.0];
+        let apex = placed.frame.local(corner);
+        let angle = window.arc_angle(side);
         let triangle = 0.5 * cross(minus(kerf, apex), minus(free, apex)).abs();
         let segment = 0.5 * radius * radius * (angle - angle.sin());
         triangle + segment

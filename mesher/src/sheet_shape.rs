@@ -29,7 +29,7 @@ pub struct SheetShape {
 pub struct PanelShape {
     /// Where its finished edges meet: SW, SE, NE, NW (mm).
     pub corners: [[f64; 2]; 4],
-    /// Points at which the mesh has nodes (mm). One that is nearer to an edge than a kerf lies on the edge.
+    /// Points at which the mesh has nodes (mm), inside of the panel or on its finished edges.
     pub marks: Vec<[f64; 2]>,
 }
 
@@ -44,6 +44,15 @@ pub struct PlacedWindow {
     pub panels: [Option<(usize, usize)>; 2],
     /// Height of the bump that initiates buckling, over the thickness; its sign is the side to which it points.
     pub bump: f64,
+}
+
+impl PanelShape {
+    /// Adds a point at which the mesh has a node, once (mm).
+    pub fn mark(&mut self, point: [f64; 2]) {
+        if !self.marks.contains(&point) {
+            self.marks.push(point);
+        }
+    }
 }
 
 /// Why a sheet has no mesh.

@@ -20,8 +20,11 @@ pub enum Side {
 }
 
 impl Side {
-    /// Sign of the kerf face's offset along [`Window::normal`], which points to B.
-    fn sign(self) -> f64 {
+    /// Both, A first.
+    pub const BOTH: [Self; 2] = [Self::A, Self::B];
+
+    /// Sign of x on the side of the panel, and of the kerf face's offset along [`Window::normal`], which points to B.
+    pub(crate) fn sign(self) -> f64 {
         match self {
             Side::A => -1.0,
             Side::B => 1.0,
@@ -67,6 +70,15 @@ impl Window<'_> {
         (0.5 * self.0.kerf / self.0.fillet_radius()).asin()
     }
 
+    /// The angle at the origin of the arc of radius r_win on a panel (rad).
+    pub(crate) fn arc_angle(&self, side: Side) -> f64 {
+        let angle = polar_angle(self.kerf_at_radius(side, self.0.r_win));
+        match side {
+            Side::A => angle + PI,
+            Side::B => -angle,
+        }
+    }
+
     /// Exact area of the window (mm^2), by Green's theorem over its arcs and segments.
     pub fn area(&self) -> f64 {
         let (rho, r) = (self.0.fillet_radius(), self.0.r_win);
@@ -76,11 +88,11 @@ impl Window<'_> {
             self.kerf_at_radius(Side::B, r),
         );
         let hole_angle = 2.0 * (PI - self.mouth_half_angle());
-        sector(r, polar_angle(arc_a) + PI)
+        sector(r, self.arc_angle(Side::A))
             + segment(arc_a, hole_a)
             + arc(self.0.tip(), rho, hole_a, hole_b, -hole_angle)
             + segment(hole_b, arc_b)
-            + sector(r, -polar_angle(arc_b))
+            + sector(r, self.arc_angle(Side::B))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::commands::input_file;
 use crate::commands::window_args::WindowArgs;
-use crate::ui::progress::Progress;
+use crate::ui::progress::watched;
 use crate::ui::table::table;
 use crate::ui::{interrupt, run_folder};
 use anyhow::{Result, bail};
@@ -14,8 +14,7 @@ use fe_driver::{
 use hinge::{HingeDeformation, HingeDesign, HingeSample, SheetMaterial};
 use mesher::Tier;
 use serde_json::json;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// Solve one hinge window by finite elements and print its ray
@@ -90,7 +89,11 @@ impl SolveCommand {
         warn_of_contact(&design, &path);
         let problem = WindowProblem::new(HingePath { design, path }, &material, self.tier);
         let solve = WindowSolve::new(problem, &solver.versions());
-        let solution = watched(&self.out, || solver.attempt(&solve, &self.out, limit, stop))?;
+        let solution = watched(
+            1,
+            || reached(&self.out),
+            || solver.attempt(&solve, &self.out, limit, stop),
+        )?;
         if self.vtu
             && let Some(grid) = solver.fields(&solve, &self.out)?
         {
@@ -138,28 +141,6 @@ fn warn_of_contact(design: &HingeDesign, path: &DeformationPath) {
             -minimum
         );
     }
-}
-
-/// Runs `solve` in `folder` and shows its progress.
-fn watched<T>(folder: &Path, solve: impl FnOnce() -> T) -> T {
-    /// Number of parts of the path on the progress bar.
-    const PARTS: f64 = 1000.0;
-    let done = AtomicBool::new(false);
-    std::thread::scope(|scope| {
-        let show = || {
-            let bar = Progress::new(PARTS as usize, "1000 lambda");
-            while !done.load(Ordering::Relaxed) {
-                bar.show((PARTS * reached(folder)) as usize, None, "");
-                std::thread::sleep(Duration::from_millis(100));
-            }
-            bar.finish();
-        };
-        // Without a further thread there is no progress, but a result.
-        let _ = std::thread::Builder::new().spawn_scoped(scope, show);
-        let result = solve();
-        done.store(true, Ordering::Relaxed);
-        result
-    })
 }
 
 /// The rows of a ray, thinned to about twenty.

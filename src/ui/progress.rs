@@ -88,6 +88,28 @@ impl Progress {
     }
 }
 
+/// Runs a task and shows how far it has come: `reached` is asked in between, from 0 to `paths` solved paths.
+pub fn watched<T>(paths: usize, reached: impl Fn() -> f64 + Sync, task: impl FnOnce() -> T) -> T {
+    /// Number of parts of a path on the progress bar.
+    const PARTS: usize = 1000;
+    let done = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        let show = || {
+            let bar = Progress::new(PARTS * paths, "1000 lambda");
+            while !done.load(Ordering::Relaxed) {
+                bar.show((PARTS as f64 * reached()) as usize, None, "");
+                std::thread::sleep(Duration::from_millis(100));
+            }
+            bar.finish();
+        };
+        // Without a further thread there is no progress, but a result.
+        let _ = std::thread::Builder::new().spawn_scoped(scope, show);
+        let result = task();
+        done.store(true, Ordering::Relaxed);
+        result
+    })
+}
+
 /// A time in seconds as readable text.
 pub fn duration(seconds: f64) -> String {
     HumanDuration(Duration::from_secs_f64(seconds)).to_string()

@@ -12,7 +12,7 @@ use kirigami::ui::progress::Progress;
 use kirigami::ui::run_folder;
 use mesher::Tier;
 use std::path::{Path, PathBuf};
-use support::statistics::root_mean_square;
+use support::statistics::rms_and_maximum;
 use support::table::{Cell, Table};
 use verification::{Branch, sheet_problem};
 
@@ -242,7 +242,6 @@ impl Row {
             })
         });
         let longest = edge.fold(0.0, f64::max);
-        let size = case.side * case.panels.into_iter().max().unwrap_or(0) as f64;
         let mut row = Self {
             case,
             weight_length: elasto_gravity_length(material) / scene.config.process.r_win,
@@ -279,14 +278,10 @@ impl Row {
         });
         row.reached = last.fraction;
         row.opening_deg = (openings.sum::<f64>() / sheet.hinges.len() as f64).to_degrees();
-        row.tilt_deg = (last.panels.iter()).fold(0.0, |most, panel| panel.tilt().max(most));
-        row.tilt_deg = row.tilt_deg.to_degrees();
-        row.lift = (last.panels.iter()).fold(0.0, |most, panel| panel.z[1].max(most));
-        row.corners = [
-            root_mean_square(errors.iter().copied()),
-            errors.iter().copied().fold(0.0, f64::max),
-        ];
-        row.relative = row.corners[0] / size;
+        row.tilt_deg = last.tilt().to_degrees();
+        row.lift = last.z()[1].max(0.0);
+        row.corners = rms_and_maximum(errors);
+        row.relative = row.corners[0] / sheet.outline.size();
         row.load = last.load_factor / beside.load_factor;
         row.dynamic = last.kinetic_energy != 0.0;
         Ok(row)

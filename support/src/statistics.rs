@@ -10,6 +10,15 @@ pub fn median(mut values: Vec<f64>) -> f64 {
     0.5 * (values[below] + values[above])
 }
 
+/// Root mean square of the values and their largest magnitude; zero if there are none.
+pub fn rms_and_maximum(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let mut maximum = 0.0_f64;
+    let rms = root_mean_square(values.into_iter().inspect(|value| {
+        maximum = maximum.max(value.abs());
+    }));
+    [rms, maximum]
+}
+
 /// Root mean square of the values; zero if there are none.
 pub fn root_mean_square(values: impl IntoIterator<Item = f64>) -> f64 {
     let (count, sum) = values

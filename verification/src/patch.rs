@@ -72,7 +72,7 @@ impl SheetPart {
         part.shape.windows.clear();
         for (number, hinge) in self.hinges.iter().enumerate() {
             let window = whole.shape.windows[*hinge];
-            let sides = std::iter::zip(window.panels, [Side::A, Side::B]);
+            let sides = std::iter::zip(window.panels, Side::BOTH);
             for (joined, side) in sides {
                 let outside = joined.filter(|(panel, _)| place(*panel).is_none());
                 if let Some((panel, _)) = outside {

@@ -13,7 +13,7 @@ use fe_driver::{SheetSolve, SheetState, SheetSurface, Solved, ToolVersions};
 use mesher::Tier;
 use output::report::Severity;
 use serde::Serialize;
-use support::statistics::root_mean_square;
+use support::statistics::rms_and_maximum;
 
 /// Tilt of a panel (deg) above which a sheet does not stay flat.
 const TILTED: f64 = 5.0;
@@ -218,8 +218,8 @@ impl SheetTask {
             support: self.support,
             tier: self.tier,
             counts: [self.part.panels.len(), self.part.hinges.len()],
-            is_patch: self.part.panels.len() < sheet.panels.len(),
-            size: self.size(),
+            is_patch: self.is_patch(),
+            size: sheet.outline.size(),
             radius: [
                 (solved
                     .iter()
@@ -243,27 +243,19 @@ impl SheetTask {
         check
     }
 
-    /// Longer side of the flat sheet (mm).
-    fn size(&self) -> f64 {
-        let corners = self.deployment.sheet.outline.corners;
-        let side = |i: usize| {
-            let along = corners.iter().map(|corner| corner[i]);
-            along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
-        };
-        f64::max(side(0), side(1))
+    /// Whether only a part of the sheet is solved.
+    fn is_patch(&self) -> bool {
+        self.part.panels.len() < self.deployment.sheet.panels.len()
     }
 
     fn branch(&self, branch: Branch, solved: &Solved<SheetSolve>) -> BranchCheck {
         let samples = &solved.samples;
         // Before the loads, while the weight comes on, the law has no state beside.
         let loaded = samples.states.iter().filter(|state| state.fraction > 0.0);
-        let path = loaded.map(|state| self.state(state));
+        let full_load = solved.solve.problem.total_load();
+        let path = loaded.map(|state| self.state(state, full_load));
         let last = samples.states.last();
         let (hinges, panels) = last.map_or_else(Default::default, |last| self.end(last));
-        let of_hinges = last.map_or(0.0, |last| {
-            last.hinges.iter().map(|hinge| hinge.energy).sum::<f64>()
-        });
-        let of_panels = last.map_or(0.0, |last| last.panel_energy);
         BranchCheck {
             bumps: branch.name(),
             stopped: (solved.complete().err()).map(|unsolved| unsolved.to_string()),
@@ -274,7 +266,9 @@ impl SheetTask {
             path: path.collect(),
             hinges,
             panels,
-            panel_energy: of_panels / (of_hinges + of_panels).max(f64::MIN_POSITIVE),
+            panel_energy: last.map_or(0.0, |last| {
+                last.panel_energy / last.internal_energy().max(f64::MIN_POSITIVE)
+            }),
             surface: samples.surface.clone().unwrap_or_default(),
         }
     }
@@ -317,7 +311,8 @@ impl SheetTask {
             .collect()
     }
 
-    fn state(&self, state: &SheetState) -> StateCheck {
+    /// `full_load` is the sum of the magnitudes of the full loads (N).
+    fn state(&self, state: &SheetState, full_load: f64) -> StateCheck {
         let sheet = &self.deployment.sheet;
         let (configuration, [displacement, load]) = self.by_law(state.fraction);
         let errors = self.corner_errors(&configuration, state).concat();
@@ -329,40 +324,18 @@ impl SheetTask {
             .map(|h| self.opening(state, *h, &configuration));
         let by_elements: f64 = by_elements.sum();
         let mean = |sum: f64| (sum / hinges.len() as f64).to_degrees();
-        let panels = || state.panels.iter();
-        let internal: f64 = state.hinges.iter().map(|hinge| hinge.energy).sum();
-        let total = self.full_load();
-        let whole = self.part.panels.len() == sheet.panels.len();
+        let whole = !self.is_patch();
         StateCheck {
             fraction: state.fraction,
             stroke: whole.then_some([displacement, state.stroke]),
-            load: whole.then_some([load, state.load_factor * total]),
-            corners: [
-                root_mean_square(errors.iter().copied()),
-                errors.iter().copied().fold(0.0, f64::max),
-            ],
+            load: whole.then_some([load, state.load_factor * full_load]),
+            corners: rms_and_maximum(errors),
             opening_deg: [mean(by_law), mean(by_elements)],
-            tilt_deg: (panels().map(|panel| panel.tilt().to_degrees())).fold(0.0, f64::max),
-            z: [
-                panels()
-                    .map(|panel| panel.z[0])
-                    .fold(f64::INFINITY, f64::min),
-                (panels().map(|panel| panel.z[1])).fold(f64::NEG_INFINITY, f64::max),
-            ],
-            bending: panels().map(|panel| panel.bending).fold(0.0, f64::max),
-            kinetic: state.kinetic_energy / (internal + state.panel_energy).max(f64::MIN_POSITIVE),
+            tilt_deg: state.tilt().to_degrees(),
+            z: state.z(),
+            bending: (state.panels.iter()).fold(0.0, |most, panel| panel.bending.max(most)),
+            kinetic: state.kinetic_energy / state.internal_energy().max(f64::MIN_POSITIVE),
         }
-    }
-
-    /// The sum of the magnitudes of the full loads (N).
-    fn full_load(&self) -> f64 {
-        let mut forces = vec![[0.0; 2]; self.deployment.sheet.panels.len()];
-        for load in self.scene.actuation().boundary_loads() {
-            if let Some(force) = forces[load.panel].get_mut(load.dof.index()) {
-                *force += load.value;
-            }
-        }
-        forces.into_iter().map(|[x, y]| x.hypot(y)).sum()
     }
 
     /// Rotation of a hinge in the plane by finite elements (rad); a panel that is not solved moves by the law.
@@ -422,97 +395,109 @@ impl BranchCheck {
     }
 }
 
+fn finding(severity: Severity, message: String) -> SheetFinding {
+    SheetFinding { severity, message }
+}
+
+/// All findings, the most severe first.
 fn findings(check: &SheetCheck) -> Vec<SheetFinding> {
-    let mut found = Vec::new();
-    let mut add = |severity, message: String| found.push(SheetFinding { severity, message });
-    for branch in &check.branches {
-        let of = if check.branches.len() > 1 {
-            format!(" (bumps {})", branch.bumps)
-        } else {
-            String::new()
-        };
-        let Some(last) = branch.last() else {
-            let reason = branch
-                .stopped
-                .as_deref()
-                .unwrap_or("no increment converged");
-            add(
-                Severity::Error,
-                format!("the sheet was not solved{of}: {reason}"),
-            );
-            continue;
-        };
-        if let Some(reason) = &branch.stopped {
-            add(
-                Severity::Error,
-                format!(
-                    "the path was followed to {:.1} % only{of}; what happens beyond is not known: {reason}",
-                    100.0 * last.fraction
-                ),
-            );
-        }
-        let [rms, most] = last.corners;
-        let percent = 100.0 * rms / check.size;
-        let errors = format!(
-            "the panels tilt by up to {:.1} deg, and the corners are {rms:.2} mm (root mean square) from where the hinge law \
-             has them, {most:.2} mm at most: {percent:.2} % of the sheet{of}",
-            last.tilt_deg
-        );
-        if last.tilt_deg > TILTED {
-            let severity = Severity::Error;
-            add(severity, format!("the sheet does not stay flat: {errors}"));
-        } else if rms > OFF * check.size {
-            add(
-                Severity::Error,
-                format!("the sheet opens otherwise than predicted: {errors}"),
-            );
-        } else {
-            add(Severity::Note, format!("the sheet stays flat: {errors}"));
-        }
-        if let Some([by_law, by_elements]) = last.load.filter(|_| check.driven)
-            && (by_law - by_elements).abs() > OTHER_LOAD * by_elements.abs()
-        {
-            add(
-                Severity::Warning,
-                format!(
-                    "the load is {by_elements:.4} N by finite elements and {by_law:.4} N by the hinge law{of}"
-                ),
-            );
-        }
-        let torn: Vec<String> = (branch.hinges.iter())
-            .filter(|hinge| hinge.d_peak[1].is_some_and(|peak| peak >= 1.0))
-            .map(|hinge| hinge.hinge.to_string())
-            .collect();
-        if !torn.is_empty() {
-            add(
-                Severity::Error,
-                format!(
-                    "ligaments tear{of}: D_peak is 1 or more (hinges {})",
-                    torn.join(", ")
-                ),
-            );
-        }
-        if last.kinetic > AT_REST {
-            add(
-                Severity::Warning,
-                format!(
-                    "the sheet still moves at the end of its dynamic path{of}: kinetic energy is {:.1} % of the internal energy",
-                    100.0 * last.kinetic
-                ),
-            );
-        }
-    }
-    if !check.outside.is_empty() {
-        let hinges: Vec<String> = check.outside.iter().map(usize::to_string).collect();
-        add(
-            Severity::Warning,
-            format!(
-                "the hinge law is outside of its training domain at hinges {}: what it predicts there is extrapolated, and the \
-                 difference to finite elements is not one of flatness",
-                hinges.join(", ")
-            ),
-        );
-    }
+    let branches = check.branches.iter();
+    let mut found: Vec<SheetFinding> = branches
+        .flat_map(|branch| of_branch(check, branch))
+        .chain(outside_domain(check))
+        .collect();
     found.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     found
+}
+
+/// The findings about one solve.
+fn of_branch(check: &SheetCheck, branch: &BranchCheck) -> Vec<SheetFinding> {
+    let of = if check.branches.len() > 1 {
+        format!(" (bumps {})", branch.bumps)
+    } else {
+        String::new()
+    };
+    let Some(last) = branch.last() else {
+        let reason = branch.stopped.as_deref();
+        let reason = reason.unwrap_or("no increment converged");
+        let message = format!("the sheet was not solved{of}: {reason}");
+        return vec![finding(Severity::Error, message)];
+    };
+    let stopped = branch.stopped.as_ref().map(|reason| {
+        finding(Severity::Error, format!(
+            "the path was followed to {:.1} % only{of}; what happens beyond is not known: {reason}",
+            100.0 * last.fraction
+        ))
+    });
+    let found = [
+        stopped,
+        Some(flatness(check, last, &of)),
+        other_load(check, last, &of),
+        tearing(branch, &of),
+        still_moving(last, &of),
+    ];
+    found.into_iter().flatten().collect()
+}
+
+fn flatness(check: &SheetCheck, last: &StateCheck, of: &str) -> SheetFinding {
+    let [rms, most] = last.corners;
+    let (severity, what) = if last.tilt_deg > TILTED {
+        (Severity::Error, "does not stay flat")
+    } else if rms > OFF * check.size {
+        (Severity::Error, "opens otherwise than predicted")
+    } else {
+        (Severity::Note, "stays flat")
+    };
+    finding(
+        severity,
+        format!(
+            "the sheet {what}: the panels tilt by up to {:.1} deg, and the corners are {rms:.2} mm (root mean square) from where the \
+         hinge law has them, {most:.2} mm at most: {:.2} % of the sheet{of}",
+            last.tilt_deg,
+            100.0 * rms / check.size
+        ),
+    )
+}
+
+fn other_load(check: &SheetCheck, last: &StateCheck, of: &str) -> Option<SheetFinding> {
+    let [by_law, by_elements] = last.load.filter(|_| check.driven)?;
+    let differs = (by_law - by_elements).abs() > OTHER_LOAD * by_elements.abs();
+    differs.then(|| {
+        finding(Severity::Warning, format!(
+            "the load is {by_elements:.4} N by finite elements and {by_law:.4} N by the hinge law{of}"
+        ))
+    })
+}
+
+fn tearing(branch: &BranchCheck, of: &str) -> Option<SheetFinding> {
+    let tears = |hinge: &&HingeCheck| hinge.d_peak[1].is_some_and(|peak| peak >= 1.0);
+    let torn = branch.hinges.iter().filter(tears).map(|hinge| hinge.hinge);
+    let torn: Vec<String> = torn.map(|hinge| hinge.to_string()).collect();
+    (!torn.is_empty()).then(|| {
+        let hinges = torn.join(", ");
+        finding(
+            Severity::Error,
+            format!("ligaments tear{of}: D_peak is 1 or more (hinges {hinges})"),
+        )
+    })
+}
+
+fn still_moving(last: &StateCheck, of: &str) -> Option<SheetFinding> {
+    (last.kinetic > AT_REST).then(|| {
+        finding(Severity::Warning, format!(
+            "the sheet still moves at the end of its dynamic path{of}: kinetic energy is {:.1} % of the internal energy",
+            100.0 * last.kinetic
+        ))
+    })
+}
+
+fn outside_domain(check: &SheetCheck) -> Option<SheetFinding> {
+    let hinges: Vec<String> = check.outside.iter().map(usize::to_string).collect();
+    (!hinges.is_empty()).then(|| {
+        finding(Severity::Warning, format!(
+            "the hinge law is outside of its training domain at hinges {}: what it predicts there is extrapolated, and the \
+             difference to finite elements is not one of flatness",
+            hinges.join(", ")
+        ))
+    })
 }

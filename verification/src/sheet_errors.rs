@@ -5,6 +5,7 @@ use design::objective::design_problem::Deployment;
 use mesher::Tier;
 use serde::Serialize;
 use std::fmt;
+use support::statistics::rms_and_maximum;
 
 /// The equilibrium by the hinge law compared with that by finite elements.
 #[derive(Debug, Serialize)]
@@ -83,16 +84,6 @@ impl SheetErrors {
             hinges,
         }
     }
-}
-
-fn rms_and_maximum(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
-    let (mut squares, mut count, mut maximum) = (0.0, 0.0, 0.0_f64);
-    for value in values {
-        squares += value * value;
-        count += 1.0;
-        maximum = maximum.max(value.abs());
-    }
-    [f64::sqrt(squares / f64::max(count, 1.0)), maximum]
 }
 
 impl fmt::Display for SheetErrors {

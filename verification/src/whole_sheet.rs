@@ -95,35 +95,7 @@ pub fn sheet_problem(
     tier: Tier,
     branch: Branch,
 ) -> Result<SheetProblem, VerificationError> {
-    let actuation = scene.actuation();
-    let mut pulls = vec![[0.0; 3]; sheet.panels.len()];
-    for load in actuation.boundary_loads() {
-        pulls[load.panel][load.dof.index()] += load.value;
-    }
-    if pulls.iter().any(|[.., couple]| *couple != 0.0) {
-        return Err(VerificationError::Couples);
-    }
-    let pulled: Vec<Pulled> = (pulls.into_iter().enumerate())
-        .filter(|(_, [x, y, _])| x.hypot(*y) > 0.0)
-        .map(|(panel, [x, y, _])| Pulled {
-            panel,
-            at: on_finished_edge(sheet, panel, sheet.panels[panel].reference),
-            force: [x, y],
-        })
-        .collect();
-    let held = std::iter::zip(&scene.config.supports, &actuation.attachments)
-        .map(|(support, attachment)| {
-            if support.rotation_deg != 0.0 {
-                return Err(VerificationError::TurnedSupport(attachment.name.clone()));
-            }
-            let holds = support.kind.holds();
-            Ok(Held {
-                panel: attachment.panel,
-                place: place(sheet, attachment, support.kind),
-                motion: [0, 1].map(|axis| holds[axis].then_some(support.displacement[axis])),
-            })
-        })
-        .collect::<Result<Vec<Held>, _>>()?;
+    let (pulled, held) = (pulled(scene, sheet)?, held(scene, sheet)?);
     let down = match support {
         Posture::Lying => Some([0.0, 0.0, -1.0]),
         Posture::HeldFlat | Posture::Hanging | Posture::Free => {
@@ -139,22 +111,14 @@ pub fn sheet_problem(
     };
     let mut shape = sheet_shape(sheet, scene.material.thickness, tier, branch)?;
     for pulled in &pulled {
-        shape.panels[pulled.panel].marks.push(pulled.at);
+        shape.panels[pulled.panel].mark(pulled.at);
     }
     for held in &held {
-        let marks = &mut shape.panels[held.panel].marks;
+        let panel = &mut shape.panels[held.panel];
         match held.place {
             Place::Panel => {}
-            Place::Point(at) => marks.push(at),
-            Place::Line(ends) => marks.extend(ends),
-        }
-    }
-    for panel in &mut shape.panels {
-        let marks = std::mem::take(&mut panel.marks);
-        for mark in marks {
-            if !panel.marks.contains(&mark) {
-                panel.marks.push(mark);
-            }
+            Place::Point(at) => panel.mark(at),
+            Place::Line(ends) => ends.into_iter().for_each(|end| panel.mark(end)),
         }
     }
     Ok(SheetProblem {
@@ -170,6 +134,43 @@ pub fn sheet_problem(
         step: SheetProblem::usual_step(keeping),
         dynamic: false,
     })
+}
+
+/// The forces of the scene.
+fn pulled(scene: &Scene, sheet: &Sheet) -> Result<Vec<Pulled>, VerificationError> {
+    let mut loads = vec![[0.0; 3]; sheet.panels.len()];
+    for load in scene.actuation().boundary_loads() {
+        loads[load.panel][load.dof.index()] += load.value;
+    }
+    if loads.iter().any(|[.., couple]| *couple != 0.0) {
+        return Err(VerificationError::Couples);
+    }
+    let forces = loads.into_iter().enumerate();
+    let forces = forces.filter(|(_, [x, y, _])| x.hypot(*y) > 0.0);
+    let pulled = forces.map(|(panel, [x, y, _])| Pulled {
+        panel,
+        at: on_finished_edge(sheet, panel, sheet.panels[panel].reference),
+        force: [x, y],
+    });
+    Ok(pulled.collect())
+}
+
+/// The supports of the scene.
+fn held(scene: &Scene, sheet: &Sheet) -> Result<Vec<Held>, VerificationError> {
+    let attachments = scene.actuation().attachments;
+    let supports = std::iter::zip(&scene.config.supports, &attachments);
+    let held = supports.map(|(support, attachment)| {
+        if support.rotation_deg != 0.0 {
+            return Err(VerificationError::TurnedSupport(attachment.name.clone()));
+        }
+        let holds = support.kind.holds();
+        Ok(Held {
+            panel: attachment.panel,
+            place: place(sheet, attachment, support.kind),
+            motion: [0, 1].map(|axis| holds[axis].then_some(support.displacement[axis])),
+        })
+    });
+    held.collect()
 }
 
 /// The part of a panel that a support holds: its clip, the whole panel of a clamp without one, or a point.

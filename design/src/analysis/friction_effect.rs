@@ -7,7 +7,7 @@ use crate::hinge_law::Order;
 use crate::objective::design_problem::{Deployment, Mechanics};
 use crate::sheet::kinematics::{deployed_corners, hinge_deformations};
 use serde::Serialize;
-use support::statistics::root_mean_square;
+use support::statistics::rms_and_maximum;
 
 /// The end of the path with friction beside the end without.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -48,15 +48,11 @@ impl FrictionEffect {
         );
         let [free, held] = [&without.configuration, &slid.configuration]
             .map(|configuration| deployed_corners(sheet, configuration));
-        let apart: Vec<f64> = std::iter::zip(free.as_flattened(), held.as_flattened())
-            .map(|(p, q)| distance(*p, *q))
-            .collect();
+        let apart =
+            std::iter::zip(free.as_flattened(), held.as_flattened()).map(|(p, q)| distance(*p, *q));
         Ok(Self {
             ends: ends.map(|curve| [curve.points[0], curve.points[1]]),
-            corners: [
-                root_mean_square(apart.iter().copied()),
-                apart.into_iter().fold(0.0, f64::max),
-            ],
+            corners: rms_and_maximum(apart),
             work: [slid.dissipated, stored],
             slips: slid.slips,
         })

@@ -7,8 +7,10 @@
 use crate::calculix::cards::{
     real, write_amplitude, write_element, write_increments, write_material, write_nodes, write_set,
 };
+use crate::calculix::driven_arc::{DrivenArc, even_lambdas};
+use crate::calculix::panel_motion::PanelMotion;
 use crate::sheet::sheet_nodes::SheetNodes;
-use crate::sheet::sheet_problem::{DrivenRim, Held, SECONDS, SheetProblem, interpolated};
+use crate::sheet::sheet_problem::{Held, SECONDS, SheetProblem, interpolated};
 use hinge::STANDARD_GRAVITY;
 use mesher::{ElementKind, Part, SheetMesh};
 use std::fmt::{self, Write};
@@ -19,9 +21,6 @@ const TABLE_STIFFNESS: f64 = 0.2;
 const TABLE_DEPTH: f64 = 1e5;
 /// Height of a node at which the table lets go (mm). Exactly zero would let the first iteration take the open branch.
 const TABLE_KINK: f64 = 1e-5;
-/// Number of intervals of the motion of a rim: the chord shortens a panel by its size times the square of the rotation in an
-/// interval over 8.
-const RIM_INTERVALS: u32 = 720;
 /// Numerical damping of the dynamic steps, near the most that the method has.
 const DAMPING: f64 = -0.3;
 
@@ -36,6 +35,11 @@ pub(crate) struct SheetModel<'a> {
 /// Name of the set of a hinge's elements.
 pub(crate) fn hinge_set(hinge: usize) -> String {
     format!("H{hinge}")
+}
+
+/// Name of the amplitudes of a rim, before their number.
+fn rim_amplitudes(rim: usize) -> String {
+    format!("R{rim}Q")
 }
 
 impl SheetModel<'_> {
@@ -220,44 +224,32 @@ impl SheetModel<'_> {
         write_amplitude(d, "LOADS", in_time(history.loads))
     }
 
-    /// The nodes of a rim move with a rigid panel: see the deck of a window. A straight line between two of its states would
-    /// shorten the panel; the table is as fine as the rotation needs.
-    fn write_rim(&self, d: &mut String, rim: usize) -> fmt::Result {
-        let [turner, mover] = self.drivers(rim).map(|node| node + 1);
-        writeln!(d, "*NODE\n{turner},0.,0.,0.\n{mover},0.,0.,0.\n*EQUATION")?;
-        let DrivenRim { about, path, .. } = &self.problem.rims[rim];
-        for index in &self.nodes.rims[rim] {
-            let node = index + 1;
-            let [x, y] = [0, 1].map(|i| self.mesh.nodes[*index][i] - about[i]);
-            for (freedom, by_cos, by_sin) in [(1, -x, y), (2, -y, -x)] {
-                let (by_cos, by_sin) = (real(by_cos), real(by_sin));
-                writeln!(
-                    d,
-                    "4\n{node},{freedom},1.,{turner},1,{by_cos},{turner},2,{by_sin},{mover},{freedom},-1."
-                )?;
-            }
+    /// A rim, with the amplitudes `R<rim>Q1` to `R<rim>Q4`.
+    fn arc<'a>(&'a self, rim: usize, amplitudes: &'a str) -> DrivenArc<'a> {
+        DrivenArc {
+            nodes: &self.nodes.rims[rim],
+            about: self.problem.rims[rim].about,
+            drivers: self.drivers(rim).map(|node| node + 1),
+            amplitudes,
         }
+    }
+
+    fn write_rim(&self, d: &mut String, rim: usize) -> fmt::Result {
+        let amplitudes = rim_amplitudes(rim);
+        let arc = self.arc(rim, &amplitudes);
+        let [turner, mover] = arc.drivers;
+        writeln!(d, "*NODE\n{turner},0.,0.,0.\n{mover},0.,0.,0.")?;
+        arc.write_equations(d, &self.mesh.nodes)?;
+        let path = &self.problem.rims[rim].path;
         let column =
             |i: usize| -> Vec<[f64; 2]> { path.iter().map(|state| [state[0], state[i]]).collect() };
-        let [u_x, u_y, phi] = [1, 2, 3].map(column);
-        let value = |i: usize, lambda: f64| {
-            let phi = interpolated(&phi, lambda);
-            match i {
-                // cos(phi) - 1 without cancellation.
-                0 => -2.0 * (0.5 * phi).sin().powi(2),
-                1 => phi.sin(),
-                2 => interpolated(&u_x, lambda),
-                _ => interpolated(&u_y, lambda),
-            }
+        let columns = [1, 2, 3].map(column);
+        let motion = |lambda: f64| {
+            let [x, y, theta] = [0, 1, 2].map(|i| interpolated(&columns[i], lambda));
+            PanelMotion { theta, du: [x, y] }
         };
-        for i in 0..4 {
-            let pairs = (0..=RIM_INTERVALS).map(|k| {
-                let lambda = f64::from(k) / f64::from(RIM_INTERVALS);
-                [self.duration() * lambda, value(i, lambda)]
-            });
-            write_amplitude(d, &format!("R{rim}Q{i}"), pairs)?;
-        }
-        Ok(())
+        let lambdas: Vec<f64> = even_lambdas().collect();
+        arc.write_amplitudes(d, &lambdas, self.duration(), motion)
     }
 
     fn write_boundary(&self, d: &mut String) -> fmt::Result {
@@ -277,17 +269,13 @@ impl SheetModel<'_> {
             flat.try_for_each(|node| writeln!(d, "{},3,3,0.", node + 1))?;
         }
         for (rim, nodes) in self.nodes.rims.iter().enumerate() {
-            let [turner, mover] = self.drivers(rim).map(|node| node + 1);
+            let amplitudes = rim_amplitudes(rim);
+            let arc = self.arc(rim, &amplitudes);
+            let [turner, mover] = arc.drivers;
             writeln!(d, "*BOUNDARY\n{turner},3,3,0.\n{mover},3,3,0.")?;
             let mut nodes = nodes.iter();
             nodes.try_for_each(|node| writeln!(d, "{},3,3,0.", node + 1))?;
-            let freedoms = [(turner, 1), (turner, 2), (mover, 1), (mover, 2)];
-            for (i, (node, freedom)) in freedoms.into_iter().enumerate() {
-                writeln!(
-                    d,
-                    "*BOUNDARY,AMPLITUDE=R{rim}Q{i}\n{node},{freedom},{freedom},1."
-                )?;
-            }
+            arc.write_boundary(d)?;
         }
         if let Some(stroke) = self.problem.stroke {
             let control = self.control() + 1;

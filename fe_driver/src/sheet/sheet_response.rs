@@ -16,18 +16,35 @@ pub(crate) fn states(model: &SheetModel, frames: &[SheetFrame]) -> SheetStates {
     let panels: Vec<Vec<usize>> = (0..model.problem.shape.panels.len())
         .map(|panel| model.mesh.plane_nodes(Part::Panel(panel)))
         .collect();
+    let mut windows = vec![Vec::new(); model.problem.shape.windows.len()];
+    for element in 0..model.mesh.elements.len() {
+        if let Part::Window(window) = model.mesh.part(element) {
+            windows[window].push(element);
+        }
+    }
     SheetStates {
         states: frames
             .iter()
-            .map(|frame| model.state(frame, &panels))
+            .map(|frame| model.state(frame, &panels, &windows))
             .collect(),
         surface: frames.last().map(|frame| model.surface(frame)),
         unknowns: FREEDOMS * model.mesh.nodes.len(),
     }
 }
 
+/// The energy of a window, or of the panels after the last (N mm).
+fn energy(frame: &SheetFrame, place: usize) -> f64 {
+    frame.energies[place].unwrap_or(f64::NAN)
+}
+
 impl SheetModel<'_> {
-    fn state(&self, frame: &SheetFrame, panels: &[Vec<usize>]) -> SheetState {
+    /// `panels` are the plane nodes of each panel, `windows` the elements of each window.
+    fn state(
+        &self,
+        frame: &SheetFrame,
+        panels: &[Vec<usize>],
+        windows: &[Vec<usize>],
+    ) -> SheetState {
         let problem = self.problem;
         let lambda = frame.time / self.duration();
         let total = problem.total_load();
@@ -44,7 +61,6 @@ impl SheetModel<'_> {
                 square += share * share;
             }
         }
-        let energy = |place: usize| frame.energies[place].unwrap_or(f64::NAN);
         SheetState {
             lambda,
             fraction: problem.history().load_fraction(lambda),
@@ -58,10 +74,10 @@ impl SheetModel<'_> {
                 .iter()
                 .map(|nodes| self.panel(frame, nodes))
                 .collect(),
-            hinges: (0..problem.shape.windows.len())
-                .map(|hinge| self.hinge(frame, hinge, energy(hinge)))
+            hinges: (windows.iter().enumerate())
+                .map(|(hinge, elements)| self.hinge(frame, hinge, elements))
                 .collect(),
-            panel_energy: energy(problem.shape.windows.len()),
+            panel_energy: energy(frame, windows.len()),
             kinetic_energy: frame.kinetic_energy.unwrap_or(0.0),
             support_force: frame.support_force.unwrap_or_default(),
         }
@@ -96,20 +112,18 @@ impl SheetModel<'_> {
         }
     }
 
-    fn hinge(&self, frame: &SheetFrame, hinge: usize, energy: f64) -> HingeState {
+    /// `elements` are those of its window.
+    fn hinge(&self, frame: &SheetFrame, hinge: usize, elements: &[usize]) -> HingeState {
         let shape = &self.problem.shape;
-        let elements = 0..self.mesh.elements.len();
-        let points = elements
-            .filter(|element| self.mesh.part(*element) == Part::Window(hinge))
-            .flat_map(|element| {
-                let strains = frame.peeq[element].iter().copied();
-                strains.zip(self.mesh.gauss_volumes[element].iter().copied())
-            });
+        let points = elements.iter().flat_map(|element| {
+            let strains = frame.peeq[*element].iter().copied();
+            strains.zip(self.mesh.gauss_volumes[*element].iter().copied())
+        });
         let design = &shape.windows[hinge].design;
         let material = &self.problem.material;
         let damage = Damage::new(points.collect(), design, shape.thickness, material);
         HingeState {
-            energy,
+            energy: energy(frame, hinge),
             d: damage.d,
             d_peak: damage.d_peak,
         }

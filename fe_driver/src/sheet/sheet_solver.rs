@@ -13,6 +13,7 @@ use crate::solve::failure::FailureKind;
 use crate::solve::ladder::AttemptKind;
 use crate::solve::problem::Solve;
 use crate::solve::solve_error::SolveError;
+use crate::solve::solve_folder::SolveFolder;
 use crate::solve::solver::{Solution, Solver};
 use crate::solve::tool_versions::ToolVersions;
 use mesher::Tier;
@@ -23,13 +24,15 @@ use std::time::{Duration, Instant};
 /// Name of the deck and its output in the folder of an attempt.
 const JOB: &str = "sheet";
 
-/// The lambda that the running attempt of a sheet in `folder` has reached.
-pub fn sheet_reached(folder: &Path) -> f64 {
-    let time = time_reached(folder, JOB);
-    // A static path ends at 1; a dynamic one has passed that after its first tenth.
-    let dynamic = std::fs::read_to_string(folder.join(JOB).with_extension("inp"))
-        .is_ok_and(|deck| deck.contains("*DYNAMIC"));
-    if dynamic { time / SECONDS } else { time }
+/// The lambda that the solve of a sheet in `folder` has reached; 1 when no attempt is left.
+pub fn sheet_reached(folder: &SolveFolder) -> f64 {
+    let record = folder.record().ok().flatten();
+    let time = time_reached(&folder.work(), JOB);
+    match record.map(|record| record.next) {
+        Some(None) => 1.0,
+        Some(Some(AttemptKind::Dynamic)) => time / SECONDS,
+        _ => time,
+    }
 }
 
 impl Solve for SheetSolve {

@@ -81,6 +81,27 @@ pub struct SheetSurface {
     pub plastic_strain: Vec<f64>,
 }
 
+impl SheetState {
+    /// Largest tilt of a panel (rad).
+    pub fn tilt(&self) -> f64 {
+        (self.panels.iter()).fold(0.0, |most, panel| panel.tilt().max(most))
+    }
+
+    /// Lowest and highest z of the panels (mm).
+    pub fn z(&self) -> [f64; 2] {
+        let nothing = [f64::INFINITY, f64::NEG_INFINITY];
+        (self.panels.iter()).fold(nothing, |[low, high], panel| {
+            [low.min(panel.z[0]), high.max(panel.z[1])]
+        })
+    }
+
+    /// Internal energy of windows and panels (N mm).
+    pub fn internal_energy(&self) -> f64 {
+        let of_hinges = self.hinges.iter().map(|hinge| hinge.energy);
+        of_hinges.sum::<f64>() + self.panel_energy
+    }
+}
+
 impl PanelState {
     /// The position of a point of the flat sheet on the rigid panel (mm).
     pub fn moved(&self, [x, y]: [f64; 2]) -> [f64; 3] {

@@ -9,7 +9,7 @@ use crate::window::Window;
 
 /// Names of the edges of a panel, each from its corner to the next.
 const EDGES: [&str; 4] = ["lower", "right", "upper", "left"];
-/// Largest distance of the end of an arc from the edge of its panel (mm).
+/// Largest distance of a point that lies on the edge of a panel from it (mm).
 const ON_EDGE: f64 = 1e-6;
 /// Shortest part of an edge over r_win: a shorter one would give slivers.
 const LEAST: f64 = 0.02;
@@ -122,9 +122,9 @@ impl PanelOutline<'_> {
         let direction = unit(panel.corners[corner], panel.corners[(corner + 1) % 4]);
         let along = |point: [f64; 2]| dot(minus(point, from.1), direction);
         let length = along(to.1);
-        let windows = &self.shape.windows;
-        let design = (self.rims.iter().flatten().next()).map(|arc| &windows[arc.number].design);
-        let (least, snap) = design.map_or((0.0, 0.0), |design| (LEAST * design.r_win, design.kerf));
+        let radius = (self.rims.iter().flatten().next())
+            .map(|arc| self.shape.windows[arc.number].design.r_win);
+        let least = radius.map_or(0.0, |radius| LEAST * radius);
         if length <= least {
             return Err(InvalidSheet::SmallPanel {
                 panel: self.panel,
@@ -136,7 +136,7 @@ impl PanelOutline<'_> {
         let mut stops: Vec<f64> = Vec::new();
         marks.retain(|mark| {
             let at = along(*mark);
-            let on = across(*mark) <= snap.max(ON_EDGE) && at > least && at < length - least;
+            let on = across(*mark) <= ON_EDGE && at > least && at < length - least;
             if on {
                 stops.push(at);
             }

@@ -8,7 +8,7 @@ use crate::report::self_weight::of_the_load;
 use crate::report::warning::{Concern, Severity, Warning};
 use design::analysis::flatness::expected_departure;
 use design::equilibrium::load_step::{LoadStep, Status};
-use design::geometry::polygon::{bounds, contains};
+use design::geometry::polygon::contains;
 use design::hinge_law::{DamageMeasure, HingeDamage};
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
@@ -330,8 +330,7 @@ fn leaves_plane(judged: &Judged) -> Option<Warning> {
         .fold(0.0, f64::max);
     let r_win = sheet.options.process.r_win;
     let error = expected_departure(posture, material, widest, r_win);
-    let [low, high] = bounds(sheet.outline.corners);
-    let size = f64::max(high[0] - low[0], high[1] - low[1]);
+    let size = sheet.outline.size();
     let kept = match posture {
         Posture::Lying => "only its weight keeps the panels down on the surface",
         _ => "nothing keeps the panels in the plane",

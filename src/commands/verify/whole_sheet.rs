@@ -2,23 +2,20 @@
 
 use crate::commands::solve_args::task_error;
 use crate::commands::verify::VerifyCommand;
-use crate::ui::progress::{Progress, announce, duration};
-use crate::ui::{interrupt, picture, run_folder};
+use crate::ui::progress::{announce, duration, watched};
+use crate::ui::{interrupt, output_file, picture, run_folder};
 use anyhow::{Result, anyhow, bail};
 use design::pattern::design_vector::DesignVector;
 use design::scene::{Posture, Scene};
-use fe_driver::{CalculiX, SheetSolve, SolveService, Solved, sheet_reached};
+use fe_driver::{CalculiX, SheetSolve, Solve, sheet_reached};
 use mesher::Tier;
 use output::drawing::{Surface, View, surface};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use support::memory;
 use verification::{SheetCheck, SheetCost, SheetTask};
 
 /// Width of the pictures (px).
 const WIDTH: u32 = 1400;
-/// Parts of the path on the progress bar.
-const PARTS: f64 = 1000.0;
 
 /// Reads the value of `--support`.
 pub(super) fn support(text: &str) -> Result<Posture, String> {
@@ -54,7 +51,11 @@ impl VerifyCommand {
         let service = self
             .solve
             .service_of(calculix, &self.out, Box::new(|_, _| {}))?;
-        let solved = watched(&service, &solves)?;
+        let ids = solves.iter().map(Solve::id);
+        let folders: Vec<_> = ids.map(|id| service.store.solve(&id)).collect();
+        let reached = || folders.iter().map(sheet_reached).sum();
+        let solved = watched(solves.len(), reached, || service.solve(&solves));
+        let solved = solved.map_err(|error| task_error(error.into()))?;
         let check = task.check(name, &solved);
         run_folder::write(&self.out, "sheet.md", &check.to_string())?;
         let json = serde_json::to_string_pretty(&check)?;
@@ -73,7 +74,7 @@ impl VerifyCommand {
     /// Meshes the sheet once, and says what its solves cost before they begin.
     fn state_cost(&self, calculix: &CalculiX, solves: &[SheetSolve]) -> Result<()> {
         let folder = self.out.join("mesh");
-        crate::ui::output_file::create_folder(&folder)?;
+        output_file::create_folder(&folder)?;
         let limit = Duration::from_secs(600);
         let stop = interrupt::stop_flag()?;
         let problem = &solves[0].problem;
@@ -136,36 +137,4 @@ impl VerifyCommand {
         }
         Ok(())
     }
-}
-
-/// Solves the sheets and shows how far they have come.
-fn watched(
-    service: &SolveService<SheetSolve>,
-    solves: &[SheetSolve],
-) -> Result<Vec<Solved<SheetSolve>>> {
-    let done = AtomicBool::new(false);
-    let folders: Vec<_> = solves
-        .iter()
-        .map(|solve| service.store.solve(&fe_driver::Solve::id(solve)))
-        .collect();
-    let found = std::thread::scope(|scope| {
-        let show = || {
-            let bar = Progress::new((PARTS * solves.len() as f64) as usize, "1000 lambda");
-            while !done.load(Ordering::Relaxed) {
-                let reached = folders.iter().map(|folder| match folder.record() {
-                    Ok(Some(record)) if record.is_closed() => 1.0,
-                    _ => sheet_reached(&folder.work()),
-                });
-                bar.show((PARTS * reached.sum::<f64>()) as usize, None, "");
-                std::thread::sleep(Duration::from_millis(300));
-            }
-            bar.finish();
-        };
-        // Without a further thread there is no progress, but a result.
-        let _ = std::thread::Builder::new().spawn_scoped(scope, show);
-        let found = service.solve(solves);
-        done.store(true, Ordering::Relaxed);
-        found
-    });
-    found.map_err(|error| task_error(error.into()))
 }

@@ -1,0 +1,121 @@
+//! An arc of nodes that moves with a rigid panel: of a window, or where a part of a sheet is joined to the rest.
+//!
+//! Two control nodes without elements carry the four amplitudes of the motion ([`PanelMotion`]); linear constraint equations
+//! couple the arc to them.
+
+use crate::calculix::cards::{real, write_amplitude};
+use crate::calculix::panel_motion::PanelMotion;
+use std::fmt::{self, Write};
+
+/// Number of intervals of the amplitude tables. Between entries the motion is linear: the chord shortens the lever arm of
+/// an arc by r dtheta^2 / 8. Intervals of 0.1 deg keep the energy error of a window below 3e-4.
+pub(crate) const AMPLITUDE_INTERVALS: usize = 720;
+
+/// An arc with the nodes that drive it.
+pub(crate) struct DrivenArc<'a> {
+    /// Nodes of the arc, counted from 0.
+    pub nodes: &'a [usize],
+    /// The point to which the motion refers, in the undeformed mesh (mm).
+    pub about: [f64; 2],
+    /// The control nodes of (q1, q2) and of (q3, q4), counted from 1.
+    pub drivers: [usize; 2],
+    /// Name of its amplitudes, before their number.
+    pub amplitudes: &'a str,
+}
+
+impl DrivenArc<'_> {
+    /// The two constraint equations of every node of the arc.
+    pub fn write_equations(&self, d: &mut String, positions: &[[f64; 3]]) -> fmt::Result {
+        let [turner, mover] = self.drivers;
+        writeln!(d, "*EQUATION")?;
+        for index in self.nodes {
+            let node = index + 1;
+            let [x, y] = [0, 1].map(|i| positions[*index][i] - self.about[i]);
+            for (freedom, by_q1, by_q2) in [(1, -x, y), (2, -y, -x)] {
+                let (by_q1, by_q2) = (real(by_q1), real(by_q2));
+                writeln!(
+                    d,
+                    "4\n{node},{freedom},1.,{turner},1,{by_q1},{turner},2,{by_q2},{mover},{freedom},-1."
+                )?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The motion at given lambdas, in a step of the given duration.
+    pub fn write_amplitudes(
+        &self,
+        d: &mut String,
+        lambdas: &[f64],
+        duration: f64,
+        motion: impl Fn(f64) -> PanelMotion,
+    ) -> fmt::Result {
+        for i in 0..4 {
+            let pairs =
+                (lambdas.iter()).map(|lambda| [duration * lambda, motion(*lambda).amplitudes()[i]]);
+            write_amplitude(d, &format!("{}{}", self.amplitudes, i + 1), pairs)?;
+        }
+        Ok(())
+    }
+
+    /// The boundary conditions of the control nodes in the plane.
+    pub fn write_boundary(&self, d: &mut String) -> fmt::Result {
+        let [turner, mover] = self.drivers;
+        let freedoms = [(turner, 1), (turner, 2), (mover, 1), (mover, 2)];
+        for (i, (node, freedom)) in freedoms.into_iter().enumerate() {
+            writeln!(d, "*BOUNDARY,AMPLITUDE={}{}", self.amplitudes, i + 1)?;
+            writeln!(d, "{node},{freedom},{freedom},1.")?;
+        }
+        Ok(())
+    }
+}
+
+/// Lambdas at equal distances, from 0 to 1.
+pub(crate) fn even_lambdas() -> impl Iterator<Item = f64> {
+    (0..=AMPLITUDE_INTERVALS).map(|i| i as f64 / AMPLITUDE_INTERVALS as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::deformation_path::DeformationPath;
+    use hinge::HingeDeformation;
+
+    #[test]
+    fn amplitudes_start_at_zero_and_end_at_the_end_of_the_path() {
+        let end = HingeDeformation {
+            a: -1.0,
+            s: 2.0,
+            theta: 1.2,
+        };
+        let mut text = String::new();
+        let path = DeformationPath::straight(end);
+        let arc = DrivenArc {
+            nodes: &[],
+            about: [0.0; 2],
+            drivers: [1, 2],
+            amplitudes: "Q",
+        };
+        let lambdas: Vec<f64> = even_lambdas().collect();
+        let motion = |lambda| PanelMotion::new(&path.at(lambda));
+        arc.write_amplitudes(&mut text, &lambdas, 1.0, motion)
+            .unwrap();
+        let tables: Vec<Vec<f64>> = text
+            .split("*AMPLITUDE,NAME=Q")
+            .skip(1)
+            .map(|table| {
+                let (_, numbers) = table.split_once('\n').unwrap();
+                let fields = numbers.split([',', '\n']).filter(|field| !field.is_empty());
+                fields.map(|field| field.parse().unwrap()).collect()
+            })
+            .collect();
+        let end = PanelMotion::new(&end).amplitudes();
+        assert_eq!(tables.len(), 4);
+        for (table, end) in tables.iter().zip(end) {
+            assert_eq!(table.len(), 2 * (AMPLITUDE_INTERVALS + 1));
+            assert_eq!(table[..2], [0.0, 0.0]);
+            assert_eq!(table[table.len() - 2], 1.0);
+            assert!((table[table.len() - 1] - end).abs() < 1e-10);
+        }
+    }
+}
