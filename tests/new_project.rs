@@ -60,9 +60,9 @@ fn a_project_without_weights_begins_with_its_campaign() {
     let steel = "--material configs/materials/s235-1.5mm.toml";
     let message = work.error(&format!("init steel {steel} --weights no.safetensors"));
     assert!(message.contains("there is no no.safetensors"), "{message}");
-    let message = work.error(&format!("init steel {steel} --size 210x297"));
+    let message = work.error("init film --thickness 0.5 --size 210x297");
     assert!(
-        message.contains("at most 0.10 mm for this size"),
+        message.contains("at most 0.10 mm for this size), or a plate from 1 mm on"),
         "{message}"
     );
     let said = work.output(&format!(
@@ -194,14 +194,52 @@ fn a_project_like_a_scene_has_its_sheet() {
     work.output("design same/scene.toml --steps 1 --force");
 }
 
-/// `init FOLDER` alone gives a project that can be designed.
+/// `init FOLDER` alone gives a project that can be designed: a plate of A4. A film of 0.5 mm is larger.
 #[test]
 fn a_project_with_all_defaults_is_designed() {
     let work = Workplace::new();
-    work.output(&format!("init sheet --weights {}", weights()));
-    let scene = keys(&work, "sheet/scene.toml");
-    assert_eq!(scene["thickness"].as_float(), Some(0.5));
-    let size = scene["sheet"]["size"].to_string();
-    assert!(size.contains("[1050.0, 1485.0]"), "{size}");
-    work.output("design sheet/scene.toml --steps 1 --force");
+    let plate = weights().replace("pet-0.5mm", "polypropylene-3mm");
+    let said = work.output(&format!("init plate --weights {plate}"));
+    assert!(said.contains("nothing has to hold it flat"), "{said}");
+    work.output(&format!(
+        "init film --thickness 0.5 --weights {}",
+        weights()
+    ));
+    for (project, thickness, sides) in [
+        ("plate", 3.0, "[210.0, 297.0]"),
+        ("film", 0.5, "[1050.0, 1485.0]"),
+    ] {
+        let scene = keys(&work, &format!("{project}/scene.toml"));
+        assert_eq!(scene["thickness"].as_float(), Some(thickness));
+        let size = scene["sheet"]["size"].to_string();
+        assert!(size.contains(sides), "{size}");
+        work.output(&format!("design {project}/scene.toml --steps 1 --force"));
+    }
+}
+
+/// Weights of ligaments that buckle do not serve those that bend in the plane.
+#[test]
+fn weights_of_a_film_do_not_serve_a_plate() {
+    let work = Workplace::new();
+    let film = "--material configs/materials/pet-0.5mm.toml";
+    let said = work.output(&format!("init plate {film} --thickness 3"));
+    assert!(
+        said.contains("kirigami campaign run plate/campaign.toml"),
+        "{said}"
+    );
+    let campaign = keys(&work, "plate/campaign.toml");
+    assert_eq!(campaign["tier"].as_str(), Some("plate"));
+    // In the thickness of the film's weights, the law is theirs.
+    work.edit(
+        "plate/material.toml",
+        &[("thickness = 3.0", "thickness = 0.5")],
+    );
+    let message = work.error(&format!("design plate/scene.toml --weights {}", weights()));
+    assert!(message.contains("no law holds for both"), "{message}");
+    // Weights that are named decide what the sheet is, and it is too small for a film.
+    let message = work.error(&format!(
+        "init film {film} --thickness 3 --size 210x297 --weights {}",
+        weights()
+    ));
+    assert!(message.contains("with film ligaments"), "{message}");
 }

@@ -3,10 +3,11 @@
 
 mod common;
 
-use common::problem;
+use common::{film, problem};
 use fe_driver::{
-    CalculiX, DeformationPath, HingePath, Solution, Solver, WindowProblem, WindowSolve,
+    CalculiX, DeformationPath, HingePath, Ray, Solution, Solver, WindowProblem, WindowSolve,
 };
+use hinge::{HingeDeformation, HingeDesign, SheetMaterial};
 use mesher::{Tier, WindowShape};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -151,6 +152,46 @@ fn the_thinnest_and_the_thickest_sheet_are_solved() {
         assert!(end.w > 0.0 && end.uz_max > thickness, "{end:?}");
         assert!(end.energy_residual < 2e-3, "{end:?}");
     }
+}
+
+/// A ligament narrower than the plate is thick stays in the plane and carries no axial force as it turns about its middle. An
+/// ideally plastic one carries the moment of a notched strip in bending: that of a plane section, sigma t c^2 / 4 over the net
+/// width c, or up to 1.26 times as much by the constraint of the notch (Green and Hundy 1956: deep notch, plane strain).
+#[test]
+fn a_ligament_of_a_plate_bends_in_its_plane() {
+    let (yields, thickness, w_lig) = (40.0, 3.0, 1.5);
+    let material = SheetMaterial {
+        thickness,
+        plastic: vec![[yields, 0.0]],
+        ..film()
+    };
+    let design = HingeDesign {
+        w_lig,
+        r_win: 12.0,
+        ..common::design(90.0)
+    };
+    let solved_to = |eta_a: f64| {
+        let end = HingeDeformation::from_eta(eta_a, 0.0, 20f64.to_radians(), w_lig);
+        let solution = solve(&WindowProblem::new(
+            Ray { design, end },
+            &material,
+            Tier::PlateTiny,
+        ));
+        *solution.samples.last().unwrap()
+    };
+    let free = solved_to(0.19);
+    assert!(free.energy_residual < 1e-3, "{free:?}");
+    assert!(free.uz_max < 0.1 * thickness, "{free:?}");
+    let net = (1.0 - design.fillet_ratio) * w_lig;
+    let section = yields * thickness * net * net / 4.0;
+    let constraint = free.m_theta / section;
+    assert!((1.0..1.26).contains(&constraint), "{constraint}");
+    // The axial force changes sign there: a tenth of the width to either side it is half of the force that yields.
+    let [pushed, pulled] = [0.09, 0.29].map(solved_to);
+    let section = yields * thickness * net;
+    assert!(free.f_a.abs() < 0.1 * section, "{free:?}");
+    assert!(pushed.f_a < -0.3 * section, "{pushed:?}");
+    assert!(pulled.f_a > 0.3 * section, "{pulled:?}");
 }
 
 /// The window is rate-independent and has no length of its own: with all lengths times lambda, W is multiplied by

@@ -6,6 +6,7 @@
 //! | hinge deformation (a, s, theta) | [`HingeDeformation`] | (8) |
 //! | generalised forces (F_a, F_s, M_theta) | [`HingeForces`] | section 2.3 |
 //! | sheet material | [`SheetMaterial`] | section 4.1 |
+//! | films and plates | [`Regime`] | section 5.1 |
 //! | training domain | [`TrainingDomain`] | section 2.4 |
 //! | one converged increment of a window solve | [`HingeSample`] | section 2.4 |
 //!
@@ -38,6 +39,7 @@ mod design;
 mod domain;
 mod jet;
 mod material;
+mod regime;
 mod sample;
 mod strain_volumes;
 pub mod tensile;
@@ -47,6 +49,7 @@ pub use design::{HingeConstants, HingeDesign, InvalidDesign};
 pub use domain::{InvalidDomain, TrainingDomain};
 pub use jet::Jet;
 pub use material::{InvalidMaterial, MaterialError, STANDARD_GRAVITY, SheetMaterial};
+pub use regime::Regime;
 pub use sample::HingeSample;
 pub use strain_volumes::{NoHistogram, StrainVolumes};
 pub use tensile::TensileError;

@@ -1,11 +1,11 @@
 //! Named mesh tiers: mesh fineness of the window, with CPU time and errors.
 
 use crate::element::ElementKind;
-use hinge::HingeDesign;
+use hinge::{HingeDesign, Regime};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A named mesh fineness, in order of increasing CPU time.
+/// A named mesh fineness; for each regime in order of increasing CPU time.
 ///
 /// | tier | bricks | CPU seconds | W | F_a | M_theta | D |
 /// |---|---|---|---|---|---|---|
@@ -26,6 +26,17 @@ use serde::{Deserialize, Serialize};
 /// folds along two lines through O, one of them at 40 deg to the other; therefore the columns are fine out to
 /// 0.8 w_lig on the free edge. A hinge in compression bends its panels; therefore the rings around O are as fine
 /// as the columns. The number of rings determines the error of the energy before yield.
+///
+/// The plate tiers are for the other [`Regime`]. A ligament that bends in the plane is strained across its width: these
+/// meshes have few columns, and twice the rings between the hole and the free edge.
+///
+/// | tier | bricks | CPU seconds |
+/// |---|---|---|
+/// | `plate-tiny` | 72 | 2 |
+/// | `plate` | 128 | 5 |
+/// | `plate-reference` | 768 | 70 |
+///
+/// Their errors are in docs/results/plates.
 #[derive(
     Clone,
     Copy,
@@ -59,6 +70,12 @@ pub enum Tier {
     Reference,
     /// 1777 wedges in one layer, as in the paper; 171 CPU seconds a ray.
     Paper,
+    /// Plates: 72 bricks in two layers; 2 CPU seconds a ray.
+    PlateTiny,
+    /// Plates: 128 bricks in two layers; 5 CPU seconds a ray.
+    Plate,
+    /// Plates: 768 bricks in three layers; 70 CPU seconds a ray. The errors of the other plate tiers are relative to it.
+    PlateReference,
 }
 
 /// All parameters of the mesh of a design, except the sheet thickness.
@@ -117,15 +134,31 @@ pub struct Imperfection {
 }
 
 impl Tier {
-    /// All tiers, in order of increasing CPU time.
-    pub const ALL: [Tier; 6] = [
+    /// All tiers; those of a regime in order of increasing CPU time.
+    pub const ALL: [Tier; 9] = [
         Tier::Tiny,
         Tier::Small,
         Tier::Default,
         Tier::Fine,
         Tier::Reference,
         Tier::Paper,
+        Tier::PlateTiny,
+        Tier::Plate,
+        Tier::PlateReference,
     ];
+
+    /// The ligaments that this mesh is for.
+    pub fn regime(self) -> Regime {
+        match self {
+            Tier::Tiny
+            | Tier::Small
+            | Tier::Default
+            | Tier::Fine
+            | Tier::Reference
+            | Tier::Paper => Regime::Film,
+            Tier::PlateTiny | Tier::Plate | Tier::PlateReference => Regime::Plate,
+        }
+    }
 
     /// The mesh of this tier.
     pub fn recipe(self) -> MeshRecipe {
@@ -151,17 +184,21 @@ impl Tier {
                 }),
                 1,
             ),
+            Tier::PlateTiny => (structured(2, 8, 2, 3, 0.25), 2),
+            Tier::Plate => (structured(4, 8, 2, 4, 0.25), 2),
+            Tier::PlateReference => (structured(8, 16, 4, 8, 0.125), 3),
         };
         MeshRecipe {
             plane,
             layers,
-            imperfection: Imperfection::default(),
+            imperfection: Imperfection::of(self.regime()),
         }
     }
 
-    /// The next finer tier with the same element, if there is one.
+    /// The next finer tier of the regime with the same element, if there is one.
     pub fn finer(self) -> Option<Tier> {
-        let same = |tier: &Tier| tier.recipe().element() == self.recipe().element();
+        let kind = |tier: Tier| (tier.regime(), tier.recipe().element());
+        let same = |tier: &Tier| kind(*tier) == kind(self);
         Self::ALL.into_iter().filter(same).find(|tier| *tier > self)
     }
 
@@ -174,6 +211,9 @@ impl Tier {
             Tier::Fine => 39.0,
             Tier::Reference => 126.0,
             Tier::Paper => 171.0,
+            Tier::PlateTiny => 2.0,
+            Tier::Plate => 5.0,
+            Tier::PlateReference => 70.0,
         }
     }
 
@@ -185,7 +225,9 @@ impl Tier {
 
 /// An unknown tier name; the message lists the known ones.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("unknown mesh tier `{0}`; choose tiny, small, default, fine, reference or paper")]
+#[error(
+    "unknown mesh tier `{0}`; choose tiny, small, default, fine, reference or paper, for plates plate-tiny, plate or plate-reference"
+)]
 pub struct UnknownTier(String);
 
 impl UnknownTier {
@@ -204,17 +246,20 @@ impl MeshRecipe {
     }
 }
 
-impl Default for Imperfection {
-    /// The amplitude that the paper measured; half-widths equal to the ligament width.
-    fn default() -> Self {
+impl Imperfection {
+    /// The bump of a ligament as cut: of a film the amplitude that the paper measured, of a plate one fiftieth of the
+    /// thickness, because a plate does not warp where it is cut. With one thickness, W of a plate is 13 to 37 % too small.
+    /// Half-widths are equal to the ligament width.
+    pub fn of(regime: Regime) -> Self {
         Self {
-            amplitude: 1.0,
+            amplitude: match regime {
+                Regime::Film => 1.0,
+                Regime::Plate => 0.02,
+            },
             widths: [1.0, 1.0],
         }
     }
-}
 
-impl Imperfection {
     /// Height (mm) of the bump at (x, y).
     pub(crate) fn height(&self, design: &HingeDesign, thickness: f64, x: f64, y: f64) -> f64 {
         let [x_share, y_share] = [x / self.widths[0], y / self.widths[1]].map(|v| v / design.w_lig);
@@ -235,6 +280,8 @@ mod tests {
         }
         assert_eq!(Tier::Reference.finer(), None);
         assert_eq!(Tier::Paper.finer(), None);
+        assert_eq!(Tier::Plate.finer(), Some(Tier::PlateReference));
+        assert_eq!(Tier::PlateReference.finer(), None);
         assert!(
             "huge"
                 .parse::<Tier>()

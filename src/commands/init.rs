@@ -3,17 +3,19 @@
 mod edited;
 mod first_scene;
 mod similar_scene;
+mod template;
 
 use crate::commands::init::edited::{heading, scale, set};
-use crate::commands::init::first_scene::FirstScene;
+use crate::commands::init::first_scene::{FirstScene, THINNEST_PLATE};
 use crate::commands::init::similar_scene::{Like, SimilarScene};
+use crate::commands::init::template::Template;
 use crate::commands::input_file;
 use crate::ui::output_file;
 use crate::ui::shell_word::shell_word;
 use crate::ui::width_by_height::width_by_height;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use hinge::SheetMaterial;
+use hinge::{Regime, SheetMaterial};
 use mesher::Tier;
 use std::path::{Path, PathBuf};
 use support::regular_file;
@@ -23,9 +25,11 @@ use toml_edit::DocumentMut;
 /// Create a folder with material, campaign, training and scene for a sheet of your own
 ///
 /// Ligament widths, windows, number of panels, stroke and target are scaled to the thickness and the size of the
-/// sheet. The files run as they are: with a material that has weights, `design` at once; with another, after its
+/// sheet. A sheet that is large for its thickness has wide ligaments that fold, and is held flat; from 1 mm on, others have
+/// ligaments narrower than the thickness, and stay flat by themselves. The files run as they are: with a material that has weights, `design` at once; with another, after its
 /// campaign and training. README.md in the folder lists the commands.
-/// Examples: kirigami init my-sheet --thickness 0.1 --size 210x297;
+/// Examples: kirigami init my-sheet --thickness 3 --size 210x297;
+/// kirigami init film --thickness 0.1;
 /// kirigami init thin --like configs/scenes/pet-3x3.toml --thickness 0.1;
 /// kirigami init longer --like configs/scenes/a4-polyester.toml --size 420x594
 #[derive(Args)]
@@ -33,34 +37,37 @@ pub struct InitCommand {
     /// Folder to create
     #[arg(value_name = "FOLDER")]
     folder: PathBuf,
-    /// Sheet material (TOML) [default: configs/materials/pet-0.5mm.toml; with --like that of its scene]
+    /// Sheet material (TOML) [default: configs/materials/polypropylene-3mm.toml, below 1 mm of thickness pet-0.5mm.toml; with
+    /// --like that of its scene]
     #[arg(long, value_name = "FILE")]
     material: Option<PathBuf>,
     /// Thickness of the sheet (mm) [default: that of the material file; with --like that of its sheet]
     #[arg(long, value_name = "MM")]
     thickness: Option<f64>,
-    /// Width and height of the sheet (mm) [default: 210x297 up to a thickness of 0.1 mm, above it in proportion to the
-    /// thickness; with --like those of its sheet, in proportion to the thickness]
+    /// Width and height of the sheet (mm) [default: 210x297 up to a thickness of 0.1 mm and from 1 to 3 mm, above these in
+    /// proportion to the thickness; with --like those of its sheet, in proportion to the thickness]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
     size: Option<[f64; 2]>,
     /// Scene whose pattern, panels, supports, loads and target are taken, scaled to thickness and size. With weights the
     /// loads open the new sheet as far as that of the scene
     #[arg(long, value_name = "SCENE")]
     like: Option<PathBuf>,
-    /// Weights that the scene uses if they are for this material [default: data/pet-0.5mm/medium.safetensors, if it exists;
-    /// with --like those of its scene]
+    /// Weights that the scene uses if they are for this material [default: those for it among the shipped ones; with --like
+    /// those of its scene]
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
 }
 
-/// The material of a sheet unless another one is given, and its shipped weights.
-const MATERIAL: &str = "configs/materials/pet-0.5mm.toml";
-const WEIGHTS: &str = "data/pet-0.5mm/medium.safetensors";
-/// The shipped files that are scaled.
-const CAMPAIGN: &str = include_str!("../../configs/campaigns/pet-0.5mm.toml");
-const TRAINING: &str = include_str!("../../configs/training/medium.toml");
-/// Thickness of the shipped campaign's sheet (mm).
-const CAMPAIGN_THICKNESS: f64 = 0.5;
+/// The material of a plate and of a film unless another one is given.
+const PLATE: &str = "configs/materials/polypropylene-3mm.toml";
+const FILM: &str = "configs/materials/pet-0.5mm.toml";
+/// The shipped weights; those for the material of a sheet are used.
+const WEIGHTS: [&str; 4] = [
+    "data/polypropylene-3mm/medium.safetensors",
+    "data/petg-3mm/medium.safetensors",
+    "data/aluminium-2mm/medium.safetensors",
+    "data/pet-0.5mm/medium.safetensors",
+];
 
 impl InitCommand {
     pub(crate) fn run(&self) -> Result<()> {
@@ -73,40 +80,66 @@ impl InitCommand {
         let material = match (&self.material, &like) {
             (Some(material), _) => material.clone(),
             (None, Some(like)) => like.beside(&like.scene.config.material),
-            (None, None) => MATERIAL.into(),
+            (None, None) => match self.thickness {
+                Some(thickness) if thickness < THINNEST_PLATE => FILM.into(),
+                _ => PLATE.into(),
+            },
         };
         input_file::require(&material, "--material")?;
         let measured = SheetMaterial::load(&material)?;
-        let text = material_text(&material)?;
         let alike = like.as_ref().map(|like| like.scene.material.thickness);
         let sheet = SheetMaterial {
             thickness: self.thickness.or(alike).unwrap_or(measured.thickness),
             ..measured.clone()
         };
         sheet.validate()?;
-        let weights = self.weights_of(&measured, like.as_ref())?;
-        let trained = weights.is_some();
-        let weights = weights.unwrap_or_else(|| "weights.safetensors".into());
-        let scene = match like {
+        let fitting = self.weights_of(&measured, like.as_ref())?;
+        let of = |regime| fitting.iter().find(|weights| weights.regime == regime);
+        let path = |weights: Option<&Weights>| match weights {
+            Some(weights) => weights.file.clone(),
+            None => "weights.safetensors".into(),
+        };
+        let (scene, regime, trained) = match like {
             Some(like) => {
-                let material = trained.then_some(&*material);
-                SimilarScene::new(like, &sheet, self.size)?.text(&weights, material)?
+                let of_scene = &like.scene;
+                let widest = of_scene.config.ligament.range[1] / of_scene.material.thickness;
+                let (regime, weights) = (Regime::of(widest), fitting.first());
+                let material = weights.map(|_| &*material);
+                let scene = SimilarScene::new(like, &sheet, self.size)?;
+                (
+                    scene.text(&path(weights), material)?,
+                    regime,
+                    weights.is_some(),
+                )
             }
-            None => FirstScene::new(self.size, sheet.thickness)?.text(&weights)?,
+            None => {
+                let named = self.weights.as_ref().and(fitting.first());
+                let named = named.map(|weights| weights.regime);
+                let first = FirstScene::new(self.size, sheet.thickness, named)?;
+                let weights = of(first.regime);
+                (first.text(&path(weights))?, first.regime, weights.is_some())
+            }
         };
         let name = self
             .folder
             .file_name()
             .unwrap_or_default()
             .to_string_lossy();
-        let campaign = campaign(&name, measured.thickness, Tier::Default)?;
+        // The hinges of a plate are solved in its thickness: in that of a film they would be too narrow.
+        let solved = match regime {
+            Regime::Plate if !trained => sheet.thickness,
+            _ => measured.thickness,
+        };
+        let text = material_text(&material, solved)?;
+        let campaign = campaign(&name, solved, tier_of(regime))?;
 
         output_file::create_folder(&self.folder)?;
-        let readme = readme(&self.folder, trained);
+        let template = Template::of(regime);
+        let readme = readme(&self.folder, template.why, trained);
         for (file, contents) in [
             ("material.toml", &text),
             ("campaign.toml", &campaign),
-            ("training.toml", &TRAINING.to_owned()),
+            ("training.toml", &template.training.to_owned()),
             ("scene.toml", &scene),
             ("README.md", &readme),
         ] {
@@ -116,35 +149,66 @@ impl InitCommand {
         Ok(())
     }
 
-    /// The path of the weights, if they are for the material. Weights that are named must exist.
-    fn weights_of(&self, material: &SheetMaterial, like: Option<&Like>) -> Result<Option<PathBuf>> {
+    /// The weights that are for the material. Weights that are named must exist.
+    fn weights_of(&self, material: &SheetMaterial, like: Option<&Like>) -> Result<Vec<Weights>> {
         let candidates = match &self.weights {
             Some(weights) => {
                 input_file::require(weights, "--weights")?;
                 vec![weights.clone()]
             }
             None => {
-                let shipped = Some(PathBuf::from(WEIGHTS)).filter(|weights| weights.is_file());
+                let shipped = WEIGHTS.map(PathBuf::from).into_iter();
+                let existing = shipped.filter(|weights| weights.is_file());
                 like.and_then(Like::weights)
                     .into_iter()
-                    .chain(shipped)
+                    .chain(existing)
                     .collect()
             }
         };
-        for weights in candidates {
-            let trained = Surrogate::load(&weights)?.card().material_hash.clone();
-            if trained == Some(material.law_hash()) {
-                return Ok(Some(std::path::absolute(weights)?));
+        let mut fitting = Vec::new();
+        for file in candidates {
+            let surrogate = Surrogate::load(&file)?;
+            let card = surrogate.card();
+            if card.material_hash == Some(material.law_hash()) {
+                fitting.push(Weights {
+                    file: std::path::absolute(file)?,
+                    regime: Regime::of(card.domain.w_lig[1] / material.thickness),
+                });
             }
         }
-        Ok(None)
+        Ok(fitting)
     }
 }
 
-/// The shipped campaign, scaled to a sheet of `thickness` (mm); its material is `material.toml` in the same folder.
+/// Weights for the material, and the ligaments that they know.
+struct Weights {
+    file: PathBuf,
+    regime: Regime,
+}
+
+/// The tier of a campaign of a material, unless a sheet says otherwise.
+pub(crate) fn usual_tier(material: &SheetMaterial) -> Tier {
+    tier_of(if material.thickness >= THINNEST_PLATE {
+        Regime::Plate
+    } else {
+        Regime::Film
+    })
+}
+
+/// The tier of the campaigns of a regime.
+fn tier_of(regime: Regime) -> Tier {
+    match regime {
+        Regime::Film => Tier::Default,
+        Regime::Plate => Tier::Plate,
+    }
+}
+
+/// The shipped campaign of the regime of a tier, scaled to a sheet of `thickness` (mm); its material is `material.toml` in
+/// the same folder.
 pub(crate) fn campaign(name: &str, thickness: f64, tier: Tier) -> Result<String> {
-    let factor = thickness / CAMPAIGN_THICKNESS;
-    let mut campaign: DocumentMut = CAMPAIGN.parse()?;
+    let template = Template::of(tier.regime());
+    let factor = thickness / template.campaign_thickness;
+    let mut campaign: DocumentMut = template.campaign.parse()?;
     set(&mut campaign["tier"], tier.to_string());
     set(&mut campaign["name"], name);
     set(&mut campaign["material"], "material.toml");
@@ -163,8 +227,8 @@ pub(crate) fn campaign(name: &str, thickness: f64, tier: Tier) -> Result<String>
     Ok(campaign.to_string())
 }
 
-/// The commands of the project, in their order.
-fn readme(folder: &Path, trained: bool) -> String {
+/// What the sheet is, and the commands of the project in their order.
+fn readme(folder: &Path, why: &str, trained: bool) -> String {
     let path = |name: &str| shell_word(&folder.join(name));
     let (campaign, scene) = (path("campaign.toml"), path("scene.toml"));
     let (jobs, database) = (path("campaign"), path("hinges.parquet"));
@@ -187,14 +251,15 @@ fn readme(folder: &Path, trained: bool) -> String {
             format!("{learn}{design}"),
         )
     };
-    format!("# A sheet of your own\n\n{first}\n\n```sh\n{then}```\n")
+    format!("# A sheet of your own\n\n{why}\n\n{first}\n\n```sh\n{then}```\n")
 }
 
-/// The text of a material file for another folder: the path of its measured curve becomes absolute.
-pub(crate) fn material_text(path: &Path) -> Result<String> {
+/// The text of a material file for another folder, in a thickness (mm): the path of its measured curve becomes absolute.
+pub(crate) fn material_text(path: &Path, thickness: f64) -> Result<String> {
     let text = regular_file::read_to_string(path)
         .with_context(|| format!("cannot read {}", path.display()))?;
     let mut material: DocumentMut = text.parse()?;
+    set(&mut material["thickness"], thickness);
     let curve = material.get("tensile_csv").and_then(|curve| curve.as_str());
     if let Some(curve) = curve.map(|curve| path.with_file_name(curve)) {
         let curve = std::path::absolute(curve)?;
@@ -214,7 +279,7 @@ mod tests {
 
     #[test]
     fn the_commands_of_a_folder_with_a_space_can_be_copied() {
-        let text = readme(Path::new("my sheet"), true);
+        let text = readme(Path::new("my sheet"), "It is a film.", true);
         assert!(
             text.contains("kirigami design 'my sheet/scene.toml'\n"),
             "{text}"
@@ -227,12 +292,13 @@ mod tests {
         let path = folder.path().join("film.toml");
         std::fs::write(
             &path,
-            "name = \"film\"\ntensile_csv = \"curve.csv\" # measured\n",
+            "name = \"film\"\nthickness = 0.5\ntensile_csv = \"curve.csv\" # measured\n",
         )
         .unwrap();
         let curve = folder.path().join("curve.csv");
-        let expected = format!("name = \"film\"\ntensile_csv = {curve:?} # measured\n");
-        assert_eq!(material_text(&path).unwrap(), expected);
+        let expected =
+            format!("name = \"film\"\nthickness = 3.0\ntensile_csv = {curve:?} # measured\n");
+        assert_eq!(material_text(&path, 3.0).unwrap(), expected);
     }
 
     #[test]

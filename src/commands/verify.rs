@@ -47,7 +47,7 @@ pub struct VerifyCommand {
     #[arg(long, value_name = "N")]
     sample: Option<NonZeroUsize>,
     /// Mesh tier of the windows [default: that of the weights' database, or the finer tier that it was
-    /// corrected to; of a whole sheet: small]; a window of the tier reference takes two minutes on one core
+    /// corrected to; of a whole sheet small, or plate for a plate]; a window of the tier reference takes two minutes on one core
     #[arg(long, value_name = "TIER")]
     tier: Option<Tier>,
     /// Deploy the sheet with finite elements for its hinges, which are solved several times

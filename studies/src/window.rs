@@ -9,32 +9,31 @@ use crate::window::convergence::{
 use anyhow::{Result, ensure};
 use clap::Args;
 use fe_driver::Solved;
-use hinge::{HingeConstants, HingeDesign, SheetMaterial};
+use hinge::{HingeConstants, HingeDesign, Regime, SheetMaterial};
 use kirigami::commands::solve_args::{SolveArgs, task_error};
 use kirigami::ui::{picture, run_folder};
 use mesher::{MeshRecipe, PlaneRecipe, Tier};
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Measure the convergence of the window solve: mesh, increments, imperfection, window radius, layers
 ///
 /// Six hinges are rotated by 60 degrees, with one choice varied at a time. Hinges with a cut angle of 120 degrees
 /// are not solved: they are the mirror images of those of 60. Solutions are stored in the
 /// folder, so the study can be stopped and continued. Writes window.csv, window.md,
-/// tradeoff.md and window.svg. Example: kirigami-studies window --quick
+/// tradeoff.md and window.svg. Examples: kirigami-studies window --quick; kirigami-studies window --plate
 #[derive(Args)]
 pub struct WindowStudy {
     /// Solve only the paper's hinge, 18 mm and 90 degrees, without the tiers that take minutes
     #[arg(long)]
     quick: bool,
-    /// Sheet material (TOML)
-    #[arg(
-        long,
-        value_name = "FILE",
-        default_value = "configs/materials/pet-0.5mm.toml"
-    )]
-    material: PathBuf,
+    /// Hinges of a plate, which turn about their middle, in place of those of a film
+    #[arg(long)]
+    plate: bool,
+    /// Sheet material (TOML) [default: configs/materials/pet-0.5mm.toml; with --plate polypropylene-3mm.toml]
+    #[arg(long, value_name = "FILE")]
+    material: Option<PathBuf>,
     /// Folder for the tables, the chart and the solutions
     #[arg(long, value_name = "FOLDER", default_value = "runs/study-window")]
     out: PathBuf,
@@ -47,13 +46,17 @@ type Row = (StudyCase, Solved);
 
 impl WindowStudy {
     pub fn run(&self) -> Result<()> {
-        let material = SheetMaterial::load(&self.material)?;
+        let usual = Path::new("configs/materials").join(match self.regime() {
+            Regime::Film => "pet-0.5mm.toml",
+            Regime::Plate => "polypropylene-3mm.toml",
+        });
+        let material = SheetMaterial::load(self.material.as_deref().unwrap_or(&usual))?;
         let _held = run_folder::hold(&self.out)?;
         let hinges = self.hinges().into_iter();
         let windows = self.solve.service(&self.out)?;
         let versions = windows.versions();
         let cases: Vec<_> = hinges
-            .flat_map(|design| study_cases(design, &material, &versions, self.quick))
+            .flat_map(|design| study_cases(design, self.regime(), &material, &versions, self.quick))
             .collect();
         let solves: Vec<_> = cases.iter().map(|case| case.solve.clone()).collect();
         let solved = windows.solve(&solves);
@@ -92,17 +95,33 @@ impl WindowStudy {
         Ok(())
     }
 
+    fn regime(&self) -> Regime {
+        if self.plate {
+            Regime::Plate
+        } else {
+            Regime::Film
+        }
+    }
+
     fn hinges(&self) -> Vec<HingeDesign> {
-        let all = [5.0, 18.0, 25.0].map(|w| [60.0, 90.0].map(|alpha| (w, alpha)));
+        let (widths, usual, constants) = match self.regime() {
+            Regime::Film => ([5.0, 18.0, 25.0], 18.0, HingeConstants::PAPER),
+            Regime::Plate => ([1.0, 2.0, 3.0], 2.0, PLATE),
+        };
+        let all = widths.map(|w| [60.0, 90.0].map(|alpha| (w, alpha)));
         all.into_iter()
             .flatten()
-            .filter(|hinge| !self.quick || *hinge == (18.0, 90.0))
-            .map(|(w_lig, alpha_deg)| {
-                HingeConstants::PAPER.hinge(w_lig, f64::to_radians(alpha_deg))
-            })
+            .filter(|hinge| !self.quick || *hinge == (usual, 90.0))
+            .map(|(w_lig, alpha_deg)| constants.hinge(w_lig, f64::to_radians(alpha_deg)))
             .collect()
     }
 }
+
+/// The constants of the hinges of a plate of 3 mm.
+const PLATE: HingeConstants = HingeConstants {
+    r_win: 12.0,
+    ..HingeConstants::PAPER
+};
 
 /// The hinge and the value of a case.
 fn title(case: &StudyCase) -> String {
@@ -156,8 +175,8 @@ fn difference((case, solution): &Row, rows: &[Row]) -> [f64; 5] {
 
 fn markdown(rows: &[Row], failures: &str) -> Result<String> {
     let mut text = "# Convergence of the window solve\n\n\
-        Pure rotations to 60 degrees. Differences are root mean squares over the ray, relative \
-        to the value named in the heading.\n"
+        Rotations to 60 degrees, of a film about the tip, of a plate about the middle of the ligament. Differences are \
+        root mean squares over the ray, relative to the value named in the heading.\n"
         .to_owned();
     let mut heading = String::new();
     for row @ (case, solution) in rows {
@@ -275,10 +294,10 @@ fn hinges(rows: &[Row]) -> Vec<String> {
 /// One row per tier: its cost, and its largest difference from the finest tier over the hinges.
 fn tradeoff(rows: &[Row]) -> Result<String> {
     let mesh = rows.iter().find(|(case, _)| case.study == "mesh");
-    let against = mesh.map_or("none", |(case, _)| case.against);
+    let against = mesh.map_or("none", |(case, _)| &case.against);
     let mut text = format!(
         "## Window tier\n\n\
-        Pure rotations to 60 degrees. CPU time (mean over the hinges) and memory (maximum over the hinges) are those \
+        Rotations to 60 degrees. CPU time (mean over the hinges) and memory (maximum over the hinges) are those \
         of CalculiX. Differences from the tier `{against}` are root mean squares over the ray, the maximum over the \
         hinges. Driver is the fraction of the time from the mesh to the samples in which CalculiX does not run \
         (median). Two cores solve two rays at a time. `kirigami-studies window`.\n\n\

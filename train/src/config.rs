@@ -162,7 +162,7 @@ mod tests {
             config.validate().unwrap();
             count += 1;
         }
-        assert_eq!(count, 5);
+        assert_eq!(count, 6);
     }
 
     #[test]

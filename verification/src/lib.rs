@@ -84,4 +84,4 @@ pub use sheet_cost::SheetCost;
 pub use sheet_errors::SheetErrors;
 pub use spot_check::{SpotCheck, SpotPath, random_paths, spot_check};
 pub use verification_error::VerificationError;
-pub use whole_sheet::{Branch, sheet_problem};
+pub use whole_sheet::{Branch, sheet_problem, usual_sheet_tier};

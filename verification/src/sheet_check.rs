@@ -445,6 +445,8 @@ fn flatness(check: &SheetCheck, last: &StateCheck, of: &str) -> SheetFinding {
         (Severity::Error, "does not stay flat")
     } else if rms > OFF * check.size {
         (Severity::Error, "opens otherwise than predicted")
+    } else if check.support == Posture::HeldFlat {
+        (Severity::Note, "goes where the law has it")
     } else {
         (Severity::Note, "stays flat")
     };

@@ -6,8 +6,8 @@ use design::scene::{Attachment, Posture, PostureConfig, Scene, SupportKind};
 use design::sheet::cut_sheet::{Hinge, PanelPoint, Sheet};
 use design::sheet::hinge_window::Window;
 use fe_driver::{Held, Keeping, Place, Pulled, SheetProblem};
-use hinge::HingeDesign;
-use mesher::{Frame, PanelShape, PlacedWindow, PlaneRecipe, SheetShape, Tier};
+use hinge::{HingeDesign, Regime};
+use mesher::{Frame, Imperfection, PanelShape, PlacedWindow, PlaneRecipe, SheetShape, Tier};
 
 /// Size of the elements of panels over r_win.
 const ELEMENT_SIZE: f64 = 0.8;
@@ -19,10 +19,8 @@ const SHRINK: f64 = 0.93;
 const LEAST_RADIUS: f64 = 2.52;
 /// Layers of elements through the thickness.
 const LAYERS: usize = 2;
-/// Ligament width over thickness up to which a ligament bends in the plane of the sheet and has no bump to speak of.
+/// Ligament width over thickness up to which a ligament has the bump of a plate.
 const IN_PLANE: f64 = 2.0;
-/// Height of the bump of such a ligament over the thickness; that of others is one thickness, as the paper measured.
-const SLIGHT_BUMP: f64 = 0.02;
 
 /// To which sides the bumps of the hinges point: each pattern may lead to another branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,6 +59,15 @@ impl Branch {
             Self::Rows => j,
         };
         if other % 2 == 0 { 1.0 } else { -1.0 }
+    }
+}
+
+/// The tier on which a whole sheet is solved unless another one is named.
+pub fn usual_sheet_tier(scene: &Scene) -> Tier {
+    let widest = scene.config.ligament.range[1] / scene.material.thickness;
+    match Regime::of(widest) {
+        Regime::Film => Tier::Small,
+        Regime::Plate => Tier::Plate,
     }
 }
 
@@ -289,10 +296,10 @@ fn sheet_shape(
     let windows = std::iter::zip(Window::of_sheet(sheet), &radii);
     let placed = (sheet.hinges.iter().zip(sheet.designs())).zip(windows).map(
         |((hinge, design), (window, radius))| {
-            let bump = if design.w_lig <= IN_PLANE * thickness {
-                SLIGHT_BUMP
+            let regime = if design.w_lig <= IN_PLANE * thickness {
+                Regime::Plate
             } else {
-                1.0
+                Regime::Film
             };
             PlacedWindow {
                 design: HingeDesign {
@@ -304,7 +311,7 @@ fn sheet_shape(
                     e_x: window.e_sec,
                 },
                 panels: [Some(hinge.site.a), Some(hinge.site.b)],
-                bump: branch.sign(hinge) * bump,
+                bump: branch.sign(hinge) * Imperfection::of(regime).amplitude,
             }
         },
     );

@@ -208,6 +208,13 @@ pub enum WeightsMismatch {
     },
     #[error("the material `{trained}`, the scene's is `{file}`")]
     Material { trained: String, file: String },
+    #[error(
+        "ligaments of {:.2} to {:.2} thicknesses, but ligament.range of the scene is {:.2} to {:.2} thicknesses of its sheet: \
+         ligaments no wider than the sheet is thick bend in its plane, wider ones buckle, and no law holds for both. \
+         Change ligament.range or the weights",
+        trained[0], trained[1], range[0], range[1]
+    )]
+    Regime { trained: [f64; 2], range: [f64; 2] },
     #[error("fillet_ratio = {trained}, but the scene has process.fillet_ratio = {scene}")]
     FilletRatio { trained: f64, scene: f64 },
     #[error(

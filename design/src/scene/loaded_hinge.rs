@@ -7,7 +7,7 @@ use crate::scene::invalid_scene::{InvalidScene, WeightsMismatch};
 use crate::scene::keys::{SceneConfig, beside};
 use crate::scene::scene_error::SceneError;
 use crate::sheet::cut_sheet::HingePoint;
-use hinge::SheetMaterial;
+use hinge::{Regime, SheetMaterial};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -308,6 +308,12 @@ fn fitted(
         }
     }
     let scale = config.scale(material);
+    let trained = card.domain.w_lig.map(|w_lig| w_lig / material.thickness);
+    let range = (config.ligament.range).map(|w_lig| w_lig / scale / material.thickness);
+    let regime = Regime::of(trained[1]);
+    if range.into_iter().any(|width| Regime::of(width) != regime) {
+        return Err(WeightsMismatch::Regime { trained, range });
+    }
     let (trained, scene) = (card.hinge.fillet_ratio, process.fillet_ratio);
     if trained != scene {
         return Err(WeightsMismatch::FilletRatio { trained, scene });

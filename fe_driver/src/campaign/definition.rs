@@ -6,7 +6,7 @@ use crate::solve::attempts::SolveListError;
 use crate::solve::hinge_path::Ray;
 use crate::solve::tool_versions::ToolVersions;
 use crate::solve::window_solve::{WindowProblem, WindowSolve};
-use hinge::{HingeConstants, InvalidDesign, MaterialError, SheetMaterial};
+use hinge::{HingeConstants, InvalidDesign, MaterialError, Regime, SheetMaterial};
 use mesher::Tier;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -150,6 +150,19 @@ impl CampaignFile {
         })
     }
 
+    /// What is wrong if the tier is not for all ligaments of the box.
+    fn other_regime(&self, thickness: f64) -> Option<String> {
+        let regime = self.tier.regime();
+        let other = |w_lig: &f64| Regime::of(w_lig / thickness) != regime;
+        let w_lig = self.rays.w_lig.into_iter().find(other)?;
+        let (tier, bound) = (self.tier, Regime::WIDEST_PLATE * thickness);
+        Some(format!(
+            "tier = \"{tier}\" is for ligaments of a {regime}, but rays.w_lig contains {w_lig} mm: ligaments of up to \
+             {bound} mm bend in the plane of a sheet of {thickness} mm (tier \"plate\"), wider ones buckle (tier \
+             \"default\"), and no energy holds for both"
+        ))
+    }
+
     /// The defect of the narrowest or the widest hinge of the box; all others lie between them.
     fn impossible_design(&self) -> Option<InvalidDesign> {
         self.rays.w_lig.into_iter().find_map(|w_lig| {
@@ -178,6 +191,12 @@ impl Campaign {
         }
         let folder = path.parent().unwrap_or(Path::new(""));
         let material = SheetMaterial::load(&folder.join(&file.material))?;
+        if let Some(reason) = file.other_regime(material.thickness) {
+            return Err(CampaignError::Invalid {
+                path: path.to_owned(),
+                reason,
+            });
+        }
         let further = match &file.extra_rays {
             Some(rays) => read_extra_rays(&folder.join(rays), &file.design)?,
             None => Vec::new(),
@@ -230,7 +249,11 @@ mod tests {
 
     #[test]
     fn the_shipped_campaigns_are_read() {
-        for (name, count) in [("demo.toml", 40), ("pet-0.5mm.toml", 1500)] {
+        for (name, count) in [
+            ("demo.toml", 40),
+            ("pet-0.5mm.toml", 1500),
+            ("polypropylene-3mm.toml", 320),
+        ] {
             let campaign = Campaign::load(&shipped(name)).unwrap();
             let jobs: Vec<_> = campaign.solves(&versions()).collect();
             assert_eq!(jobs.len(), count);
@@ -287,5 +310,7 @@ mod tests {
         assert!(message("r_win = 100.0", "r_win = 50.0").contains("r_win > 2.5 w_lig"));
         assert!(message("limit_s = 120.0", "limit_s = nan").contains("time_limit_s = NaN"));
         assert!(message("tier = \"tiny\"", "tier = \"huge\"").contains("huge"));
+        let plate = message("tier = \"tiny\"", "tier = \"plate\"");
+        assert!(plate.contains("ligaments of up to 0.5 mm"), "{plate}");
     }
 }

@@ -16,6 +16,7 @@
 //!
 //! with A and S the maximum tension and shear. A compressed ligament may additionally be sheared as long as it
 //! is slack, that is, while the distance of its ends is at most the original one: (1 + eta_a)^2 + eta_s^2 <= 1.
+//! A ligament of a plate turns freely about its middle: eta_a is measured from its axial opening there, c_1 theta + c_2 theta^2.
 //! For the paper's film and w_full = 8 mm no ray end stores more than about 500 N mm, five times the energy of a
 //! deployed hinge.
 
@@ -45,6 +46,10 @@ pub struct RayBox {
     pub w_lig: [f64; 2],
     /// Minimum and maximum cut angle (deg), above 0 and at most 90, because mirroring gives the rest.
     pub alpha_deg: [f64; 2],
+    /// The axial opening of a ligament that turns freely, over w_lig: coefficients of theta and theta^2 (rad). A plate's
+    /// ligament turns about its middle, [0.5, 0.16]. Pure rotations end there, and `eta_a` is measured from there.
+    #[serde(default)]
+    pub free_opening: [f64; 2],
     /// Maximum compression (negative) and maximum tension at the end of a ray, over w_lig; above -1 and below 1.
     pub eta_a: [f64; 2],
     /// Maximum shear of either sign at the end of a ray, over w_lig; at least 0 and below 1.
@@ -80,8 +85,8 @@ impl RayBox {
         let [log_w, alpha, theta, eta_a, eta_s] = point;
         let between = |[from, to]: [f64; 2], share: f64| from + (to - from) * share;
         let w_lig = between(self.w_lig.map(f64::ln), log_w).exp();
-        let end = if pure_rotation {
-            HingeDeformation::from_eta(0.0, 0.0, self.theta_deg[1].to_radians(), w_lig)
+        let [eta_a, eta_s, theta_deg] = if pure_rotation {
+            [0.0, 0.0, self.theta_deg[1]]
         } else {
             let theta = self.theta_at(theta);
             let range = self.range(w_lig, theta);
@@ -95,12 +100,20 @@ impl RayBox {
             let slack = (1.0 - (1.0 + eta_a).powi(2)).max(0.0).sqrt();
             let shear = stretched.max(slack).min(self.eta_s);
             let eta_s = between([-shear, shear], eta_s);
-            HingeDeformation::from_eta(eta_a, eta_s, theta.to_radians(), w_lig)
+            [eta_a, eta_s, theta]
         };
+        let theta = theta_deg.to_radians();
+        let eta_a = self.free(theta) + eta_a;
         Ray {
             design: common.hinge(w_lig, between(self.alpha_deg, alpha).to_radians()),
-            end,
+            end: HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig),
         }
+    }
+
+    /// eta_a of a ligament that turns freely by `theta` (rad).
+    fn free(&self, theta: f64) -> f64 {
+        let [first, second] = self.free_opening;
+        theta * (first + second * theta.abs())
     }
 
     /// The quantile of the rotation (degrees): the fraction `share` of the rays ends below it.
@@ -147,6 +160,10 @@ impl RayBox {
             (self.eta_a[1] < 1.0, "eta_a[1] < 1"),
             ((0.0..1.0).contains(&self.eta_s), "0 <= eta_s < 1"),
             (
+                self.free_opening.iter().all(|c| (0.0..=1.0).contains(c)),
+                "0 <= free_opening <= 1",
+            ),
+            (
                 -30.0 <= self.theta_deg[0]
                     && self.theta_deg[0] <= self.median_deg
                     && self.median_deg <= self.theta_deg[1]
@@ -190,6 +207,7 @@ mod tests {
     const BOX: RayBox = RayBox {
         w_lig: [5.0, 25.0],
         alpha_deg: [45.0, 90.0],
+        free_opening: [0.0, 0.0],
         eta_a: [-0.8, 0.25],
         eta_s: 0.4,
         theta_deg: [-5.0, 75.0],
@@ -251,6 +269,33 @@ mod tests {
         assert!((share(&|_, theta| theta < 25f64.to_radians()) - 0.44).abs() < 0.03);
         assert!((share(&|[eta_a, _], _| eta_a > 0.0) - 0.35).abs() < 0.03);
         assert!((share(&|_, theta| theta < 0.0) - 0.07).abs() < 0.03);
+    }
+
+    /// Rays of a plate end around the axial opening of a ligament that turns freely.
+    #[test]
+    fn rays_of_a_plate_are_measured_from_the_free_opening() {
+        let free_opening = [0.5, 0.16];
+        let plate = RayBox {
+            free_opening,
+            ..BOX
+        };
+        let pairs = std::iter::zip(plate.rays(&COMMON, 80, 1), BOX.rays(&COMMON, 80, 1));
+        for (plate, film) in pairs {
+            assert_eq!(
+                (plate.design, plate.end.theta),
+                (film.design, film.end.theta)
+            );
+            let theta = plate.end.theta;
+            let free = 0.5 * theta + 0.16 * theta * theta.abs();
+            let [plate, film] = [plate, film].map(|ray| ray.end.eta(ray.design.w_lig));
+            assert!((plate[0] - film[0] - free).abs() < 1e-12);
+            assert_eq!(plate[1], film[1]);
+        }
+        let turned = RayBox {
+            free_opening: [0.5, 16.0],
+            ..BOX
+        };
+        assert!(turned.defect().unwrap().contains("free_opening"));
     }
 
     /// Every octant of the states of deployed hinges contains rays, including compressed states with small

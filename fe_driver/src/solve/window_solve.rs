@@ -51,7 +51,7 @@ impl WindowProblem {
             hinge: hinge.into(),
             material: material.clone(),
             tier,
-            step: StepControl::default(),
+            step: StepControl::usual(tier.regime()),
         }
     }
 }
@@ -93,7 +93,8 @@ impl WindowSolve {
     /// Whether it has the mesh of its tier and the usual increments.
     fn is_usual(&self) -> bool {
         let problem = &self.problem;
-        self.mesh == problem.tier.recipe() && problem.step == StepControl::default()
+        let usual = StepControl::usual(problem.tier.regime());
+        self.mesh == problem.tier.recipe() && problem.step == usual
     }
 }
 

@@ -48,7 +48,7 @@ impl PlanCommand {
             duration(plan.seconds / processors() as f64),
             processors(),
             match plan.tally.timed {
-                0 => "the time for the polyester film of 0.5 mm; rays of another material may take longer".into(),
+                0 => "the usual time of its tier; rays of some materials take longer".into(),
                 timed => format!("by the time of the {timed} rays solved so far"),
             }
         );

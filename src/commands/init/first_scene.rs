@@ -1,6 +1,6 @@
 //! The first scene of a project: a sheet whose middle panel at the bottom is moved away from that at the top.
 //!
-//! The shipped A4 scene, with lengths in proportion to the thickness and the panels as small as their windows allow. The
+//! A shipped A4 scene, of a film or of a plate, with lengths in proportion to the thickness and as many panels as fit. The
 //! target is the rectangle that the uniform sheet of rigid panels a x b fills when every hinge opens by theta; (6):
 //!
 //! ```text
@@ -10,18 +10,19 @@
 //! It is rotated about the held panel by the rotation that the panel would have in the symmetric deployment.
 
 use crate::commands::init::edited::{heading, scale, set};
-use anyhow::{Result, ensure};
+use crate::commands::init::template::Template;
+use anyhow::{Context, Result};
 use design::scene::rounded;
+use hinge::Regime;
 use std::path::Path;
 use toml_edit::{Array, DocumentMut};
 
-const SCENE: &str = include_str!("../../../configs/scenes/a4-polyester.toml");
-/// Width and height of the shipped scene's sheet, its thickness, and the radius of its windows (mm).
+/// Width and height of the shipped scenes' sheets (mm).
 const A4: [f64; 2] = [210.0, 297.0];
-const THICKNESS: f64 = 0.1;
-const R_WIN: f64 = 20.0;
 /// Minimum side of a panel over the radius of a window: windows of neighbouring hinges do not overlap.
 const PANEL: f64 = 3.5;
+/// Thickness (mm) from which a sheet is a plate: the ligaments of a thinner one would be too narrow to be cut.
+pub(super) const THINNEST_PLATE: f64 = 1.0;
 /// theta (rad): 25 degrees.
 const OPENING: f64 = 0.436;
 /// Widths of the clips at the top and at the bottom over those of their edges.
@@ -31,28 +32,50 @@ const PULLED: f64 = 0.14;
 const FEWEST: usize = 3;
 
 pub(super) struct FirstScene {
+    pub(super) regime: Regime,
     size: [f64; 2],
     panels: [usize; 2],
     thickness: f64,
 }
 
 impl FirstScene {
-    /// The scene of a sheet of the given thickness and size (mm); an error if it is too thick for its size. Without a size
-    /// it is of A4, or as much larger as it is thicker than the shipped sheet.
-    pub(super) fn new(size: Option<[f64; 2]>, thickness: f64) -> Result<Self> {
-        let larger = f64::max(thickness / THICKNESS, 1.0);
+    /// The scene of a sheet of the given thickness and size (mm). Without a size it is of A4, or as much larger as it is
+    /// thicker than the shipped sheet. A sheet is a film if it is large enough for its thickness, and else a plate;
+    /// an error if it is too thin for that. `trained` is the regime of its weights, if there are any.
+    pub(super) fn new(
+        size: Option<[f64; 2]>,
+        thickness: f64,
+        trained: Option<Regime>,
+    ) -> Result<Self> {
+        let plate = thickness >= THINNEST_PLATE;
+        let regime = match (trained, size) {
+            (Some(trained), _) => trained,
+            (None, None) if plate => Regime::Plate,
+            (None, Some(size)) if plate && panels(size, thickness, Regime::Film).is_none() => {
+                Regime::Plate
+            }
+            (None, _) => Regime::Film,
+        };
+        let template = Template::of(regime);
+        let larger = f64::max(thickness / template.thickness, 1.0);
         let size = size.unwrap_or(A4.map(|side| rounded(larger * side)));
-        let panel = PANEL * R_WIN * thickness / THICKNESS;
-        let panels = size.map(|side| (side / panel) as usize);
-        let least = FEWEST as f64;
-        let thickest = size[0].min(size[1]) / least / PANEL / R_WIN * THICKNESS;
-        ensure!(
-            panels.iter().all(|&count| count >= FEWEST),
-            "a sheet of {thickness} mm has panels of at least {panel:.0} mm, and needs {FEWEST} of them along each side: \
-             use a larger sheet (--size) or a thinner one (--thickness, at most {:.2} mm for this size)",
-            thickest
-        );
+        let panels = panels(size, thickness, regime).with_context(|| {
+            let per_thickness = PANEL * template.r_win / template.thickness;
+            let thickest = size[0].min(size[1]) / FEWEST as f64 / per_thickness;
+            let or_thicker = if regime == Regime::Film {
+                format!(", or a plate from {THINNEST_PLATE} mm on")
+            } else {
+                String::new()
+            };
+            format!(
+                "a sheet of {thickness} mm with {regime} ligaments has panels of at least {:.0} mm, and needs {FEWEST} of them along each \
+                 side: use a larger sheet (--size) or a thinner one (--thickness, at most {thickest:.2} mm for this \
+                 size){or_thicker}",
+                per_thickness * thickness
+            )
+        })?;
         Ok(Self {
+            regime,
             size,
             panels,
             thickness,
@@ -61,16 +84,18 @@ impl FirstScene {
 
     /// The scene file, in a folder with `material.toml`.
     pub(super) fn text(&self, weights: &Path) -> Result<String> {
-        let factor = self.thickness / THICKNESS;
+        let template = Template::of(self.regime);
+        let factor = self.thickness / template.thickness;
         let [columns, rows] = self.panels;
         let (held, pulled) = ([columns / 2, rows - 1], [columns / 2, 0]);
-        let mut scene: DocumentMut = SCENE.parse()?;
+        let mut scene: DocumentMut = template.scene.parse()?;
         heading(
             &mut scene,
-            "# A sheet whose middle panel at the bottom is moved away from that at the top, written by `kirigami init`.\n\
-             # The panels are held flat, as between two clear plates that lie: a thin sheet that nothing holds leaves its plane\n\
-             # and opens less. Friction on the plates is not modelled.\n\
-             # Lengths in mm, forces in N, couples in N mm; paths are relative to this file.\n\n",
+            &format!(
+                "# A sheet whose middle panel at the bottom is moved away from that at the top, written by `kirigami init`.\n{}\
+                 # Lengths in mm, forces in N, couples in N mm; paths are relative to this file.\n\n",
+                template.says
+            ),
         );
         set(&mut scene["title"], "My first sheet");
         set(&mut scene["material"], "material.toml");
@@ -145,6 +170,17 @@ impl FirstScene {
     }
 }
 
+/// The panels along each side: of the usual size if [`FEWEST`] of them fit, else as few; `None` if these have no room for
+/// their windows.
+fn panels(size: [f64; 2], thickness: f64, regime: Regime) -> Option<[usize; 2]> {
+    let template = Template::of(regime);
+    let r_win = template.r_win * thickness / template.thickness;
+    let along = |side: f64| ((side / (template.panel * r_win)) as usize).max(FEWEST);
+    let panels = size.map(along);
+    let fits = |(side, count): (f64, usize)| side >= PANEL * r_win * count as f64;
+    std::iter::zip(size, panels).all(fits).then_some(panels)
+}
+
 struct Target {
     centre: [f64; 2],
     size: [f64; 2],
@@ -167,6 +203,7 @@ mod tests {
             size: [2438.4, 1219.2],
             panels: [3, 3],
             thickness: 0.5,
+            regime: Regime::Film,
         };
         let target = scene.target([1, 1]);
         assert!((target.size[0] - 2644.5).abs() < 0.5, "{:?}", target.size);
@@ -176,10 +213,21 @@ mod tests {
     }
 
     #[test]
-    fn a_sheet_that_is_too_thick_is_refused_with_the_thickness_that_fits() {
-        let message = FirstScene::new(Some(A4), 0.5).err().unwrap().to_string();
+    fn a_sheet_too_thick_for_a_film_and_too_thin_for_a_plate_is_refused() {
+        let first = |size, thickness| FirstScene::new(size, thickness, None);
+        let message = first(Some(A4), 0.5).err().unwrap().to_string();
         assert!(message.contains("at most 0.10 mm"), "{message}");
-        assert_eq!(FirstScene::new(Some(A4), 0.1).unwrap().panels, [3, 4]);
+        let film = first(Some(A4), 0.1).unwrap();
+        assert_eq!((film.panels, film.regime), ([3, 4], Regime::Film));
+        let plate = first(Some(A4), 3.0).unwrap();
+        assert_eq!((plate.panels, plate.regime), ([3, 4], Regime::Plate));
+        let message = first(Some(A4), 8.0).err().unwrap().to_string();
+        assert!(message.contains("at most 5.00 mm"), "{message}");
+        // Large enough for the ligaments of a film, and with weights of one regime.
+        let large = first(Some([3300.0, 4600.0]), 1.5).unwrap();
+        assert_eq!(large.regime, Regime::Film);
+        let trained = FirstScene::new(None, 1.5, Some(Regime::Film)).unwrap();
+        assert_eq!(trained.size, [3150.0, 4455.0]);
     }
 
     #[test]
@@ -188,9 +236,10 @@ mod tests {
             (0.05, A4),
             (0.1, A4),
             (0.5, [1050.0, 1485.0]),
-            (1.5, [3150.0, 4455.0]),
+            (1.5, A4),
+            (6.0, [420.0, 594.0]),
         ] {
-            let scene = FirstScene::new(None, thickness).unwrap();
+            let scene = FirstScene::new(None, thickness, None).unwrap();
             assert_eq!(scene.size, size);
             assert!(scene.panels.iter().all(|&count| count >= FEWEST));
         }

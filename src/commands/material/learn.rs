@@ -21,7 +21,7 @@ use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use dataset::{Database, Gates, SplitPlan};
 use fe_driver::{CalculiX, Campaign, Progress};
-use hinge::{SheetMaterial, TrainingDomain};
+use hinge::{Regime, SheetMaterial, TrainingDomain};
 use mesher::Tier;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -47,8 +47,9 @@ pub struct LearnCommand {
     #[arg(value_name = "MATERIAL")]
     material: PathBuf,
     /// Weights of another material, with which fine-tuning starts; once for each file. Several together have smaller errors
-    /// than each. One alone is fine-tuned and kept
-    #[arg(long, value_name = "WEIGHTS", default_values = PARENTS)]
+    /// than each. One alone is fine-tuned and kept [default: medium and medium-1 to -3 of data/pet-0.5mm; on a plate tier of
+    /// data/polypropylene-3mm]
+    #[arg(long, value_name = "WEIGHTS")]
     from: Vec<PathBuf>,
     /// Error of W at which the weights are accurate enough, relative to its root mean square
     #[arg(long, value_name = "PERCENT", default_value = "1%", value_parser = percent)]
@@ -59,9 +60,10 @@ pub struct LearnCommand {
     /// Start no ray after this time, with its unit: h, min or s; the spot check, running solves and trainings are finished
     #[arg(long, value_name = "TIME", default_value = "1h", value_parser = time)]
     time: Duration,
-    /// Mesh tier of the windows
-    #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
-    tier: Tier,
+    /// Mesh tier of the windows, which also says whether the ligaments are those of a film or of a plate [default: plate from
+    /// 1 mm of thickness on, below it default]
+    #[arg(long, value_name = "TIER")]
+    tier: Option<Tier>,
     /// Number of rays of the first round
     #[arg(long, value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u16).range(6..))]
     rays: u16,
@@ -79,13 +81,10 @@ pub struct LearnCommand {
     out: PathBuf,
 }
 
-/// Weights with which fine-tuning starts: networks of one training with several seeds.
-const PARENTS: [&str; 4] = [
-    "data/pet-0.5mm/medium.safetensors",
-    "data/pet-0.5mm/medium-1.safetensors",
-    "data/pet-0.5mm/medium-2.safetensors",
-    "data/pet-0.5mm/medium-3.safetensors",
-];
+/// Folders of the weights with which fine-tuning starts, and their names: networks of one training with several seeds.
+const FILM_PARENTS: &str = "data/pet-0.5mm";
+const PLATE_PARENTS: &str = "data/polypropylene-3mm";
+const PARENTS: [&str; 4] = ["medium", "medium-1", "medium-2", "medium-3"];
 /// States on a ray of the spot check.
 const STATES_PER_RAY: usize = 4;
 /// The shipped training, and its copy in the folder. `kirigami init` writes another training to the same folder.
@@ -96,23 +95,28 @@ impl LearnCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let began = Instant::now();
         let material = SheetMaterial::load(&self.material)?;
-        let loaded = self.from.iter().map(|file| Surrogate::load(file));
+        let tier = self.tier.unwrap_or_else(|| init::usual_tier(&material));
+        let from = match &*self.from {
+            [] => shipped_parents(tier.regime()),
+            named => named.to_vec(),
+        };
+        let loaded = from.iter().map(|file| Surrogate::load(file));
         let parents: Vec<Surrogate> = loaded.collect::<Result<_, _>>()?;
         let _held = run_folder::hold(&self.out)?;
-        self.write_inputs(&material)?;
+        self.write_inputs(&material, tier)?;
         let config: TrainingConfig = support::toml_file::read(&self.out.join(TRAINING_FILE))?;
         let config = config.with_sizes_of(&parents[0]);
-        for (parent, file) in parents.iter().zip(&self.from) {
+        for (parent, file) in parents.iter().zip(&from) {
             ensure!(
                 config.clone().with_sizes_of(parent) == config,
                 "{}: its layers have other sizes than those of {}: all --from need the same",
                 file.display(),
-                self.from[0].display()
+                from[0].display()
             );
             check_pretrained(parent, &config, Backend::default())
                 .with_context(|| format!("{}", file.display()))?;
         }
-        let campaign = self.campaign(&material)?;
+        let campaign = self.campaign(&material, tier)?;
         let region = region(&campaign).ok_or(VerificationError::NoRegion)?;
         let fine_tuning = FineTuning {
             parents,
@@ -162,7 +166,7 @@ impl LearnCommand {
     }
 
     /// Writes material, campaign and training to a new folder. Those of a folder that is continued are kept.
-    fn write_inputs(&self, material: &SheetMaterial) -> Result<()> {
+    fn write_inputs(&self, material: &SheetMaterial, tier: Tier) -> Result<()> {
         if !self.out.join(TRAINING_FILE).exists() {
             run_folder::write(&self.out, TRAINING_FILE, TRAINING)?;
         }
@@ -170,14 +174,14 @@ impl LearnCommand {
             return Ok(());
         }
         let name = self.out.file_name().unwrap_or_default().to_string_lossy();
-        let text = init::material_text(&self.material)?;
+        let text = init::material_text(&self.material, material.thickness)?;
         run_folder::write(&self.out, "material.toml", &text)?;
-        let campaign = init::campaign(&name, material.thickness, self.tier)?;
+        let campaign = init::campaign(&name, material.thickness, tier)?;
         run_folder::write(&self.out, "campaign.toml", &campaign)
     }
 
     /// The campaign of the folder, which must be that of the material and the tier.
-    fn campaign(&self, material: &SheetMaterial) -> Result<Campaign> {
+    fn campaign(&self, material: &SheetMaterial, tier: Tier) -> Result<Campaign> {
         let campaign = Campaign::load(&self.out.join("campaign.toml"))?;
         let (out, given) = (self.out.display(), self.material.display());
         ensure!(
@@ -185,7 +189,7 @@ impl LearnCommand {
             "{out} is of another material law than {given}: choose another folder with --out"
         );
         ensure!(
-            campaign.tier == self.tier,
+            campaign.tier == tier,
             "{out} is solved on tier {}: pass --tier {}, or choose another folder with --out",
             campaign.tier,
             campaign.tier
@@ -221,6 +225,16 @@ impl LearnCommand {
     fn solve_args(&self, campaign: &Campaign) -> SolveArgs {
         SolveArgs::new(self.jobs, campaign.time_limit)
     }
+}
+
+/// The shipped weights of a regime with which fine-tuning starts.
+fn shipped_parents(regime: Regime) -> Vec<PathBuf> {
+    let folder = Path::new(match regime {
+        Regime::Film => FILM_PARENTS,
+        Regime::Plate => PLATE_PARENTS,
+    });
+    let file = |name: &str| folder.join(name).with_extension("safetensors");
+    PARENTS.map(file).to_vec()
 }
 
 fn weights_file(out: &Path) -> PathBuf {

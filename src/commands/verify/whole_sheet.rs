@@ -8,11 +8,10 @@ use anyhow::{Result, anyhow, bail};
 use design::pattern::design_vector::DesignVector;
 use design::scene::{Posture, Scene};
 use fe_driver::{CalculiX, SheetSolve, Solve, sheet_reached};
-use mesher::Tier;
 use output::drawing::{Surface, View, surface};
 use std::time::Duration;
 use support::memory;
-use verification::{SheetCheck, SheetCost, SheetTask};
+use verification::{SheetCheck, SheetCost, SheetTask, usual_sheet_tier};
 
 /// Width of the pictures (px).
 const WIDTH: u32 = 1400;
@@ -40,7 +39,7 @@ impl VerifyCommand {
         design: &DesignVector,
         name: &str,
     ) -> Result<()> {
-        let tier = self.tier.unwrap_or(Tier::Small);
+        let tier = self.tier.unwrap_or_else(|| usual_sheet_tier(scene));
         let branches = usize::from(self.branches);
         let task = SheetTask::new(scene, design, self.support, tier, branches, self.patch);
         let task = task.map_err(task_error)?;

@@ -1,10 +1,10 @@
-//! The convergence study of the window: pure rotations, one modelling choice varied at a time.
+//! The convergence study of the window: rotations, one modelling choice varied at a time.
 //!
 //! The error of a choice is the root mean square, over the ray, of the difference that it makes
 //! to W, F_a, M_theta and D, divided by the root mean square of the reference solution.
 
 use fe_driver::{Ray, Solved, ToolVersions, WindowProblem, WindowSolve};
-use hinge::{HingeDeformation, HingeDesign, HingeSample, SheetMaterial};
+use hinge::{HingeDeformation, HingeDesign, HingeSample, Regime, SheetMaterial};
 use mesher::Tier;
 use std::f64::consts::FRAC_PI_2;
 
@@ -19,30 +19,75 @@ pub struct StudyCase {
     /// Its value in this case, as shown in tables.
     pub value: String,
     /// The reference value of the same study.
-    pub against: &'static str,
+    pub against: String,
     /// The window solve of the case.
     pub solve: WindowSolve,
+}
+
+/// The modelling choices of a regime: the values that are tried, the last one the reference, and the usual ones.
+struct Choices {
+    usual: Tier,
+    finest: Tier,
+    /// eta_a at the end of the rays.
+    eta_a: f64,
+    increments: [f64; 3],
+    amplitudes: &'static [f64],
+    widths: &'static [[f64; 2]],
+    radii: [f64; 3],
+    layers: &'static [usize],
+}
+
+impl Choices {
+    fn of(regime: Regime, quick: bool) -> Self {
+        match regime {
+            Regime::Film => Self {
+                usual: Tier::Default,
+                finest: if quick { Tier::Fine } else { Tier::Reference },
+                eta_a: 0.0,
+                increments: [0.07, 0.035, 0.0175],
+                amplitudes: &[0.1, 0.5, 1.0, 2.0],
+                widths: &[[0.5, 0.5], [1.0, 1.0], [2.0, 1.4]],
+                radii: [70.0, 100.0, 140.0],
+                layers: &[1, 2, 3],
+            },
+            // A ligament of a plate turns about its middle: 0.5 theta + 0.16 theta^2 at 60 deg.
+            Regime::Plate => Self {
+                usual: Tier::Plate,
+                finest: if quick {
+                    Tier::Plate
+                } else {
+                    Tier::PlateReference
+                },
+                eta_a: 0.70,
+                increments: [0.1, 0.05, 0.0125],
+                amplitudes: &[0.0, 0.02, 0.1, 1.0],
+                widths: &[],
+                radii: [8.4, 12.0, 24.0],
+                layers: &[2, 3],
+            },
+        }
+    }
 }
 
 /// All cases for one hinge. `quick` omits the meshes that take minutes. The paper's mesh is included for
 /// comparison, only at the paper's right angle.
 pub fn study_cases(
     design: HingeDesign,
+    regime: Regime,
     material: &SheetMaterial,
     versions: &ToolVersions,
     quick: bool,
 ) -> Vec<StudyCase> {
-    let end = HingeDeformation {
-        theta: STUDY_THETA_DEG.to_radians(),
-        ..HingeDeformation::default()
-    };
+    let choices = Choices::of(regime, quick);
+    let theta = STUDY_THETA_DEG.to_radians();
+    let end = HingeDeformation::from_eta(choices.eta_a, 0.0, theta, design.w_lig);
     let of_tier = |tier| {
         let problem = WindowProblem::new(Ray { design, end }, material, tier);
         WindowSolve::new(problem, versions)
     };
-    let usual = of_tier(Tier::Default);
+    let usual = of_tier(choices.usual);
     let mut cases = Vec::new();
-    let mut add = |study, value: String, against, vary: &dyn Fn(&mut WindowSolve)| {
+    let mut add = |study, value: String, against: String, vary: &dyn Fn(&mut WindowSolve)| {
         let mut solve = usual.clone();
         vary(&mut solve);
         cases.push(StudyCase {
@@ -52,44 +97,60 @@ pub fn study_cases(
             solve,
         });
     };
-    let finest = if quick { Tier::Fine } else { Tier::Reference };
+    let finest = choices.finest;
     let square = (design.alpha - FRAC_PI_2).abs() < 1e-9;
-    for tier in Tier::ALL {
+    let tiers = Tier::ALL.into_iter();
+    for tier in tiers.filter(|tier| tier.regime() == regime) {
         let wanted = if quick {
             tier <= finest
         } else {
             tier != Tier::Paper || square
         };
         if wanted {
-            add("mesh", tier.to_string(), finest.name(), &|solve| {
+            add("mesh", tier.to_string(), finest.to_string(), &|solve| {
                 *solve = of_tier(tier);
             });
         }
     }
-    for maximum in [0.07, 0.035, 0.0175] {
-        add("increments", maximum.to_string(), "0.0175", &|solve| {
-            solve.problem.step.greatest = maximum;
-        });
+    let shortest = choices.increments[2].to_string();
+    for maximum in choices.increments {
+        add(
+            "increments",
+            maximum.to_string(),
+            shortest.clone(),
+            &|solve| {
+                solve.problem.step.greatest = maximum;
+            },
+        );
     }
-    for amplitude in [0.1, 0.5, 1.0, 2.0] {
-        let value = format!("{amplitude} t");
-        add("imperfection amplitude", value, "1 t", &|solve| {
-            solve.mesh.imperfection.amplitude = amplitude;
-        });
+    let amplitude_of = |amplitude: f64| format!("{amplitude} t");
+    let usual_bump = amplitude_of(usual.mesh.imperfection.amplitude);
+    for &amplitude in choices.amplitudes {
+        let value = amplitude_of(amplitude);
+        add(
+            "imperfection amplitude",
+            value,
+            usual_bump.clone(),
+            &|solve| {
+                solve.mesh.imperfection.amplitude = amplitude;
+            },
+        );
     }
-    for widths in [[0.5, 0.5], [1.0, 1.0], [2.0, 1.4]] {
+    for &widths in choices.widths {
         let value = format!("{} x {}", widths[0], widths[1]);
-        add("imperfection widths", value, "1 x 1", &|solve| {
+        add("imperfection widths", value, "1 x 1".into(), &|solve| {
             solve.mesh.imperfection.widths = widths;
         });
     }
-    for r_win in [70.0, 100.0, 140.0] {
-        add("window radius", format!("{r_win} mm"), "140 mm", &|solve| {
+    let radius_of = |r_win: f64| format!("{r_win} mm");
+    for r_win in choices.radii {
+        let largest = radius_of(choices.radii[2]);
+        add("window radius", radius_of(r_win), largest, &|solve| {
             solve.problem.hinge.design.r_win = r_win;
         });
     }
-    for layers in [1, 2, 3] {
-        add("layers", layers.to_string(), "3", &|solve| {
+    for &layers in choices.layers {
+        add("layers", layers.to_string(), "3".into(), &|solve| {
             solve.mesh.layers = layers;
         });
     }
@@ -198,7 +259,7 @@ mod tests {
         };
         Solved {
             id: String::new(),
-            solve: study_cases(design(), &film(), &versions(), true)
+            solve: study_cases(design(), Regime::Film, &film(), &versions(), true)
                 .remove(0)
                 .solve,
             record: SolveRecord::default(),
@@ -235,8 +296,12 @@ mod tests {
 
     #[test]
     fn the_reference_of_every_case_is_itself_a_case() {
-        for quick in [false, true] {
-            let cases = study_cases(design(), &film(), &versions(), quick);
+        let regimes = [Regime::Film, Regime::Plate];
+        for (quick, regime) in [false, true]
+            .into_iter()
+            .flat_map(|q| regimes.map(|r| (q, r)))
+        {
+            let cases = study_cases(design(), regime, &film(), &versions(), quick);
             for case in &cases {
                 let mut same = cases.iter().filter(|c| c.study == case.study);
                 assert!(same.any(|c| c.value == case.against), "{case:?}");

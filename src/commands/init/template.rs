@@ -1,0 +1,62 @@
+//! The shipped files that a new project is scaled from, for films and for plates.
+
+use hinge::Regime;
+
+/// The scene and the campaign of a regime, and what scales them.
+pub(super) struct Template {
+    /// A shipped scene of A4.
+    pub scene: &'static str,
+    /// What the new scene is, for its head.
+    pub says: &'static str,
+    /// Thickness of the shipped scene's sheet (mm).
+    pub thickness: f64,
+    /// Radius of the windows of the shipped scene (mm).
+    pub r_win: f64,
+    /// Usual side of a panel over the radius of a window.
+    pub panel: f64,
+    /// A shipped campaign.
+    pub campaign: &'static str,
+    /// Thickness of the shipped campaign's sheet (mm).
+    pub campaign_thickness: f64,
+    /// A shipped training.
+    pub training: &'static str,
+    /// Why a sheet is of this regime.
+    pub why: &'static str,
+}
+
+const FILM: Template = Template {
+    scene: include_str!("../../../configs/scenes/a4-polyester.toml"),
+    says: "# The panels are held flat, as between two clear plates that lie: a thin sheet that nothing holds leaves its plane\n\
+           # and opens less. Friction on the plates is not modelled.\n",
+    thickness: 0.1,
+    r_win: 20.0,
+    panel: 3.5,
+    campaign: include_str!("../../../configs/campaigns/pet-0.5mm.toml"),
+    campaign_thickness: 0.5,
+    training: include_str!("../../../configs/training/medium.toml"),
+    why: "The sheet is large for its thickness: its ligaments are 20 to 50 thicknesses wide, buckle and fold, and its panels must be \
+          held flat.",
+};
+
+const PLATE: Template = Template {
+    scene: include_str!("../../../configs/scenes/a4-plate.toml"),
+    says: "# Its ligaments are narrower than the plate is thick: they bend in its plane, and the sheet stays flat with nothing to\n\
+           # hold it. It hangs from a clip at its upper edge, and gravity acts in its plane.\n",
+    thickness: 3.0,
+    r_win: 12.0,
+    panel: 5.8,
+    campaign: include_str!("../../../configs/campaigns/polypropylene-3mm.toml"),
+    campaign_thickness: 3.0,
+    training: include_str!("../../../configs/training/plate.toml"),
+    why: "The sheet is thick for its size: its ligaments are narrower than it is thick, bend in its plane, and nothing has to hold \
+          it flat.",
+};
+
+impl Template {
+    pub(super) fn of(regime: Regime) -> &'static Self {
+        match regime {
+            Regime::Film => &FILM,
+            Regime::Plate => &PLATE,
+        }
+    }
+}
