@@ -62,7 +62,7 @@ fn a_project_without_weights_begins_with_its_campaign() {
     assert!(message.contains("there is no no.safetensors"), "{message}");
     let message = work.error("init film --thickness 0.5 --size 210x297");
     assert!(
-        message.contains("at most 0.10 mm for this size), or a plate from 1 mm on"),
+        message.contains("at most 0.10 mm for this size), or a plate from 2 mm on"),
         "{message}"
     );
     let said = work.output(&format!(

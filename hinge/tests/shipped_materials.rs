@@ -1,5 +1,5 @@
-//! Every material in `configs/materials` is read and valid, and has Young's modulus, density and thickness of the
-//! paper's Table 2.
+//! Every material in `configs/materials` is read and valid. Those of the paper's Table 2 have its Young's modulus, density and
+//! thickness; the others are plates.
 
 use hinge::SheetMaterial;
 use std::path::Path;
@@ -14,7 +14,7 @@ const TABLE_2: [(&str, f64, f64, f64); 5] = [
 ];
 
 #[test]
-fn every_shipped_material_is_valid_and_agrees_with_table_2() {
+fn every_shipped_material_is_valid_and_those_of_table_2_agree_with_it() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/materials");
     let mut read = 0;
     for entry in folder.read_dir().unwrap() {
@@ -24,12 +24,16 @@ fn every_shipped_material_is_valid_and_agrees_with_table_2() {
             Some(material.name.as_str()),
             path.file_stem().unwrap().to_str()
         );
-        let row = TABLE_2.iter().find(|row| row.0 == material.name).unwrap();
-        let found = (material.young, material.density_kg_m3, material.thickness);
-        assert_eq!(found, (row.1, row.2, row.3), "{}", material.name);
+        match TABLE_2.iter().find(|row| row.0 == material.name) {
+            Some(row) => {
+                let found = (material.young, material.density_kg_m3, material.thickness);
+                assert_eq!(found, (row.1, row.2, row.3), "{}", material.name);
+                read += 1;
+            }
+            None => assert!(material.thickness >= 1.0, "{}", material.name),
+        }
         let [_, last] = material.plastic[material.plastic.len() - 1];
         assert!(last <= material.fracture_strain, "{}", material.name);
-        read += 1;
     }
     assert_eq!(read, TABLE_2.len());
 }

@@ -25,7 +25,7 @@ use toml_edit::DocumentMut;
 /// Create a folder with material, campaign, training and scene for a sheet of your own
 ///
 /// Ligament widths, windows, number of panels, stroke and target are scaled to the thickness and the size of the
-/// sheet. A sheet that is large for its thickness has wide ligaments that fold, and is held flat; from 1 mm on, others have
+/// sheet. A sheet that is large for its thickness has wide ligaments that fold, and is held flat; from 2 mm on, others have
 /// ligaments narrower than the thickness, and stay flat by themselves. The files run as they are: with a material that has weights, `design` at once; with another, after its
 /// campaign and training. README.md in the folder lists the commands.
 /// Examples: kirigami init my-sheet --thickness 3 --size 210x297;
@@ -37,14 +37,14 @@ pub struct InitCommand {
     /// Folder to create
     #[arg(value_name = "FOLDER")]
     folder: PathBuf,
-    /// Sheet material (TOML) [default: configs/materials/polypropylene-3mm.toml, below 1 mm of thickness pet-0.5mm.toml; with
+    /// Sheet material (TOML) [default: configs/materials/polypropylene-3mm.toml, below 2 mm of thickness pet-0.5mm.toml; with
     /// --like that of its scene]
     #[arg(long, value_name = "FILE")]
     material: Option<PathBuf>,
     /// Thickness of the sheet (mm) [default: that of the material file; with --like that of its sheet]
     #[arg(long, value_name = "MM")]
     thickness: Option<f64>,
-    /// Width and height of the sheet (mm) [default: 210x297 up to a thickness of 0.1 mm and from 1 to 3 mm, above these in
+    /// Width and height of the sheet (mm) [default: 210x297 for plates up to 3 mm and films up to 0.1 mm, larger in
     /// proportion to the thickness; with --like those of its sheet, in proportion to the thickness]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
     size: Option<[f64; 2]>,
@@ -62,11 +62,12 @@ pub struct InitCommand {
 const PLATE: &str = "configs/materials/polypropylene-3mm.toml";
 const FILM: &str = "configs/materials/pet-0.5mm.toml";
 /// The shipped weights; those for the material of a sheet are used.
-const WEIGHTS: [&str; 4] = [
+const WEIGHTS: [&str; 5] = [
     "data/polypropylene-3mm/medium.safetensors",
     "data/petg-3mm/medium.safetensors",
-    "data/aluminium-2mm/medium.safetensors",
     "data/pet-0.5mm/medium.safetensors",
+    "data/polypropylene-0.8mm/weights.safetensors",
+    "data/s235-1.5mm/weights.safetensors",
 ];
 
 impl InitCommand {
@@ -103,7 +104,7 @@ impl InitCommand {
             Some(like) => {
                 let of_scene = &like.scene;
                 let widest = of_scene.config.ligament.range[1] / of_scene.material.thickness;
-                let (regime, weights) = (Regime::of(widest), fitting.first());
+                let (regime, weights) = (Regime::of(widest), of(Regime::of(widest)));
                 let material = weights.map(|_| &*material);
                 let scene = SimilarScene::new(like, &sheet, self.size)?;
                 (

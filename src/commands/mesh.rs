@@ -18,7 +18,7 @@ use std::time::Duration;
 pub struct MeshCommand {
     #[command(flatten)]
     window: WindowArgs,
-    /// Mesh tier: tiny, small, default, fine, reference or paper
+    /// Mesh tier: tiny, small, default, fine, reference or paper; for plates plate-tiny, plate or plate-reference
     #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
     tier: Tier,
     /// Sheet thickness (mm)

@@ -47,7 +47,7 @@ pub struct SolveCommand {
         default_value = "configs/materials/pet-0.5mm.toml"
     )]
     material: PathBuf,
-    /// Mesh tier: tiny, small, default, fine, reference or paper
+    /// Mesh tier: tiny, small, default, fine, reference or paper; for plates plate-tiny, plate or plate-reference
     #[arg(long, value_name = "TIER", default_value_t = Tier::Default)]
     tier: Tier,
     /// Folder for the mesh, the input deck, the log and the solver's output

@@ -21,8 +21,9 @@ use toml_edit::{Array, DocumentMut};
 const A4: [f64; 2] = [210.0, 297.0];
 /// Minimum side of a panel over the radius of a window: windows of neighbouring hinges do not overlap.
 const PANEL: f64 = 3.5;
-/// Thickness (mm) from which a sheet is a plate: the ligaments of a thinner one would be too narrow to be cut.
-pub(super) const THINNEST_PLATE: f64 = 1.0;
+/// Thickness (mm) from which a sheet is a plate: the narrowest ligaments of a thinner one, a third of its thickness, would be
+/// too narrow for a hole wider than the kerf.
+pub(super) const THINNEST_PLATE: f64 = 2.0;
 /// theta (rad): 25 degrees.
 const OPENING: f64 = 0.436;
 /// Widths of the clips at the top and at the bottom over those of their edges.
@@ -41,7 +42,7 @@ pub(super) struct FirstScene {
 impl FirstScene {
     /// The scene of a sheet of the given thickness and size (mm). Without a size it is of A4, or as much larger as it is
     /// thicker than the shipped sheet. A sheet is a film if it is large enough for its thickness, and else a plate;
-    /// an error if it is too thin for that. `trained` is the regime of its weights, if there are any.
+    /// an error if it is too thin for that. `trained` is the regime of the weights that are named, if there are any.
     pub(super) fn new(
         size: Option<[f64; 2]>,
         thickness: f64,
@@ -123,9 +124,23 @@ impl FirstScene {
             centre,
             size,
             rotation_deg,
-            stroke,
+            moved,
+            beyond_clip,
         } = self.target(held);
+        // A film is pulled along its edge; a plate hangs in the line of its clips, so that the upper one carries no moment.
+        let pull = match self.regime {
+            Regime::Film => [0.0, -1.0],
+            Regime::Plate => {
+                let length = beyond_clip[0].hypot(beyond_clip[1]);
+                beyond_clip.map(|x| rounded(x / length))
+            }
+        };
+        let stroke = moved[0] * pull[0] + moved[1] * pull[1];
         set(&mut scene["drive"]["stroke"], rounded(stroke));
+        set(&mut scene["loads"][0]["force"], Array::from_iter(pull));
+        if self.regime == Regime::Plate {
+            set(&mut scene["posture"]["down"], Array::from_iter(pull));
+        }
         let target = &mut scene["target"]["rectangle"];
         set(&mut target["centre"], Array::from_iter(centre.map(rounded)));
         set(&mut target["size"], Array::from_iter(size.map(rounded)));
@@ -133,8 +148,8 @@ impl FirstScene {
         Ok(scene.to_string())
     }
 
-    /// The rectangle of the sheet opened by [`OPENING`] with the panel `held` fixed, and the distance by which the
-    /// middle of the lower edge of its column moves along it.
+    /// The rectangle of the sheet opened by [`OPENING`] with the panel `held` fixed, and the motion of the
+    /// middle of the lower edge of its column.
     fn target(&self, held: [usize; 2]) -> Target {
         let panel: [f64; 2] = std::array::from_fn(|i| self.size[i] / self.panels[i] as f64);
         let (sin, cos) = (0.5 * OPENING).sin_cos();
@@ -154,10 +169,16 @@ impl FirstScene {
         });
         let (sin, cos) = rotation.sin_cos();
         let steps = self.panels[1] - 1;
-        let length = steps as f64;
         // An odd number of panels away, the pulled panel turns by the opening, and the middle of its lower edge with it.
-        let turned = if steps % 2 == 1 { OPENING } else { 0.0 };
-        let lifted = 0.5 * panel[1] * (1.0 - turned.cos());
+        let turned = if steps % 2 == 1 { sign * OPENING } else { 0.0 };
+        let (turned_sin, turned_cos) = turned.sin_cos();
+        let (down, half) = (steps as f64 * pitch[1], 0.5 * panel[1]);
+        // From the middle of the held panel to the pulled point, in the opened and in the flat sheet.
+        let opened = [
+            sin * down + turned_sin * half,
+            -cos * down - turned_cos * half,
+        ];
+        let flat = [0.0, -(steps as f64) * panel[1] - half];
         Target {
             centre: [
                 fixed[0] + cos * arm[0] - sin * arm[1],
@@ -165,7 +186,8 @@ impl FirstScene {
             ],
             size: std::array::from_fn(|i| self.panels[i] as f64 * pitch[i]),
             rotation_deg: rotation.to_degrees(),
-            stroke: length * (pitch[1] * cos - panel[1]) - lifted,
+            moved: [0, 1].map(|i| opened[i] - flat[i]),
+            beyond_clip: [opened[0], opened[1] - half],
         }
     }
 }
@@ -185,7 +207,10 @@ struct Target {
     centre: [f64; 2],
     size: [f64; 2],
     rotation_deg: f64,
-    stroke: f64,
+    /// Displacement of the pulled point (mm).
+    moved: [f64; 2],
+    /// From the clip at the top to the pulled point of the opened sheet (mm).
+    beyond_clip: [f64; 2],
 }
 
 fn whole(panel: [usize; 2]) -> Array {
@@ -212,6 +237,24 @@ mod tests {
         assert!(std::iter::zip(target.centre, middle).all(|(x, y)| (x - y).abs() < 1e-9));
     }
 
+    /// The shipped A4 plate and film are their own projects.
+    #[test]
+    fn the_stroke_is_along_the_pull() {
+        let strokes = [(0.1, 30.4), (3.0, 45.4)].map(|(thickness, shipped)| {
+            let scene = FirstScene::new(Some(A4), thickness, None).unwrap();
+            let text = scene.text(Path::new("weights.safetensors")).unwrap();
+            let text: DocumentMut = text.parse().unwrap();
+            let stroke = text["drive"]["stroke"].as_float().unwrap();
+            assert!((stroke - shipped).abs() < 0.1, "{stroke}");
+            text["loads"][0]["force"].to_string()
+        });
+        assert!(strokes[0].contains("[0.0, -1.0]"), "{strokes:?}");
+        assert!(
+            strokes[1].contains("[0.216") && strokes[1].contains("-0.976"),
+            "{strokes:?}"
+        );
+    }
+
     #[test]
     fn a_sheet_too_thick_for_a_film_and_too_thin_for_a_plate_is_refused() {
         let first = |size, thickness| FirstScene::new(size, thickness, None);
@@ -224,7 +267,7 @@ mod tests {
         let message = first(Some(A4), 8.0).err().unwrap().to_string();
         assert!(message.contains("at most 5.00 mm"), "{message}");
         // Large enough for the ligaments of a film, and with weights of one regime.
-        let large = first(Some([3300.0, 4600.0]), 1.5).unwrap();
+        let large = first(Some([4400.0, 6300.0]), 2.0).unwrap();
         assert_eq!(large.regime, Regime::Film);
         let trained = FirstScene::new(None, 1.5, Some(Regime::Film)).unwrap();
         assert_eq!(trained.size, [3150.0, 4455.0]);
@@ -236,7 +279,7 @@ mod tests {
             (0.05, A4),
             (0.1, A4),
             (0.5, [1050.0, 1485.0]),
-            (1.5, A4),
+            (2.0, A4),
             (6.0, [420.0, 594.0]),
         ] {
             let scene = FirstScene::new(None, thickness, None).unwrap();

@@ -41,7 +41,8 @@ const FILM: Template = Template {
 const PLATE: Template = Template {
     scene: include_str!("../../../configs/scenes/a4-plate.toml"),
     says: "# Its ligaments are narrower than the plate is thick: they bend in its plane, and the sheet stays flat with nothing to\n\
-           # hold it. It hangs from a clip at its upper edge, and gravity acts in its plane.\n",
+           # hold it. It hangs from a clip at its upper edge. The clip hangs from a hook and swings: gravity and pull are along the\n\
+           # line from clip to clip of the opened sheet, in the frame of the held panel.\n",
     thickness: 3.0,
     r_win: 12.0,
     panel: 5.8,

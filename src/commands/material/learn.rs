@@ -61,7 +61,7 @@ pub struct LearnCommand {
     #[arg(long, value_name = "TIME", default_value = "1h", value_parser = time)]
     time: Duration,
     /// Mesh tier of the windows, which also says whether the ligaments are those of a film or of a plate [default: plate from
-    /// 1 mm of thickness on, below it default]
+    /// 2 mm of thickness on, below it default]
     #[arg(long, value_name = "TIER")]
     tier: Option<Tier>,
     /// Number of rays of the first round
