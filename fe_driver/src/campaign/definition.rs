@@ -253,6 +253,9 @@ mod tests {
             ("demo.toml", 40),
             ("pet-0.5mm.toml", 1500),
             ("polypropylene-3mm.toml", 320),
+            ("polypropylene-3mm-reference.toml", 18),
+            ("petg-3mm.toml", 240),
+            ("aluminium-2mm.toml", 160),
         ] {
             let campaign = Campaign::load(&shipped(name)).unwrap();
             let jobs: Vec<_> = campaign.solves(&versions()).collect();
