@@ -1,5 +1,6 @@
 //! The sheet material, as measured on tensile specimens; section 4.1.
 
+use crate::Regime;
 use crate::tensile::{TensileError, read_tensile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -89,6 +90,11 @@ pub struct InvalidMaterial {
 }
 
 impl SheetMaterial {
+    /// The regime of a ligament of `w_lig` (mm) in a sheet of this thickness.
+    pub fn regime(&self, w_lig: f64) -> Regime {
+        Regime::of(w_lig / self.thickness)
+    }
+
     /// Schema of a material's TOML file.
     pub fn file_schema() -> schemars::Schema {
         schemars::schema_for!(MaterialFile)

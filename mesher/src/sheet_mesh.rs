@@ -7,7 +7,6 @@ use crate::sheet_shape::{PlacedWindow, SheetShape};
 use crate::tier::Imperfection;
 use crate::vectors::{cross, dot, minus};
 use crate::window::{Side, Window};
-use hinge::Regime;
 
 /// Largest distance of a node from the arc of its window, over r_win.
 const ON_RIM: f64 = 1e-6;
@@ -136,7 +135,7 @@ impl PlacedWindow {
         let [x, y] = self.frame.local(point);
         let bump = Imperfection {
             amplitude: self.bump,
-            ..Imperfection::of(Regime::Film)
+            widths: Imperfection::WIDTHS,
         };
         bump.height(&self.design, thickness, x, y)
     }

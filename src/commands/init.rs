@@ -103,8 +103,9 @@ impl InitCommand {
         let (scene, regime, trained) = match like {
             Some(like) => {
                 let of_scene = &like.scene;
-                let widest = of_scene.config.ligament.range[1] / of_scene.material.thickness;
-                let (regime, weights) = (Regime::of(widest), of(Regime::of(widest)));
+                let widest = of_scene.config.ligament.range[1];
+                let regime = of_scene.material.regime(widest);
+                let weights = of(regime);
                 let material = weights.map(|_| &*material);
                 let scene = SimilarScene::new(like, &sheet, self.size)?;
                 (
@@ -173,7 +174,7 @@ impl InitCommand {
             if card.material_hash == Some(material.law_hash()) {
                 fitting.push(Weights {
                     file: std::path::absolute(file)?,
-                    regime: Regime::of(card.domain.w_lig[1] / material.thickness),
+                    regime: material.regime(card.domain.w_lig[1]),
                 });
             }
         }

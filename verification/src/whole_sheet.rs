@@ -64,8 +64,7 @@ impl Branch {
 
 /// The tier on which a whole sheet is solved unless another one is named.
 pub fn usual_sheet_tier(scene: &Scene) -> Tier {
-    let widest = scene.config.ligament.range[1] / scene.material.thickness;
-    match Regime::of(widest) {
+    match scene.material.regime(scene.config.ligament.range[1]) {
         Regime::Film => Tier::Small,
         Regime::Plate => Tier::Plate,
     }

@@ -151,11 +151,12 @@ impl CampaignFile {
     }
 
     /// What is wrong if the tier is not for all ligaments of the box.
-    fn other_regime(&self, thickness: f64) -> Option<String> {
+    fn other_regime(&self, material: &SheetMaterial) -> Option<String> {
         let regime = self.tier.regime();
-        let other = |w_lig: &f64| Regime::of(w_lig / thickness) != regime;
+        let other = |w_lig: &f64| material.regime(*w_lig) != regime;
         let w_lig = self.rays.w_lig.into_iter().find(other)?;
-        let (tier, bound) = (self.tier, Regime::WIDEST_PLATE * thickness);
+        let (tier, thickness) = (self.tier, material.thickness);
+        let bound = Regime::WIDEST_PLATE * thickness;
         Some(format!(
             "tier = \"{tier}\" is for ligaments of a {regime}, but rays.w_lig contains {w_lig} mm: ligaments of up to \
              {bound} mm bend in the plane of a sheet of {thickness} mm (tier \"plate\"), wider ones buckle (tier \
@@ -191,7 +192,7 @@ impl Campaign {
         }
         let folder = path.parent().unwrap_or(Path::new(""));
         let material = SheetMaterial::load(&folder.join(&file.material))?;
-        if let Some(reason) = file.other_regime(material.thickness) {
+        if let Some(reason) = file.other_regime(&material) {
             return Err(CampaignError::Invalid {
                 path: path.to_owned(),
                 reason,

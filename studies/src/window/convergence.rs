@@ -24,7 +24,8 @@ pub struct StudyCase {
     pub solve: WindowSolve,
 }
 
-/// The modelling choices of a regime: the values that are tried, the last one the reference, and the usual ones.
+/// The modelling choices of a regime: the usual and the finest mesh, and the values that are tried. The usual bump is the
+/// reference of the bumps, the last value that of the others.
 struct Choices {
     usual: Tier,
     finest: Tier,
