@@ -110,6 +110,7 @@ fn window_deck(mesh: &WindowMesh, path: &DeformationPath, material: &SheetMateri
         mesh,
         path,
         material,
+        lean: None,
         step: &StepControl::default(),
         print_all: false,
     })

@@ -38,17 +38,17 @@ pub struct FlatnessStudy {
 
 /// A sheet with square panels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Case {
-    support: Posture,
-    branch: Branch,
+pub struct Case {
+    pub support: Posture,
+    pub branch: Branch,
     /// [columns, rows]
-    panels: [usize; 2],
+    pub panels: [usize; 2],
     /// mm
-    side: f64,
-    w_lig: f64,
-    thickness: f64,
+    pub side: f64,
+    pub w_lig: f64,
+    pub thickness: f64,
     /// Stroke over the side of a panel.
-    stroke: f64,
+    pub stroke: f64,
 }
 
 /// Radius of the windows over the ligament width.
@@ -71,7 +71,7 @@ const fn small(support: Posture, thickness: f64) -> Case {
 }
 
 /// The sheets, in the order in which they are solved.
-fn cases() -> Vec<Case> {
+pub fn cases() -> Vec<Case> {
     use Posture::{Free, Hanging, Lying};
     let alternating = |case| Case {
         branch: Branch::Alternating,
@@ -160,14 +160,14 @@ impl Case {
         Ok(Scene::new(support::toml_file::parse(&text, path)?, path)?)
     }
 
-    fn sheet(&self) -> Result<(Scene, Sheet)> {
+    pub fn sheet(&self) -> Result<(Scene, Sheet)> {
         let scene = self.scene()?;
         let (_, sheet) = scene.problem()?.cut(&scene.start())?;
         Ok((scene, sheet))
     }
 
     /// The sheet as it is, and with its panels held flat.
-    fn solves(&self, tier: Tier, calculix: &CalculiX) -> Result<[SheetSolve; 2]> {
+    pub fn solves(&self, tier: Tier, calculix: &CalculiX) -> Result<[SheetSolve; 2]> {
         let (scene, sheet) = self.sheet()?;
         let solve = |support, branch| {
             let problem = sheet_problem(&scene, &sheet, support, tier, branch);

@@ -27,6 +27,7 @@ mod solutions;
 mod stop;
 mod surrogate;
 mod tessellation;
+mod tilt;
 mod tradeoff;
 mod window;
 
@@ -60,6 +61,7 @@ enum Study {
     Localisation(localisation::LocalisationStudy),
     Extremes(extremes::ExtremesStudy),
     Flatness(flatness::FlatnessStudy),
+    Tilt(tilt::TiltStudy),
     Surrogate(surrogate::SurrogateStudy),
     Tradeoff(tradeoff::TradeoffCommand),
     Pages(pages::PagesCommand),
@@ -84,6 +86,7 @@ impl Study {
             Self::Localisation(study) => study.run(),
             Self::Extremes(study) => study.run(),
             Self::Flatness(study) => study.run(),
+            Self::Tilt(study) => study.run(),
             Self::Surrogate(study) => study.run(),
             Self::Tradeoff(command) => command.run(),
             Self::Pages(command) => command.run(),
