@@ -95,7 +95,6 @@ pub use solve::failure::{FailureKind, UnknownFailure};
 pub use solve::fake_solver::{FakeSolver, Fault};
 pub use solve::hinge_path::{HingePath, Ray};
 pub use solve::ladder::AttemptKind;
-pub use solve::lean::Lean;
 pub use solve::problem::{Solve, SolvedPath};
 pub use solve::service::SolveService;
 pub use solve::solve_error::SolveError;

@@ -7,7 +7,6 @@ pub(crate) mod fake_solver;
 pub(crate) mod hinge_path;
 pub(crate) mod host;
 pub(crate) mod ladder;
-pub(crate) mod lean;
 pub(crate) mod problem;
 mod rows_csv;
 pub(crate) mod service;

@@ -102,7 +102,6 @@ fn patch_test(tier: Tier) {
         mesh: &mesh,
         path: &DeformationPath::straight(HingeDeformation::default()),
         material: &material,
-        lean: None,
         step: &StepControl::default(),
         print_all: false,
     });

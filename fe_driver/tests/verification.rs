@@ -110,7 +110,6 @@ fn window_deck(mesh: &WindowMesh, path: &DeformationPath, material: &SheetMateri
         mesh,
         path,
         material,
-        lean: None,
         step: &StepControl::default(),
         print_all: false,
     })

@@ -26,15 +26,6 @@ pub struct HingeSample {
     pub f_s: f64,
     /// N mm
     pub m_theta: f64,
-    /// Force on panel B out of the plane (N); `None` in samples for which it was not evaluated.
-    #[serde(default)]
-    pub f_z: Option<f64>,
-    /// Moment on panel B about O on it and the x axis of the window turned with it (N mm).
-    #[serde(default)]
-    pub m_x: Option<f64>,
-    /// The same about the y axis (N mm).
-    #[serde(default)]
-    pub m_y: Option<f64>,
     /// Equivalent plastic strain integrated over the window (mm^3).
     pub plastic_integral: f64,
     /// `plastic_integral` divided by eps_f and by the ligament's half-disc volume (pi/2) w_lig^2 t.
@@ -83,9 +74,6 @@ impl HingeSample {
             f_a: mix(|x| x.f_a),
             f_s: mix(|x| x.f_s),
             m_theta: mix(|x| x.m_theta),
-            f_z: mix_known(|x| x.f_z),
-            m_x: mix_known(|x| x.m_x),
-            m_y: mix_known(|x| x.m_y),
             plastic_integral: mix(|x| x.plastic_integral),
             d: mix(|x| x.d),
             d_window: mix(|x| x.d_window),
@@ -115,19 +103,11 @@ impl HingeSample {
         }
     }
 
-    /// Force out of the plane and moments (f_z, m_x, m_y).
-    pub fn out_of_plane(&self) -> Option<[f64; 3]> {
-        Some([self.f_z?, self.m_x?, self.m_y?])
-    }
-
-    /// The sample of the mirrored design, without the forces out of its plane; see [`HingeDeformation::mirrored`].
+    /// The sample of the mirrored design; see [`HingeDeformation::mirrored`].
     pub fn mirrored(&self) -> Self {
         Self {
             s: -self.s,
             f_s: -self.f_s,
-            f_z: None,
-            m_x: None,
-            m_y: None,
             ..*self
         }
     }

@@ -38,17 +38,17 @@ pub struct FlatnessStudy {
 
 /// A sheet with square panels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Case {
-    pub support: Posture,
-    pub branch: Branch,
+struct Case {
+    support: Posture,
+    branch: Branch,
     /// [columns, rows]
-    pub panels: [usize; 2],
+    panels: [usize; 2],
     /// mm
-    pub side: f64,
-    pub w_lig: f64,
-    pub thickness: f64,
+    side: f64,
+    w_lig: f64,
+    thickness: f64,
     /// Stroke over the side of a panel.
-    pub stroke: f64,
+    stroke: f64,
 }
 
 /// Radius of the windows over the ligament width.
@@ -71,7 +71,7 @@ const fn small(support: Posture, thickness: f64) -> Case {
 }
 
 /// The sheets, in the order in which they are solved.
-pub fn cases() -> Vec<Case> {
+fn cases() -> Vec<Case> {
     use Posture::{Free, Hanging, Lying};
     let alternating = |case| Case {
         branch: Branch::Alternating,
@@ -160,14 +160,14 @@ impl Case {
         Ok(Scene::new(support::toml_file::parse(&text, path)?, path)?)
     }
 
-    pub fn sheet(&self) -> Result<(Scene, Sheet)> {
+    fn sheet(&self) -> Result<(Scene, Sheet)> {
         let scene = self.scene()?;
         let (_, sheet) = scene.problem()?.cut(&scene.start())?;
         Ok((scene, sheet))
     }
 
     /// The sheet as it is, and with its panels held flat.
-    pub fn solves(&self, tier: Tier, calculix: &CalculiX) -> Result<[SheetSolve; 2]> {
+    fn solves(&self, tier: Tier, calculix: &CalculiX) -> Result<[SheetSolve; 2]> {
         let (scene, sheet) = self.sheet()?;
         let solve = |support, branch| {
             let problem = sheet_problem(&scene, &sheet, support, tier, branch);

@@ -27,7 +27,6 @@ mod solutions;
 mod stop;
 mod surrogate;
 mod tessellation;
-mod tilt;
 mod tradeoff;
 mod window;
 
@@ -61,7 +60,6 @@ enum Study {
     Localisation(localisation::LocalisationStudy),
     Extremes(extremes::ExtremesStudy),
     Flatness(flatness::FlatnessStudy),
-    Tilt(tilt::TiltStudy),
     Surrogate(surrogate::SurrogateStudy),
     Tradeoff(tradeoff::TradeoffCommand),
     Pages(pages::PagesCommand),
@@ -86,7 +84,6 @@ impl Study {
             Self::Localisation(study) => study.run(),
             Self::Extremes(study) => study.run(),
             Self::Flatness(study) => study.run(),
-            Self::Tilt(study) => study.run(),
             Self::Surrogate(study) => study.run(),
             Self::Tradeoff(command) => command.run(),
             Self::Pages(command) => command.run(),

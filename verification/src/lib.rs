@@ -63,7 +63,6 @@ mod sheet_cost;
 mod sheet_errors;
 mod sheet_page;
 mod spot_check;
-mod tilt;
 mod verification_error;
 mod whole_sheet;
 
@@ -84,6 +83,5 @@ pub use sheet_check::{
 pub use sheet_cost::SheetCost;
 pub use sheet_errors::SheetErrors;
 pub use spot_check::{SpotCheck, SpotPath, random_paths, spot_check};
-pub use tilt::{LeaningHinge, OutOfPlane, leans, leans_of, out_of_plane};
 pub use verification_error::VerificationError;
 pub use whole_sheet::{Branch, sheet_problem, usual_sheet_tier};

@@ -77,7 +77,6 @@ impl CalculiX {
         WindowModel {
             mesh,
             path: &problem.hinge.path,
-            lean: problem.lean,
             material: &problem.material,
             step: &problem.step,
             print_all: self.print_all,

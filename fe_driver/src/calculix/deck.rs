@@ -4,13 +4,12 @@
 //! total internal energy between *printed* increments and it would otherwise be wrong.
 
 use crate::calculix::cards::{
-    real, write_amplitude, write_element, write_increments, write_material, write_nodes, write_set,
+    write_element, write_increments, write_material, write_nodes, write_set,
 };
 use crate::calculix::driven_arc::{DrivenArc, even_lambdas};
 use crate::calculix::model::WindowModel;
-use crate::calculix::panel_motion::{PanelMotion, rotated};
+use crate::calculix::panel_motion::PanelMotion;
 use crate::solve::deformation_path::DeformationPath;
-use crate::solve::lean::Lean;
 use std::fmt::{self, Write};
 
 /// The deck that drives the window along its path.
@@ -26,10 +25,6 @@ fn write_deck(d: &mut String, model: &WindowModel) -> fmt::Result {
     let mover = turner + 1;
     write_nodes(d, &mesh.nodes)?;
     writeln!(d, "*NODE,NSET=CONTROL\n{turner},0.,0.,0.\n{mover},0.,0.,0.")?;
-    let leaners = model.lean.map(|_| [mover + 1, mover + 2]);
-    if let Some([lifter, leaner]) = leaners {
-        writeln!(d, "*NODE\n{lifter},0.,0.,0.\n{leaner},0.,0.,0.")?;
-    }
     let kind = mesh.recipe.element().name();
     writeln!(d, "*ELEMENT,TYPE={kind},ELSET=EALL")?;
     for (element, nodes) in mesh.elements.iter().enumerate() {
@@ -46,47 +41,18 @@ fn write_deck(d: &mut String, model: &WindowModel) -> fmt::Result {
         drivers: [turner, mover],
         amplitudes: "Q",
     };
-    arc.write_equations(d, &mesh.nodes, leaners)?;
+    arc.write_equations(d, &mesh.nodes)?;
     let motion = |lambda| PanelMotion::new(&model.path.at(lambda));
-    let lambdas = lambdas(model.path);
-    arc.write_amplitudes(d, &lambdas, 1.0, motion)?;
-    if let Some(lean) = model.lean {
-        for i in 0..2 {
-            let pairs = lambdas.iter().map(|lambda| {
-                let theta = model.path.at(*lambda).theta;
-                [*lambda, turned_tilt(lean.at(*lambda).tilt, theta)[i]]
-            });
-            write_amplitude(d, &format!("LEAN{}", i + 1), pairs)?;
-        }
-    }
+    arc.write_amplitudes(d, &lambdas(model.path), 1.0, motion)?;
     writeln!(d, "*STEP,NLGEOM,INC={}\n*STATIC", model.step.max_increments)?;
     write_increments(d, model.step, 1.0)?;
-    writeln!(d, "*BOUNDARY\nARCA,1,3,0.\nCONTROL,3,3,0.")?;
-    match (model.lean, leaners) {
-        (Some(lean), Some([lifter, leaner])) => write_lean(d, lean, lifter, leaner)?,
-        _ => writeln!(d, "ARCB,3,3,0.")?,
-    }
-    arc.write_boundary(d, model.lean.is_some())?;
+    writeln!(d, "*BOUNDARY\nARCA,1,3,0.\nARCB,3,3,0.\nCONTROL,3,3,0.")?;
+    arc.write_boundary(d)?;
     writeln!(d, "*NODE PRINT,NSET=ARCB,FREQUENCY=1\nRF")?;
     let displaced = if model.print_all { "NALL" } else { "BOTTOM" };
     writeln!(d, "*NODE PRINT,NSET={displaced},FREQUENCY=1\nU")?;
     writeln!(d, "*EL PRINT,ELSET=EALL,TOTALS=ONLY,FREQUENCY=1\nELSE")?;
     writeln!(d, "*EL PRINT,ELSET=EALL,FREQUENCY=1\nPEEQ,S\n*END STEP")
-}
-
-/// The boundary conditions of the two control nodes of a lean.
-fn write_lean(d: &mut String, lean: Lean, lifter: usize, leaner: usize) -> fmt::Result {
-    let values = [lean.lift, lean.tilt[0], lean.tilt[1]];
-    for (i, value) in values.into_iter().enumerate() {
-        writeln!(d, "{lifter},{0},{0},{1}", i + 1, real(value))?;
-    }
-    writeln!(d, "{leaner},3,3,0.")?;
-    (1..=2).try_for_each(|i| writeln!(d, "*BOUNDARY,AMPLITUDE=LEAN{i}\n{leaner},{i},{i},1."))
-}
-
-/// What a tilt about axes that are turned by theta adds to a point of unit height: (u_x, u_y).
-fn turned_tilt([by_x, by_y]: [f64; 2], theta: f64) -> [f64; 2] {
-    rotated([by_y, -by_x], theta)
 }
 
 /// The lambdas of the amplitude tables of a path.

@@ -24,36 +24,18 @@ pub(crate) struct DrivenArc<'a> {
 }
 
 impl DrivenArc<'_> {
-    /// The constraint equations of every node of the arc: two in the plane, and one out of it if the arc leans. The drivers
-    /// of a lean are the control nodes of (lift, tilt) and what it adds to points of unit height.
-    pub fn write_equations(
-        &self,
-        d: &mut String,
-        positions: &[[f64; 3]],
-        leaners: Option<[usize; 2]>,
-    ) -> fmt::Result {
+    /// The two constraint equations of every node of the arc.
+    pub fn write_equations(&self, d: &mut String, positions: &[[f64; 3]]) -> fmt::Result {
         let [turner, mover] = self.drivers;
         writeln!(d, "*EQUATION")?;
         for index in self.nodes {
             let node = index + 1;
             let [x, y] = [0, 1].map(|i| positions[*index][i] - self.about[i]);
-            let z = positions[*index][2];
             for (freedom, by_q1, by_q2) in [(1, -x, y), (2, -y, -x)] {
                 let (by_q1, by_q2) = (real(by_q1), real(by_q2));
                 writeln!(
                     d,
-                    "{}\n{node},{freedom},1.,{turner},1,{by_q1},{turner},2,{by_q2},{mover},{freedom},-1.",
-                    if leaners.is_some() { 5 } else { 4 }
-                )?;
-                if let Some([_, leaner]) = leaners {
-                    writeln!(d, "{leaner},{freedom},{}", real(-z))?;
-                }
-            }
-            if let Some([lifter, _]) = leaners {
-                let (by_x, by_y) = (real(-y), real(x));
-                writeln!(
-                    d,
-                    "4\n{node},3,1.,{lifter},1,-1.,{lifter},2,{by_x},{lifter},3,{by_y}"
+                    "4\n{node},{freedom},1.,{turner},1,{by_q1},{turner},2,{by_q2},{mover},{freedom},-1."
                 )?;
             }
         }
@@ -76,12 +58,11 @@ impl DrivenArc<'_> {
         Ok(())
     }
 
-    /// The boundary conditions of the control nodes in the plane; of the rotation alone if the translation is free.
-    pub fn write_boundary(&self, d: &mut String, translation_free: bool) -> fmt::Result {
+    /// The boundary conditions of the control nodes in the plane.
+    pub fn write_boundary(&self, d: &mut String) -> fmt::Result {
         let [turner, mover] = self.drivers;
         let freedoms = [(turner, 1), (turner, 2), (mover, 1), (mover, 2)];
-        let count = if translation_free { 2 } else { 4 };
-        for (i, (node, freedom)) in freedoms.into_iter().take(count).enumerate() {
+        for (i, (node, freedom)) in freedoms.into_iter().enumerate() {
             writeln!(d, "*BOUNDARY,AMPLITUDE={}{}", self.amplitudes, i + 1)?;
             writeln!(d, "{node},{freedom},{freedom},1.")?;
         }

@@ -1,7 +1,6 @@
 //! A meshed window and all other data of its input deck.
 
 use crate::solve::deformation_path::DeformationPath;
-use crate::solve::lean::Lean;
 use crate::solve::step_control::StepControl;
 use hinge::SheetMaterial;
 use mesher::WindowMesh;
@@ -15,8 +14,6 @@ pub struct WindowModel<'a> {
     pub path: &'a DeformationPath,
     /// The sheet material.
     pub material: &'a SheetMaterial,
-    /// How far panel B leaves the plane of panel A at the end of the path.
-    pub lean: Option<Lean>,
     /// The increments of the solve.
     pub step: &'a StepControl,
     /// Whether the displacements of all nodes are printed, for [`CalculiX::fields`](crate::CalculiX::fields); if not,

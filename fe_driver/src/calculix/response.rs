@@ -3,7 +3,6 @@
 use crate::calculix::dat::Frame;
 use crate::calculix::model::WindowModel;
 use crate::calculix::panel_motion::{PanelMotion, rotated};
-use crate::solve::lean::Lean;
 use hinge::{
     HingeDeformation, HingeDesign, HingeForces, HingeSample, SheetMaterial, StrainVolumes,
 };
@@ -17,23 +16,17 @@ const PEAK_FRACTION: f64 = 0.01;
 /// One sample per frame, in the order of the frames.
 pub(crate) fn samples(model: &WindowModel, frames: &[Frame]) -> Vec<HingeSample> {
     let (mesh, material) = (model.mesh, model.material);
-    let mut before = Driven::default();
+    let mut before = (HingeDeformation::default(), HingeForces::default());
     let energies = frames.iter().map(|frame| frame.energy.abs());
     let largest_w = energies.fold(f64::MIN_POSITIVE, f64::max);
     let mut w_work = 0.0;
     frames
         .iter()
         .map(|frame| {
-            let lean = model.lean.unwrap_or_default().at(frame.lambda);
-            let driven = Driven::new(mesh, model.path.at(frame.lambda), lean, &frame.reactions);
-            w_work += driven.work_since(&before);
-            let Driven {
-                deformation,
-                forces,
-                ..
-            } = driven;
-            let [f_z, m_x, m_y] = driven.out_of_plane;
-            before = driven;
+            let deformation = model.path.at(frame.lambda);
+            let forces = arc_forces(mesh, &deformation, &frame.reactions);
+            w_work += trapezoid(before, (deformation, forces));
+            before = (deformation, forces);
             let volumes = mesh.gauss_volumes.iter().flatten().copied();
             let points = frame.peeq.iter().copied().zip(volumes).collect();
             let damage = Damage::new(points, &mesh.design, mesh.thickness, material);
@@ -48,9 +41,6 @@ pub(crate) fn samples(model: &WindowModel, frames: &[Frame]) -> Vec<HingeSample>
                 f_a: forces.f_a,
                 f_s: forces.f_s,
                 m_theta: forces.m_theta,
-                f_z: Some(f_z),
-                m_x: Some(m_x),
-                m_y: Some(m_y),
                 plastic_integral: damage.plastic_integral,
                 d: damage.d,
                 d_window: damage.plastic_integral / (material.fracture_strain * mesh.volume()),
@@ -65,72 +55,33 @@ pub(crate) fn samples(model: &WindowModel, frames: &[Frame]) -> Vec<HingeSample>
         .collect()
 }
 
-/// What panel B does, and the forces conjugate to it.
-#[derive(Clone, Copy, Default)]
-struct Driven {
-    deformation: HingeDeformation,
-    lean: Lean,
-    forces: HingeForces,
-    /// Force out of the plane, and moments about O on panel B and the axes that turn with it.
-    out_of_plane: [f64; 3],
+/// The forces conjugate to (a, s, theta), from the resultant of the reactions on arc B and their moment about the
+/// current position of O on panel B.
+fn arc_forces(
+    mesh: &WindowMesh,
+    deformation: &HingeDeformation,
+    reactions: &[(usize, [f64; 3])],
+) -> HingeForces {
+    let tip = mesh.design.tip();
+    let (mut force, mut moment) = ([0.0; 2], 0.0);
+    for (node, [fx, fy, _]) in reactions {
+        let [x, y, _] = mesh.nodes[*node];
+        let arm = rotated([x - tip[0], y - tip[1]], deformation.theta);
+        force[0] += fx;
+        force[1] += fy;
+        moment += arm[0] * fy - arm[1] * fx;
+    }
+    PanelMotion::new(deformation).forces(force, moment)
 }
 
-impl Driven {
-    /// From the reactions on arc B.
-    fn new(
-        mesh: &WindowMesh,
-        deformation: HingeDeformation,
-        lean: Lean,
-        reactions: &[(usize, [f64; 3])],
-    ) -> Self {
-        let tip = mesh.design.tip();
-        // In the axes that turn with panel B.
-        let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
-        for (node, [f_x, f_y, f_z]) in reactions {
-            let [x, y, z] = mesh.nodes[*node];
-            let flat = [x - tip[0], y - tip[1], z];
-            let mut arm = lean.displacement(flat);
-            arm[2] -= lean.lift;
-            (0..3).for_each(|i| arm[i] += flat[i]);
-            let [f_x, f_y] = rotated([*f_x, *f_y], -deformation.theta);
-            let f = [f_x, f_y, *f_z];
-            for i in 0..3 {
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                force[i] += f[i];
-                moment[i] += arm[j] * f[k] - arm[k] * f[j];
-            }
-        }
-        let [f_x, f_y, f_z] = force;
-        let [m_x, m_y, m_z] = moment;
-        let in_plane = rotated([f_x, f_y], deformation.theta);
-        Self {
-            deformation,
-            lean,
-            forces: PanelMotion::new(&deformation).forces(in_plane, m_z),
-            out_of_plane: [f_z, m_x, m_y],
-        }
-    }
-
-    /// Work from another state to this one: mean force times change of motion.
-    fn work_since(&self, before: &Self) -> f64 {
-        let conjugate = |of: &Self| {
-            let [lift, x, y] = of.out_of_plane;
-            let motion = of.deformation.to_array();
-            let [by_x, by_y] = of.lean.tilt;
-            let forces = of.forces.to_array();
-            [
-                (motion[0], forces[0]),
-                (motion[1], forces[1]),
-                (motion[2], forces[2]),
-                (of.lean.lift, lift),
-                (by_x, x),
-                (by_y, y),
-            ]
-        };
-        std::iter::zip(conjugate(before), conjugate(self))
-            .map(|((from, f), (to, g))| 0.5 * (f + g) * (to - from))
-            .sum()
-    }
+/// Work between two states: mean force times change of deformation.
+fn trapezoid(
+    (from, force_from): (HingeDeformation, HingeForces),
+    (to, force_to): (HingeDeformation, HingeForces),
+) -> f64 {
+    0.5 * (force_from.f_a + force_to.f_a) * (to.a - from.a)
+        + 0.5 * (force_from.f_s + force_to.f_s) * (to.s - from.s)
+        + 0.5 * (force_from.m_theta + force_to.m_theta) * (to.theta - from.theta)
 }
 
 /// Integral of sigma : C^-1 : sigma / 2 over the window (N mm), assuming small elastic strains.
@@ -211,21 +162,20 @@ mod tests {
 
     #[test]
     fn the_trapezoid_is_exact_for_a_linear_force() {
-        let state = |x: f64| Driven {
-            deformation: [x, 2.0 * x, 0.5 * x].into(),
-            forces: HingeForces {
+        let state = |x: f64| {
+            let forces = HingeForces {
                 f_a: 3.0 * x,
                 f_s: 2.0 * x,
                 m_theta: 7.0 * x,
-            },
-            lean: Lean {
-                lift: 0.1 * x,
-                tilt: [0.0, 0.2 * x],
-            },
-            out_of_plane: [4.0 * x, 9.0 * x, 5.0 * x],
+            };
+            let deformation = HingeDeformation {
+                a: x,
+                s: 2.0 * x,
+                theta: 0.5 * x,
+            };
+            (deformation, forces)
         };
-        let [start, middle, end] = [0.0, 0.3, 1.0].map(state);
-        let work = middle.work_since(&start) + end.work_since(&middle);
-        assert!((work - 0.5 * (3.0 + 4.0 + 3.5 + 0.4 + 1.0)).abs() < 1e-14);
+        let work = trapezoid(state(0.0), state(0.3)) + trapezoid(state(0.3), state(1.0));
+        assert!((work - 0.5 * (3.0 + 4.0 + 3.5)).abs() < 1e-14);
     }
 }

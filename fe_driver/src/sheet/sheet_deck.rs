@@ -239,7 +239,7 @@ impl SheetModel<'_> {
         let arc = self.arc(rim, &amplitudes);
         let [turner, mover] = arc.drivers;
         writeln!(d, "*NODE\n{turner},0.,0.,0.\n{mover},0.,0.,0.")?;
-        arc.write_equations(d, &self.mesh.nodes, None)?;
+        arc.write_equations(d, &self.mesh.nodes)?;
         let path = &self.problem.rims[rim].path;
         let column =
             |i: usize| -> Vec<[f64; 2]> { path.iter().map(|state| [state[0], state[i]]).collect() };
@@ -275,7 +275,7 @@ impl SheetModel<'_> {
             writeln!(d, "*BOUNDARY\n{turner},3,3,0.\n{mover},3,3,0.")?;
             let mut nodes = nodes.iter();
             nodes.try_for_each(|node| writeln!(d, "{},3,3,0.", node + 1))?;
-            arc.write_boundary(d, false)?;
+            arc.write_boundary(d)?;
         }
         if let Some(stroke) = self.problem.stroke {
             let control = self.control() + 1;

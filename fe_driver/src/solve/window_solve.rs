@@ -4,7 +4,6 @@ use crate::record_file::short_hash;
 use crate::solve::failure::FailureKind;
 use crate::solve::hinge_path::HingePath;
 use crate::solve::ladder::AttemptKind;
-use crate::solve::lean::Lean;
 use crate::solve::problem::Solve;
 use crate::solve::step_control::StepControl;
 use crate::solve::tool_versions::ToolVersions;
@@ -30,10 +29,6 @@ pub struct WindowProblem {
     pub tier: Tier,
     /// The increments of the solve.
     pub step: StepControl,
-    /// How far panel B leaves the plane of panel A at the end of the path. Its translation in the plane is then free, and only
-    /// the rotation of the path is driven.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lean: Option<Lean>,
 }
 
 /// All inputs of the result of a window solve.
@@ -57,7 +52,6 @@ impl WindowProblem {
             material: material.clone(),
             tier,
             step: StepControl::usual(tier.regime()),
-            lean: None,
         }
     }
 }
