@@ -65,10 +65,7 @@ fn a_project_without_weights_begins_with_its_campaign() {
         message.contains("at most 0.10 mm for this size), or a plate from 2 mm on"),
         "{message}"
     );
-    let said = work.output(&format!(
-        "init steel {steel} --size 3300x4600 --weights {}",
-        weights()
-    ));
+    let said = work.output(&format!("init steel {steel} --size 3300x4600"));
     assert!(
         said.contains("kirigami campaign run steel/campaign.toml"),
         "{said}"
@@ -242,4 +239,22 @@ fn weights_of_a_film_do_not_serve_a_plate() {
         weights()
     ));
     assert!(message.contains("with film ligaments"), "{message}");
+    let message = work.error(&format!(
+        "init other --material configs/materials/petg-3mm.toml --weights {}",
+        weights()
+    ));
+    assert!(message.contains("for another material"), "{message}");
+}
+
+/// A scene that is refused is written, and the reason is the message.
+#[test]
+fn a_project_that_needs_a_change_says_so() {
+    let work = Workplace::new();
+    let message = work.error(&format!(
+        "init thin --like {}/configs/scenes/a4-plate.toml --thickness 1",
+        env!("CARGO_MANIFEST_DIR")
+    ));
+    assert!(message.contains("needs a change"), "{message}");
+    assert!(message.contains("violates 0.5 <= w_lig"), "{message}");
+    assert!(work.path("thin/scene.toml").is_file());
 }

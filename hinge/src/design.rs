@@ -90,8 +90,11 @@ const MAX_W_LIG: f64 = 500.0;
 /// the panels around it.
 const MIN_WINDOW: f64 = 2.5;
 
+/// Widest ligament (mm) that a width in metres is taken for.
+const LIKELY: f64 = 100.0;
+
 fn unit_slip(w_lig: f64) -> String {
-    if (MIN_W_LIG..=MAX_W_LIG).contains(&(1e3 * w_lig)) {
+    if (MIN_W_LIG..=LIKELY).contains(&(1e3 * w_lig)) {
         format!("; did you mean {} mm?", 1e3 * w_lig)
     } else {
         String::new()

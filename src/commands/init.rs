@@ -13,8 +13,9 @@ use crate::commands::input_file;
 use crate::ui::output_file;
 use crate::ui::shell_word::shell_word;
 use crate::ui::width_by_height::width_by_height;
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
+use design::scene::Scene;
 use hinge::{Regime, SheetMaterial};
 use mesher::Tier;
 use std::path::{Path, PathBuf};
@@ -52,8 +53,7 @@ pub struct InitCommand {
     /// loads open the new sheet as far as that of the scene
     #[arg(long, value_name = "SCENE")]
     like: Option<PathBuf>,
-    /// Weights that the scene uses if they are for this material [default: those for it among the shipped ones; with --like
-    /// those of its scene]
+    /// Weights for this material [default: those for it among the shipped ones; with --like those of its scene]
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
 }
@@ -148,11 +148,20 @@ impl InitCommand {
         ] {
             output_file::write(&self.folder.join(file), contents)?;
         }
+        if trained {
+            let scene = self.folder.join("scene.toml");
+            Scene::read(&scene).with_context(|| {
+                format!(
+                    "{} is written, but needs a change before it runs",
+                    scene.display()
+                )
+            })?;
+        }
         println!("{readme}");
         Ok(())
     }
 
-    /// The weights that are for the material. Weights that are named must exist.
+    /// The weights that are for the material. Weights that are named must be.
     fn weights_of(&self, material: &SheetMaterial, like: Option<&Like>) -> Result<Vec<Weights>> {
         let candidates = match &self.weights {
             Some(weights) => {
@@ -177,6 +186,13 @@ impl InitCommand {
                     file: std::path::absolute(file)?,
                     regime: material.regime(card.domain.w_lig[1]),
                 });
+            } else if self.weights.is_some() {
+                bail!(
+                    "{} are weights for another material than {}: name the material that they were trained on (--material), \
+                     or leave out --weights",
+                    file.display(),
+                    material.name
+                );
             }
         }
         Ok(fitting)

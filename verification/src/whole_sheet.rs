@@ -19,7 +19,9 @@ const SHRINK: f64 = 0.93;
 const LEAST_RADIUS: f64 = 2.52;
 /// Layers of elements through the thickness.
 const LAYERS: usize = 2;
-/// Ligament width over thickness up to which a ligament has the bump of a plate.
+/// Ligament width over thickness up to which a ligament of a meshed sheet has the bump of a plate. Ligaments of one to two
+/// thicknesses are of no law's regime: they bend in the plane first and tip over later, and a bump as high as the sheet is
+/// thick would make them softer than they are (docs/results/plates).
 const IN_PLANE: f64 = 2.0;
 
 /// To which sides the bumps of the hinges point: each pattern may lead to another branch.

@@ -61,3 +61,25 @@ impl Template {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hinge::SheetMaterial;
+    use std::path::Path;
+    use toml_edit::DocumentMut;
+
+    #[test]
+    fn templates_have_the_lengths_of_their_files() {
+        let configs = Path::new("configs");
+        for template in [&FILM, &PLATE] {
+            let scene: DocumentMut = template.scene.parse().unwrap();
+            let campaign: DocumentMut = template.campaign.parse().unwrap();
+            assert_eq!(scene["thickness"].as_float(), Some(template.thickness));
+            assert_eq!(scene["process"]["r_win"].as_float(), Some(template.r_win));
+            let material = campaign["material"].as_str().unwrap();
+            let material = SheetMaterial::load(&configs.join("campaigns").join(material)).unwrap();
+            assert_eq!(material.thickness, template.campaign_thickness);
+        }
+    }
+}
