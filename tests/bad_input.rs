@@ -7,6 +7,7 @@ mod failing_ccx;
 use common::{Workplace, failure};
 use failing_ccx::failing_ccx;
 use std::path::Path;
+use support::sealed_json;
 
 const DEMO: &str = "configs/campaigns/demo.toml";
 const SCENE: &str = "configs/scenes/linear-7x7.toml";
@@ -170,8 +171,7 @@ fn files_that_are_not_weights_are_refused() {
 
     // A valid file whose last number, the energy scale, is NaN.
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("surrogate/tests/cases");
-    let original = std::fs::read(cases.join("chi_tiny.safetensors")).unwrap();
-    let mut bytes = original.clone();
+    let mut bytes = std::fs::read(cases.join("chi_tiny.safetensors")).unwrap();
     let last = bytes.len() - 8;
     bytes[last..].copy_from_slice(&f64::NAN.to_le_bytes());
     std::fs::write(&weights, &bytes).unwrap();
@@ -180,13 +180,11 @@ fn files_that_are_not_weights_are_refused() {
         message.contains("surrogate.json"),
         "the message names the card: {message}"
     );
-    let card = std::fs::read_to_string(cases.join("chi_tiny.json")).unwrap();
-    let [stated, found] = [original, bytes].map(|bytes| blake3::hash(&bytes).to_hex().to_string());
-    std::fs::write(
-        weights.with_extension("json"),
-        card.replace(&stated, &found),
-    )
-    .unwrap();
+    let card = std::fs::read(cases.join("chi_tiny.json")).unwrap();
+    let mut card: serde_json::Value = sealed_json::from_slice(&card).unwrap();
+    card["weights_hash"] = blake3::hash(&bytes).to_hex().to_string().into();
+    let card = sealed_json::to_vec(&card).unwrap();
+    std::fs::write(weights.with_extension("json"), card).unwrap();
     let message = work.error(&format!("design {scene}"));
     assert!(message.contains("w_scale"), "{message}");
 }

@@ -92,10 +92,40 @@ impl Replay {
         command
     }
 
+    /// A command on a file system without locks.
+    fn unlocked(&self, command: &Command, trace: &str) -> Command {
+        let mut traced = Command::new("strace");
+        traced
+            .args(["-f", "-qqq", "-o", trace])
+            .args(["-e", "trace=flock", "-e", "inject=flock:error=ENOSYS"])
+            .arg(command.get_program())
+            .args(command.get_args())
+            .current_dir(self.work.path(""))
+            .stdout(Stdio::null());
+        for (variable, value) in command.get_envs() {
+            traced.env(variable, value.unwrap());
+        }
+        traced
+    }
+
     /// Number of lines of a campaign's event log.
     fn events(&self, folder: &str) -> usize {
         let history = self.work.path(folder).join("hosts/a/events-1-of-1.jsonl");
         std::fs::read_to_string(history).map_or(0, |text| text.lines().count())
+    }
+
+    /// The work folders and the temporary files in the folders of the jobs of a campaign.
+    fn left_over(&self, folder: &str) -> Vec<PathBuf> {
+        let entries = |folder: PathBuf| {
+            let entries = std::fs::read_dir(folder).unwrap();
+            entries.map(|entry| entry.unwrap().path())
+        };
+        let jobs = entries(self.work.path(folder).join("jobs")).flat_map(entries);
+        let left = |path: &PathBuf| {
+            let name = path.file_name().unwrap().to_string_lossy();
+            name.starts_with("work") || name.ends_with(".partial")
+        };
+        jobs.flat_map(entries).filter(left).collect()
     }
 
     fn collected(&self, folder: &str) -> Database {
@@ -240,11 +270,7 @@ fn a_ray_that_two_hosts_solve_is_counted_once() {
         text.matches("started").count()
     };
     assert!((6..=12).contains(&(solved("a") + solved("b"))));
-    for job in std::fs::read_dir(replay.work.path("shared/jobs")).unwrap() {
-        let mut files = std::fs::read_dir(job.unwrap().path()).unwrap();
-        let work = |name: &str| name.starts_with("work") || name.ends_with(".partial");
-        assert!(!files.any(|file| work(file.unwrap().file_name().to_str().unwrap())));
-    }
+    assert_eq!(replay.left_over("shared"), Vec::<PathBuf>::new());
 }
 
 #[test]
@@ -286,31 +312,91 @@ fn a_file_system_without_locks_is_no_obstacle() {
     let replay = Replay::new();
     let design = "design configs/scenes/pin-7x7.toml --steps 1 --force";
     for run in [replay.run("unlocked"), replay.work.program(design)] {
-        let mut traced = Command::new("strace");
-        traced
-            .args([
-                "-f",
-                "-qqq",
-                "-o",
-                "trace",
-                "-e",
-                "trace=flock",
-                "-e",
-                "inject=flock:error=ENOSYS",
-            ])
-            .arg(run.get_program())
-            .args(run.get_args())
-            .current_dir(replay.work.path(""))
-            .stdout(Stdio::null());
-        for (variable, value) in run.get_envs() {
-            traced.env(variable, value.unwrap());
-        }
-        assert!(traced.status().unwrap().success());
+        assert!(replay.unlocked(&run, "trace").status().unwrap().success());
         let trace = std::fs::read_to_string(replay.work.path("trace")).unwrap();
         assert!(trace.contains("ENOSYS"), "{trace}");
     }
     let whole = timeless(&replay.collected("recorded-campaign"));
     assert_eq!(timeless(&replay.collected("unlocked")), whole);
+}
+
+/// It is killed before each of its renames in turn: there is always a whole database, and the same command works.
+#[test]
+fn a_database_that_is_replaced_is_the_old_one_or_the_new_one() {
+    let replay = Replay::new();
+    replay.collected("recorded-campaign");
+    let work = &replay.work;
+    let split = |seed| {
+        let seed = format!("--seed {seed} --validation 0.2 --test 0.2");
+        format!("dataset split recorded-campaign.parquet --out split.parquet {seed} --replace")
+    };
+    let parts = || {
+        let database = Database::read(&work.path("split.parquet")).unwrap();
+        database.manifest().split_hash.clone()
+    };
+    let [old, new] = [1, 2].map(|seed| {
+        work.output(&split(seed));
+        parts()
+    });
+    assert_ne!(old, new);
+    let killed_at = |call: &str, number: usize| {
+        work.output(&split(1));
+        let kill = format!("inject={call}:signal=KILL:when={number}");
+        let ended = Command::new("strace")
+            .args(["-f", "-qqq", "-o", "trace", "-e", &kill])
+            .arg(env!("CARGO_BIN_EXE_kirigami"))
+            .args(split(2).split_whitespace())
+            .current_dir(work.path(""))
+            .stdout(Stdio::null())
+            .status();
+        (!ended.unwrap().success()).then(parts)
+    };
+    let mut found = Vec::new();
+    // They are counted apart.
+    for call in ["rename", "renameat", "renameat2"] {
+        found.extend((1..).map_while(|number| killed_at(call, number)));
+    }
+    // Before each of the three: the Parquet file, the manifest, which decides, and the name of the Parquet file.
+    found.sort_by_key(|parts| *parts == new);
+    assert_eq!(found, [old.clone(), old, new]);
+}
+
+/// Each of them works in folders of its own.
+#[test]
+fn two_runs_without_locks_give_the_rows_of_one() {
+    let replay = Replay::new();
+    let run = replay.run("twice");
+    let runs = ["first", "second"].map(|trace| replay.unlocked(&run, trace).spawn().unwrap());
+    for mut run in runs {
+        assert!(run.wait().unwrap().success());
+    }
+    let both = std::fs::read_to_string(replay.work.path("twice/hosts/a/events-1-of-1.jsonl"));
+    assert!(both.unwrap().matches("started").count() > 6);
+    let whole = timeless(&replay.collected("recorded-campaign"));
+    assert_eq!(timeless(&replay.collected("twice")), whole);
+    assert_eq!(replay.left_over("twice"), Vec::<PathBuf>::new());
+}
+
+/// As if the machine had been suspended.
+#[test]
+fn time_in_which_the_run_is_suspended_does_not_count() {
+    let replay = Replay::new();
+    replay
+        .work
+        .edit(CAMPAIGN, &[("time_limit_s = 120.0", "time_limit_s = 3.0")]);
+    let ccx = replay.work.path("replaying-ccx");
+    let text = std::fs::read_to_string(&ccx).unwrap();
+    let suspends = "kill -STOP $PPID; sleep 4; kill -CONT $PPID; sleep 0.5";
+    std::fs::write(&ccx, text.replace("sleep 0.02", suspends)).unwrap();
+    let mut run = replay.campaign("run", "suspended", "--jobs 1 --shard 1/3");
+    assert!(run.status().unwrap().success());
+    let status = replay.work.output(&format!(
+        "campaign status {CAMPAIGN} --folder suspended --json"
+    ));
+    assert!(
+        status.contains("\"complete\": 2") && status.contains("\"failures\": {}"),
+        "{status}"
+    );
 }
 
 #[test]

@@ -91,12 +91,21 @@ fn a_stopped_command_continues_with_the_runs_that_are_left() {
 }
 
 #[test]
-fn a_link_in_place_of_a_lock_destroys_nothing() {
+fn a_link_or_a_pipe_in_place_of_a_lock_is_refused_at_once() {
     let work = Workplace::new();
     let victim = work.path("victim");
     std::fs::write(&victim, "kept").unwrap();
     std::fs::create_dir(work.path("run")).unwrap();
     std::os::unix::fs::symlink(&victim, work.path("run/lock")).unwrap();
-    work.output("design configs/scenes/pin-7x7.toml --steps 1 --out run");
+    let design = "design configs/scenes/pin-7x7.toml --steps 1 --out run";
+    let message = work.error(design);
+    assert!(message.contains("run/lock: a link, a pipe"), "{message}");
     assert_eq!(std::fs::read_to_string(victim).unwrap(), "kept");
+    std::fs::remove_file(work.path("run/lock")).unwrap();
+    let pipe = std::process::Command::new("mkfifo")
+        .arg(work.path("run/lock"))
+        .status();
+    assert!(pipe.unwrap().success());
+    let message = work.error(design);
+    assert!(message.contains("run/lock: a link, a pipe"), "{message}");
 }

@@ -168,6 +168,12 @@ impl Database {
         self.rows.chunk_by(same).collect()
     }
 
+    /// The first row of every ray that was solved on another tier than that of its campaign, after a failure.
+    pub fn rays_on_other_tiers(&self) -> Vec<&Row> {
+        let first = self.rays().into_iter().filter_map(<[Row]>::first);
+        first.filter(|row| !row.is_as_asked()).collect()
+    }
+
     /// All accepted rows.
     pub fn rows(&self) -> &[Row] {
         &self.rows

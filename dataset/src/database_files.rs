@@ -1,31 +1,26 @@
 //! Reading and writing a database: `X.parquet` and its manifest `X.json`.
+//!
+//! One rename decides which database there is, that of the manifest, which holds the hash of its Parquet file. The file is
+//! there before, as `X.parquet.next`, and gets its name after that. A process that is killed between the two leaves it to
+//! the next reader.
 
 use crate::database::Database;
 use crate::error::DatasetError;
 use crate::manifest::{FORMAT_VERSION, Manifest};
 use crate::parquet;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use support::regular_file;
 use support::sealed_json::{self, SealError};
-use support::whole_file;
+use support::whole_file::{self, Unnamed};
 
 impl Database {
     /// Reads `X.parquet` and its manifest `X.json`; an error if the hash of the file is not that in the manifest.
     pub fn read(path: &Path) -> Result<Self, DatasetError> {
-        let parquet = read_bytes(path)?;
-        if let Some(what) = other_kind(&parquet) {
-            let path = path.to_owned();
-            return Err(DatasetError::NoDatabase { path, what });
-        }
-        let manifest = read_manifest(&manifest_path(path))?;
-        let found = parquet::hash(&parquet);
-        if found != manifest.hash {
-            return Err(DatasetError::Hash {
-                path: path.to_owned(),
-                expected: manifest.hash,
-                found,
-            });
-        }
+        let (manifest, parquet) = match finish(path)? {
+            Some(finished) => finished,
+            None => read_files(path)?,
+        };
         let rows = parquet::decode(&parquet).map_err(|source| DatasetError::In {
             path: path.to_owned(),
             source: Box::new(source),
@@ -48,9 +43,64 @@ impl Database {
     /// An existing file is an error unless `replace` is true.
     pub fn write(&self, path: &Path, replace: bool) -> Result<(), DatasetError> {
         refuse_existing(path, replace)?;
-        whole_file::write(path, &self.parquet).map_err(unwritable(path))?;
-        write_manifest(&self.manifest, &manifest_path(path))
+        let mut file = Unnamed::beside(path).map_err(unwritable(path))?;
+        let written = file.file().write_all(&self.parquet);
+        written.map_err(unwritable(path))?;
+        publish(file, &self.manifest, path)
     }
+}
+
+/// Writes the manifest of a Parquet file, and gives both their names.
+pub(crate) fn publish(
+    parquet: Unnamed,
+    manifest: &Manifest,
+    path: &Path,
+) -> Result<(), DatasetError> {
+    let next = next_path(path);
+    parquet.name(&next).map_err(unwritable(&next))?;
+    let mut json = sealed_json::to_vec(manifest).map_err(|source| DatasetError::Manifest {
+        path: path.to_owned(),
+        source: source.into(),
+    })?;
+    json.push(b'\n');
+    let place = manifest_path(path);
+    whole_file::write(&place, &json).map_err(unwritable(&place))?;
+    whole_file::rename(&next, path).map_err(unwritable(path))
+}
+
+/// The database whose Parquet file has not got its name yet, which it gets now if the folder can be written; `None` if there
+/// is none.
+fn finish(path: &Path) -> Result<Option<(Manifest, Vec<u8>)>, DatasetError> {
+    let next = next_path(path);
+    if !next.exists() {
+        return Ok(None);
+    }
+    let manifest = read_manifest(&manifest_path(path))?;
+    let parquet = read_bytes(&next)?;
+    if parquet::hash(&parquet) != manifest.hash {
+        return Ok(None);
+    }
+    let _ = whole_file::rename(&next, path);
+    Ok(Some((manifest, parquet)))
+}
+
+/// The manifest and the bytes of the Parquet file, which has the hash in the manifest.
+fn read_files(path: &Path) -> Result<(Manifest, Vec<u8>), DatasetError> {
+    let parquet = read_bytes(path)?;
+    if let Some(what) = other_kind(&parquet) {
+        let path = path.to_owned();
+        return Err(DatasetError::NoDatabase { path, what });
+    }
+    let manifest = read_manifest(&manifest_path(path))?;
+    let found = parquet::hash(&parquet);
+    if found != manifest.hash {
+        return Err(DatasetError::Hash {
+            path: path.to_owned(),
+            expected: manifest.hash,
+            found,
+        });
+    }
+    Ok((manifest, parquet))
 }
 
 /// An error if `X.parquet` or its manifest exists, unless `replace` is true.
@@ -62,17 +112,13 @@ pub(crate) fn refuse_existing(path: &Path, replace: bool) -> Result<(), DatasetE
     }
 }
 
-pub(crate) fn write_manifest(manifest: &Manifest, path: &Path) -> Result<(), DatasetError> {
-    let mut json = sealed_json::to_vec(manifest).map_err(|source| DatasetError::Manifest {
-        path: path.to_owned(),
-        source: source.into(),
-    })?;
-    json.push(b'\n');
-    whole_file::write(path, &json).map_err(unwritable(path))
+fn manifest_path(path: &Path) -> PathBuf {
+    path.with_extension("json")
 }
 
-pub(crate) fn manifest_path(path: &Path) -> PathBuf {
-    path.with_extension("json")
+/// Where the Parquet file is before the manifest has its name.
+fn next_path(path: &Path) -> PathBuf {
+    path.with_added_extension("next")
 }
 
 fn read_manifest(path: &Path) -> Result<Manifest, DatasetError> {

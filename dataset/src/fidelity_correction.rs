@@ -65,7 +65,7 @@ impl Bridge {
     fn fit(rays: &[ComparedRay]) -> Self {
         let pairs = || {
             let pairs = rays.iter().flat_map(ComparedRay::pairs);
-            pairs.filter(|(row, _)| as_asked(row))
+            pairs.filter(|(row, _)| row.is_as_asked())
         };
         let blank = [0.0; TERMS.len()];
         let unfitted = Self {
@@ -105,7 +105,7 @@ impl Bridge {
     /// including the work of the reaction forces and the energy residual. A row that was solved on a finer tier than
     /// the requested one is also unchanged.
     fn corrected(&self, row: &Row) -> HingeSample {
-        if !as_asked(row) {
+        if !row.is_as_asked() {
             return row.sample;
         }
         let (terms, slopes) = self.terms(row);
@@ -248,11 +248,6 @@ fn errors(states: &[Vec<ComparedState>]) -> [f64; 3] {
             .map(|state| (state.value[i] - state.reference[i]).powi(2))
             .sum()
     })
-}
-
-/// Whether a row was solved on the tier of its campaign, and not on a finer one after a failure.
-fn as_asked(row: &Row) -> bool {
-    row.solved_tier == row.tier
 }
 
 /// w_lig (mm), alpha - pi/2 (rad), eta_a, eta_s, theta (rad).

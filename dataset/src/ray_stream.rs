@@ -1,7 +1,7 @@
 //! Writing a database whose rays arrive one after the other. The rows of one group of the Parquet file are in memory at a
 //! time; of all other rows 24 bytes, and of every ray its id, from which domain and split are computed at the end.
 
-use crate::database_files::{manifest_path, refuse_existing, unwritable, write_manifest};
+use crate::database_files::{publish, refuse_existing, unwritable};
 use crate::digest::{Digest, by_job_and_lambda};
 use crate::error::DatasetError;
 use crate::gates::Gates;
@@ -10,7 +10,7 @@ use crate::mixing::Mixing;
 use crate::parquet::{Hashing, Table};
 use crate::rows::Row;
 use crate::split::SplitPlan;
-use crate::summary::{Ranges, Summary};
+use crate::summary::{Contents, Summary};
 use std::fmt;
 use std::path::Path;
 use support::whole_file::Unnamed;
@@ -19,7 +19,7 @@ use support::whole_file::Unnamed;
 #[derive(Clone, Debug)]
 pub struct Collected {
     manifest: Manifest,
-    ranges: Ranges,
+    contents: Contents,
 }
 
 impl Collected {
@@ -39,28 +39,27 @@ impl Collected {
         let mut file = Unnamed::beside(path).map_err(unwritable(path))?;
         let failed = |error: DatasetError| unwritable(path)(std::io::Error::other(error));
         let mut digest = Digest::new(gates, Mixing::Refused);
-        let mut ranges = Ranges::default();
+        let mut contents = Contents::default();
         let mut hashing = Hashing::new(file.file());
         let mut table = Table::new(&mut hashing).map_err(failed)?;
         for ray in rays {
             let mut ray = digest.accepted(ray?);
             ray.sort_by(by_job_and_lambda);
             digest.add(&ray)?;
-            ranges.add(&ray);
+            contents.add(&ray);
             table.add(ray).map_err(failed)?;
         }
         table.finish().map_err(failed)?;
         let manifest = digest.manifest(hashing.hash(), plan)?;
-        file.name(path).map_err(unwritable(path))?;
-        write_manifest(&manifest, &manifest_path(path))?;
-        Ok(Self { manifest, ranges })
+        publish(file, &manifest, path)?;
+        Ok(Self { manifest, contents })
     }
 }
 
 impl fmt::Display for Collected {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let (manifest, ranges) = (&self.manifest, &self.ranges);
-        Summary { manifest, ranges }.fmt(f)
+        let (manifest, contents) = (&self.manifest, &self.contents);
+        Summary { manifest, contents }.fmt(f)
     }
 }
 

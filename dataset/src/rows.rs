@@ -41,6 +41,11 @@ impl Row {
     pub fn is_partial(&self) -> bool {
         !self.failure.is_empty()
     }
+
+    /// Whether it was solved on the tier of its campaign, and not on a finer one after a failure.
+    pub fn is_as_asked(&self) -> bool {
+        self.solved_tier == self.tier
+    }
 }
 
 #[cfg(test)]

@@ -7,28 +7,39 @@ use crate::noise::noise;
 use crate::rows::Row;
 use crate::schema;
 use crate::split::Part;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-/// The minimum and the maximum of every column of numbers.
+/// What a summary states of the rows beyond the manifest.
 #[derive(Clone, Debug)]
-pub(crate) struct Ranges([[f64; 2]; schema::NUMBERS.len()]);
+pub(crate) struct Contents {
+    /// The minimum and the maximum of every column of numbers.
+    ranges: [[f64; 2]; schema::NUMBERS.len()],
+    /// The rays that were solved on another tier than that of their campaign, with that tier.
+    other_tiers: BTreeMap<String, String>,
+}
 
-impl Default for Ranges {
+impl Default for Contents {
     /// Of no rows.
     fn default() -> Self {
-        Self([[f64::INFINITY, f64::NEG_INFINITY]; schema::NUMBERS.len()])
+        Self {
+            ranges: [[f64::INFINITY, f64::NEG_INFINITY]; schema::NUMBERS.len()],
+            other_tiers: BTreeMap::new(),
+        }
     }
 }
 
-impl Ranges {
+impl Contents {
     /// Adds rows.
     pub fn add(&mut self, rows: &[Row]) {
         for row in rows {
-            for ([minimum, maximum], column) in self.0.iter_mut().zip(&schema::NUMBERS) {
+            for ([minimum, maximum], column) in self.ranges.iter_mut().zip(&schema::NUMBERS) {
                 let value = (column.get)(row);
                 *minimum = minimum.min(value);
                 *maximum = maximum.max(value);
+            }
+            if !row.is_as_asked() && !self.other_tiers.contains_key(&row.job) {
+                (self.other_tiers).insert(row.job.clone(), row.solved_tier.clone());
             }
         }
     }
@@ -36,20 +47,20 @@ impl Ranges {
 
 impl fmt::Display for Database {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let mut ranges = Ranges::default();
-        ranges.add(self.rows());
+        let mut contents = Contents::default();
+        contents.add(self.rows());
         Summary {
             manifest: self.manifest(),
-            ranges: &ranges,
+            contents: &contents,
         }
         .fmt(f)
     }
 }
 
-/// Prints counts, rejected rows, the split, and the range of every column of numbers.
+/// Prints counts, rejected rows, the rays on another mesh, the split, and the range of every column of numbers.
 pub(crate) struct Summary<'a> {
     pub manifest: &'a Manifest,
-    pub ranges: &'a Ranges,
+    pub contents: &'a Contents,
 }
 
 impl fmt::Display for Summary<'_> {
@@ -75,6 +86,9 @@ impl fmt::Display for Summary<'_> {
         for (reason, count) in &manifest.rejected {
             writeln!(f, "rejected {count} rows: {reason:?}")?;
         }
+        for (job, tier) in &self.contents.other_tiers {
+            writeln!(f, "ray {job} was solved on the mesh {tier}")?;
+        }
         let rays = |part| manifest.split.jobs(part).len();
         writeln!(
             f,
@@ -88,7 +102,7 @@ impl fmt::Display for Summary<'_> {
             "{:18} {:>14} {:>14}  unit",
             "column", "minimum", "maximum"
         )?;
-        for (column, [minimum, maximum]) in schema::NUMBERS.iter().zip(self.ranges.0) {
+        for (column, [minimum, maximum]) in schema::NUMBERS.iter().zip(self.contents.ranges) {
             let (name, unit) = (column.name, column.unit);
             writeln!(f, "{name:18} {minimum:14.6} {maximum:14.6}  {unit}")?;
         }

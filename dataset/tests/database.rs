@@ -5,6 +5,7 @@ mod common;
 use common::{collect, row, rows};
 use dataset::{Database, DatasetError, Part, Rejection, Row, SplitPlan, with_mirrored};
 use std::path::{Path, PathBuf};
+use support::sealed_json;
 use tempfile::TempDir;
 
 type Change = fn(&mut Row);
@@ -305,7 +306,7 @@ fn vouched(path: &Path, bytes: &[u8]) -> DatasetError {
     let mut text: serde_json::Value =
         serde_json::from_str(&text.replace(&expected, &found)).unwrap();
     text.as_object_mut().unwrap().remove("checksum");
-    std::fs::write(&manifest, text.to_string()).unwrap();
+    std::fs::write(&manifest, sealed_json::to_vec(&text).unwrap()).unwrap();
     Database::read(path).unwrap_err()
 }
 

@@ -14,17 +14,18 @@
 //! **Solver.** A [`Solver`] makes one attempt at a solve of its kind. [`CalculiX`] is one, the deterministic [`FakeSolver`]
 //! of the tests another; a further program is one more implementation.
 //!
-//! **Attempts.** A solve that fails is attempted again, depending on the [`FailureKind`] and as its kind of problem says
-//! ([`Solve::next_attempt`]). A window is, at most three times: the same again, shorter increments, a finer mesh
-//! ([`AttemptKind`]). The samples of the attempt that reaches furthest are kept.
+//! **Attempts.** A solve that fails by what its solver says of the problem is attempted otherwise, depending on the
+//! [`FailureKind`] and as its kind of problem says ([`Solve::next_attempt`]): a window with shorter increments, then on a finer
+//! mesh ([`AttemptKind`]). The samples of the attempt that reaches furthest are kept. What the machine does to an attempt
+//! ([`Cause`]) decides nothing of a result: the same attempt is made again, and after a few times the solve stays open.
 //!
 //! **Store.** Every solve has one folder in a [`SolveStore`], named by its id, whose files appear whole or not at all. A
 //! solve without its result is not done. What is done is not solved again. Folders of several kinds of problem can be in
 //! one store.
 //!
 //! **List.** [`SolveService::solve`] works through a list of solves of one kind on parallel workers and promises: every
-//! result, in order, or an error that halts the whole list (a missing program, a full disk, a stop), after which the same
-//! list continues where it ended. A solve that fails ends no list: it is a [`Solved`] that names its failure and its
+//! result, in order, or an error (a missing program, a full disk, a stop, a solve that the machine ends again and again), after
+//! which the same list continues where it ended. A solve that fails ends no list: it is a [`Solved`] that names its failure and its
 //! folder.
 //!
 //! **Campaign.** A [`Campaign`] is a list of window solves with a ledger: [`plan`] counts what is left, [`run`] solves it,
@@ -91,7 +92,7 @@ pub use sheet::sheet_solver::sheet_reached;
 pub use sheet::sheet_states::{HingeState, PanelState, SheetState, SheetStates, SheetSurface};
 pub use solve::attempts::SolveListError;
 pub use solve::deformation_path::{DeformationPath, PathError};
-pub use solve::failure::{FailureKind, UnknownFailure};
+pub use solve::failure::{Cause, FailureKind, UnknownFailure};
 pub use solve::fake_solver::{FakeSolver, Fault};
 pub use solve::hinge_path::{HingePath, Ray};
 pub use solve::ladder::AttemptKind;

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{fake_ccx, problem};
-use fe_driver::{CalculiX, Ccx, FailureKind, Solution, SolveError, Solver, WindowSolve};
+use fe_driver::{CalculiX, Cause, Ccx, FailureKind, Solution, SolveError, Solver, WindowSolve};
 use mesher::Gmsh;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -21,13 +21,13 @@ fn solve(body: &str, folder: &Path, limit: Duration) -> Result<Solution, SolveEr
     solver.attempt(&solve, folder, limit, &AtomicBool::new(false))
 }
 
-fn failure(body: &str) -> (SolveError, FailureKind) {
+fn failure(body: &str) -> (SolveError, Cause) {
     let folder = tempfile::tempdir().unwrap();
     let solution = solve(body, folder.path(), Duration::from_secs(60)).unwrap();
     assert!(solution.samples.is_empty());
     let error = solution.stopped.unwrap();
-    let kind = FailureKind::from_error(&error).unwrap();
-    (error, kind)
+    let cause = Cause::of(&error);
+    (error, cause)
 }
 
 #[test]
@@ -38,8 +38,8 @@ fn the_error_of_a_failed_solver_quotes_the_end_of_its_log() {
         (words, FailureKind::NotStarted),
         (&attempted, FailureKind::Diverged),
     ] {
-        let (error, kind) = failure(body);
-        assert_eq!(kind, expected);
+        let (error, cause) = failure(body);
+        assert_eq!(cause, Cause::Problem(expected));
         assert!(
             error.to_string().contains("smaller than minimum"),
             "{error}"
@@ -47,23 +47,30 @@ fn the_error_of_a_failed_solver_quotes_the_end_of_its_log() {
     }
 }
 
+/// A step of the ladder is taken only for what the solver says of the problem.
 #[test]
-fn success_without_output_is_an_error() {
-    let (_, kind) = failure("echo 'Job finished'");
-    assert_eq!(kind, FailureKind::OutputTruncated);
+fn a_solver_that_says_nothing_of_the_problem_was_ended_by_the_machine() {
+    let real = Ccx::find().unwrap().0.program;
+    let wrapped = format!("{} \"$@\" & kill $!; wait $!", real.display());
+    for body in [
+        "kill -9 $$",
+        "exit 143",
+        &wrapped,
+        "exit 127",
+        "exit 1",
+        "echo 'Job finished'",
+        "echo '*ERROR in u_malloc: error allocating memory'; exit 201",
+    ] {
+        let (error, cause) = failure(body);
+        assert_eq!(cause, Cause::Machine, "{body}: {error}");
+    }
 }
 
 #[test]
 fn success_with_invalid_output_is_an_error() {
-    let (error, kind) = failure("echo 'rubbish' > window.dat; echo 'Job finished'");
-    assert_eq!(kind, FailureKind::OutputTruncated);
+    let (error, cause) = failure("echo 'rubbish' > window.dat; echo 'Job finished'");
+    assert_eq!(cause, Cause::Machine);
     assert!(error.to_string().contains("line 1"), "{error}");
-}
-
-#[test]
-fn a_killed_solver_has_its_own_failure_kind() {
-    let (_, kind) = failure("kill -9 $$");
-    assert_eq!(kind, FailureKind::Killed);
 }
 
 #[test]

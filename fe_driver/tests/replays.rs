@@ -48,7 +48,7 @@ static RECORDING: LazyLock<Recording> = LazyLock::new(|| {
     }
 });
 
-/// Sets $id to the job's id; ccx runs in jobs/<2 digits>/<id>/work-<host>.
+/// Sets $id to the job's id; ccx runs in jobs/<2 digits>/<id>/work-<host>-<process>.
 const JOB_ID: &str = "id=${PWD%/work-*}; id=${id##*/}";
 
 /// gmsh, and a fake ccx that runs `fault` before it replays the recorded output.
@@ -96,79 +96,33 @@ fn in_database(windows: &[Solved]) -> Vec<CollectedWindow> {
     windows.iter().map(collected).collect()
 }
 
-/// A kind of failure, as a script, and the result if it is persistent.
-struct Fault {
-    script: &'static str,
-    kind: FailureKind,
-    /// Whether complete increments remain.
-    rows: bool,
-}
-
-const FAULTS: [Fault; 7] = [
-    Fault {
-        script: "rm window.sta; exit 127",
-        kind: FailureKind::NotStarted,
-        rows: false,
-    },
+/// What the machine does to a solver, as scripts: nothing of it is said of the problem.
+const FAULTS: [&str; 7] = [
+    "rm window.sta; exit 127",
     // An increment in the middle is missing, from its first heading to the first heading of the next increment.
-    Fault {
-        script: "awk '/forces .fx/ { n++ } n != 3' $output > window.dat; \
-                 echo 'Job finished'; exit 0",
-        kind: FailureKind::OutputTruncated,
-        rows: false,
-    },
-    Fault {
-        script: "kill -9 $$",
-        kind: FailureKind::Killed,
-        rows: false,
-    },
-    // Not in the last attempt: the recorded output does not fit its finer mesh.
-    Fault {
-        script: "echo >> ../attempts; [ $(wc -l < ../attempts) -gt 3 ] || \
-                 head -c 150000 $output > window.dat; kill -9 $$",
-        kind: FailureKind::Killed,
-        rows: true,
-    },
-    Fault {
-        script: "sleep 1000 & sleep 1000",
-        kind: FailureKind::TimedOut,
-        rows: false,
-    },
+    "awk '/forces .fx/ { n++ } n != 3' $output > window.dat; echo 'Job finished'; exit 0",
+    "kill -9 $$",
+    "head -c 150000 $output > window.dat; kill -9 $$",
+    "sh -c 'kill -15 $$'; exit $?",
     // The last increment is missing, starting with its first heading.
-    Fault {
-        script: "last=$(grep -n 'forces (fx' $output | tail -n 1 | cut -d: -f1); \
-                 head -n $((last - 1)) $output > window.dat; echo 'Job finished'; exit 0",
-        kind: FailureKind::OutputTruncated,
-        rows: true,
-    },
-    Fault {
-        script: "head -c 150000 $output > window.dat; echo 'Job finished'; exit 0",
-        kind: FailureKind::OutputTruncated,
-        rows: true,
-    },
+    "last=$(grep -n 'forces (fx' $output | tail -n 1 | cut -d: -f1); \
+     head -n $((last - 1)) $output > window.dat; echo 'Job finished'; exit 0",
+    "head -c 150000 $output > window.dat; echo 'Job finished'; exit 0",
 ];
+/// A solver that does not end.
+const HANGS: &str = "sleep 1000 & sleep 1000";
 
-impl Fault {
-    /// The limit of a solve: only a hanging solver shall reach it, on a busy machine too.
-    fn time_limit(&self) -> Duration {
-        let hangs = self.kind == FailureKind::TimedOut;
-        Duration::from_secs(if hangs { 4 } else { 120 })
-    }
-}
-
-/// The script, run only in the first attempt of each job.
-fn once(script: &str) -> String {
-    format!("if [ ! -e ../failed ]; then : > ../failed; {script}; fi")
+/// The script, run only in the first two attempts of each job.
+fn twice(script: &str) -> String {
+    format!("echo >> ../failed; if [ $(wc -l < ../failed) -lt 3 ]; then {script}; fi")
 }
 
 #[test]
 fn a_transient_fault_does_not_change_the_results() {
-    for fault in FAULTS {
-        let script = fault.script;
+    for script in FAULTS {
         let folder = tempfile::tempdir().unwrap();
-        let mut campaign = campaign(RAYS);
-        campaign.time_limit = fault.time_limit();
-        let tools = replaying(folder.path(), &once(script));
+        let campaign = campaign(RAYS);
+        let tools = replaying(folder.path(), &twice(script));
         let tally = run_whole(&campaign, folder.path(), &tools);
         assert_eq!(tally.complete, RAYS, "{script}");
         assert_eq!(
@@ -184,52 +138,75 @@ fn a_transient_fault_does_not_change_the_results() {
     }
 }
 
+/// The same attempt is made three times, never another one, and the job stays open.
 #[test]
-fn a_persistent_fault_is_recorded_and_converged_increments_are_kept() {
-    for fault in FAULTS {
+fn a_persistent_fault_of_the_machine_leaves_jobs_open() {
+    for script in FAULTS {
         let folder = tempfile::tempdir().unwrap();
-        let mut campaign = campaign(RAYS);
-        campaign.time_limit = fault.time_limit();
-        let Fault { script, kind, rows } = fault;
-        let tools = replaying(folder.path(), script);
-        let tally = run_whole(&campaign, folder.path(), &tools);
-        let (partial, failed) = if rows { (RAYS, 0) } else { (0, RAYS) };
-        assert_eq!((tally.partial, tally.failed), (partial, failed), "{script}");
-        assert_eq!(tally.failures[&kind], RAYS, "{script}");
-        let kept = jobs(folder.path());
-        assert_eq!(kept.len(), partial);
-        for (job, whole) in kept.iter().zip(&RECORDING.jobs) {
-            let samples = job.samples.len();
-            assert!(0 < samples && samples < whole.samples.len(), "{script}");
-            for (kept, solved) in job.samples.iter().zip(&whole.samples) {
-                assert_eq!(
-                    (kept.lambda, kept.w, kept.forces()),
-                    (solved.lambda, solved.w, solved.forces())
-                );
-            }
-            assert_eq!((&job.id, job.record.failure), (&whole.id, Some(kind)));
+        let count = format!("echo >> ../attempts; {script}");
+        let tools = replaying(folder.path(), &count);
+        let tally = run_whole(&campaign(RAYS), folder.path(), &tools);
+        assert_eq!((tally.open, tally.closed()), (RAYS, 0), "{script}");
+        for job in &RECORDING.jobs {
+            let home = job_folder(folder.path(), &job.id);
+            let attempts = std::fs::read_to_string(home.join("attempts")).unwrap();
+            assert_eq!(attempts.lines().count(), 3, "{script}");
+            assert!(home.join("work").is_dir(), "{script}");
         }
+        let mended = replaying(folder.path(), "");
+        let tally = run_whole(&campaign(RAYS), folder.path(), &mended);
+        assert_eq!(tally.complete, RAYS);
         assert_eq!(
-            left_running(folder.path()),
-            Vec::<PathBuf>::new(),
+            timeless(&jobs(folder.path())),
+            timeless(&RECORDING.jobs),
             "{script}"
         );
+    }
+}
 
-        // Jobs that failed permanently are not run again until they are reopened.
-        let mended = replaying(folder.path(), "");
-        assert_eq!(run_whole(&campaign, folder.path(), &mended).complete, 0);
-        assert_eq!(
-            retry(folder.path(), Some(FailureKind::InvalidInput)).unwrap(),
-            0
-        );
-        assert_eq!(retry(folder.path(), Some(kind)).unwrap(), RAYS);
-        let why = plan(&campaign, folder.path(), &mended.versions())
-            .unwrap()
-            .reasons;
-        assert_eq!(why[&format!("{kind}, next requested")], RAYS);
-        assert_eq!(run_whole(&campaign, folder.path(), &mended).complete, RAYS);
-        let mended: Vec<_> = timeless(&jobs(folder.path()));
-        assert_eq!(mended, timeless(&RECORDING.jobs), "{script}");
+/// A time limit closes a job, whatever the machine: no shorter increments follow.
+#[test]
+fn a_solver_that_hangs_is_ended_and_tried_again_on_request() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut campaign = campaign(RAYS);
+    campaign.time_limit = Duration::from_secs(4);
+    let tally = run_whole(&campaign, folder.path(), &replaying(folder.path(), HANGS));
+    assert_eq!(tally.failures[&FailureKind::TimedOut], RAYS);
+    assert_eq!(left_running(folder.path()), Vec::<PathBuf>::new());
+
+    // Jobs that failed permanently are not run again until they are reopened.
+    campaign.time_limit = Duration::from_secs(120);
+    let mended = replaying(folder.path(), "");
+    assert_eq!(run_whole(&campaign, folder.path(), &mended).complete, 0);
+    let reopened = |kind| retry(folder.path(), Some(kind)).unwrap();
+    assert_eq!(reopened(FailureKind::InvalidInput), 0);
+    assert_eq!(reopened(FailureKind::TimedOut), RAYS);
+    let planned = plan(&campaign, folder.path(), &mended.versions()).unwrap();
+    assert_eq!(planned.reasons["timed-out, next requested"], RAYS);
+    assert_eq!(run_whole(&campaign, folder.path(), &mended).complete, RAYS);
+    assert_eq!(timeless(&jobs(folder.path())), timeless(&RECORDING.jobs));
+}
+
+/// What the solver says of the problem is kept with the increments that converged.
+#[test]
+fn a_solve_that_diverges_keeps_its_converged_increments() {
+    let folder = tempfile::tempdir().unwrap();
+    // Not in the last attempt: the recorded output does not fit its finer mesh.
+    let script = "echo >> ../attempts; [ $(wc -l < ../attempts) -gt 2 ] || head -c 150000 $output > window.dat; \
+                  echo '*ERROR: increment size smaller than minimum'; exit 201";
+    let tools = replaying(folder.path(), script);
+    let tally = run_whole(&campaign(RAYS), folder.path(), &tools);
+    assert_eq!(tally.partial, RAYS);
+    let kept = jobs(folder.path());
+    for (job, whole) in kept.iter().zip(&RECORDING.jobs) {
+        let samples = job.samples.len();
+        assert!(0 < samples && samples < whole.samples.len());
+        for (kept, solved) in job.samples.iter().zip(&whole.samples) {
+            assert_eq!(
+                (kept.lambda, kept.w, kept.forces()),
+                (solved.lambda, solved.w, solved.forces())
+            );
+        }
     }
 }
 
@@ -392,11 +369,19 @@ fn a_damaged_job_is_open_and_is_solved_again() {
         assert!(text.contains(from), "{name} has no {from}");
         std::fs::write(home.join(name), text.replacen(from, to, 1)).unwrap();
     };
-    let damages: [&dyn Fn(); 6] = [
+    let other = job_folder(folder, &whole[2].id);
+    let damages: [&dyn Fn(); 8] = [
         &|| edit("job.json", "\"young\": ", "\"young\": 1"),
         &|| std::fs::remove_file(home.join("job.json")).unwrap(),
         &|| edit("job.json", "{", ""),
         &|| edit("result.json", "{", ""),
+        &|| edit("result.json", "\"checksum\"", "\"sum\""),
+        // Two jobs whose records and rows have changed places: only one of them is compared here.
+        &|| {
+            for name in ["result.json", "rows.csv"] {
+                std::fs::copy(other.join(name), home.join(name)).unwrap();
+            }
+        },
         &|| edit("rows.csv", "0.", "1."),
         &|| std::fs::remove_file(home.join("rows.csv")).unwrap(),
     ];

@@ -184,6 +184,12 @@ impl CheckCommand {
         for finding in &findings {
             println!("{finding}");
         }
+        for row in database.rays_on_other_tiers() {
+            println!(
+                "note: ray {} was solved on the mesh {}, not on {}",
+                row.job, row.solved_tier, row.tier
+            );
+        }
         ensure!(
             findings.is_empty(),
             "{} is not fit for training",

@@ -120,6 +120,12 @@ impl TrainCommand {
             let database = self.database.display();
             bail!("{database}: {leak}: split it again with `kirigami dataset split`");
         }
+        let others = database.rays_on_other_tiers().len();
+        if others > 0 {
+            println!(
+                "{others} of the rays were solved on another mesh than the campaign's, and are used"
+            );
+        }
         output_file::create_folder_of(&self.out)?;
         self.refuse_card_of_database()?;
         if self.seeds > 1 {

@@ -1,6 +1,7 @@
 //! Lock files: they keep two commands from doing the same work. On a file system without locks they do nothing, since no
 //! result depends on them.
 
+use crate::regular_file;
 use nix::errno::Errno;
 use std::fs::{File, OpenOptions};
 use std::io;
@@ -18,8 +19,7 @@ pub fn hold(path: &Path) -> io::Result<File> {
 }
 
 fn hold_by(path: &Path, lock: impl Fn(&File) -> io::Result<()>) -> io::Result<File> {
-    // Not truncated: a link in its place would destroy the file that it names.
-    let file = OpenOptions::new().create(true).append(true).open(path)?;
+    let file = regular_file::open(OpenOptions::new().create(true).append(true), path)?;
     match lock(&file) {
         Err(error) if !is_without_locks(&error) => Err(error),
         _ => Ok(file),
@@ -44,5 +44,20 @@ mod tests {
         assert_eq!(refused.kind(), io::ErrorKind::WouldBlock);
         drop(held);
         try_hold(&path).unwrap();
+    }
+
+    /// Neither waits, nor creates or changes what a link names.
+    #[test]
+    fn only_a_regular_file_is_a_lock() {
+        let folder = tempfile::tempdir().unwrap();
+        let [pipe, link, named] = ["pipe", "link", "named"].map(|name| folder.path().join(name));
+        nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::S_IRWXU).unwrap();
+        std::os::unix::fs::symlink(&named, &link).unwrap();
+        for path in [&pipe, &link] {
+            for error in [try_hold(path).unwrap_err(), hold(path).unwrap_err()] {
+                assert!(error.to_string().contains("remove it"), "{error}");
+            }
+        }
+        assert!(!named.exists());
     }
 }

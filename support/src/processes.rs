@@ -14,7 +14,7 @@ pub(crate) const FOLDER: &str = "KIRIGAMI_WORK_FOLDER";
 ///
 /// A process may be forked while the list is read, so the list is read until no process is left, or a few times: a
 /// process that waits for a disk dies later.
-pub(crate) fn kill_all_of(folder: &Path) {
+pub fn kill_all_of(folder: &Path) {
     for _ in 0..5 {
         let processes = started_for(folder);
         if processes.is_empty() {
@@ -26,6 +26,11 @@ pub(crate) fn kill_all_of(folder: &Path) {
         }
         std::thread::sleep(Duration::from_millis(5));
     }
+}
+
+/// Whether a process with this number runs on this host.
+pub fn is_running(process: u32) -> bool {
+    Path::new("/proc").join(process.to_string()).exists()
 }
 
 /// The processes whose environment names `folder`. Those of other users cannot be read and are not ours.

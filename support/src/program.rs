@@ -55,7 +55,7 @@ pub struct Run {
     pub status: ExitStatus,
     /// User and system time of the process (s), if the operating system reports it.
     pub cpu_seconds: Option<f64>,
-    /// Wall time from start to end (s).
+    /// Wall time from start to end (s), without that in which this program was suspended.
     pub wall_seconds: f64,
     /// Maximum resident memory observed during the run (MiB), if the operating system reports it.
     pub peak_memory_mib: Option<f64>,
@@ -63,6 +63,9 @@ pub struct Run {
 
 /// Time limit of the version query.
 const VERSION_LIMIT: Duration = Duration::from_secs(30);
+/// Maximum time between two polls that counts. In a longer time this program was itself suspended, and with it the program
+/// that it watches.
+const LONGEST_POLL: Duration = Duration::from_secs(1);
 /// Maximum delay between the death of a program by a signal and the stop request that the same signal causes.
 const SAME_SIGNAL: Duration = Duration::from_millis(500);
 
@@ -159,7 +162,7 @@ impl Tool {
         limit: Duration,
         stop: &AtomicBool,
     ) -> Result<Run, ToolError> {
-        let start = Instant::now();
+        let (mut last, mut running) = (Instant::now(), Duration::ZERO);
         let mut group = Group::spawn(&self.program, arguments, folder, log)
             .map_err(|source| self.cannot_start(source))?;
         let name = self.kind.name;
@@ -170,7 +173,9 @@ impl Tool {
                 group.end();
                 return Err(ToolError::Stopped { name });
             }
-            if start.elapsed() > limit {
+            running += last.elapsed().min(LONGEST_POLL);
+            last = Instant::now();
+            if running > limit {
                 group.end();
                 let cpu_seconds = group.cpu_seconds();
                 return Err(ToolError::TimedOut {
@@ -179,14 +184,15 @@ impl Tool {
                     cpu_seconds,
                 });
             }
-            std::thread::sleep(POLL.min(Duration::from_millis(1) + start.elapsed() / 10));
+            std::thread::sleep(POLL.min(Duration::from_millis(1) + running / 10));
         }
+        running += last.elapsed().min(LONGEST_POLL);
         let cpu_seconds = group.cpu_seconds();
         let status = group.wait().map_err(|source| self.cannot_start(source))?;
         if status.signal() == Some(Signal::SIGXFSZ as i32) {
             return Err(ToolError::TooMuchOutput { name, cpu_seconds });
         }
-        if let Some(signal) = status.signal() {
+        if let Some(signal) = status.signal().or_else(|| signal_of_child(status)) {
             // A service manager or a scheduler signals all processes of a job at once: the request to stop may
             // arrive a moment after the program died of the same signal.
             let patience = Instant::now() + SAME_SIGNAL;
@@ -205,7 +211,7 @@ impl Tool {
         Ok(Run {
             status,
             cpu_seconds,
-            wall_seconds: start.elapsed().as_secs_f64(),
+            wall_seconds: running.as_secs_f64(),
             peak_memory_mib,
         })
     }
@@ -228,6 +234,12 @@ impl Tool {
             source,
         }
     }
+}
+
+/// The signal that killed the child of a shell, by which the shell exits: 128 and its number.
+fn signal_of_child(status: ExitStatus) -> Option<i32> {
+    let signal = status.code()? - 128;
+    Signal::try_from(signal).ok().map(|signal| signal as i32)
 }
 
 /// The first executable file with this name on PATH.
@@ -350,6 +362,11 @@ mod tests {
     fn signals_and_stops_are_distinguished() {
         let (killed, _) = run("kill -9 $$", LONG, false);
         assert!(matches!(killed, Err(ToolError::Killed { signal: 9, .. })));
+        // A shell that does not replace itself by the program says by its exit code how that ended; 201 is no signal.
+        let (wrapped, _) = run("sh -c 'kill -15 $$'; exit $?", LONG, false);
+        assert!(matches!(wrapped, Err(ToolError::Killed { signal: 15, .. })));
+        let (refused, _) = run("exit 201", LONG, false);
+        assert_eq!(refused.unwrap().status.code(), Some(201));
         let (stopped, _) = run("sleep 1000", LONG, true);
         assert!(matches!(stopped, Err(ToolError::Stopped { .. })));
     }

@@ -1,9 +1,12 @@
-//! Reading of input files. A pipe or a device is refused: a read of it could wait forever or never end. So is a file that
-//! is larger than any input, which could fill the memory.
+//! Files that are no pipes, devices or links. Input files are not read from a pipe or a device: that could wait forever or
+//! never end. Neither is a file that is larger than any input, which could fill the memory. Files of this program in
+//! folders that others can write are no links either.
 
 use crate::verbose;
-use std::fs::FileType;
+use nix::libc;
+use std::fs::{File, FileType, OpenOptions};
 use std::io::{self, ErrorKind};
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 
 /// Maximum size of an input file (bytes): over ten times the database of 100 000 rays.
@@ -32,6 +35,28 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
 /// The text of a file in UTF-8; an error if it is not a regular file.
 pub fn read_to_string(path: &Path) -> io::Result<String> {
     String::from_utf8(read(path)?).map_err(|error| io::Error::new(ErrorKind::InvalidData, error))
+}
+
+/// Opens a file of this program's own in a folder that others can write. It is an error if a link, a pipe or a device is in its
+/// place: nothing is awaited, and nothing that a link names is created or changed.
+pub fn open(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
+    let refused = || {
+        let what = "a link, a pipe or a device is in its place: remove it";
+        io::Error::new(ErrorKind::InvalidInput, what)
+    };
+    let flags = libc::O_NOFOLLOW | libc::O_NONBLOCK;
+    let file = match options.custom_flags(flags).open(path) {
+        // Of a link, and of a pipe that nobody reads.
+        Err(error) if matches!(error.raw_os_error(), Some(libc::ELOOP | libc::ENXIO)) => {
+            return Err(refused());
+        }
+        opened => opened?,
+    };
+    if file.metadata()?.is_file() {
+        Ok(file)
+    } else {
+        Err(refused())
+    }
 }
 
 /// A folder is not endless: reading it fails with a message of its own.

@@ -1,6 +1,7 @@
 //! A temporary folder that no process leaves behind for long: what a killed process could not remove, the next one does.
 
-use std::fs::File;
+use crate::regular_file;
+use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::Path;
 use tempfile::TempDir;
@@ -61,7 +62,8 @@ fn remove_abandoned(root: &Path) {
 }
 
 fn is_abandoned(folder: &Path) -> bool {
-    File::open(folder.join(OWNER)).is_ok_and(|lock| lock.try_lock().is_ok())
+    let lock = regular_file::open(OpenOptions::new().read(true), &folder.join(OWNER));
+    lock.is_ok_and(|lock| lock.try_lock().is_ok())
 }
 
 #[cfg(test)]
@@ -75,6 +77,10 @@ mod tests {
         let killed = root.path().join("kirigami-killed");
         std::fs::create_dir(&killed).unwrap();
         File::create(killed.join(OWNER)).unwrap();
+        // Anyone can make one: it is not waited for.
+        let pipe = root.path().join("kirigami-pipe");
+        std::fs::create_dir(&pipe).unwrap();
+        nix::unistd::mkfifo(&pipe.join(OWNER), nix::sys::stat::Mode::S_IRWXU).unwrap();
         let begun = root.path().join("kirigami-begun");
         std::fs::create_dir(&begun).unwrap();
         let other = Scratch::new_in(root.path()).unwrap();

@@ -1,6 +1,4 @@
 //! JSON files with damage detection: the key `checksum` contains the BLAKE3 hash of the other contents.
-//!
-//! A file without this key, written by hand, is read without a check.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -15,6 +13,11 @@ pub enum SealError {
     /// The text is not JSON, or not JSON of the expected type.
     #[error(transparent)]
     Json(#[from] serde_json::Error),
+    /// The key is missing in a file that this program writes with it.
+    #[error(
+        "the file has no checksum: a part of it was deleted, or it was not written by kirigami"
+    )]
+    Unsealed,
     /// The contents have changed since they were written.
     #[error(
         "the file is damaged or was edited: it states the checksum {expected}, but its contents have {found}"
@@ -37,20 +40,34 @@ pub fn to_vec(value: &impl Serialize) -> Result<Vec<u8>, serde_json::Error> {
     serde_json::to_vec_pretty(&value)
 }
 
-/// The value in JSON text, after checking its checksum if it has one.
+/// The value in JSON text, after checking its checksum, which it must have.
 pub fn from_slice<T: DeserializeOwned>(text: &[u8]) -> Result<T, SealError> {
+    read(text)?.ok_or(SealError::Unsealed)
+}
+
+/// The value in JSON text that people may write too, after checking its checksum if it has one.
+pub fn from_slice_by_hand<T: DeserializeOwned>(text: &[u8]) -> Result<T, SealError> {
+    match read(text)? {
+        Some(value) => Ok(value),
+        None => Ok(serde_json::from_slice(text)?),
+    }
+}
+
+/// The value in JSON text, after checking its checksum; `None` if it has none.
+fn read<T: DeserializeOwned>(text: &[u8]) -> Result<Option<T>, SealError> {
     let mut value: Value = serde_json::from_slice(text)?;
     let stated = value
         .as_object_mut()
         .and_then(|keys| keys.shift_remove(CHECKSUM));
-    if let Some(expected) = stated {
-        let (expected, found) = (expected.as_str().unwrap_or_default(), checksum(&value)?);
-        if expected != found {
-            let expected = expected.to_owned();
-            return Err(SealError::Checksum { expected, found });
-        }
+    let Some(expected) = stated else {
+        return Ok(None);
+    };
+    let (expected, found) = (expected.as_str().unwrap_or_default(), checksum(&value)?);
+    if expected != found {
+        let expected = expected.to_owned();
+        return Err(SealError::Checksum { expected, found });
     }
-    Ok(serde_json::from_value(value)?)
+    Ok(Some(serde_json::from_value(value)?))
 }
 
 fn checksum(value: &Value) -> Result<String, serde_json::Error> {
@@ -90,8 +107,10 @@ mod tests {
     }
 
     #[test]
-    fn a_file_without_a_checksum_is_read() {
+    fn only_a_file_written_by_hand_may_lack_its_checksum() {
         let text = serde_json::to_vec(&record()).unwrap();
-        assert_eq!(from_slice::<Record>(&text).unwrap(), record());
+        let error = from_slice::<Record>(&text).unwrap_err();
+        assert!(matches!(error, SealError::Unsealed), "{error}");
+        assert_eq!(from_slice_by_hand::<Record>(&text).unwrap(), record());
     }
 }

@@ -47,6 +47,12 @@ impl Unnamed {
     }
 }
 
+/// Gives a whole file another name in the same folder, which is synced to the disk before this function returns.
+pub fn rename(from: &Path, to: &Path) -> io::Result<()> {
+    std::fs::rename(from, to)?;
+    File::open(folder(to))?.sync_all()
+}
+
 /// The folder of a path.
 fn folder(path: &Path) -> &Path {
     match path.parent() {

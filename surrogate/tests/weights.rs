@@ -6,8 +6,10 @@ use common::{cases, design, tiny, with_peak};
 use hinge::HingeDeformation;
 use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensors};
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use support::sealed_json;
 use surrogate::{FORMAT_VERSION, InvalidWeights, Order, Surrogate, WeightsError};
 use tempfile::TempDir;
 
@@ -47,11 +49,10 @@ impl File {
             (name.clone(), view)
         });
         let bytes = safetensors::serialize(views, None).unwrap();
-        let mut card = self.card.clone();
-        let key = "\"weights_hash\": \"";
-        let start = card.find(key).unwrap() + key.len();
-        let hash = blake3::hash(&bytes).to_hex().to_string();
-        card.replace_range(start..start + hash.len(), &hash);
+        let mut card: Value = serde_json::from_str(&self.card).unwrap();
+        card.as_object_mut().unwrap().remove("checksum");
+        card["weights_hash"] = blake3::hash(&bytes).to_hex().to_string().into();
+        let card = sealed_json::to_vec(&card).unwrap();
         std::fs::write(self.path(), bytes).unwrap();
         std::fs::write(self.folder.path().join("chi.json"), card).unwrap();
         Surrogate::load(&self.path())

@@ -2,7 +2,7 @@
 //!
 //! The criterion is from finite elements of whole sheets of 2 x 2 panels (docs/results/flatness). Panels held flat do not leave
 //! the plane. If nothing holds them, ligaments that are no wider than the sheet is thick
-//! bend in the plane, and the panels stay there; wider ones buckle and tilt them. On a table the weight presses the panels
+//! bend in the plane, and the panels stay there unless the sheet is drawn taut; wider ones buckle and tilt them. On a table the weight presses the panels
 //! down about the ligaments, over the elasto-gravity length.
 
 use crate::analysis::localisation::elasto_gravity_length;

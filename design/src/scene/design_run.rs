@@ -122,10 +122,11 @@ pub fn stored_design(path: &Path, scene: &Scene) -> Result<DesignVector, Inverse
         Alone(DesignVector),
     }
     let text = regular_file::read(path).map_err(FileError::at(path))?;
-    let stored = sealed_json::from_slice(&text).map_err(|source| InverseDesignError::State {
-        path: path.to_owned(),
-        source,
-    })?;
+    let stored =
+        sealed_json::from_slice_by_hand(&text).map_err(|source| InverseDesignError::State {
+            path: path.to_owned(),
+            source,
+        })?;
     let (Stored::Run { best: design } | Stored::Alone(design)) = stored;
     if design.same_shape(&scene.start()) {
         return Ok(design);

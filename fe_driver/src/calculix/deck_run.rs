@@ -15,6 +15,9 @@ use std::time::Duration;
 use support::file_error::FileError;
 use support::program::{ToolError, remove_stale, tail};
 
+/// The word with which CalculiX begins what it says of a problem that it cannot solve, at the end of its log.
+const ERROR: &str = "*ERROR";
+
 /// What CalculiX has made of a deck.
 pub(crate) struct DeckRun {
     /// The process; an error if it was terminated, after which the increments that converged are valid.
@@ -84,22 +87,19 @@ impl DeckRun {
 
     /// Why the path ends at `lambda`; `None` if that is its end.
     pub fn stopped_at(self, lambda: f64) -> Option<SolveError> {
-        let finished = self.run.as_ref().is_ok_and(|run| run.finished);
-        match self.run {
-            Err(error) => Some(error.into()),
-            Ok(CcxRun { run, .. }) if !finished && self.increments.is_empty() => {
-                Some(SolveError::NotStarted {
-                    status: run.status,
-                    tail: tail(&self.log),
-                })
-            }
-            Ok(_) if !finished => Some(SolveError::Diverged {
-                lambda,
-                tail: tail(&self.log),
-            }),
-            Ok(_) if lambda < 1.0 => Some(SolveError::Truncated { lambda }),
-            Ok(_) => None,
+        let CcxRun { run, finished } = match self.run {
+            Err(error) => return Some(error.into()),
+            Ok(run) => run,
+        };
+        if finished {
+            return (lambda < 1.0).then_some(SolveError::Truncated { lambda });
         }
+        let (status, tail) = (run.status, tail(&self.log));
+        Some(match (tail.contains(ERROR), self.increments.is_empty()) {
+            (false, _) => SolveError::Silent { status, tail },
+            (true, true) => SolveError::NotStarted { status, tail },
+            (true, false) => SolveError::Diverged { lambda, tail },
+        })
     }
 }
 

@@ -19,6 +19,10 @@ pub(crate) enum Event<'a> {
     Started {
         attempt: AttemptKind,
     },
+    Disturbed {
+        attempt: AttemptKind,
+        reason: &'a str,
+    },
     Ended {
         attempt: AttemptKind,
         record: &'a SolveRecord,

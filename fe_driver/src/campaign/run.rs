@@ -8,6 +8,7 @@ use crate::solve::attempts::{Job, SolveEvent, Workers};
 use crate::solve::solve_folder::SolveRecord;
 use crate::solve::solver::Solver;
 use crate::solve::window_solve::WindowSolve;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -32,6 +33,8 @@ pub struct Progress {
     pub tally: Tally,
     /// Estimated remaining time (s), from the rate of this run; `None` before it has closed a job.
     pub seconds_left: Option<f64>,
+    /// The open jobs whose attempts in this run were ended by the machine, each with the last reason.
+    pub disturbed: BTreeMap<String, String>,
 }
 
 /// Runs the open jobs of `campaign` in `folder`, and the failed jobs that have an attempt left.
@@ -81,6 +84,8 @@ struct Ledger<'a> {
     jobs: &'a [Job],
     /// The current record of every job.
     records: Vec<Option<SolveRecord>>,
+    /// [`Progress::disturbed`].
+    disturbed: BTreeMap<String, String>,
     history: History,
     start: Instant,
     closed_before: usize,
@@ -92,8 +97,9 @@ impl<'a> Ledger<'a> {
         let records = records.collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
             jobs,
-            closed_before: Tally::new(&records).closed(),
+            closed_before: tally(jobs, &records).closed(),
             records,
+            disturbed: BTreeMap::new(),
             history,
             start: Instant::now(),
         })
@@ -104,7 +110,17 @@ impl<'a> Ledger<'a> {
         match event {
             SolveEvent::Found(record) => self.records[place] = record,
             SolveEvent::Started(attempt) => self.history.note(id, Event::Started { attempt })?,
+            SolveEvent::Disturbed(attempt, reason) => {
+                let reason = &*self
+                    .disturbed
+                    .entry(id.clone())
+                    .insert_entry(reason)
+                    .into_mut();
+                self.history
+                    .note(id, Event::Disturbed { attempt, reason })?;
+            }
             SolveEvent::Ended(attempt, record) => {
+                self.disturbed.remove(id);
                 let record = self.records[place].insert(record);
                 self.history.note(id, Event::Ended { attempt, record })?;
             }
@@ -113,12 +129,18 @@ impl<'a> Ledger<'a> {
     }
 
     fn progress(&self) -> Progress {
-        let tally = Tally::new(&self.records);
+        let tally = tally(self.jobs, &self.records);
         let closed = tally.closed() - self.closed_before;
         let pace = self.start.elapsed().as_secs_f64() / closed as f64;
         Progress {
             seconds_left: (closed > 0).then(|| pace * tally.to_run() as f64),
             tally,
+            disturbed: self.disturbed.clone(),
         }
     }
+}
+
+/// The counts of jobs and their records.
+fn tally(jobs: &[Job], records: &[Option<SolveRecord>]) -> Tally {
+    Tally::new(jobs.iter().map(|job| &job.solve).zip(records))
 }

@@ -6,6 +6,7 @@ use crate::solve::failure::FailureKind;
 use crate::solve::problem::Solve;
 use crate::solve::solve_folder::{SolveRecord, SolveState};
 use crate::solve::window_solve::WindowSolve;
+use mesher::Tier;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -29,6 +30,8 @@ pub struct Tally {
     pub rows: usize,
     /// Kinds of the last failure of partial, failed and retried jobs.
     pub failures: BTreeMap<FailureKind, usize>,
+    /// The jobs whose samples were solved on another tier than that of the campaign, by their ids.
+    pub other_tiers: BTreeMap<String, Tier>,
     /// Solver CPU time over all attempts (s).
     pub cpu_seconds: f64,
     /// Wall time of one worker over all attempts (s); restored jobs have none.
@@ -46,12 +49,14 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Counts the jobs with these records; a job without one is open.
-    pub(crate) fn new<'a>(records: impl IntoIterator<Item = &'a Option<SolveRecord>>) -> Self {
+    /// Counts jobs with their records; a job without one is open.
+    pub(crate) fn new<'a>(
+        jobs: impl IntoIterator<Item = (&'a WindowSolve, &'a Option<SolveRecord>)>,
+    ) -> Self {
         let mut tally = Self::default();
-        for record in records {
+        for (solve, record) in jobs {
             match record {
-                Some(record) => tally.add(record),
+                Some(record) => tally.add(solve, record),
                 None => tally.open += 1,
             }
         }
@@ -62,7 +67,7 @@ impl Tally {
     pub(crate) fn add_state(&mut self, state: &SolveState) {
         match state {
             SolveState::Open { .. } => self.open += 1,
-            SolveState::Ended(ended) => self.add(&ended.1),
+            SolveState::Ended(ended) => self.add(&ended.0, &ended.1),
             SolveState::Damaged(_) => {
                 self.open += 1;
                 self.damaged += 1;
@@ -70,7 +75,10 @@ impl Tally {
         }
     }
 
-    fn add(&mut self, record: &SolveRecord) {
+    fn add(&mut self, solve: &WindowSolve, record: &SolveRecord) {
+        if record.rows > 0 && record.tier != solve.tier() {
+            self.other_tiers.insert(solve.id(), record.tier);
+        }
         *match (record.is_closed(), record.failure, record.rows) {
             (false, ..) => &mut self.retry,
             (true, None, _) => &mut self.complete,
@@ -200,24 +208,40 @@ pub fn status(folder: &Path) -> Result<Status, CampaignError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solve::fake_solver::tests::solve_on;
 
     fn solved(cpu_seconds: f64, wall_seconds: f64) -> Option<SolveRecord> {
         Some(SolveRecord {
             rows: 20,
             cpu_seconds,
             wall_seconds,
+            tier: Tier::Default,
             ..SolveRecord::default()
         })
+    }
+
+    fn tally(records: &[Option<SolveRecord>]) -> Tally {
+        let solve = solve_on(Tier::Default);
+        Tally::new(records.iter().map(|record| (&solve, record)))
     }
 
     /// Restored jobs have no wall time, but their CPU time is that of the material.
     #[test]
     fn the_time_of_a_job_is_also_that_of_restored_ones() {
-        assert_eq!(Tally::new(&[None]).seconds_a_job(), None);
-        let restored = Tally::new(&[solved(60.0, 0.0), solved(80.0, 0.0), None]);
+        assert_eq!(tally(&[None]).seconds_a_job(), None);
+        let restored = tally(&[solved(60.0, 0.0), solved(80.0, 0.0), None]);
         assert_eq!((restored.timed, restored.seconds_a_job()), (2, Some(70.0)));
         assert_eq!((restored.solved_here, restored.throughput()), (0, None));
-        let mixed = Tally::new(&[solved(60.0, 0.0), solved(75.0, 80.0), None]);
+        let mixed = tally(&[solved(60.0, 0.0), solved(75.0, 80.0), None]);
         assert_eq!((mixed.timed, mixed.seconds_a_job()), (2, Some(70.0)));
+    }
+
+    #[test]
+    fn a_job_on_another_mesh_is_named() {
+        let mut finer = solved(60.0, 60.0);
+        assert!(tally(std::slice::from_ref(&finer)).other_tiers.is_empty());
+        finer.as_mut().unwrap().tier = Tier::Fine;
+        let solve = solve_on(Tier::Default);
+        assert_eq!(tally(&[finer]).other_tiers[&solve.id()], Tier::Fine);
     }
 }

@@ -27,7 +27,7 @@ const JOB: &str = "sheet";
 /// The lambda that the solve of a sheet in `folder` has reached; 1 when no attempt is left.
 pub fn sheet_reached(folder: &SolveFolder) -> f64 {
     let record = folder.record().ok().flatten();
-    let time = time_reached(&folder.work(), JOB);
+    let time = time_reached(&folder.work_here(), JOB);
     match record.map(|record| record.next) {
         Some(None) => 1.0,
         Some(Some(AttemptKind::Dynamic)) => time / SECONDS,
@@ -60,11 +60,7 @@ impl Solve for SheetSolve {
         _lambda: f64,
     ) -> Option<AttemptKind> {
         match (failure, attempt) {
-            (
-                FailureKind::NotStarted | FailureKind::Killed | FailureKind::OutputTruncated,
-                AttemptKind::Requested,
-            ) => Some(AttemptKind::Again),
-            (FailureKind::Diverged, AttemptKind::Requested | AttemptKind::Again) => {
+            (FailureKind::Diverged, AttemptKind::Requested) => {
                 (!self.problem.dynamic).then_some(AttemptKind::Dynamic)
             }
             _ => None,

@@ -2,8 +2,10 @@
 //!
 //! A solve is done when its `result.json` exists. A run can therefore be killed at any time; at most the attempts in
 //! flight are lost. A missing tool or a full disk ends the run immediately, because every other solve would fail too.
+//! What the machine does to an attempt, as a kill, decides nothing of a result: the same attempt is made again, a few times,
+//! and the solve then stays open.
 
-use crate::solve::failure::FailureKind;
+use crate::solve::failure::Cause;
 use crate::solve::ladder::AttemptKind;
 use crate::solve::problem::{Solve, SolvedPath};
 use crate::solve::solve_error::SolveError;
@@ -33,7 +35,19 @@ pub enum SolveListError {
     },
     #[error("stopped with {left} solves left")]
     Stopped { left: usize },
+    #[error(
+        "{left} solves are open: the machine ended each of their attempts, the last of {job} because {reason}; what is \
+         solved is kept, and the same command continues"
+    )]
+    Disturbed {
+        left: usize,
+        job: String,
+        reason: String,
+    },
 }
+
+/// Number of times that an attempt is made which the machine ends.
+const TRIES: usize = 3;
 
 /// One solve of a list.
 #[derive(Clone, Debug)]
@@ -59,7 +73,17 @@ pub(crate) enum SolveEvent {
     /// Its record when a worker takes it up; another process may have changed it since the list was made.
     Found(Option<SolveRecord>),
     Started(AttemptKind),
+    /// The machine ended it, for this reason.
+    Disturbed(AttemptKind, String),
     Ended(AttemptKind, SolveRecord),
+}
+
+/// How an attempt ended.
+enum Outcome {
+    Recorded(SolveRecord),
+    Disturbed(String),
+    /// On request.
+    Stopped,
 }
 
 impl<S: Solve> Workers<'_, S> {
@@ -103,23 +127,32 @@ impl<S: Solve> Workers<'_, S> {
         }
         let mut record = job.folder.ended::<S>()?;
         report(SolveEvent::Found(record.clone()));
+        let mut disturbed = 0;
         while may_start()
+            && disturbed < TRIES
             && let Some(attempt) =
                 (record.as_ref()).map_or(Some(AttemptKind::Requested), |record| record.next)
         {
             report(SolveEvent::Started(attempt));
-            let Some(ended) = self.attempt(job, attempt, record, halt)? else {
-                return Ok(());
-            };
-            report(SolveEvent::Ended(attempt, ended.clone()));
-            record = Some(ended);
+            match self.attempt(job, attempt, record.clone(), halt)? {
+                Outcome::Stopped => return Ok(()),
+                Outcome::Disturbed(reason) => {
+                    disturbed += 1;
+                    report(SolveEvent::Disturbed(attempt, reason));
+                }
+                Outcome::Recorded(ended) => {
+                    disturbed = 0;
+                    report(SolveEvent::Ended(attempt, ended.clone()));
+                    record = Some(ended);
+                }
+            }
         }
         Ok(())
     }
 
-    /// Makes one attempt at a job and records its result; `None` if it was stopped on request.
+    /// Makes one attempt at a job and records its result, unless the machine ended it or a request.
     ///
-    /// The samples of the attempt that reached the largest lambda are kept. If another host has recorded an attempt in the
+    /// The samples of the attempt that reached the largest lambda are kept. If another process has recorded an attempt in the
     /// meantime, its record is returned, and that of this attempt is dropped.
     fn attempt(
         &self,
@@ -127,7 +160,7 @@ impl<S: Solve> Workers<'_, S> {
         attempt: AttemptKind,
         before: Option<SolveRecord>,
         halt: &AtomicBool,
-    ) -> Result<Option<SolveRecord>, SolveListError> {
+    ) -> Result<Outcome, SolveListError> {
         let start = Instant::now();
         let solve = job.solve.attempted(attempt);
         job.folder.write_solve(&job.solve)?;
@@ -141,10 +174,14 @@ impl<S: Solve> Workers<'_, S> {
         };
         let failure = match error {
             None => None,
-            Some(error) if error.is_stop() => return Ok(None),
-            Some(error) => match FailureKind::from_error(&error) {
-                Some(kind) => Some((kind, error.to_string())),
-                None => {
+            Some(error) if error.is_stop() => return Ok(Outcome::Stopped),
+            Some(error) => match Cause::of(&error) {
+                Cause::Problem(kind) => Some((kind, error.to_string())),
+                Cause::Machine => {
+                    job.folder.keep_work()?;
+                    return Ok(Outcome::Disturbed(error.to_string()));
+                }
+                Cause::Run => {
                     let (job, source) = (job.id.clone(), Box::new(error));
                     return Err(SolveListError::Halted { job, source });
                 }
@@ -153,7 +190,7 @@ impl<S: Solve> Workers<'_, S> {
         let now = job.folder.ended::<S>()?;
         if let Some(theirs) = now.filter(|now| before.as_ref() != Some(now)) {
             job.folder.remove_work()?;
-            return Ok(Some(theirs));
+            return Ok(Outcome::Recorded(theirs));
         }
         let mut record = before.unwrap_or_default();
         let reached = solution.samples.reached();
@@ -171,9 +208,11 @@ impl<S: Solve> Workers<'_, S> {
         record.add_cost(&solution, start.elapsed());
         if record.failure.is_none() {
             job.folder.remove_work()?;
+        } else {
+            job.folder.keep_work()?;
         }
         job.folder.write_record(&record)?;
-        Ok(Some(record))
+        Ok(Outcome::Recorded(record))
     }
 }
 

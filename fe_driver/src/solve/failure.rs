@@ -1,4 +1,4 @@
-//! Kinds of failure of a solve.
+//! Why an attempt failed: what the solver says of the problem, or what happened on the machine.
 
 use crate::solve::solve_error::SolveError;
 use mesher::MeshError;
@@ -30,18 +30,27 @@ pub enum FailureKind {
     InvalidInput,
     /// gmsh failed, or its mesh was rejected.
     MeshFailed,
-    /// The solver exited before its first increment: the program or its input deck is defective.
+    /// The solver refused its input deck.
     NotStarted,
     /// The increment fell below the allowed minimum.
     Diverged,
     /// Terminated at the time limit.
     TimedOut,
-    /// Killed by a signal that this program did not send.
-    Killed,
-    /// The output is damaged or incomplete.
-    OutputTruncated,
+    /// Terminated because it wrote a file that is larger than any result.
+    TooMuchOutput,
     /// Energy and work disagree.
     EnergyImbalance,
+}
+
+/// What ended an attempt before the end of its path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// The problem, as far as its solver says: the next step of the ladder may help.
+    Problem(FailureKind),
+    /// The machine: the solver was killed, or its output is damaged or missing. The same attempt may succeed.
+    Machine,
+    /// What would end every other attempt too: a missing tool, a full disk, a stop request.
+    Run,
 }
 
 /// An unknown name of a failure kind; the message lists the known ones.
@@ -57,48 +66,69 @@ impl UnknownFailure {
 
 /// The message in a program's log when the disk is full.
 const DISK_FULL: &str = "No space left on device";
+/// The message of CalculiX when the memory is full.
+const MEMORY_FULL: &str = "error allocating memory";
 
-impl FailureKind {
-    /// The kind of failure of a solve; `None` if the solve did not cause the error, which then ends the whole
-    /// run: a missing tool, a full disk, a stop request.
-    pub fn from_error(error: &SolveError) -> Option<Self> {
+impl Cause {
+    /// What an error of an attempt was caused by.
+    pub fn of(error: &SolveError) -> Self {
+        use FailureKind::{
+            Diverged, EnergyImbalance, InvalidInput, MeshFailed, NotStarted, TimedOut,
+            TooMuchOutput,
+        };
         match error {
-            SolveError::Material(_) | SolveError::Ray(_) | SolveError::Sheet(_) => {
-                Some(Self::InvalidInput)
-            }
-            SolveError::Mesh(
+            SolveError::Material(_)
+            | SolveError::Ray(_)
+            | SolveError::Sheet(_)
+            | SolveError::Mesh(
                 MeshError::Design(_) | MeshError::Thickness(_) | MeshError::Sheet(_),
-            ) => Some(Self::InvalidInput),
+            ) => Self::Problem(InvalidInput),
             SolveError::Diverged { tail, .. }
             | SolveError::NotStarted { tail, .. }
+            | SolveError::Silent { tail, .. }
             | SolveError::Mesh(MeshError::Gmsh(ToolError::Failed { tail, .. }))
                 if tail.contains(DISK_FULL) =>
             {
-                None
+                Self::Run
             }
-            SolveError::Mesh(
-                MeshError::Read(_)
-                | MeshError::Defect { .. }
-                | MeshError::SheetDefect(_)
-                | MeshError::Gmsh(ToolError::Failed { .. }),
-            ) => Some(Self::MeshFailed),
-            // Killed or too slow, gmsh says nothing of the mesh: it is tried again as it was.
+            SolveError::Diverged { tail, .. } | SolveError::NotStarted { tail, .. }
+                if tail.contains(MEMORY_FULL) =>
+            {
+                Self::Machine
+            }
+            SolveError::Mesh(MeshError::Defect { .. } | MeshError::SheetDefect(_)) => {
+                Self::Problem(MeshFailed)
+            }
+            SolveError::Mesh(MeshError::Gmsh(ToolError::Failed { status, .. })) => {
+                match status.code() {
+                    Some(NOT_EXECUTABLE | NOT_FOUND) | None => Self::Machine,
+                    _ => Self::Problem(MeshFailed),
+                }
+            }
             SolveError::Mesh(MeshError::Gmsh(error)) | SolveError::Solver(error) => match error {
-                ToolError::TimedOut { .. } => Some(Self::TimedOut),
-                ToolError::Killed { .. } => Some(Self::Killed),
-                ToolError::TooMuchOutput { .. } => Some(Self::OutputTruncated),
-                _ => None,
+                ToolError::TimedOut { .. } => Self::Problem(TimedOut),
+                ToolError::TooMuchOutput { .. } => Self::Problem(TooMuchOutput),
+                ToolError::Killed { .. } => Self::Machine,
+                _ => Self::Run,
             },
-            SolveError::NotStarted { .. } => Some(Self::NotStarted),
-            SolveError::Diverged { .. } => Some(Self::Diverged),
-            SolveError::Truncated { .. } | SolveError::Skipped { .. } | SolveError::Output(_) => {
-                Some(Self::OutputTruncated)
-            }
-            SolveError::EnergyImbalance { .. } => Some(Self::EnergyImbalance),
-            SolveError::Mesh(_) | SolveError::File(_) => None,
+            SolveError::NotStarted { .. } => Self::Problem(NotStarted),
+            SolveError::Diverged { .. } => Self::Problem(Diverged),
+            SolveError::EnergyImbalance { .. } => Self::Problem(EnergyImbalance),
+            SolveError::Mesh(MeshError::Read(_))
+            | SolveError::Silent { .. }
+            | SolveError::Truncated { .. }
+            | SolveError::Skipped { .. }
+            | SolveError::Output(_) => Self::Machine,
+            SolveError::Mesh(_) | SolveError::File(_) => Self::Run,
         }
     }
+}
 
+/// Exit codes by which a shell says that it could not execute a program, or did not find it.
+const NOT_EXECUTABLE: i32 = 126;
+const NOT_FOUND: i32 = 127;
+
+impl FailureKind {
     /// Whether the mechanics of the solve caused the failure: another run of the same attempts ends there again.
     pub(crate) fn is_repeatable(self) -> bool {
         matches!(self, Self::Diverged | Self::EnergyImbalance)
@@ -110,19 +140,40 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_failures_that_a_job_causes_have_a_kind() {
-        let stopped = SolveError::Solver(ToolError::Stopped { name: "ccx" });
-        assert_eq!(FailureKind::from_error(&stopped), None);
+    fn only_what_the_solver_says_is_a_failure_of_the_problem() {
+        let stopped = ToolError::Stopped { name: "ccx" };
         let missing = ToolError::NotFound {
             kind: &crate::CCX,
             program: None,
         };
-        assert_eq!(FailureKind::from_error(&SolveError::Solver(missing)), None);
-        let killed = SolveError::Solver(ToolError::Killed {
+        let killed = ToolError::Killed {
             name: "ccx",
             signal: 9,
             cpu_seconds: None,
-        });
-        assert_eq!(FailureKind::from_error(&killed), Some(FailureKind::Killed));
+        };
+        for (error, expected) in [
+            (stopped.into(), Cause::Run),
+            (missing.into(), Cause::Run),
+            (killed.into(), Cause::Machine),
+            (
+                diverged("*ERROR: increment size smaller than minimum"),
+                Cause::Problem(FailureKind::Diverged),
+            ),
+            (
+                diverged("*ERROR in u_malloc: error allocating memory"),
+                Cause::Machine,
+            ),
+            (diverged("No space left on device"), Cause::Run),
+            (SolveError::Truncated { lambda: 0.5 }, Cause::Machine),
+        ] {
+            assert_eq!(Cause::of(&error), expected, "{error}");
+        }
+    }
+
+    fn diverged(tail: &str) -> SolveError {
+        SolveError::Diverged {
+            lambda: 0.5,
+            tail: tail.to_owned(),
+        }
     }
 }

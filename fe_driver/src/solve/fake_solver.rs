@@ -23,6 +23,8 @@ pub enum Fault {
     Diverges(f64),
     /// The attempt ends at its time limit or on request.
     Hangs,
+    /// The attempt is killed.
+    Killed,
     /// There is no solver: no other attempt would succeed either.
     Missing,
 }
@@ -108,6 +110,14 @@ impl<F: Fn(&WindowSolve) -> Option<Fault> + Sync> Solver for FakeSolver<F> {
                     cpu_seconds: None,
                 };
                 (0.0, Some(timed_out.into()))
+            }
+            Some(Fault::Killed) => {
+                let killed = ToolError::Killed {
+                    name: "fake",
+                    signal: 9,
+                    cpu_seconds: None,
+                };
+                return Err(killed.into());
             }
             Some(Fault::Missing) => {
                 let (kind, program) = (&crate::CCX, None);

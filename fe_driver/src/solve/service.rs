@@ -8,7 +8,7 @@ use crate::solve::solver::Solver;
 use crate::solve::tool_versions::ToolVersions;
 use crate::solve::window_solve::WindowSolve;
 use std::collections::HashMap;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// Solves lists of problems of one kind and keeps every result in a store: what is in the store is not solved again.
@@ -40,7 +40,8 @@ impl<S: Solve> SolveService<'_, S> {
     /// tried again.
     ///
     /// # Errors
-    /// [`SolveListError::Stopped`] if `stop` becomes true before the last solve is done.
+    /// [`SolveListError::Stopped`] if `stop` becomes true before the last solve is done, [`SolveListError::Disturbed`] if the
+    /// machine ended every attempt at one of them.
     pub fn solve(&self, solves: &[S]) -> Result<Vec<Solved<S>>, SolveListError> {
         let mut places = HashMap::new();
         let mut jobs: Vec<Job<S>> = Vec::new();
@@ -63,13 +64,18 @@ impl<S: Solve> SolveService<'_, S> {
             deadline: None,
         };
         let (mut done, all) = (0, jobs.len());
+        let mut disturbed = None;
         (self.progress)(done, all);
-        workers.work_through(&jobs, self.stop, &mut |_, event| {
-            if let SolveEvent::Found(Some(record)) | SolveEvent::Ended(_, record) = event
-                && record.is_closed()
-            {
-                done += 1;
-                (self.progress)(done, all);
+        workers.work_through(&jobs, self.stop, &mut |place, event| {
+            match event {
+                SolveEvent::Found(Some(record)) | SolveEvent::Ended(_, record)
+                    if record.is_closed() =>
+                {
+                    done += 1;
+                    (self.progress)(done, all);
+                }
+                SolveEvent::Disturbed(_, reason) => disturbed = Some((place, reason)),
+                _ => {}
             }
             Ok(())
         })?;
@@ -77,7 +83,13 @@ impl<S: Solve> SolveService<'_, S> {
         let solved: Vec<Option<Solved<S>>> = solved.collect::<Result<_, _>>()?;
         let left = solved.iter().filter(|result| result.is_none()).count();
         if left > 0 {
-            return Err(SolveListError::Stopped { left });
+            return Err(match disturbed {
+                Some((place, reason)) if !self.stop.load(Ordering::Relaxed) => {
+                    let job = jobs[place].id.clone();
+                    SolveListError::Disturbed { left, job, reason }
+                }
+                _ => SolveListError::Stopped { left },
+            });
         }
         Ok((order.into_iter())
             .filter_map(|place| solved[place].clone())
@@ -100,7 +112,6 @@ mod tests {
     use serde::{Deserialize, Serialize};
     use std::io;
     use std::path::Path;
-    use std::sync::atomic::Ordering;
     use tempfile::TempDir;
 
     /// Three rays.
@@ -213,6 +224,28 @@ mod tests {
         let windows = solve(&mended, &folder).unwrap();
         assert!(windows.iter().all(|window| window.complete().is_ok()));
         assert_eq!(mended.attempts(), 1);
+    }
+
+    #[test]
+    fn what_the_machine_ends_is_tried_as_it_is_and_stays_open() {
+        let folder = tempfile::tempdir().unwrap();
+        let killed = FakeSolver::new(STIFFNESS, |solve| is_second(solve).then_some(Fault::Killed));
+        let error = solve(&killed, &folder).unwrap_err();
+        assert!(
+            matches!(error, SolveListError::Disturbed { left: 1, .. }),
+            "{error}"
+        );
+        assert!(error.to_string().contains("signal 9"), "{error}");
+        // Each of the two others once.
+        assert_eq!(killed.attempts(), 2 + 3);
+        let mended = healthy();
+        let windows = solve(&mended, &folder).unwrap();
+        assert_eq!(mended.attempts(), 1);
+        let undisturbed = solve(&healthy(), &tempfile::tempdir().unwrap()).unwrap();
+        for (window, expected) in std::iter::zip(windows, undisturbed) {
+            assert_eq!(window.samples, expected.samples);
+            assert_eq!(window.record.tier, expected.record.tier);
+        }
     }
 
     #[test]

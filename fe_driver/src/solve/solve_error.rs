@@ -25,10 +25,12 @@ pub enum SolveError {
     Mesh(#[from] MeshError),
     #[error(transparent)]
     Solver(#[from] ToolError),
-    #[error(
-        "the solver exited with {status} before its first increment\nthe end of its log:\n{tail}"
-    )]
+    #[error("the solver refused its input ({status})\nthe end of its log:\n{tail}")]
     NotStarted { status: ExitStatus, tail: String },
+    #[error(
+        "the solver ended with {status} and says neither that it has finished nor why not\nthe end of its log:\n{tail}"
+    )]
+    Silent { status: ExitStatus, tail: String },
     #[error("the solver diverged at lambda = {lambda}\nthe end of its log:\n{tail}")]
     Diverged { lambda: f64, tail: String },
     #[error("the solver reports success, but its output ends at lambda = {lambda}")]

@@ -2,8 +2,9 @@
 //!
 //! The folder of a solve is `<first two digits of its id>/<id>/`, so that no folder has 10^5 entries. It contains `job.json`
 //! (all inputs of the result; its hash is the id), the file of the samples (`rows.csv` for a window) and `result.json`.
-//! `result.json` is written last: a solve without it is not done. These files are written atomically. Deck and log of an
-//! attempt remain only if it failed: the deck follows from `job.json`.
+//! `result.json` is written last: a solve without it is not done. These files are written atomically. Every process works
+//! in a folder of its own, `work-<host>-<process>`. Deck and log of the last attempt that failed remain in `work`; those of
+//! others do not: the deck follows from `job.json`.
 
 use crate::record_file::{entries, or_damage, read_json, write_json};
 use crate::solve::failure::FailureKind;
@@ -17,7 +18,7 @@ use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
 use support::file_error::FileError;
-use support::{regular_file, whole_file};
+use support::{processes, regular_file, whole_file};
 
 /// The state of a solve after its last attempt.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -64,6 +65,14 @@ impl SolveRecord {
     pub(crate) fn is_solved_here(&self) -> bool {
         self.wall_seconds > 0.0
     }
+}
+
+/// A record with the id of its solve: records do not change places unnoticed.
+#[derive(Serialize, Deserialize)]
+struct Named<R> {
+    job: String,
+    #[serde(flatten)]
+    record: R,
 }
 
 /// The state of a solve in its folder.
@@ -128,10 +137,9 @@ impl SolveFolder {
         };
         let record = match or_damage(self.record())? {
             Ok(record) => record,
-            Err(_) => return damaged("result.json cannot be read"),
+            Err(_) => return damaged("result.json cannot be read, or is that of another job"),
         };
-        let id = self.0.file_name().unwrap_or_default();
-        if solve.as_ref().is_some_and(|solve| *solve.id() != *id) {
+        if solve.as_ref().is_some_and(|solve| solve.id() != self.id()) {
             return damaged("job.json has changed: its hash is not the name of its folder");
         }
         match (solve, record) {
@@ -157,9 +165,25 @@ impl SolveFolder {
         read_json(&self.0.join("job.json"))
     }
 
-    /// Reads the record of the solve; `None` before the first attempt has ended.
+    /// Reads the record of the solve; `None` before the first attempt has ended. It is an error if it is the record of
+    /// another solve.
     pub fn record(&self) -> Result<Option<SolveRecord>, FileError> {
-        read_json(&self.0.join("result.json"))
+        let path = self.0.join(RECORD);
+        match read_json::<Named<SolveRecord>>(&path)? {
+            Some(named) if named.job != self.id() => {
+                let (other, hint) = (named.job, "delete it, and the next run solves this one");
+                let damage = format!("it is the record of the solve {other}: {hint}");
+                let damage = io::Error::new(io::ErrorKind::InvalidData, damage);
+                Err(FileError::at(&path)(damage))
+            }
+            named => Ok(named.map(|named| named.record)),
+        }
+    }
+
+    /// The id of the solve.
+    fn id(&self) -> String {
+        let name = self.0.file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
     }
 
     /// Reads the samples; an error if their hash is not the one in `record`.
@@ -196,7 +220,8 @@ impl SolveFolder {
     }
 
     pub(crate) fn write_record(&self, record: &SolveRecord) -> Result<(), FileError> {
-        write_json(&self.0.join("result.json"), record)
+        let job = self.id();
+        write_json(&self.0.join(RECORD), &Named { job, record })
     }
 
     /// The record of the solve if its files are consistent; `None` if no attempt has ended, or if the files are damaged.
@@ -224,28 +249,68 @@ impl SolveFolder {
         Ok(reopened)
     }
 
-    /// The work folder of attempts on this host; another host may try the same solve at the same time.
+    /// The deck and the log of the last attempt that failed.
     pub fn work(&self) -> PathBuf {
-        self.0.join(format!("work-{}", host()))
+        self.0.join(WORK)
     }
 
-    /// Creates an empty work folder for an attempt.
+    /// The work folder of attempts of this process; another one may try the same solve at the same time.
+    pub fn work_here(&self) -> PathBuf {
+        let process = std::process::id();
+        self.0.join(format!("{}{process}", work_prefix()))
+    }
+
+    /// Creates an empty work folder for an attempt, after removing those that killed processes of this host have left.
     pub(crate) fn fresh_work(&self) -> Result<PathBuf, FileError> {
-        self.remove_work()?;
-        let work = self.work();
+        for entry in entries(&self.0)? {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let process = name.strip_prefix(&work_prefix()).map(str::parse);
+            if let Some(Ok(process)) = process
+                && !processes::is_running(process)
+            {
+                processes::kill_all_of(&entry.path());
+                remove_folder(&entry.path())?;
+            }
+        }
+        let work = self.work_here();
+        remove_folder(&work)?;
         std::fs::create_dir_all(&work).map_err(FileError::at(&work))?;
         Ok(work)
     }
 
-    /// Removes the work folder, if there is one.
-    pub(crate) fn remove_work(&self) -> Result<(), FileError> {
-        let work = self.work();
-        match std::fs::remove_dir_all(&work) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => {
-                Err(FileError::at(&work)(error))
-            }
-            _ => Ok(()),
+    /// Keeps the deck and the log of an attempt that has failed.
+    pub(crate) fn keep_work(&self) -> Result<(), FileError> {
+        let (from, to) = (self.work_here(), self.work());
+        remove_folder(&to)?;
+        match std::fs::rename(&from, &to) {
+            // Another process has just kept those of its own attempt at the same solve.
+            Err(error) if error.kind() == io::ErrorKind::DirectoryNotEmpty => remove_folder(&from),
+            renamed => renamed.map_err(FileError::at(&to)),
         }
+    }
+
+    /// Removes what attempts of this process have left.
+    pub(crate) fn remove_work(&self) -> Result<(), FileError> {
+        remove_folder(&self.work())?;
+        remove_folder(&self.work_here())
+    }
+}
+
+/// Name of the record of a solve.
+const RECORD: &str = "result.json";
+/// Name of the folder with what remains of an attempt.
+const WORK: &str = "work";
+
+/// The name of the work folder of a process on this host, without the number of the process.
+fn work_prefix() -> String {
+    format!("{WORK}-{}-", host())
+}
+
+/// Removes a folder, if it is there.
+fn remove_folder(folder: &Path) -> Result<(), FileError> {
+    match std::fs::remove_dir_all(folder) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(FileError::at(folder)(error)),
+        _ => Ok(()),
     }
 }
 

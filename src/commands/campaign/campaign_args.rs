@@ -55,4 +55,7 @@ pub fn print_tally(tally: &Tally) {
         }
         println!("{failures}");
     }
+    for (job, tier) in &tally.other_tiers {
+        println!("ray {job} was solved on the mesh {tier}");
+    }
 }

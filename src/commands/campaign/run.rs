@@ -56,9 +56,13 @@ impl RunCommand {
         let (campaign, solver) = (self.campaign.load()?, CalculiX::find()?);
         let (stop, bar) = (interrupt::stop_flag()?, RayProgress::new(campaign.size()));
         let show = &mut |now: &fe_driver::Progress| bar.show(now);
-        let tally = fe_driver::run(&campaign, &folder, &solver, &options, stop, show)?.tally;
+        let ended = fe_driver::run(&campaign, &folder, &solver, &options, stop, show)?;
         bar.0.finish();
+        let tally = ended.tally;
         print_tally(&tally);
+        for (job, reason) in &ended.disturbed {
+            println!("ray {job} stays open, the machine ended its attempts: {reason}");
+        }
         refuse_unfinished(&tally, &folder)
     }
 }
