@@ -43,6 +43,9 @@ impl Gmsh {
         let [msh, geo] = ["msh", "geo"].map(|kind| format!("{name}.{kind}"));
         let arguments = [
             "-2",
+            // Errors only: the end of the log says why there is no mesh.
+            "-v",
+            "1",
             "-order",
             "2",
             "-setnumber",

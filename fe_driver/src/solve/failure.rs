@@ -66,6 +66,8 @@ impl UnknownFailure {
 
 /// The message in a program's log when the disk is full.
 const DISK_FULL: &str = "No space left on device";
+/// The word with which gmsh begins what it says of a mesh that it cannot make.
+const GMSH_ERROR: &str = "Error";
 /// The message of CalculiX when the memory is full.
 const MEMORY_FULL: &str = "error allocating memory";
 
@@ -96,15 +98,16 @@ impl Cause {
             {
                 Self::Machine
             }
-            SolveError::Mesh(MeshError::Defect { .. } | MeshError::SheetDefect(_)) => {
-                Self::Problem(MeshFailed)
+            SolveError::Mesh(MeshError::Gmsh(ToolError::Failed { tail, .. }))
+                if !tail.contains(GMSH_ERROR) =>
+            {
+                Self::Machine
             }
-            SolveError::Mesh(MeshError::Gmsh(ToolError::Failed { status, .. })) => {
-                match status.code() {
-                    Some(NOT_EXECUTABLE | NOT_FOUND) | None => Self::Machine,
-                    _ => Self::Problem(MeshFailed),
-                }
-            }
+            SolveError::Mesh(
+                MeshError::Defect { .. }
+                | MeshError::SheetDefect(_)
+                | MeshError::Gmsh(ToolError::Failed { .. }),
+            ) => Self::Problem(MeshFailed),
             SolveError::Mesh(MeshError::Gmsh(error)) | SolveError::Solver(error) => match error {
                 ToolError::TimedOut { .. } => Self::Problem(TimedOut),
                 ToolError::TooMuchOutput { .. } => Self::Problem(TooMuchOutput),
@@ -123,10 +126,6 @@ impl Cause {
         }
     }
 }
-
-/// Exit codes by which a shell says that it could not execute a program, or did not find it.
-const NOT_EXECUTABLE: i32 = 126;
-const NOT_FOUND: i32 = 127;
 
 impl FailureKind {
     /// Whether the mechanics of the solve caused the failure: another run of the same attempts ends there again.
