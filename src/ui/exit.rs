@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::process::{ExitCode, Termination};
+use support::caught_panic;
 use support::worker_pool::NoThread;
 
 /// The exit codes of every command; besides, 2 stands for a wrong command line and 130 for a second Ctrl-C.
@@ -66,6 +67,7 @@ pub fn report_failures_of_the_system() {
                 let _ = writeln!(std::io::stderr(), "error: {reason}");
                 std::process::exit(1);
             }
+            None if caught_panic::is_caught() => {}
             None => usual(panic),
         }
     }));
