@@ -64,7 +64,8 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<Row>, DatasetError> {
         refuse_expanding(&mut reader, bytes.len())?;
         Ok(reader.finish()?)
     };
-    let frame = caught_panic::catch(read).unwrap_or_else(|why| Err(DatasetError::Malformed(why)))?;
+    let frame =
+        caught_panic::catch(read).unwrap_or_else(|why| Err(DatasetError::Malformed(why)))?;
     schema::from_frame(&frame, EXPANSION.saturating_mul(bytes.len()))
 }
 
@@ -191,7 +192,9 @@ mod tests {
 
     /// A generator of numbers that look random.
     fn next(state: &mut u64) -> usize {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        *state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
         (*state >> 33) as usize
     }
 
@@ -212,7 +215,10 @@ mod tests {
                 Ok(_) => {}
             }
         }
-        assert!(panics > 0, "the reader panics no longer: it need not be caught");
+        assert!(
+            panics > 0,
+            "the reader panics no longer: it need not be caught"
+        );
         assert!(errors > 100, "{errors}");
     }
 }

@@ -12,7 +12,9 @@ pub fn catch<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     let result = catch_unwind(AssertUnwindSafe(work));
     AT_WORK.fetch_sub(1, Ordering::SeqCst);
     result.map_err(|payload| {
-        let message = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
+        let message = payload
+            .downcast_ref::<&str>()
+            .map(|text| (*text).to_owned());
         let message = message.or_else(|| payload.downcast_ref::<String>().cloned());
         message.unwrap_or_else(|| "unknown reason".to_owned())
     })

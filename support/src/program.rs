@@ -10,7 +10,7 @@ mod output_files;
 mod process_group;
 mod tool_error;
 
-pub use output_files::{remove_stale, tail};
+pub use output_files::{output_file, remove_stale, tail};
 pub use tool_error::ToolError;
 
 use crate::processes::memory_mib;
@@ -246,6 +246,7 @@ mod tests {
     use super::*;
     use crate::processes::FOLDER;
     use crate::program::process_group::GRACE;
+    use nix::sys::resource::{Resource, setrlimit};
     use std::process::Command;
 
     static SHELL: ToolKind = ToolKind {
@@ -344,6 +345,15 @@ mod tests {
         let (ended, _) = run("exec truncate -s 2G huge", LONG, false);
         let error = ended.unwrap_err();
         assert!(matches!(error, ToolError::TooMuchOutput { .. }), "{error}");
+    }
+
+    #[test]
+    fn a_lower_limit_of_the_file_size_remains() {
+        let limit = 900 << 20;
+        setrlimit(Resource::RLIMIT_FSIZE, limit, limit).unwrap();
+        let (ended, log) = run("ulimit -f", LONG, false);
+        assert!(ended.unwrap().status.success());
+        assert_eq!(log, (limit / 512).to_string());
     }
 
     #[test]
