@@ -349,6 +349,18 @@ mod tests {
     }
 
     #[test]
+    fn an_outline_of_too_many_points_is_refused() {
+        let corners = |count: usize| {
+            (1..count).fold("M0 0".to_owned(), |path, x| {
+                path + &format!(" {x} {}", x % 2)
+            })
+        };
+        let closed = |count: usize| corners(count) + &format!(" {count} 9 0 9Z");
+        assert_refused(of(&closed(MOST_POINTS)), "at most 100000");
+        assert!(of(&closed(1000)).is_ok());
+    }
+
+    #[test]
     fn attributes_may_have_spaces_around_the_equals_sign() {
         let spaced = "<path d = \"M 0 0 H 10 V 20 H 0 Z\" />";
         assert_near(bounds(drawn(spaced)), [0.0, 10.0, -20.0, 0.0]);
