@@ -255,6 +255,32 @@ fn output_that_cannot_be_written_is_an_error_and_no_panic() {
             && message.lines().count() == 1,
         "{message}"
     );
+    for arguments in ["--help", "--version", "design --help", "help"] {
+        let full = std::fs::File::options().write(true).open("/dev/full");
+        let message = failure(work.program(arguments).stdout(full.unwrap()));
+        assert!(
+            message.contains("cannot write to stdout") && message.lines().count() == 1,
+            "{arguments}: {message}"
+        );
+    }
+}
+
+#[test]
+fn counts_have_an_upper_bound() {
+    let work = Workplace::new();
+    for arguments in [
+        format!("campaign run {DEMO} --jobs 1025"),
+        format!("campaign check {DEMO} --every 0"),
+        format!("campaign submit {DEMO} --shards 1000001 --time 1"),
+        format!("campaign submit {DEMO} --shards 1 --time 525601"),
+        format!("campaign submit {DEMO} --shards 1 --time 1 --requeues 10001"),
+        format!("verify {SCENE} --sample 1000001"),
+        "solve --time-limit-s 86401".to_owned(),
+        "solve --time-limit-s 18446744073709551615".to_owned(),
+    ] {
+        let output = work.program(&arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments}");
+    }
 }
 
 #[test]

@@ -53,6 +53,20 @@ impl Exit {
     }
 }
 
+/// Prints help, the version or the mistake of a command line, and ends the program: with 0, 2 for a mistake, or 1 if it cannot
+/// be written.
+pub fn print_answer(answer: &clap::Error) -> ! {
+    let printed = answer.print().and_then(|()| std::io::stdout().flush());
+    let code = match printed {
+        Ok(()) => answer.exit_code(),
+        Err(error) => {
+            let _ = writeln!(std::io::stderr(), "error: cannot write to stdout: {error}");
+            1
+        }
+    };
+    std::process::exit(code)
+}
+
 /// Ends the program with an error, not a panic, when its output cannot be written (a full disk, a closed terminal), and
 /// when the operating system starts no further thread.
 ///
