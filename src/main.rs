@@ -8,5 +8,8 @@ use kirigami::ui::interrupt;
 fn main() -> Exit {
     interrupt::end_quietly_when_nobody_reads();
     exit::report_failures_of_the_system();
-    Exit::from_result(Cli::parse().run())
+    match Cli::try_parse() {
+        Ok(command) => Exit::from_result(command.run()),
+        Err(answer) => exit::print_answer(&answer),
+    }
 }

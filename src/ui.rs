@@ -1,8 +1,9 @@
-//! The user interface of the commands: progress, tables, comparisons, files, pictures, charts, sizes, exit codes.
+//! The user interface of the commands: progress, tables, comparisons, files, pictures, charts, sizes, counts, exit codes.
 
 pub mod animation;
 pub mod charts;
 pub mod comparison;
+pub mod count;
 pub mod exit;
 pub mod interrupt;
 pub mod output_file;

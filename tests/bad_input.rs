@@ -253,6 +253,32 @@ fn output_that_cannot_be_written_is_an_error_and_no_panic() {
             && message.lines().count() == 1,
         "{message}"
     );
+    for arguments in ["--help", "--version", "design --help", "help"] {
+        let full = std::fs::File::options().write(true).open("/dev/full");
+        let message = failure(work.program(arguments).stdout(full.unwrap()));
+        assert!(
+            message.contains("cannot write to stdout") && message.lines().count() == 1,
+            "{arguments}: {message}"
+        );
+    }
+}
+
+#[test]
+fn counts_have_an_upper_bound() {
+    let work = Workplace::new();
+    for arguments in [
+        format!("campaign run {DEMO} --jobs 1025"),
+        format!("campaign check {DEMO} --every 0"),
+        format!("campaign submit {DEMO} --shards 1000001 --time 1"),
+        format!("campaign submit {DEMO} --shards 1 --time 525601"),
+        format!("campaign submit {DEMO} --shards 1 --time 1 --requeues 10001"),
+        format!("verify {SCENE} --sample 1000001"),
+        "solve --time-limit-s 86401".to_owned(),
+        "solve --time-limit-s 18446744073709551615".to_owned(),
+    ] {
+        let output = work.program(&arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments}");
+    }
 }
 
 #[test]
@@ -334,4 +360,20 @@ fn a_pipe_in_place_of_a_file_is_refused() {
             "{command}: {message}"
         );
     }
+}
+
+/// A limit that is lower than the program's own cannot be raised.
+#[test]
+fn a_lower_limit_of_the_file_size_remains() {
+    let kirigami = env!("CARGO_BIN_EXE_kirigami");
+    let limited = format!("ulimit -f 100000; exec {kirigami} doctor");
+    let output = std::process::Command::new("sh")
+        .args(["-c", &limited])
+        .output();
+    let output = output.unwrap();
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success() && text.contains("ccx"),
+        "{output:?}"
+    );
 }

@@ -137,12 +137,30 @@ fn a_table_becomes_weights_that_predict_it() {
 }
 
 #[test]
-fn input_that_cannot_be_evaluated_or_resumed_gives_an_error() {
+fn a_training_that_was_killed_before_it_saved_a_state_starts_anew() {
     let work = workplace();
-    let error = work.error(&format!(
-        "train {DATABASE} --config configs/training/demo.toml --resume --out {WEIGHTS}"
-    ));
-    assert!(error.contains("own.state"), "{error}");
+    let train = format!("train {DATABASE} --config configs/training/demo.toml --out {WEIGHTS}");
+    let mut killed = work.program(&train).spawn().unwrap();
+    let lock = work.path("runs/own.lock");
+    while !lock.exists() {
+        assert!(killed.try_wait().unwrap().is_none(), "it ended early");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    assert!(!work.path("runs/own.state").exists());
+    let resume = format!("{train} --resume");
+    work.output(&resume);
+    // A training that is complete is not made again.
+    let trained = std::fs::read(work.path(WEIGHTS)).unwrap();
+    let error = work.error(&resume);
+    assert!(error.contains("own.safetensors exists"), "{error}");
+    assert_eq!(std::fs::read(work.path(WEIGHTS)).unwrap(), trained);
+}
+
+#[test]
+fn input_that_cannot_be_evaluated_gives_an_error() {
+    let work = workplace();
     let error = work.error("dataset summary own.csv");
     assert!(error.contains("own.csv is no Parquet file"), "{error}");
     let absolute = work.path("own.safetensors").display().to_string();

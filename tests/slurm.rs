@@ -223,13 +223,14 @@ impl Scripted {
 #[test]
 fn an_array_is_not_submitted_twice() {
     let slurm = Scripted::new();
-    slurm.answer("exit 1");
+    slurm.answer("true");
     let (message, arrays) = slurm.submit();
     assert!(
         message.contains("array 7 is submitted, but not"),
         "{message}"
     );
     assert_eq!(arrays, 1);
+    slurm.answer("exit 1");
     let (message, arrays) = slurm.submit();
     assert!(
         message.contains("does not say whether array 7"),
@@ -253,6 +254,107 @@ fn an_array_is_not_submitted_twice() {
     // The queue has forgotten it: all of its tasks have ended.
     slurm.answer("true");
     assert_eq!(slurm.submit().1, 2);
+}
+
+#[test]
+fn two_submissions_at_once_submit_one_array() {
+    let slurm = Scripted::new();
+    slurm.answer("true");
+    let arrays = slurm.work.path("arrays");
+    // Until the second submission has failed, the first one waits in `sbatch`.
+    let refused = slurm.work.path("refused");
+    slurm.script(
+        "sbatch",
+        &format!(
+            "echo x >> {}; until [ -e {} ]; do sleep 0.05; done; echo 7",
+            arrays.display(),
+            refused.display()
+        ),
+    );
+    let submit = format!("submit {CAMPAIGN} --shards 4 --time 1");
+    let mut first = slurm.campaign(&submit).stdout(Stdio::null()).spawn();
+    let first = first.as_mut().unwrap();
+    while !arrays.exists() {
+        assert!(first.try_wait().unwrap().is_none(), "it ended early");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let (message, arrays) = slurm.submit();
+    assert!(message.contains("another `campaign submit`"), "{message}");
+    assert_eq!(arrays, 1);
+    // Also when the first one is killed and its sbatch goes on.
+    first.kill().unwrap();
+    first.wait().unwrap();
+    assert!(slurm.submit().0.contains("another `campaign submit`"));
+    std::fs::write(refused, "").unwrap();
+}
+
+#[test]
+fn an_array_whose_submission_was_killed_is_not_submitted_again() {
+    let slurm = Scripted::new();
+    slurm.answer("true");
+    let arrays = slurm.work.path("arrays");
+    let array = format!("echo x >> {}", arrays.display());
+    slurm.script("sbatch", &format!("{array}; kill -9 $PPID; echo 7"));
+    let submit = format!("submit {CAMPAIGN} --shards 4 --time 1");
+    let killed = slurm.campaign(&submit).status().unwrap();
+    assert_eq!(killed.code(), None);
+    let folder = slurm.work.path("runs/demo/slurm");
+    assert!(!folder.join("submission.json").exists());
+
+    let script = folder.join("array.sh").canonicalize().unwrap();
+    let line =
+        |state: &str, arguments: &str| format!("echo '7|{state}|{}{arguments}'", script.display());
+    slurm.answer("exit 1");
+    assert!(slurm.submit().0.contains("squeue failed"));
+    for arguments in ["", " collect"] {
+        slurm.answer(&line("PENDING", arguments));
+        let (message, arrays) = slurm.submit();
+        assert!(message.contains("scancel 7"), "{message}");
+        assert_eq!(arrays, 1);
+    }
+    // It has ended; another script has not.
+    let other = "echo '8|RUNNING|/other/array.sh'; ";
+    slurm.script("sbatch", &format!("{array}; echo 9"));
+    slurm.answer(&(other.to_owned() + &line("CANCELLED", "")));
+    assert!(slurm.campaign(&submit).output().unwrap().status.success());
+    assert_eq!(std::fs::read_to_string(arrays).unwrap(), "x\nx\nx\n");
+}
+
+/// Slurm reads the line of the log folder, and the shell all others.
+#[test]
+fn hostile_names_reach_slurm_as_they_are() {
+    let cluster = Cluster::up();
+    let name = "a b #;&(x) ~*";
+    let (campaign, folder) = (
+        format!("configs/campaigns/{name}.toml"),
+        format!("runs/{name}"),
+    );
+    std::fs::rename(cluster.work.path(CAMPAIGN), cluster.work.path(&campaign)).unwrap();
+    let submit = || {
+        let mut command = cluster.command("kirigami campaign submit");
+        command.args([&campaign, "--folder", &folder, "--shards=1", "--time=1"]);
+        command.output().unwrap()
+    };
+    let output = submit();
+    assert!(output.status.success(), "{}", cluster.logs(&output));
+    let jobs = cluster.output("scontrol show jobs");
+    let logs = cluster.work.path(&folder).join("slurm");
+    let log = format!("StdOut={}/a-b----x----", logs.display());
+    assert!(jobs.contains(&log), "{jobs}\n{log}");
+    cluster.until("the task solves a ray", || cluster.process(1).is_some());
+
+    // What a submission leaves that was killed before its record.
+    std::fs::remove_file(logs.join("submission.json")).unwrap();
+    let refused = submit();
+    let message = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!(refused.status.code(), Some(1), "{message}");
+    assert!(message.contains("scancel"), "{message}");
+
+    let broken = "configs/campaigns/a\n#SBATCH --hold.toml";
+    std::fs::copy(cluster.work.path(&campaign), cluster.work.path(broken)).unwrap();
+    let mut command = cluster.command("kirigami campaign submit");
+    let message = failure(command.args([broken, "--shards=1", "--time=1"]));
+    assert!(message.contains("cannot state this name"), "{message}");
 }
 
 #[test]

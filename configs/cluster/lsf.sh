@@ -8,7 +8,7 @@
 #BSUB -W @minutes@
 #BSUB -Q 75
 #BSUB -wa TERM -wt 2
-#BSUB -o @logs@/%J-%I.log
+#BSUB -o "@logs@/%J-%I.log"
 
 cd @here@ || exit
 if [ "${ROLE-}" = collect ]; then

@@ -80,6 +80,17 @@ pub enum DatasetError {
          the memory"
     )]
     Expanding { values: usize, bytes: usize },
+    #[error(
+        "the texts of the table are over {most} bytes long at row {index} of the column `{column}`, which those of measured \
+         data never are: the file is damaged, or made to fill the memory"
+    )]
+    LongText {
+        column: &'static str,
+        index: usize,
+        most: usize,
+    },
+    #[error("the file is malformed: the Parquet reader fails with `{0}`")]
+    Malformed(String),
     #[error("cannot read {path}: {source}", path = .path.display())]
     Read {
         path: PathBuf,

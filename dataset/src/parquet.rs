@@ -7,6 +7,7 @@ use crate::schema;
 use polars::io::parquet::write::BatchedWriter;
 use polars::prelude::{ParquetReader, ParquetWriter, SerReader};
 use std::io::{Cursor, Write};
+use support::caught_panic;
 
 /// Number of rows of a group. The rows of one group are in memory at a time.
 const GROUP: usize = 1 << 16;
@@ -56,11 +57,16 @@ pub(crate) fn encode(rows: &[Row]) -> Result<Vec<u8>, DatasetError> {
     Ok(bytes)
 }
 
-/// The rows of a Parquet file.
+/// The rows of a Parquet file. The reader panics at some malformed files, which are errors like all others.
 pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<Row>, DatasetError> {
-    let mut reader = ParquetReader::new(Cursor::new(bytes));
-    refuse_expanding(&mut reader, bytes.len())?;
-    schema::from_frame(&reader.finish()?)
+    let read = || {
+        let mut reader = ParquetReader::new(Cursor::new(bytes));
+        refuse_expanding(&mut reader, bytes.len())?;
+        Ok(reader.finish()?)
+    };
+    let frame =
+        caught_panic::catch(read).unwrap_or_else(|why| Err(DatasetError::Malformed(why)))?;
+    schema::from_frame(&frame, EXPANSION.saturating_mul(bytes.len()))
 }
 
 /// Maximum number of values in a byte of a file. Measured values do not repeat: the shipped databases have 0.3.
@@ -84,7 +90,7 @@ fn refuse_expanding(
         size = size.saturating_add_signed(column.uncompressed_size() as isize);
     }
     values = values.max(in_columns);
-    if values > VALUES_A_BYTE * bytes || size > EXPANSION * bytes {
+    if values > VALUES_A_BYTE.saturating_mul(bytes) || size > EXPANSION.saturating_mul(bytes) {
         Err(DatasetError::Expanding { values, bytes })
     } else {
         Ok(())
@@ -161,8 +167,58 @@ mod tests {
         assert!(bytes.len() < 100_000, "{}", bytes.len());
         let error = decode(&bytes).unwrap_err();
         assert!(matches!(error, DatasetError::Expanding { .. }), "{error}");
+    }
+
+    /// A text that all rows share is stored once, and would be in memory once a row.
+    #[test]
+    fn a_small_file_of_very_much_text_is_refused_before_it_is_copied() {
+        let mut large = rows(300);
+        let long = "x".repeat(10_000);
+        large.iter_mut().for_each(|row| row.failure = long.clone());
+        let bytes = encode(&large).unwrap();
+        let error = decode(&bytes).unwrap_err();
+        let of_failure = matches!(
+            error,
+            DatasetError::LongText {
+                column: "failure",
+                ..
+            }
+        );
+        assert!(of_failure, "{error}");
         // The most regular rows that a solver could give are read.
         let regular = rows(300);
         assert_eq!(decode(&encode(&regular).unwrap()).unwrap(), regular);
+    }
+
+    /// A generator of numbers that look random.
+    fn next(state: &mut u64) -> usize {
+        *state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (*state >> 33) as usize
+    }
+
+    #[test]
+    fn a_malformed_file_is_an_error_and_no_panic() {
+        let bytes = encode(&rows(3)).unwrap();
+        let end = bytes.len();
+        let length = u32::from_le_bytes(bytes[end - 8..end - 4].try_into().unwrap()) as usize;
+        let (mut state, mut panics, mut errors) = (1, 0, 0);
+        for _ in 0..3000 {
+            let mut damaged = bytes.clone();
+            for _ in 0..1 + next(&mut state) % 4 {
+                damaged[end - 8 - length + next(&mut state) % length] = next(&mut state) as u8;
+            }
+            match decode(&damaged) {
+                Err(DatasetError::Malformed(_)) => panics += 1,
+                Err(_) => errors += 1,
+                Ok(_) => {}
+            }
+        }
+        assert!(
+            panics > 0,
+            "the reader panics no longer: it need not be caught"
+        );
+        assert!(errors > 100, "{errors}");
     }
 }

@@ -132,8 +132,20 @@ pub(crate) fn to_frame(rows: &[Row]) -> Result<DataFrame, DatasetError> {
 }
 
 /// The rows of a table. Every column must exist with its type, without gaps except where a value may be unknown, and
-/// every number must be finite.
-pub(crate) fn from_frame(frame: &DataFrame) -> Result<Vec<Row>, DatasetError> {
+/// every number must be finite. A text that many rows share is in the table once and in every row: over `most_text` bytes
+/// in all rows are refused.
+pub(crate) fn from_frame(frame: &DataFrame, most_text: usize) -> Result<Vec<Row>, DatasetError> {
+    let mut left = most_text;
+    for column in TEXTS.iter().map(|column| column.name) {
+        for (index, text) in frame.column(column)?.str()?.iter().enumerate() {
+            let length = text.map_or(0, str::len);
+            left = left.checked_sub(length).ok_or(DatasetError::LongText {
+                column,
+                index,
+                most: most_text,
+            })?;
+        }
+    }
     let mut rows = vec![blank(); frame.height()];
     for column in &TEXTS {
         let texts = frame.column(column.name)?.str()?.iter();

@@ -70,7 +70,7 @@ pub use calculix::dat::{DatError, Frame, Layout, read_dat};
 pub use calculix::deck::deck;
 pub use calculix::model::WindowModel;
 pub use calculix::sta::{Increment, read_sta};
-pub use campaign::array_script::{ArrayScript, SLURM, UnknownTemplateKey};
+pub use campaign::array_script::{ArrayScript, SLURM, ScriptError};
 pub use campaign::definition::{Campaign, CampaignError};
 pub use campaign::extra_rays::{Added, ExtraRaysError, add_extra_rays};
 pub use campaign::finished_windows::finished_windows;

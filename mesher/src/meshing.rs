@@ -11,7 +11,6 @@ use crate::sheet_shape::{InvalidSheet, SheetShape};
 use crate::tier::MeshRecipe;
 use crate::window::Window;
 use hinge::{HingeDesign, InvalidDesign};
-use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -142,11 +141,8 @@ fn generate(
 /// Reads the mesh that gmsh has written to `folder`.
 fn read_plane(folder: &Path, name: &str, kinds: &[ElementKind]) -> Result<PlaneMesh, MeshError> {
     let msh = folder.join(name).with_extension("msh");
-    let bytes = match std::fs::read(&msh) {
-        // gmsh exited with status zero but wrote no mesh: the reader reports what is missing.
-        Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
-        read => read.map_err(FileError::at(&msh))?,
-    };
+    // If gmsh exited with status zero but wrote no mesh, the reader reports what is missing.
+    let bytes = program::output_file(&msh).map_err(FileError::at(&msh))?;
     Ok(read_msh(&bytes, kinds)?)
 }
 

@@ -12,7 +12,7 @@ use design::objective::scores::shown;
 use design::objective::term::in_words;
 use design::optimise::outer_loop::{Ended, StepRecord};
 use design::scene::design_run::{Designed, inverse_design};
-use design::scene::run_inputs::scene_file;
+use design::scene::run_inputs::{SCENE_FILE, holds_a_run, scene_file};
 use design::scene::{Scene, SceneConfig};
 use output::drawing::deployment_frames;
 use output::report::{Report, Warning};
@@ -185,6 +185,7 @@ impl DesignCommand {
 
     /// One run: its search and its results.
     fn design(&self, scene: &Scene) -> Result<(Report, Ended)> {
+        refuse_files_of_others(&scene.output())?;
         let _held = run_folder::hold(&scene.output())?;
         if self.restart {
             remove_run(scene)?;
@@ -213,6 +214,25 @@ impl DesignCommand {
         change(&mut config);
         Ok(Scene::new(config, &path)?)
     }
+}
+
+/// An error if a run would replace files of its folder that no run has written.
+fn refuse_files_of_others(folder: &Path) -> Result<()> {
+    if holds_a_run(folder) {
+        return Ok(());
+    }
+    let names = RUN_FILES.iter().map(|file| file.name).chain([SCENE_FILE]);
+    let found: Vec<&str> = names
+        .filter(|name| folder.join(name).symlink_metadata().is_ok())
+        .collect();
+    ensure!(
+        found.is_empty(),
+        "the run would replace {} in {}, which no run has written: choose another folder, with --out or the key `output`, or \
+         move the files",
+        found.join(", "),
+        folder.display()
+    );
+    Ok(())
 }
 
 /// Writes the results of a run to its folder, with pictures and animation.

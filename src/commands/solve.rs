@@ -54,7 +54,7 @@ pub struct SolveCommand {
     #[arg(long, value_name = "FOLDER", default_value = "runs/solve")]
     out: PathBuf,
     /// Time limit of the solver (s)
-    #[arg(long, value_name = "SECONDS", default_value_t = 600)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=86_400))]
     time_limit_s: u64,
     /// Also write window.vtu, for ParaView or meshio: displacements, plastic strain and stress of the last increment
     #[arg(long)]

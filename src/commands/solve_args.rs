@@ -1,5 +1,6 @@
 //! Options of window solves, and the service that they describe.
 
+use crate::ui::count::jobs;
 use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
 use crate::ui::processors;
@@ -17,10 +18,10 @@ use verification::VerificationError;
 #[derive(Args)]
 pub struct SolveArgs {
     /// Number of solves in parallel [default: one per processor]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = jobs::<NonZeroUsize>)]
     jobs: Option<NonZeroUsize>,
     /// Time limit of each solve (s)
-    #[arg(long, value_name = "SECONDS", default_value_t = 3600)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 3600, value_parser = clap::value_parser!(u64).range(1..=86_400))]
     time_limit_s: u64,
 }
 

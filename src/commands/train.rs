@@ -58,7 +58,8 @@ pub struct TrainCommand {
     /// docs/MATERIALS.md lists the errors over the number of rays
     #[arg(long, value_name = "WEIGHTS")]
     from: Option<PathBuf>,
-    /// Continue a training that was stopped, with the same --config and --from; others are an error
+    /// Continue a training that was stopped, with the same --config and --from; others are an error. One that was killed in
+    /// its first half minute left nothing, and starts anew
     #[arg(long, conflicts_with = "seeds")]
     resume: bool,
     /// Number of trainings, with successive seeds. The one with the smallest product of the validation errors of W and
@@ -139,7 +140,7 @@ impl TrainCommand {
         let _held = hold(&self.out)?;
         let state = self.state();
         let pretrained = base.as_ref();
-        let start = if self.resume {
+        let start = if self.is_resumed() {
             let state = &state;
             Start::State { state, pretrained }
         } else {
@@ -170,8 +171,14 @@ impl TrainCommand {
         Ok(())
     }
 
+    /// Whether the training continues from the state of a stopped one. Without weights, a missing state is that of a
+    /// training which was killed before it had saved one.
+    fn is_resumed(&self) -> bool {
+        self.resume && self.state().exists()
+    }
+
     fn refuse_existing(&self) -> Result<()> {
-        if self.replace || self.resume {
+        if self.replace || self.is_resumed() {
             return Ok(());
         }
         for path in [&self.out, &card_path(&self.out)] {

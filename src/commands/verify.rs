@@ -7,6 +7,7 @@ use crate::commands::compared_states;
 use crate::commands::inspect::judged_design::DESIGN_TO_JUDGE;
 use crate::commands::inspect::scene_args::Inspected;
 use crate::commands::solve_args::{SolveArgs, task_error};
+use crate::ui::count::count;
 use crate::ui::run_folder;
 use anyhow::{Context, Result};
 use clap::Args;
@@ -44,7 +45,7 @@ pub struct VerifyCommand {
     #[arg(long, value_name = "FILE", num_args = 1..)]
     ensemble: Vec<PathBuf>,
     /// Number of hinges to solve, spread evenly over the sheet [default: all]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count::<NonZeroUsize>)]
     sample: Option<NonZeroUsize>,
     /// Mesh tier of the windows [default: that of the weights' database, or the finer tier that it was
     /// corrected to; of a whole sheet small, or plate for a plate]; a window of the tier reference takes two minutes on one core
@@ -54,11 +55,11 @@ pub struct VerifyCommand {
     #[arg(long, group = "of_sheet", conflicts_with_all = ["ensemble", "sample"])]
     equilibrium: bool,
     /// Maximum number of times that all hinges are solved
-    #[arg(long, value_name = "N", default_value_t = 6, requires = "equilibrium")]
+    #[arg(long, value_name = "N", default_value_t = 6, requires = "equilibrium", value_parser = count::<usize>)]
     rounds: usize,
     /// Search for N more steps with the hinge law corrected to the finite elements, from the design on; judge the design that
     /// is found by finite elements again, and write it with its cut files
-    #[arg(long, value_name = "N", requires = "equilibrium")]
+    #[arg(long, value_name = "N", requires = "equilibrium", value_parser = count::<NonZeroUsize>)]
     polish: Option<NonZeroUsize>,
     /// Write the cut files of a polished design even if its report has errors
     #[arg(long, requires = "polish")]

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::process::{ExitCode, Termination};
+use support::caught_panic;
 use support::worker_pool::NoThread;
 
 /// The exit codes of every command; besides, 2 stands for a wrong command line and 130 for a second Ctrl-C.
@@ -52,6 +53,20 @@ impl Exit {
     }
 }
 
+/// Prints help, the version or the mistake of a command line, and ends the program: with 0, 2 for a mistake, or 1 if it cannot
+/// be written.
+pub fn print_answer(answer: &clap::Error) -> ! {
+    let printed = answer.print().and_then(|()| std::io::stdout().flush());
+    let code = match printed {
+        Ok(()) => answer.exit_code(),
+        Err(error) => {
+            let _ = writeln!(std::io::stderr(), "error: cannot write to stdout: {error}");
+            1
+        }
+    };
+    std::process::exit(code)
+}
+
 /// Ends the program with an error, not a panic, when its output cannot be written (a full disk, a closed terminal), and
 /// when the operating system starts no further thread.
 ///
@@ -66,6 +81,7 @@ pub fn report_failures_of_the_system() {
                 let _ = writeln!(std::io::stderr(), "error: {reason}");
                 std::process::exit(1);
             }
+            None if caught_panic::is_caught() => {}
             None => usual(panic),
         }
     }));

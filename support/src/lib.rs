@@ -1,6 +1,6 @@
 //! Domain-independent utilities: configuration files, ranges of their keys, misspelt names, input files, CSV tables, VTK
 //! files, atomic file writes, lock files, external programs, temporary folders, notes of what a command does, a pool of
-//! threads, shards of a list of jobs, memory of the machine.
+//! threads, panics of libraries, shards of a list of jobs, memory of the machine.
 //!
 //! ```
 //! use support::table::{Cell, Table};
@@ -13,6 +13,7 @@
 
 #![warn(missing_docs)]
 
+pub mod caught_panic;
 pub mod csv_table;
 pub mod file_error;
 pub mod key_limits;

@@ -10,7 +10,7 @@ mod output_files;
 mod process_group;
 mod tool_error;
 
-pub use output_files::{remove_stale, tail};
+pub use output_files::{output_file, remove_stale, tail};
 pub use tool_error::ToolError;
 
 use crate::processes::memory_mib;

@@ -37,12 +37,12 @@ pub fn read_to_string(path: &Path) -> io::Result<String> {
     String::from_utf8(read(path)?).map_err(|error| io::Error::new(ErrorKind::InvalidData, error))
 }
 
-/// Opens a file of this program's own in a folder that others can write. It is an error if a link, a pipe or a device is in its
-/// place: nothing is awaited, and nothing that a link names is created or changed.
+/// Opens a file in a folder that others can write. It is an error of the kind [`ErrorKind::InvalidData`] if a link, a pipe or a
+/// device is in its place: nothing is awaited, and nothing that a link names is read, created or changed.
 pub fn open(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
     let refused = || {
         let what = "a link, a pipe or a device is in its place: remove it";
-        io::Error::new(ErrorKind::InvalidInput, what)
+        io::Error::new(ErrorKind::InvalidData, what)
     };
     let flags = libc::O_NOFOLLOW | libc::O_NONBLOCK;
     let file = match options.custom_flags(flags).open(path) {

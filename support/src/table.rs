@@ -11,11 +11,14 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// What a page and a file show alike.
+    /// What a page and a file show alike. A text is not more than a text: none begins another cell or row of a page, and
+    /// none is computed as a formula by a spreadsheet.
     pub fn text(text: impl Display) -> Self {
-        let shown = text.to_string();
-        let stored = shown.clone();
-        Self { shown, stored }
+        let text = text.to_string();
+        Self {
+            shown: text.replace('|', "\\|").replace(['\r', '\n'], " "),
+            stored: no_formula(text),
+        }
     }
 
     /// A number with a fixed number of decimals on a page.
@@ -118,10 +121,20 @@ impl<'a, R> Table<'a, R> {
     }
 }
 
-/// A line of CSV; cells with commas or quotes stand in quotes.
+/// The text, after an apostrophe if a spreadsheet would compute it. A number or a single dash is none that it computes.
+fn no_formula(text: String) -> String {
+    let computed = text.starts_with(['=', '+', '-', '@', '\t', '\r']);
+    if computed && text.len() > 1 && text.parse::<f64>().is_err() {
+        format!("'{text}")
+    } else {
+        text
+    }
+}
+
+/// A line of CSV; cells with commas, quotes or line breaks stand in quotes.
 fn csv_line<'c>(cells: impl Iterator<Item = &'c str>) -> String {
     let quoted = cells.map(|cell| {
-        if cell.contains([',', '"', '\n']) {
+        if cell.contains([',', '"', '\n', '\r']) {
             format!("\"{}\"", cell.replace('"', "\"\""))
         } else {
             cell.to_owned()
@@ -142,6 +155,36 @@ pub fn number_or_dash(value: f64, decimals: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_text_is_one_cell_of_a_page_and_no_formula_of_a_spreadsheet() {
+        let table = Table::new()
+            .column("name", |row: &&str| Cell::text(row))
+            .column("length", |row| Cell::text(row.len()));
+        let texts = [
+            ("a|b", "a\\|b", "a|b"),
+            ("a\n| b", "a \\| b", "\"a\n| b\""),
+            ("a\rb", "a b", "\"a\rb\""),
+            ("=1+1", "=1+1", "'=1+1"),
+            ("+cmd", "+cmd", "'+cmd"),
+            ("-cmd", "-cmd", "'-cmd"),
+            ("@SUM(A1)", "@SUM(A1)", "'@SUM(A1)"),
+            ("\t=1", "\t=1", "'\t=1"),
+            ("-", "-", "-"),
+            ("-1.5e3", "-1.5e3", "-1.5e3"),
+        ];
+        for (text, shown, stored) in texts {
+            let length = text.len();
+            let page = table.markdown(&[text]);
+            assert!(
+                page.ends_with(&format!("| {shown} | {length} |\n")),
+                "{page}"
+            );
+            assert_eq!(page.lines().count(), 3);
+            let file = table.csv(&[text]);
+            assert_eq!(file, format!("name,length\n{stored},{length}\n"));
+        }
+    }
 
     #[test]
     fn a_page_rounds_and_a_file_does_not() {

@@ -1,9 +1,12 @@
 //! Atomic file writes: a file is either complete or absent.
 
 use crate::verbose;
+use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{self, Write};
+use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
+use std::time::Duration;
 use tempfile::NamedTempFile;
 
 /// Writes `bytes` to `path`, whose folder must exist, as described at [`Unnamed`].
@@ -15,7 +18,8 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
 
 /// A file on its way to its name. It is written to a temporary file with a unique name in the folder of its path, and
 /// renamed at the end: the path holds either the old bytes or the new ones, never a part of them, even after a loss of
-/// power. The temporary file is removed when this value is dropped before.
+/// power. The temporary file is removed when this value is dropped before, and that of a killed process by the next one
+/// that writes to this path.
 #[derive(Debug)]
 pub struct Unnamed(NamedTempFile);
 
@@ -23,12 +27,16 @@ impl Unnamed {
     /// An empty temporary file in the folder of `path`, which must exist.
     pub fn beside(path: &Path) -> io::Result<Self> {
         let name = path.file_name().unwrap_or_default();
-        tempfile::Builder::new()
+        let file = tempfile::Builder::new()
             .prefix(name)
-            .suffix(".partial")
+            .rand_bytes(RANDOM)
+            .suffix(SUFFIX)
             .permissions(permissions())
-            .tempfile_in(folder(path))
-            .map(Self)
+            .tempfile_in(folder(path))?;
+        // On a file system without locks nothing is removed.
+        let _ = file.as_file().try_lock();
+        remove_abandoned(path, file.as_file());
+        Ok(Self(file))
     }
 
     /// The file, to be written.
@@ -52,6 +60,45 @@ pub fn rename(from: &Path, to: &Path) -> io::Result<()> {
     std::fs::rename(from, to)?;
     File::open(folder(to))?.sync_all()
 }
+
+/// The end of the name of a temporary file.
+const SUFFIX: &str = ".partial";
+/// Time after which the writer of a temporary file has locked it, if it is at work.
+const LOCKED_AFTER: Duration = Duration::from_secs(5);
+
+/// Removes the temporary files of `path` that killed processes left: no process has locked them, and they are older than
+/// `newest`, which is on the same disk and was created just now. What cannot be read stays.
+fn remove_abandoned(path: &Path, newest: &File) {
+    let (Some(name), Ok(now)) = (
+        path.file_name().map(OsStr::as_bytes),
+        newest.metadata().and_then(|new| new.modified()),
+    ) else {
+        return;
+    };
+    let is_temporary = |file: &OsStr| {
+        let random = file.as_bytes().strip_prefix(name);
+        random.is_some_and(|rest| {
+            rest.len() == RANDOM + SUFFIX.len() && rest.ends_with(SUFFIX.as_bytes())
+        })
+    };
+    let is_abandoned = |path: &Path| -> io::Result<bool> {
+        let metadata = std::fs::symlink_metadata(path)?;
+        let age = now.duration_since(metadata.modified()?).unwrap_or_default();
+        Ok(metadata.is_file() && age > LOCKED_AFTER && File::open(path)?.try_lock().is_ok())
+    };
+    let entries = std::fs::read_dir(folder(path))
+        .into_iter()
+        .flatten()
+        .flatten();
+    for entry in entries.filter(|entry| is_temporary(&entry.file_name())) {
+        if is_abandoned(&entry.path()).unwrap_or(false) {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Number of random characters in the name of a temporary file.
+const RANDOM: usize = 6;
 
 /// The folder of a path.
 fn folder(path: &Path) -> &Path {
@@ -86,6 +133,38 @@ fn permissions() -> std::fs::Permissions {
 mod tests {
     use super::*;
     use std::os::unix::fs::PermissionsExt;
+
+    #[test]
+    fn what_a_killed_process_left_is_removed_by_the_next_that_writes_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.json");
+        let old = |name: &str| {
+            let file = File::create(folder.path().join(name)).unwrap();
+            let created = file.metadata().unwrap().modified().unwrap();
+            file.set_modified(created - 2 * LOCKED_AFTER).unwrap();
+            file
+        };
+        // Left by a killed process; of another file; of a writer at work.
+        old("a.jsonAbC123.partial");
+        old("b.jsonAbC123.partial");
+        old("a.json.partial");
+        let at_work = old("a.jsonXyZ789.partial");
+        at_work.lock().unwrap();
+        // Of a writer that has not locked it yet.
+        File::create(folder.path().join("a.jsonnew123.partial")).unwrap();
+        write(&path, b"new").unwrap();
+        let entries = std::fs::read_dir(&folder).unwrap();
+        let mut left: Vec<_> = entries.map(|entry| entry.unwrap().file_name()).collect();
+        left.sort();
+        let expected = [
+            "a.json",
+            "a.json.partial",
+            "a.jsonXyZ789.partial",
+            "a.jsonnew123.partial",
+            "b.jsonAbC123.partial",
+        ];
+        assert_eq!(left, expected);
+    }
 
     #[test]
     fn a_file_is_replaced_completely_and_no_temporary_file_remains() {

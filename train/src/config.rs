@@ -24,17 +24,17 @@ pub struct TrainingConfig {
     /// its mirror image.
     pub mirror: bool,
     /// Maximum number of passes over the training rows.
-    #[schemars(range(min = 1))]
+    #[schemars(range(min = 1, max = 1_000_000))]
     pub epochs: usize,
     /// Number of epochs without a smaller validation error after which the training stops; unlimited if absent.
-    #[schemars(range(min = 1))]
+    #[schemars(range(min = 1, max = 1_000_000))]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub patience: Option<usize>,
     /// Number type of the training; exported weights and their evaluation are always float64.
     #[serde(default)]
     pub precision: Precision,
     /// Number of rows in one optimiser step.
-    #[schemars(range(min = 1))]
+    #[schemars(range(min = 1, max = 1_000_000))]
     pub batch_size: usize,
     /// The learning rate at the first step.
     #[schemars(range(min = 1e-30, max = 1.0))]
@@ -59,6 +59,9 @@ pub struct TrainingConfig {
     #[serde(default, skip_serializing_if = "is_zero")]
     pub frozen_layers: usize,
 }
+
+/// Maximum number of layers of a network.
+const MOST_LAYERS: usize = 16;
 
 #[allow(
     clippy::trivially_copy_pass_by_ref,
@@ -117,8 +120,14 @@ impl TrainingConfig {
             (
                 "embedding",
                 format!("{:?}", self.embedding),
-                "at least one layer",
-                !self.embedding.is_empty(),
+                "1 to 16 layers",
+                (1..=MOST_LAYERS).contains(&self.embedding.len()),
+            ),
+            (
+                "damage",
+                format!("{:?}", self.damage),
+                "at most 16 layers",
+                self.damage.len() <= MOST_LAYERS,
             ),
             (
                 "mirror",
@@ -170,7 +179,12 @@ mod tests {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/training");
         let demo: TrainingConfig = support::toml_file::read(&folder.join("demo.toml")).unwrap();
         type Change = fn(&mut TrainingConfig);
-        let changes: [(Change, &str); 14] = [
+        let changes: [(Change, &str); 19] = [
+            (|c| c.embedding = vec![8; 17], "embedding"),
+            (|c| c.damage = vec![8; 17], "damage"),
+            (|c| c.epochs = 1_000_001, "epochs"),
+            (|c| c.patience = Some(1_000_001), "patience"),
+            (|c| c.batch_size = 1_000_001, "batch_size"),
             (|c| c.embedding.clear(), "embedding"),
             (|c| c.damage[0] = 0, "damage"),
             (|c| c.embedding[1] = 7, "mirror"),

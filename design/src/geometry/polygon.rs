@@ -119,22 +119,68 @@ pub fn edges(polygon: &[[f64; 2]]) -> impl Iterator<Item = ([f64; 2], [f64; 2])>
 
 /// A common point of two edges of a closed polygon, other than the vertices between neighbours.
 ///
-/// The edges are sorted by their left end, and each is compared only with those that begin before its
-/// right end.
+/// Neighbouring edges are near each other: parts of the outline whose boxes do not overlap are not compared.
 pub(crate) fn self_crossing(points: &[[f64; 2]]) -> Option<[f64; 2]> {
-    let edges: Vec<_> = edges(points).collect();
-    let left = |i: usize| edges[i].0[0].min(edges[i].1[0]);
-    let right = |i: usize| edges[i].0[0].max(edges[i].1[0]);
-    let next = |i: usize| (i + 1) % edges.len();
-    let mut order: Vec<usize> = (0..edges.len()).collect();
-    order.sort_by(|i, j| left(*i).total_cmp(&left(*j)));
-    order.iter().enumerate().find_map(|(k, &i)| {
-        let later = order[k + 1..].iter().copied();
-        later
-            .take_while(|j| left(*j) <= right(i))
-            .filter(|j| next(i) != *j && next(*j) != i)
-            .find_map(|j| shared_point(edges[i], edges[j]))
-    })
+    let edges: Vec<Edge> = edges(points).collect();
+    let boxes = PartBoxes::of(&edges);
+    let neighbours = |i: usize, j: usize| j - i == 1 || j - i == edges.len() - 1;
+    let shared =
+        |i: usize, j: usize| (!neighbours(i, j)).then(|| shared_point(edges[i], edges[j]))?;
+    boxes.first(&shared)
+}
+
+/// The bounding boxes of the parts of an outline: part 1 is all of it, and part k consists of the parts 2 k and 2 k + 1,
+/// down to the single edges.
+struct PartBoxes {
+    boxes: Vec<[[f64; 2]; 2]>,
+    /// Number of the parts that are single edges, a power of two; those beyond the last edge are empty.
+    leaves: usize,
+}
+
+impl PartBoxes {
+    fn of(edges: &[Edge]) -> Self {
+        let leaves = edges.len().next_power_of_two();
+        let mut boxes = vec![bounds([]); 2 * leaves];
+        for (leaf, (p, q)) in boxes[leaves..].iter_mut().zip(edges) {
+            *leaf = bounds([*p, *q]);
+        }
+        for part in (1..leaves).rev() {
+            let ([low, high], [other_low, other_high]) = (boxes[2 * part], boxes[2 * part + 1]);
+            boxes[part] = [
+                [0, 1].map(|c| low[c].min(other_low[c])),
+                [0, 1].map(|c| high[c].max(other_high[c])),
+            ];
+        }
+        Self { boxes, leaves }
+    }
+
+    /// What `found` gives for the first pair of edges whose boxes overlap, of those for which it gives anything.
+    fn first(&self, found: &impl Fn(usize, usize) -> Option<[f64; 2]>) -> Option<[f64; 2]> {
+        (1..self.leaves).find_map(|part| self.first_pair(2 * part, 2 * part + 1, found))
+    }
+
+    /// What `found` gives for the first pair of edges, one of each of two parts of equal size, whose boxes overlap.
+    fn first_pair(
+        &self,
+        part: usize,
+        other: usize,
+        found: &impl Fn(usize, usize) -> Option<[f64; 2]>,
+    ) -> Option<[f64; 2]> {
+        let [low, high] = self.boxes[part];
+        let [other_low, other_high] = self.boxes[other];
+        let overlap = |c: usize| high[c] >= other_low[c] && other_high[c] >= low[c];
+        if !(overlap(0) && overlap(1)) {
+            return None;
+        }
+        if part >= self.leaves {
+            return found(part - self.leaves, other - self.leaves);
+        }
+        let halves = |part: usize| [2 * part, 2 * part + 1];
+        halves(part).into_iter().find_map(|part| {
+            let mut others = halves(other).into_iter();
+            others.find_map(|other| self.first_pair(part, other, found))
+        })
+    }
 }
 
 type Edge = ([f64; 2], [f64; 2]);
@@ -144,12 +190,8 @@ pub fn side((a, b): Edge, point: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])
 }
 
-/// A common point of two segments, if their boxes overlap and neither is on one side of the other.
+/// A common point of two segments whose boxes overlap, unless one of them is on one side of the other.
 fn shared_point((p, q): Edge, (r, s): Edge) -> Option<[f64; 2]> {
-    let overlap = |c: usize| p[c].max(q[c]) >= r[c].min(s[c]) && r[c].max(s[c]) >= p[c].min(q[c]);
-    if !(overlap(0) && overlap(1)) {
-        return None;
-    }
     let (side_p, side_q) = (side((r, s), p), side((r, s), q));
     if side_p * side_q > 0.0 || side((p, q), r) * side((p, q), s) > 0.0 {
         return None;
@@ -165,6 +207,28 @@ fn shared_point((p, q): Edge, (r, s): Edge) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::cell::Cell;
+
+    /// Long teeth, all of them beside each other in x: each of the 60 000 edges overlaps all others in x.
+    #[test]
+    fn an_outline_of_very_many_points_needs_few_comparisons() {
+        let mut teeth = Vec::new();
+        for i in 0..15_000 {
+            let y = f64::from(4 * i);
+            teeth.extend([[0.0, y], [100.0, y + 1.0], [100.0, y + 2.0], [0.0, y + 3.0]]);
+        }
+        teeth.extend([[-1.0, 6e4], [-1.0, 0.0]]);
+        let edges: Vec<Edge> = edges(&teeth).collect();
+        let compared = Cell::new(0);
+        PartBoxes::of(&edges).first(&|_, _| {
+            compared.set(compared.get() + 1);
+            None
+        });
+        assert!(compared.get() < 3 * edges.len(), "{}", compared.get());
+        assert_eq!(self_crossing(&teeth), None);
+        teeth[30_000] = [50.0, 10.0];
+        assert!(self_crossing(&teeth).is_some());
+    }
 
     #[test]
     fn distances_to_a_segment() {

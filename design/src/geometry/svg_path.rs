@@ -13,6 +13,8 @@ use usvg::{Group, ImageHrefResolver, Node, Options, Path, Transform, Tree};
 const SEGMENTS: usize = 32;
 /// Points closer than this fraction of the largest coordinate are merged: usvg rounds to f32.
 const WELD: f64 = 1e-6;
+/// Maximum number of points of an outline, 3000 curves: the worst one of them is checked for crossings in seconds.
+const MOST_POINTS: usize = 100_000;
 /// Removes the background colour of the root element, which usvg would draw as a path.
 const NO_BACKGROUND: &str = "svg { background-color: none !important }";
 
@@ -31,6 +33,13 @@ pub enum SvgPathError {
     NoPath,
     #[error("the file has {found} visible paths; keep the outline and hide or delete the others")]
     SeveralPaths { found: usize },
+    #[error(
+        "the path is drawn in part alone, because of the {element} `{id}`; release it in the drawing program, so that the \
+         path itself is the outline"
+    )]
+    Cut { element: &'static str, id: String },
+    #[error("the path has {found} points; simplify the outline to at most {MOST_POINTS}")]
+    TooManyPoints { found: usize },
     #[error(
         "the path has a second contour at ({x}, {y}); keep one closed contour and \
          delete the others"
@@ -66,7 +75,7 @@ pub(crate) fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
     };
     let tree = Tree::from_str(svg, &options).map_err(SvgPathError::NotSvg)?;
     let mut paths = Vec::new();
-    add_visible(tree.root(), &mut paths);
+    add_visible(tree.root(), &mut paths)?;
     let path = match paths[..] {
         [] => return Err(SvgPathError::NoPath),
         [path] => path,
@@ -76,9 +85,12 @@ pub(crate) fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
         }
     };
     let points = contour(path)?;
-    if points.len() < 3 {
-        let found = points.len();
+    let found = points.len();
+    if found < 3 {
         return Err(SvgPathError::TooFewPoints { found });
+    }
+    if found > MOST_POINTS {
+        return Err(SvgPathError::TooManyPoints { found });
     }
     if let Some([x, y]) = polygon::self_crossing(&points).map(single) {
         return Err(SvgPathError::SelfCrossing { x, y });
@@ -91,14 +103,15 @@ pub(crate) fn vertices(svg: &str) -> Result<Vec<[f64; 2]>, SvgPathError> {
     Ok(points.iter().map(turned).collect())
 }
 
-/// Adds the visible paths of a group, in document order.
-fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) {
+/// Adds the visible paths of a group, in document order; an error if only a part of them is drawn.
+fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) -> Result<(), SvgPathError> {
     if group.opacity().get() == 0.0 {
-        return;
+        return Ok(());
     }
+    let before = paths.len();
     for node in group.children() {
         match node {
-            Node::Group(group) => add_visible(group, paths),
+            Node::Group(group) => add_visible(group, paths)?,
             Node::Path(path) => {
                 let filled = path.fill().is_some_and(|fill| fill.opacity().get() > 0.0);
                 let stroked = (path.stroke()).is_some_and(|stroke| stroke.opacity().get() > 0.0);
@@ -108,6 +121,15 @@ fn add_visible<'a>(group: &'a Group, paths: &mut Vec<&'a Path>) {
             }
             Node::Image(_) | Node::Text(_) => {}
         }
+    }
+    let clip = group.clip_path().map(|clip| ("clipPath", clip.id()));
+    let cut = clip.or_else(|| group.mask().map(|mask| ("mask", mask.id())));
+    match cut {
+        Some((element, id)) if paths.len() > before => {
+            let id = id.to_owned();
+            Err(SvgPathError::Cut { element, id })
+        }
+        _ => Ok(()),
     }
 }
 
@@ -314,6 +336,28 @@ mod tests {
             let found = polygon::area(&found).abs();
             assert!((found / area - 1.0).abs() < 2e-3, "{shape}: {found}");
         }
+    }
+
+    #[test]
+    fn what_hides_a_part_of_the_path_is_refused_by_its_name() {
+        let square = "<path d=\"M 0 0 H 1 V 1 H 0 Z\"/>";
+        for (element, attribute) in [("clipPath", "clip-path"), ("mask", "mask")] {
+            let part = format!("<{element} id=\"part\">{square}</{element}>");
+            let cut = format!("{part}<g {attribute}=\"url(#part)\">{LARGE}</g>");
+            assert_refused(drawn(&cut), &format!("{element} `part`"));
+        }
+    }
+
+    #[test]
+    fn an_outline_of_too_many_points_is_refused() {
+        let corners = |count: usize| {
+            (1..count).fold("M0 0".to_owned(), |path, x| {
+                path + &format!(" {x} {}", x % 2)
+            })
+        };
+        let closed = |count: usize| corners(count) + &format!(" {count} 9 0 9Z");
+        assert_refused(of(&closed(MOST_POINTS)), "at most 100000");
+        assert!(of(&closed(1000)).is_ok());
     }
 
     #[test]

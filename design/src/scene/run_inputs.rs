@@ -23,8 +23,9 @@ use support::{regular_file, whole_file};
 /// The state of a run, in its folder.
 pub const STATE_FILE: &str = "state.json";
 /// The scene of a run, in its folder.
-const SCENE_FILE: &str = "scene.toml";
+pub const SCENE_FILE: &str = "scene.toml";
 const FOLDER: &str = "inputs";
+const MATERIAL_FILE: &str = "inputs/material.toml";
 
 /// The BLAKE3 hash of every input of a run, by its path relative to the run folder.
 pub(super) type InputHashes = BTreeMap<String, String>;
@@ -89,6 +90,11 @@ pub fn scene_file(path: &Path) -> Result<PathBuf, RunInputsError> {
     Ok(path.join(SCENE_FILE))
 }
 
+/// Whether a run has begun to write to a folder: its first file is there.
+pub fn holds_a_run(folder: &Path) -> bool {
+    folder.join(MATERIAL_FILE).is_file()
+}
+
 /// Copies the files that a scene reads to its run folder, and writes the scene that names the copies.
 pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
     let mut kept = Kept {
@@ -99,10 +105,7 @@ pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
     whole_file::create_folder(&folder).map_err(FileError::at(&folder))?;
     let mut config = scene.config.without_unread_weights();
     config.output = ".".into();
-    config.material = kept.write(
-        &format!("{FOLDER}/material.toml"),
-        &toml(&scene.measured, &folder)?,
-    )?;
+    config.material = kept.write(MATERIAL_FILE, &toml(&scene.measured, &folder)?)?;
     if let Some((file, kind)) = config.target.file_mut() {
         let name = format!("{FOLDER}/target.{kind}");
         *file = kept.copy(&beside(&scene.path, file), &name)?;

@@ -18,7 +18,7 @@ pub struct SheetConfig {
     /// Corners SW, SE, NE, NW of a convex quadrilateral (mm), instead of `size`.
     pub corners: Option<[[f64; 2]; 4]>,
     /// [columns M, rows N]; at most 100 000 panels.
-    #[schemars(inner(range(min = 2)))]
+    #[schemars(inner(range(min = 2, max = 50_000)))]
     pub panels: [usize; 2],
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
-use support::program::{Run, Tool, ToolError, ToolKind};
+use support::program::{Run, Tool, ToolError, ToolKind, output_file};
 
 /// How to find ccx.
 pub static CCX: ToolKind = ToolKind {
@@ -50,7 +50,7 @@ impl Ccx {
     ) -> Result<CcxRun, ToolError> {
         let log = folder.join(job).with_extension("log");
         let run = self.0.run(&["-i", job], folder, &log, limit, stop)?;
-        let bytes = std::fs::read(&log).unwrap_or_default();
+        let bytes = output_file(&log).unwrap_or_default();
         let text = String::from_utf8_lossy(&bytes);
         Ok(CcxRun {
             finished: run.status.success() && text.contains(END_MARKER),

@@ -8,12 +8,11 @@ use crate::calculix::sta::{Increment, read_sta};
 use crate::solve::problem::Solve;
 use crate::solve::solve_error::SolveError;
 use crate::solve::solver::Solution;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use support::file_error::FileError;
-use support::program::{ToolError, remove_stale, tail};
+use support::program::{ToolError, output_file, remove_stale, tail};
 
 /// The word with which CalculiX begins what it says of a problem that it cannot solve, at the end of its log.
 const ERROR: &str = "*ERROR";
@@ -105,7 +104,7 @@ impl DeckRun {
 
 /// The time that the deck which runs in `folder` has reached.
 pub(crate) fn time_reached(folder: &Path, job: &str) -> f64 {
-    let status = std::fs::read(folder.join(job).with_extension("sta")).unwrap_or_default();
+    let status = output_file(&folder.join(job).with_extension("sta")).unwrap_or_default();
     let increments = read_sta(&status);
     increments.last().map_or(0.0, |increment| increment.lambda)
 }
@@ -125,10 +124,7 @@ fn skipped(times: impl Iterator<Item = f64>, increments: &[Increment]) -> Option
 
 /// The bytes of a file; empty if ccx did not write it.
 pub(crate) fn read_if_there(path: &Path) -> Result<Vec<u8>, FileError> {
-    match std::fs::read(path) {
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Vec::new()),
-        read => read.map_err(FileError::at(path)),
-    }
+    output_file(path).map_err(FileError::at(path))
 }
 
 #[cfg(test)]

@@ -4,10 +4,12 @@ use crate::record_file::{read_json, write_json};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
+use std::fs::File;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use support::file_error::FileError;
-use support::{verbose, whole_file};
+use support::{lock_file, verbose, whole_file};
 
 /// Why an array was not submitted.
 #[derive(Debug, thiserror::Error)]
@@ -33,6 +35,14 @@ pub enum SlurmError {
         record = .record.display()
     )]
     Silent { array: String, record: PathBuf },
+    #[error(
+        "job {job} runs the script {script} and has not ended, though its submission was stopped before it was recorded: \
+         wait until it ends and run `kirigami campaign collect`, or cancel it with `scancel {job}`",
+        script = .script.display()
+    )]
+    Unrecorded { job: String, script: PathBuf },
+    #[error("another `campaign submit` of this campaign is at work: it holds {}", .0.display())]
+    Busy(PathBuf),
     #[error(
         "array {array} is submitted, but not the job that collects the database: {source}. Run `kirigami campaign \
          collect` when the array has ended, or cancel it with `scancel {array}`"
@@ -91,8 +101,12 @@ impl ArrayStates {
     /// Whether a task or the collecting job waits or runs.
     pub fn is_active(&self) -> bool {
         let mut states = self.tasks.keys().chain([&self.collect_state]);
-        states.any(|state| !ENDED.contains(&state.as_str()))
+        states.any(|state| !has_ended(state))
     }
+}
+
+fn has_ended(state: &str) -> bool {
+    ENDED.contains(&state)
 }
 
 impl fmt::Display for ArrayStates {
@@ -122,25 +136,32 @@ fn record_path(campaign_folder: &Path) -> PathBuf {
 /// Writes the script to the folder of the campaign and submits it twice: as an array of `tasks` tasks, and as the job
 /// that collects the database when all tasks have ended, in any state.
 ///
-/// It is an error if the last submission has not ended, or if Slurm does not say so.
+/// It is an error if the last submission has not ended, or if Slurm does not say so; if a job of an unrecorded submission
+/// has not ended; and while another process submits the same campaign.
 pub fn submit_array(
     campaign_folder: &Path,
     script: &str,
     tasks: usize,
     partition: Option<&str>,
 ) -> Result<Submission, SlurmError> {
+    let folder = slurm_folder(campaign_folder);
+    std::fs::create_dir_all(&folder).map_err(FileError::at(&folder))?;
+    let lock = hold(&folder.join("submit.lock"))?;
     if let Some(states) = array_states(campaign_folder)?.filter(ArrayStates::is_active) {
         return Err(SlurmError::Active(states));
     }
-    let folder = slurm_folder(campaign_folder);
-    std::fs::create_dir_all(&folder).map_err(FileError::at(&folder))?;
     let path = folder.join("array.sh");
     whole_file::write(&path, script.as_bytes()).map_err(FileError::at(&path))?;
+    let path = path.canonicalize().map_err(FileError::at(&path))?;
+    refuse_unrecorded(&path)?;
     let sbatch = |options: &str, argument: Option<&str>| {
         let mut command = Command::new("sbatch");
         command.arg("--parsable").arg(options);
         command.args(partition.map(|name| format!("--partition={name}")));
         command.arg(&path).args(argument);
+        // It may outlive this process, and holds the lock until it has submitted.
+        let held = lock.try_clone().map_err(FileError::at(&folder))?;
+        command.stdin(held);
         // The output is the id, followed by the name of the cluster if there are several.
         let id = output("sbatch", &mut command)?;
         Ok::<_, SlurmError>(id.trim().split(';').next().unwrap_or_default().to_owned())
@@ -160,6 +181,35 @@ pub fn submit_array(
     submission.collect = Some(collect);
     write_json(&record_path(campaign_folder), &submission)?;
     Ok(submission)
+}
+
+/// Holds the lock of a submission.
+fn hold(path: &Path) -> Result<File, SlurmError> {
+    lock_file::try_hold(path).map_err(|error| match error.kind() {
+        ErrorKind::WouldBlock => SlurmError::Busy(path.to_owned()),
+        _ => FileError::at(path)(error).into(),
+    })
+}
+
+/// An error if a job that has not ended runs the script: its submission was not recorded.
+fn refuse_unrecorded(script: &Path) -> Result<(), SlurmError> {
+    let mut squeue = Command::new("squeue");
+    squeue.args(["--noheader", "--states=all", "--format=%F|%T|%o"]);
+    let queue = output("squeue", &mut squeue)?;
+    let name = script.to_string_lossy();
+    let runs_script = |line: &&str| {
+        let command = line.splitn(3, '|').nth(2).unwrap_or_default();
+        let arguments = command.strip_prefix(&*name);
+        arguments.is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))
+    };
+    let mut jobs = queue.lines().filter(runs_script).filter_map(state);
+    match jobs.find(|(_, state)| !has_ended(state)) {
+        Some((job, _)) => Err(SlurmError::Unrecorded {
+            job,
+            script: script.to_owned(),
+        }),
+        None => Ok(()),
+    }
 }
 
 /// The states of the last submission of a campaign; `None` if it was never submitted.
@@ -230,10 +280,10 @@ fn known_states(jobs: &[&str]) -> Option<BTreeMap<String, String>> {
     (is_queue_known || !states.is_empty()).then_some(states)
 }
 
-/// The id and the state in a line like `12_3|CANCELLED by 1000`.
+/// The id and the state in a line like `12_3|CANCELLED by 1000` or `12|RUNNING|script`.
 fn state(line: &str) -> Option<(String, String)> {
     let (job, state) = line.trim().split_once('|')?;
-    let state = state.split_whitespace().next()?;
+    let state = state.split(['|', ' ']).find(|word| !word.is_empty())?;
     Some((job.to_owned(), state.to_lowercase()))
 }
 

@@ -1,6 +1,7 @@
 //! `kirigami campaign check`
 
 use crate::commands::campaign::campaign_args::CampaignArgs;
+use crate::ui::count::count;
 use crate::ui::interrupt;
 use crate::ui::progress::Progress;
 use crate::ui::table::table;
@@ -20,7 +21,7 @@ pub struct CheckCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Solve every N-th ray
-    #[arg(long, value_name = "N", default_value = "50")]
+    #[arg(long, value_name = "N", default_value = "50", value_parser = count::<NonZeroUsize>)]
     every: NonZeroUsize,
 }
 

@@ -1,6 +1,7 @@
 //! `kirigami campaign extend`: new rays for hinge states that the training data does not cover.
 
 use crate::commands::inspect::scene_args::Inspected;
+use crate::ui::count::count;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use fe_driver::{Added, Ray, add_extra_rays};
@@ -30,7 +31,7 @@ pub struct ExtendCommand {
     #[arg(long, value_name = "FRACTION", default_value_t = 0.05)]
     doubt: f64,
     /// Add at most N rays through states of the training domain, without a design
-    #[arg(long, value_name = "N", conflicts_with = "design")]
+    #[arg(long, value_name = "N", conflicts_with = "design", value_parser = count::<usize>)]
     anywhere: Option<usize>,
     /// CSV file to append the rays to
     #[arg(long, value_name = "FILE")]

@@ -1,6 +1,7 @@
 //! `kirigami campaign run`
 
 use crate::commands::campaign::campaign_args::{CampaignArgs, print_tally};
+use crate::ui::count::jobs;
 use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
 use crate::ui::processors;
@@ -22,7 +23,7 @@ pub struct RunCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Number of solves in parallel [default: one per processor]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = jobs::<NonZeroUsize>)]
     jobs: Option<NonZeroUsize>,
     /// Solve only part I of N; parts of the same folder can run at the same time
     #[arg(long, value_name = "I/N", default_value_t = Shard::WHOLE)]

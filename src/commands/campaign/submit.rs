@@ -1,6 +1,7 @@
 //! `kirigami campaign submit`
 
 use crate::commands::campaign::campaign_args::CampaignArgs;
+use crate::ui::count::{count, jobs};
 use crate::ui::progress::duration;
 use anyhow::{Context, Result};
 use clap::Args;
@@ -20,19 +21,19 @@ pub struct SubmitCommand {
     #[command(flatten)]
     campaign: CampaignArgs,
     /// Number of tasks; each solves every N-th ray
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count::<NonZeroUsize>)]
     shards: NonZeroUsize,
     /// Time limit of a task (minutes)
-    #[arg(long, value_name = "MINUTES", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "MINUTES", value_parser = clap::value_parser!(u64).range(1..=525_600))]
     time: u64,
     /// Number of solves in parallel in each task, and of its processors
-    #[arg(long, value_name = "N", default_value = "1")]
+    #[arg(long, value_name = "N", default_value = "1", value_parser = jobs::<NonZeroUsize>)]
     jobs: NonZeroUsize,
     /// Partition of the cluster
     #[arg(long, value_name = "NAME")]
     partition: Option<String>,
     /// How often a task that was stopped is queued again
-    #[arg(long, value_name = "N", default_value_t = 20)]
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(..=10_000))]
     requeues: u32,
     /// Template of the script [default: that of configs/cluster/slurm.sh]
     #[arg(long, value_name = "FILE")]

@@ -12,6 +12,7 @@ use crate::commands::init;
 use crate::commands::material::learn::fine_tuning::FineTuning;
 use crate::commands::material::learn::options::{percent, time};
 use crate::commands::solve_args::{SolveArgs, task_error};
+use crate::ui::count::jobs;
 use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
 use crate::ui::progress::duration;
@@ -74,7 +75,7 @@ pub struct LearnCommand {
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     spot_seed: u64,
     /// Number of solves in parallel [default: one per processor]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = jobs::<NonZeroUsize>)]
     jobs: Option<NonZeroUsize>,
     /// Folder for the results; a folder of a stopped run is continued. Its weights are those of the last round of this command
     #[arg(long, value_name = "FOLDER")]

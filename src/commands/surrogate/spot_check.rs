@@ -5,6 +5,7 @@ use crate::commands::inspect::judged_design::DESIGN_TO_JUDGE;
 use crate::commands::inspect::scene_args::Inspected;
 use crate::commands::solve_args::{SolveArgs, task_error};
 use crate::commands::surrogate::errors::StateErrors;
+use crate::ui::count::count;
 use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
@@ -31,7 +32,7 @@ pub struct SpotCheckCommand {
     #[arg(value_name = "WEIGHTS")]
     weights: PathBuf,
     /// Number of states
-    #[arg(long, value_name = "N", default_value_t = 200)]
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = count::<usize>)]
     count: usize,
     /// States per ray: more states per ray need fewer solves but cover fewer hinges
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..=100))]

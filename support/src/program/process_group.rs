@@ -1,7 +1,7 @@
 //! A child process in a process group and an environment of its own, none of whose processes outlives it.
 
 use crate::processes::{FOLDER, cpu_seconds, kill_all_of};
-use nix::sys::resource::{Resource, setrlimit};
+use nix::sys::resource::{Resource, getrlimit, setrlimit};
 use nix::sys::signal::{Signal, killpg};
 use nix::sys::wait::{Id, WaitPidFlag, WaitStatus, waitid};
 use nix::unistd::Pid;
@@ -64,11 +64,13 @@ impl Group {
             command.env(variable, "1");
         }
         #[cfg(target_os = "linux")]
-        // SAFETY: between fork and exec the closure makes only two system calls, prctl and setrlimit, which are
+        // SAFETY: between fork and exec the closure makes only three system calls, prctl, getrlimit and setrlimit, which are
         // async-signal-safe, and does not allocate.
         unsafe {
             command.pre_exec(|| {
-                let bytes = MAX_FILE_MIB << 20;
+                // Only root may raise the limit that it was started with.
+                let (_, most) = getrlimit(Resource::RLIMIT_FSIZE)?;
+                let bytes = most.min(MAX_FILE_MIB << 20);
                 setrlimit(Resource::RLIMIT_FSIZE, bytes, bytes)?;
                 Ok(nix::sys::prctl::set_pdeathsig(Signal::SIGKILL)?)
             });

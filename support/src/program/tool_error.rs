@@ -45,8 +45,8 @@ pub enum ToolError {
         cpu_seconds: Option<f64>,
     },
     #[error(
-        "{name} wrote a file of over {MAX_FILE_MIB} MiB and was terminated: no window needs as much, so it would fill \
-         the disk"
+        "{name} wrote a file of over {MAX_FILE_MIB} MiB, or over the limit of `ulimit -f`, and was terminated: no window \
+         needs 1 GiB, so it would fill the disk"
     )]
     TooMuchOutput {
         name: &'static str,
