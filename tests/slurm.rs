@@ -335,20 +335,22 @@ fn hostile_names_reach_slurm_as_they_are() {
         command.args([&campaign, "--folder", &folder, "--shards=1", "--time=1"]);
         command.output().unwrap()
     };
+    cluster.output("scontrol update nodename=n1,n2 state=drain reason=test");
     let output = submit();
     assert!(output.status.success(), "{}", cluster.logs(&output));
     let jobs = cluster.output("scontrol show jobs");
     let logs = cluster.work.path(&folder).join("slurm");
-    let log = format!("StdOut={}/a-b----x----", logs.display());
+    let log = format!("StdOut={}/a-b-----x----", logs.display());
     assert!(jobs.contains(&log), "{jobs}\n{log}");
-    cluster.until("the task solves a ray", || cluster.process(1).is_some());
 
     // What a submission leaves that was killed before its record.
     std::fs::remove_file(logs.join("submission.json")).unwrap();
     let refused = submit();
     let message = String::from_utf8(refused.stderr).unwrap();
     assert_eq!(refused.status.code(), Some(1), "{message}");
-    assert!(message.contains("scancel"), "{message}");
+    assert!(message.contains("array.sh and has not ended"), "{message}");
+    cluster.output("scontrol update nodename=n1,n2 state=resume");
+    cluster.until("the task starts", || cluster.process(1).is_some());
 
     let broken = "configs/campaigns/a\n#SBATCH --hold.toml";
     std::fs::copy(cluster.work.path(&campaign), cluster.work.path(broken)).unwrap();
