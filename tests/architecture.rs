@@ -268,7 +268,10 @@ fn the_tests_that_the_page_of_faults_names_exist() {
             }
         }
     }
-    for path in files(&root().join("tests")) {
+    for path in ["src", "tests"]
+        .iter()
+        .flat_map(|part| files(&root().join(part)))
+    {
         sources.push_str(&std::fs::read_to_string(path).unwrap());
     }
     let cells = page
