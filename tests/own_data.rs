@@ -137,7 +137,7 @@ fn a_table_becomes_weights_that_predict_it() {
 }
 
 #[test]
-fn a_training_that_was_killed_before_it_saved_a_state_starts_anew() {
+fn a_training_that_was_killed_before_it_saved_a_state_starts_again() {
     let work = workplace();
     let train = format!("train {DATABASE} --config configs/training/demo.toml --out {WEIGHTS}");
     let mut killed = work.program(&train).spawn().unwrap();

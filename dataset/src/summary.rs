@@ -38,7 +38,7 @@ impl Contents {
                 *minimum = minimum.min(value);
                 *maximum = maximum.max(value);
             }
-            if !row.is_as_asked() && !self.other_tiers.contains_key(&row.job) {
+            if !row.is_as_asked() {
                 (self.other_tiers).insert(row.job.clone(), row.solved_tier.clone());
             }
         }

@@ -164,7 +164,7 @@ fn a_persistent_fault_of_the_machine_leaves_jobs_open() {
     }
 }
 
-/// A time limit closes a job, whatever the machine: no shorter increments follow.
+/// A time limit closes a job: no shorter increments follow.
 #[test]
 fn a_solver_that_hangs_is_ended_and_tried_again_on_request() {
     let folder = tempfile::tempdir().unwrap();

@@ -79,14 +79,7 @@ impl InitCommand {
             self.folder.display()
         );
         let like = self.like.as_deref().map(Like::read).transpose()?;
-        let material = match (&self.material, &like) {
-            (Some(material), _) => material.clone(),
-            (None, Some(like)) => like.beside(&like.scene.config.material),
-            (None, None) => match self.thickness {
-                Some(thickness) if thickness < THINNEST_PLATE => FILM.into(),
-                _ => PLATE.into(),
-            },
-        };
+        let material = self.material_file(like.as_ref());
         input_file::require(&material, "--material")?;
         let measured = SheetMaterial::load(&material)?;
         let alike = like.as_ref().map(|like| like.scene.material.thickness);
@@ -136,29 +129,46 @@ impl InitCommand {
         let text = material_text(&material, solved)?;
         let campaign = campaign(&name, solved, tier_of(regime))?;
 
-        output_file::create_folder(&self.folder)?;
         let template = Template::of(regime);
         let readme = readme(&self.folder, template.why, trained);
+        output_file::create_folder(&self.folder)?;
         for (file, contents) in [
-            ("material.toml", &text),
+            ("material.toml", &*text),
             ("campaign.toml", &campaign),
-            ("training.toml", &template.training.to_owned()),
+            ("training.toml", template.training),
             ("scene.toml", &scene),
             ("README.md", &readme),
         ] {
             output_file::write(&self.folder.join(file), contents)?;
         }
         if trained {
-            let scene = self.folder.join("scene.toml");
-            Scene::read(&scene).with_context(|| {
-                format!(
-                    "{} is written, but needs a change before it runs",
-                    scene.display()
-                )
-            })?;
+            self.check_scene()?;
         }
         println!("{readme}");
         Ok(())
+    }
+
+    /// The file of the material that is named, or else the usual one.
+    fn material_file(&self, like: Option<&Like>) -> PathBuf {
+        match (&self.material, like) {
+            (Some(material), _) => material.clone(),
+            (None, Some(like)) => like.beside(&like.scene.config.material),
+            (None, None) => match self.thickness {
+                Some(thickness) if thickness < THINNEST_PLATE => FILM.into(),
+                _ => PLATE.into(),
+            },
+        }
+    }
+
+    /// An error if the scene that was written cannot be designed as it is.
+    fn check_scene(&self) -> Result<()> {
+        let path = self.folder.join("scene.toml");
+        let scene = Scene::read(&path);
+        let refused = || {
+            let path = path.display();
+            format!("{path} is written, but needs a change before it runs")
+        };
+        scene.map(|_| ()).with_context(refused)
     }
 
     /// The weights that are for the material. Weights that are named must be.

@@ -59,7 +59,7 @@ pub struct TrainCommand {
     #[arg(long, value_name = "WEIGHTS")]
     from: Option<PathBuf>,
     /// Continue a training that was stopped, with the same --config and --from; others are an error. One that was killed in
-    /// its first half minute left nothing, and starts anew
+    /// its first half minute left nothing, and starts from the beginning
     #[arg(long, conflicts_with = "seeds")]
     resume: bool,
     /// Number of trainings, with successive seeds. The one with the smallest product of the validation errors of W and

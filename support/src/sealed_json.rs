@@ -30,9 +30,12 @@ pub enum SealError {
     },
 }
 
-/// The JSON of a value with its checksum, indented.
+/// The JSON of a value with its checksum, indented; an earlier checksum is replaced.
 pub fn to_vec(value: &impl Serialize) -> Result<Vec<u8>, serde_json::Error> {
     let mut value = serde_json::to_value(value)?;
+    if let Value::Object(keys) = &mut value {
+        keys.shift_remove(CHECKSUM);
+    }
     let sum = checksum(&value)?;
     if let Value::Object(keys) = &mut value {
         keys.insert(CHECKSUM.to_owned(), sum.into());

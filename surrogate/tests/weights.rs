@@ -50,7 +50,6 @@ impl File {
         });
         let bytes = safetensors::serialize(views, None).unwrap();
         let mut card: Value = serde_json::from_str(&self.card).unwrap();
-        card.as_object_mut().unwrap().remove("checksum");
         card["weights_hash"] = blake3::hash(&bytes).to_hex().to_string().into();
         let card = sealed_json::to_vec(&card).unwrap();
         std::fs::write(self.path(), bytes).unwrap();

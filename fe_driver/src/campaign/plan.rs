@@ -41,7 +41,7 @@ pub fn plan(
     for solve in solves() {
         let id = solve.id();
         let state = store.solve(&id).state()?;
-        tally.add_state(&state);
+        tally.add_state(&id, &state);
         let reason = match state {
             SolveState::Ended(ended) => retry_reason(&ended.1),
             SolveState::Open { started: true } => Some("interrupted".to_owned()),

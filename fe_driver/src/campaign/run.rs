@@ -111,13 +111,12 @@ impl<'a> Ledger<'a> {
             SolveEvent::Found(record) => self.records[place] = record,
             SolveEvent::Started(attempt) => self.history.note(id, Event::Started { attempt })?,
             SolveEvent::Disturbed(attempt, reason) => {
-                let reason = &*self
-                    .disturbed
-                    .entry(id.clone())
-                    .insert_entry(reason)
-                    .into_mut();
-                self.history
-                    .note(id, Event::Disturbed { attempt, reason })?;
+                let event = Event::Disturbed {
+                    attempt,
+                    reason: &reason,
+                };
+                self.history.note(id, event)?;
+                self.disturbed.insert(id.clone(), reason);
             }
             SolveEvent::Ended(attempt, record) => {
                 self.disturbed.remove(id);
@@ -142,5 +141,5 @@ impl<'a> Ledger<'a> {
 
 /// The counts of jobs and their records.
 fn tally(jobs: &[Job], records: &[Option<SolveRecord>]) -> Tally {
-    Tally::new(jobs.iter().map(|job| &job.solve).zip(records))
+    Tally::new(std::iter::zip(jobs, records))
 }

@@ -2,6 +2,7 @@
 
 use crate::campaign::campaign_folder::{CampaignFolder, Index};
 use crate::campaign::definition::{Campaign, CampaignError};
+use crate::solve::attempts::Job;
 use crate::solve::failure::FailureKind;
 use crate::solve::problem::Solve;
 use crate::solve::solve_folder::{SolveRecord, SolveState};
@@ -51,23 +52,23 @@ pub struct Tally {
 impl Tally {
     /// Counts jobs with their records; a job without one is open.
     pub(crate) fn new<'a>(
-        jobs: impl IntoIterator<Item = (&'a WindowSolve, &'a Option<SolveRecord>)>,
+        jobs: impl IntoIterator<Item = (&'a Job, &'a Option<SolveRecord>)>,
     ) -> Self {
         let mut tally = Self::default();
-        for (solve, record) in jobs {
+        for (job, record) in jobs {
             match record {
-                Some(record) => tally.add(solve, record),
+                Some(record) => tally.add(&job.id, job.solve.tier(), record),
                 None => tally.open += 1,
             }
         }
         tally
     }
 
-    /// Counts a job in this state.
-    pub(crate) fn add_state(&mut self, state: &SolveState) {
+    /// Counts the job with this id and state.
+    pub(crate) fn add_state(&mut self, id: &str, state: &SolveState) {
         match state {
             SolveState::Open { .. } => self.open += 1,
-            SolveState::Ended(ended) => self.add(&ended.0, &ended.1),
+            SolveState::Ended(ended) => self.add(id, ended.0.tier(), &ended.1),
             SolveState::Damaged(_) => {
                 self.open += 1;
                 self.damaged += 1;
@@ -75,9 +76,9 @@ impl Tally {
         }
     }
 
-    fn add(&mut self, solve: &WindowSolve, record: &SolveRecord) {
-        if record.rows > 0 && record.tier != solve.tier() {
-            self.other_tiers.insert(solve.id(), record.tier);
+    fn add(&mut self, id: &str, tier: Tier, record: &SolveRecord) {
+        if record.rows > 0 && record.tier != tier {
+            self.other_tiers.insert(id.to_owned(), record.tier);
         }
         *match (record.is_closed(), record.failure, record.rows) {
             (false, ..) => &mut self.retry,
@@ -196,7 +197,7 @@ pub fn status(folder: &Path) -> Result<Status, CampaignError> {
     let Index { name, jobs, .. } = folder.index()?;
     let (store, mut tally) = (folder.store(), Tally::default());
     for id in jobs {
-        tally.add_state(&store.solve(&id).state()?);
+        tally.add_state(&id, &store.solve(&id).state()?);
     }
     Ok(Status {
         name,
@@ -209,6 +210,7 @@ pub fn status(folder: &Path) -> Result<Status, CampaignError> {
 mod tests {
     use super::*;
     use crate::solve::fake_solver::tests::solve_on;
+    use crate::solve::solve_folder::SolveFolder;
 
     fn solved(cpu_seconds: f64, wall_seconds: f64) -> Option<SolveRecord> {
         Some(SolveRecord {
@@ -221,8 +223,17 @@ mod tests {
     }
 
     fn tally(records: &[Option<SolveRecord>]) -> Tally {
+        let job = job();
+        Tally::new(records.iter().map(|record| (&job, record)))
+    }
+
+    fn job() -> Job {
         let solve = solve_on(Tier::Default);
-        Tally::new(records.iter().map(|record| (&solve, record)))
+        Job {
+            id: solve.id(),
+            solve,
+            folder: SolveFolder("none".into()),
+        }
     }
 
     /// Restored jobs have no wall time, but their CPU time is that of the material.
@@ -241,7 +252,6 @@ mod tests {
         let mut finer = solved(60.0, 60.0);
         assert!(tally(std::slice::from_ref(&finer)).other_tiers.is_empty());
         finer.as_mut().unwrap().tier = Tier::Fine;
-        let solve = solve_on(Tier::Default);
-        assert_eq!(tally(&[finer]).other_tiers[&solve.id()], Tier::Fine);
+        assert_eq!(tally(&[finer]).other_tiers[&job().id], Tier::Fine);
     }
 }

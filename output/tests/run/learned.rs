@@ -9,6 +9,7 @@ use output::cut_file::CutLines;
 use output::report::{Concern, Report, Severity, warnings};
 use output::run_results::{remove_run, write_results};
 use std::path::Path;
+use support::sealed_json;
 use surrogate::Surrogate;
 
 /// Writes the random weights and their card, with changes, next to the scene.
@@ -25,6 +26,8 @@ pub fn weights(folder: &Path, changes: &[(&str, &str)]) {
         assert!(card.contains(from), "{from}");
         card.replace(from, to)
     });
+    let card: serde_json::Value = serde_json::from_str(&card).unwrap();
+    let card = sealed_json::to_vec(&card).unwrap();
     std::fs::write(folder.join("tiny.json"), card).unwrap();
 }
 
