@@ -14,6 +14,7 @@
 use crate::equilibrium::branch::{Branch, Corrected, Point};
 use crate::equilibrium::displacement_control::HeldFactor;
 use crate::equilibrium::hinged_sheet::HingedSheet;
+use crate::equilibrium::load_step::DescentEnd;
 use crate::equilibrium::newton::{Failure, Minimum};
 use crate::equilibrium::place::{Arc, Place, bisected};
 use crate::equilibrium::potential::{Stage, State, moved};
@@ -36,8 +37,14 @@ const CUT: [f64; 2] = [0.1, 0.5];
 const RESOLVED: [f64; 2] = [1e-3, 1e-5];
 /// Length below which increments are given up.
 const SHORTEST: f64 = 1e-9;
-/// Part of the load that is skipped where the path cannot be followed.
-const SKIPPED: f64 = 0.1;
+/// Parts of the load that are skipped where the path cannot be followed, in the order in which they are tried.
+const SKIPPED: [f64; 13] = [
+    0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 0.03, 0.01, 0.003,
+];
+/// Part of the load up to which a jump has led nowhere.
+const NOWHERE: f64 = 1e-6;
+/// Number of such jumps after which the next ones lead ahead, and the part of the load by which the first of them does.
+const RETURNS: (i32, f64) = (3, 1e-9);
 /// Length from which the motion at a bifurcation is a jump.
 pub(crate) const LEAP: f64 = 0.03;
 
@@ -57,6 +64,8 @@ pub(crate) struct Follower<'a> {
     tried: usize,
     /// Number of jumps since the last load step.
     pub jumps: usize,
+    /// The highest load parameter of a jump, and how many jumps have led no further since.
+    jumped: (f64, i32),
 }
 
 impl<'a> Follower<'a> {
@@ -87,10 +96,11 @@ impl<'a> Follower<'a> {
             unstable: None,
             tried: 0,
             jumps: 0,
+            jumped: (f64::NEG_INFINITY, 0),
         };
         let begin = match stable {
             Some(factor) => Some(follower.branch.exact(0.0, state, factor)),
-            None => follower.branch.settled(place.clone()),
+            None => follower.branch.settled(place.clone()).ok(),
         };
         if let Some(begin) = begin {
             let moved = follower.branch.distance(&begin.state, &begin.place, &place);
@@ -120,9 +130,12 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// One increment, or a jump from the end of the branch to another; `None` if the path ends.
-    pub fn advance(&mut self) -> Option<()> {
-        self.increment().or_else(|| self.skip())
+    /// One increment, or a jump from the end of the branch to another; the failure where the path ends.
+    pub fn advance(&mut self) -> Result<(), Failure> {
+        match self.increment() {
+            Some(()) => Ok(()),
+            None => self.skip(),
+        }
     }
 
     fn increment(&mut self) -> Option<()> {
@@ -160,9 +173,12 @@ impl<'a> Follower<'a> {
             let error = corrected.error;
             let stable = self.branch.is_stable(&mut corrected);
             let point = self.branch.point(corrected, Some(&self.last.rate));
-            if !stable {
-                let fold = point.rate.at <= 0.0;
-                let resolution = RESOLVED[usize::from(!fold)];
+            let fold = point.rate.at <= 0.0;
+            // Between stable states the load falls only past limit points between them, or, by less, by rounding.
+            let fallen = self.last.place.at - point.place.at > NOWHERE;
+            let passed = stable && !fold && fallen && length > RESOLVED[0];
+            if !stable || passed {
+                let resolution = RESOLVED[usize::from(!fold && !passed)];
                 if length <= resolution {
                     return self.jump(point, fold);
                 }
@@ -186,29 +202,30 @@ impl<'a> Follower<'a> {
         self.tried > self.branch.solver.settings.max_increments
     }
 
-    /// Goes on from a minimum at a higher load where the path cannot be followed.
-    fn skip(&mut self) -> Option<()> {
+    /// Goes on from a minimum at a higher load where the path cannot be followed; otherwise why there is none at the
+    /// first of these loads.
+    fn skip(&mut self) -> Result<(), Failure> {
         let from = self.last.place.clone();
-        let mut ahead = SKIPPED;
-        while !self.is_exhausted() && from.at < 1.0 {
-            let mut start = Place {
-                at: (from.at + ahead).min(1.0),
-                ..from.clone()
-            };
+        let mut first = None;
+        let to = SKIPPED.map(|ahead| from.at + ahead);
+        let full = (from.at < 1.0 && !to.contains(&1.0)).then_some(1.0);
+        for at in to.into_iter().filter(|at| *at <= 1.0).chain(full) {
+            if self.is_exhausted() {
+                break;
+            }
+            let mut start = Place { at, ..from.clone() };
             self.branch.hold(&mut start, &from);
-            let full = start.at >= 1.0;
-            if let Some(landed) = self.branch.settled(start) {
-                let moved = self.branch.distance(&landed.state, &landed.place, &from);
-                self.jumps += usize::from(moved > LEAP);
-                self.restart(landed);
-                return Some(());
+            match self.branch.settled(start) {
+                Ok(landed) => {
+                    let moved = self.branch.distance(&landed.state, &landed.place, &from);
+                    self.jumps += usize::from(moved > LEAP);
+                    self.restart(landed);
+                    return Ok(());
+                }
+                Err(failure) => _ = first.get_or_insert(failure),
             }
-            if full {
-                return None;
-            }
-            ahead += SKIPPED;
         }
-        None
+        Err(first.unwrap_or(Failure::EXHAUSTED))
     }
 
     fn reject(&mut self, length: f64, factor: f64) -> Option<()> {
@@ -257,20 +274,53 @@ impl<'a> Follower<'a> {
     /// The jump that dead loads cause at the end of the branch; `beyond` is the unstable point next to it.
     fn jump(&mut self, beyond: Point, fold: bool) -> Option<()> {
         let from = self.last.place.clone();
-        let mut start = beyond.place.clone();
-        if fold {
-            // Beyond the limit point the unstable equilibrium is the ridge of the energy: at the maximum load the
-            // sheet moves away from it.
-            let (arc, _) = self.arc_to(&beyond);
-            let top = bisected(0.0, arc.length, |length| arc.slope(length) > 0.0);
-            start.at = arc.at(top).max(from.at);
-            self.branch.hold(&mut start, &from);
-        }
-        let landed = self.branch.settled(start)?;
+        let start = if fold {
+            self.beyond_limit_point(&beyond)
+        } else {
+            beyond.place
+        };
+        let start = self.away_from_returns(start);
+        let landed = self.branch.settled(start).ok()?;
         let moved = self.branch.distance(&landed.state, &landed.place, &from);
         self.jumps += usize::from(fold || moved > LEAP);
         self.restart(landed);
         Some(())
+    }
+
+    /// A place at the load of the limit point, past it: there the unstable equilibrium is the ridge of the energy, from
+    /// which the sheet moves away. Nearer to the limit point if panels overlap.
+    fn beyond_limit_point(&self, beyond: &Point) -> Place {
+        let (arc, _) = self.arc_to(beyond);
+        let top = bisected(0.0, arc.length, |length| arc.slope(length) > 0.0);
+        let at = arc.at(top).max(self.last.place.at);
+        let mut places = [1.0, 0.3, 0.1, 0.0].map(|part| {
+            let mut place = arc.place(top + part * (arc.length - top));
+            place.at = at;
+            self.branch.hold(&mut place, &self.last.place);
+            place
+        });
+        let finite = |place: &Place| self.branch.state(place, Order::Forces).is_some();
+        let found = places.iter().position(finite).unwrap_or(0);
+        places.swap(0, found);
+        let [place, ..] = places;
+        place
+    }
+
+    /// A start ahead of a jump, the farther the more jumps have ended where they began.
+    fn away_from_returns(&mut self, mut start: Place) -> Place {
+        let (at, returns) = self.jumped;
+        let returns = if start.at - at < NOWHERE {
+            returns + 1
+        } else {
+            0
+        };
+        self.jumped = (start.at.max(at), returns);
+        let (few, first) = RETURNS;
+        if returns > few {
+            start.at = (start.at + first * 10f64.powi(returns - few)).min(1.0);
+            self.branch.hold(&mut start, &self.last.place);
+        }
+        start
     }
 
     /// Continues the path on the branch of a stable equilibrium.
@@ -322,10 +372,15 @@ impl Branch<'_> {
     }
 
     /// The stable equilibrium that is reached downhill from a place at constant load.
-    pub fn settled(&mut self, start: Place) -> Option<Corrected> {
-        let minimum = self.minimum(&start).ok()?;
-        let factor = (minimum.factor).filter(|factor| factor.unstable_directions() == 0)?;
-        Some(self.exact(start.at, minimum.state, factor))
+    pub fn settled(&mut self, start: Place) -> Result<Corrected, Failure> {
+        let Minimum { state, factor, .. } = self.minimum(&start)?;
+        match factor.filter(|factor| factor.unstable_directions() == 0) {
+            Some(factor) => Ok(self.exact(start.at, state, factor)),
+            None => Err(Failure {
+                residual: state.residual,
+                end: DescentEnd::Stagnated,
+            }),
+        }
     }
 
     /// An equilibrium with the factors of its own tangent.

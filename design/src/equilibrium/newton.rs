@@ -47,6 +47,10 @@ pub(crate) struct Failure {
 }
 
 impl Failure {
+    pub const EXHAUSTED: Self = Self {
+        residual: f64::INFINITY,
+        end: DescentEnd::Increments,
+    };
     pub const NOT_FINITE: Self = Self {
         residual: f64::INFINITY,
         end: DescentEnd::NotFinite,

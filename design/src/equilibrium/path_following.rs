@@ -156,7 +156,7 @@ impl EquilibriumSolver {
         let follower = self.follower(sheet, Stage::Actuation, start);
         let ends = follower.into_iter().flat_map(|mut follower| {
             std::iter::from_fn(move || {
-                let goes_on = follower.last.place.at < 1.0 && follower.advance().is_some();
+                let goes_on = follower.last.place.at < 1.0 && follower.advance().is_ok();
                 goes_on.then(|| follower.end_of_increment())
             })
         });
@@ -219,17 +219,12 @@ impl Follower<'_> {
     /// The equilibrium at `to` on the path.
     fn followed(&mut self, to: f64) -> Result<Minimum, Failure> {
         while self.last.place.at < to {
-            if self.advance().is_none() {
-                // Where the path cannot be followed, a minimum of the energy may be found nevertheless.
-                let found = self.minimised(to);
-                let (minimum, moved) = found.map_err(|failure| {
-                    if self.is_exhausted() {
-                        let end = DescentEnd::Increments;
-                        Failure { end, ..failure }
-                    } else {
-                        failure
-                    }
-                })?;
+            if let Err(failure) = self.advance() {
+                // A sheet without stiffness is at rest in any state.
+                let (minimum, moved) = match failure.end {
+                    DescentEnd::Stagnated => self.minimised(to).map_err(|_| failure)?,
+                    _ => return Err(failure),
+                };
                 self.jumps += usize::from(moved > LEAP);
                 return Ok(minimum);
             }

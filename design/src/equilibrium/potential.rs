@@ -155,7 +155,8 @@ impl Potential<'_> {
         let loads = constant + load_factor.abs() * self.largest(solver.loads.iter().copied());
         let hinges = self.largest(energies.iter().map(|energy| energy.forces));
         let force = self.force.max(loads).max(hinges);
-        let over_force = |unbalanced: f64| match unbalanced {
+        // Without any force nothing is unbalanced.
+        let over_force = |unbalanced: f64| match force {
             0.0 => 0.0,
             _ => unbalanced / force,
         };

@@ -2,16 +2,17 @@
 
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
+use design::hinge_law::{HingeLaw, Order, SurrogateLaw};
 use hinge::{HingeDeformation, HingeDesign};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use support::regular_file;
-use surrogate::{Order, Surrogate};
+use surrogate::Surrogate;
 
 /// Evaluate energy, forces, tangent and damage at the hinge states of a CSV file
 ///
 /// Reads the columns w_lig, a, s (mm), alpha and theta (rad) or alpha_deg and theta_deg (deg); other columns are
-/// ignored.
+/// ignored. Outside the training domain energy, forces and tangent are those of the continued law that designs use.
 #[derive(Args)]
 pub struct EvalCommand {
     /// Weights (safetensors with their card)
@@ -117,8 +118,12 @@ fn answers(surrogate: &Surrogate, states: &[State]) -> Vec<Answer> {
             (constants.hinge(state.w_lig, state.alpha), deformation)
         })
         .unzip();
-    let prepared = surrogate.prepare(&designs);
-    let energies = surrogate.evaluate(&prepared, &deformations, Order::Tangent);
+    let law = SurrogateLaw {
+        surrogate: surrogate.clone(),
+    };
+    let energies = law
+        .prepare(&designs)
+        .energies(&deformations, Order::Tangent);
     let damages = surrogate.damage_values(&designs, &deformations);
     let states = designs.iter().zip(&deformations);
     states

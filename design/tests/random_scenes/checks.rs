@@ -1,0 +1,301 @@
+//! What must hold for every sheet, and what is counted where it does not.
+
+use crate::dense::Judged;
+use crate::drawn::Drawn;
+use design::equilibrium::load_step::{DescentEnd, LoadStep, Status};
+use design::objective::design_problem::{Deployment, DesignProblem};
+use design::optimise::outer_loop::{SearchState, optimise};
+use design::optimise::search::SearchMethod;
+use std::convert::Infallible;
+use std::sync::atomic::AtomicBool;
+
+/// Unbalanced force of an equilibrium by the full matrices, relative to the largest force.
+const BALANCED: f64 = 1e-8;
+/// Part of the highest eigenvalue by which the lowest may be negative: rounding of the full matrices.
+const ROUNDING: f64 = 1e-12;
+/// Difference of two configurations of the same sheet (rad, or panel sizes).
+const SAME: f64 = 1e-6;
+/// Relative difference of the losses of a corrected and of a followed path.
+const SAME_LOSS: f64 = 1e-8;
+/// Sheets up to this number of hinges are searched for a better design, one in four.
+const SEARCHED: usize = 17;
+
+/// What was found at a sheet, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Finding {
+    Scenes,
+    Learned,
+    Driven,
+    FullLoad,
+    Jumped,
+    Almost,
+    Corrected,
+    Searched,
+    NotCut,
+    Locked,
+    NoEquilibriumExtreme,
+    NoEquilibrium,
+    Unbalanced,
+    Unstable,
+    Mirror,
+    MirrorAfterJump,
+    Similar,
+    SimilarAfterJump,
+    LoadSteps,
+    LoadStepsAfterJump,
+    OtherLoss,
+    OtherLossAfterJump,
+    WorseThanStart,
+    FalseBest,
+}
+
+impl Finding {
+    /// Whether the finding contradicts what the software promises.
+    pub fn is_fault(self) -> bool {
+        use Finding::*;
+        matches!(
+            self,
+            NoEquilibrium
+                | Unbalanced
+                | Unstable
+                | Mirror
+                | Similar
+                | LoadSteps
+                | OtherLoss
+                | WorseThanStart
+                | FalseBest
+        )
+    }
+
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Scenes => "sheets",
+            Self::Learned => "with a learned law",
+            Self::Driven => "with a prescribed stroke",
+            Self::FullLoad => "full load reached",
+            Self::Jumped => "with a jump",
+            Self::Almost => "last state `almost`",
+            Self::Corrected => "paths corrected for a design beside",
+            Self::Searched => "searches",
+            Self::NotCut => "pattern without a sheet",
+            Self::Locked => "panels touch before the end of the stroke",
+            Self::NoEquilibriumExtreme => "no equilibrium found, springs of extreme ratio",
+            Self::NoEquilibrium => "no equilibrium found",
+            Self::Unbalanced => "equilibrium not balanced by full matrices",
+            Self::Unstable => "equilibrium not stable by full matrices",
+            Self::Mirror => "mirror image deploys otherwise",
+            Self::MirrorAfterJump => "mirror image deploys otherwise after a jump",
+            Self::Similar => "similar sheet deploys otherwise",
+            Self::SimilarAfterJump => "similar sheet deploys otherwise after a jump",
+            Self::LoadSteps => "another number of load steps, another state",
+            Self::LoadStepsAfterJump => "another number of load steps, another state after a jump",
+            Self::OtherLoss => "corrected path with another loss",
+            Self::OtherLossAfterJump => {
+                "corrected path with another loss, followed path with a jump"
+            }
+            Self::WorseThanStart => "search ends above its start",
+            Self::FalseBest => "a step of a search below its best design, and no warning",
+        }
+    }
+}
+
+/// What was found, and the details of each.
+pub type Findings = Vec<(Finding, String)>;
+
+pub fn findings(seed: u64) -> Findings {
+    let drawn = Drawn::new(seed);
+    let problem = drawn.problem();
+    let mut found = vec![(Finding::Scenes, String::new())];
+    let mut add = |finding, details: String| found.push((finding, details));
+    if matches!(drawn.law, crate::drawn::DrawnLaw::Learned(..)) {
+        add(Finding::Learned, String::new());
+    }
+    if drawn.stroke.is_some() {
+        add(Finding::Driven, String::new());
+    }
+    let deployment = match problem.deploy(&drawn.design()) {
+        Ok(deployment) => deployment,
+        Err(error) => {
+            add(Finding::NotCut, error.to_string());
+            return found;
+        }
+    };
+    let last = deployment.final_step();
+    if last.status == Status::Diverged {
+        add(
+            missed(&drawn, last),
+            format!("{:?} {last}", last.descent_end),
+        );
+        return found;
+    }
+    add(Finding::FullLoad, String::new());
+    if jumps(&deployment) {
+        add(Finding::Jumped, String::new());
+    }
+    if last.status == Status::Almost {
+        add(Finding::Almost, last.to_string());
+    }
+    for step in &deployment.path {
+        let judged = Judged::new(&drawn, &deployment.sheet, step);
+        let allowed = BALANCED.max(10.0 * step.rounding.max(judged.rounding));
+        let claimed = step.status != Status::Almost;
+        if claimed && judged.residual > allowed {
+            add(
+                Finding::Unbalanced,
+                format!("{:.1e}, {step}", judged.residual),
+            );
+        }
+        if claimed && judged.lowest < -ROUNDING {
+            add(Finding::Unstable, format!("{:.1e}, {step}", judged.lowest));
+        }
+    }
+    same_elsewhere(&drawn, &deployment, &mut add);
+    corrected(&drawn, &problem, &deployment, &mut add);
+    if drawn.grid.hinge_count() <= SEARCHED && seed.is_multiple_of(4) {
+        searched(&drawn, &problem, seed, &mut add);
+    }
+    found
+}
+
+/// What it means that the path of a sheet ends before full load.
+fn missed(drawn: &Drawn, last: &LoadStep) -> Finding {
+    let touching = drawn.stroke.is_some() && drawn.contact.is_some();
+    match last.descent_end {
+        Some(DescentEnd::NotFinite) if touching => Finding::Locked,
+        _ if drawn.is_extreme() => Finding::NoEquilibriumExtreme,
+        _ => Finding::NoEquilibrium,
+    }
+}
+
+fn jumps(deployment: &Deployment) -> bool {
+    deployment.path.iter().any(|step| step.jumps > 0)
+}
+
+/// The mirror image, a sheet of half the size and another number of load steps.
+fn same_elsewhere(drawn: &Drawn, deployment: &Deployment, add: &mut impl FnMut(Finding, String)) {
+    let last = deployment.final_step();
+    let size = (deployment.sheet.outline.area() / deployment.sheet.panels.len() as f64).sqrt();
+    let mut cases = Vec::new();
+    if let Some((mirrored, panels)) = drawn.mirrored() {
+        let images = panels.iter().map(|&panel| {
+            let [x, y, phi] = last.configuration[panel];
+            [-x, y, -phi]
+        });
+        let findings = [Finding::Mirror, Finding::MirrorAfterJump];
+        cases.push((mirrored, size, images.collect(), findings));
+    }
+    let halves = (last.configuration.iter()).map(|[x, y, phi]| [0.5 * x, 0.5 * y, *phi]);
+    let findings = [Finding::Similar, Finding::SimilarAfterJump];
+    cases.push((drawn.similar(0.5), 0.5 * size, halves.collect(), findings));
+    let mut other_steps = drawn.clone();
+    other_steps.steps = if drawn.steps > 5 { 3 } else { 17 };
+    let findings = [Finding::LoadSteps, Finding::LoadStepsAfterJump];
+    cases.push((other_steps, size, last.configuration.clone(), findings));
+    for (other, size, expected, [fault, after_jump]) in cases {
+        let found = other.problem().deploy(&other.design()).unwrap();
+        let step = found.final_step();
+        if step.status == Status::Diverged {
+            add(
+                missed(&other, step),
+                format!("{:?} {step}", step.descent_end),
+            );
+            continue;
+        }
+        let apart = distance(&step.configuration, &expected, size);
+        // Where rounding leaves forces unbalanced, soft motions are known to less.
+        let judged = Judged::new(&other, &found.sheet, step);
+        let known = SAME.max(10.0 * step.rounding.max(judged.rounding) / judged.lowest.abs());
+        if apart > known {
+            let jumped = jumps(&found) || jumps(deployment);
+            let details = format!("{apart:.1e}, lowest {:.1e}; {step}; {last}", judged.lowest);
+            add(if jumped { after_jump } else { fault }, details);
+        }
+    }
+}
+
+/// Maximum difference of two configurations (rad, or panel sizes).
+fn distance(found: &[[f64; 3]], expected: &[[f64; 3]], size: f64) -> f64 {
+    let panels = std::iter::zip(found, expected);
+    let apart = panels.flat_map(|(found, expected)| {
+        [size, size, 1.0]
+            .into_iter()
+            .zip(std::iter::zip(found, expected))
+    });
+    apart
+        .map(|(unit, (found, expected))| (found - expected).abs() / unit)
+        .fold(0.0, f64::max)
+}
+
+/// The loss of a design beside, with its path corrected from that of this one and followed from the flat sheet.
+fn corrected(
+    drawn: &Drawn,
+    problem: &DesignProblem,
+    deployment: &Deployment,
+    add: &mut impl FnMut(Finding, String),
+) {
+    let design = drawn.design();
+    let flat = std::iter::zip(design.to_flat(), 1..);
+    let beside: Vec<f64> = flat.map(|(x, i)| x + 0.02 * f64::from(i).sin()).collect();
+    let beside = design.with_flat(&beside);
+    let Ok(near) = problem.evaluate_near(&beside, Some(&deployment.known_path())) else {
+        return;
+    };
+    if near.deployment.followed {
+        return;
+    }
+    add(Finding::Corrected, String::new());
+    let followed = problem.deploy(&beside).unwrap();
+    let last = followed.final_step();
+    if last.status == Status::Diverged {
+        add(
+            missed(drawn, last),
+            format!("{:?} {last}", last.descent_end),
+        );
+        return;
+    }
+    let jumped = jumps(&followed);
+    let loss = problem.loss(&beside).unwrap();
+    let apart = (near.loss / loss - 1.0).abs();
+    if apart > SAME_LOSS {
+        let finding = if jumped {
+            Finding::OtherLossAfterJump
+        } else {
+            Finding::OtherLoss
+        };
+        add(finding, format!("{apart:.1e}, {last}"));
+    }
+}
+
+/// A short search: its best design is not worse than its start and has the loss of its followed path.
+fn searched(
+    drawn: &Drawn,
+    problem: &DesignProblem,
+    seed: u64,
+    add: &mut impl FnMut(Finding, String),
+) {
+    let start = drawn.design();
+    let Ok(evaluation) = problem.evaluate(&start) else {
+        return;
+    };
+    add(Finding::Searched, String::new());
+    let method = match (seed / 4) % 3 {
+        0 => SearchMethod::Adam,
+        1 => SearchMethod::Lbfgs,
+        _ => SearchMethod::GaussNewton,
+    };
+    let mut state = SearchState::new(problem, start, &evaluation, method, 0.03);
+    let mut sink = |_: &SearchState| Ok::<(), Infallible>(());
+    let Ok(_) = optimise(problem, &mut state, 12, &AtomicBool::new(false), &mut sink);
+    let best = problem.loss(&state.best).unwrap_or(f64::INFINITY);
+    let steps = state.history.iter().map(|record| record.scores.loss);
+    let told = steps.fold(f64::INFINITY, f64::min);
+    if best > evaluation.loss * (1.0 + SAME_LOSS) {
+        add(
+            Finding::WorseThanStart,
+            format!("{best} from {}", evaluation.loss),
+        );
+    }
+    if !state.contradicted() && best > told * (1.0 + SAME_LOSS) {
+        add(Finding::FalseBest, format!("{told}, {best} when followed"));
+    }
+}
