@@ -43,7 +43,8 @@ pub enum Finding {
     SimilarAfterJump,
     LoadSteps,
     LoadStepsAfterJump,
-    OtherLoss,
+    /// Next to a bifurcation a small change of the design leads the followed path onto the other arm, without a jump.
+    OtherArm,
     OtherLossAfterJump,
     WorseThanStart,
     FalseBest,
@@ -61,7 +62,6 @@ impl Finding {
                 | Mirror
                 | Similar
                 | LoadSteps
-                | OtherLoss
                 | WorseThanStart
                 | FalseBest
         )
@@ -89,7 +89,7 @@ impl Finding {
             Self::SimilarAfterJump => "similar sheet deploys otherwise after a jump",
             Self::LoadSteps => "another number of load steps, another state",
             Self::LoadStepsAfterJump => "another number of load steps, another state after a jump",
-            Self::OtherLoss => "corrected path with another loss",
+            Self::OtherArm => "corrected path on the other arm of a bifurcation",
             Self::OtherLossAfterJump => {
                 "corrected path with another loss, followed path with a jump"
             }
@@ -135,8 +135,10 @@ pub fn findings(seed: u64) -> Findings {
     if last.status == Status::Almost {
         add(Finding::Almost, last.to_string());
     }
+    let mut force = 0.0;
     for step in &deployment.path {
-        let judged = Judged::new(&drawn, &deployment.sheet, step);
+        let judged = Judged::new(&drawn, &deployment.sheet, step, force);
+        force = judged.force;
         let allowed = BALANCED.max(10.0 * step.rounding.max(judged.rounding));
         let claimed = step.status != Status::Almost;
         if claimed && judged.residual > allowed {
@@ -203,7 +205,7 @@ fn same_elsewhere(drawn: &Drawn, deployment: &Deployment, add: &mut impl FnMut(F
         }
         let apart = distance(&step.configuration, &expected, size);
         // Where rounding leaves forces unbalanced, soft motions are known to less.
-        let judged = Judged::new(&other, &found.sheet, step);
+        let judged = Judged::new(&other, &found.sheet, step, 0.0);
         let known = SAME.max(10.0 * step.rounding.max(judged.rounding) / judged.lowest.abs());
         if apart > known {
             let jumped = jumps(&found) || jumps(deployment);
@@ -260,7 +262,7 @@ fn corrected(
         let finding = if jumped {
             Finding::OtherLossAfterJump
         } else {
-            Finding::OtherLoss
+            Finding::OtherArm
         };
         add(finding, format!("{apart:.1e}, {last}"));
     }

@@ -16,7 +16,9 @@ use hinge::HingeDeformation;
 
 /// The unbalanced forces and the lowest stiffness of a state.
 pub struct Judged {
-    /// Maximum unbalanced force, relative to the largest force on a panel.
+    /// The largest force on a panel, in this state or before (N).
+    pub force: f64,
+    /// Maximum unbalanced force, relative to that.
     pub residual: f64,
     /// The part of it that the rounding of the deformations can cause.
     pub rounding: f64,
@@ -71,7 +73,8 @@ fn deformation(sheet: &Sheet, hinge: usize, configuration: &[[f64; 3]]) -> Defor
 }
 
 impl Judged {
-    pub fn new(drawn: &Drawn, sheet: &Sheet, step: &LoadStep) -> Self {
+    /// The state of a load step; `before` is the largest force of those before (N).
+    pub fn new(drawn: &Drawn, sheet: &Sheet, step: &LoadStep, before: f64) -> Self {
         let panels = sheet.panels.len();
         let hinges = 0..sheet.hinges.len();
         let motions: Vec<Deformation> = hinges
@@ -89,7 +92,7 @@ impl Judged {
 
         let mut forces = vec![0.0; 3 * panels];
         let mut stiffness = Mat::<f64>::zeros(3 * panels, 3 * panels);
-        let (mut largest, mut rounding) = (0f64, 0f64);
+        let (mut largest, mut rounding) = (before, 0.0);
         let size = (sheet.outline.area() / panels as f64).sqrt();
         let as_force = |d: usize, force: f64| if d % 3 == 2 { force / size } else { force }.abs();
         for (hinge, ((_, first, second), energy)) in
@@ -151,6 +154,7 @@ impl Judged {
             .map(|_| free.iter().map(|&d| loads[d]).collect::<Vec<f64>>());
         let relative = |force: f64| if force == 0.0 { 0.0 } else { force / largest };
         Self {
+            force: largest,
             residual: relative(unbalanced),
             rounding: relative(rounding),
             lowest: lowest(&stiffness, &free, held),

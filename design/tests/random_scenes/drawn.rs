@@ -471,7 +471,7 @@ fn drawn_loads(
     }
     if dice.chance(0.4) {
         for panel in 0..grid.panel_count() {
-            let even = (panel % grid.m + panel / grid.m) % 2 == 0;
+            let even = (panel % grid.m + panel / grid.m).is_multiple_of(2);
             push(
                 panel,
                 [0.0, 0.0, if even { -couple } else { couple }],

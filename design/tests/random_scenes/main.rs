@@ -11,35 +11,40 @@ mod drawn;
 
 use checks::{Finding, findings};
 use drawn::Drawn;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::panic::catch_unwind;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// The sheets of every day.
 const FEW: u64 = 300;
+/// Sheets whose paths once went to and fro between the same states, ended for want of increments or depended on the
+/// load steps.
+const KNOWN: [u64; 7] = [832, 904, 1464, 12066, 16370, 16551, 19709];
 /// Time from which a sheet is named (s).
 const LONG: f64 = 20.0;
 
-fn number(name: &str, default: u64) -> u64 {
-    match std::env::var(name) {
-        Ok(text) => text.parse().expect("a whole number"),
-        Err(_) => default,
+fn number(name: &str) -> Option<u64> {
+    let text = std::env::var(name).ok()?;
+    Some(text.parse().expect("a whole number"))
+}
+
+fn seeds() -> Vec<u64> {
+    let first = number("FIRST").unwrap_or(0);
+    match number("RUNS") {
+        Some(runs) => (first..first + runs).collect(),
+        None => (first..first + FEW).chain(KNOWN).collect(),
     }
 }
 
 #[test]
 fn random_sheets_deploy_as_they_must() {
-    let (first, runs) = (number("FIRST", 0), number("RUNS", FEW));
-    let next = AtomicU64::new(first);
-    let table = Mutex::new(BTreeMap::<Finding, Vec<u64>>::new());
+    let seeds = seeds();
+    let next = AtomicUsize::new(0);
+    let table = Mutex::new(BTreeMap::<Finding, BTreeSet<u64>>::new());
     let work = || {
-        loop {
-            let seed = next.fetch_add(1, Ordering::Relaxed);
-            if seed >= first + runs {
-                break;
-            }
+        while let Some(&seed) = seeds.get(next.fetch_add(1, Ordering::Relaxed)) {
             let began = Instant::now();
             let found = catch_unwind(|| findings(seed))
                 .unwrap_or_else(|_| panic!("the sheet {seed} ends in a panic"));
@@ -56,10 +61,7 @@ fn random_sheets_deploy_as_they_must() {
                         finding.words()
                     );
                 }
-                let seeds = table.entry(finding).or_default();
-                if seeds.last() != Some(&seed) {
-                    seeds.push(seed);
-                }
+                table.entry(finding).or_default().insert(seed);
             }
         }
     };
@@ -69,7 +71,7 @@ fn random_sheets_deploy_as_they_must() {
         }
     });
     let table = table.into_inner().unwrap();
-    println!("| of {runs} random sheets | |\n|---|---|");
+    println!("| of {} random sheets | |\n|---|---|", seeds.len());
     for (finding, seeds) in &table {
         println!("| {} | {} |", finding.words(), seeds.len());
     }
