@@ -220,9 +220,11 @@ impl Follower<'_> {
     fn followed(&mut self, to: f64) -> Result<Minimum, Failure> {
         while self.last.place.at < to {
             if let Err(failure) = self.advance() {
-                // A sheet without stiffness is at rest in any state.
+                // A sheet without stiffness is at rest in any state; beyond the increments the load steps go on.
                 let (minimum, moved) = match failure.end {
-                    DescentEnd::Stagnated => self.minimised(to).map_err(|_| failure)?,
+                    DescentEnd::Stagnated | DescentEnd::Increments => {
+                        self.minimised(to).map_err(|_| failure)?
+                    }
                     _ => return Err(failure),
                 };
                 self.jumps += usize::from(moved > LEAP);
