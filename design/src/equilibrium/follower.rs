@@ -37,9 +37,10 @@ const CUT: [f64; 2] = [0.1, 0.5];
 const RESOLVED: [f64; 2] = [1e-3, 1e-5];
 /// Length below which increments are given up.
 const SHORTEST: f64 = 1e-9;
-/// Parts of the load that are skipped where the path cannot be followed, in the order in which they are tried.
-const SKIPPED: [f64; 13] = [
-    0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 0.03, 0.01, 0.003,
+/// Parts of the load that are skipped where the path cannot be followed, in the order in which they are tried; then all
+/// that is left of the load.
+const SKIPPED: [f64; 12] = [
+    0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.03, 0.01, 0.003,
 ];
 /// Part of the load up to which a jump has led nowhere.
 const NOWHERE: f64 = 1e-6;
@@ -207,21 +208,15 @@ impl<'a> Follower<'a> {
     fn skip(&mut self) -> Result<(), Failure> {
         let from = self.last.place.clone();
         let mut first = None;
-        let to = SKIPPED.map(|ahead| from.at + ahead);
-        let full = (from.at < 1.0 && !to.contains(&1.0)).then_some(1.0);
-        for at in to.into_iter().filter(|at| *at <= 1.0).chain(full) {
+        let partial = SKIPPED.map(|ahead| from.at + ahead);
+        for at in partial.into_iter().filter(|at| *at < 1.0).chain([1.0]) {
             if self.is_exhausted() {
                 break;
             }
             let mut start = Place { at, ..from.clone() };
             self.branch.hold(&mut start, &from);
-            match self.branch.settled(start) {
-                Ok(landed) => {
-                    let moved = self.branch.distance(&landed.state, &landed.place, &from);
-                    self.jumps += usize::from(moved > LEAP);
-                    self.restart(landed);
-                    return Ok(());
-                }
+            match self.land(start, false) {
+                Ok(()) => return Ok(()),
                 Err(failure) => _ = first.get_or_insert(failure),
             }
         }
@@ -273,18 +268,23 @@ impl<'a> Follower<'a> {
 
     /// The jump that dead loads cause at the end of the branch; `beyond` is the unstable point next to it.
     fn jump(&mut self, beyond: Point, fold: bool) -> Option<()> {
-        let from = self.last.place.clone();
         let start = if fold {
             self.beyond_limit_point(&beyond)
         } else {
             beyond.place
         };
         let start = self.away_from_returns(start);
-        let landed = self.branch.settled(start).ok()?;
-        let moved = self.branch.distance(&landed.state, &landed.place, &from);
-        self.jumps += usize::from(fold || moved > LEAP);
+        self.land(start, fold).ok()
+    }
+
+    /// Continues the path from the stable equilibrium downhill of a start; a long way to it is a jump, as is any from a
+    /// limit point.
+    fn land(&mut self, start: Place, limit_point: bool) -> Result<(), Failure> {
+        let landed = self.branch.settled(start)?;
+        let moved = (self.branch).distance(&landed.state, &landed.place, &self.last.place);
+        self.jumps += usize::from(limit_point || moved > LEAP);
         self.restart(landed);
-        Some(())
+        Ok(())
     }
 
     /// A place at the load of the limit point, past it: there the unstable equilibrium is the ridge of the energy, from

@@ -1,7 +1,7 @@
 //! What must hold for every sheet, and what is counted where it does not.
 
 use crate::dense::Judged;
-use crate::drawn::Drawn;
+use crate::drawn::{Drawn, DrawnLaw};
 use design::equilibrium::load_step::{DescentEnd, LoadStep, Status};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::optimise::outer_loop::{SearchState, optimise};
@@ -43,8 +43,7 @@ pub enum Finding {
     SimilarAfterJump,
     LoadSteps,
     LoadStepsAfterJump,
-    /// Next to a bifurcation a small change of the design leads the followed path onto the other arm, without a jump.
-    OtherArm,
+    OtherLoss,
     OtherLossAfterJump,
     WorseThanStart,
     FalseBest,
@@ -62,6 +61,7 @@ impl Finding {
                 | Mirror
                 | Similar
                 | LoadSteps
+                | OtherLoss
                 | WorseThanStart
                 | FalseBest
         )
@@ -89,7 +89,7 @@ impl Finding {
             Self::SimilarAfterJump => "similar sheet deploys otherwise after a jump",
             Self::LoadSteps => "another number of load steps, another state",
             Self::LoadStepsAfterJump => "another number of load steps, another state after a jump",
-            Self::OtherArm => "corrected path on the other arm of a bifurcation",
+            Self::OtherLoss => "corrected path with another loss, without a jump",
             Self::OtherLossAfterJump => {
                 "corrected path with another loss, followed path with a jump"
             }
@@ -107,7 +107,7 @@ pub fn findings(seed: u64) -> Findings {
     let problem = drawn.problem();
     let mut found = vec![(Finding::Scenes, String::new())];
     let mut add = |finding, details: String| found.push((finding, details));
-    if matches!(drawn.law, crate::drawn::DrawnLaw::Learned(..)) {
+    if matches!(drawn.law, DrawnLaw::Learned(..)) {
         add(Finding::Learned, String::new());
     }
     if drawn.stroke.is_some() {
@@ -122,10 +122,7 @@ pub fn findings(seed: u64) -> Findings {
     };
     let last = deployment.final_step();
     if last.status == Status::Diverged {
-        add(
-            missed(&drawn, last),
-            format!("{:?} {last}", last.descent_end),
-        );
+        missed(&drawn, last, &mut add);
         return found;
     }
     add(Finding::FullLoad, String::new());
@@ -137,7 +134,7 @@ pub fn findings(seed: u64) -> Findings {
     }
     let mut force = 0.0;
     for step in &deployment.path {
-        let judged = Judged::new(&drawn, &deployment.sheet, step, force);
+        let judged = Judged::new(&drawn, &problem, &deployment.sheet, step, force);
         force = judged.force;
         let allowed = BALANCED.max(10.0 * step.rounding.max(judged.rounding));
         let claimed = step.status != Status::Almost;
@@ -159,14 +156,15 @@ pub fn findings(seed: u64) -> Findings {
     found
 }
 
-/// What it means that the path of a sheet ends before full load.
-fn missed(drawn: &Drawn, last: &LoadStep) -> Finding {
+/// The path of a sheet ends before full load.
+fn missed(drawn: &Drawn, last: &LoadStep, add: &mut impl FnMut(Finding, String)) {
     let touching = drawn.stroke.is_some() && drawn.contact.is_some();
-    match last.descent_end {
+    let finding = match last.descent_end {
         Some(DescentEnd::NotFinite) if touching => Finding::Locked,
         _ if drawn.is_extreme() => Finding::NoEquilibriumExtreme,
         _ => Finding::NoEquilibrium,
-    }
+    };
+    add(finding, format!("{:?} {last}", last.descent_end));
 }
 
 fn jumps(deployment: &Deployment) -> bool {
@@ -194,18 +192,16 @@ fn same_elsewhere(drawn: &Drawn, deployment: &Deployment, add: &mut impl FnMut(F
     let findings = [Finding::LoadSteps, Finding::LoadStepsAfterJump];
     cases.push((other_steps, size, last.configuration.clone(), findings));
     for (other, size, expected, [fault, after_jump]) in cases {
-        let found = other.problem().deploy(&other.design()).unwrap();
+        let problem = other.problem();
+        let found = problem.deploy(&other.design()).unwrap();
         let step = found.final_step();
         if step.status == Status::Diverged {
-            add(
-                missed(&other, step),
-                format!("{:?} {step}", step.descent_end),
-            );
+            missed(&other, step, add);
             continue;
         }
         let apart = distance(&step.configuration, &expected, size);
         // Where rounding leaves forces unbalanced, soft motions are known to less.
-        let judged = Judged::new(&other, &found.sheet, step, 0.0);
+        let judged = Judged::new(&other, &problem, &found.sheet, step, 0.0);
         let known = SAME.max(10.0 * step.rounding.max(judged.rounding) / judged.lowest.abs());
         if apart > known {
             let jumped = jumps(&found) || jumps(deployment);
@@ -249,20 +245,15 @@ fn corrected(
     let followed = problem.deploy(&beside).unwrap();
     let last = followed.final_step();
     if last.status == Status::Diverged {
-        add(
-            missed(drawn, last),
-            format!("{:?} {last}", last.descent_end),
-        );
+        missed(drawn, last, add);
         return;
     }
-    let jumped = jumps(&followed);
-    let loss = problem.loss(&beside).unwrap();
-    let apart = (near.loss / loss - 1.0).abs();
+    let apart = (near.loss / problem.loss(&beside).unwrap() - 1.0).abs();
     if apart > SAME_LOSS {
-        let finding = if jumped {
+        let finding = if jumps(&followed) {
             Finding::OtherLossAfterJump
         } else {
-            Finding::OtherArm
+            Finding::OtherLoss
         };
         add(finding, format!("{apart:.1e}, {last}"));
     }
@@ -290,14 +281,14 @@ fn searched(
     let Ok(_) = optimise(problem, &mut state, 12, &AtomicBool::new(false), &mut sink);
     let best = problem.loss(&state.best).unwrap_or(f64::INFINITY);
     let steps = state.history.iter().map(|record| record.scores.loss);
-    let told = steps.fold(f64::INFINITY, f64::min);
+    let least = steps.fold(f64::INFINITY, f64::min);
     if best > evaluation.loss * (1.0 + SAME_LOSS) {
         add(
             Finding::WorseThanStart,
             format!("{best} from {}", evaluation.loss),
         );
     }
-    if !state.contradicted() && best > told * (1.0 + SAME_LOSS) {
-        add(Finding::FalseBest, format!("{told}, {best} when followed"));
+    if !state.contradicted() && best > least * (1.0 + SAME_LOSS) {
+        add(Finding::FalseBest, format!("{least}, {best} when followed"));
     }
 }

@@ -9,7 +9,9 @@
 
 use crate::drawn::Drawn;
 use design::equilibrium::load_step::LoadStep;
+use design::equilibrium::supports::Support;
 use design::hinge_law::Order;
+use design::objective::design_problem::DesignProblem;
 use design::sheet::cut_sheet::Sheet;
 use faer::{Mat, Side, c64};
 use hinge::HingeDeformation;
@@ -74,7 +76,13 @@ fn deformation(sheet: &Sheet, hinge: usize, configuration: &[[f64; 3]]) -> Defor
 
 impl Judged {
     /// The state of a load step; `before` is the largest force of those before (N).
-    pub fn new(drawn: &Drawn, sheet: &Sheet, step: &LoadStep, before: f64) -> Self {
+    pub fn new(
+        drawn: &Drawn,
+        problem: &DesignProblem,
+        sheet: &Sheet,
+        step: &LoadStep,
+        before: f64,
+    ) -> Self {
         let panels = sheet.panels.len();
         let hinges = 0..sheet.hinges.len();
         let motions: Vec<Deformation> = hinges
@@ -82,16 +90,17 @@ impl Judged {
             .collect();
         let deformations: Vec<HingeDeformation> =
             motions.iter().map(|(value, ..)| (*value).into()).collect();
-        let law = drawn.law();
-        let law = law.prepare(&sheet.designs());
+        let mechanics = problem.model.mechanics().unwrap();
+        let law = mechanics.law.prepare(&sheet.designs());
         let law_resolution = law.resolution();
         let mut energies = law.energies(&deformations, Order::Tangent);
-        if let Some(contact) = drawn.contact() {
+        if let Some(contact) = &mechanics.contact {
             contact.add(&mut energies, &deformations);
         }
 
         let mut forces = vec![0.0; 3 * panels];
         let mut stiffness = Mat::<f64>::zeros(3 * panels, 3 * panels);
+        let extent = extent(sheet, step);
         let (mut largest, mut rounding) = (before, 0.0);
         let size = (sheet.outline.area() / panels as f64).sqrt();
         let as_force = |d: usize, force: f64| if d % 3 == 2 { force / size } else { force }.abs();
@@ -102,7 +111,7 @@ impl Judged {
                 std::array::from_fn(|d| 3 * [hinge.site.a.0, hinge.site.b.0][d / 3] + d % 3);
             let f = energy.forces;
             largest = largest.max(f[0].hypot(f[1])).max(f[2].abs() / size);
-            let resolved = law_resolution * hinge.w_lig + extent(sheet, step) * f64::EPSILON;
+            let resolved = law_resolution * hinge.w_lig + extent * f64::EPSILON;
             for (c, row) in energy.tangent.iter().enumerate() {
                 let force = resolved * row[0].abs().max(row[1].abs())
                     + (law_resolution + f64::EPSILON) * row[2].abs();
@@ -140,8 +149,7 @@ impl Judged {
 
         let free: Vec<usize> = (0..3 * panels)
             .filter(|d| {
-                let held =
-                    |s: &design::equilibrium::supports::Support| 3 * s.panel + s.dof.index() == *d;
+                let held = |s: &Support| 3 * s.panel + s.dof.index() == *d;
                 !drawn.supports.iter().any(held)
             })
             .collect();

@@ -211,14 +211,14 @@ impl Drawn {
         WidthChart { w_minus, w_plus }
     }
 
-    pub fn options(&self) -> SheetOptions {
+    fn options(&self) -> SheetOptions {
         SheetOptions {
             hinge_point: self.hinge_point,
             process: self.process,
         }
     }
 
-    pub fn law(&self) -> Arc<dyn HingeLaw> {
+    fn law(&self) -> Arc<dyn HingeLaw> {
         match &self.law {
             DrawnLaw::Linear(stiffness) => Arc::new(LinearLaw {
                 stiffness: stiffness.clone(),
@@ -229,7 +229,7 @@ impl Drawn {
         }
     }
 
-    pub fn contact(&self) -> Option<Contact> {
+    fn contact(&self) -> Option<Contact> {
         let contact = |[k, wall, cut]: [f64; 3]| Contact::new(k, wall, cut).unwrap();
         self.contact.map(contact)
     }

@@ -1,6 +1,6 @@
 //! Random sheets: sizes, hinge laws, supports, loads, drives, contacts, weight and ratios of stiffness from common to
 //! extreme. Every equilibrium is judged by full matrices written independently of the solver; the mirror image, a sheet of half the size
-//! and other load steps must deploy alike; corrected paths and searches must tell the loss of the followed path.
+//! and other load steps must deploy alike; corrected paths and searches must have the loss of the followed path.
 //!
 //! `RUNS=n` draws n sheets instead of the few of every day, `FIRST=k` begins with the seed k, and a table is printed with
 //! `--nocapture`. The findings at a sheet are repeated by `FIRST=k RUNS=1`.

@@ -245,7 +245,7 @@ impl Pairs {
     }
 }
 
-/// A text of a file in the code page ANSI_1252, with the other characters as \U+XXXX.
+/// A text of a file in the code page ANSI_1252, with the other characters as `\U+` and four hexadecimal digits.
 fn escaped(text: &str) -> String {
     let mut units = [0; 2];
     let escape = |c: char| {

@@ -84,7 +84,7 @@ struct Answer {
 impl EvalCommand {
     pub fn run(&self) -> Result<()> {
         let surrogate = Surrogate::load(&self.weights)?;
-        let answers = answers(&surrogate, &read_states(&self.states)?);
+        let answers = answers(surrogate, &read_states(&self.states)?);
         if self.json {
             println!("{}", serde_json::to_string_pretty(&answers)?);
             return Ok(());
@@ -109,7 +109,7 @@ impl EvalCommand {
     }
 }
 
-fn answers(surrogate: &Surrogate, states: &[State]) -> Vec<Answer> {
+fn answers(surrogate: Surrogate, states: &[State]) -> Vec<Answer> {
     let constants = surrogate.card().hinge;
     let (designs, deformations): (Vec<HingeDesign>, Vec<HingeDeformation>) = states
         .iter()
@@ -118,28 +118,20 @@ fn answers(surrogate: &Surrogate, states: &[State]) -> Vec<Answer> {
             (constants.hinge(state.w_lig, state.alpha), deformation)
         })
         .unzip();
-    let law = SurrogateLaw {
-        surrogate: surrogate.clone(),
-    };
-    let energies = law
-        .prepare(&designs)
-        .energies(&deformations, Order::Tangent);
-    let damages = surrogate.damage_values(&designs, &deformations);
-    let states = designs.iter().zip(&deformations);
-    states
-        .zip(energies.iter().zip(damages))
-        .map(|((design, deformation), (energy, damage))| {
-            let inside = surrogate.domain().contains(design, deformation);
-            Answer {
-                inside,
-                w: energy.w,
-                f_a: energy.forces[0],
-                f_s: energy.forces[1],
-                m_theta: energy.forces[2],
-                d: inside.then_some(damage.d),
-                d_peak: damage.d_peak.filter(|_| inside),
-                tangent: energy.tangent,
-            }
+    let law = SurrogateLaw { surrogate };
+    let law = law.prepare(&designs);
+    let energies = law.energies(&deformations, Order::Tangent);
+    let damages = law.damage(&deformations, false);
+    std::iter::zip(law.inside(&deformations), energies.iter().zip(damages))
+        .map(|(inside, (energy, damage))| Answer {
+            inside,
+            w: energy.w,
+            f_a: energy.forces[0],
+            f_s: energy.forces[1],
+            m_theta: energy.forces[2],
+            d: inside.then_some(damage.d),
+            d_peak: damage.d_peak.filter(|_| inside),
+            tangent: energy.tangent,
         })
         .collect()
 }
