@@ -166,6 +166,11 @@ impl SearchState {
         &self.history[self.history.len() - 1]
     }
 
+    /// The design of the last step.
+    pub fn last_design(&self) -> &DesignVector {
+        &self.design
+    }
+
     /// Whether the designs of the state have the same dimensions as `start`.
     pub(crate) fn fits(&self, start: &DesignVector) -> bool {
         let designs = [&self.design, &self.proposal, &self.best, &self.base.design];

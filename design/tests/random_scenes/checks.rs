@@ -44,6 +44,7 @@ pub enum Finding {
     LoadSteps,
     LoadStepsAfterJump,
     OtherLoss,
+    OtherArm,
     OtherLossAfterJump,
     WorseThanStart,
     FalseBest,
@@ -89,7 +90,8 @@ impl Finding {
             Self::SimilarAfterJump => "similar sheet deploys otherwise after a jump",
             Self::LoadSteps => "another number of load steps, another state",
             Self::LoadStepsAfterJump => "another number of load steps, another state after a jump",
-            Self::OtherLoss => "corrected path with another loss, without a jump",
+            Self::OtherLoss => "corrected path with the followed states and another loss",
+            Self::OtherArm => "corrected path with other stable states, without a jump",
             Self::OtherLossAfterJump => {
                 "corrected path with another loss, followed path with a jump"
             }
@@ -132,9 +134,25 @@ pub fn findings(seed: u64) -> Findings {
     if last.status == Status::Almost {
         add(Finding::Almost, last.to_string());
     }
+    judged(&drawn, &problem, &deployment, &mut add);
+    same_elsewhere(&drawn, &deployment, &mut add);
+    corrected(&drawn, &problem, &deployment, &mut add);
+    if drawn.grid.hinge_count() <= SEARCHED && seed.is_multiple_of(4) {
+        searched(&drawn, &problem, seed, &mut add);
+    }
+    found
+}
+
+/// The load steps by full matrices.
+fn judged(
+    drawn: &Drawn,
+    problem: &DesignProblem,
+    deployment: &Deployment,
+    add: &mut impl FnMut(Finding, String),
+) {
     let mut force = 0.0;
     for step in &deployment.path {
-        let judged = Judged::new(&drawn, &problem, &deployment.sheet, step, force);
+        let judged = Judged::new(drawn, problem, &deployment.sheet, step, force);
         force = judged.force;
         let allowed = BALANCED.max(10.0 * step.rounding.max(judged.rounding));
         let claimed = step.status != Status::Almost;
@@ -148,12 +166,6 @@ pub fn findings(seed: u64) -> Findings {
             add(Finding::Unstable, format!("{:.1e}, {step}", judged.lowest));
         }
     }
-    same_elsewhere(&drawn, &deployment, &mut add);
-    corrected(&drawn, &problem, &deployment, &mut add);
-    if drawn.grid.hinge_count() <= SEARCHED && seed.is_multiple_of(4) {
-        searched(&drawn, &problem, seed, &mut add);
-    }
-    found
 }
 
 /// The path of a sheet ends before full load.
@@ -242,6 +254,7 @@ fn corrected(
         return;
     }
     add(Finding::Corrected, String::new());
+    judged(drawn, problem, &near.deployment, add);
     let followed = problem.deploy(&beside).unwrap();
     let last = followed.final_step();
     if last.status == Status::Diverged {
@@ -250,10 +263,16 @@ fn corrected(
     }
     let apart = (near.loss / problem.loss(&beside).unwrap() - 1.0).abs();
     if apart > SAME_LOSS {
-        let finding = if jumps(&followed) {
-            Finding::OtherLossAfterJump
-        } else {
-            Finding::OtherLoss
+        let panels = near.deployment.sheet.panels.len() as f64;
+        let size = (near.deployment.sheet.outline.area() / panels).sqrt();
+        let steps = std::iter::zip(&near.deployment.path, &followed.path);
+        let same = |(a, b): (&LoadStep, &LoadStep)| {
+            distance(&a.configuration, &b.configuration, size) <= SAME
+        };
+        let finding = match (jumps(&followed), steps.map(same).all(|same| same)) {
+            (true, _) => Finding::OtherLossAfterJump,
+            (false, true) => Finding::OtherLoss,
+            (false, false) => Finding::OtherArm,
         };
         add(finding, format!("{apart:.1e}, {last}"));
     }

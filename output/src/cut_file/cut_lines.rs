@@ -19,7 +19,7 @@
 use crate::cut_file::attachments::PlacedAttachment;
 use crate::cut_file::cut_drawing::{CutDrawing, Layer};
 use crate::cut_file::fabrication_error::FabricationError;
-use crate::cut_file::written_check;
+use crate::cut_file::written_check::{self, ROUNDING, carries};
 use crate::display::Shape;
 use design::geometry::polygon::{distance, distance_to_segment, edges};
 use design::pattern::cut_pattern::CutPattern;
@@ -100,8 +100,35 @@ impl CutLines {
                 .map(|attachment| PlacedAttachment::new(sheet, attachment))
                 .collect::<Result<_, _>>()?,
         };
+        cuts.reach_what_they_cut(sheet)?;
         written_check::check(&cuts.drawing(), sheet)?;
         Ok(cuts)
+    }
+
+    /// The ligaments at the ends of a cut shorten it: every ligament must still end at its secondary cut, and every edge of a
+    /// panel must be cut somewhere.
+    fn reach_what_they_cut(&self, sheet: &Sheet) -> Result<(), FabricationError> {
+        for (hinge, modelled) in sheet.hinges.iter().enumerate() {
+            let (width, modelled) = (self.clearance(hinge), modelled.w_lig);
+            if width > modelled + ROUNDING {
+                return Err(FabricationError::CutEndsBeforeLigament {
+                    hinge,
+                    width,
+                    modelled,
+                });
+            }
+        }
+        let slits = self.slits.iter().map(|slit| slit.ends);
+        let lines: Vec<_> = slits
+            .chain(edges(&self.outline).map(|(p, q)| [p, q]))
+            .collect();
+        for (panel, of) in sheet.panels.iter().enumerate() {
+            let is_cut = |edge: [[f64; 2]; 2]| lines.iter().any(|line| carries(line, edge));
+            if !edges(&of.corners).all(|(p, q)| is_cut([p, q])) {
+                return Err(FabricationError::EdgeNotCut { panel });
+            }
+        }
+        Ok(())
     }
 
     /// The paths of the tool, in the order of the pattern.

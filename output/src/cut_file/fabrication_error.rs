@@ -51,6 +51,21 @@ pub enum FabricationError {
     #[error("the clip of {name} is {width} mm wide, its edge {room:.1} mm: use a narrower clip")]
     ClipTooWide { name: String, width: f64, room: f64 },
     #[error(
+        "the cut opposite hinge {hinge} ends before its ligament, which is {width:.3} mm wide there and {modelled:.3} mm in \
+         the model: narrow the ligaments at the ends of that cut, or keep the panels larger (objective.panel_shape, \
+         objective.min_panel_width)"
+    )]
+    CutEndsBeforeLigament {
+        hinge: usize,
+        width: f64,
+        modelled: f64,
+    },
+    #[error(
+        "an edge of panel {panel} is not cut: the ligaments at its ends are longer than the edge: narrow them, or keep the \
+         panels larger (objective.panel_shape, objective.min_panel_width)"
+    )]
+    EdgeNotCut { panel: usize },
+    #[error(
         "the {what} {index} is written as {written:.6} and simulated as {simulated:.6} (mm, mm^2): this is an error of \
          kirigami"
     )]

@@ -15,7 +15,7 @@ use design::sheet::cut_sheet::Sheet;
 use std::collections::BTreeMap;
 
 /// Rounding of lengths (mm), and of areas relative to the panel.
-const ROUNDING: f64 = 1e-6;
+pub(super) const ROUNDING: f64 = 1e-6;
 
 /// What is compared, in messages.
 const HOLE: &str = "diameter of the hole of hinge";
@@ -184,7 +184,7 @@ fn inwards(p: [f64; 2], q: [f64; 2], by: f64) -> [[f64; 2]; 2] {
 }
 
 /// Whether an edge lies along a line, at least in part.
-fn carries(line: &[[f64; 2]; 2], edge: [[f64; 2]; 2]) -> bool {
+pub(super) fn carries(line: &[[f64; 2]; 2], edge: [[f64; 2]; 2]) -> bool {
     let [a, b] = *line;
     edge.iter()
         .all(|end| (side((a, b), *end) / distance(a, b)).abs() < ROUNDING)

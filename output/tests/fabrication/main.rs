@@ -255,6 +255,38 @@ fn ligaments_that_leave_no_slit_are_refused() {
     );
 }
 
+/// The ligament at the end of a cut shortens it: in sheets of short panels a cut may end before the ligament opposite it, or
+/// leave an edge of a panel whole.
+#[test]
+fn cuts_that_are_too_short_for_their_ligaments_and_panels_are_refused() {
+    let grid = Grid { m: 4, n: 4 };
+    let mut refused = [0, 0];
+    for seed in 0..300 {
+        let mut dice = ChaCha8Rng::seed_from_u64(seed);
+        let mut coordinates = PatternCoordinates::uniform(grid);
+        let logits = coordinates
+            .z
+            .iter_mut()
+            .chain(coordinates.ell.iter_mut().flatten());
+        logits.for_each(|logit| *logit = dice.random_range(-2.0..2.0));
+        let (pattern, sheet) = sheet(grid, &coordinates, 25.0);
+        match CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[]) {
+            Err(FabricationError::CutEndsBeforeLigament {
+                hinge,
+                width,
+                modelled,
+            }) => {
+                assert!(width > modelled && modelled == sheet.hinges[hinge].w_lig);
+                refused[0] += 1;
+            }
+            Err(FabricationError::EdgeNotCut { .. }) => refused[1] += 1,
+            Err(FabricationError::Differs { .. }) => panic!("seed {seed}: the file differs"),
+            _ => {}
+        }
+    }
+    assert!(refused.iter().all(|count| *count > 0), "{refused:?}");
+}
+
 #[test]
 fn slits_that_are_open_on_the_outline_are_cut_beyond_it() {
     let cuts = uniform_cuts();
