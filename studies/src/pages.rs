@@ -3,8 +3,11 @@
 //! The commands are listed in docs/results/pages.toml. A page is always written again; a product, from which pages are
 //! made, only if its file is missing or older than its sources.
 
+mod inputs;
+
 use anyhow::{Context, Result, ensure};
 use clap::Args;
+use inputs::Inputs;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -22,6 +25,9 @@ pub struct PagesCommand {
     /// Pages, their commands and the products they need (TOML)
     #[arg(long, value_name = "FILE", default_value = "docs/results/pages.toml")]
     file: PathBuf,
+    /// Record the present inputs of the named pages without making them: only for changes that change no figure, as of a format
+    #[arg(long, requires = "pages", conflicts_with = "list")]
+    accept: bool,
     /// List the pages and their questions
     #[arg(long)]
     list: bool,
@@ -43,6 +49,12 @@ struct Page {
     /// Names of the products that the page needs.
     #[serde(default)]
     needs: Vec<String>,
+    /// Shipped files that the commands read without naming them.
+    #[serde(default)]
+    reads: Vec<String>,
+    /// What docs/results/README.md says of a page whose inputs have changed since it was made.
+    #[serde(default)]
+    stale: Option<String>,
     commands: Vec<String>,
 }
 
@@ -64,16 +76,28 @@ impl PagesCommand {
         let book: Book = support::toml_file::read(&self.file)?;
         if self.list {
             for page in &book.page {
-                println!("{:<14}{}", page.name, page.question);
+                let stale = page
+                    .stale
+                    .as_ref()
+                    .map_or("", |_| " (older than its inputs)");
+                println!("{:<14}{}{stale}", page.name, page.question);
             }
             return Ok(());
         }
-        let chosen = book.chosen(&self.pages)?;
-        for page in chosen {
-            page.needs.iter().try_for_each(|name| book.make(name))?;
-            page.commands
-                .iter()
-                .try_for_each(|command| shell(command))?;
+        let recorded = self.file.with_file_name("inputs.toml");
+        let mut inputs = Inputs::read(&recorded)?;
+        for page in book.chosen(&self.pages)? {
+            if !self.accept {
+                page.needs.iter().try_for_each(|name| book.make(name))?;
+                page.commands
+                    .iter()
+                    .try_for_each(|command| shell(command))?;
+            }
+            inputs.record(&book, page, Path::new("."))?;
+            inputs.write(&recorded)?;
+        }
+        if self.accept {
+            return Ok(());
         }
         shell("kirigami-studies tradeoff")
     }
