@@ -22,7 +22,7 @@ struct Headline {
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Cell {
-    /// Number of the table from 1, row and column.
+    /// Number of the table from 1, row by its first cell, or by its first cells joined by ` | `, and column.
     Table(usize, String, String),
     /// A JSON pointer.
     Pointer(String),
@@ -65,7 +65,7 @@ fn cells(row: &str) -> Vec<&str> {
     row.trim_matches('|').split('|').map(str::trim).collect()
 }
 
-/// The number in a cell of a Markdown file.
+/// The first number in a cell of a Markdown file.
 fn in_table(source: &str, number: usize, row: &str, column: &str) -> f64 {
     let lines: Vec<&str> = source.lines().collect();
     let heads: Vec<usize> = (1..lines.len())
@@ -79,11 +79,13 @@ fn in_table(source: &str, number: usize, row: &str, column: &str) -> f64 {
     let rows = lines[head + 2..]
         .iter()
         .take_while(|line| line.starts_with('|'));
+    let first: Vec<&str> = row.split(" | ").collect();
     let cell = rows
         .map(|line| cells(line))
-        .find(|cells| cells[0] == row)
+        .find(|cells| cells.starts_with(&first))
         .unwrap_or_else(|| panic!("no row {row}"))[column];
-    cell.trim_end_matches(" %").parse().unwrap()
+    let number = cell.split([' ', ',']).next().unwrap();
+    number.parse().unwrap()
 }
 
 impl Cell {
@@ -131,4 +133,11 @@ fn the_numbers_of_a_text_are_found_in_their_order() {
         numbers("0.5 to 0.9 % in W, 1.10 times (7 of 9), reduced to 57."),
         ["0.5", "1.10", "57"]
     );
+}
+
+#[test]
+fn a_row_is_found_by_its_first_cells_and_a_cell_counts_by_its_first_number() {
+    let page = "| sheet | panels | error |\n|---|---|---|\n| free | 4 | 1 % |\n| free | 9 | 0.31 mm, 0.07 % |\n";
+    assert_eq!(in_table(page, 1, "free", "error"), 1.0);
+    assert_eq!(in_table(page, 1, "free | 9", "error"), 0.31);
 }
