@@ -3,6 +3,7 @@
 
 pub mod actuation_curve;
 pub mod degeneration;
+pub mod flanks;
 pub mod flatness;
 pub mod force_transmission;
 pub mod friction_effect;

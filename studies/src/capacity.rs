@@ -2,6 +2,7 @@
 
 mod capacity_page;
 mod readings;
+mod starts;
 
 use crate::charts::{self, CapacityCurve};
 use crate::designed::designed;
@@ -39,6 +40,9 @@ pub struct CapacityStudy {
     /// Maximum rho of both loads together
     #[arg(long, value_name = "RHO", default_value_t = 6.0)]
     to: f64,
+    /// Number of random starts from which each pattern is searched again; the figures of one pattern are of the scene's start
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    starts: u64,
     /// Folder for the tables, the pictures and the runs
     #[arg(long, value_name = "FOLDER", default_value = "runs/study-capacity")]
     out: PathBuf,
@@ -141,7 +145,7 @@ impl CapacityStudy {
         let values = self.values();
         let bar = Progress::new(strategies.len() * values.len(), "deployments");
         let mut capacities: Vec<Capacity> = Vec::new();
-        for (i, (strategy, (design, steps))) in std::iter::zip(strategies, designs).enumerate() {
+        for (i, (strategy, (design, steps))) in std::iter::zip(&strategies, designs).enumerate() {
             let mut points = Vec::new();
             for &rho in &values {
                 refuse_stop(stop)?;
@@ -172,7 +176,9 @@ impl CapacityStudy {
         run_folder::write(&self.out, "capacity.csv", &capacity_page::csv(&capacities))?;
         run_folder::write(&self.out, "paths.csv", &capacity_page::paths(&capacities))?;
         let readings = self.readings(&config)?;
-        let page = capacity_page::page(&capacities, &readings, &self.scene, self.to);
+        let mut page = capacity_page::page(&capacities, &readings, &self.scene, self.to);
+        page += "\nThe patterns searched from random starts, median and range; a capacity above the largest rho of the sweep counts as that:\n\n";
+        page += &starts::table(&self.several_starts(&config, &strategies)?, self.to);
         run_folder::write(&self.out, "capacity.md", &page)?;
         println!("{page}\nwritten to {}", self.out.display());
         Ok(())

@@ -1,5 +1,6 @@
 //! One hinge in the report.
 
+use design::analysis::flanks::flank_gap;
 use design::analysis::localisation::gamma;
 use design::analysis::path_separation::PathSeparation;
 use design::geometry::polygon::{distance, edges};
@@ -7,6 +8,7 @@ use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
 use design::scene::{Posture, Scene};
 use design::sheet::cut_sheet::{Hinge, Sheet};
+use hinge::HingeDesign;
 use serde::Serialize;
 
 /// One hinge of the best design in the deployed sheet.
@@ -36,6 +38,8 @@ pub struct HingeRow {
     /// Maximum distance of the path from the straight ray to its end, in ligament widths; see
     /// [`PathSeparation::whole`].
     pub path_separation: f64,
+    /// Minimum along the path of the distance of the flanks of the cut at the hole (mm); negative where they overlap.
+    pub flank_gap: f64,
     /// (21), with the shortest edge of the two panels; `None` for a sheet that does not lie on a surface.
     pub gamma: Option<f64>,
 }
@@ -43,10 +47,13 @@ pub struct HingeRow {
 impl HingeRow {
     pub(super) fn all(scene: &Scene, deployment: &Deployment) -> Vec<Self> {
         let hinges = 0..deployment.sheet.hinges.len();
-        hinges.map(|h| Self::new(scene, deployment, h)).collect()
+        let designs = deployment.sheet.designs();
+        hinges
+            .map(|h| Self::new(scene, deployment, &designs, h))
+            .collect()
     }
 
-    fn new(scene: &Scene, deployment: &Deployment, h: usize) -> Self {
+    fn new(scene: &Scene, deployment: &Deployment, designs: &[HingeDesign], h: usize) -> Self {
         let sheet = &deployment.sheet;
         let hinge = &sheet.hinges[h];
         let last = deployment.final_step().deformations[h];
@@ -66,6 +73,8 @@ impl HingeRow {
             damage_peak: deployment.damage_max(DamageMeasure::Peak, h),
             inside: deployment.path.iter().all(|step| step.inside[h]),
             path_separation: PathSeparation::new(hinge.w_lig, &states).whole,
+            flank_gap: (states.iter().map(|state| flank_gap(&designs[h], state)))
+                .fold(f64::INFINITY, f64::min),
             gamma: (scene.config.posture)
                 .is_none_or(|posture| posture.kind == Posture::Lying)
                 .then(|| gamma(&scene.material, hinge.w_lig, shortest_edge(sheet, hinge))),

@@ -56,13 +56,14 @@ type Rule = fn(&Judged) -> Option<Warning>;
 
 /// First those about a design, then those about a run as a whole: what its model leaves out, what its weights are worth,
 /// how well it meets its target.
-const RULES: [Rule; 21] = [
+const RULES: [Rule; 22] = [
     windows_overlap,
     windows_leave_panels,
     cutting,
     ligaments_outside,
     states_outside,
     path_dependence,
+    flanks_overlap,
     tearing,
     overstrained,
     path,
@@ -181,6 +182,19 @@ fn path_dependence(judged: &Judged) -> Option<Warning> {
          and damage depend on the path there (docs/results/detours); check by `kirigami verify`"
     );
     about(Concern::PathDependence, bent, message)
+}
+
+/// Windows have no contact.
+fn flanks_overlap(judged: &Judged) -> Option<Warning> {
+    judged.scene.surrogate()?;
+    let overlapping = judged.those(|row| row.flank_gap < 0.0);
+    let gaps = judged.hinges.iter().map(|row| row.flank_gap);
+    let most = -gaps.fold(f64::INFINITY, f64::min);
+    let message = format!(
+        "the flanks of their cuts overlap in the plane, by up to {} mm beside the hole: contact between them is not modelled",
+        rounded(most, 2)
+    );
+    about(Concern::FlanksOverlap, overlapping, message)
 }
 
 fn tearing(judged: &Judged) -> Option<Warning> {

@@ -1,0 +1,112 @@
+//! The capacities of patterns that are searched from several starts: how far a capacity is that of one search.
+
+use super::{CapacityStudy, Strategy};
+use anyhow::Result;
+use design::scene::SceneConfig;
+use kirigami::ui::progress::Progress;
+use support::statistics::median;
+use support::table::{Cell, Table};
+
+/// Standard deviation of the coordinates of a random start.
+const NOISE: f64 = 0.3;
+
+/// A pattern found from one start.
+struct Found {
+    /// The interval of rho at which it is deployed; no maximum if all tested loads above the minimum are carried.
+    carried: (f64, Option<f64>),
+    /// Boundary error at rho = 1 (%).
+    boundary: f64,
+}
+
+/// The patterns of a strategy.
+pub(super) struct Starts {
+    name: &'static str,
+    found: Vec<Found>,
+}
+
+impl CapacityStudy {
+    /// The patterns of the strategies that search, from random starts with the seeds 1 to `self.starts`.
+    pub(super) fn several_starts(
+        &self,
+        config: &SceneConfig,
+        strategies: &[Strategy],
+    ) -> Result<Vec<Starts>> {
+        let mut all = Vec::new();
+        for (i, strategy) in strategies.iter().enumerate() {
+            let Some(search) = &strategy.search else {
+                continue;
+            };
+            let found = (1..=self.starts).map(|seed| {
+                let mut search = search.clone();
+                search.optimiser.start_noise = NOISE;
+                search.optimiser.seed = seed;
+                search.output = std::path::absolute(&self.out)?.join(format!("runs/{i}-{seed}"));
+                self.from_start(config, search, strategy.name)
+            });
+            all.push(Starts {
+                name: strategy.name,
+                found: found.collect::<Result<_>>()?,
+            });
+        }
+        Ok(all)
+    }
+
+    fn from_start(&self, config: &SceneConfig, search: SceneConfig, name: &str) -> Result<Found> {
+        let (design, _) = self.settled(search, name)?;
+        let values = self.values();
+        let bar = Progress::new(values.len(), "deployments");
+        let mut points = Vec::new();
+        for &rho in &values {
+            points.push(self.point(config, &design, rho)?);
+            bar.show(points.len(), None, name);
+        }
+        bar.finish();
+        let carried = self.carried(config, &design, &points)?;
+        Ok(Found {
+            carried: (carried.from, carried.maximum()),
+            boundary: self.point(config, &design, super::DESIGN_LOAD)?.boundary,
+        })
+    }
+}
+
+/// The table of the random starts; `to`: the largest rho that is tried.
+pub(super) fn table(starts: &[Starts], to: f64) -> String {
+    let spread = |values: Vec<f64>, digits: usize| {
+        let (low, high) = (values.iter()).fold((f64::INFINITY, 0.0), |(low, high), value| {
+            (value.min(low), value.max(high))
+        });
+        Cell::text(format!(
+            "{:.digits$} ({low:.digits$} to {high:.digits$})",
+            median(values)
+        ))
+    };
+    Table::new()
+        .column("pattern", |starts: &Starts| Cell::text(starts.name))
+        .column("starts", |starts| Cell::text(starts.found.len()))
+        .column("deployed at rho = 1", |starts| {
+            let deployed = starts.found.iter().filter(|found| found.is_deployed());
+            Cell::text(deployed.count())
+        })
+        .column("minimum rho", move |starts| {
+            spread(
+                starts.found.iter().map(|found| found.carried.0).collect(),
+                2,
+            )
+        })
+        .column("maximum rho", move |starts| {
+            let maximum = |found: &Found| found.carried.1.unwrap_or(to);
+            spread(starts.found.iter().map(maximum).collect(), 2)
+        })
+        .column("boundary rms at rho = 1, %", move |starts| {
+            spread(starts.found.iter().map(|found| found.boundary).collect(), 3)
+        })
+        .markdown(starts)
+}
+
+impl Found {
+    /// Whether every void is open at the load of the designs.
+    fn is_deployed(&self) -> bool {
+        let (from, to) = self.carried;
+        (from..=to.unwrap_or(f64::INFINITY)).contains(&super::DESIGN_LOAD)
+    }
+}
