@@ -3,12 +3,13 @@
 //! The commands are listed in docs/results/pages.toml. A page is always written again; a product, from which pages are
 //! made, only if its file is missing or older than its sources.
 
+mod book;
 mod inputs;
 
 use anyhow::{Context, Result, ensure};
+use book::{Book, Page, Product};
 use clap::Args;
 use inputs::Inputs;
-use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::SystemTime;
@@ -31,44 +32,6 @@ pub struct PagesCommand {
     /// List the pages and their questions
     #[arg(long)]
     list: bool,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Book {
-    page: Vec<Page>,
-    product: Vec<Product>,
-}
-
-/// A folder of docs/results.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Page {
-    name: String,
-    question: String,
-    /// Names of the products that the page needs.
-    #[serde(default)]
-    needs: Vec<String>,
-    /// Shipped files that the commands read without naming them.
-    #[serde(default)]
-    reads: Vec<String>,
-    /// What docs/results/README.md says of a page whose inputs have changed since it was made.
-    #[serde(default)]
-    stale: Option<String>,
-    commands: Vec<String>,
-}
-
-/// A file or folder that pages are made from.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Product {
-    name: String,
-    file: PathBuf,
-    /// Files that the product is made from.
-    from: Vec<PathBuf>,
-    #[serde(default)]
-    needs: Vec<String>,
-    commands: Vec<String>,
 }
 
 impl PagesCommand {

@@ -1,7 +1,7 @@
 //! What the pages of docs/results rest on: `docs/results/inputs.toml` has for every page the hashes of its weights, databases,
 //! configurations and other files at the time when it was made. A page whose inputs have changed since is stale.
 
-use super::{Book, Page};
+use super::book::{Book, Page};
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -164,7 +164,7 @@ mod tests {
             stale: None,
             commands: vec!["study --out docs".into()],
         };
-        let product = super::super::Product {
+        let product = super::super::book::Product {
             name: "b".into(),
             file: "runs/b".into(),
             from: vec!["data/a.csv".into(), "runs/c".into()],
