@@ -9,6 +9,7 @@ use design::equilibrium::solver::EquilibriumSolver;
 use design::equilibrium::supports::{Dof, Load, Support};
 use design::geometry::chamfer::{Chamfer, Precision};
 use design::hinge_law::{CondensedLaw, Contact, DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
+use design::objective::centre::Centre;
 use design::objective::design_problem::{Deployment, DesignProblem, Mechanics, Model};
 use design::objective::loss::Objective;
 use design::objective::shape::{OutlinePoints, Shape};
@@ -112,7 +113,7 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
                     precision: Precision::Samples,
                 },
                 outline: OutlinePoints::Free,
-                centred: true,
+                centre: Some(Centre::Points),
             },
             functionals: vec![
                 Weighted::new(
