@@ -10,6 +10,7 @@ use design::equilibrium::solver::EquilibriumSolver;
 use design::equilibrium::supports::{Dof, Load, Support};
 use design::geometry::chamfer::{Chamfer, Precision};
 use design::hinge_law::{DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
+use design::objective::centre::Centre;
 use design::objective::design_problem::{DesignProblem, Mechanics, Model};
 use design::objective::loss::Objective;
 use design::objective::shape::{OutlinePoints, Shape};
@@ -106,7 +107,7 @@ fn problem(
                     precision: Precision::Samples,
                 },
                 outline: OutlinePoints::Free,
-                centred: true,
+                centre: Some(Centre::Points),
             },
             functionals: vec![
                 Weighted::new(

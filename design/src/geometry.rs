@@ -1,9 +1,9 @@
 //! Plane geometry: points, polygons, smooth extrema, distances between outlines, paths of SVG files.
 
 pub mod chamfer;
-pub mod intersection_over_union;
 pub mod plane;
 pub mod polygon;
 pub mod similarity;
 pub mod smooth_extrema;
 pub mod svg_path;
+pub mod symmetric_difference;

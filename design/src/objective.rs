@@ -1,6 +1,7 @@
 //! The design objective and its gradient through the equilibria; equations (16) to (20).
 
 mod balance;
+pub mod centre;
 mod design_gradient;
 pub mod design_problem;
 pub mod hinge_measures;

@@ -296,3 +296,35 @@ fn a_sheet_that_is_held_in_no_way_is_refused() {
         "{message}"
     );
 }
+
+#[test]
+fn a_held_opening_is_no_design_variable() {
+    let scene = Scene::read(&shipped("compact-11x11.toml")).unwrap();
+    let (problem, start) = (scene.problem().unwrap(), scene.start());
+    assert_eq!(start.opening, None);
+    let opening = problem.opening(&start).unwrap();
+    assert_eq!(opening, std::f64::consts::PI);
+    let free = Scene::read(&shipped("pin-7x7.toml")).unwrap();
+    let opening = free.problem().unwrap().opening(&free.start()).unwrap();
+    assert_eq!(free.start().opening, Some(opening));
+}
+
+#[test]
+fn an_objective_of_areas_needs_pins_and_a_target_with_area() {
+    let lift = |text: &str| format!("{text}\ncentre = \"area\"");
+    let coverage = "coverage = 0.5";
+    let message = refusal("linear-7x7.toml", coverage, &lift(coverage));
+    assert!(message.contains("objective.centre"), "{message}");
+    let points = "target_points = 500";
+    let message = refusal("compact-11x11.toml", points, "target_points = 2");
+    assert!(message.contains("objective.target_points = 2"), "{message}");
+    let weight = "symmetric_difference = 10.0";
+    let message = refusal("compact-11x11.toml", weight, "symmetric_difference = -1.0");
+    assert!(
+        message.contains("objective.symmetric_difference"),
+        "{message}"
+    );
+    let held = "held = true";
+    let message = refusal("compact-11x11.toml", held, "hold = true");
+    assert!(message.contains("did you mean `held`?"), "{message}");
+}

@@ -57,10 +57,11 @@ impl InspectCommand {
                 opening_deg,
             }) => {
                 let (scene, design) = listed.read()?;
+                let problem = scene.problem()?;
                 let opening = (opening_deg.map(f64::to_radians))
-                    .or(design.opening)
+                    .or(problem.opening(&design))
                     .context("this scene's hinges are not pins: pass --opening-deg")?;
-                listed.print(DeploymentListing::new(&scene.problem()?, &design, opening)?)
+                listed.print(DeploymentListing::new(&problem, &design, opening)?)
             }
             Stage::Equilibrium(listed) => {
                 let (scene, design) = listed.read()?;

@@ -133,7 +133,7 @@ impl ApproachStudy {
         let (problem, start) = (scene.problem()?, scene.start());
         let opening = start
             .opening
-            .context("the scene has no opening angle: set hinge = \"pin\"")?;
+            .context("the opening is no design variable: set hinge = \"pin\" without pin.held")?;
         let panels = FreePanels::new(&problem, &start, opening, enforcement)?;
         let found = panels.search(self.steps, rate);
         let tessellation = found.tessellation;

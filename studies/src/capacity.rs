@@ -348,6 +348,7 @@ fn strategies(config: &SceneConfig) -> [Strategy; 4] {
     kinematic.hinge = HingeModel::Pin;
     kinematic.pin = Some(PinConfig {
         opening_deg: OPENING_DEG,
+        held: false,
     });
     kinematic.supports.clear();
     kinematic.loads.clear();

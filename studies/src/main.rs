@@ -6,6 +6,8 @@ mod capacity;
 mod chain;
 mod charts;
 mod choices;
+mod compact;
+mod cpu_seconds;
 mod designed;
 mod drawing;
 mod extremes;
@@ -55,6 +57,7 @@ enum Study {
     Solutions(solutions::SolutionStudy),
     Approaches(approaches::ApproachStudy),
     Silhouettes(silhouettes::SilhouetteStudy),
+    Compact(compact::CompactStudy),
     Actuations(actuations::ActuationStudy),
     Capacity(capacity::CapacityStudy),
     Localisation(localisation::LocalisationStudy),
@@ -79,6 +82,7 @@ impl Study {
             Self::Solutions(study) => study.run(),
             Self::Approaches(study) => study.run(),
             Self::Silhouettes(study) => study.run(),
+            Self::Compact(study) => study.run(),
             Self::Actuations(study) => study.run(),
             Self::Capacity(study) => study.run(),
             Self::Localisation(study) => study.run(),

@@ -1,8 +1,8 @@
 //! How a deployed outline matches its target: through the corners that belong to no hinge, the paper's point set, and
 //! through all corners, for which the notches between the free ones are missing area.
 
-use design::geometry::intersection_over_union::intersection_over_union;
 use design::geometry::polygon::nearest_on_outline;
+use design::geometry::symmetric_difference::intersection_over_union;
 use design::objective::shape::OutlinePoints;
 use design::sheet::cut_sheet::Sheet;
 

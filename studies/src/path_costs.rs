@@ -4,14 +4,13 @@ mod learned;
 mod linear;
 
 use crate::charts::{PathCost, growth};
+use crate::cpu_seconds::cpu_seconds;
 use anyhow::Result;
 use clap::Args;
 use design::equilibrium::load_step::{Effort, LoadStep};
 use kirigami::ui::picture;
 use kirigami::ui::progress::Progress;
 use kirigami::ui::run_folder;
-use nix::sys::resource::{UsageWho, getrusage};
-use nix::sys::time::TimeValLike;
 use std::path::PathBuf;
 
 /// Measure what equilibrium paths cost, for linear sheets of growing size and for the scenes of learned hinges
@@ -60,18 +59,12 @@ impl PathCostStudy {
 
 /// CPU time of a piece of work (s), and its result. Short work is repeated `repeats` times.
 fn timed<T>(repeats: usize, mut work: impl FnMut() -> Result<T>) -> Result<(T, f64)> {
-    // getrusage counts microseconds; /proc counts hundredths of a second, longer than the path of a small sheet takes.
-    let seconds = || -> Result<f64> {
-        let usage = getrusage(UsageWho::RUSAGE_SELF)?;
-        let time = usage.user_time() + usage.system_time();
-        Ok(1e-6 * time.num_microseconds() as f64)
-    };
-    let begin = seconds()?;
+    let begin = cpu_seconds()?;
     for _ in 1..repeats {
         work()?;
     }
     let result = work()?;
-    Ok((result, (seconds()? - begin) / repeats as f64))
+    Ok((result, (cpu_seconds()? - begin) / repeats as f64))
 }
 
 /// The effort of a whole path.

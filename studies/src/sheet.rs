@@ -170,7 +170,10 @@ fn law_choices(base: &SceneConfig, weights: &Path) -> Result<Vec<Choice>> {
     choices.vary("hinge law", "pin, mean opening", |config| {
         config.hinge = HingeModel::Pin;
         config.surrogate = None;
-        config.pin = Some(PinConfig { opening_deg });
+        config.pin = Some(PinConfig {
+            opening_deg,
+            held: false,
+        });
         (config.supports, config.loads) = (Vec::new(), Vec::new());
         config.drive = None;
     });

@@ -135,7 +135,7 @@ impl SilhouetteStudy {
         let seconds = began.elapsed().as_secs_f64();
         let (deployment, target) = (&designed.best.deployment, &scene.target.points);
         let tessellation = Tessellation::from_deployment(&scene, deployment);
-        let opening = designed.design.opening;
+        let opening = designed.problem.opening(&designed.design);
         let opening = opening.context("the scene has no opening angle: set hinge = \"pin\"")?;
         Ok(Fitted {
             name,

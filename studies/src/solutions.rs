@@ -162,10 +162,8 @@ impl SolutionStudy {
             let seed = config.optimiser.seed + run as u64;
             let scene = self.scene_of(config, seed)?;
             let designed = inverse_design(&scene, stop, &mut |_| {})?;
-            let opening = designed
-                .design
-                .opening
-                .context("the scene has no opening angle: set hinge = \"pin\"")?;
+            let opening = designed.problem.opening(&designed.design);
+            let opening = opening.context("the scene has no opening angle: set hinge = \"pin\"")?;
             Ok(Solution {
                 seed,
                 start: scene.start().pattern.values(),

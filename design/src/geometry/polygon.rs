@@ -14,6 +14,15 @@ pub fn area(polygon: &[[f64; 2]]) -> f64 {
     0.5 * twice
 }
 
+/// The polygon with its vertices in counter-clockwise order.
+pub fn counter_clockwise(polygon: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut polygon = polygon.to_vec();
+    if area(&polygon) < 0.0 {
+        polygon.reverse();
+    }
+    polygon
+}
+
 /// The part of a convex polygon in which the linear function `height` is negative.
 pub fn clip(polygon: &[[f64; 2]], height: impl Fn([f64; 2]) -> f64) -> Vec<[f64; 2]> {
     let mut kept = Vec::new();

@@ -209,6 +209,14 @@ impl Deployment {
 }
 
 impl DesignProblem {
+    /// The opening angle of all hinges of a design, if they are pins (rad).
+    pub fn opening(&self, design: &DesignVector) -> Option<f64> {
+        match self.model {
+            Model::Ideal { opening } => Some(design.opening.unwrap_or(opening)),
+            Model::Equilibrium(_) => None,
+        }
+    }
+
     /// Lines 2-4 of Algorithm 1: cut pattern and flat sheet.
     pub fn cut(&self, design: &DesignVector) -> Result<(CutPattern, Sheet), DesignError> {
         let pattern = CutPattern::new(self.grid, self.outline, &design.pattern)?;

@@ -1,7 +1,7 @@
 //! The shape term of the objective: the Chamfer distance of the deployed outline to the target.
 
 use crate::geometry::chamfer::{Chamfer, Precision};
-use crate::geometry::polygon::mean;
+use crate::objective::centre::Centre;
 use crate::objective::term::{Deployed, Term, TermGradient};
 use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::topology::PanelCorner;
@@ -38,8 +38,9 @@ pub struct Shape {
     pub chamfer: Chamfer,
     /// The panel corners that form P.
     pub outline: OutlinePoints,
-    /// Whether P is translated so that its mean is the origin; the target should then be centred too.
-    pub centred: bool,
+    /// The point of P that is translated to the origin, where that of the target should be; `None` where supports hold
+    /// the sheet.
+    pub centre: Option<Centre>,
 }
 
 impl Term for Shape {
@@ -53,10 +54,7 @@ impl Term for Shape {
 
     fn evaluate(&self, at: &Deployed, weight: f64, gradient: &mut TermGradient) -> f64 {
         let (chamfer, by_outline) = self.distance(at.outline);
-        let sums = gradient.by_outline.as_flattened_mut();
-        for (sum, slope) in std::iter::zip(sums, by_outline.as_flattened()) {
-            *sum += weight * slope;
-        }
+        gradient.add_by_outline(weight, &by_outline);
         chamfer
     }
 }
@@ -73,49 +71,40 @@ impl Shape {
                 precision: Precision::Samples,
             },
             outline: OutlinePoints::Free,
-            centred: false,
+            centre: None,
         }
     }
 
     /// The points P in the position in which they are compared with the target (mm).
     pub fn placed(&self, outline: &[[f64; 2]]) -> Vec<[f64; 2]> {
-        let origin = if self.centred {
-            mean(outline)
-        } else {
-            [0.0; 2]
-        };
+        let origin = self.centre.map_or([0.0; 2], |centre| centre.of(outline));
         let moved = |point: &[f64; 2]| [point[0] - origin[0], point[1] - origin[1]];
         outline.iter().map(moved).collect()
     }
 
+    /// The gradient in P from that in its placed points.
+    pub(crate) fn pullback(&self, outline: &[[f64; 2]], placed: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+        match self.centre {
+            Some(centre) => centre.pullback(outline, &placed),
+            None => placed,
+        }
+    }
+
     /// The Chamfer distance of the points P to the target (mm^2), and its gradient in P.
     pub fn distance(&self, outline: &[[f64; 2]]) -> (f64, Vec<[f64; 2]>) {
-        let (chamfer, mut by_outline) =
-            (self.chamfer).evaluate(&self.placed(outline), &self.target);
-        if self.centred {
-            let [x, y] = mean(&by_outline);
-            for gradient in &mut by_outline {
-                gradient[0] -= x;
-                gradient[1] -= y;
-            }
-        }
-        (chamfer, by_outline)
+        let (chamfer, by_placed) = (self.chamfer).evaluate(&self.placed(outline), &self.target);
+        (chamfer, self.pullback(outline, by_placed))
     }
 
     /// Vectors v in P whose sum of v v^T approximates the second derivative of the Chamfer distance (Gauss-Newton).
     pub(crate) fn curvature(&self, outline: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
         let factors = (self.chamfer).curvature_factors(&self.placed(outline), &self.target);
-        let share = if self.centred {
-            1.0 / outline.len() as f64
-        } else {
-            0.0
-        };
         let mut vectors = Vec::new();
         for (k, columns) in factors.into_iter().enumerate() {
             for column in columns.into_iter().filter(|column| *column != [0.0; 2]) {
-                let mut vector = vec![column.map(|entry| -share * entry); outline.len()];
-                (0..2).for_each(|axis| vector[k][axis] += column[axis]);
-                vectors.push(vector);
+                let mut placed = vec![[0.0; 2]; outline.len()];
+                placed[k] = column;
+                vectors.push(self.pullback(outline, placed));
             }
         }
         vectors

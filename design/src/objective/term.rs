@@ -86,6 +86,13 @@ impl TermGradient {
         }
     }
 
+    /// Adds `weight` times a gradient in the deployed positions of P.
+    pub fn add_by_outline(&mut self, weight: f64, by_outline: &[[f64; 2]]) {
+        let sums = self.by_outline.as_flattened_mut();
+        std::iter::zip(sums, by_outline.as_flattened())
+            .for_each(|(sum, entry)| *sum += weight * entry);
+    }
+
     /// Adds `weight` times a gradient in the flat corners of every panel.
     pub fn add_by_corners(&mut self, weight: f64, by_corners: &[[[f64; 2]; 4]]) {
         let sums = self.by_corners.as_flattened_mut().as_flattened_mut();

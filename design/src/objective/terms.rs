@@ -7,6 +7,7 @@ mod panel_shape;
 pub mod panel_width;
 mod peak_load;
 mod shear;
+mod symmetric_difference;
 
 pub use compression::Compression;
 pub use damage::Damage;
@@ -15,9 +16,11 @@ pub use panel_shape::PanelShape;
 pub use panel_width::PanelWidth;
 pub use peak_load::PeakLoad;
 pub use shear::Shear;
+pub use symmetric_difference::SymmetricDifference;
 
 use crate::geometry::chamfer::{Chamfer, Precision};
 use crate::hinge_law::{DamageMeasure, HingeLaw};
+use crate::objective::centre::Centre;
 use crate::objective::loss::Objective;
 use crate::objective::shape::{OutlinePoints, Shape};
 use crate::objective::target::Target;
@@ -45,9 +48,18 @@ pub struct ObjectiveConfig {
     /// to no hinge, or `all`.
     #[serde(default)]
     pub outline: OutlinePoints,
+    /// The point of a sheet on pins that is placed on that of its target: the mean of the `points` that are compared, as in
+    /// the paper, or the centroid of the `area` inside the outline.
+    #[serde(default)]
+    pub centre: Centre,
     /// Number of points on the target outline.
     #[schemars(range(min = 1, max = 1_000_000))]
     pub target_points: usize,
+    /// Weight of the area inside the polygon through the compared corners and outside the target, or the reverse, over
+    /// the area of the target. Never relative to a gradient.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e9))]
+    pub symmetric_difference: f64,
     /// Weight of (17); needs `hinge = "surrogate"`.
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e9))]
@@ -137,8 +149,13 @@ impl ObjectiveConfig {
             };
             penalties.push(Weighted::new(self.peak_load * area, peak));
         }
+        let shape = self.shape(setting);
+        if self.symmetric_difference > 0.0 {
+            let difference = SymmetricDifference::new(shape.clone());
+            penalties.push(Weighted::new(self.symmetric_difference * area, difference));
+        }
         Objective {
-            shape: self.shape(setting),
+            shape,
             functionals: vec![
                 Weighted::new(self.damage * unit, damage),
                 Weighted::new(self.compression * unit, Compression { temperature }),
@@ -149,22 +166,20 @@ impl ObjectiveConfig {
     }
 
     fn shape(&self, setting: &Setting) -> Shape {
-        let centred = setting.law.is_none();
-        let [x, y] = if centred {
-            setting.target.mean()
-        } else {
-            [0.0; 2]
-        };
-        let points = setting.target.points.iter();
+        let centre = setting.law.is_none().then_some(self.centre);
+        let points = &setting.target.points;
+        let [x, y] = centre.map_or([0.0; 2], |centre| centre.of(points));
         Shape {
-            target: points.map(|point| [point[0] - x, point[1] - y]).collect(),
+            target: (points.iter())
+                .map(|point| [point[0] - x, point[1] - y])
+                .collect(),
             chamfer: Chamfer {
                 coverage_weight: self.coverage,
                 smoothing: self.smoothing,
                 precision: self.precision,
             },
             outline: self.outline,
-            centred,
+            centre,
         }
     }
 }
@@ -214,7 +229,9 @@ mod tests {
             smoothing: 10.0,
             precision: Precision::Samples,
             outline: OutlinePoints::All,
+            centre: Centre::Points,
             target_points: 20,
+            symmetric_difference: 0.9,
             damage: 0.7,
             damage_measure,
             compression: 0.3,

@@ -59,7 +59,7 @@ impl Scene {
         let points = config.objective.target_points;
         let target = Target::sample(&config.target, folder(path), points);
         let target = target.map_err(SceneError::at(path))?;
-        checks::target(&target, &config.sheet.outline()).map_err(SceneError::at(path))?;
+        checks::target(&target, &config).map_err(SceneError::at(path))?;
         let hinge = LoadedHinge::load(&config, &measured, path)?;
         Ok(Self {
             config,

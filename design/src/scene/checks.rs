@@ -3,8 +3,9 @@
 //! The ranges are wider than those of any real sheet, and narrower than an error by a factor of 1000.
 
 use crate::geometry::polygon::{contains, distance, edges, mean};
+use crate::objective::centre::Centre;
 use crate::objective::target::Target;
-use crate::pattern::cut_pattern::{CutPattern, Outline};
+use crate::pattern::cut_pattern::CutPattern;
 use crate::pattern::pattern_error::PatternError;
 use crate::scene::actuation::{At, EdgeLoadConfig, SupportKind};
 use crate::scene::hinge_model::HingeModel;
@@ -38,8 +39,12 @@ const OPENS_TO: f64 = 3.0;
 /// Maximum distance between the middles of target and flat sheet (mm): supports move a sheet by 100 m at most.
 const AWAY: f64 = 1e6;
 
+/// Area of the sampled target over the square of its length below which it has no inside.
+const NO_AREA: f64 = 1e-6;
+
 /// A target of a very different size than the sheet, or far away from it, is assumed to be in the wrong unit.
-pub(super) fn target(target: &Target, outline: &Outline) -> Result<(), InvalidScene> {
+pub(super) fn target(target: &Target, scene: &SceneConfig) -> Result<(), InvalidScene> {
+    let outline = scene.sheet.outline();
     let perimeter: f64 = edges(&outline.corners).map(|(p, q)| distance(p, q)).sum();
     let limits = [0.2 * perimeter, OPENS_TO * perimeter];
     within("length of the target outline", target.length, limits, "mm")
@@ -51,6 +56,12 @@ pub(super) fn target(target: &Target, outline: &Outline) -> Result<(), InvalidSc
         [0.0, AWAY],
         "mm",
     )?;
+    let objective = &scene.objective;
+    let needs_area = objective.symmetric_difference > 0.0 || objective.centre == Centre::Area;
+    if needs_area && target.area() <= NO_AREA * target.length * target.length {
+        let points = objective.target_points;
+        return Err(InvalidScene::TargetWithoutArea { points });
+    }
     Ok(())
 }
 
@@ -325,6 +336,9 @@ fn objective(scene: &SceneConfig) -> Result<(), InvalidScene> {
     within(key, width, [0.0, side / 3.0], "mm")?;
     if scene.objective.peak_load > 0.0 && scene.drive.is_none() {
         return Err(InvalidScene::NoDrive);
+    }
+    if scene.objective.centre == Centre::Area && scene.hinge != HingeModel::Pin {
+        return Err(InvalidScene::HeldCentre);
     }
     Ok(())
 }

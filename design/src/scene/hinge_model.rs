@@ -20,9 +20,12 @@ pub enum HingeModel {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PinConfig {
-    /// The opening angle at the start of the search (deg); it is a design variable.
+    /// The opening angle at the start of the search (deg); it is a design variable, unless it is `held`.
     #[schemars(range(min = -180.0, max = 180.0))]
     pub opening_deg: f64,
+    /// Whether the opening is held at `opening_deg` during the search.
+    #[serde(default)]
+    pub held: bool,
 }
 
 /// The spring constants of (11).

@@ -178,6 +178,15 @@ pub enum InvalidScene {
         "objective.peak_load needs [drive]: only under a prescribed stroke does the load have a maximum before its end"
     )]
     NoDrive,
+    #[error(
+        "objective.centre = \"area\" needs hinge = \"pin\": supports hold other sheets where they are"
+    )]
+    HeldCentre,
+    #[error(
+        "objective.target_points = {points}: the polygon through them encloses no area, which objective.symmetric_difference \
+         and objective.centre = \"area\" need: increase it"
+    )]
+    TargetWithoutArea { points: usize },
     #[error("objective.domain needs hinge = \"surrogate\": no other law has a domain")]
     NoDomain,
     #[error(

@@ -41,6 +41,8 @@ pub(super) enum HingeBehaviour {
     Pinned {
         /// The angle at the start (rad).
         opening: f64,
+        /// Whether it is not a design variable.
+        held: bool,
     },
     /// Forces follow from the energy of a law and from the contact of panel edges.
     Elastic {
@@ -79,11 +81,14 @@ impl LoadedHinge {
         matches!(self.behaviour, HingeBehaviour::Elastic { .. })
     }
 
-    /// The opening angle of pins at the start (rad).
-    pub(super) fn opening(&self) -> Option<f64> {
+    /// The opening angle of pins at the start (rad), if it is a design variable.
+    pub(super) fn free_opening(&self) -> Option<f64> {
         match self.behaviour {
-            HingeBehaviour::Pinned { opening } => Some(opening),
-            HingeBehaviour::Elastic { .. } => None,
+            HingeBehaviour::Pinned {
+                opening,
+                held: false,
+            } => Some(opening),
+            _ => None,
         }
     }
 
@@ -244,6 +249,7 @@ fn pinned(config: &SceneConfig) -> Result<LoadedHinge, InvalidScene> {
         label: "pins: kinematics without forces",
         behaviour: HingeBehaviour::Pinned {
             opening: pin.opening_deg.to_radians(),
+            held: pin.held,
         },
         hinge_point: HingePoint::Corner,
         networks: Vec::new(),

@@ -1,6 +1,5 @@
 //! The deployed sheet in the position in which the objective compares it with the target.
 
-use crate::geometry::polygon::mean;
 use crate::objective::design_problem::Deployment;
 use crate::objective::shape::OutlinePoints;
 use crate::scene::checked_scene::Scene;
@@ -8,15 +7,16 @@ use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::kinematics::{Configuration, deployed};
 use crate::sheet::topology::PanelCorner;
 
-/// The configuration in the position in which the objective compares it with the target: a sheet
-/// without supports is centred on the target.
+/// The configuration in the position in which the objective compares it with the target: the centre of a sheet
+/// without supports is that of the target.
 pub fn placed(scene: &Scene, sheet: &Sheet, configuration: &[[f64; 3]]) -> Configuration {
     let mut placed = configuration.to_vec();
     if scene.config.supports.is_empty() {
-        let points = scene.config.objective.outline.corners(sheet);
-        let middle = mean(&corners(sheet, points, configuration));
+        let objective = &scene.config.objective;
+        let outline = corners(sheet, objective.outline.corners(sheet), configuration);
+        let [from, to] = [&outline, &scene.target.points].map(|it| objective.centre.of(it));
         for axis in 0..2 {
-            let shift = scene.target.mean()[axis] - middle[axis];
+            let shift = to[axis] - from[axis];
             placed.iter_mut().for_each(|motion| motion[axis] += shift);
         }
     }

@@ -51,7 +51,7 @@ impl Scene {
         let mut design = DesignVector {
             pattern: start.pattern(grid).expect("the scene has been checked"),
             omega: w_lig.iter().map(|w| widths.omega(*w)).collect(),
-            opening: self.hinge.opening(),
+            opening: self.hinge.free_opening(),
         };
         let optimiser = &self.config.optimiser;
         let mut random = ChaCha8Rng::seed_from_u64(optimiser.seed);
@@ -77,7 +77,9 @@ impl Scene {
 
     fn model(&self) -> Result<Model, SceneError> {
         let (law, contact) = match &self.hinge.behaviour {
-            HingeBehaviour::Pinned { opening } => return Ok(Model::Ideal { opening: *opening }),
+            HingeBehaviour::Pinned { opening, .. } => {
+                return Ok(Model::Ideal { opening: *opening });
+            }
             HingeBehaviour::Elastic { law, contact } => (law.clone(), *contact),
         };
         let solver = self.solver().map_err(SceneError::at(&self.path))?;

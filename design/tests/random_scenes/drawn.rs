@@ -269,7 +269,7 @@ impl Drawn {
                     precision: Precision::Samples,
                 },
                 outline: OutlinePoints::All,
-                centred: false,
+                centre: None,
             }),
         }
     }

@@ -75,7 +75,7 @@ fn a_pulled_sheet_with_path_functionals() {
                     precision: Precision::Samples,
                 },
                 outline: OutlinePoints::All,
-                centred: false,
+                centre: None,
             },
             functionals: functionals(&case),
             penalties: Vec::new(),

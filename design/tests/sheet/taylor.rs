@@ -9,11 +9,14 @@ use design::equilibrium::solver::EquilibriumSolver;
 use design::equilibrium::supports::{Dof, Load, Support};
 use design::geometry::chamfer::{Chamfer, Precision};
 use design::hinge_law::{CondensedLaw, Contact, DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
+use design::objective::centre::Centre;
 use design::objective::design_problem::{Deployment, DesignProblem, Mechanics, Model};
 use design::objective::loss::Objective;
 use design::objective::shape::{OutlinePoints, Shape};
 use design::objective::term::Weighted;
-use design::objective::terms::{Compression, Damage, DomainPenalty, PanelShape, PeakLoad, Shear};
+use design::objective::terms::{
+    Compression, Damage, DomainPenalty, PanelShape, PeakLoad, Shear, SymmetricDifference,
+};
 use design::pattern::coordinates::PatternCoordinates;
 use design::pattern::cut_pattern::Outline;
 use design::pattern::design_vector::{DesignVector, WidthChart};
@@ -112,7 +115,7 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
                     precision: Precision::Samples,
                 },
                 outline: OutlinePoints::Free,
-                centred: true,
+                centre: Some(Centre::Points),
             },
             functionals: vec![
                 Weighted::new(
@@ -208,15 +211,36 @@ fn ideal_deployment() {
     );
 }
 
+/// With the opening as a design variable, and held.
+#[test]
+fn taylor_rate_of_two_with_areas_instead_of_points() {
+    let mut problem = problem(Model::Ideal { opening: 0.9 }, HingePoint::Corner);
+    problem.objective.shape.centre = Some(Centre::Area);
+    let difference = SymmetricDifference::new(problem.objective.shape.clone());
+    let difference = Weighted::new(1e5, difference);
+    problem.objective.penalties.push(difference);
+    for opening in [Some(0.8), None] {
+        let design = DesignVector { opening, ..start() };
+        let evaluation = problem.evaluate(&design).unwrap();
+        assert!(evaluation.terms["symmetric_difference"] > 0.0);
+        assert_order_two(&problem, &design);
+    }
+}
+
 /// The products of the rows with a direction are the motions of the outline points along it, in the metric of the Chamfer
 /// distance.
 #[test]
 fn the_curvature_of_the_shape_is_that_of_its_points() {
-    for model in [
-        Model::Ideal { opening: 0.9 },
-        mechanics(springs(), 40.0, East::Pulled(15.0)),
+    for (model, centre) in [
+        (Model::Ideal { opening: 0.9 }, Centre::Points),
+        (Model::Ideal { opening: 0.9 }, Centre::Area),
+        (
+            mechanics(springs(), 40.0, East::Pulled(15.0)),
+            Centre::Points,
+        ),
     ] {
-        let (problem, design) = (problem(model, HingePoint::Corner), start());
+        let (mut problem, design) = (problem(model, HingePoint::Corner), start());
+        problem.objective.shape.centre = Some(centre);
         let deployment = problem.evaluate(&design).unwrap().deployment;
         let x = design.to_flat();
         let direction = Random::new(17).numbers(x.len(), 1.0);

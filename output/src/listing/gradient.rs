@@ -1,6 +1,6 @@
 //! Objective and gradient in numbers.
 
-use design::geometry::intersection_over_union::intersection_over_union;
+use design::geometry::symmetric_difference::intersection_over_union;
 use design::objective::design_problem::{DesignError, DesignProblem, Evaluation, Sensitivities};
 use design::objective::loss::TermValues;
 use design::objective::scores::outline_error;

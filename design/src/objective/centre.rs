@@ -1,0 +1,132 @@
+//! The point of the deployed outline P that is placed at the origin, and likewise that of the target: the mean of the
+//! points, or the centroid of the area inside,
+//!
+//! ```text
+//! c = 1/(6 A) sum (p_i + p_i+1) (p_i x p_i+1),     A = 1/2 sum p_i x p_i+1
+//! ```
+
+use crate::geometry::plane::{I, complex, cross, dot, point};
+use crate::geometry::polygon::mean;
+use faer::c64;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The point of an outline that is placed at the origin.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Centre {
+    /// The mean of the points, as in the paper. It depends on where the points are along the outline.
+    #[default]
+    Points,
+    /// The centroid of the area inside the outline.
+    Area,
+}
+
+impl Centre {
+    /// The centre of an outline.
+    pub fn of(self, outline: &[[f64; 2]]) -> [f64; 2] {
+        let middle = mean(outline);
+        match self {
+            Self::Points => middle,
+            Self::Area => {
+                let (area, moment) = moments(outline, middle);
+                point(complex(middle) + moment / (3.0 * area))
+            }
+        }
+    }
+
+    /// The gradient in the points of an outline from that in its points relative to its centre.
+    pub(crate) fn pullback(self, outline: &[[f64; 2]], moved: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let force: c64 = moved.iter().map(|slope| complex(*slope)).sum();
+        let by_centre = match self {
+            Self::Points => vec![force / outline.len() as f64; outline.len()],
+            Self::Area => by_centroid(outline, force),
+        };
+        let relative = std::iter::zip(moved, by_centre);
+        relative
+            .map(|(moved, by_centre)| point(complex(*moved) - by_centre))
+            .collect()
+    }
+}
+
+/// 2 A and the sum of (p_i + p_i+1) (p_i x p_i+1), relative to a point.
+fn moments(outline: &[[f64; 2]], origin: [f64; 2]) -> (f64, c64) {
+    let (mut twice, mut moment) = (0.0, c64::ZERO);
+    for [p, q] in relative_edges(outline, origin) {
+        twice += cross(p, q);
+        moment += (p + q) * cross(p, q);
+    }
+    (twice, moment)
+}
+
+/// The gradient of the product of the centroid with a vector.
+fn by_centroid(outline: &[[f64; 2]], vector: c64) -> Vec<c64> {
+    let middle = mean(outline);
+    let (twice, moment) = moments(outline, middle);
+    let centroid = dot(vector, moment) / (3.0 * twice);
+    let mut gradient = vec![c64::ZERO; outline.len()];
+    for (i, [p, q]) in relative_edges(outline, middle).enumerate() {
+        let along = vector * (cross(p, q) / (3.0 * twice));
+        let by_cross = dot(vector, p + q) / (3.0 * twice) - centroid / twice;
+        gradient[i] += along - I * q * by_cross;
+        gradient[(i + 1) % outline.len()] += along + I * p * by_cross;
+    }
+    gradient
+}
+
+fn relative_edges(outline: &[[f64; 2]], origin: [f64; 2]) -> impl Iterator<Item = [c64; 2]> {
+    let at = move |i: usize| complex(outline[i % outline.len()]) - complex(origin);
+    (0..outline.len()).map(move |i| [at(i), at(i + 1)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::taylor::central_slope;
+
+    const L: [[f64; 2]; 6] = [
+        [5.0, 7.0],
+        [8.0, 7.0],
+        [8.0, 8.0],
+        [6.0, 8.0],
+        [6.0, 10.0],
+        [5.0, 10.0],
+    ];
+
+    #[test]
+    fn the_centroid_of_an_angle_is_that_of_its_two_legs() {
+        let [x, y] = Centre::Area.of(&L);
+        // Legs of 3 x 1 at (1.5, 0.5) and of 1 x 2 at (0.5, 2) from the corner (5, 7).
+        assert!((x - 5.0 - (3.0 * 1.5 + 2.0 * 0.5) / 5.0).abs() < 1e-14);
+        assert!((y - 7.0 - (3.0 * 0.5 + 2.0 * 2.0) / 5.0).abs() < 1e-14);
+        let [x, _] = Centre::Points.of(&L);
+        assert!((x - 38.0 / 6.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn gradients_agree_with_differences() {
+        for centre in [Centre::Points, Centre::Area] {
+            // sum k (x_k + 2 y_k^2) of the points relative to the centre
+            let value = |flat: &[f64]| -> f64 {
+                let points = flat.as_chunks().0;
+                let [x, y] = centre.of(points);
+                let relative = points.iter().map(|p| [p[0] - x, p[1] - y]);
+                relative
+                    .zip(1..)
+                    .map(|([x, y], k)| f64::from(k) * (x + 2.0 * y * y))
+                    .sum()
+            };
+            let [_, y] = centre.of(&L);
+            let slopes = L
+                .iter()
+                .zip(1..)
+                .map(|(p, k)| [1.0, 4.0 * (p[1] - y)].map(|s| f64::from(k) * s));
+            let gradient = centre.pullback(&L, &slopes.collect::<Vec<_>>());
+            for (i, found) in gradient.as_flattened().iter().enumerate() {
+                let unit: Vec<f64> = (0..12).map(|j| f64::from(i == j)).collect();
+                let slope = central_slope(value, L.as_flattened(), &unit, 1e-5);
+                assert!((found - slope).abs() < 1e-8, "{i}: {found} {slope}");
+            }
+        }
+    }
+}

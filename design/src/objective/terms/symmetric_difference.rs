@@ -1,0 +1,38 @@
+//! The area of the symmetric difference of target and deployed outline, over the area of the target. It is zero only where
+//! they coincide, wherever the corners are along the outline, whereas the Chamfer distance also depends on their spacing.
+
+use crate::geometry::polygon::{area, counter_clockwise};
+use crate::geometry::symmetric_difference::symmetric_difference;
+use crate::objective::shape::Shape;
+use crate::objective::term::{Deployed, Term, TermGradient};
+
+/// The symmetric difference of target and deployed outline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SymmetricDifference {
+    shape: Shape,
+    /// The target, counter-clockwise (mm).
+    target: Vec<[f64; 2]>,
+}
+
+impl SymmetricDifference {
+    /// For the outline and the target of `shape`.
+    pub fn new(shape: Shape) -> Self {
+        let target = counter_clockwise(&shape.target);
+        Self { shape, target }
+    }
+}
+
+impl Term for SymmetricDifference {
+    fn name(&self) -> &'static str {
+        "symmetric_difference"
+    }
+
+    fn evaluate(&self, at: &Deployed, weight: f64, gradient: &mut TermGradient) -> f64 {
+        let placed = self.shape.placed(at.outline);
+        let (difference, by_placed) = symmetric_difference(&placed, &self.target);
+        let whole = area(&self.target);
+        let by_outline = self.shape.pullback(at.outline, by_placed);
+        gradient.add_by_outline(weight / whole, &by_outline);
+        difference / whole
+    }
+}
