@@ -2,6 +2,7 @@
 
 mod actuations;
 mod approaches;
+mod budget;
 mod capacity;
 mod chain;
 mod charts;
@@ -56,6 +57,7 @@ enum Study {
     Approaches(approaches::ApproachStudy),
     Silhouettes(silhouettes::SilhouetteStudy),
     Actuations(actuations::ActuationStudy),
+    Budget(budget::BudgetStudy),
     Capacity(capacity::CapacityStudy),
     Localisation(localisation::LocalisationStudy),
     Extremes(extremes::ExtremesStudy),
@@ -80,6 +82,7 @@ impl Study {
             Self::Approaches(study) => study.run(),
             Self::Silhouettes(study) => study.run(),
             Self::Actuations(study) => study.run(),
+            Self::Budget(study) => study.run(),
             Self::Capacity(study) => study.run(),
             Self::Localisation(study) => study.run(),
             Self::Extremes(study) => study.run(),
