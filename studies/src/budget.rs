@@ -46,7 +46,10 @@ impl BudgetStudy {
             let scene = drawn_sheet(&base, &self.scene, number)?;
             let found = balanced(&scene, &scene.start(), &windows, 1).map_err(task_error);
             match found {
-                Ok((found, _)) => println!("{}", SheetErrors::new(&found, scene.config.title.clone(), self.tier)),
+                Ok((found, _)) => println!(
+                    "{}",
+                    SheetErrors::new(&found, scene.config.title.clone(), self.tier)
+                ),
                 Err(error) => println!("{number}: {error}"),
             }
         }

@@ -7,6 +7,7 @@ mod driven;
 mod equilibrium;
 mod extreme_sheets;
 mod extremes;
+mod force_response;
 mod gradient;
 mod invariance;
 mod kinematics;

@@ -77,7 +77,10 @@ fn drawn(base: &SceneConfig, number: u64, random: &mut ChaCha8Rng) -> SceneConfi
     config.supports = if clamped {
         vec![hold(held, SupportKind::Clamp)]
     } else {
-        vec![hold(held, SupportKind::Pin), hold([0, 0], SupportKind::RollerY)]
+        vec![
+            hold(held, SupportKind::Pin),
+            hold([0, 0], SupportKind::RollerY),
+        ]
     };
     config.loads = vec![LoadConfig {
         panel: pulled,
