@@ -5,6 +5,7 @@ mod cases;
 mod closed_forms;
 mod driven;
 mod equilibrium;
+mod error_budget;
 mod extreme_sheets;
 mod extremes;
 mod force_response;

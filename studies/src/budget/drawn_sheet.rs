@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use std::path::Path;
 
 /// Every so many sheets one has six panels and seven hinges; the others have four of both.
-const LARGER: u64 = 4;
+const LARGER: u64 = 8;
 /// Sides of a panel (mm) and mean ligament width over the thickness.
 const PANEL: [f64; 2] = [70.0, 110.0];
 const LIGAMENT: [f64; 2] = [22.0, 42.0];
@@ -48,7 +48,7 @@ pub(super) fn drawn_sheet(base: &SceneConfig, path: &Path, number: u64) -> Resul
 fn drawn(base: &SceneConfig, number: u64, random: &mut ChaCha8Rng) -> SceneConfig {
     let mut config = base.clone();
     let [columns, rows] = match number % LARGER {
-        0..=2 => [2, 2],
+        0..7 => [2, 2],
         _ if random.random_bool(0.5) => [2, 3],
         _ => [3, 2],
     };
