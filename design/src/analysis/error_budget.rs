@@ -370,22 +370,23 @@ impl Deployed<'_> {
     fn imperfection(&self) -> Known {
         let thickness = self.scene.material.thickness;
         let mut forces = self.forces();
-        let mut largest = 0.0_f64;
+        let mut largest = (0.0_f64, "");
         for (force, design) in forces.iter_mut().zip(&self.designs) {
             let ratio = design.w_lig / thickness;
-            let table = match Regime::of(ratio) {
-                Regime::Film => &FILM_IMPERFECTION,
-                Regime::Plate => &PLATE_IMPERFECTION,
+            let (table, page) = match Regime::of(ratio) {
+                Regime::Film => (&FILM_IMPERFECTION, "docs/results/window"),
+                Regime::Plate => (&PLATE_IMPERFECTION, "docs/results/plates"),
             };
             let change = interpolated(table, ratio)
                 .ok_or_else(|| format!("not measured for ligaments of {ratio:.1} thicknesses"))?;
             *force = force.map(|force| change * force);
-            largest = largest.max(change);
+            if change > largest.0 {
+                largest = (change, page);
+            }
         }
-        let source = format!(
-            "up to {:.1} % of the force of a hinge (docs/results/window)",
-            100.0 * largest
-        );
+        let (change, page) = largest;
+        let percent = 100.0 * change;
+        let source = format!("up to {percent:.1} % of the force of a hinge ({page})");
         Ok((ForceErrors::along(&forces), source))
     }
 

@@ -240,21 +240,17 @@ mod tests {
         let (designs, states) = hinges();
         let sizes = vec![[1.0, 2.0, 3.0]; 3];
         let errors = ForceErrors::alike(&sizes, &designs, &states);
-        let (widths, arms) = (18.0, [1.0, 1.0, 18.0]);
+        let arms = [1.0, 1.0, 18.0];
         for (i, (size, sign)) in [(1.0, 1.0), (2.0, -1.0), (3.0, 1.0)]
             .into_iter()
             .enumerate()
         {
-            let expected = (size * arms[i]).powi(2);
-            let near = |found: f64, expected: f64| {
-                assert!(
-                    (found - expected).abs() < 1e-2 * widths * widths,
-                    "{i}: {found} {expected}"
-                );
-            };
-            near(variance(&errors, 0, 0, i), expected);
-            near(variance(&errors, 0, 2, i), sign * expected);
-            near(variance(&errors, 0, 1, i), 0.0);
+            let expected: f64 = f64::powi(size * arms[i], 2);
+            for (other, covariance) in [(0, expected), (1, 0.0), (2, sign * expected)] {
+                let found = variance(&errors, 0, other, i);
+                let error = (found - covariance).abs() / expected;
+                assert!(error < 1e-2, "{i}, {other}: {found} {covariance}");
+            }
         }
     }
 
