@@ -3,8 +3,10 @@
 
 pub mod actuation_curve;
 pub mod degeneration;
+pub mod error_budget;
 pub mod flanks;
 pub mod flatness;
+pub mod force_errors;
 pub mod force_transmission;
 pub mod friction_effect;
 pub mod further_load;

@@ -4,6 +4,7 @@ pub mod adjoint;
 pub mod branch;
 pub mod displacement_control;
 pub mod follower;
+pub mod force_response;
 pub mod friction;
 pub mod hinged_sheet;
 pub mod lbfgs;

@@ -16,6 +16,8 @@ mod law;
 mod linear;
 mod surrogate;
 
+pub(crate) use corrected::LENGTHS;
+
 pub use condensed::{CondensedLaw, Constant};
 pub use contact::{Contact, InvalidContact};
 pub use corrected::{CorrectedLaw, Correction, MissingForces};

@@ -20,6 +20,7 @@ mod ratios;
 pub mod run_inputs;
 mod scene_error;
 mod sheet_config;
+mod tolerances;
 mod weights_files;
 
 pub use crate::objective::terms::ObjectiveConfig;
@@ -40,3 +41,4 @@ pub use posture::{Posture, PostureConfig};
 pub use ratios::{Ratios, rounded};
 pub use scene_error::SceneError;
 pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
+pub use tolerances::ToleranceConfig;

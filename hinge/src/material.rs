@@ -29,6 +29,9 @@ pub struct SheetMaterial {
     pub fracture_strain: f64,
     /// Rows [true stress (MPa), true plastic strain]; the first row is at zero plastic strain.
     pub plastic: Vec<[f64; 2]>,
+    /// Relative standard deviation of the stress at equal strain, if known; no window solve uses it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stress_deviation: Option<f64>,
 }
 
 /// The TOML file; see `configs/materials/`.
@@ -57,6 +60,10 @@ struct MaterialFile {
     plastic: Option<Vec<[f64; 2]>>,
     /// Path of a measured curve instead of `plastic`, relative to the material's file.
     tensile_csv: Option<PathBuf>,
+    /// Relative standard deviation of the stress at equal strain, of the sheet that is cut from this law, for the error budget of
+    /// a design; `kirigami material fit` writes that of its specimens. No window solve uses it.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    stress_deviation: Option<f64>,
 }
 
 /// Why a material could not be read.
@@ -119,6 +126,7 @@ impl SheetMaterial {
             density_kg_m3: file.density_kg_m3,
             fracture_strain: file.fracture_strain,
             plastic,
+            stress_deviation: file.stress_deviation,
         };
         match material.validate() {
             Ok(()) => Ok(material),
@@ -126,6 +134,15 @@ impl SheetMaterial {
                 path: path.to_owned(),
                 source,
             }),
+        }
+    }
+
+    /// The material as solves record it: without its deviation, which they do not depend on.
+    #[must_use]
+    pub fn as_solved(&self) -> Self {
+        Self {
+            stress_deviation: None,
+            ..self.clone()
         }
     }
 
@@ -207,6 +224,7 @@ mod tests {
             density_kg_m3: 1390.0,
             fracture_strain: 1.784,
             plastic: vec![[44.0, 0.0], [33.6, 0.05], [200.0, 1.784]],
+            stress_deviation: None,
         }
     }
 

@@ -1,5 +1,6 @@
 //! The report of a design run: the objective before and after, all hinges, warnings.
 
+mod budget;
 mod columns;
 mod estimate;
 mod fact_sheet;
@@ -9,10 +10,12 @@ mod self_weight;
 mod text;
 mod warning;
 
+pub(crate) use budget::BUDGET_HEADING;
 pub(crate) use columns::rounded;
 pub(crate) use estimate::force_spreads;
 pub(crate) use text::worst_first;
 
+pub use budget::Budget;
 pub use estimate::Estimate;
 pub use fact_sheet::{FactSheet, Reached, SpotCheck, WeightFacts};
 pub use hinge_row::HingeRow;
@@ -21,6 +24,7 @@ pub use warning::{Concern, Severity, Warning};
 
 use crate::cut_file::{CutLines, FabricationError};
 use crate::report::rules::{Judged, JudgedRun};
+use design::analysis::error_budget::ErrorBudget;
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
 use design::optimise::outer_loop::Ended;
@@ -48,6 +52,8 @@ pub struct Report {
     pub after: Scores,
     /// Standard deviations of the scene's ensemble on the path of the best design, if there is an ensemble.
     pub estimate: Option<Estimate>,
+    /// By how much each cause of errors moves the best design; `None` without a learned hinge law or without an equilibrium.
+    pub budget: Option<Budget>,
     /// What the sheet is made of, how far it opens under which load, and what the hinge law rests on.
     pub facts: FactSheet,
     /// Whether a cut file was written.
@@ -113,6 +119,10 @@ impl Report {
         let deployment = &designed.best.deployment;
         let hinges = HingeRow::all(scene, deployment);
         let facts = FactSheet::new(scene, &designed.problem, deployment, &hinges);
+        let residual = designed.residual.as_deref();
+        let errors = ErrorBudget::new(scene, &designed.problem, deployment, residual);
+        let dead_loads = scene.config.has_loads() && scene.config.drive.is_none();
+        let budget = errors.map(|errors| Budget::new(errors, &facts.self_weight, dead_loads));
         let after = Scores::new(&designed.problem.objective, &designed.best);
         let warnings = rules::warnings(&Judged {
             scene,
@@ -139,6 +149,7 @@ impl Report {
             before: Scores::new(&designed.problem.objective, &designed.start),
             after,
             estimate: Estimate::new(scene.networks(), deployment),
+            budget,
             facts,
             warnings,
             hinges,

@@ -2,6 +2,7 @@
 
 mod actuations;
 mod approaches;
+mod budget;
 mod capacity;
 mod chain;
 mod charts;
@@ -59,6 +60,7 @@ enum Study {
     Silhouettes(silhouettes::SilhouetteStudy),
     Compact(compact::CompactStudy),
     Actuations(actuations::ActuationStudy),
+    Budget(budget::BudgetStudy),
     Capacity(capacity::CapacityStudy),
     Localisation(localisation::LocalisationStudy),
     Extremes(extremes::ExtremesStudy),
@@ -84,6 +86,7 @@ impl Study {
             Self::Silhouettes(study) => study.run(),
             Self::Compact(study) => study.run(),
             Self::Actuations(study) => study.run(),
+            Self::Budget(study) => study.run(),
             Self::Capacity(study) => study.run(),
             Self::Localisation(study) => study.run(),
             Self::Extremes(study) => study.run(),

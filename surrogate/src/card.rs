@@ -79,13 +79,20 @@ pub struct Card {
 }
 
 /// Errors of a surrogate at random states.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SpotCheck {
     /// Errors at all states.
     pub errors: TestErrors,
     /// Number of the states that lie inside the training domain.
     pub inside: usize,
+    /// Tier of the window mesh of the states, if known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tier: Option<String>,
+    /// Root mean square errors of (F_a, F_s, M_theta / w_lig) at the states inside, each over the Euclidean norm of the three at
+    /// its state, if known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub forces: Option<[f64; 3]>,
 }
 
 /// The ensemble whose median predictions weights were also trained on, at states that no solver has computed.

@@ -77,9 +77,9 @@ impl Surrogate {
         self
     }
 
-    /// The same surrogate with the errors at a spot check on its card, `inside` of whose states lie inside the domain.
-    pub fn with_spot_check(mut self, errors: TestErrors, inside: usize) -> Self {
-        self.card.spot_check = Some(SpotCheck { errors, inside });
+    /// The same surrogate with a spot check on its card.
+    pub fn with_spot_check(mut self, check: SpotCheck) -> Self {
+        self.card.spot_check = Some(check);
         self
     }
 

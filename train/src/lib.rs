@@ -50,4 +50,4 @@ pub use fine_tuning::check_pretrained;
 pub use state::StateError;
 pub use stiffness::StiffnessCheck;
 pub use training::{Start, Trained, Training, train};
-pub use validation::Parity;
+pub use validation::{Parity, spot_check};

@@ -4,7 +4,7 @@ use crate::config::TrainingConfig;
 use crate::samples::Scales;
 use dataset::{ComparedState, Row};
 use support::statistics::root_mean_square;
-use surrogate::{FitError, Surrogate, TestErrors};
+use surrogate::{FitError, SpotCheck, Surrogate, TestErrors};
 
 /// Predictions of a surrogate with their targets, the values of the finite elements, one state a row.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -12,6 +12,23 @@ pub struct Parity {
     /// Targets (`reference`) and predictions (`value`), in the order of the rows. Quantities that are not known, or that the
     /// surrogate does not predict, are NaN.
     pub states: Vec<ComparedState>,
+}
+
+/// The errors of a surrogate at random states on windows of a mesh tier, for its card.
+pub fn spot_check(surrogate: &Surrogate, rows: &[Row], tier: &str) -> SpotCheck {
+    let domain = surrogate.domain();
+    let inside: Vec<Row> = rows
+        .iter()
+        .filter(|row| domain.contains(&row.design, &row.sample.deformation()))
+        .cloned()
+        .collect();
+    let widths = inside.iter().map(|row| row.design.w_lig);
+    SpotCheck {
+        errors: Parity::new(surrogate, rows).errors(),
+        inside: inside.len(),
+        tier: Some(tier.to_owned()),
+        forces: Parity::new(surrogate, &inside).force_errors(widths),
+    }
 }
 
 impl Parity {
@@ -40,6 +57,26 @@ impl Parity {
     pub fn errors(&self) -> TestErrors {
         let by_quantity = std::array::from_fn(|i| fit_error(self.points(i)));
         TestErrors::new(self.states.len(), by_quantity)
+    }
+
+    /// Root mean square errors of (F_a, F_s, M_theta / w_lig), each over the Euclidean norm of the three by the finite elements in
+    /// its state, for the ligament widths of the states; `None` without a state under load.
+    pub fn force_errors(&self, widths: impl Iterator<Item = f64>) -> Option<[f64; 3]> {
+        let errors: Vec<[f64; 3]> = std::iter::zip(&self.states, widths)
+            .filter_map(|(state, w_lig)| {
+                let forces = |of: [f64; 6]| [of[1], of[2], of[3] / w_lig];
+                let [value, reference] = [state.value, state.reference].map(forces);
+                let norm = reference
+                    .iter()
+                    .map(|force| force * force)
+                    .sum::<f64>()
+                    .sqrt();
+                let error = |i: usize| (value[i] - reference[i]) / norm;
+                (norm > 0.0).then(|| std::array::from_fn(error))
+            })
+            .collect();
+        let rms = |i: usize| root_mean_square(errors.iter().map(|error| error[i]));
+        (!errors.is_empty()).then(|| std::array::from_fn(rms))
     }
 
     /// The states of the rows with these indices.

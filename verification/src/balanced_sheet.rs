@@ -246,6 +246,14 @@ impl Balanced {
         self.rounds.last().map_or(&[], |round| &round.unsolved)
     }
 
+    /// The movement of every panel corner in the last round (mm); `None` if a hinge was not solved in it.
+    pub fn residual(&self) -> Option<Vec<f64>> {
+        let [.., before, last] = &self.deployments[..] else {
+            return None;
+        };
+        self.unsolved().is_empty().then(|| movements(before, last))
+    }
+
     /// The deployment with the corrected law of the last round.
     pub fn by_elements(&self) -> &Deployment {
         &self.deployments[self.deployments.len() - 1]

@@ -9,8 +9,8 @@ use fe_driver::{Campaign, Progress, RunOptions, Shard, Solver, run, status};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
-use surrogate::{Surrogate, TestErrors};
-use train::Parity;
+use surrogate::{SpotCheck, Surrogate};
+use train::spot_check;
 
 /// What is solved, and when it is enough.
 #[derive(Clone, Copy)]
@@ -45,7 +45,7 @@ pub struct Accuracy {
 }
 
 /// One round.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct LearningRound {
     /// Number of rays of all rounds so far.
     pub rays: usize,
@@ -55,10 +55,8 @@ pub struct LearningRound {
     pub cpu_s: f64,
     /// Time of all trainings of the round (s).
     pub training_s: f64,
-    /// Number of states of the spot check that lie inside the training domain of the weights.
-    pub inside: usize,
-    /// Errors at all states of the spot check.
-    pub errors: TestErrors,
+    /// Errors of the weights at the states of the spot check.
+    pub check: SpotCheck,
 }
 
 /// What a caller does in every round.
@@ -109,7 +107,7 @@ pub fn learn<S: LearningSteps>(task: LearningTask, steps: &mut S) -> Result<Lear
         let database = collected(task.folder)?;
         let (weights, training_s) = steps.train(rays, &database)?;
         let round = LearningRound::new(task, &weights, training_s)?;
-        let weights = weights.with_spot_check(round.errors, round.inside);
+        let weights = weights.with_spot_check(round.check.clone());
         let is_latest = counts.peek().is_none_or(|next| *next > solved);
         steps.round(&round, weights, is_latest)?;
         if !is_latest {
@@ -182,24 +180,19 @@ impl LearningRound {
         training_s: f64,
     ) -> Result<Self, VerificationError> {
         let tally = status(task.folder)?.tally;
-        let domain = weights.domain();
-        let inside = task.spot.iter().filter(|row| {
-            let state = row.sample.deformation();
-            domain.contains(&row.design, &state)
-        });
         Ok(Self {
             rays: tally.closed(),
             complete: tally.complete,
             cpu_s: tally.cpu_seconds,
             training_s,
-            inside: inside.count(),
-            errors: Parity::new(weights, task.spot).errors(),
+            check: spot_check(weights, task.spot, &task.campaign.tier.to_string()),
         })
     }
 
     fn is_within(&self, accuracy: Accuracy) -> bool {
-        let [energy, ..] = self.errors.percents();
-        energy <= accuracy.energy && self.errors.forces_percent() <= accuracy.forces
+        let errors = &self.check.errors;
+        let [energy, ..] = errors.percents();
+        energy <= accuracy.energy && errors.forces_percent() <= accuracy.forces
     }
 }
 

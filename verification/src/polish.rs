@@ -128,6 +128,7 @@ pub fn polish(
         design: found,
         start,
         best,
+        residual: after.residual(),
     };
     Ok(Polished {
         designed,

@@ -19,13 +19,14 @@ impl LearningRound {
             f_s_percent,m_theta_percent,d_percent,d_peak_percent\n"
             .to_owned();
         for round in rounds {
-            let (complete, inside) = (round.complete_percent(), round.inside);
-            let (cpu_s, training_s, states) = (round.cpu_s, round.training_s, round.errors.rows);
+            let (complete, inside) = (round.complete_percent(), round.check.inside);
+            let (cpu_s, training_s, states) =
+                (round.cpu_s, round.training_s, round.check.errors.rows);
             text += &format!(
                 "{},{complete:.1},{cpu_s:.1},{training_s:.1},{states},{inside}",
                 round.rays
             );
-            for error in round.errors.percents() {
+            for error in round.check.errors.percents() {
                 text += &format!(",{error:.4}");
             }
             text += "\n";
@@ -36,7 +37,7 @@ impl LearningRound {
 
 impl fmt::Display for LearningRound {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let percents = self.errors.percents();
+        let percents = self.check.errors.percents();
         let w = number_or_dash(percents[0], 2);
         let [_, f_a, f_s, m_theta, d, d_peak] = percents.map(|percent| number_or_dash(percent, 1));
         write!(
@@ -47,8 +48,8 @@ impl fmt::Display for LearningRound {
             self.complete_percent(),
             self.cpu_s,
             self.training_s,
-            format!("{} of {}", self.inside, self.errors.rows),
-            number_or_dash(self.errors.forces_percent(), 1)
+            format!("{} of {}", self.check.inside, self.check.errors.rows),
+            number_or_dash(self.check.errors.forces_percent(), 1)
         )
     }
 }

@@ -132,7 +132,7 @@ pub fn sheet_problem(
     Ok(SheetProblem {
         shape,
         tier,
-        material: scene.material.clone(),
+        material: scene.material.as_solved(),
         keeping,
         held,
         pulled,

@@ -25,7 +25,7 @@ use crate::sheet::panel_vectors::{add_at_hinge, at_hinge};
 use std::borrow::Cow;
 
 /// Backward error of an adjoint solve above which the tangent is considered singular.
-const SINGULAR: f64 = 1e-6;
+pub(crate) const SINGULAR: f64 = 1e-6;
 
 /// A singular tangent, for which the adjoint does not exist.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

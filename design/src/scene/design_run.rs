@@ -40,6 +40,9 @@ pub struct Designed {
     /// Whether a corrected path of the search was on another branch than the followed one; see
     /// [`SearchState::contradicted`].
     pub contradicted: bool,
+    /// Movement of every panel corner in the last round of finite elements (mm), if the design was balanced with them for every
+    /// hinge.
+    pub residual: Option<Vec<f64>>,
 }
 
 /// Why a run failed.
@@ -237,6 +240,7 @@ pub fn inverse_design(
         design: search.best,
         start,
         best,
+        residual: None,
     })
 }
 
@@ -266,13 +270,14 @@ impl State {
         })
     }
 
-    /// The keys of the scene that changed since the run, without those that may: the number of steps, the title and the
-    /// cutting, which change no design, and paths, since [`Scene::model_hash`] identifies what they name.
+    /// The keys of the scene that changed since the run, without those that may: the number of steps, the title, the
+    /// cutting and the tolerances, which change no design, and paths, since [`Scene::model_hash`] identifies what they name.
     fn changed_keys(&self, scene: &Scene) -> BTreeSet<String> {
         let mut before = self.scene.without_paths();
         before.optimiser.steps = scene.config.optimiser.steps;
         before.title.clone_from(&scene.config.title);
         before.cutting = scene.config.cutting;
+        before.tolerances = scene.config.tolerances;
         let keys = |config: &SceneConfig| match serde_json::to_value(config) {
             Ok(Value::Object(keys)) => keys,
             _ => unreachable!("a run writes the same keys to its state"),

@@ -13,6 +13,7 @@ use crate::scene::hinge_model::{
 };
 use crate::scene::posture::PostureConfig;
 use crate::scene::sheet_config::{LigamentConfig, SheetConfig, StartConfig};
+use crate::scene::tolerances::ToleranceConfig;
 use crate::sheet::cut_sheet::HingePoint;
 use hinge::{HingeConstants, SheetMaterial};
 use schemars::JsonSchema;
@@ -54,6 +55,9 @@ pub struct SceneConfig {
     /// How the sheet is cut.
     #[serde(default)]
     pub cutting: CuttingConfig,
+    /// Tolerances of the cut sheet.
+    #[serde(default)]
+    pub tolerances: ToleranceConfig,
     /// Read if `hinge = "pin"`.
     pub pin: Option<PinConfig>,
     /// Constants of (11); read if `hinge = "linear"`.

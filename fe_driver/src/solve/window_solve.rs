@@ -49,7 +49,7 @@ impl WindowProblem {
     pub fn new(hinge: impl Into<HingePath>, material: &SheetMaterial, tier: Tier) -> Self {
         Self {
             hinge: hinge.into(),
-            material: material.clone(),
+            material: material.as_solved(),
             tier,
             step: StepControl::usual(tier.regime()),
         }

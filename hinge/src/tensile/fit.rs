@@ -124,6 +124,18 @@ impl Statistic {
 }
 
 impl MaterialFit {
+    /// Relative standard deviation of the stress over the specimens: the largest of modulus, yield and plateau, to two digits.
+    pub(super) fn stress_deviation(&self) -> Option<f64> {
+        let stresses = [self.young, self.offset_yield].into_iter();
+        let drawn = [self.upper_yield, self.plateau].into_iter().flatten();
+        let relative = |of: Statistic| Some(of.deviation? / of.mean);
+        let largest = stresses
+            .chain(drawn)
+            .filter_map(relative)
+            .reduce(f64::max)?;
+        Some(rounded(largest, 4))
+    }
+
     /// Reads and evaluates the record of each specimen with its own options, and fits one law to all.
     pub fn new(
         records: &[(PathBuf, RecordOptions)],

@@ -36,6 +36,7 @@ impl MaterialFit {
                 .iter()
                 .map(|row| [row.stress, row.strain])
                 .collect(),
+            stress_deviation: self.stress_deviation(),
         };
         material.validate()?;
         Ok(material)
@@ -96,7 +97,14 @@ fn write(t: &mut String, fit: &MaterialFit, facts: &SheetFacts) -> std::fmt::Res
         };
         writeln!(t, "    [{:?}, {:?}],{origin}", row.stress, row.strain)?;
     }
-    writeln!(t, "]")
+    writeln!(t, "]")?;
+    match fit.stress_deviation() {
+        Some(deviation) => writeln!(
+            t,
+            "\nstress_deviation = {deviation:?}  # relative standard deviation of the stress over the specimens"
+        ),
+        None => Ok(()),
+    }
 }
 
 /// The file of a specimen, what was read from it and what was dropped.

@@ -310,21 +310,7 @@ fn point_outside(judged: &Judged) -> Option<Warning> {
 
 fn not_modelled(judged: &Judged) -> Option<Warning> {
     judged.scene.surrogate()?;
-    let weight = &judged.run.as_ref()?.facts.self_weight;
-    let missing = match weight.posture? {
-        Posture::HeldFlat => {
-            "what holds the panels flat, and its friction; the weight of the sheet, if its plane is not horizontal"
-        }
-        Posture::Lying => {
-            "panels that lift off the surface, as those of a thin sheet do near their ligaments; in the design, friction"
-        }
-        Posture::Hanging if weight.is_modelled => {
-            "panels that leave the plane, as those of a thin sheet do"
-        }
-        Posture::Hanging | Posture::Free => {
-            "panels that leave the plane, as those of a thin sheet do; the weight of the sheet"
-        }
-    };
+    let missing = judged.run.as_ref()?.facts.self_weight.left_out()?;
     Some(Concern::NotModelled.of_sheet(format!(
         "the panels stay in the plane in the model. Not modelled: {missing}"
     )))

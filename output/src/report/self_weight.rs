@@ -70,6 +70,24 @@ impl SelfWeight {
         }
     }
 
+    /// What the model leaves out because of how the sheet is held; `None` if the scene does not say.
+    pub(super) fn left_out(&self) -> Option<&'static str> {
+        Some(match self.posture? {
+            Posture::HeldFlat => {
+                "what holds the panels flat, and its friction; the weight of the sheet, if its plane is not horizontal"
+            }
+            Posture::Lying => {
+                "panels that lift off the surface, as those of a thin sheet do near their ligaments; in the design, friction"
+            }
+            Posture::Hanging if self.is_modelled => {
+                "panels that leave the plane, as those of a thin sheet do"
+            }
+            Posture::Hanging | Posture::Free => {
+                "panels that leave the plane, as those of a thin sheet do; the weight of the sheet"
+            }
+        })
+    }
+
     /// Names and values; `units` are those of displacement and load.
     pub(super) fn rows(&self, units: Option<[&str; 2]>) -> Vec<(&'static str, String)> {
         let modelled = if self.is_modelled {

@@ -35,6 +35,9 @@ impl fmt::Display for Report {
         for (name, value) in facts {
             writeln!(f, "{name:<width$}  {value}")?;
         }
+        if let Some(budget) = &self.budget {
+            write!(f, "\n{}", budget.text())?;
+        }
         let gamma = if self.states_gamma() { GAMMA } else { "" };
         writeln!(f, "\n{}\n{LEGEND}{gamma}", self.hinge_table())?;
         let warned = (self.warnings.iter()).any(|warning| warning.severity > Severity::Note);

@@ -40,12 +40,22 @@ function writeTexts() {
     write(tr, "td", name);
     write(tr, "td", value);
   }
+  writeBudget();
   document.body.className = run.carries_load ? "" : "pin";
   writeWarnings();
   byId("scene").textContent = run.scene;
   byId("legend").textContent = legend();
   byId("forces-card").hidden = run.actuation.loads.length + run.actuation.supports.length === 0;
   byId("curve-card").hidden = !states.curve;
+}
+
+function writeBudget() {
+  byId("budget-card").hidden = !run.budget;
+  for (const [i, cells] of (run.budget?.rows ?? []).entries()) {
+    const tr = write(byId("budget"), "tr");
+    cells.forEach((cell) => write(tr, i < 2 ? "th" : "td", cell));
+  }
+  byId("budget-note").textContent = run.budget ? `${run.budget.heading}. ${run.budget.left_out}.` : "";
 }
 
 function writeWarnings() {

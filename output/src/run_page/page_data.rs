@@ -1,7 +1,7 @@
 //! The data of the page.
 
 use crate::deployment_states::kept;
-use crate::report::{Report, Warning, worst_first};
+use crate::report::{BUDGET_HEADING, Report, Warning, worst_first};
 use crate::run_page::hinge_states::HingeStates;
 use crate::run_page::packed::Packed;
 use design::objective::loss::Objective;
@@ -27,6 +27,7 @@ pub(super) struct PageData<'a> {
     about_cut_files: Option<&'static str>,
     end_of_search: String,
     facts: Vec<(&'static str, String)>,
+    budget: Option<BudgetTable>,
     warnings: &'a [Warning],
     scene: String,
     history: History,
@@ -43,6 +44,14 @@ pub(super) struct PageData<'a> {
     target: Packed,
     /// The training domain of the hinge law, and its bounds.
     domain: Option<(&'a TrainingDomain, [[f64; 2]; 3])>,
+}
+
+/// The error budget: what it is, its table, and what it leaves out.
+#[derive(Serialize)]
+struct BudgetTable {
+    heading: &'static str,
+    rows: Vec<[String; 5]>,
+    left_out: String,
 }
 
 /// The objective along the search; its terms are weighted, so that their sum is the loss (mm^2).
@@ -92,6 +101,11 @@ impl<'a> PageData<'a> {
             about_cut_files: report.about_cut_files(),
             end_of_search: report.end_of_search(),
             facts: report.fact_rows(),
+            budget: report.budget.as_ref().map(|budget| BudgetTable {
+                heading: BUDGET_HEADING,
+                rows: budget.rows(),
+                left_out: budget.left_out(),
+            }),
             warnings: &report.warnings,
             scene: scene_text(scene),
             history: History::new(&designed.problem.objective, &designed.history),

@@ -272,6 +272,19 @@ fn the_report_states_how_far_the_networks_of_an_ensemble_disagree() {
             .to_string()
             .contains("2 networks; standard deviation")
     );
+    let budget = report.budget.as_ref().unwrap().rows();
+    let row = |cause: &str| budget.iter().find(|row| row[0] == cause).unwrap();
+    assert!(row("network")[1].parse::<f64>().unwrap() > 0.0);
+    assert_eq!(row("network")[3], "prescribed");
+    // The card has no spot check, and the scene no tolerance.
+    for unknown in ["window mesh", "kerf", "thickness", "verify residual"] {
+        assert_eq!(row(unknown)[1], "not known");
+    }
+    let text = std::fs::read_to_string(scene_of_two.output().join("report.txt")).unwrap();
+    for cells in &budget {
+        assert!(cells.iter().all(|cell| text.contains(cell)), "{cells:?}");
+    }
+    assert!(text.contains("not in the budget: ") && text.contains("creep"));
 
     save(1.1, "other data");
     std::fs::write(folder.path().join("scene.toml"), &scene).unwrap();

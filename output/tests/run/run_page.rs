@@ -106,6 +106,7 @@ fn the_page_needs_no_other_file_and_agrees_with_the_report() {
         let sum: f64 = terms.map(|term| term[1][i].as_f64().unwrap()).sum();
         assert!((sum / loss.as_f64().unwrap() - 1.0).abs() < 1e-12);
     }
+    assert!(data["budget"].is_null());
     let facts = data["facts"].as_array().unwrap().iter();
     assert_eq!(facts.count(), report.fact_rows().len());
     assert!(data["scene"].as_str().unwrap().contains("k_theta = 300.0"));
@@ -121,6 +122,8 @@ fn damage_is_not_known_once_a_hinge_has_left_the_domain() {
         &learned(&[("force = [2.0, 0.0]", "force = [8.0, 0.0]")]),
     );
     let data = data(&page);
+    let rows = report.budget.as_ref().unwrap().rows();
+    assert_eq!(data["budget"]["rows"], serde_json::json!(rows));
     assert_equals_report(&data, &report);
     let [damage, inside] = ["damage", "inside"].map(|name| floats(&data["states"][name]));
     let largest = floats(&data["hinges"]["damage"]);

@@ -270,7 +270,7 @@ impl LearningSteps for Steps<'_> {
 
     fn round(&mut self, round: &LearningRound, weights: Surrogate, is_latest: bool) -> Result<()> {
         println!("{round}");
-        self.rounds.push(*round);
+        self.rounds.push(round.clone());
         run_folder::write(self.out, "learn.csv", &LearningRound::csv(&self.rounds))?;
         // The weights are those of all rays that an earlier command has solved.
         if is_latest {

@@ -6,6 +6,7 @@ use clap::Args;
 use dataset::Database;
 use std::path::PathBuf;
 use surrogate::Surrogate;
+use train::spot_check;
 
 /// Print the errors of weights on a database, such as a spot check or rays of a finer mesh
 ///
@@ -20,6 +21,10 @@ pub struct TestCommand {
     /// Database (Parquet with its manifest)
     #[arg(value_name = "DATABASE")]
     database: PathBuf,
+    /// Write the errors to the card of the weights as their spot check, from which the error budget of a design takes those of the
+    /// hinge law. The states must be in no training
+    #[arg(long)]
+    record: bool,
 }
 
 impl TestCommand {
@@ -42,6 +47,11 @@ impl TestCommand {
             card.tier, manifest.tier, manifest.rays
         );
         println!("{}", StateErrors::new(&surrogate, database.rows()));
+        if self.record {
+            let check = spot_check(&surrogate, database.rows(), &manifest.tier);
+            surrogate.with_spot_check(check).save(&self.weights)?;
+            println!("recorded on the card of {}", self.weights.display());
+        }
         Ok(())
     }
 }

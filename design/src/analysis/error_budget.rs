@@ -1,0 +1,469 @@
+//! The error budget of a deployed sheet: by how much each cause of errors moves its panel corners and changes its load.
+//!
+//! To first order an error of the hinge forces moves the sheet by [`ForceResponse`](crate::equilibrium::force_response::ForceResponse).
+//! A cause gives the standard deviations of these forces ([`ForceErrors`]), from what was measured:
+//!
+//! | cause | force errors | of the hinges | measured |
+//! |---|---|---|---|
+//! | network | deviations of the ensemble at the states of the sheet | as the networks have them | the ensemble of the scene |
+//! | window mesh | errors of the weights beside a finer mesh, over the force | alike in like states | spot check on the card |
+//! | material law | in proportion to the force | common | the material file |
+//! | imperfection | in proportion to the force | independent | docs/results/window, docs/results/plates |
+//! | loading path | in proportion to the force and the separation from the ray | independent | docs/results/detours |
+//! | kerf | -1/2 d(force)/d(w_lig) of its tolerance | common | the scene |
+//! | thickness | by similarity, of its tolerance | common | the scene |
+//!
+//! Finite elements of all hinges of the sheet replace the first two and the loading path. What they leave is the movement of the
+//! panels in their last round.
+//!
+//! What is not measured is not known, and no part of the sum.
+
+use crate::analysis::actuation_curve::ActuationCurve;
+use crate::analysis::force_errors::{Deviations, ForceErrors};
+use crate::analysis::path_separation::PathSeparation;
+use crate::equilibrium::force_response::ForceResponse;
+use crate::hinge_law::{HingeEnergy, Order};
+use crate::objective::design_problem::{Deployment, DesignProblem};
+use crate::scene::Scene;
+use hinge::{HingeDesign, Regime};
+use serde::Serialize;
+use std::array::from_fn;
+use support::statistics::rms_and_maximum;
+use surrogate::SpotCheck;
+
+/// Ligament width over thickness, and the relative change of M_theta in a pure rotation if the imperfection has two thicknesses
+/// instead of one: the larger of two cut angles (docs/results/window/window.md, polyester film of 0.5 mm).
+const FILM_IMPERFECTION: [[f64; 2]; 3] = [[10.0, 0.0970], [36.0, 0.0247], [50.0, 0.0161]];
+/// The same if it has 0.1 instead of 0.02 thicknesses (docs/results/plates/window.md, polypropylene plate of 3 mm).
+const PLATE_IMPERFECTION: [[f64; 2]; 3] = [[1.0 / 3.0, 0.0127], [2.0 / 3.0, 0.0081], [1.0, 0.0075]];
+/// The separation of a path from its ray, in ligament widths, at which the forces differ by the fraction; they do in proportion to it:
+/// the law through all detours (docs/results/detours/detours.md, polyester film of 0.5 mm).
+const DETOUR: [f64; 2] = [0.17, 0.05];
+/// Standard deviations in the tolerance of a cut sheet.
+const TOLERANCE: f64 = 2.0;
+/// Number of hinges above which no budget is made: it takes three solves a hinge and more.
+const MOST_HINGES: usize = 2000;
+
+/// A cause of errors of a deployed sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cause {
+    /// Spread of the networks of the ensemble.
+    Network,
+    /// Errors of the weights beside a finer mesh of the windows.
+    WindowMesh,
+    /// The stress at equal strain.
+    MaterialLaw,
+    /// The imperfection from which the ligament buckles.
+    Imperfection,
+    /// The energy of a hinge as a function of its state alone.
+    LoadingPath,
+    /// The width that the cutter removes.
+    Kerf,
+    /// The thickness of the sheet.
+    Thickness,
+    /// What is left if the sheet was balanced with finite elements for its hinges.
+    VerifyResidual,
+}
+
+/// One cause of errors.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Contribution {
+    /// What causes the errors.
+    pub cause: Cause,
+    /// Where their size is from or, if that is not known, why.
+    pub source: String,
+    /// `None` if it is not known.
+    pub effect: Option<Effect>,
+}
+
+/// Standard deviations of a deployed sheet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Effect {
+    /// Of the panel corners (mm): root mean square and maximum.
+    pub corners: [f64; 2],
+    /// Of the load that the prescribed displacement takes, relative to it; `None` under dead loads.
+    pub load: Option<f64>,
+    /// Of every panel corner, SW, SE, NE and NW of every panel (mm).
+    #[serde(skip)]
+    pub by_corner: Vec<f64>,
+}
+
+/// The error budget of a deployed sheet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ErrorBudget {
+    /// All causes.
+    pub contributions: Vec<Contribution>,
+    /// The root of the sum of the squares of those that are known.
+    pub total: Effect,
+}
+
+/// Force errors with their source, or why they are not known.
+type Known = Result<(ForceErrors, String), String>;
+
+/// A deployed sheet at full load.
+struct Deployed<'a> {
+    scene: &'a Scene,
+    deployment: &'a Deployment,
+    designs: Vec<HingeDesign>,
+    /// Of the hinge law, without contact.
+    energies: Vec<HingeEnergy>,
+}
+
+impl Cause {
+    /// All causes in the order of a budget.
+    pub const ALL: [Self; 8] = [
+        Self::Network,
+        Self::WindowMesh,
+        Self::MaterialLaw,
+        Self::Imperfection,
+        Self::LoadingPath,
+        Self::Kerf,
+        Self::Thickness,
+        Self::VerifyResidual,
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Network => "network",
+            Self::WindowMesh => "window mesh",
+            Self::MaterialLaw => "material law",
+            Self::Imperfection => "imperfection",
+            Self::LoadingPath => "loading path",
+            Self::Kerf => "kerf",
+            Self::Thickness => "thickness",
+            Self::VerifyResidual => "verify residual",
+        }
+    }
+
+    /// Whether finite elements of the hinges of a sheet see its errors: they have the imperfection, the material, the kerf and the
+    /// thickness of the scene.
+    pub fn is_seen_by_elements(self) -> bool {
+        matches!(self, Self::Network | Self::WindowMesh | Self::LoadingPath)
+    }
+}
+
+impl ErrorBudget {
+    /// The budget of a deployed design of a scene with a learned hinge law; `None` for another law, if full load is not reached,
+    /// if the tangent there is singular, or for more than 2000 hinges. `residual` is the movement of every panel corner in the last
+    /// round of finite elements (mm), if the design was balanced with them.
+    pub fn new(
+        scene: &Scene,
+        problem: &DesignProblem,
+        deployment: &Deployment,
+        residual: Option<&[f64]>,
+    ) -> Option<Self> {
+        scene.surrogate()?;
+        let mechanics = problem.model.mechanics()?;
+        let last = deployment.at_full_load().ok()?;
+        let sheet = &deployment.sheet;
+        if sheet.hinges.len() > MOST_HINGES {
+            return None;
+        }
+        let designs = sheet.designs();
+        let law = mechanics.law.prepare(&designs);
+        let response = ForceResponse::new(
+            &mechanics.solver,
+            mechanics.hinged(sheet, &*law, false),
+            last,
+        )?;
+        let deployed = Deployed {
+            scene,
+            deployment,
+            energies: law.energies(&last.deformations, Order::Design),
+            designs,
+        };
+        let [_, load] = *ActuationCurve::new(mechanics, deployment)?.points.last()?;
+        let mut budget = Self {
+            contributions: Vec::new(),
+            total: Effect::none(sheet.panels.len()),
+        };
+        for cause in Cause::ALL {
+            let (source, effect) = match deployed.errors(cause, residual) {
+                Ok((errors, source)) => {
+                    let deviations = errors.deviations(&response, sheet, last)?;
+                    (source, Some(Effect::new(deviations, load)))
+                }
+                Err(reason) => (reason, None),
+            };
+            budget.contributions.push(Contribution {
+                cause,
+                source,
+                effect,
+            });
+        }
+        if let (Some(last), Some(residual)) = (budget.contributions.last_mut(), residual) {
+            last.source = "movement in the last round of finite elements".into();
+            last.effect = Some(Effect::new(
+                Deviations {
+                    corners: residual.to_vec(),
+                    load: None,
+                },
+                load,
+            ));
+        }
+        budget.total = budget.sum(|_| true);
+        Some(budget)
+    }
+
+    /// The root of the sum of the squares of the known contributions whose causes `count`.
+    pub fn sum(&self, count: impl Fn(Cause) -> bool) -> Effect {
+        let counted = self.contributions.iter().filter(|part| count(part.cause));
+        let effects = counted.filter_map(|part| part.effect.as_ref());
+        let none = Effect::none(self.total.by_corner.len() / 4);
+        effects.fold(none, |sum, effect| sum.with(effect))
+    }
+}
+
+impl Effect {
+    fn none(panels: usize) -> Self {
+        Self {
+            corners: [0.0; 2],
+            load: None,
+            by_corner: vec![0.0; 4 * panels],
+        }
+    }
+
+    fn new(deviations: Deviations, load: f64) -> Self {
+        Self {
+            corners: rms_and_maximum(deviations.corners.iter().copied()),
+            load: deviations.load.map(|deviation| deviation / load.abs()),
+            by_corner: deviations.corners,
+        }
+    }
+
+    /// The root of the sum of the squares of both.
+    fn with(&self, other: &Self) -> Self {
+        let corners = std::iter::zip(&self.by_corner, &other.by_corner);
+        let by_corner: Vec<f64> = corners.map(|(one, other)| one.hypot(*other)).collect();
+        let loads = [self.load, other.load].into_iter().flatten();
+        Self {
+            corners: rms_and_maximum(by_corner.iter().copied()),
+            load: loads.reduce(f64::hypot),
+            by_corner,
+        }
+    }
+}
+
+impl Deployed<'_> {
+    fn errors(&self, cause: Cause, residual: Option<&[f64]>) -> Known {
+        if residual.is_some() && cause.is_seen_by_elements() {
+            return Err("replaced by finite elements of every hinge".into());
+        }
+        match cause {
+            Cause::Network => self.networks(),
+            Cause::WindowMesh => self.window_mesh(),
+            Cause::MaterialLaw => self.material_law(),
+            Cause::Imperfection => self.imperfection(),
+            Cause::LoadingPath => self.loading_path(),
+            Cause::Kerf => self.kerf(),
+            Cause::Thickness => self.thickness(),
+            Cause::VerifyResidual => {
+                Err("no finite elements: `kirigami verify --equilibrium`".into())
+            }
+        }
+    }
+
+    /// (F_a, F_s, M_theta) of every hinge by the hinge law.
+    fn forces(&self) -> Vec<[f64; 3]> {
+        self.energies.iter().map(|energy| energy.forces).collect()
+    }
+
+    /// Norm of (F_a, F_s, M_theta / w_lig) of every hinge (N).
+    fn norms(&self) -> Vec<f64> {
+        let hinges = self.energies.iter().zip(&self.designs);
+        let norm = |(energy, design): (&HingeEnergy, &HingeDesign)| {
+            let [f_a, f_s, m_theta] = energy.forces;
+            f_a.hypot(f_s).hypot(m_theta / design.w_lig)
+        };
+        hinges.map(norm).collect()
+    }
+
+    /// The spot check of the weights, if its mesh and the errors of its forces are known; an error outside the training domain,
+    /// where no check was made.
+    fn spot_check(&self) -> Result<(&SpotCheck, &str, [f64; 3]), String> {
+        if self.deployment.final_step().inside.contains(&false) {
+            return Err("hinges are outside the training domain".into());
+        }
+        let check = self
+            .scene
+            .surrogate()
+            .and_then(|weights| weights.card().spot_check.as_ref());
+        let known = check.and_then(|check| Some((check, check.tier.as_deref()?, check.forces?)));
+        known.ok_or_else(|| "no spot check on the card: `surrogate test --record`".into())
+    }
+
+    /// The errors of the weights at their spot check, with the source.
+    fn checked(&self) -> Known {
+        let (check, tier, forces) = self.spot_check()?;
+        let sizes: Vec<[f64; 3]> = (self.norms().into_iter())
+            .map(|norm| forces.map(|error| error * norm))
+            .collect();
+        let states = &self.deployment.final_step().deformations;
+        let [f_a, s, m] = forces.map(|error| 100.0 * error);
+        let source = format!(
+            "{f_a:.1}, {s:.1}, {m:.1} % of the force, {} states on `{tier}`",
+            check.inside
+        );
+        Ok((ForceErrors::alike(&sizes, &self.designs, states), source))
+    }
+
+    /// Whether the states of the spot check have another mesh than the training rays, so that its errors contain that of the mesh.
+    fn is_checked_on_finer_mesh(&self) -> bool {
+        let trained = self.scene.surrogate().map(|weights| &weights.card().tier);
+        let checked = self.spot_check().ok().map(|(_, tier, _)| tier);
+        checked.is_some_and(|checked| trained.is_some_and(|trained| trained != checked))
+    }
+
+    fn networks(&self) -> Known {
+        let (mut modes, mut sources) = (Vec::new(), Vec::new());
+        let networks = self.scene.networks();
+        if networks.len() > 1 {
+            let states = &self.deployment.final_step().deformations;
+            let forces = networks.iter().map(|network| {
+                let energies =
+                    network.evaluate(&network.prepare(&self.designs), states, Order::Forces);
+                energies.iter().map(|energy| energy.forces).collect()
+            });
+            modes = ForceErrors::spread(&forces.collect::<Vec<_>>()).modes;
+            sources.push(format!(
+                "spread of {} networks in these states",
+                networks.len()
+            ));
+        }
+        if !self.is_checked_on_finer_mesh()
+            && let Ok((errors, source)) = self.checked()
+        {
+            modes.extend(errors.modes);
+            sources.push(source);
+        }
+        if sources.is_empty() {
+            return Err("no ensemble and no spot check".into());
+        }
+        Ok((ForceErrors { modes }, sources.join("; ")))
+    }
+
+    fn window_mesh(&self) -> Known {
+        let (_, tier, _) = self.spot_check()?;
+        if self.is_checked_on_finer_mesh() {
+            self.checked()
+        } else {
+            Err(format!(
+                "the weights were not checked on a finer mesh than `{tier}`"
+            ))
+        }
+    }
+
+    fn material_law(&self) -> Known {
+        let material = &self.scene.material;
+        let deviation = material
+            .stress_deviation
+            .ok_or_else(|| format!("{} has no stress_deviation", material.name))?;
+        let forces: Vec<[f64; 3]> = (self.forces().into_iter())
+            .map(|forces| forces.map(|force| deviation * force))
+            .collect();
+        let source = format!("stress {:.1} %, material file", 100.0 * deviation);
+        Ok((ForceErrors::common(&forces), source))
+    }
+
+    fn imperfection(&self) -> Known {
+        let thickness = self.scene.material.thickness;
+        let mut forces = self.forces();
+        let mut largest = (0.0_f64, "");
+        for (force, design) in forces.iter_mut().zip(&self.designs) {
+            let ratio = design.w_lig / thickness;
+            let (table, page) = match Regime::of(ratio) {
+                Regime::Film => (&FILM_IMPERFECTION, "docs/results/window"),
+                Regime::Plate => (&PLATE_IMPERFECTION, "docs/results/plates"),
+            };
+            let change = interpolated(table, ratio)
+                .ok_or_else(|| format!("not measured for ligaments of {ratio:.1} thicknesses"))?;
+            *force = force.map(|force| change * force);
+            if change > largest.0 {
+                largest = (change, page);
+            }
+        }
+        let (change, page) = largest;
+        let percent = 100.0 * change;
+        let source = format!("up to {percent:.1} % of the force of a hinge ({page})");
+        Ok((ForceErrors::along(&forces), source))
+    }
+
+    fn loading_path(&self) -> Known {
+        let thickness = self.scene.material.thickness;
+        let path = &self.deployment.path;
+        let mut sizes = self.norms();
+        let mut largest = 0.0_f64;
+        for (h, (size, design)) in sizes.iter_mut().zip(&self.designs).enumerate() {
+            if Regime::of(design.w_lig / thickness) == Regime::Plate {
+                return Err("not measured for plates".into());
+            }
+            let states: Vec<_> = path.iter().map(|step| step.deformations[h]).collect();
+            let separation = PathSeparation::new(design.w_lig, &states).whole;
+            let [at, fraction] = DETOUR;
+            *size *= fraction * separation / at;
+            largest = largest.max(separation);
+        }
+        let source = format!("up to {largest:.3} w_lig from the ray (docs/results/detours)");
+        Ok((ForceErrors::isotropic(&sizes, &self.designs), source))
+    }
+
+    fn kerf(&self) -> Known {
+        let tolerance = self.scene.config.tolerances.kerf;
+        let tolerance = tolerance.ok_or("no tolerances.kerf in the scene")?;
+        let narrower = -0.5 * tolerance / TOLERANCE;
+        let errors: Vec<[f64; 3]> = (self.energies.iter())
+            .map(|energy| energy.mixed.map(|[by_width, _]| narrower * by_width))
+            .collect();
+        let source = format!("+- {tolerance} mm, two standard deviations");
+        Ok((ForceErrors::common(&errors), source))
+    }
+
+    /// With all lengths multiplied by lambda the energy is multiplied by its cube: t df/dt at constant w_lig, a and s.
+    fn thickness(&self) -> Known {
+        let tolerance = self.scene.config.tolerances.thickness;
+        let tolerance = tolerance.ok_or("no tolerances.thickness in the scene")?;
+        let relative = tolerance / TOLERANCE / self.scene.material.thickness;
+        let states = &self.deployment.final_step().deformations;
+        let hinges = self.energies.iter().zip(&self.designs).zip(states);
+        let errors: Vec<[f64; 3]> = hinges
+            .map(|((energy, design), state)| {
+                from_fn(|i| {
+                    let power = [2.0, 2.0, 3.0][i];
+                    let along = energy.tangent[i][0] * state.a + energy.tangent[i][1] * state.s;
+                    let by_width = energy.mixed[i][0] * design.w_lig;
+                    relative * (power * energy.forces[i] - along - by_width)
+                })
+            })
+            .collect();
+        let source = format!("+- {tolerance} mm, two standard deviations");
+        Ok((ForceErrors::common(&errors), source))
+    }
+}
+
+/// Between the points [x, y] of a table, linear in the logarithms; `None` outside.
+fn interpolated(table: &[[f64; 2]], x: f64) -> Option<f64> {
+    let pair = table
+        .windows(2)
+        .find(|pair| (pair[0][0]..=pair[1][0]).contains(&x))?;
+    let [[x0, y0], [x1, y1]] = [pair[0], pair[1]];
+    let part = (x / x0).ln() / (x1 / x0).ln();
+    Some(y0 * (y1 / y0).powf(part))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_is_met_at_its_points_and_not_left() {
+        for [x, y] in FILM_IMPERFECTION {
+            assert!((interpolated(&FILM_IMPERFECTION, x).unwrap() - y).abs() < 1e-15);
+        }
+        let between = interpolated(&FILM_IMPERFECTION, 20.0).unwrap();
+        assert!((0.04..0.06).contains(&between), "{between}");
+        assert_eq!(interpolated(&FILM_IMPERFECTION, 5.0), None);
+        assert_eq!(interpolated(&FILM_IMPERFECTION, 51.0), None);
+    }
+}

@@ -1,0 +1,96 @@
+//! The error budget of a run as a table, and what it leaves out.
+
+use crate::report::columns::{columns, fixed};
+use crate::report::self_weight::SelfWeight;
+use design::analysis::error_budget::{Effect, ErrorBudget};
+use serde::Serialize;
+
+/// The error budget of the best design.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Budget {
+    /// Causes and their sum: standard deviations.
+    #[serde(flatten)]
+    pub errors: ErrorBudget,
+    /// What no contribution contains.
+    pub not_modelled: Vec<&'static str>,
+    /// Whether the load is prescribed.
+    #[serde(skip)]
+    dead_loads: bool,
+}
+
+/// What the model leaves out of every sheet.
+const NEVER_MODELLED: [&str; 3] = [
+    "creep",
+    "contact of the flanks of a cut",
+    "the error of the finest mesh",
+];
+
+/// What the page and the report say above the table.
+pub(crate) const BUDGET_HEADING: &str =
+    "error budget of the deployed sheet, panels in the plane: standard deviations";
+
+impl Budget {
+    pub(super) fn new(errors: ErrorBudget, weight: &SelfWeight, dead_loads: bool) -> Self {
+        let by_posture = weight.left_out();
+        Self {
+            errors,
+            not_modelled: by_posture.into_iter().chain(NEVER_MODELLED).collect(),
+            dead_loads,
+        }
+    }
+
+    /// Head, units, one row a cause, and the sum.
+    pub fn rows(&self) -> Vec<[String; 5]> {
+        let head = ["cause", "corners, rms", "maximum", "load", "from"];
+        let units = ["", "mm", "mm", "%", ""];
+        let mut rows = vec![head.map(str::to_owned), units.map(str::to_owned)];
+        rows.extend(self.errors.contributions.iter().map(|part| {
+            let [rms, maximum, load] = self.cells(part.effect.as_ref());
+            [
+                part.cause.name().to_owned(),
+                rms,
+                maximum,
+                load,
+                part.source.clone(),
+            ]
+        }));
+        let [rms, maximum, load] = self.cells(Some(&self.errors.total));
+        let squares = "root of the sum of the squares of what is known".to_owned();
+        rows.push(["sum".to_owned(), rms, maximum, load, squares]);
+        rows
+    }
+
+    fn cells(&self, effect: Option<&Effect>) -> [String; 3] {
+        let Some(effect) = effect else {
+            return ["not known", "-", "-"].map(str::to_owned);
+        };
+        let [rms, maximum] = effect.corners.map(|length| fixed(length, 3));
+        let load = match effect.load {
+            Some(load) => fixed(100.0 * load, 2),
+            None if self.dead_loads => "prescribed".into(),
+            None => "-".into(),
+        };
+        [rms, maximum, load]
+    }
+
+    /// What the sum leaves out, as one line.
+    pub fn left_out(&self) -> String {
+        format!("not in the budget: {}", self.not_modelled.join("; "))
+    }
+
+    /// The table as lines.
+    pub(super) fn text(&self) -> String {
+        let rows = self.rows();
+        let widest = |column: usize| {
+            let widths = rows.iter().map(|row| row[column].chars().count());
+            widths.max().unwrap_or(0)
+        };
+        let [first, last] = [widest(0), widest(4)];
+        let aligned = rows.iter().map(|[cause, rms, maximum, load, source]| {
+            let [cause, source] = [format!("{cause:<first$}"), format!("{source:<last$}")];
+            vec![cause, rms.clone(), maximum.clone(), load.clone(), source]
+        });
+        let table = columns(&aligned.collect::<Vec<_>>());
+        format!("{BUDGET_HEADING}\n{table}{}\n", self.left_out())
+    }
+}
