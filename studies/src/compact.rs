@@ -17,7 +17,7 @@ use design::scene::{Scene, SceneConfig};
 use kirigami::ui::exit::Unfinished;
 use kirigami::ui::progress::Progress;
 use kirigami::ui::{interrupt, picture, run_folder};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::path::PathBuf;
@@ -27,7 +27,8 @@ use support::table::{Cell, Table};
 ///
 /// Every outline replaces the scene's target; its unit is the side of a square panel of the mean area. The search is
 /// repeated from random starts, without a minimum panel width and with the scene's; the best of the starts counts.
-/// Writes compact.csv, compact.md and a picture. Example: kirigami-studies compact configs/targets/compact.json
+/// Writes compact.csv, compact.md and a picture; designs in compact.csv are not made again. Example: kirigami-studies
+/// compact configs/targets/compact.json
 #[derive(Args)]
 pub struct CompactStudy {
     /// Outlines (JSON): `targets`, the vertices by name
@@ -64,155 +65,209 @@ struct Outlines {
     targets: BTreeMap<String, Vec<[f64; 2]>>,
 }
 
-/// The best design for an outline.
-struct Fitted {
-    name: String,
+/// What is designed for: a target and a minimum panel width.
+struct Task<'a> {
+    name: &'a str,
+    outline: &'a [[f64; 2]],
     /// mm
+    width: f64,
+}
+
+/// A finished task, as stored in compact.csv.
+#[derive(Clone, Serialize, Deserialize)]
+struct Fitted {
+    target: String,
     min_panel_width: f64,
-    /// Intersection over union of the best of the starts, and of the first.
+    /// Hash of the scene of the first start.
+    scene: String,
+    starts: u64,
+    /// Seed of the best start.
+    seed: u64,
+    /// Intersection over union of the best start, and of the first.
     shared: f64,
     first: f64,
-    /// CPU time of all starts.
-    seconds: f64,
     /// mm
     thinnest: f64,
     /// Area where deployed panels overlap, over that of the sheet.
     overlap: f64,
-    tessellation: Tessellation,
-    target: Vec<[f64; 2]>,
+    /// CPU time of all starts.
+    cpu_seconds: f64,
 }
 
-/// All designs with one minimum panel width.
-struct Set<'a> {
-    /// In the order of their match, the worst first.
-    fitted: Vec<&'a Fitted>,
-}
+/// All designs with one minimum panel width, the worst match first.
+struct Set<'a>(Vec<(&'a Task<'a>, &'a Fitted)>);
+
+const ROWS: &str = "compact.csv";
 
 impl CompactStudy {
     pub fn run(&self) -> Result<()> {
         ensure!(self.starts > 0, "--starts must be at least 1");
         ensure!(self.every > 0, "--every must be at least 1");
-        ensure!(
-            self.turned_deg.is_finite(),
-            "--turned-deg must be a finite number"
-        );
+        let turned = self.turned_deg;
+        ensure!(turned.is_finite(), "--turned-deg must be a finite number");
         let config: SceneConfig = support::toml_file::read(&self.scene)?;
-        let targets = support::regular_file::read_to_string(&self.targets);
-        let targets = targets.with_context(|| self.targets.display().to_string())?;
-        let Outlines { targets } =
-            serde_json::from_str(&targets).with_context(|| self.targets.display().to_string())?;
-        ensure!(
-            !targets.is_empty(),
-            "{}: no targets",
-            self.targets.display()
-        );
-        let _held = run_folder::hold(&self.out)?;
         let width = config.objective.min_panel_width;
-        ensure!(
-            width > 0.0,
-            "{}: the study needs objective.min_panel_width",
-            self.scene.display()
-        );
-        let widths = [0.0, width];
-        let chosen: Vec<_> = targets.iter().step_by(self.every).collect();
-        let bar = Progress::new(widths.len() * chosen.len(), "designs");
-        let mut fitted = Vec::new();
-        for (name, outline) in chosen {
-            for width in widths {
-                let design = self.fit(&config, name, outline, width);
-                let design = design.with_context(|| format!("target {name}"))?;
-                let message = format!("{name}: {:.4}", design.shared);
-                fitted.push(design);
-                bar.show(fitted.len(), None, &message);
-            }
-        }
-        bar.finish();
-        let sets = widths.map(|width| Set::new(&fitted, width));
+        let scene = self.scene.display();
+        ensure!(width > 0.0, "{scene}: set objective.min_panel_width");
+        let outlines = self.outlines()?;
+        let _held = run_folder::hold(&self.out)?;
+        let chosen = outlines.iter().step_by(self.every);
+        let tasks: Vec<Task> = chosen
+            .flat_map(|(name, outline)| {
+                [0.0, width].map(|width| Task {
+                    name,
+                    outline,
+                    width,
+                })
+            })
+            .collect();
+        let fitted = self.fit_all(&config, &tasks)?;
+        let sets = [0.0, width].map(|width| Set::new(&tasks, &fitted, width));
         let page = self.page(&sets);
         run_folder::write(&self.out, "compact.md", &page)?;
-        run_folder::write(&self.out, "compact.csv", &columns().csv(&fitted))?;
-        let shown: Vec<&Fitted> = sets.iter().flat_map(Set::examples).collect();
-        let titles: Vec<String> = shown.iter().map(|it| it.title()).collect();
-        let pictured = shown.iter().zip(&titles);
-        let pictured: Vec<_> = pictured.map(|(it, title)| it.column(title)).collect();
-        picture::save(&side_by_side(&pictured), &self.out.join("compact"), 3200)?;
+        self.draw(&config, &sets)?;
         println!("{page}\nwritten to {}", self.out.display());
         Ok(())
     }
 
-    fn fit(
-        &self,
-        config: &SceneConfig,
-        name: &str,
-        outline: &[[f64; 2]],
-        width: f64,
-    ) -> Result<Fitted> {
-        let began = cpu_seconds()?;
+    fn outlines(&self) -> Result<BTreeMap<String, Vec<[f64; 2]>>> {
+        let file = || self.targets.display().to_string();
+        let text = support::regular_file::read_to_string(&self.targets).with_context(file)?;
+        let Outlines { targets } = serde_json::from_str(&text).with_context(file)?;
+        ensure!(!targets.is_empty(), "{}: no targets", file());
+        Ok(targets)
+    }
+
+    /// Every task in its order; those in compact.csv are taken from there.
+    fn fit_all(&self, config: &SceneConfig, tasks: &[Task]) -> Result<Vec<Fitted>> {
+        let path = self.out.join(ROWS);
+        let mut stored: Vec<Fitted> = Vec::new();
+        if path.exists() {
+            let rows =
+                csv::Reader::from_path(&path).and_then(|rows| rows.into_deserialize().collect());
+            stored = rows.with_context(|| path.display().to_string())?;
+        }
+        let bar = Progress::new(tasks.len(), "designs");
+        let mut fitted = Vec::new();
+        for task in tasks {
+            let id = self.scene(config, task, config.optimiser.seed)?.hash();
+            let known = |row: &&Fitted| row.scene == id && row.starts == self.starts;
+            let row = match stored.iter().find(known) {
+                Some(row) => row.clone(),
+                None => {
+                    let row = self.fit(config, task);
+                    let row = row.with_context(|| format!("target {}", task.name))?;
+                    stored.push(row.clone());
+                    run_folder::write(&self.out, ROWS, &csv_of(&stored)?)?;
+                    row
+                }
+            };
+            let message = format!("{}: {:.4}", task.name, row.shared);
+            fitted.push(row);
+            bar.show(fitted.len(), None, &message);
+        }
+        bar.finish();
+        run_folder::write(&self.out, ROWS, &csv_of(&fitted)?)?;
+        Ok(fitted)
+    }
+
+    fn scene(&self, config: &SceneConfig, task: &Task, seed: u64) -> Result<Scene> {
         let mut config = config.clone();
-        let unit = config.sheet.mean_panel_area().sqrt();
+        let vertices = self.placed(&config, task.outline);
+        config.target = TargetShape::Polygon { vertices };
+        config.objective.min_panel_width = task.width;
+        config.optimiser.seed = seed;
+        Ok(Scene::new(config, &self.scene)?)
+    }
+
+    /// An outline in mm, about the middle of the flat sheet.
+    fn placed(&self, config: &SceneConfig, outline: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let middle = complex(mean(&config.sheet.outline().corners));
-        let turned = unit * turn(self.turned_deg.to_radians());
+        let turned = config.sheet.mean_panel_area().sqrt() * turn(self.turned_deg.to_radians());
         let place = |vertex: &[f64; 2]| point(middle + turned * complex(*vertex));
-        let target: Vec<[f64; 2]> = outline.iter().map(place).collect();
-        config.target = TargetShape::Polygon {
-            vertices: target.clone(),
-        };
-        config.objective.min_panel_width = width;
-        let seeds = config.optimiser.seed..config.optimiser.seed + self.starts;
+        outline.iter().map(place).collect()
+    }
+
+    fn fit(&self, config: &SceneConfig, task: &Task) -> Result<Fitted> {
+        let began = cpu_seconds()?;
+        let target = self.placed(config, task.outline);
+        let first = self.scene(config, task, config.optimiser.seed)?;
         let mut designs = Vec::new();
-        for seed in seeds {
-            config.optimiser.seed = seed;
-            let scene = Scene::new(config.clone(), &self.scene)?;
+        for seed in (config.optimiser.seed..).take(self.starts as usize) {
+            let scene = self.scene(config, task, seed)?;
             let deployment = search(&scene)?;
             let outline = deployed_outline(&scene, &deployment, config.objective.outline);
             let shared = intersection_over_union(&outline, &target);
-            designs.push((shared, Tessellation::from_deployment(&scene, &deployment)));
+            designs.push((
+                shared,
+                seed,
+                Tessellation::from_deployment(&scene, &deployment),
+            ));
         }
-        let first = designs[0].0;
+        let of_first = designs[0].0;
         let best = designs.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
-        let (shared, tessellation) = best.context("no start")?;
+        let (shared, seed, tessellation) = best.context("no start")?;
         Ok(Fitted {
-            name: name.to_owned(),
-            min_panel_width: width,
+            target: task.name.to_owned(),
+            min_panel_width: task.width,
+            scene: first.hash(),
+            starts: self.starts,
+            seed,
             shared,
-            first,
-            seconds: cpu_seconds()? - began,
+            first: of_first,
+            cpu_seconds: cpu_seconds()? - began,
             thinnest: tessellation.worst_panels().thinnest,
             overlap: tessellation.defects().overlap[1],
-            tessellation,
-            target,
         })
     }
 
+    /// The picture of the examples, which are designed again.
+    fn draw(&self, config: &SceneConfig, sets: &[Set]) -> Result<()> {
+        let mut drawn = Vec::new();
+        for (task, fitted) in sets.iter().flat_map(Set::examples) {
+            let scene = self.scene(config, task, fitted.seed)?;
+            let tessellation = Tessellation::from_deployment(&scene, &search(&scene)?);
+            let target = self.placed(config, task.outline);
+            drawn.push((fitted.title(), fitted.lines(), tessellation, target));
+        }
+        let columns: Vec<Column> = (drawn.iter())
+            .map(|(title, lines, tessellation, target)| Column {
+                title,
+                lines: lines.clone(),
+                tessellation,
+                target,
+            })
+            .collect();
+        picture::save(&side_by_side(&columns), &self.out.join("compact"), 3200)?;
+        Ok(())
+    }
+
     fn page(&self, sets: &[Set]) -> String {
-        let percent =
-            |set: &Set, value: fn(&Fitted) -> f64| Cell::fixed(100.0 * set.mean(value), 2);
-        let at = |set: &Set, k: usize| Cell::fixed(100.0 * set.examples()[k].shared, 2);
         let table = Table::new()
             .column("minimum panel width, mm", |set: &Set| {
-                Cell::text(match set.fitted[0].min_panel_width {
+                Cell::text(match set.0[0].1.min_panel_width {
                     0.0 => "none".to_owned(),
                     width => width.to_string(),
                 })
             })
-            .column("targets", |set| Cell::text(set.fitted.len()))
-            .column("mean, %", |set| percent(set, |it| it.shared))
-            .column("worst, %", |set| at(set, 2))
-            .column("median, %", |set| at(set, 1))
-            .column("best, %", |set| at(set, 0))
+            .column("targets", |set| Cell::text(set.0.len()))
+            .column("mean, %", |set| percent(set.mean(|it| it.shared)))
+            .column("worst, %", |set| percent(set.examples()[2].1.shared))
+            .column("median, %", |set| percent(set.examples()[1].1.shared))
+            .column("best, %", |set| percent(set.examples()[0].1.shared))
             .column("mean of the first start, %", |set| {
-                percent(set, |it| it.first)
+                percent(set.mean(|it| it.first))
             })
             .column("thinnest panel, mm", |set| {
-                let thinnest = set.fitted.iter().map(|it| it.thinnest);
+                let thinnest = set.0.iter().map(|(_, it)| it.thinnest);
                 Cell::fixed(thinnest.fold(f64::INFINITY, f64::min), 2)
             })
             .column("maximum overlap", |set| {
-                let overlaps = set.fitted.iter().map(|it| it.overlap);
+                let overlaps = set.0.iter().map(|(_, it)| it.overlap);
                 Cell::scientific(overlaps.fold(0.0, f64::max), 0)
             })
             .column("CPU s per target", |set| {
-                Cell::fixed(set.mean(|it| it.seconds), 2)
+                Cell::fixed(set.mean(|it| it.cpu_seconds), 2)
             });
         format!(
             "# Closed again after 180 degrees\n\n\
@@ -225,6 +280,16 @@ impl CompactStudy {
             table.markdown(sets)
         )
     }
+}
+
+fn percent(fraction: f64) -> Cell {
+    Cell::fixed(100.0 * fraction, 2)
+}
+
+fn csv_of(rows: &[Fitted]) -> Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    rows.iter().try_for_each(|row| writer.serialize(row))?;
+    Ok(String::from_utf8(writer.into_inner()?)?)
 }
 
 /// The deployment of the best design of a search without a run folder.
@@ -251,51 +316,34 @@ fn search(scene: &Scene) -> Result<Deployment> {
 impl Fitted {
     fn title(&self) -> String {
         match self.min_panel_width {
-            0.0 => self.name.clone(),
-            width => format!("{}, at least {width} mm", self.name),
+            0.0 => self.target.clone(),
+            width => format!("{}, at least {width} mm", self.target),
         }
     }
 
-    fn column<'a>(&'a self, title: &'a str) -> Column<'a> {
-        Column {
-            title,
-            lines: vec![
-                format!("intersection over union {:.4}", self.shared),
-                format!("thinnest panel {:.1} mm", self.thinnest),
-            ],
-            tessellation: &self.tessellation,
-            target: &self.target,
-        }
+    fn lines(&self) -> Vec<String> {
+        vec![
+            format!("intersection over union {:.4}", self.shared),
+            format!("thinnest panel {:.1} mm", self.thinnest),
+        ]
     }
 }
 
 impl<'a> Set<'a> {
-    fn new(all: &'a [Fitted], width: f64) -> Self {
-        let of_width = all.iter().filter(|it| it.min_panel_width == width);
-        let mut fitted: Vec<&Fitted> = of_width.collect();
-        fitted.sort_by(|a, b| a.shared.total_cmp(&b.shared));
-        Self { fitted }
+    fn new(tasks: &'a [Task], fitted: &'a [Fitted], width: f64) -> Self {
+        let both = tasks.iter().zip(fitted);
+        let mut set: Vec<_> = both.filter(|(task, _)| task.width == width).collect();
+        set.sort_by(|a, b| a.1.shared.total_cmp(&b.1.shared));
+        Self(set)
     }
 
     fn mean(&self, value: impl Fn(&Fitted) -> f64) -> f64 {
-        self.fitted.iter().map(|it| value(it)).sum::<f64>() / self.fitted.len() as f64
+        self.0.iter().map(|(_, it)| value(it)).sum::<f64>() / self.0.len() as f64
     }
 
     /// The best, the median and the worst match.
-    fn examples(&self) -> [&'a Fitted; 3] {
-        let last = self.fitted.len() - 1;
-        [last, last / 2, 0].map(|k| self.fitted[k])
+    fn examples(&self) -> [(&'a Task<'a>, &'a Fitted); 3] {
+        let last = self.0.len() - 1;
+        [last, last / 2, 0].map(|k| self.0[k])
     }
-}
-
-fn columns<'a>() -> Table<'a, Fitted> {
-    Table::new()
-        .column("target", |it: &Fitted| Cell::text(&it.name))
-        .column("minimum panel width, mm", |it| {
-            Cell::text(it.min_panel_width)
-        })
-        .column("intersection over union", |it| Cell::fixed(it.shared, 5))
-        .column("of the first start", |it| Cell::fixed(it.first, 5))
-        .column("thinnest panel, mm", |it| Cell::fixed(it.thinnest, 2))
-        .column("CPU s", |it| Cell::fixed(it.seconds, 2))
 }

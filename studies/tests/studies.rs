@@ -77,6 +77,33 @@ fn silhouettes_and_their_stored_runs() {
 }
 
 #[test]
+fn compact_sheets_match_their_outlines_and_are_kept() {
+    let work = Workplace::new();
+    set_steps(&work, "configs/scenes/compact-11x11.toml", 60);
+    let study = "compact configs/targets/compact.json --every 249 --starts 1";
+    let first = page(&work, study, "compact.md");
+    for width in ["none", "25"] {
+        let row = numbers(&first, width);
+        // The width itself may be a number.
+        let [targets, mean, worst, .., thinnest, overlap, _] = row[row.len() - 9..] else {
+            panic!("{first}");
+        };
+        assert!(targets == 2.0 && mean > 97.0 && worst > 95.0, "{first}");
+        assert!(overlap < 1e-9, "{first}");
+        assert!(width == "none" || thinnest > 25.0, "{first}");
+    }
+    assert!(work.path("out/compact.png").exists());
+    // A stored design is not made again: its match is that of the file.
+    let stored = std::fs::read_to_string(work.path("out/compact.csv")).unwrap();
+    let row: Vec<&str> = stored.lines().nth(1).unwrap().split(',').collect();
+    work.edit("out/compact.csv", &[(row[5], "0.5")]);
+    let again = page(&work, study, "compact.md");
+    assert_eq!(numbers(&again, "none")[2], 50.0, "{again}");
+    let message = work.error("compact no-targets.json --out out");
+    assert!(message.contains("no-targets.json"), "{message}");
+}
+
+#[test]
 fn approaches_on_pins() {
     let work = Workplace::new();
     work.edit(PIN, &[("panels = [7, 7]", "panels = [4, 4]")]);

@@ -116,9 +116,12 @@ pub fn nearest_on_segment(point: [f64; 2], a: [f64; 2], b: [f64; 2]) -> [f64; 2]
 /// The point on the border of a closed polygon nearest to `point`.
 pub fn nearest_on_outline(point: [f64; 2], polygon: &[[f64; 2]]) -> [f64; 2] {
     let squared = |[x, y]: [f64; 2]| (x - point[0]).powi(2) + (y - point[1]).powi(2);
-    let feet = edges(polygon).map(|(a, b)| nearest_on_segment(point, a, b));
-    let nearest = feet.min_by(|p, q| squared(*p).total_cmp(&squared(*q)));
-    nearest.unwrap_or(point)
+    let feet = edges(polygon).map(|(a, b)| {
+        let foot = nearest_on_segment(point, a, b);
+        (squared(foot), foot)
+    });
+    let nearest = feet.min_by(|p, q| p.0.total_cmp(&q.0));
+    nearest.map_or(point, |(_, foot)| foot)
 }
 
 /// The edges of a closed polygon.
