@@ -146,61 +146,54 @@ fn errors(sheets: &[Judged]) -> String {
         .column("window mesh", of(Cause::WindowMesh))
         .column("loading path", of(Cause::LoadingPath))
         .column("load: error", |sheet| percent(sheet.load))
-        .column("sigma", |sheet| percent(sheet.seen().load));
+        .column("load: sigma", |sheet| percent(sheet.seen().load));
     table.markdown(sheets)
 }
 
 /// How often errors are within two standard deviations, for the sums of several causes.
 fn coverages(sheets: &[Judged]) -> String {
-    let all = Cause::ALL.map(|cause| vec![cause]);
+    type Pairs = fn(&Judged, &Effect) -> Vec<[f64; 2]>;
     let seen: Vec<Cause> = Cause::ALL
         .into_iter()
         .filter(|cause| cause.is_seen_by_elements())
         .collect();
-    let rows: Vec<Vec<Cause>> = std::iter::once(seen.clone())
-        .chain(all.into_iter().filter(|causes| seen.contains(&causes[0])))
-        .collect();
+    let single = seen.iter().map(|cause| vec![*cause]);
+    let rows: Vec<Vec<Cause>> = std::iter::once(seen.clone()).chain(single).collect();
     let names = |causes: &Vec<Cause>| {
         let names: Vec<&str> = causes.iter().map(|cause| cause.name()).collect();
         names.join(", ")
     };
-    let covered = |pairs: fn(&Judged, &Effect) -> Vec<[f64; 2]>| {
-        move |causes: &Vec<Cause>| {
-            let pairs = sheets.iter().flat_map(|sheet| {
-                let effect = sheet.budget.sum(|cause| causes.contains(&cause));
-                pairs(sheet, &effect)
-            });
-            let coverage = Coverage::of(pairs);
-            Cell::text(format!("{} of {}", coverage.within, coverage.of))
-        }
+    let coverage = |causes: &[Cause], pairs: Pairs| {
+        Coverage::of(sheets.iter().flat_map(|sheet| {
+            let effect = sheet.budget.sum(|cause| causes.contains(&cause));
+            pairs(sheet, &effect)
+        }))
     };
-    let table = Table::new()
-        .column("causes", move |causes: &Vec<Cause>| {
-            Cell::text(names(causes))
-        })
-        .column(
-            "corners of a sheet, root mean square",
-            covered(|sheet, effect| {
-                let [rms, _] = rms_and_maximum(sheet.corners.iter().copied());
-                vec![[rms, effect.corners[0]]]
-            }),
-        )
-        .column(
-            "single corners",
-            covered(|sheet, effect| {
-                let corners = std::iter::zip(&sheet.corners, &effect.by_corner);
-                corners.map(|(error, sigma)| [*error, *sigma]).collect()
-            }),
-        )
-        .column(
-            "load",
-            covered(|sheet, effect| {
-                let pair = sheet.load.zip(effect.load);
-                pair.map(|(error, sigma)| [error, sigma])
-                    .into_iter()
-                    .collect()
-            }),
-        );
+    let quantities: [(&str, &str, Pairs); 3] = [
+        ("corners of a sheet, rms", "sheets", |sheet, effect| {
+            let [rms, _] = rms_and_maximum(sheet.corners.iter().copied());
+            vec![[rms, effect.corners[0]]]
+        }),
+        ("single corners", "corners", |sheet, effect| {
+            let corners = std::iter::zip(&sheet.corners, &effect.by_corner);
+            corners.map(|(error, sigma)| [*error, *sigma]).collect()
+        }),
+        ("load", "loads", |sheet, effect| {
+            let pair = sheet.load.zip(effect.load);
+            Vec::from_iter(pair.map(|(error, sigma)| [error, sigma]))
+        }),
+    ];
+    let mut table = Table::new().column("causes", move |causes: &Vec<Cause>| {
+        Cell::text(names(causes))
+    });
+    for (quantity, all, pairs) in quantities {
+        table = table
+            .column(quantity, move |causes| {
+                let Coverage { within, of } = coverage(causes, pairs);
+                Cell::percent(within as f64 / of as f64, 0)
+            })
+            .column(all, move |causes| Cell::text(coverage(causes, pairs).of));
+    }
     table.markdown(&rows)
 }
 
