@@ -173,6 +173,33 @@ pub(crate) fn fit_error(points: impl Iterator<Item = [f64; 2]>) -> FitError {
 mod tests {
     use super::*;
 
+    /// Forces (3, 4, 0) N with errors of 0.5 and -1 N, and a moment of 20 N mm at 2 mm with an error of 2 N mm.
+    #[test]
+    fn errors_of_forces_are_relative_to_the_norm_of_their_state() {
+        let state = |reference: [f64; 3], error: [f64; 3]| {
+            let all = |of: [f64; 3]| [1.0, of[0], of[1], of[2], 0.0, 0.0];
+            ComparedState {
+                reference: all(reference),
+                value: all(std::array::from_fn(|i| reference[i] + error[i])),
+            }
+        };
+        let states = vec![
+            state([3.0, 4.0, 0.0], [0.5, -1.0, 0.0]),
+            state([0.0, 0.0, 20.0], [0.0, 0.0, 2.0]),
+        ];
+        let found = Parity { states }
+            .force_errors([2.0, 2.0].into_iter())
+            .unwrap();
+        let half = 0.5_f64.sqrt();
+        for (found, expected) in std::iter::zip(found, [0.1, 0.2, 0.1]) {
+            assert!(
+                (found - expected * half).abs() < 1e-12,
+                "{found} {expected}"
+            );
+        }
+        assert_eq!(Parity::default().force_errors(std::iter::empty()), None);
+    }
+
     #[test]
     fn errors_are_relative_to_the_targets() {
         let points = [[0.0, 0.3], [3.0, 3.3], [-4.0, -4.0], [5.0, 4.0]];
