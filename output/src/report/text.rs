@@ -91,7 +91,7 @@ impl Report {
         let mut table = vec![["", "start", "best"].map(str::to_owned).to_vec()];
         let pairs = std::iter::zip(rows(&self.before), rows(&self.after));
         table.extend(pairs.map(|((name, before), (_, after))| {
-            vec![format!("{name:<18}"), shown(before), shown(after)]
+            vec![format!("{name:<20}"), shown(before), shown(after)]
         }));
         columns(&table)
     }
