@@ -265,11 +265,11 @@ fn corrected(
     if apart > SAME_LOSS {
         let panels = near.deployment.sheet.panels.len() as f64;
         let size = (near.deployment.sheet.outline.area() / panels).sqrt();
-        let steps = std::iter::zip(&near.deployment.path, &followed.path);
+        let mut steps = std::iter::zip(&near.deployment.path, &followed.path);
         let same = |(a, b): (&LoadStep, &LoadStep)| {
             distance(&a.configuration, &b.configuration, size) <= SAME
         };
-        let finding = match (jumps(&followed), steps.map(same).all(|same| same)) {
+        let finding = match (jumps(&followed), steps.all(same)) {
             (true, _) => Finding::OtherLossAfterJump,
             (false, true) => Finding::OtherLoss,
             (false, false) => Finding::OtherArm,

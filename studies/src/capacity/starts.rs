@@ -41,7 +41,7 @@ impl CapacityStudy {
                 search.optimiser.start_noise = NOISE;
                 search.optimiser.seed = seed;
                 search.output = std::path::absolute(&self.out)?.join(format!("runs/{i}-{seed}"));
-                self.from_start(config, search, strategy.name)
+                self.found_from(config, search, strategy.name)
             });
             all.push(Starts {
                 name: strategy.name,
@@ -51,7 +51,7 @@ impl CapacityStudy {
         Ok(all)
     }
 
-    fn from_start(&self, config: &SceneConfig, search: SceneConfig, name: &str) -> Result<Found> {
+    fn found_from(&self, config: &SceneConfig, search: SceneConfig, name: &str) -> Result<Found> {
         let (design, _) = self.settled(search, name)?;
         let values = self.values();
         let bar = Progress::new(values.len(), "deployments");
