@@ -1,6 +1,6 @@
 //! The error budget of a deployed sheet: by how much each cause of errors moves its panel corners and changes its load.
 //!
-//! To first order an error of the hinge forces moves the sheet by [`ForceResponse`](crate::equilibrium::force_response::ForceResponse).
+//! To first order an error of the hinge forces moves the sheet by [`ForceResponse`].
 //! A cause gives the standard deviations of these forces ([`ForceErrors`]), from what was measured:
 //!
 //! | cause | force errors | of the hinges | measured |
