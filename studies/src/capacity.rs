@@ -8,7 +8,7 @@ use crate::charts::{self, CapacityCurve};
 use crate::designed::designed;
 use crate::shape_alone::shape_alone;
 use crate::stop::refuse_stop;
-use anyhow::{Result, bail, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use design::analysis::degeneration::{Degeneration, last_jump};
 use design::analysis::further_load::FurtherLoad;
@@ -140,7 +140,8 @@ impl CapacityStudy {
             };
             let mut search = search.clone();
             search.output = std::path::absolute(&self.out)?.join(format!("runs/{i}"));
-            designs.push(self.settled(search, strategy.name)?);
+            let settled = self.settled(search, strategy.name)?;
+            designs.push(settled.with_context(|| not_settled(strategy.name, &config))?);
         }
         let values = self.values();
         let bar = Progress::new(strategies.len() * values.len(), "deployments");
@@ -184,8 +185,12 @@ impl CapacityStudy {
         Ok(())
     }
 
-    /// The best design of a search that has settled, and its number of steps.
-    fn settled(&self, mut search: SceneConfig, name: &str) -> Result<(DesignVector, usize)> {
+    /// The best design of a search and its number of steps; `None` if it has not settled after all rounds.
+    fn settled(
+        &self,
+        mut search: SceneConfig,
+        name: &str,
+    ) -> Result<Option<(DesignVector, usize)>> {
         let round = search.optimiser.steps;
         let bar = Progress::new(ROUNDS * round, "design steps, at most");
         for done in 1..=ROUNDS {
@@ -208,13 +213,10 @@ impl CapacityStudy {
                     opening: None,
                     ..found.design
                 };
-                return Ok((design, found.history.len() - 1));
+                return Ok(Some((design, found.history.len() - 1)));
             }
         }
-        bail!(
-            "{name}: the search has not settled after {} steps",
-            ROUNDS * round
-        )
+        Ok(None)
     }
 
     /// What the uniform sheet carries in every reading.
@@ -340,6 +342,11 @@ impl CapacityStudy {
         }
         Ok((carried, beyond))
     }
+}
+
+fn not_settled(name: &str, config: &SceneConfig) -> String {
+    let steps = ROUNDS * config.optimiser.steps;
+    format!("{name}: the search has not settled after {steps} steps")
 }
 
 /// The four ways to design of section 3.2.

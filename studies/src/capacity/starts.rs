@@ -21,7 +21,8 @@ struct Found {
 /// The patterns of a strategy.
 pub(super) struct Starts {
     name: &'static str,
-    found: Vec<Found>,
+    /// `None` from a start whose search has not settled.
+    found: Vec<Option<Found>>,
 }
 
 impl CapacityStudy {
@@ -51,8 +52,15 @@ impl CapacityStudy {
         Ok(all)
     }
 
-    fn found_from(&self, config: &SceneConfig, search: SceneConfig, name: &str) -> Result<Found> {
-        let (design, _) = self.settled(search, name)?;
+    fn found_from(
+        &self,
+        config: &SceneConfig,
+        search: SceneConfig,
+        name: &str,
+    ) -> Result<Option<Found>> {
+        let Some((design, _)) = self.settled(search, name)? else {
+            return Ok(None);
+        };
         let values = self.values();
         let bar = Progress::new(values.len(), "deployments");
         let mut points = Vec::new();
@@ -62,45 +70,53 @@ impl CapacityStudy {
         }
         bar.finish();
         let carried = self.carried(config, &design, &points)?;
-        Ok(Found {
+        Ok(Some(Found {
             carried: (carried.from, carried.maximum()),
             boundary: self.point(config, &design, super::DESIGN_LOAD)?.boundary,
-        })
+        }))
     }
 }
 
 /// The table of the random starts; `to`: the largest rho that is tried.
 pub(super) fn table(starts: &[Starts], to: f64) -> String {
-    let spread = |values: Vec<f64>, digits: usize| {
-        let (low, high) = (values.iter()).fold((f64::INFINITY, 0.0), |(low, high), value| {
-            (value.min(low), value.max(high))
-        });
-        Cell::text(format!(
-            "{:.digits$} ({low:.digits$} to {high:.digits$})",
-            median(values)
-        ))
-    };
     Table::new()
         .column("pattern", |starts: &Starts| Cell::text(starts.name))
         .column("starts", |starts| Cell::text(starts.found.len()))
+        .column("settled", |starts| Cell::text(starts.settled().count()))
         .column("deployed at rho = 1", |starts| {
-            let deployed = starts.found.iter().filter(|found| found.is_deployed());
+            let deployed = starts.settled().filter(|found| found.is_deployed());
             Cell::text(deployed.count())
         })
-        .column("minimum rho", move |starts| {
-            spread(
-                starts.found.iter().map(|found| found.carried.0).collect(),
-                2,
-            )
+        .column("minimum rho", |starts| {
+            starts.spread(|found| found.carried.0, 2)
         })
         .column("maximum rho", move |starts| {
-            let maximum = |found: &Found| found.carried.1.unwrap_or(to);
-            spread(starts.found.iter().map(maximum).collect(), 2)
+            starts.spread(|found| found.carried.1.unwrap_or(to), 2)
         })
-        .column("boundary rms at rho = 1, %", move |starts| {
-            spread(starts.found.iter().map(|found| found.boundary).collect(), 3)
+        .column("boundary rms at rho = 1, %", |starts| {
+            starts.spread(|found| found.boundary, 3)
         })
         .markdown(starts)
+}
+
+impl Starts {
+    fn settled(&self) -> impl Iterator<Item = &Found> {
+        self.found.iter().flatten()
+    }
+
+    /// Median and range of a figure.
+    fn spread(&self, of: impl Fn(&Found) -> f64, digits: usize) -> Cell {
+        let values: Vec<f64> = self.settled().map(of).collect();
+        if values.is_empty() {
+            return Cell::known(None, "-");
+        }
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(0.0, f64::max);
+        let middle = median(values);
+        Cell::text(format!(
+            "{middle:.digits$} ({low:.digits$} to {high:.digits$})"
+        ))
+    }
 }
 
 impl Found {
