@@ -130,7 +130,6 @@ impl CapacityStudy {
             self.scene.display()
         );
         let _held = run_folder::hold(&self.out)?;
-        let stop = interrupt::stop_flag()?;
         let strategies = strategies(&config);
         let mut designs = Vec::new();
         for (i, strategy) in strategies.iter().enumerate() {
@@ -143,16 +142,9 @@ impl CapacityStudy {
             let settled = self.settled(search, strategy.name)?;
             designs.push(settled.with_context(|| not_settled(strategy.name, &config))?);
         }
-        let values = self.values();
-        let bar = Progress::new(strategies.len() * values.len(), "deployments");
         let mut capacities: Vec<Capacity> = Vec::new();
         for (i, (strategy, (design, steps))) in std::iter::zip(&strategies, designs).enumerate() {
-            let mut points = Vec::new();
-            for &rho in &values {
-                refuse_stop(stop)?;
-                points.push(self.point(&config, &design, rho)?);
-                bar.show(values.len() * i + points.len(), None, strategy.name);
-            }
+            let points = self.sweep(&config, &design, strategy.name)?;
             let carried = self.carried(&config, &design, &points)?;
             if let Some((_, above)) = &carried.to {
                 let (scene, deployment) = self.deploy(&config, &design, above.rho)?;
@@ -167,7 +159,6 @@ impl CapacityStudy {
                 points,
             });
         }
-        bar.finish();
         let curves: Vec<CapacityCurve> = capacities.iter().map(Capacity::curve).collect();
         picture::save(
             &charts::capacity(&curves)?,
@@ -225,12 +216,25 @@ impl CapacityStudy {
             let mut config = config.clone();
             (reading.change)(&mut config);
             let uniform = self.scene_of(&config)?.start();
-            let sweep = self.values().into_iter();
-            let points = sweep.map(|rho| self.point(&config, &uniform, rho));
-            let points = points.collect::<Result<Vec<_>>>()?;
+            let points = self.sweep(&config, &uniform, reading.name)?;
             self.carried(&config, &uniform, &points)
         });
         carried.collect()
+    }
+
+    /// The deployments of a design at all values of rho.
+    fn sweep(&self, config: &SceneConfig, design: &DesignVector, name: &str) -> Result<Vec<Point>> {
+        let stop = interrupt::stop_flag()?;
+        let values = self.values();
+        let bar = Progress::new(values.len(), "deployments");
+        let mut points = Vec::new();
+        for rho in values {
+            refuse_stop(stop)?;
+            points.push(self.point(config, design, rho)?);
+            bar.show(points.len(), None, name);
+        }
+        bar.finish();
+        Ok(points)
     }
 
     /// The values of rho of the sweep.
@@ -408,7 +412,12 @@ impl Capacity {
 
     /// The boundary error at rho = 1 (%).
     fn boundary(&self) -> Option<f64> {
-        let point = self.points.iter().find(|point| point.rho == DESIGN_LOAD)?;
-        Some(point.boundary)
+        boundary(&self.points)
     }
+}
+
+/// The boundary error of a sweep at rho = 1 (%).
+fn boundary(points: &[Point]) -> Option<f64> {
+    let point = points.iter().find(|point| point.rho == DESIGN_LOAD)?;
+    Some(point.boundary)
 }

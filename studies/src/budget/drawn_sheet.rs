@@ -22,7 +22,7 @@ const OPENING: [f64; 2] = [0.15, 0.6];
 /// Maximum number of draws until a sheet opens on a smooth path inside the training domain.
 const DRAWS: usize = 1000;
 
-/// The sheet of a number: the scene `base` at `path`, drawn anew until it opens on a smooth and stable path inside the training
+/// The sheet of a number: the scene `base` at `path`, drawn again until it opens on a smooth and stable path inside the training
 /// domain. Half of the sheets have a prescribed stroke, the others dead loads of the size that the stroke takes.
 pub(super) fn drawn_sheet(base: &SceneConfig, path: &Path, number: u64) -> Result<Scene> {
     let mut random = ChaCha8Rng::seed_from_u64(number);

@@ -1,9 +1,8 @@
 //! The capacities of patterns that are searched from several starts: how far a capacity is that of one search.
 
-use super::{CapacityStudy, Strategy};
+use super::{CapacityStudy, Strategy, boundary};
 use anyhow::Result;
 use design::scene::SceneConfig;
-use kirigami::ui::progress::Progress;
 use support::statistics::median;
 use support::table::{Cell, Table};
 
@@ -61,18 +60,11 @@ impl CapacityStudy {
         let Some((design, _)) = self.settled(search, name)? else {
             return Ok(None);
         };
-        let values = self.values();
-        let bar = Progress::new(values.len(), "deployments");
-        let mut points = Vec::new();
-        for &rho in &values {
-            points.push(self.point(config, &design, rho)?);
-            bar.show(points.len(), None, name);
-        }
-        bar.finish();
+        let points = self.sweep(config, &design, name)?;
         let carried = self.carried(config, &design, &points)?;
         Ok(Some(Found {
             carried: (carried.from, carried.maximum()),
-            boundary: self.point(config, &design, super::DESIGN_LOAD)?.boundary,
+            boundary: boundary(&points).unwrap_or(f64::NAN),
         }))
     }
 }
