@@ -1,6 +1,5 @@
 //! The hinge design vector g of (7).
 
-use crate::deformation::HingeDeformation;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -112,16 +111,6 @@ impl HingeDesign {
         [self.alpha.cos(), -self.alpha.sin()]
     }
 
-    /// Gap (mm) between the flanks of the main cut at the window's rim, in the plane of the sheet. It is negative
-    /// where the flanks overlap; this is possible because the window is solved without contact.
-    pub fn flank_gap(&self, deformation: &HingeDeformation) -> f64 {
-        let [sin, cos] = [self.alpha.sin(), self.alpha.cos()];
-        // Length of the flank from O to the rim, whose centre is at the distance w_lig from O.
-        let flank = (self.r_win.powi(2) - (self.w_lig * cos).powi(2)).sqrt() - self.w_lig * sin;
-        let HingeDeformation { a, s, theta } = deformation;
-        self.kerf + sin * a + cos * s + 2.0 * flank * (0.5 * theta).sin()
-    }
-
     /// Radius of the hole drilled about O (mm).
     pub fn fillet_radius(&self) -> f64 {
         self.fillet_ratio * self.w_lig
@@ -201,30 +190,6 @@ mod tests {
         kerf: 0.2,
         r_win: 100.0,
     };
-
-    #[test]
-    fn the_flanks_touch_when_the_hinge_closes_by_the_kerf_at_the_rim() {
-        let gap = |a, theta| PAPER.flank_gap(&HingeDeformation { a, s: 0.0, theta });
-        assert_eq!(gap(0.0, 0.0), 0.2);
-        assert!((gap(-0.2, 0.0)).abs() < 1e-15);
-        // The flanks are 100 - 18 mm long.
-        assert!(gap(0.0, -0.0024) > 0.0 && gap(0.0, -0.0025) < 0.0);
-        assert!((gap(0.0, PI) - 164.2).abs() < 1e-12);
-        // Shear closes an oblique cut from one side and opens it from the other.
-        let oblique = HingeDesign {
-            alpha: PI / 4.0,
-            ..PAPER
-        };
-        let sheared = |design: HingeDesign, s| {
-            design.flank_gap(&HingeDeformation {
-                a: 0.0,
-                s,
-                theta: 0.0,
-            })
-        };
-        assert!(sheared(oblique, 1.0) > 0.2);
-        assert!((sheared(oblique.mirrored(), -1.0) - sheared(oblique, 1.0)).abs() < 1e-12);
-    }
 
     #[test]
     fn the_papers_hinge_is_accepted_and_mirroring_twice_is_the_identity() {

@@ -147,6 +147,15 @@ impl Tier {
         Tier::PlateReference,
     ];
 
+    /// The cheaper tier on which a sheet is balanced before windows of this one are solved; `None` if that saves little.
+    pub fn draft(self) -> Option<Self> {
+        match self {
+            Self::Reference => Some(Self::Default),
+            Self::PlateReference => Some(Self::Plate),
+            _ => None,
+        }
+    }
+
     /// The ligaments that this mesh is for.
     pub fn regime(self) -> Regime {
         match self {

@@ -11,7 +11,7 @@ use comfy_table::Table;
 use fe_driver::{
     CalculiX, DeformationPath, HingePath, Solver, WindowProblem, WindowSolve, reached,
 };
-use hinge::{HingeDeformation, HingeDesign, HingeSample, SheetMaterial};
+use hinge::{HingeDeformation, HingeSample, SheetMaterial};
 use mesher::Tier;
 use serde_json::json;
 use std::path::PathBuf;
@@ -86,7 +86,6 @@ impl SolveCommand {
             print_all: self.vtu,
             ..CalculiX::find()?
         };
-        warn_of_contact(&design, &path);
         let problem = WindowProblem::new(HingePath { design, path }, &material, self.tier);
         let solve = WindowSolve::new(problem, &solver.versions());
         let solution = watched(
@@ -99,6 +98,8 @@ impl SolveCommand {
         {
             run_folder::write(&self.out, "window.vtu", &grid.to_vtu())?;
         }
+        let gaps = solver.flank_gaps(&solve, &self.out)?;
+        warn_of_contact(&gaps);
         if self.json {
             let description = json!({
                 "design": design,
@@ -106,6 +107,7 @@ impl SolveCommand {
                 "material": material,
                 "tier": self.tier,
                 "samples": solution.samples,
+                "flank_gaps": gaps,
                 "stopped": solution.stopped.as_ref().map(ToString::to_string),
                 "cpu_seconds": solution.cpu_seconds,
                 "wall_seconds": solution.wall_seconds,
@@ -113,7 +115,7 @@ impl SolveCommand {
             });
             println!("{description:#}");
         } else if !solution.samples.is_empty() {
-            println!("{}", ray_table(&solution.samples));
+            println!("{}", ray_table(&solution.samples, &gaps));
             println!(
                 "{} increments, {} iterations, {:.1} s; mesh, input deck and log in {}",
                 solution.samples.len(),
@@ -130,21 +132,19 @@ impl SolveCommand {
 }
 
 /// Warns if the flanks of the cut pass through each other, since the window model has no contact.
-fn warn_of_contact(design: &HingeDesign, path: &DeformationPath) {
-    let states = (0..=100).map(|i| path.at(f64::from(i) / 100.0));
-    let gaps = states.map(|state| design.flank_gap(&state));
-    let minimum = gaps.fold(f64::INFINITY, f64::min);
+fn warn_of_contact(gaps: &[Option<f64>]) {
+    let minimum = gaps.iter().flatten().copied().fold(0.0, f64::min);
     if minimum < 0.0 {
         eprintln!(
-            "warning: the flanks of the cut overlap by {:.2} mm at the window's rim, where a real sheet \
-             would be in contact; the results below are without contact",
+            "warning: the flanks of the cut pass through each other, by up to {:.2} mm, where a real sheet would be in contact; \
+             the results below are without contact",
             -minimum
         );
     }
 }
 
 /// The rows of a ray, thinned to about twenty.
-fn ray_table(samples: &[HingeSample]) -> Table {
+fn ray_table(samples: &[HingeSample], gaps: &[Option<f64>]) -> Table {
     let mut table = table([
         "lambda",
         "theta\ndeg",
@@ -157,10 +157,11 @@ fn ray_table(samples: &[HingeSample]) -> Table {
         "D",
         "D_peak",
         "u_z\nmm",
+        "flanks\nmm",
         "energy\nresidual",
     ]);
     let stride = samples.len().div_ceil(20).max(1);
-    for (i, x) in samples.iter().enumerate() {
+    for (i, (x, gap)) in samples.iter().zip(gaps).enumerate() {
         if (samples.len() - 1 - i).is_multiple_of(stride) {
             table.add_row([
                 format!("{:.3}", x.lambda),
@@ -174,6 +175,7 @@ fn ray_table(samples: &[HingeSample]) -> Table {
                 format!("{:.5}", x.d),
                 x.d_peak.map_or("-".into(), |peak| format!("{peak:.3}")),
                 format!("{:.2}", x.uz_max),
+                gap.map_or("-".into(), |gap| format!("{gap:.2}")),
                 format!("{:.1e}", x.energy_residual),
             ]);
         }

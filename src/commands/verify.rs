@@ -126,7 +126,8 @@ impl VerifyCommand {
                 let end = found.by_elements();
                 let picture = drawing::deployed(&scene, &end.sheet, end.final_step());
                 run_folder::write(&self.out, "deployed.svg", &picture)?;
-                let errors = SheetErrors::new(&found, name, tier);
+                let budget = found.budget(&scene)?;
+                let errors = SheetErrors::new(&found, name, budget.as_ref());
                 run_folder::write(&self.out, "equilibrium.md", &errors.to_string())?;
                 self.print(&errors)
             }

@@ -17,7 +17,7 @@ use mesher::Tier;
 use std::path::PathBuf;
 use support::statistics::rms_and_maximum;
 use support::table::{Cell, Table};
-use verification::{Balanced, ElementWindows, balanced, movements};
+use verification::{Balanced, balanced_on, movements};
 
 /// Measure how often the errors of deployed sheets stay within two standard deviations of their budget
 ///
@@ -66,14 +66,12 @@ impl BudgetStudy {
     pub fn run(&self) -> Result<()> {
         let _held = run_folder::hold(&self.out)?;
         let base: SceneConfig = support::toml_file::read(&self.scene)?;
-        let windows = ElementWindows {
-            tier: self.tier,
-            service: &self.solve.service(&self.out)?,
-        };
+        let service = self.solve.service(&self.out)?;
         let mut sheets = Vec::new();
         for number in 0..self.sheets {
             let scene = drawn_sheet(&base, &self.scene, number)?;
-            let (found, _) = balanced(&scene, &scene.start(), &windows, 1).map_err(task_error)?;
+            let found = balanced_on(&[self.tier], &scene, &scene.start(), &service, 1);
+            let (found, _) = found.map_err(task_error)?;
             sheets.push(Judged::new(number, &scene, &found)?);
         }
         let page = self.page(&sheets);
@@ -101,8 +99,7 @@ impl BudgetStudy {
 impl Judged {
     fn new(number: u64, scene: &Scene, found: &Balanced) -> Result<Self> {
         let [by_law, by_elements] = [found.by_law(), found.by_elements()];
-        let problem = scene.problem()?;
-        let budget = ErrorBudget::new(scene, &problem, by_law, None);
+        let budget = found.budget(scene)?;
         let [own, other] = [by_law, by_elements].map(|deployment| deployment.final_step());
         let widths = by_law.sheet.hinges.iter().map(|hinge| hinge.w_lig);
         let [width, _] = rms_and_maximum(widths);

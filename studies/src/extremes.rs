@@ -1,22 +1,26 @@
-//! `kirigami-studies extremes`: what the solver and the learned law do at the limits of their inputs.
+//! `kirigami-studies extremes`: what windows, training, the learned law and the solver do at the limits of their inputs.
 //!
 //! Every row has a promise, which the study checks, and an outcome. The study fails if a promise is not kept.
 
 mod law_extremes;
 mod sheet_extremes;
+mod training_extremes;
+mod window_extremes;
 
 use anyhow::{Result, ensure};
 use clap::Args;
+use dataset::Database;
 use design::objective::design_problem::Model;
 use design::scene::{Scene, SceneConfig};
 use kirigami::ui::progress::Progress;
 use kirigami::ui::run_folder;
 use std::path::{Path, PathBuf};
+use train::TrainingConfig;
 
-/// Deploy sheets and evaluate the learned law at the limits of loads, ligaments, cut angles, thickness and size
+/// Solve windows, train networks, evaluate the learned law and deploy sheets at the limits of their inputs
 ///
-/// Checks what is promised of each row: a stated equilibrium or a refusal with its reason, finite numbers, no damage where it is
-/// not known, forces that are the derivative of the energy. Writes extremes.md.
+/// Checks what is promised of each row: a solved ray, finite errors, a stated equilibrium, or a refusal with its reason; finite
+/// numbers, no damage where it is not known, forces that are the derivative of the energy. Writes extremes.md.
 /// Example: kirigami-studies extremes
 #[derive(Args)]
 pub struct ExtremesStudy {
@@ -30,7 +34,21 @@ pub struct ExtremesStudy {
         default_value = "configs/scenes/linear-7x7.toml"
     )]
     linear: PathBuf,
-    /// Columns and rows of the large learned sheet
+    /// Database of the trainings
+    #[arg(
+        long,
+        value_name = "FILE",
+        default_value = "data/pet-0.5mm/reference.parquet"
+    )]
+    database: PathBuf,
+    /// Configuration of the trainings (TOML)
+    #[arg(
+        long,
+        value_name = "FILE",
+        default_value = "configs/training/demo.toml"
+    )]
+    training: PathBuf,
+    /// Columns and rows of the large learned sheets
     #[arg(long, value_name = "N", default_value_t = 71)]
     panels: usize,
     /// Folder for the table
@@ -61,10 +79,16 @@ impl ExtremesStudy {
         let bar = Progress::new(extremes.len(), "sheets");
         let sheets = sheet_extremes::table(&extremes, |done, name| bar.show(done, None, name))?;
         bar.finish();
-        let page = format!("# At the extremes\n\n{}\n{}", law.text, sheets.text);
+        let windows = window_extremes::table(&scene.material, &self.out.join("window"))?;
+        let database = Database::read(&self.database)?;
+        let training: TrainingConfig = support::toml_file::read(&self.training)?;
+        let trainings = training_extremes::table(&database, &training)?;
+        let tables = [windows, trainings, law, sheets];
+        let text = tables.each_ref().map(|table| table.text.as_str());
+        let page = format!("# At the extremes\n\n{}", text.join("\n"));
         run_folder::write(&self.out, "extremes.md", &page)?;
         println!("{page}\nwritten to {}", self.out.display());
-        let broken = law.broken + sheets.broken;
+        let broken: usize = tables.iter().map(|table| table.broken).sum();
         ensure!(broken == 0, "{broken} promises are not kept");
         Ok(())
     }

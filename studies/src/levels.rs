@@ -53,10 +53,11 @@ struct Row {
     choice: String,
     /// CPU time of one design step, equilibrium and gradient (s).
     step_s: f64,
-    /// Root mean square movement of the panel corners (mm): from the scene as it is, and from finite elements.
+    /// Root mean square movement of the panel corners from the scene as it is, and from finite elements of each mesh, the finest
+    /// one last (mm).
     effect: f64,
-    error: f64,
-    /// The latter relative to the diagonal of the deployed sheet.
+    errors: Vec<f64>,
+    /// The last relative to the diagonal of the deployed sheet.
     relative: f64,
     /// Root mean square error of the rotations of the hinges (deg).
     rotation_deg: f64,
@@ -163,7 +164,9 @@ impl Row {
         let measured = Measured::new(problem, design)?;
         let ([_, step_s], deployed) = (measured.seconds, measured.evaluation.deployment);
         let (own, by_elements) = (truth.by_law(), truth.by_elements());
-        let error = rms(&movements(by_elements, &deployed));
+        let errors: Vec<f64> = (truth.by_mesh())
+            .map(|(_, by_mesh)| rms(&movements(by_mesh, &deployed)))
+            .collect();
         let rotations = |of: &Deployment| -> Vec<f64> {
             let states = of.final_step().deformations.iter();
             states.map(|state| state.theta.to_degrees()).collect()
@@ -175,8 +178,8 @@ impl Row {
             choice,
             step_s,
             effect: rms(&movements(own, &deployed)),
-            error,
-            relative: error / size(by_elements),
+            relative: rms(&movements(by_elements, &deployed)) / size(by_elements),
+            errors,
             rotation_deg: rms(&turned),
         })
     }
@@ -195,11 +198,21 @@ fn section(title: &str, truth: &Balanced, rows: &[Row]) -> String {
         warning += &format!(" NOT SOLVED: {hinge}.");
     }
     let minutes = truth.cpu_seconds / 60.0;
-    let table = Table::new()
+    let mut table = Table::new()
         .column("choice", |row: &Row| Cell::text(&row.choice))
         .column("step, ms", |row| Cell::fixed(1e3 * row.step_s, 2))
-        .column("effect, mm", |row| Cell::scientific(row.effect, 1))
-        .column("error, mm", |row| Cell::fixed(row.error, 3))
+        .column("effect, mm", |row| Cell::scientific(row.effect, 1));
+    let meshes: Vec<_> = truth.by_mesh().collect();
+    for (i, (tier, _)) in meshes.iter().enumerate() {
+        let heading = format!("error by `{tier}`, mm");
+        table = table.column(heading, move |row| Cell::fixed(row.errors[i], 3));
+    }
+    let mut judge = String::new();
+    if let [.., (draft, by_draft), (finest, by_finest)] = meshes[..] {
+        let error = rms(&movements(by_draft, by_finest));
+        judge = format!(" Error of `{draft}` itself, by `{finest}`: {error:.3} mm.");
+    }
+    let table = table
         .column("of the sheet", |row| Cell::percent(row.relative, 3))
         .column("error of rotations, deg", |row| {
             Cell::fixed(row.rotation_deg, 3)
@@ -207,7 +220,7 @@ fn section(title: &str, truth: &Balanced, rows: &[Row]) -> String {
     format!(
         "### {title}\n\n\
          {} hinges by finite elements in {in_rounds}, {minutes:.0} CPU minutes; no corner moved by more than {moved:.2} mm in the \
-         last.{warning} Step: CPU time of equilibrium and gradient. Effect: movement of the panel corners from the scene as \
+         last.{judge}{warning} Step: CPU time of equilibrium and gradient. Effect: movement of the panel corners from the scene as \
          it is; error: from finite elements; both root mean squares. `kirigami-studies levels`.\n\n{}\n",
         truth.hinges.len(),
         table.markdown(rows)

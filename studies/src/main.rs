@@ -12,6 +12,7 @@ mod cpu_seconds;
 mod designed;
 mod drawing;
 mod extremes;
+mod flanks;
 mod flatness;
 mod free_panels;
 mod gradient;
@@ -64,6 +65,7 @@ enum Study {
     Capacity(capacity::CapacityStudy),
     Localisation(localisation::LocalisationStudy),
     Extremes(extremes::ExtremesStudy),
+    Flanks(flanks::FlanksStudy),
     Flatness(flatness::FlatnessStudy),
     Surrogate(surrogate::SurrogateStudy),
     Tradeoff(tradeoff::TradeoffCommand),
@@ -90,6 +92,7 @@ impl Study {
             Self::Capacity(study) => study.run(),
             Self::Localisation(study) => study.run(),
             Self::Extremes(study) => study.run(),
+            Self::Flanks(study) => study.run(),
             Self::Flatness(study) => study.run(),
             Self::Surrogate(study) => study.run(),
             Self::Tradeoff(command) => command.run(),

@@ -118,7 +118,7 @@ impl PolyesterStudy {
         config.hinge_point = Some(HingePoint::CutTip);
         let load = rows[0].load;
         config.scale_loads(load);
-        let front = objective_front::table(self, &config, load)?;
+        let front = objective_front::front(self, &config, load)?;
         polyester_page::write(&self.out, &rows, &surrogate, tier, &front)
     }
 

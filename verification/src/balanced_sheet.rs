@@ -4,16 +4,21 @@
 //! full load, of this round and of those before ([`CorrectedLaw`]), and the sheet is deployed again; hinges then have other
 //! states, and this is repeated until the panels stay where they are. It is a quasi-Newton iteration for the equilibrium of
 //! the finite-element hinges: the tangent is that of the hinge law in the first round, and learns from each further one.
+//! Windows of the finest mesh are dear: the sheet is balanced on a cheaper mesh first ([`Tier::draft`]), from which the finest
+//! one takes a round less, and the difference between both is the error of the cheaper mesh.
 
 use crate::recorded_path::paths_of;
 use crate::replay::{ElementWindows, UnsolvedHinge};
 use crate::verification_error::VerificationError;
+use design::analysis::error_budget::ErrorBudget;
 use design::hinge_law::{CorrectedLaw, Correction, HingeLaw, MissingForces, Order};
 use design::objective::design_problem::{Deployment, DesignError, DesignProblem, Model};
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
 use design::sheet::kinematics::deployed_corners;
+use fe_driver::SolveService;
 use hinge::HingeSample;
+use mesher::Tier;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -24,6 +29,8 @@ pub const BALANCED: f64 = 1e-4;
 /// One round: the hinges are solved, and the sheet is deployed with their forces.
 #[derive(Clone, Debug, Serialize)]
 pub struct Round {
+    /// Mesh tier of its windows.
+    pub tier: Tier,
     /// Root mean square difference of (F_a, F_s, M_theta / w_lig) of the solved hinges between finite elements and
     /// corrected law, relative to the root mean square of the former.
     pub force_error: f64,
@@ -43,7 +50,7 @@ pub struct Balanced {
     pub rounds: Vec<Round>,
     /// CPU time of all window solves (s).
     pub cpu_seconds: f64,
-    /// Why no further round was made.
+    /// Why no further round was made on the finest mesh.
     pub ended: BalanceEnd,
 }
 
@@ -71,14 +78,28 @@ impl BalanceEnd {
     }
 }
 
-/// Deploys a design with finite elements for its hinges, in at most `rounds` rounds. Also returns the problem of the
-/// scene with the hinge law corrected to the finite elements of all rounds.
+/// Deploys a design with finite elements for its hinges, in at most `rounds` rounds on each mesh: that of the windows, and
+/// before it the cheaper one of [`Tier::draft`]. Also returns the problem of the scene with the hinge law corrected to the
+/// finite elements of all rounds.
 ///
 /// A hinge that is not solved ends no round unless it is the only one: see [`Round::unsolved`].
 pub fn balanced(
     scene: &Scene,
     design: &DesignVector,
     windows: &ElementWindows,
+    rounds: usize,
+) -> Result<(Balanced, DesignProblem), VerificationError> {
+    let draft = windows.tier.draft();
+    let tiers: Vec<Tier> = draft.into_iter().chain([windows.tier]).collect();
+    balanced_on(&tiers, scene, design, windows.service, rounds)
+}
+
+/// The same on the meshes that are named, in their order.
+pub fn balanced_on(
+    tiers: &[Tier],
+    scene: &Scene,
+    design: &DesignVector,
+    service: &SolveService,
     rounds: usize,
 ) -> Result<(Balanced, DesignProblem), VerificationError> {
     if rounds == 0 {
@@ -92,7 +113,6 @@ pub fn balanced(
     let mut iteration = Iteration {
         scene,
         design,
-        windows,
         law,
         missing: vec![Vec::new(); count],
         problem,
@@ -104,18 +124,10 @@ pub fn balanced(
         cpu_seconds: 0.0,
         ended: BalanceEnd::RoundsMade,
     };
-    while found.rounds.len() < rounds && found.ended != BalanceEnd::Converged {
-        match iteration.round(&mut found) {
-            Ok(()) => {}
-            Err(
-                error @ (VerificationError::NoHinge(_)
-                | VerificationError::Design(DesignError::NoEquilibrium { .. })),
-            ) if !found.rounds.is_empty() => {
-                found.ended = BalanceEnd::Failed(error.to_string());
-                break;
-            }
-            Err(error) => return Err(error),
-        }
+    for &tier in tiers {
+        found.ended = BalanceEnd::RoundsMade;
+        let windows = ElementWindows { tier, service };
+        iteration.rounds(&windows, rounds, &mut found)?;
     }
     Ok((found, iteration.problem))
 }
@@ -135,7 +147,6 @@ struct SolvedHinges {
 struct Iteration<'a> {
     scene: &'a Scene,
     design: &'a DesignVector,
-    windows: &'a ElementWindows<'a>,
     /// The law of the scene.
     law: Arc<dyn HingeLaw>,
     /// What it lacks of the forces of each hinge, round by round.
@@ -145,15 +156,44 @@ struct Iteration<'a> {
 }
 
 impl Iteration<'_> {
+    /// Rounds on one mesh until the sheet is balanced. An error ends them, without their results if it is that of the very
+    /// first round.
+    fn rounds(
+        &mut self,
+        windows: &ElementWindows,
+        most: usize,
+        found: &mut Balanced,
+    ) -> Result<(), VerificationError> {
+        for _ in 0..most {
+            match self.round(windows, found) {
+                Ok(()) if found.ended == BalanceEnd::Converged => break,
+                Ok(()) => {}
+                Err(
+                    error @ (VerificationError::NoHinge(_)
+                    | VerificationError::Design(DesignError::NoEquilibrium { .. })),
+                ) if !found.rounds.is_empty() => {
+                    found.ended = BalanceEnd::Failed(error.to_string());
+                    break;
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
     /// Solves the hinges along their paths in the last deployment, and deploys the sheet with the law corrected to them.
     /// After an error the problem has the law that it had before.
-    fn round(&mut self, found: &mut Balanced) -> Result<(), VerificationError> {
+    fn round(
+        &mut self,
+        windows: &ElementWindows,
+        found: &mut Balanced,
+    ) -> Result<(), VerificationError> {
         let deployed = found.by_elements();
         let SolvedHinges {
             ends,
             unsolved,
             cpu_seconds,
-        } = self.solve(deployed)?;
+        } = self.solve(windows, deployed)?;
         let force_error = force_error(&self.problem.model, deployed, &ends);
         self.add_missing_forces(deployed, &ends);
         let designs = deployed.sheet.designs();
@@ -180,6 +220,7 @@ impl Iteration<'_> {
         found.cpu_seconds += cpu_seconds;
         found.deployments.push(next);
         found.rounds.push(Round {
+            tier: windows.tier,
             force_error,
             movement,
             unsolved,
@@ -188,8 +229,12 @@ impl Iteration<'_> {
     }
 
     /// Solves every hinge along its path in the sheet.
-    fn solve(&self, deployed: &Deployment) -> Result<SolvedHinges, VerificationError> {
-        let windows = (self.windows).solve(&paths_of(deployed), &self.scene.material)?;
+    fn solve(
+        &self,
+        windows: &ElementWindows,
+        deployed: &Deployment,
+    ) -> Result<SolvedHinges, VerificationError> {
+        let windows = windows.solve(&paths_of(deployed), &self.scene.material)?;
         let mut solved = SolvedHinges::default();
         for (hinge, window) in windows.iter().enumerate() {
             solved.cpu_seconds += window.record.cpu_seconds;
@@ -252,6 +297,21 @@ impl Balanced {
             return None;
         };
         self.unsolved().is_empty().then(|| movements(before, last))
+    }
+
+    /// The error budget of the deployment by the hinge law alone, before finite elements: see [`ErrorBudget::new`].
+    pub fn budget(&self, scene: &Scene) -> Result<Option<ErrorBudget>, VerificationError> {
+        let problem = scene.problem()?;
+        Ok(ErrorBudget::new(scene, &problem, self.by_law(), None))
+    }
+
+    /// The deployment with the corrected law of the last round on each mesh, the finest one last.
+    pub fn by_mesh(&self) -> impl Iterator<Item = (Tier, &Deployment)> {
+        let rounds = self.rounds.iter().zip(&self.deployments[1..]).enumerate();
+        rounds.filter_map(|(i, (round, deployment))| {
+            let next = self.rounds.get(i + 1).map(|next| next.tier);
+            (next != Some(round.tier)).then_some((round.tier, deployment))
+        })
     }
 
     /// The deployment with the corrected law of the last round.

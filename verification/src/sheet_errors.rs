@@ -1,6 +1,7 @@
 //! The error of a deployed sheet, judged by finite elements for its hinges.
 
 use crate::balanced_sheet::{BALANCED, BalanceEnd, Balanced, Round, movements, size};
+use design::analysis::error_budget::{Cause, Effect, ErrorBudget};
 use design::objective::design_problem::Deployment;
 use mesher::Tier;
 use serde::Serialize;
@@ -12,24 +13,39 @@ use support::statistics::rms_and_maximum;
 pub struct SheetErrors {
     /// The design that is judged, for a person.
     design: String,
-    /// Mesh tier of the windows.
-    tier: Tier,
     rounds: Vec<Round>,
-    /// Why no further round was made.
+    /// Why no further round was made on the finest mesh.
     ended: BalanceEnd,
     /// CPU time of all window solves (s).
     cpu_seconds: f64,
     /// Diagonal of the deployed sheet (mm).
     size: f64,
+    /// Load factor at the end of the path by the law.
+    load_factor: f64,
+    /// The errors of the law by finite elements of each mesh, the finest one last.
+    errors: Vec<MeshErrors>,
+    /// The cheaper mesh beside the finest one, if there are two.
+    between: Option<MeshErrors>,
+    /// Standard deviations of the causes in the error budget of the report that finite elements see, if there is one.
+    budget: Option<Effect>,
+    /// Hinges that leave the training domain in the sheet by the law or in that by finite elements.
+    outside: Vec<usize>,
+    hinges: Vec<HingeErrors>,
+}
+
+/// One deployment beside finite elements of one mesh, at full load.
+#[derive(Debug, Serialize)]
+struct MeshErrors {
+    /// Mesh tier of the windows.
+    tier: Tier,
     /// Distance of the panel corners (mm): root mean square and maximum.
     corners: [f64; 2],
     /// Difference of the hinge rotations (deg): root mean square and maximum.
     rotations_deg: [f64; 2],
-    /// Load factor at the end of the path, by the law and by finite elements; equal under dead loads.
-    load_factor: [f64; 2],
-    /// Hinges that leave the training domain in the sheet by the law or in that by finite elements.
-    outside: Vec<usize>,
-    hinges: Vec<HingeErrors>,
+    /// Load factor at the end of the path by these finite elements, and the relative difference of the other from it; zero under
+    /// dead loads.
+    load_factor: f64,
+    load: f64,
 }
 
 /// One hinge at full load.
@@ -43,8 +59,8 @@ struct HingeErrors {
 }
 
 impl SheetErrors {
-    /// The errors of a design, which has a name for a person, with windows of `tier`.
-    pub fn new(found: &Balanced, design: String, tier: Tier) -> Self {
+    /// The errors of a design, which has a name for a person, beside their budget.
+    pub fn new(found: &Balanced, design: String, budget: Option<&ErrorBudget>) -> Self {
         let (by_law, by_elements) = (found.by_law(), found.by_elements());
         let ends = [by_law, by_elements].map(Deployment::final_step);
         let peak_by_law = |hinge: usize| {
@@ -69,17 +85,24 @@ impl SheetErrors {
             let paths = by_law.path.iter().chain(&by_elements.path);
             paths.into_iter().any(|step| !step.inside[*hinge])
         };
-        let turned = |hinge: &HingeErrors| hinge.theta_deg[1] - hinge.theta_deg[0];
+        let meshes: Vec<_> = found.by_mesh().collect();
+        let errors = meshes
+            .iter()
+            .map(|&(tier, by_mesh)| MeshErrors::new(by_law, tier, by_mesh));
+        let between = match meshes[..] {
+            [.., (_, draft), (tier, finest)] => Some(MeshErrors::new(draft, tier, finest)),
+            _ => None,
+        };
         Self {
             design,
-            tier,
             rounds: found.rounds.clone(),
             ended: found.ended.clone(),
             cpu_seconds: found.cpu_seconds,
             size: size(by_elements),
-            corners: rms_and_maximum(movements(by_law, by_elements)),
-            rotations_deg: rms_and_maximum(hinges.iter().map(turned)),
-            load_factor: ends.map(|end| end.load_factor),
+            load_factor: ends[0].load_factor,
+            errors: errors.collect(),
+            between,
+            budget: budget.map(|budget| budget.sum(Cause::is_seen_by_elements)),
             outside: (0..hinges.len()).filter(leaves).collect(),
             hinges,
         }
@@ -88,24 +111,20 @@ impl SheetErrors {
 
 impl fmt::Display for SheetErrors {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let [rms, maximum] = self.corners;
-        let percent = |length: f64| 100.0 * length / self.size;
-        let [turned, most_turned] = self.rotations_deg;
-        let [by_law, by_elements] = self.load_factor;
         writeln!(
             f,
             "# The deployed sheet, by finite elements\n\n\
-             Equilibrium of the {} with finite elements for all {} hinges, windows of tier {}, panels held flat. Every round solves \
-             the hinges along their paths, corrects the hinge law to their forces and deploys the sheet again; {:.0} CPU minutes in all.\n\n\
-             | round | force error | movement, mm |\n|---|---|---|",
+             Equilibrium of the {} with finite elements for all {} hinges, panels held flat. Every round solves the hinges along \
+             their paths, corrects the hinge law to their forces and deploys the sheet again; {:.0} CPU minutes in all.\n\n\
+             | round | mesh of the windows | force error | movement, mm |\n|---|---|---|---|",
             self.design,
             self.hinges.len(),
-            self.tier,
             self.cpu_seconds / 60.0,
         )?;
         for (i, round) in self.rounds.iter().enumerate() {
             let (percent, movement) = (100.0 * round.force_error, round.movement);
-            writeln!(f, "| {} | {percent:.2} % | {movement:.3} |", i + 1)?;
+            let tier = round.tier;
+            writeln!(f, "| {} | {tier} | {percent:.2} % | {movement:.3} |", i + 1)?;
         }
         let ended = match self.ended.warning() {
             None => "The panels stay where they are within".into(),
@@ -118,18 +137,10 @@ impl fmt::Display for SheetErrors {
         writeln!(
             f,
             "\nForce error: finite elements against the law of the round, root mean square over all hinges. Movement: of the \
-             panel corner that moves furthest. {ended} {:.3} mm ({BALANCED:.0e} of the sheet).\n\n\
-             | error of the hinge law at full load, panels held flat | root mean square | maximum |\n|---|---|---|\n\
-             | deployed corners | {rms:.3} mm, {:.3} % of the sheet | {maximum:.3} mm, {:.3} % |\n\
-             | rotation of the hinges | {turned:.3} deg | {most_turned:.3} deg |\n",
+             panel corner that moves furthest. {ended} {:.3} mm ({BALANCED:.0e} of the sheet).\n",
             BALANCED * self.size,
-            percent(rms),
-            percent(maximum),
         )?;
-        writeln!(
-            f,
-            "Load factor {by_law:.4} by the law, {by_elements:.4} by finite elements.\n"
-        )?;
+        self.write_errors(f)?;
         self.write_unsolved(f)?;
         if !self.outside.is_empty() {
             let hinges: Vec<String> = self.outside.iter().map(usize::to_string).collect();
@@ -158,7 +169,78 @@ impl fmt::Display for SheetErrors {
     }
 }
 
+impl MeshErrors {
+    /// A deployment beside that by finite elements.
+    fn new(deployed: &Deployment, tier: Tier, by_elements: &Deployment) -> Self {
+        let [own, other] = [deployed, by_elements].map(Deployment::final_step);
+        let turned = std::iter::zip(&own.deformations, &other.deformations)
+            .map(|(own, other)| (own.theta - other.theta).to_degrees());
+        Self {
+            tier,
+            corners: rms_and_maximum(movements(deployed, by_elements)),
+            rotations_deg: rms_and_maximum(turned),
+            load_factor: other.load_factor,
+            load: own.load_factor / other.load_factor - 1.0,
+        }
+    }
+
+    fn write_row(&self, f: &mut fmt::Formatter, of: &str, size: f64) -> fmt::Result {
+        let [rms, maximum] = self.corners;
+        let percent = |length: f64| 100.0 * length / size;
+        let [turned, most_turned] = self.rotations_deg;
+        writeln!(
+            f,
+            "| {of} | {rms:.3} mm, {:.3} % of the sheet | {maximum:.3} mm, {:.3} % | {turned:.3} deg | {most_turned:.3} deg | \
+             {:+.2} % |",
+            percent(rms),
+            percent(maximum),
+            100.0 * self.load,
+        )
+    }
+}
+
 impl SheetErrors {
+    /// The errors by each mesh, the difference between the meshes, and the budget.
+    fn write_errors(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        writeln!(
+            f,
+            "| at full load, panels held flat | deployed corners, root mean square | maximum | rotation of the hinges, root mean \
+             square | maximum | load |\n|---|---|---|---|---|---|"
+        )?;
+        for errors in &self.errors {
+            let of = format!("error of the hinge law, by `{}`", errors.tier);
+            errors.write_row(f, &of, self.size)?;
+        }
+        if let Some(between) = &self.between {
+            let draft = self.errors[self.errors.len() - 2].tier;
+            let of = format!("error of `{draft}`, by `{}`", between.tier);
+            between.write_row(f, &of, self.size)?;
+        }
+        if let Some(Effect {
+            corners: [rms, maximum],
+            load,
+            ..
+        }) = &self.budget
+        {
+            let load = load.map_or("-".into(), |load| format!("{:.2} %", 100.0 * load));
+            writeln!(
+                f,
+                "| error budget of the report: standard deviation of what finite elements see | {rms:.3} mm | {maximum:.3} mm | - | - | \
+                 {load} |"
+            )?;
+        }
+        let factors = self.errors.iter();
+        let factors: Vec<String> = factors
+            .map(|errors| format!("{:.4} by `{}`", errors.load_factor, errors.tier))
+            .collect();
+        writeln!(
+            f,
+            "\nLoad factor {:.4} by the law, {}.\n",
+            self.load_factor,
+            factors.join(", ")
+        )
+    }
+
     /// The hinges that were not solved, round by round, and what is not known for it.
     fn write_unsolved(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let rounds = self.rounds.iter().enumerate();

@@ -26,7 +26,8 @@ pub(super) fn run(
     let polished = polish(task, windows, stop, show).map_err(task_error)?;
     bar.finish();
     let name = format!("polished {}", task.name);
-    let errors = SheetErrors::new(&polished.after, name, windows.tier);
+    let budget = polished.after.budget(task.scene)?;
+    let errors = SheetErrors::new(&polished.after, name, budget.as_ref());
     run_folder::write(out, "equilibrium.md", &errors.to_string())?;
     let json = serde_json::to_string(&polished.designed.design)?;
     run_folder::write(out, "design.json", &json)?;

@@ -6,7 +6,7 @@ use design::equilibrium::load_step::{LoadStep, Status};
 use design::hinge_law::DamageMeasure;
 use design::objective::design_problem::Deployment;
 use design::objective::target::TargetShape;
-use design::scene::{Ratios, Scene, SceneConfig};
+use design::scene::{EdgeLoadConfig, Ratios, Scene, SceneConfig, SheetEdge};
 use std::f64::consts::PI;
 use std::fmt::Write;
 use std::path::Path;
@@ -80,11 +80,13 @@ pub(super) fn all<'a>(
     of_learned.cuts();
     of_learned.settings()?;
     of_linear.stiffnesses();
-    of_learned.add(
-        format!("{panels} x {panels} panels"),
-        Promise::Stated,
-        |config| enlarged(config, panels),
-    );
+    let name = format!("{panels} x {panels} panels, pulled at one");
+    of_learned.add(name, Promise::Stated, |config| enlarged(config, panels));
+    let name = format!("{panels} x {panels} panels, pulled along two edges");
+    of_learned.add(name, Promise::Stated, |config| {
+        enlarged(config, panels);
+        pulled_along_edges(config, panels);
+    });
     Ok(of_learned.list.into_iter().chain(of_linear.list).collect())
 }
 
@@ -225,6 +227,9 @@ fn around(config: &mut SceneConfig) {
 /// Side of a panel of the large sheet (mm): windows need 280 mm, and a sheet may be 20 m long.
 const PITCH: f64 = 281.0;
 
+/// Force on every panel of an edge that opens hinges beyond 30 degrees (N).
+const EDGE_PULL: f64 = 20.0;
+
 /// A sheet of `n` by `n` square panels, held in the middle of its left edge and pulled in that of its right.
 fn enlarged(config: &mut SceneConfig, n: usize) {
     config.sheet.size = Some([PITCH * n as f64; 2]);
@@ -236,6 +241,20 @@ fn enlarged(config: &mut SceneConfig, n: usize) {
     for load in &mut config.loads {
         load.panel = [n - 1, n / 2];
     }
+}
+
+/// Pulls the left and the right edge apart, so that all hinges open.
+fn pulled_along_edges(config: &mut SceneConfig, n: usize) {
+    for support in &mut config.supports {
+        support.panel = [n / 2, n / 2];
+    }
+    config.loads.clear();
+    config.edge_loads = [(SheetEdge::Left, -1.0), (SheetEdge::Right, 1.0)]
+        .map(|(edge, sign)| EdgeLoadConfig {
+            edge,
+            traction: [sign * EDGE_PULL / PITCH, 0.0],
+        })
+        .into();
 }
 
 impl Extreme<'_> {

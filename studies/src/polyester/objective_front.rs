@@ -1,50 +1,48 @@
-//! What a larger weight on one objective gains, and what it costs in the match: which of objective, search and physics
-//! limits the paths of the hinges.
+//! What larger weights of damage and compression gain, and what they cost in the match: the front of damage against outline
+//! error, and which of objective, search and physics limits the paths of the hinges.
 //!
 //! Every weight is tried from several random starts: the spread over them is the search's.
 
 use super::{PolyesterStudy, Row};
+use crate::charts::{self, DamageLine};
 use anyhow::Result;
 use design::hinge_law::DamageMeasure;
 use design::scene::{ObjectiveConfig, SceneConfig};
 use design::sheet::cut_sheet::HingePoint;
 use kirigami::ui::progress::Progress;
-use std::fmt::Write;
+use std::fmt;
 use support::statistics::median;
 
 /// Random starts of each objective, and the standard deviation of their coordinates.
 const SEEDS: u64 = 4;
 const START_NOISE: f64 = 0.3;
 
-/// Name and change of an objective whose weights of damage and compression are zero.
-type Change = (&'static str, fn(&mut ObjectiveConfig));
+/// Weights of damage and compression that are swept together: each of the first with each of the second.
+const DAMAGE: [f64; 4] = [0.0, 0.02, 0.2, 1.0];
+const COMPRESSION: [f64; 5] = [0.0, 0.03, 0.1, 0.3, 1.0];
 
-const OBJECTIVES: [Change; 10] = [
-    ("shape alone", |_| ()),
-    ("compression 0.1", |it| it.compression = 0.1),
-    ("compression 1", |it| it.compression = 1.0),
-    ("compression 10", |it| it.compression = 10.0),
-    ("compression 100", |it| it.compression = 100.0),
-    ("D 0.02", |it| it.damage = 0.02),
-    ("D 0.2", |it| it.damage = 0.2),
-    ("D_peak 0.2", |it| peak(it, 0.2)),
-    ("D and compression, balanced", |it| {
-        (it.damage, it.compression, it.balance) = (1.0, 1.0, true);
-    }),
-    ("D_peak and compression, balanced", |it| {
-        peak(it, 1.0);
-        (it.compression, it.balance) = (1.0, true);
-    }),
+/// Other objectives: D_peak, weights that balance the gradients at the start, and weights at which the shape no longer counts.
+const OTHERS: [Weights; 5] = [
+    Weights::new(0.2, 0.0).of_peak(),
+    Weights::new(1.0, 1.0).balanced(),
+    Weights::new(1.0, 1.0).of_peak().balanced(),
+    Weights::new(0.0, 10.0),
+    Weights::new(0.0, 100.0),
 ];
 
-fn peak(objective: &mut ObjectiveConfig, weight: f64) {
-    objective.damage = weight;
-    objective.damage_measure = DamageMeasure::Peak;
+/// The objectives on the hinges' paths.
+#[derive(Clone, Copy)]
+struct Weights {
+    damage: f64,
+    compression: f64,
+    measure: DamageMeasure,
+    balance: bool,
 }
 
 /// The compared numbers of one design.
-const COLUMNS: [&str; 7] = [
+const COLUMNS: [&str; 8] = [
     "outline, mm",
+    "maximum opening, deg",
     "minimum eta_a",
     "maximum compression, N",
     "mean force, N",
@@ -52,41 +50,144 @@ const COLUMNS: [&str; 7] = [
     "maximum D_peak",
     "inside",
 ];
+const OUTLINE: usize = 0;
+const MEAN_DAMAGE: usize = 5;
 
-/// The table: the median over the starts, and in brackets the range.
-pub(super) fn table(study: &PolyesterStudy, config: &SceneConfig, load: f64) -> Result<String> {
+/// The designs of one objective from all starts.
+struct Designs {
+    weights: Weights,
+    /// In each column the known numbers.
+    columns: [Vec<f64>; COLUMNS.len()],
+}
+
+/// The table and the chart.
+pub(super) struct Front {
+    pub table: String,
+    pub chart: String,
+}
+
+impl Weights {
+    const fn new(damage: f64, compression: f64) -> Self {
+        Self {
+            damage,
+            compression,
+            measure: DamageMeasure::Mean,
+            balance: false,
+        }
+    }
+
+    const fn of_peak(self) -> Self {
+        Self {
+            measure: DamageMeasure::Peak,
+            ..self
+        }
+    }
+
+    const fn balanced(self) -> Self {
+        Self {
+            balance: true,
+            ..self
+        }
+    }
+
+    fn apply(self, objective: &mut ObjectiveConfig) {
+        (objective.damage, objective.compression) = (self.damage, self.compression);
+        (objective.damage_measure, objective.balance) = (self.measure, self.balance);
+    }
+}
+
+/// D or D_peak with its weight, then the compression with its weight.
+impl fmt::Display for Weights {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let measure = match self.measure {
+            DamageMeasure::Mean => "D",
+            DamageMeasure::Peak => "D_peak",
+        };
+        let (damage, compression) = (self.damage, self.compression);
+        let balanced = if self.balance { ", balanced" } else { "" };
+        match (damage > 0.0, compression > 0.0) {
+            (false, false) => write!(f, "shape alone"),
+            (true, false) => write!(f, "{measure} {damage}{balanced}"),
+            (false, true) => write!(f, "compression {compression}{balanced}"),
+            (true, true) => write!(f, "{measure} {damage}, compression {compression}{balanced}"),
+        }
+    }
+}
+
+/// The designs of all weights.
+pub(super) fn front(study: &PolyesterStudy, config: &SceneConfig, load: f64) -> Result<Front> {
+    let grid = DAMAGE.iter().flat_map(|&damage| {
+        COMPRESSION.map(|compression| Weights::new(damage, compression))
+    });
+    let all: Vec<Weights> = grid.chain(OTHERS).collect();
+    let bar = Progress::new(all.len() * SEEDS as usize, "designs");
+    let mut found = Vec::new();
+    for (k, weights) in all.into_iter().enumerate() {
+        let mut columns: [Vec<f64>; COLUMNS.len()] = Default::default();
+        for seed in 0..SEEDS {
+            let done = k * SEEDS as usize + seed as usize;
+            bar.show(done, None, &weights.to_string());
+            let mut config = config.clone();
+            weights.apply(&mut config.objective);
+            (config.optimiser.start_noise, config.optimiser.seed) = (START_NOISE, seed);
+            let (scene, designed) = study.design(config, &format!("front/{k}-{seed}"))?;
+            let row = Row::new(&scene, &designed, HingePoint::CutTip, "", load)?;
+            for (column, number) in columns.iter_mut().zip(of(&row)) {
+                column.extend(number);
+            }
+        }
+        found.push(Designs { weights, columns });
+    }
+    bar.finish();
+    Ok(Front {
+        table: table(&found),
+        chart: charts::damage_front(&lines(&found))?,
+    })
+}
+
+/// The median over the starts, and in brackets the range.
+fn table(found: &[Designs]) -> String {
     let mut text = format!(
-        "\n## What a larger weight gains\n\n\
+        "\n## What larger weights gain\n\n\
          Hinges at the cut's tip; median and range of {SEEDS} designs from random starts. Balanced: at the start the gradients of \
-         the objectives are as large as that of the shape. Outline: root mean square distance from the target.\n\n\
-         | objective | {} |\n|---|{}\n",
+         the objectives are as large as that of the shape. Outline: root mean square distance from the target. Front: no other \
+         weights have both a smaller outline error and a smaller mean damage, in the medians.\n\n\
+         | objective | front | {} |\n|---|---|{}\n",
         COLUMNS.join(" | "),
         "---|".repeat(COLUMNS.len())
     );
-    let bar = Progress::new(OBJECTIVES.len() * SEEDS as usize, "designs");
-    for (k, (name, change)) in OBJECTIVES.into_iter().enumerate() {
-        let mut numbers = Vec::new();
-        for seed in 0..SEEDS {
-            bar.show(k * SEEDS as usize + seed as usize, None, name);
-            let mut config = config.clone();
-            let objective = &mut config.objective;
-            (objective.damage, objective.compression) = (0.0, 0.0);
-            change(objective);
-            (config.optimiser.start_noise, config.optimiser.seed) = (START_NOISE, seed);
-            let folder = format!("front/{k}-{seed}");
-            let (scene, designed) = study.design(config, &folder)?;
-            let row = Row::new(&scene, &designed, HingePoint::CutTip, name, load)?;
-            numbers.push(of(&row));
-        }
-        write!(text, "| {name} |")?;
-        for column in 0..COLUMNS.len() {
-            let values = numbers.iter().filter_map(|row| row[column]);
-            write!(text, " {} |", median_and_range(values.collect()))?;
-        }
-        text += "\n";
+    for designs in found {
+        let better = |other: &Designs| {
+            [OUTLINE, MEAN_DAMAGE].iter().all(|&column| {
+                other.median(column) < designs.median(column)
+            })
+        };
+        let on_front = if found.iter().any(better) { "" } else { "x" };
+        let cells = designs.columns.iter().cloned().map(median_and_range);
+        let cells: Vec<String> = cells.collect();
+        text += &format!("| {} | {on_front} | {} |\n", designs.weights, cells.join(" | "));
     }
-    bar.finish();
-    Ok(text)
+    text
+}
+
+/// The medians of the swept weights.
+fn lines(found: &[Designs]) -> Vec<DamageLine> {
+    let swept = found[..DAMAGE.len() * COMPRESSION.len()].chunks(COMPRESSION.len());
+    let line = |(damage, designs): (f64, &[Designs])| DamageLine {
+        name: format!("weight of the damage {damage}"),
+        points: designs.iter().map(Designs::place).collect(),
+    };
+    DAMAGE.into_iter().zip(swept).map(line).collect()
+}
+
+impl Designs {
+    fn median(&self, column: usize) -> f64 {
+        median(self.columns[column].clone())
+    }
+
+    fn place(&self) -> (f64, f64) {
+        (self.median(OUTLINE), self.median(MEAN_DAMAGE))
+    }
 }
 
 fn of(row: &Row) -> [Option<f64>; COLUMNS.len()] {
@@ -95,9 +196,11 @@ fn of(row: &Row) -> [Option<f64>; COLUMNS.len()] {
         path.states.iter().map(move |state| state.eta(w_lig)[0])
     });
     let forces = row.forces.iter();
+    let openings = row.paths.iter().map(|path| path.end().theta.to_degrees());
     let known: Vec<f64> = row.damage.iter().flatten().copied().collect();
     [
         Some(row.outline[1]),
+        openings.max_by(f64::total_cmp),
         states.min_by(f64::total_cmp),
         (forces.clone().map(|[normal, _]| (-normal).max(0.0))).max_by(f64::total_cmp),
         Some(forces.map(|[_, force]| force).sum::<f64>() / row.forces.len() as f64),

@@ -1,6 +1,7 @@
 //! The tables and pictures of `kirigami-studies polyester`.
 
 use super::Row;
+use super::objective_front::Front;
 use crate::charts::{self, PathPanel};
 use anyhow::Result;
 use design::sheet::cut_sheet::HingePoint;
@@ -39,9 +40,10 @@ pub(super) fn write(
     rows: &[Row],
     surrogate: &Surrogate,
     tier: Tier,
-    front: &str,
+    front: &Front,
 ) -> Result<()> {
-    let page = markdown(rows, tier, front)?;
+    let page = markdown(rows, surrogate, tier, front)?;
+    picture::save(&front.chart, &out.join("front"), 1200)?;
     run_folder::write(out, "polyester.md", &page)?;
     run_folder::write(out, "polyester.csv", &csv(rows)?)?;
     let panels: Vec<PathPanel> = rows
@@ -143,11 +145,12 @@ fn mean_damage(damage: &[Option<f64>]) -> String {
     }
 }
 
-fn markdown(rows: &[Row], tier: Tier, front: &str) -> Result<String> {
-    let mut text = "# The polyester sheet with the learned hinge\n\nThe load is that at which the \
-                    maximum hinge opening of the uniform sheet is the given angle. \
-                    `kirigami-studies polyester`.\n\n| |"
-        .to_owned();
+fn markdown(rows: &[Row], surrogate: &Surrogate, tier: Tier, front: &Front) -> Result<String> {
+    let mut text = format!(
+        "# The polyester sheet with the learned hinge\n\nThe load is that at which the maximum hinge opening of the uniform \
+         sheet is the given angle. Weights: hash {}. `kirigami-studies polyester`.\n\n| |",
+        &surrogate.hash()[..16]
+    );
     for row in rows {
         write!(text, " {}, {} |", name(row.point), row.objective)?;
     }
@@ -202,7 +205,9 @@ fn markdown(rows: &[Row], tier: Tier, front: &str) -> Result<String> {
             )?,
         }
     }
-    text += front;
+    text += &front.table;
+    text += "\n![damage against outline error](front.png)\n\nMedians of the swept weights; along a line the weight of the \
+             compression grows.\n";
     text += "\n## Deployed\n\n";
     for (k, row) in rows.iter().enumerate() {
         let design = format!("{}, {}", name(row.point), row.objective);
