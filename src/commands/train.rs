@@ -25,8 +25,10 @@ use support::shard::Shard;
 use support::table::number_or_dash;
 use surrogate::{ErrorBin, Surrogate, TestErrors};
 use train::{
-    Backend, Epoch, Start, StiffnessCheck, Trained, Training, TrainingConfig, TrainingData,
+    Backend, Distillation, Epoch, Start, StiffnessCheck, Trained, Training, TrainingConfig,
+    TrainingData,
 };
+use verification::distillation_states;
 
 /// Train the surrogate hinge energy on a database
 ///
@@ -58,7 +60,11 @@ pub struct TrainCommand {
     /// docs/MATERIALS.md lists the errors over the number of rays
     #[arg(long, value_name = "WEIGHTS")]
     from: Option<PathBuf>,
-    /// Continue a training that was stopped, with the same --config and --from; others are an error. One that was killed in
+    /// Train also on the median of these weights of the same material, at 20 000 random states inside the training domain of the
+    /// first: one network that predicts what several do
+    #[arg(long, value_name = "WEIGHTS", num_args = 1.., conflicts_with = "seeds")]
+    teachers: Vec<PathBuf>,
+    /// Continue a training that was stopped, with the same --config, --from and --teachers; others are an error. One that was killed in
     /// its first half minute left nothing, and starts from the beginning
     #[arg(long, conflicts_with = "seeds")]
     resume: bool,
@@ -101,6 +107,7 @@ impl TrainCommand {
             out,
             backend: Backend::default(),
             from: None,
+            teachers: Vec::new(),
             resume: false,
             seeds: 1,
             shard: Shard::WHOLE,
@@ -146,10 +153,36 @@ impl TrainCommand {
         } else {
             pretrained.map_or(Start::Fresh, Start::Weights)
         };
-        let trained = fit((&database).into(), &config, self.backend, start, &state)?;
+        let distillation = self.distillation(&database)?;
+        let data = TrainingData {
+            database: &database,
+            distillation: distillation.as_ref(),
+        };
+        let trained = fit(data, &config, self.backend, start, &state)?;
         self.write(&trained, &database)?;
         std::fs::remove_file(&state).ok();
         Ok(())
+    }
+
+    /// The median of the teachers at random states, if there are teachers.
+    fn distillation(&self, database: &Database) -> Result<Option<Distillation>> {
+        let teachers = self.teachers.iter().map(|file| {
+            let teacher = Surrogate::load(file)?;
+            let (card, manifest) = (teacher.card(), database.manifest());
+            let hash = card.material_hash.as_ref();
+            ensure!(
+                card.hinge == manifest.hinge && hash.is_none_or(|hash| manifest.material_hashes.contains(hash)),
+                "--teachers: {} is not of the material, hole, kerf and window radius of {}",
+                file.display(),
+                self.database.display()
+            );
+            Ok(teacher)
+        });
+        let teachers: Vec<Surrogate> = teachers.collect::<Result<_>>()?;
+        Ok(teachers.first().map(|first| {
+            let states = distillation_states(first.domain(), &first.card().hinge);
+            Distillation::new(&teachers, &states)
+        }))
     }
 
     fn config(&self) -> &Path {

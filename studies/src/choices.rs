@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// A scene in which one choice differs from the scene as it is.
+#[derive(Clone)]
 pub struct Choice {
     pub kind: &'static str,
     pub name: String,

@@ -1,12 +1,12 @@
 //! `kirigami-studies flanks`: whether the flanks of cuts touch, where windows have no contact.
 //!
-//! Rays are drawn whose rigid panels would pass through each other in the plane. In the solved windows the panels tilt out of it,
-//! which draws the flanks apart: how far is measured on the deformed meshes.
+//! Rays are drawn whose rigid panels would pass through each other in the plane at the hole. In the solved windows the panels tilt
+//! out of it, which draws the flanks apart: how far is measured on the deformed meshes.
 
 use crate::stop::refuse_stop;
 use anyhow::{Result, ensure};
 use clap::Args;
-use design::analysis::flanks::flank_gap;
+use design::analysis::flanks::{gap_at_hole, gap_at_rim};
 use fe_driver::{CalculiX, HingePath, Solver, WindowProblem, WindowSolve};
 use hinge::SheetMaterial;
 use kirigami::ui::progress::Progress;
@@ -97,7 +97,7 @@ impl FlanksStudy {
     fn overlapping(&self) -> Result<Vec<HingePath>> {
         let weights = Surrogate::load(&self.weights)?;
         let drawn = random_paths(weights.domain(), &weights.card().hinge, DRAWN, 1, 0);
-        let overlap = |hinge: &HingePath| flank_gap(&hinge.design, &hinge.path.at(1.0)) < 0.0;
+        let overlap = |hinge: &HingePath| gap_at_hole(&hinge.design, &hinge.path.at(1.0)) < 0.0;
         let mut found: Vec<HingePath> = drawn.into_iter().map(|path| path.hinge).collect();
         found.retain(overlap);
         found.truncate(self.rays);
@@ -130,12 +130,14 @@ impl FlanksStudy {
 
     fn summary(&self, rows: &[Row]) -> String {
         let touching = rows.iter().filter(|row| row.through > 0).count();
+        let at_rim = |row: &&Row| gap_at_rim(&row.hinge.design, &row.hinge.path.at(1.0)) < 0.0;
+        let at_rim = rows.iter().filter(at_rim).count();
         let increments: usize = rows.iter().map(|row| row.increments).sum();
         let through: usize = rows.iter().map(|row| row.through).sum();
         format!(
             "# Flanks of cuts in windows without contact\n\n\
-             {} rays drawn inside the training domain of {}, of those whose rigid panels overlap in the plane at the end; windows of the tier {}. \
-             Nearest: least distance of the flanks along the ray where both are within a thickness of one height, negative where they pass \
+             {} rays drawn inside the training domain of {}, of those whose rigid panels overlap in the plane beside the hole at the end, {at_rim} of them also at the rim \
+             of the window; windows of the tier {}. Nearest: least distance of the flanks along the ray where both are within a thickness of one height, negative where they pass \
              through each other. In {touching} windows flanks do, in {through} of {increments} increments. `kirigami-studies flanks`.\n",
             rows.len(),
             self.weights.display(),
@@ -163,8 +165,11 @@ fn table<'a>(thickness: f64) -> Table<'a, Row> {
             Cell::fixed(end(row).theta.to_degrees(), 1)
         })
         .column("solved, %", |row| Cell::percent(row.lambda, 0))
-        .column("rigid panels, mm", move |row| {
-            Cell::fixed(flank_gap(&row.hinge.design, &end(row)), 2)
+        .column("rigid, at the hole, mm", move |row| {
+            Cell::fixed(gap_at_hole(&row.hinge.design, &end(row)), 2)
+        })
+        .column("at the rim, mm", move |row| {
+            Cell::fixed(gap_at_rim(&row.hinge.design, &end(row)), 2)
         })
         .column("nearest, mm", |row| {
             Cell::known(row.nearest.map(|gap| Cell::fixed(gap, 2)), "-")

@@ -4,6 +4,8 @@
 //! choice. *Effect* is the movement of the panel corners from the scene as it is, *error* that from the finite elements:
 //! a choice whose effect is far below the error costs no accuracy.
 
+mod searches;
+
 use crate::choices::{Choice, Choices, Measured, own_weights, rms};
 use crate::designed::designed;
 use anyhow::{Context, Result, ensure};
@@ -38,12 +40,20 @@ pub struct LevelsStudy {
     /// Maximum number of times that all hinges of a sheet are solved
     #[arg(long, value_name = "N", default_value_t = 3)]
     rounds: usize,
+    /// Also search at each level from N random starts, and judge all designs by the last of the networks
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    starts: u64,
     #[command(flatten)]
     solve: SolveArgs,
     /// Folder for the tables, the designs and the solutions
     #[arg(long, value_name = "FOLDER", default_value = "runs/study-levels")]
     out: PathBuf,
 }
+
+/// Kinds of choices: networks and other levels, with which designs are searched, and those that are compared on one design alone.
+const NETWORK: &str = "network";
+const LEVEL: &str = "level";
+const COMPARED: &str = "compared";
 
 /// Load steps and tolerance of the level draft.
 const DRAFT: (usize, f64) = (5, 1e-3);
@@ -94,11 +104,11 @@ impl LevelsStudy {
         );
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let folder = self.out.join(&*name);
-        let scene = |mut config: SceneConfig| -> Result<Scene> {
-            config.output = std::path::absolute(folder.join("design"))?;
+        let scene = |mut config: SceneConfig, run: &str| -> Result<Scene> {
+            config.output = std::path::absolute(folder.join(run))?;
             Ok(Scene::new(config, path)?)
         };
-        let own = scene(base.clone())?;
+        let own = scene(base.clone(), "design")?;
         let design = designed(&own, &mut |_| ())?.design;
         let windows = ElementWindows {
             tier: self.tier,
@@ -107,17 +117,30 @@ impl LevelsStudy {
         let truth = balanced(&own, &design, &windows, self.rounds);
         let (truth, _) = truth.map_err(task_error)?;
         let mut rows = Vec::new();
-        for choice in self.choices(&base, path)? {
-            let problem = scene(choice.config)?.problem()?;
+        let choices = self.choices(&base, path)?;
+        for choice in &choices {
+            let problem = scene(choice.config.clone(), "design")?.problem()?;
             let row = Row::new(choice.name.clone(), &problem, &design, &truth);
             rows.push(row.with_context(|| format!("{name}, {}", choice.name))?);
         }
-        Ok(section(&own.config.title, &truth, &rows))
+        let mut text = section(&own.config.title, &truth, &rows);
+        if self.starts > 0 {
+            let last = choices.iter().rfind(|choice| choice.kind == NETWORK);
+            let judge = last.context("no network judges the designs")?;
+            let by_judge = scene(judge.config.clone(), "judge")?.problem()?;
+            let levels: Vec<Choice> = (choices.iter())
+                .filter(|choice| choice.kind != COMPARED)
+                .cloned()
+                .collect();
+            text += &searches::table(&levels, (&judge.name, &by_judge), self.starts, scene)?;
+            text += "\n";
+        }
+        Ok(text)
     }
 
     fn choices(&self, base: &SceneConfig, path: &Path) -> Result<Vec<Choice>> {
         let mut choices = Choices::new(base);
-        choices.vary("", "everyday: the scene as it is", |_| ());
+        choices.vary(LEVEL, "everyday: the scene as it is", |_| ());
         for (i, weights) in self.networks.iter().enumerate() {
             let mut with_weights = base.clone();
             with_weights.name_weights(weights)?;
@@ -125,29 +148,29 @@ impl LevelsStudy {
             if i == 0 {
                 let (steps, tolerance) = DRAFT;
                 let name = format!("draft: {stem}, {steps} load steps, tolerance {tolerance:e}");
-                choices.vary("", name, |config| {
+                choices.vary(LEVEL, name, |config| {
                     *config = with_weights.clone();
                     (config.load_steps, config.solver.tolerance) = DRAFT;
                 });
             }
-            choices.vary("", format!("weights {stem}"), |config| {
+            choices.vary(NETWORK, format!("weights {stem}"), |config| {
                 *config = with_weights
             });
         }
         for tolerance in [1e-6, 1e-3] {
-            choices.vary("", format!("tolerance {tolerance:e}"), |config| {
+            choices.vary(COMPARED, format!("tolerance {tolerance:e}"), |config| {
                 config.solver.tolerance = tolerance;
             });
         }
         for steps in [5, 40] {
-            choices.vary("", format!("{steps} load steps"), |config| {
+            choices.vary(COMPARED, format!("{steps} load steps"), |config| {
                 config.load_steps = steps
             });
         }
         let weights = own_weights(base, path)?;
         let springs = "linear springs, secant at 20 deg";
-        choices.springs("", springs, &weights, 20.0, HingePoint::CutTip);
-        choices.vary("", "hinges at the corners", |config| {
+        choices.springs(LEVEL, springs, &weights, 20.0, HingePoint::CutTip);
+        choices.vary(COMPARED, "hinges at the corners", |config| {
             config.hinge_point = Some(HingePoint::Corner);
         });
         Ok(choices.list)

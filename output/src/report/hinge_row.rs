@@ -38,7 +38,8 @@ pub struct HingeRow {
     /// Maximum distance of the path from the straight ray to its end, in ligament widths; see
     /// [`PathSeparation::whole`].
     pub path_separation: f64,
-    /// Minimum along the path of the distance of the flanks of the cut at the hole (mm); negative where they overlap.
+    /// Minimum along the path of the distance of the flanks of the cut where they come nearest (mm): see
+    /// [`flank_gap`](design::analysis::flanks::flank_gap).
     pub flank_gap: f64,
     /// (21), with the shortest edge of the two panels; `None` for a sheet that does not lie on a surface.
     pub gamma: Option<f64>,
@@ -58,6 +59,7 @@ impl HingeRow {
         let hinge = &sheet.hinges[h];
         let last = deployment.final_step().deformations[h];
         let [eta_a, eta_s] = last.eta(hinge.w_lig);
+        let regime = scene.material.regime(hinge.w_lig);
         let states: Vec<_> = (deployment.path.iter())
             .map(|step| step.deformations[h])
             .collect();
@@ -73,7 +75,7 @@ impl HingeRow {
             damage_peak: deployment.damage_max(DamageMeasure::Peak, h),
             inside: deployment.path.iter().all(|step| step.inside[h]),
             path_separation: PathSeparation::new(hinge.w_lig, &states).whole,
-            flank_gap: (states.iter().map(|state| flank_gap(&designs[h], state)))
+            flank_gap: (states.iter().map(|state| flank_gap(&designs[h], state, regime)))
                 .fold(f64::INFINITY, f64::min),
             gamma: (scene.config.posture)
                 .is_none_or(|posture| posture.kind == Posture::Lying)

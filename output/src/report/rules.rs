@@ -63,7 +63,7 @@ const RULES: [Rule; 22] = [
     ligaments_outside,
     states_outside,
     path_dependence,
-    flanks_overlap,
+    flanks_touch,
     tearing,
     overstrained,
     path,
@@ -185,16 +185,17 @@ fn path_dependence(judged: &Judged) -> Option<Warning> {
 }
 
 /// Windows have no contact.
-fn flanks_overlap(judged: &Judged) -> Option<Warning> {
+fn flanks_touch(judged: &Judged) -> Option<Warning> {
     judged.scene.surrogate()?;
-    let overlapping = judged.those(|row| row.flank_gap < 0.0);
+    let touching = judged.those(|row| row.flank_gap < 0.0);
     let gaps = judged.hinges.iter().map(|row| row.flank_gap);
     let most = -gaps.fold(f64::INFINITY, f64::min);
     let message = format!(
-        "the flanks of their cuts overlap in the plane, by up to {} mm beside the hole: contact between them is not modelled",
+        "the flanks of their cuts are pushed into each other, by up to {} mm: contact between them is not modelled, and the load is \
+         larger than stated; add objective.compression (docs/results/flanks)",
         rounded(most, 2)
     );
-    about(Concern::FlanksOverlap, overlapping, message)
+    about(Concern::FlanksTouch, touching, message)
 }
 
 fn tearing(judged: &Judged) -> Option<Warning> {

@@ -42,8 +42,8 @@ pub enum Concern {
     StatesOutsideDomain,
     /// The path departs so far from the straight ray to its end that energy and forces depend on it.
     PathDependence,
-    /// The flanks of a cut overlap in the plane: contact between them is not modelled.
-    FlanksOverlap,
+    /// The flanks of a cut are pushed into each other: contact between them is not modelled.
+    FlanksTouch,
     /// D_peak of 1 or more: ligaments tear.
     Tearing,
     /// |eta| > 1 at full load: a ligament translates by more than its width.
@@ -83,13 +83,13 @@ impl Concern {
         match self {
             Self::WindowsLeavePanels
             | Self::PathDependence
-            | Self::FlanksOverlap
             | Self::OtherBranch
             | Self::TargetMissed
             | Self::NotModelled => Severity::Note,
             Self::WindowsOverlap
             | Self::LigamentsOutsideDomain
             | Self::StatesOutsideDomain
+            | Self::FlanksTouch
             | Self::Path
             | Self::TargetCrosses
             | Self::LeavesPlane
