@@ -6,7 +6,7 @@
 use crate::stop::refuse_stop;
 use anyhow::{Result, ensure};
 use clap::Args;
-use design::analysis::flanks::{gap_at_hole, gap_at_rim};
+use design::analysis::flanks::gap_at_hole;
 use fe_driver::{CalculiX, HingePath, Solver, WindowProblem, WindowSolve};
 use hinge::SheetMaterial;
 use kirigami::ui::progress::Progress;
@@ -130,14 +130,12 @@ impl FlanksStudy {
 
     fn summary(&self, rows: &[Row]) -> String {
         let touching = rows.iter().filter(|row| row.through > 0).count();
-        let at_rim = |row: &&Row| gap_at_rim(&row.hinge.design, &row.hinge.path.at(1.0)) < 0.0;
-        let at_rim = rows.iter().filter(at_rim).count();
         let increments: usize = rows.iter().map(|row| row.increments).sum();
         let through: usize = rows.iter().map(|row| row.through).sum();
         format!(
             "# Flanks of cuts in windows without contact\n\n\
-             {} rays drawn inside the training domain of {}, of those whose rigid panels overlap in the plane beside the hole at the end, {at_rim} of them also at the rim \
-             of the window; windows of the tier {}. Nearest: least distance of the flanks along the ray where both are within a thickness of one height, negative where they pass \
+             {} rays drawn inside the training domain of {}, of those whose rigid panels overlap in the plane beside the hole at the end; windows of the tier {}. \
+             Nearest: least distance of the flanks along the ray where both are within a thickness of one height, negative where they pass \
              through each other. In {touching} windows flanks do, in {through} of {increments} increments. `kirigami-studies flanks`.\n",
             rows.len(),
             self.weights.display(),
@@ -165,11 +163,8 @@ fn table<'a>(thickness: f64) -> Table<'a, Row> {
             Cell::fixed(end(row).theta.to_degrees(), 1)
         })
         .column("solved, %", |row| Cell::percent(row.lambda, 0))
-        .column("rigid, at the hole, mm", move |row| {
+        .column("rigid panels, mm", move |row| {
             Cell::fixed(gap_at_hole(&row.hinge.design, &end(row)), 2)
-        })
-        .column("at the rim, mm", move |row| {
-            Cell::fixed(gap_at_rim(&row.hinge.design, &end(row)), 2)
         })
         .column("nearest, mm", |row| {
             Cell::known(row.nearest.map(|gap| Cell::fixed(gap, 2)), "-")

@@ -53,7 +53,7 @@ struct Case {
 
 /// Radius of the windows over the ligament width.
 const WINDOW: f64 = 20.0 / 3.6;
-/// The stroke that opens hinges by 27 degrees, and one that opens them by 64, over the side of a panel.
+/// The stroke that opens hinges by 26 degrees, and one that opens them by 65, over the side of a panel.
 const USUAL: f64 = 30.0 / 70.0;
 const FAR: f64 = 62.0 / 70.0;
 

@@ -24,6 +24,7 @@ mod pages;
 mod panel_penalties;
 mod path_costs;
 mod polyester;
+mod printed;
 mod shape_alone;
 mod sheet;
 mod silhouettes;
@@ -69,6 +70,7 @@ enum Study {
     Flatness(flatness::FlatnessStudy),
     Surrogate(surrogate::SurrogateStudy),
     Tradeoff(tradeoff::TradeoffCommand),
+    Printed(printed::PrintedStudy),
     Pages(pages::PagesCommand),
     Keys(keys::KeysCommand),
 }
@@ -96,6 +98,7 @@ impl Study {
             Self::Flatness(study) => study.run(),
             Self::Surrogate(study) => study.run(),
             Self::Tradeoff(command) => command.run(),
+            Self::Printed(study) => study.run(),
             Self::Pages(command) => command.run(),
             Self::Keys(command) => command.run(),
         }

@@ -6,6 +6,7 @@ use design::scene::{Scene, SceneConfig};
 use fe_driver::{
     Campaign, FakeSolver, Fault, Progress, SolveService, SolveStore, Solver, WindowSolve,
 };
+use mesher::Tier;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -62,7 +63,7 @@ fn balance(
     rounds: usize,
 ) -> Result<Balanced, VerificationError> {
     let service = &service(solver, folder);
-    let tier = mesher::Tier::Tiny;
+    let tier = Tier::Tiny;
     let windows = ElementWindows { tier, service };
     Ok(balanced(scene, &start(scene), &windows, rounds)?.0)
 }
@@ -109,6 +110,32 @@ fn a_balanced_sheet_is_that_of_the_hinges_of_the_solver() {
     let again = solver();
     balance(&springs(1.0), &again, &folder, 8).unwrap();
     assert_eq!(again.attempts(), 0);
+}
+
+/// The cheaper mesh takes the rounds in which the hinges still move, and the finest one confirms them: the solver has the same hinges
+/// on both.
+#[test]
+fn a_sheet_is_balanced_on_the_cheaper_mesh_first() {
+    let (scene, folder) = (springs(1.0), tempfile::tempdir().unwrap());
+    let stiffer = SPRINGS.map(|k| 1.1 * k);
+    let service = &service(
+        FakeSolver::new(stiffer, |_: &WindowSolve| None),
+        &folder,
+    );
+    let tier = Tier::Reference;
+    let windows = ElementWindows { tier, service };
+    let (found, _) = balanced(&scene, &start(&scene), &windows, 8).unwrap();
+    assert_eq!(found.ended, BalanceEnd::Converged);
+    let tiers: Vec<Tier> = found.rounds.iter().map(|round| round.tier).collect();
+    let (last, drafts) = tiers.split_last().unwrap();
+    assert_eq!(*last, Tier::Reference);
+    assert!(drafts.len() > 1 && drafts.iter().all(|tier| *tier == Tier::Default));
+    let meshes: Vec<_> = found.by_mesh().collect();
+    let [(Tier::Default, draft), (Tier::Reference, finest)] = meshes[..] else {
+        panic!("two meshes");
+    };
+    let between = movements(draft, finest).into_iter().fold(0.0, f64::max);
+    assert!(between <= BALANCED * size(finest), "{between}");
 }
 
 #[test]
@@ -164,7 +191,7 @@ fn a_replay_compares_every_state_and_names_what_failed() {
         (solve.problem.hinge.path.at(1.0) == lost).then_some(Fault::Hangs)
     });
     let replayed = |solver: &dyn Solver| {
-        let (tier, networks) = (mesher::Tier::Tiny, [surrogate.clone()]);
+        let (tier, networks) = (Tier::Tiny, [surrogate.clone()]);
         let service = &service(solver, &folder);
         let windows = ElementWindows { tier, service };
         let design = (paths.clone(), "sheet");
@@ -207,7 +234,7 @@ fn a_spot_check_keeps_the_states_of_the_windows_that_are_solved() {
         (solve.problem.hinge == first).then_some(Fault::Diverges(0.4))
     });
     let windows = service(&diverges, &folder);
-    let tier = mesher::Tier::Tiny;
+    let tier = Tier::Tiny;
     let check = spot_check(&windows, &paths, &scene.material, tier).unwrap();
     assert_eq!((check.rows.len(), check.unknown_states), (9, 3));
     assert_eq!(check.unsolved[0].solve.problem.hinge, first);

@@ -27,7 +27,7 @@ pub fn gap_at_hole(design: &HingeDesign, state: &HingeDeformation) -> f64 {
 }
 
 /// Distance of the flanks of rigid panels at the rim of the window (mm).
-pub fn gap_at_rim(design: &HingeDesign, state: &HingeDeformation) -> f64 {
+fn gap_at_rim(design: &HingeDesign, state: &HingeDeformation) -> f64 {
     // The rim is a circle about the ligament's edge, which is at the distance w_lig from O.
     let (sin, cos) = design.alpha.sin_cos();
     let across = (design.r_win.powi(2) - (design.w_lig * cos).powi(2)).sqrt();

@@ -10,7 +10,7 @@ use crate::scene::Posture;
 use hinge::SheetMaterial;
 
 /// (w_lig / t of the widest ligament, error of the corners over the longer side of the flat sheet), root mean square, at openings
-/// of 27 deg with nothing that holds the panels. At 64 deg it is two to three times as much.
+/// of 26 deg with nothing that holds the panels. At 65 deg it is two to three times as much.
 const NOTHING: [[f64; 2]; 4] = [[0.9, 0.001], [1.2, 0.0027], [1.8, 0.013], [3.6, 0.157]];
 
 /// Error on a table, for each elasto-gravity length in the radius of a window.
@@ -18,7 +18,7 @@ const TABLE: f64 = 0.01;
 /// The ratio of these lengths up to which the weight holds the panels down; a stiffer sheet counts as one that nothing holds.
 const PRESSED: f64 = 3.2;
 
-/// The expected error of the panel corners (root mean square) over the longer side of the flat sheet, for hinges that open by about 27 deg. Beyond
+/// The expected error of the panel corners (root mean square) over the longer side of the flat sheet, for hinges that open by about 26 deg. Beyond
 /// the widest ligaments that were solved, a lower bound.
 pub fn expected_departure(
     posture: Posture,

@@ -338,7 +338,7 @@ fn leaves_plane(judged: &Judged) -> Option<Warning> {
     };
     let expected = format!(
         "the corners are expected {} mm (root mean square) from where the report has them, {} % of the sheet, where hinges open by \
-         27 deg, and two to three times as far at 64 deg",
+         26 deg, and two to three times as far at 65 deg",
         rounded(error * size, 2),
         rounded(100.0 * error, 2)
     );
