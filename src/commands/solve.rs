@@ -98,7 +98,10 @@ impl SolveCommand {
         {
             run_folder::write(&self.out, "window.vtu", &grid.to_vtu())?;
         }
-        let gaps = solver.flank_gaps(&solve, &self.out)?;
+        let gaps = match solution.samples.is_empty() {
+            true => Vec::new(),
+            false => solver.flank_gaps(&solve, &self.out)?,
+        };
         warn_of_contact(&gaps);
         if self.json {
             let description = json!({

@@ -171,7 +171,8 @@ impl TrainCommand {
             let (card, manifest) = (teacher.card(), database.manifest());
             let hash = card.material_hash.as_ref();
             ensure!(
-                card.hinge == manifest.hinge && hash.is_none_or(|hash| manifest.material_hashes.contains(hash)),
+                card.hinge == manifest.hinge
+                    && hash.is_none_or(|hash| manifest.material_hashes.contains(hash)),
                 "--teachers: {} is not of the material, hole, kerf and window radius of {}",
                 file.display(),
                 self.database.display()

@@ -54,7 +54,8 @@ pub struct VerifyCommand {
     /// Deploy the sheet with finite elements for its hinges, which are solved several times
     #[arg(long, group = "of_sheet", conflicts_with_all = ["ensemble", "sample"])]
     equilibrium: bool,
-    /// Maximum number of times that all hinges are solved
+    /// Maximum number of times that all hinges are solved on the mesh of --tier; before `reference` and `plate-reference` the
+    /// sheet is balanced on the cheaper `default` and `plate`
     #[arg(long, value_name = "N", default_value_t = 6, requires = "equilibrium", value_parser = count::<usize>)]
     rounds: usize,
     /// Search for N more steps with the hinge law corrected to the finite elements, from the design on; judge the design that

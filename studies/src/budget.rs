@@ -70,7 +70,7 @@ impl BudgetStudy {
         let mut sheets = Vec::new();
         for number in 0..self.sheets {
             let scene = drawn_sheet(&base, &self.scene, number)?;
-            let found = balanced_on(&[self.tier], &scene, &scene.start(), &service, 1);
+            let found = balanced_on(&[(self.tier, 1)], &scene, &scene.start(), &service);
             let (found, _) = found.map_err(task_error)?;
             sheets.push(Judged::new(number, &scene, &found)?);
         }

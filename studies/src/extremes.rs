@@ -12,6 +12,7 @@ use clap::Args;
 use dataset::Database;
 use design::objective::design_problem::Model;
 use design::scene::{Scene, SceneConfig};
+use fe_driver::CalculiX;
 use kirigami::ui::progress::Progress;
 use kirigami::ui::run_folder;
 use std::path::{Path, PathBuf};
@@ -70,6 +71,9 @@ impl ExtremesStudy {
         let Model::Equilibrium(mechanics) = scene.problem()?.model else {
             anyhow::bail!("{}: the hinge law has no energy", self.scene.display());
         };
+        let solver = CalculiX::find()?;
+        let database = Database::read(&self.database)?;
+        let training: TrainingConfig = support::toml_file::read(&self.training)?;
         let law = law_extremes::table(&*mechanics.law, &scene.config.process)?;
         let scenes = [
             (&scene.config, &*self.scene),
@@ -79,9 +83,7 @@ impl ExtremesStudy {
         let bar = Progress::new(extremes.len(), "sheets");
         let sheets = sheet_extremes::table(&extremes, |done, name| bar.show(done, None, name))?;
         bar.finish();
-        let windows = window_extremes::table(&scene.material, &self.out.join("window"))?;
-        let database = Database::read(&self.database)?;
-        let training: TrainingConfig = support::toml_file::read(&self.training)?;
+        let windows = window_extremes::table(&solver, &scene.material, &self.out.join("window"))?;
         let trainings = training_extremes::table(&database, &training)?;
         let tables = [windows, trainings, law, sheets];
         let text = tables.each_ref().map(|table| table.text.as_str());

@@ -37,7 +37,8 @@ pub struct LevelsStudy {
     /// Mesh tier of the windows
     #[arg(long, value_name = "TIER", default_value = "default")]
     tier: Tier,
-    /// Maximum number of times that all hinges of a sheet are solved
+    /// Maximum number of times that all hinges of a sheet are solved on the mesh of --tier; before `reference` the sheet is
+    /// balanced on `default`
     #[arg(long, value_name = "N", default_value_t = 3)]
     rounds: usize,
     /// Also search at each level from N random starts, and judge all designs by the last of the networks
@@ -231,7 +232,7 @@ fn section(title: &str, truth: &Balanced, rows: &[Row]) -> String {
         table = table.column(heading, move |row| Cell::fixed(row.errors[i], 3));
     }
     let mut judge = String::new();
-    if let [.., (draft, by_draft), (finest, by_finest)] = meshes[..] {
+    if let Some([(draft, by_draft), (finest, by_finest)]) = truth.mesh_error() {
         let error = rms(&movements(by_draft, by_finest));
         judge = format!(" Error of `{draft}` itself, by `{finest}`: {error:.3} mm.");
     }

@@ -63,9 +63,14 @@ impl PrintedStudy {
         let _held = run_folder::hold(&self.out)?;
         let claims: Claims = support::toml_file::read(CLAIMS.as_ref())?;
         let only = self.only.as_deref().unwrap_or_default();
-        let mut rows = Vec::new();
-        for claim in claims.claim.iter().filter(|it| it.command.contains(only)) {
+        let chosen = claims.claim.iter().filter(|it| it.command.contains(only));
+        let chosen: Vec<&Claim> = chosen.collect();
+        ensure!(!chosen.is_empty(), "no command contains `{only}`");
+        for claim in &chosen {
             claim.is_printed()?;
+        }
+        let mut rows = Vec::new();
+        for claim in chosen {
             eprintln!("{}", claim.command);
             rows.push(claim.run()?);
             refuse_stop(interrupt::stop_flag()?)?;

@@ -66,7 +66,9 @@ mod spot_check;
 mod verification_error;
 mod whole_sheet;
 
-pub use balanced_sheet::{BALANCED, BalanceEnd, Balanced, Round, balanced, balanced_on, movements, size};
+pub use balanced_sheet::{
+    BALANCED, BalanceEnd, Balanced, Round, balanced, balanced_on, movements, size,
+};
 pub use compared_states::{SCALE, each_relative, spread_table};
 pub use doubtful_states::{DoubtfulState, doubtful_states, rays_through};
 pub use extension::{PathRays, rays_on_paths};

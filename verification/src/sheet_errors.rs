@@ -24,7 +24,7 @@ pub struct SheetErrors {
     load_factor: f64,
     /// The errors of the law by finite elements of each mesh, the finest one last.
     errors: Vec<MeshErrors>,
-    /// The cheaper mesh beside the finest one, if there are two.
+    /// The cheaper mesh beside the finest one, if the sheet was balanced on both.
     between: Option<MeshErrors>,
     /// Standard deviations of the causes in the error budget of the report that finite elements see, if there is one.
     budget: Option<Effect>,
@@ -85,14 +85,11 @@ impl SheetErrors {
             let paths = by_law.path.iter().chain(&by_elements.path);
             paths.into_iter().any(|step| !step.inside[*hinge])
         };
-        let meshes: Vec<_> = found.by_mesh().collect();
-        let errors = meshes
-            .iter()
-            .map(|&(tier, by_mesh)| MeshErrors::new(by_law, tier, by_mesh));
-        let between = match meshes[..] {
-            [.., (_, draft), (tier, finest)] => Some(MeshErrors::new(draft, tier, finest)),
-            _ => None,
-        };
+        let meshes = found.by_mesh();
+        let errors = meshes.map(|(tier, by_mesh)| MeshErrors::new(by_law, tier, by_mesh));
+        let between = found.mesh_error();
+        let between =
+            between.map(|[(_, draft), (tier, finest)]| MeshErrors::new(draft, tier, finest));
         Self {
             design,
             rounds: found.rounds.clone(),

@@ -39,8 +39,12 @@ impl<'a> Flanks<'a> {
     /// flank has the other at its height.
     pub(crate) fn gap(&self, frame: &Frame) -> Option<f64> {
         let [a, b] = [0, 1].map(|side| self.deformed(&self.nodes[side], frame));
-        let from_a = a.iter().filter_map(|place| self.signed_distance(*place, &b, -1.0));
-        let from_b = b.iter().filter_map(|place| self.signed_distance(*place, &a, 1.0));
+        let from_a = a
+            .iter()
+            .filter_map(|place| self.signed_distance(*place, &b, -1.0));
+        let from_b = b
+            .iter()
+            .filter_map(|place| self.signed_distance(*place, &a, 1.0));
         from_a.chain(from_b).reduce(f64::min)
     }
 

@@ -75,8 +75,10 @@ impl HingeRow {
             damage_peak: deployment.damage_max(DamageMeasure::Peak, h),
             inside: deployment.path.iter().all(|step| step.inside[h]),
             path_separation: PathSeparation::new(hinge.w_lig, &states).whole,
-            flank_gap: (states.iter().map(|state| flank_gap(&designs[h], state, regime)))
-                .fold(f64::INFINITY, f64::min),
+            flank_gap: (states
+                .iter()
+                .map(|state| flank_gap(&designs[h], state, regime)))
+            .fold(f64::INFINITY, f64::min),
             gamma: (scene.config.posture)
                 .is_none_or(|posture| posture.kind == Posture::Lying)
                 .then(|| gamma(&scene.material, hinge.w_lig, shortest_edge(sheet, hinge))),

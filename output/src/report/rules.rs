@@ -192,7 +192,7 @@ fn flanks_touch(judged: &Judged) -> Option<Warning> {
     let most = -gaps.fold(f64::INFINITY, f64::min);
     let message = format!(
         "the flanks of their cuts are pushed into each other, by up to {} mm: contact between them is not modelled, and the load is \
-         larger than stated; add objective.compression (docs/results/flanks)",
+         larger than stated (docs/results/flanks)",
         rounded(most, 2)
     );
     about(Concern::FlanksTouch, touching, message)

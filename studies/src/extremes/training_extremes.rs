@@ -131,10 +131,7 @@ fn enlarge(row: &mut Row, factor: f64) {
 }
 
 /// One row a training.
-pub(super) fn table(
-    database: &Database,
-    config: &TrainingConfig,
-) -> Result<Checked> {
+pub(super) fn table(database: &Database, config: &TrainingConfig) -> Result<Checked> {
     let mut text = format!(
         "## Trainings\n\n\
          {} rows of {} rays, {} epochs each, one thing changed at a time. Promised: finite errors on the test part, or a refusal with its \
@@ -151,7 +148,10 @@ pub(super) fn table(
     for (i, extreme) in extremes.iter().enumerate() {
         bar.show(i, None, extreme.name);
         let outcome = trained(&extreme.rows, config);
-        let error = outcome.as_ref().ok().map(|errors| errors.energy.relative_rmse);
+        let error = outcome
+            .as_ref()
+            .ok()
+            .map(|errors| errors.energy.relative_rmse);
         if i == 0 {
             own = error.unwrap_or(f64::NAN);
         }

@@ -89,7 +89,7 @@ fn all(material: &SheetMaterial) -> Vec<Extreme> {
 }
 
 /// One row a window; the solves are made in `folder`.
-pub(super) fn table(material: &SheetMaterial, folder: &Path) -> Result<Checked> {
+pub(super) fn table(solver: &CalculiX, material: &SheetMaterial, folder: &Path) -> Result<Checked> {
     let [judged, judge] = TIERS;
     let mut text = format!(
         "## Windows\n\n\
@@ -100,21 +100,15 @@ pub(super) fn table(material: &SheetMaterial, folder: &Path) -> Result<Checked> 
          |---|---|---|---|---|---|---|---|---|\n",
         material.name
     );
-    let solver = CalculiX::find()?;
     let extremes = all(material);
     let bar = Progress::new(extremes.len(), "windows");
     let mut broken = 0;
     for (i, extreme) in extremes.iter().enumerate() {
         bar.show(i, None, &extreme.name);
-        let found = extreme.solved(&solver, folder)?;
+        let found = extreme.solved(solver, folder)?;
         let (promise, outcome) = extreme.outcome(&found);
         broken += usize::from(!promise);
-        writeln!(
-            text,
-            "| {} | {outcome} | {} |",
-            extreme.name,
-            kept(promise)
-        )?;
+        writeln!(text, "| {} | {outcome} | {} |", extreme.name, kept(promise))?;
     }
     bar.finish();
     Ok(Checked { text, broken })

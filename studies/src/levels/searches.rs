@@ -6,8 +6,9 @@ use anyhow::Result;
 use design::objective::design_problem::DesignProblem;
 use design::objective::scores::outline_error;
 use design::scene::{Scene, SceneConfig};
-use kirigami::ui::progress::Progress;
 use kirigami::ui::exit::Unfinished;
+use kirigami::ui::progress::Progress;
+use output::run_results::remove_run;
 use std::time::Instant;
 use support::statistics::median;
 use support::table::{Cell, Table};
@@ -64,11 +65,16 @@ pub(super) fn table(
 impl Searched {
     /// Searches once. A search that is stuck, and a design that the reference cannot deploy, are counted and no more.
     fn add(&mut self, scene: &Scene, judge: &DesignProblem) -> Result<()> {
+        // A search that is resumed has no time.
+        remove_run(scene)?;
         let begun = Instant::now();
         let found = match designed(scene, &mut |_| ()) {
             Ok(found) => found,
             Err(error) if error.is::<Unfinished>() => return Err(error),
-            Err(_) => return Ok(()),
+            Err(error) => {
+                eprintln!("{}: {error:#}", self.level);
+                return Ok(());
+            }
         };
         let seconds = begun.elapsed().as_secs_f64();
         let Ok(judged) = judge.evaluate(&found.design) else {

@@ -116,9 +116,9 @@ impl fmt::Display for Weights {
 
 /// The designs of all weights.
 pub(super) fn front(study: &PolyesterStudy, config: &SceneConfig, load: f64) -> Result<Front> {
-    let grid = DAMAGE.iter().flat_map(|&damage| {
-        COMPRESSION.map(|compression| Weights::new(damage, compression))
-    });
+    let grid = DAMAGE
+        .iter()
+        .flat_map(|&damage| COMPRESSION.map(|compression| Weights::new(damage, compression)));
     let all: Vec<Weights> = grid.chain(OTHERS).collect();
     let bar = Progress::new(all.len() * SEEDS as usize, "designs");
     let mut found = Vec::new();
@@ -157,15 +157,18 @@ fn table(found: &[Designs]) -> String {
         "---|".repeat(COLUMNS.len())
     );
     for designs in found {
-        let better = |other: &Designs| {
-            [OUTLINE, MEAN_DAMAGE].iter().all(|&column| {
-                other.median(column) < designs.median(column)
-            })
+        let beaten = found.iter().any(|other| other.is_better(designs));
+        let on_front = match designs.place() {
+            Some(_) if !beaten => "x",
+            _ => "",
         };
-        let on_front = if found.iter().any(better) { "" } else { "x" };
         let cells = designs.columns.iter().cloned().map(median_and_range);
         let cells: Vec<String> = cells.collect();
-        text += &format!("| {} | {on_front} | {} |\n", designs.weights, cells.join(" | "));
+        text += &format!(
+            "| {} | {on_front} | {} |\n",
+            designs.weights,
+            cells.join(" | ")
+        );
     }
     text
 }
@@ -175,18 +178,24 @@ fn lines(found: &[Designs]) -> Vec<DamageLine> {
     let swept = found[..DAMAGE.len() * COMPRESSION.len()].chunks(COMPRESSION.len());
     let line = |(damage, designs): (f64, &[Designs])| DamageLine {
         name: format!("weight of the damage {damage}"),
-        points: designs.iter().map(Designs::place).collect(),
+        points: designs.iter().filter_map(Designs::place).collect(),
     };
     DAMAGE.into_iter().zip(swept).map(line).collect()
 }
 
 impl Designs {
-    fn median(&self, column: usize) -> f64 {
-        median(self.columns[column].clone())
+    /// Medians of outline error (mm) and mean damage; `None` if the damage of no design is known.
+    fn place(&self) -> Option<(f64, f64)> {
+        let [outline, damage] = [OUTLINE, MEAN_DAMAGE].map(|column| self.columns[column].clone());
+        (!damage.is_empty()).then(|| (median(outline), median(damage)))
     }
 
-    fn place(&self) -> (f64, f64) {
-        (self.median(OUTLINE), self.median(MEAN_DAMAGE))
+    /// Whether both are smaller than those of the other.
+    fn is_better(&self, other: &Self) -> bool {
+        match (self.place(), other.place()) {
+            (Some(own), Some(other)) => own.0 < other.0 && own.1 < other.1,
+            _ => false,
+        }
     }
 }
 
