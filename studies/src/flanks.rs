@@ -3,7 +3,7 @@
 //! Rays are drawn whose rigid panels would pass through each other in the plane at the hole. In the solved windows the panels tilt
 //! out of it, which draws the flanks apart: how far is measured on the deformed meshes.
 
-use crate::stop::refuse_stop;
+use crate::stop::refuse_stop_without_store;
 use anyhow::{Result, ensure};
 use clap::Args;
 use design::analysis::flanks::gap_at_hole;
@@ -114,7 +114,7 @@ impl FlanksStudy {
         let limit = Duration::from_secs(self.time_limit_s);
         let stop = interrupt::stop_flag()?;
         let solution = solver.attempt(solve, &folder, limit, stop);
-        refuse_stop(stop)?;
+        refuse_stop_without_store(stop)?;
         let solution = solution?;
         let gaps = solver.flank_gaps(solve, &folder)?;
         let last = solution.samples.last();

@@ -1,7 +1,7 @@
 //! `kirigami-studies printed`: the commands of README and tutorial that have a time or an error beside them, run as printed.
 
 use crate::cpu_seconds::children_cpu_seconds;
-use crate::stop::refuse_stop;
+use crate::stop::refuse_stop_without_store;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use kirigami::ui::{interrupt, run_folder};
@@ -73,7 +73,7 @@ impl PrintedStudy {
         for claim in chosen {
             eprintln!("{}", claim.command);
             rows.push(claim.run()?);
-            refuse_stop(interrupt::stop_flag()?)?;
+            refuse_stop_without_store(interrupt::stop_flag()?)?;
         }
         let page = format!(
             "# Commands as printed\n\n`kirigami-studies printed`.\n\n{}",

@@ -1,6 +1,6 @@
 //! Ctrl-C between two parts of a study.
 
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 use kirigami::ui::exit::Unfinished;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -10,6 +10,15 @@ pub fn refuse_stop(stop: &AtomicBool) -> Result<()> {
     if stop.load(Ordering::Relaxed) {
         bail!(Unfinished::new(1, "study"));
     }
+    Ok(())
+}
+
+/// The same for a study that stores nothing before its end.
+pub fn refuse_stop_without_store(stop: &AtomicBool) -> Result<()> {
+    ensure!(
+        !stop.load(Ordering::Relaxed),
+        "stopped: this study stores nothing before its end, and starts again"
+    );
     Ok(())
 }
 

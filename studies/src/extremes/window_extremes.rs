@@ -1,7 +1,7 @@
 //! Windows at the limits of ligament, cut angle, hole, kerf, radius, rotation and fracture strain: meshed and solved on two tiers.
 
 use super::{Checked, kept};
-use crate::stop::refuse_stop;
+use crate::stop::refuse_stop_without_store;
 use anyhow::Result;
 use fe_driver::{
     CalculiX, DeformationPath, HingePath, Solution, SolveError, Solver, WindowProblem, WindowSolve,
@@ -132,7 +132,7 @@ impl Extreme {
             let work = folder.join(tier.to_string());
             std::fs::create_dir_all(&work)?;
             let solution = solver.attempt(&solve, &work, LIMIT, stop);
-            refuse_stop(stop)?;
+            refuse_stop_without_store(stop)?;
             Ok(solution)
         };
         let [judged, judge] = TIERS.map(on);
