@@ -100,6 +100,11 @@ fn read(scene: &Path) -> Result<SceneConfig> {
     Ok(support::toml_file::read(scene)?)
 }
 
+/// A reason as a cell of a table.
+fn one_line(reason: &str) -> String {
+    reason.replace('|', "/").replace('\n', " ")
+}
+
 fn kept(promise: bool) -> &'static str {
     if promise { "kept" } else { "NOT KEPT" }
 }

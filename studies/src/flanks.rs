@@ -3,14 +3,14 @@
 //! Rays are drawn whose rigid panels would pass through each other in the plane at the hole. In the solved windows the panels tilt
 //! out of it, which draws the flanks apart: how far is measured on the deformed meshes.
 
-use crate::stop::refuse_stop_without_store;
+use crate::attempt::attempt;
 use anyhow::{Result, ensure};
 use clap::Args;
 use design::analysis::flanks::gap_at_hole;
-use fe_driver::{CalculiX, HingePath, Solver, WindowProblem, WindowSolve};
+use fe_driver::{CalculiX, HingePath, WindowProblem, WindowSolve};
 use hinge::SheetMaterial;
 use kirigami::ui::progress::Progress;
-use kirigami::ui::{interrupt, run_folder};
+use kirigami::ui::run_folder;
 use mesher::Tier;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -110,12 +110,8 @@ impl FlanksStudy {
 
     fn solved(&self, solver: &CalculiX, solve: &WindowSolve, number: usize) -> Result<Row> {
         let folder = self.out.join(format!("window-{number}"));
-        std::fs::create_dir_all(&folder)?;
         let limit = Duration::from_secs(self.time_limit_s);
-        let stop = interrupt::stop_flag()?;
-        let solution = solver.attempt(solve, &folder, limit, stop);
-        refuse_stop_without_store(stop)?;
-        let solution = solution?;
+        let solution = attempt(solver, solve, &folder, limit)??;
         let gaps = solver.flank_gaps(solve, &folder)?;
         let last = solution.samples.last();
         Ok(Row {

@@ -202,7 +202,7 @@ impl Row {
             choice,
             step_s,
             effect: rms(&movements(own, &deployed)),
-            relative: rms(&movements(by_elements, &deployed)) / size(by_elements),
+            relative: errors.last().unwrap_or(&f64::NAN) / size(by_elements),
             errors,
             rotation_deg: rms(&turned),
         })

@@ -2,6 +2,7 @@
 
 mod actuations;
 mod approaches;
+mod attempt;
 mod budget;
 mod capacity;
 mod chain;
@@ -29,6 +30,7 @@ mod shape_alone;
 mod sheet;
 mod silhouettes;
 mod solutions;
+mod spread;
 mod stop;
 mod surrogate;
 mod tessellation;

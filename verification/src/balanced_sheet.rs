@@ -5,7 +5,7 @@
 //! states, and this is repeated until the panels stay where they are. It is a quasi-Newton iteration for the equilibrium of
 //! the finite-element hinges: the tangent is that of the hinge law in the first round, and learns from each further one.
 //! Windows of the finest mesh are dear: the sheet is balanced on a cheaper mesh first ([`Tier::draft`]), from which the finest
-//! one takes a round less, and the difference between both is the error of the cheaper mesh.
+//! one begins, and the difference between both is the error of the cheaper mesh.
 
 use crate::recorded_path::paths_of;
 use crate::replay::{ElementWindows, UnsolvedHinge};

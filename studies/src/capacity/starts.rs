@@ -1,9 +1,9 @@
 //! The capacities of patterns that are searched from several starts: how far a capacity is that of one search.
 
 use super::{CapacityStudy, Strategy, boundary};
+use crate::spread::spread;
 use anyhow::Result;
 use design::scene::SceneConfig;
-use support::statistics::median;
 use support::table::{Cell, Table};
 
 /// Standard deviation of the coordinates of a random start.
@@ -99,15 +99,7 @@ impl Starts {
     /// Median and range of a figure.
     fn spread(&self, of: impl Fn(&Found) -> f64, digits: usize) -> Cell {
         let values: Vec<f64> = self.settled().map(of).collect();
-        if values.is_empty() {
-            return Cell::known(None, "-");
-        }
-        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = values.iter().copied().fold(0.0, f64::max);
-        let middle = median(values);
-        Cell::text(format!(
-            "{middle:.digits$} ({low:.digits$} to {high:.digits$})"
-        ))
+        spread(&values, digits)
     }
 }
 

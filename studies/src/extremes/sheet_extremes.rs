@@ -1,6 +1,6 @@
 //! Sheets at the limits of loads, ligaments, cut angles, thickness, size and solver settings.
 
-use super::{Checked, kept};
+use super::{Checked, kept, one_line};
 use anyhow::{Result, anyhow};
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::hinge_law::DamageMeasure;
@@ -291,7 +291,7 @@ pub(super) fn table(extremes: &[Extreme], progress: impl Fn(usize, &str)) -> Res
         broken += usize::from(!promise);
         let outcome = match outcome {
             Ok(deployment) => shown(&deployment, begun.elapsed().as_secs_f64()),
-            Err(reason) => reason.replace('|', "/").replace('\n', " "),
+            Err(reason) => one_line(&reason),
         };
         let (name, further) = (&extreme.name, extreme.promise.text());
         writeln!(

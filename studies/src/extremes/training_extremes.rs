@@ -1,6 +1,6 @@
 //! Trainings at the limits of their data: one ray, one geometry, other units, duplicated rows.
 
-use super::{Checked, kept};
+use super::{Checked, kept, one_line};
 use anyhow::Result;
 use dataset::{Database, DatasetError, Gates, Row, SplitPlan};
 use kirigami::ui::progress::Progress;
@@ -138,7 +138,7 @@ pub(super) fn table(database: &Database, config: &TrainingConfig) -> Result<Chec
          reason; in other units the error in W of the first row within {:.0} % of it.\n\n\
          | extreme | rows | outcome | |\n|---|---|---|---|\n",
         database.rows().len(),
-        rays(database.rows()),
+        database.manifest().rays,
         config.epochs,
         100.0 * SAME
     );
@@ -170,7 +170,7 @@ pub(super) fn table(database: &Database, config: &TrainingConfig) -> Result<Chec
                 100.0 * errors.damage.relative_rmse,
                 errors.rows
             ),
-            Err(reason) => reason.replace('|', "/").replace('\n', " "),
+            Err(reason) => one_line(&reason),
         };
         writeln!(
             text,
@@ -182,11 +182,6 @@ pub(super) fn table(database: &Database, config: &TrainingConfig) -> Result<Chec
     }
     bar.finish();
     Ok(Checked { text, broken })
-}
-
-fn rays(rows: &[Row]) -> usize {
-    let jobs: std::collections::BTreeSet<&str> = rows.iter().map(|row| row.job.as_str()).collect();
-    jobs.len()
 }
 
 /// The errors on the test part, or why there are none.

@@ -1,13 +1,12 @@
 //! Windows at the limits of ligament, cut angle, hole, kerf, radius, rotation and fracture strain: meshed and solved on two tiers.
 
-use super::{Checked, kept};
-use crate::stop::refuse_stop_without_store;
+use super::{Checked, kept, one_line};
+use crate::attempt::attempt;
 use anyhow::Result;
 use fe_driver::{
-    CalculiX, DeformationPath, HingePath, Solution, SolveError, Solver, WindowProblem, WindowSolve,
+    CalculiX, DeformationPath, HingePath, Solution, SolveError, WindowProblem, WindowSolve,
 };
 use hinge::{HingeConstants, HingeDeformation, HingeDesign, HingeSample, SheetMaterial};
-use kirigami::ui::interrupt;
 use kirigami::ui::progress::Progress;
 use mesher::Tier;
 use std::fmt::Write;
@@ -119,7 +118,6 @@ type Solved = Result<Solution, SolveError>;
 impl Extreme {
     /// On both tiers. Fails only if it is stopped.
     fn solved(&self, solver: &CalculiX, folder: &Path) -> Result<[Solved; 2]> {
-        let stop = interrupt::stop_flag()?;
         let on = |tier: Tier| -> Result<Solved> {
             let theta = self.theta_deg.to_radians();
             let path = DeformationPath::straight(HingeDeformation::from([0.0, 0.0, theta]));
@@ -129,11 +127,7 @@ impl Extreme {
             };
             let problem = WindowProblem::new(hinge, &self.material, tier);
             let solve = WindowSolve::new(problem, &solver.versions());
-            let work = folder.join(tier.to_string());
-            std::fs::create_dir_all(&work)?;
-            let solution = solver.attempt(&solve, &work, LIMIT, stop);
-            refuse_stop_without_store(stop)?;
-            Ok(solution)
+            attempt(solver, &solve, &folder.join(tier.to_string()), LIMIT)
         };
         let [judged, judge] = TIERS.map(on);
         Ok([judged?, judge?])
@@ -152,7 +146,7 @@ impl Extreme {
             }
             [Err(reason), _] | [_, Err(reason)] => {
                 let is_reason = matches!(reason, SolveError::Mesh(_) | SolveError::Material(_));
-                let reason = reason.to_string().replace('|', "/").replace('\n', " ");
+                let reason = one_line(&reason.to_string());
                 (
                     self.refused && is_reason,
                     format!("- | {reason} | - | - | - | - | -"),

@@ -2,6 +2,7 @@
 
 use crate::choices::Choice;
 use crate::designed::designed;
+use crate::spread::spread;
 use anyhow::Result;
 use design::objective::design_problem::DesignProblem;
 use design::objective::scores::outline_error;
@@ -10,7 +11,6 @@ use kirigami::ui::exit::Unfinished;
 use kirigami::ui::progress::Progress;
 use output::run_results::remove_run;
 use std::time::Instant;
-use support::statistics::median;
 use support::table::{Cell, Table};
 
 /// Standard deviation of the coordinates of a random start.
@@ -102,17 +102,4 @@ fn columns<'a>() -> Table<'a, Searched> {
         .column("outline, own, mm", |row| spread(&row.own, 2))
         .column("outline, mm", |row| spread(&row.outline, 2))
         .column("loss, mm^2", |row| spread(&row.loss, 1))
-}
-
-fn spread(values: &[f64], decimals: usize) -> Cell {
-    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if values.is_empty() {
-        return Cell::text("-");
-    }
-    let middle = median(values.to_vec());
-    Cell::number(
-        middle,
-        format!("{middle:.decimals$} ({least:.decimals$} to {most:.decimals$})"),
-    )
 }
