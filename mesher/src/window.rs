@@ -75,9 +75,9 @@ impl Window<'_> {
         is_on.then_some(along)
     }
 
-    /// Half of the angle at O that the mouth of the main cut subtends on the hole (rad).
-    pub fn mouth_half_angle(&self) -> f64 {
-        (0.5 * self.0.kerf / self.0.fillet_radius()).asin()
+    /// Half of the angle at O that the mouth of the main cut subtends on a circle of radius `rho` (mm) about O (rad).
+    pub fn mouth_half_angle(&self, rho: f64) -> f64 {
+        (0.5 * self.0.kerf / rho).asin()
     }
 
     /// The angle at the origin of the arc of radius r_win on a panel (rad).
@@ -97,7 +97,7 @@ impl Window<'_> {
             self.kerf_at_radius(Side::A, r),
             self.kerf_at_radius(Side::B, r),
         );
-        let hole_angle = 2.0 * (PI - self.mouth_half_angle());
+        let hole_angle = 2.0 * (PI - self.mouth_half_angle(rho));
         sector(r, self.arc_angle(Side::A))
             + segment(arc_a, hole_a)
             + arc(self.0.tip(), rho, hole_a, hole_b, -hole_angle)

@@ -22,7 +22,10 @@ fn design(w_lig: f64, alpha_deg: f64) -> HingeDesign {
 }
 
 fn mesh(w_lig: f64, alpha_deg: f64, tier: Tier) -> WindowMesh {
-    let design = design(w_lig, alpha_deg);
+    mesh_of(design(w_lig, alpha_deg), tier)
+}
+
+fn mesh_of(design: HingeDesign, tier: Tier) -> WindowMesh {
     let scratch = tempfile::tempdir().unwrap();
     let gmsh = Gmsh::find().unwrap();
     WindowShape {
@@ -36,7 +39,7 @@ fn mesh(w_lig: f64, alpha_deg: f64, tier: Tier) -> WindowMesh {
         Duration::from_secs(60),
         &AtomicBool::new(false),
     )
-    .unwrap_or_else(|e| panic!("w = {w_lig}, alpha = {alpha_deg}, {tier}: {e}"))
+    .unwrap_or_else(|e| panic!("{design:?}, {tier}: {e}"))
 }
 
 /// Difference in area of a circular segment and the segment of the parabola through the ends and the middle of its
@@ -88,6 +91,24 @@ fn every_tier_covers_the_window_without_folded_elements() {
             let expected = area_inside_parabolas(&mesh);
             let error = (quality.area - expected).abs() / expected;
             assert!(error < 1e-9, "{tier} {w} {alpha}: {error:e}, {quality:?}");
+        }
+    }
+}
+
+#[test]
+fn holes_of_2_to_40_percent_of_the_ligament_are_meshed() {
+    for fillet_ratio in [0.02, 0.05, 0.3, 0.4] {
+        for (tier, alpha) in Tier::ALL
+            .into_iter()
+            .flat_map(|tier| [60.0, 90.0, 120.0].map(|alpha| (tier, alpha)))
+        {
+            let design = HingeDesign {
+                fillet_ratio,
+                ..design(12.0, alpha)
+            };
+            let quality = mesh_of(design, tier).quality().unwrap();
+            let ratio = quality.jacobian_ratio;
+            assert!(ratio > 0.1, "{tier} {fillet_ratio} {alpha}: {quality:?}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The structured mesh: transfinite, recombined patches, one patch per column.
 //!
-//! Block 1 is an O-grid from the hole to the half-disc of radius 1.5 w_lig. Block 2 continues from the arcs of
-//! block 1 to the window's arcs. Columns are numbered counter-clockwise about O, from the kerf face on B
+//! Block 1 is an O-grid from the hole to a half-disc a little larger, of radius 1.5 w_lig for most holes. A small hole has
+//! a collar of rings in between. Block 2 continues from the arcs of block 1 to the window's arcs. Columns are numbered counter-clockwise about O, from the kerf face on B
 //! over the free edge to the kerf face on A. One patch per side instead of one per column would fold
 //! elements at small alpha.
 
@@ -13,8 +13,17 @@ use std::f64::consts::PI;
 /// Radius of block 1 over w_lig. It is only slightly larger than the hole, so that the rings of block 2 begin where
 /// the panels still bend. With 2.2, an oblique hinge in compression is 8 % too stiff.
 const INNER_RADIUS: f64 = 1.5;
-/// Weight of the true polar angle, relative to equal angles, in the spacing of columns at the hole.
+/// Block 1 reaches a diameter of the hole and this, over w_lig, beyond the tip: closer to a large hole elements fold.
+const ROOM: f64 = 0.17;
+/// Radius over w_lig of the circle that block 1 begins at where the hole is smaller.
+const COLLAR: f64 = 0.08;
+/// Ratio of the radii of two circles of the collar, at most.
+const COLLAR_GROWTH: f64 = 2.0;
+/// Weight of the true polar angle, relative to equal angles, in the spacing of columns at a hole up to [`LARGE_HOLE`].
+/// It grows to 1 at twice that: columns oblique to a large hole fold.
 const ANGLE_BLEND: f64 = 0.5;
+/// A large hole over w_lig.
+const LARGE_HOLE: f64 = 0.2;
 
 /// The boundary of a window that was added to a script.
 pub(super) struct WindowCurves {
@@ -43,17 +52,35 @@ pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Structured) -> Win
     let tip = geo.point(window.0.tip());
 
     let outer = inner_half_disc(window, recipe);
-    let hole = hole_points(window, &outer);
-    let outer_ids: Vec<_> = outer.iter().map(|p| geo.point(*p)).collect();
-    let hole_ids: Vec<_> = hole.iter().map(|p| geo.point(*p)).collect();
-
     let columns = outer.len() - 1;
-    let hole_arcs: Vec<_> = (0..columns)
-        .map(|c| {
-            let arc = geo.arc(hole_ids[c], tip, hole_ids[c + 1]);
-            geo.divide(arc, 1, 1.0)
-        })
-        .collect();
+    let outer_ids: Vec<_> = outer.iter().map(|p| geo.point(*p)).collect();
+    let mut circle = |radius| {
+        let points = circle_points(window, &outer, radius);
+        let ids: Vec<_> = points.iter().map(|p| geo.point(*p)).collect();
+        let arcs: Vec<_> = (0..columns)
+            .map(|c| {
+                let arc = geo.arc(ids[c], tip, ids[c + 1]);
+                geo.divide(arc, 1, 1.0)
+            })
+            .collect();
+        Circle { points, ids, arcs }
+    };
+    let circles: Vec<_> = collar_radii(window).into_iter().map(&mut circle).collect();
+    for pair in circles.windows(2) {
+        let rays: Vec<_> = pair[0]
+            .ids
+            .iter()
+            .zip(&pair[1].ids)
+            .map(|(from, to)| {
+                let ray = geo.line(*from, *to);
+                geo.divide(ray, 1, 1.0)
+            })
+            .collect();
+        for c in 0..columns {
+            geo.patch([rays[c], pair[1].arcs[c], -rays[c + 1], -pair[0].arcs[c]]);
+        }
+    }
+    let inner = &circles[circles.len() - 1];
     let top = recipe.arc_columns..columns - recipe.arc_columns;
     let outer_edges: Vec<_> = (0..columns)
         .map(|c| {
@@ -65,21 +92,21 @@ pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Structured) -> Win
             geo.divide(edge, 1, 1.0)
         })
         .collect();
-    let first = (window.0.w_lig - window.0.fillet_radius()) / recipe.inner_rings as f64;
+    let first = (window.0.w_lig - inner_circle(window)) / recipe.inner_rings as f64;
     let rays: Vec<_> = (0..=columns)
         .map(|c| {
-            let [p, q] = [hole[c], outer[c]];
+            let [p, q] = [inner.points[c], outer[c]];
             let length = (q[0] - p[0]).hypot(q[1] - p[1]);
             let growth = growth_ratio(length / first, recipe.inner_rings);
-            let ray = geo.line(hole_ids[c], outer_ids[c]);
+            let ray = geo.line(inner.ids[c], outer_ids[c]);
             geo.divide(ray, recipe.inner_rings, growth)
         })
         .collect();
     for c in 0..columns {
-        geo.patch([rays[c], outer_edges[c], -rays[c + 1], -hole_arcs[c]]);
+        geo.patch([rays[c], outer_edges[c], -rays[c + 1], -inner.arcs[c]]);
     }
-    let growth =
-        (window.0.r_win / (INNER_RADIUS * window.0.w_lig)).powf(1.0 / recipe.outer_rings as f64);
+    let growth = (window.0.r_win / (inner_radius(window.0.fillet_ratio) * window.0.w_lig))
+        .powf(1.0 / recipe.outer_rings as f64);
     let mut rim = |side, start: usize| {
         let positions = panel_arc(window, side, window.0.r_win, recipe.arc_columns);
         let points: Vec<_> = positions.iter().map(|p| geo.point(*p)).collect();
@@ -107,14 +134,40 @@ pub(super) fn add(geo: &mut Script, window: &Window, recipe: &Structured) -> Win
     WindowCurves {
         rim_b: rim(Side::B, 0),
         rim_a: rim(Side::A, top.end),
-        hole: hole_arcs,
+        hole: circles.into_iter().next().expect("the hole").arcs,
     }
+}
+
+/// A circle about the tip, cut by the columns.
+struct Circle {
+    points: Vec<[f64; 2]>,
+    ids: Vec<i32>,
+    arcs: Vec<i32>,
+}
+
+/// Radius of block 1 over w_lig.
+fn inner_radius(fillet_ratio: f64) -> f64 {
+    INNER_RADIUS.max(1.0 + 2.0 * fillet_ratio + ROOM)
+}
+
+/// Radius of the circle about the tip that block 1 begins at (mm): the hole, or the rim of its collar.
+fn inner_circle(window: &Window) -> f64 {
+    window.0.fillet_radius().max(COLLAR * window.0.w_lig)
+}
+
+/// Radii of the circles from the hole to the beginning of block 1 (mm), in constant ratio: the hole's alone if it has no
+/// collar.
+fn collar_radii(window: &Window) -> Vec<f64> {
+    let (hole, last) = (window.0.fillet_radius(), inner_circle(window));
+    let rings = ((last / hole).ln() / COLLAR_GROWTH.ln()).ceil() as i32;
+    let growth = (last / hole).powf(1.0 / f64::from(rings.max(1)));
+    (0..=rings).map(|ring| hole * growth.powi(ring)).collect()
 }
 
 /// Corners of the columns on the rim of block 1, counter-clockwise from the kerf face on B.
 fn inner_half_disc(window: &Window, recipe: &Structured) -> Vec<[f64; 2]> {
-    let radius = INNER_RADIUS * window.0.w_lig;
-    let k = edge_grading(recipe);
+    let radius = inner_radius(window.0.fillet_ratio) * window.0.w_lig;
+    let k = edge_grading(recipe, inner_radius(window.0.fillet_ratio));
     let edge = (1..recipe.edge_columns).map(|i| {
         let xi = 1.0 - 2.0 * i as f64 / recipe.edge_columns as f64;
         [radius * (k * xi).sinh() / k.sinh(), 0.0]
@@ -147,23 +200,25 @@ fn panel_arc(window: &Window, side: Side, radius: f64, columns: usize) -> Vec<[f
     points
 }
 
-/// Corners of the columns on the hole: a blend of the directions of `outer` and equal angles.
-fn hole_points(window: &Window, outer: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let (tip, rho) = (window.0.tip(), window.0.fillet_radius());
-    let from = -window.0.alpha + window.mouth_half_angle();
-    let span = 2.0 * (PI - window.mouth_half_angle());
+/// Corners of the columns on the circle of radius `rho` (mm) about the tip: a blend of the directions of `outer` and equal
+/// angles.
+fn circle_points(window: &Window, outer: &[[f64; 2]], rho: f64) -> Vec<[f64; 2]> {
+    let (tip, mouth) = (window.0.tip(), window.mouth_half_angle(rho));
+    let from = -window.0.alpha + mouth;
+    let span = 2.0 * (PI - mouth);
     let directions: Vec<_> = outer
         .iter()
         // Rotated so that the mouth of the cut, where the angle jumps, is at +-pi.
         .map(|p| turned_angle([p[0] - tip[0], p[1] - tip[1]], PI - window.0.alpha))
         .collect();
+    let blend = (ANGLE_BLEND * window.0.fillet_ratio / LARGE_HOLE).clamp(ANGLE_BLEND, 1.0);
     let last = outer.len() - 1;
     let range = directions[last] - directions[0];
     (0..=last)
         .map(|c| {
             let direction = (directions[c] - directions[0]) / range;
             let uniform = c as f64 / last as f64;
-            let share = ANGLE_BLEND * direction + (1.0 - ANGLE_BLEND) * uniform;
+            let share = blend * direction + (1.0 - blend) * uniform;
             let angle = from + span * share;
             [tip[0] + rho * angle.cos(), tip[1] + rho * angle.sin()]
         })
@@ -177,9 +232,9 @@ fn turned_angle(p: [f64; 2], axis: f64) -> f64 {
 }
 
 /// k of x = r sinh(k xi) / sinh(k) that makes the elements next to x = 0 `fold_size` w_lig wide.
-fn edge_grading(recipe: &Structured) -> f64 {
+fn edge_grading(recipe: &Structured, inner_radius: f64) -> f64 {
     let xi = 2.0 / recipe.edge_columns as f64;
-    let target = recipe.fold_size / INNER_RADIUS;
+    let target = recipe.fold_size / inner_radius;
     bisect(1e-6, 50.0, |k| target - (k * xi).sinh() / k.sinh())
 }
 
@@ -218,7 +273,7 @@ mod tests {
             let PlaneRecipe::Structured(recipe) = tier.recipe().plane else {
                 continue;
             };
-            let k = edge_grading(&recipe);
+            let k = edge_grading(&recipe, INNER_RADIUS);
             let first = (2.0 * k / recipe.edge_columns as f64).sinh() / k.sinh();
             assert!((INNER_RADIUS * first - recipe.fold_size).abs() < 1e-12);
         }
@@ -240,7 +295,7 @@ mod tests {
                 fold_size: 0.1,
             };
             let outer = inner_half_disc(&window, &recipe);
-            let hole = hole_points(&window, &outer);
+            let hole = circle_points(&window, &outer, design.fillet_radius());
             let angle = |p: &[f64; 2]| turned_angle([p[0], p[1] + 25.0], PI - design.alpha);
             assert!(hole.windows(2).all(|p| angle(&p[0]) < angle(&p[1])));
             assert!(outer.windows(2).all(|p| angle(&p[0]) < angle(&p[1])));
