@@ -104,6 +104,20 @@ fn a_measured_sheet_is_compared_with_its_path() {
     );
 }
 
+/// The spreadsheets of countries with a decimal comma.
+#[test]
+fn semicolons_and_decimal_commas_are_read() {
+    let (work, steps) = designed();
+    measure(&work, "points.csv", &steps[9]);
+    let points = std::fs::read_to_string(work.path("points.csv")).unwrap();
+    let german = points.replace(',', ";").replace('.', ",");
+    std::fs::write(work.path("german.csv"), german).unwrap();
+    let [usual, german] =
+        ["points.csv", "german.csv"].map(|file| compared(&work, file)["end"].clone());
+    assert!(usual.is_object(), "{usual}");
+    assert_eq!(usual, german);
+}
+
 #[test]
 fn mistakes_in_a_measurement_name_their_line_and_column() {
     let (work, steps) = designed();
@@ -120,7 +134,7 @@ fn mistakes_in_a_measurement_name_their_line_and_column() {
     );
     assert!(message("unit", "colour").contains("unknown column `colour`; the columns are"));
     assert!(message(",y,", ",flat_y_mm,").contains("the column `y` is missing"));
-    assert!(message("panel", "panel;corner").contains("must be separated by commas"));
+    assert!(message("panel", "panel;corner").contains("unknown column `panel;corner`"));
     assert!(message("P0,2", "0.5,2").contains("bad.csv:4: column `panel`: `0.5` is not"));
     assert!(message("P0,2", "P0,-1").contains("bad.csv:4: column `corner`: `-1` is not"));
     assert!(

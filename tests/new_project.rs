@@ -84,7 +84,16 @@ fn a_project_without_weights_begins_with_its_campaign() {
     ];
     work.edit("steel/campaign.toml", &small);
     work.edit("steel/training.toml", &[("epochs = 80", "epochs = 2")]);
-    for line in said.lines().filter(|line| line.starts_with("kirigami ")) {
+    // Its hinges alone: an hour is not for a test.
+    let (_, campaign) = said.split_once("train weights from nothing").unwrap();
+    assert!(
+        said.contains("kirigami material learn steel/material.toml"),
+        "{said}"
+    );
+    let lines = campaign
+        .lines()
+        .filter(|line| line.starts_with("kirigami "));
+    for line in lines.filter(|line| !line.contains(" verify ")) {
         let command = line.split(" #").next().unwrap().trim();
         let command = command.strip_prefix("kirigami ").unwrap();
         match command.starts_with("design") {
@@ -92,6 +101,23 @@ fn a_project_without_weights_begins_with_its_campaign() {
             false => work.output(command),
         };
     }
+}
+
+#[test]
+fn a_drawing_becomes_the_target() {
+    let work = Workplace::new();
+    let said = work.output(&format!(
+        "init leaf --thickness 0.1 --size 420x594 --target configs/targets/leaf.svg --weights {}",
+        weights()
+    ));
+    assert!(said.contains("kirigami verify leaf/scene.toml"), "{said}");
+    let scene = keys(&work, "leaf/scene.toml");
+    let svg = &scene["target"]["svg"];
+    assert!(Path::new(svg["file"].as_str().unwrap()).is_absolute());
+    work.output("design leaf/scene.toml --steps 1 --force");
+    let message = work.error("init other --target none.svg");
+    assert!(message.contains("there is no none.svg"), "{message}");
+    assert!(!work.path("other").exists());
 }
 
 #[test]

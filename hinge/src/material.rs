@@ -66,6 +66,10 @@ struct MaterialFile {
     stress_deviation: Option<f64>,
 }
 
+/// Maximum of Young's modulus over density (MPa m^3/kg): laminates of carbon fibre have up to 190, beryllium 155, metals 20
+/// to 30, plastics 0.2 to 7.
+const STIFFEST: f64 = 200.0;
+
 /// Why a material could not be read.
 #[derive(Debug, thiserror::Error)]
 #[allow(
@@ -183,6 +187,14 @@ impl SheetMaterial {
         if let Err(error) = key_limits::check::<MaterialFile>(self) {
             return refuse(error.to_string());
         }
+        let stiffness = self.young / self.density_kg_m3;
+        if stiffness > STIFFEST {
+            return refuse(format!(
+                "young = {} MPa is {stiffness:.0} MPa for each kg/m^3 of its density, more than the {STIFFEST} that any sheet has: check \
+                 both, and in a tensile test width, thickness, gauge length and units",
+                self.young
+            ));
+        }
         match self.plastic.first() {
             None => return refuse("the table `plastic` is empty".into()),
             Some(&[_, strain]) if strain != 0.0 => {
@@ -263,6 +275,13 @@ mod tests {
                     ..film()
                 },
                 "young = 660000 MPa violates 10 <= young <= 500000 MPa",
+            ),
+            (
+                SheetMaterial {
+                    young: 300e3,
+                    ..film()
+                },
+                "is 216 MPa for each kg/m^3",
             ),
             (
                 SheetMaterial {

@@ -75,6 +75,10 @@ pub struct MaterialCheck {
 const TIP_STRAIN: [f64; 2] = [0.05, 0.3];
 /// Range of w / t of the shipped polyester data.
 const KNOWN_SLENDERNESS: [f64; 2] = [10.0, 50.0];
+/// Densities below this (kg/m^3) are those of plastics and papers.
+const LIGHTEST_METAL: f64 = 1700.0;
+/// Maximum of Young's modulus over density of plastics without fibres and of papers (MPa m^3/kg); paper has up to 12.
+const STIFFEST_PLASTIC: f64 = 12.0;
 /// Slope of a softening table over Young's modulus at which coarse meshes still converge: the drop of the polyester film
 /// from 44 to 33.6 MPa over a strain of 0.05.
 const STEEPEST_DROP: f64 = 0.07;
@@ -87,6 +91,7 @@ impl MaterialCheck {
         let mut ligaments = vec![estimate(min)];
         ligaments.extend((max > min).then(|| estimate(max)));
         let mut verdicts = law(material);
+        verdicts.extend(stiffness(material));
         verdicts.extend(buckling(material, &ligaments[0]));
         verdicts.extend(slenderness(&ligaments));
         verdicts.extend(panels(intended, &ligaments));
@@ -178,6 +183,19 @@ fn law(material: &SheetMaterial) -> Vec<Verdict> {
         verdicts.push(verdict(Severity::Note, held));
     }
     verdicts
+}
+
+/// Whether the modulus is that of a plastic, if the density is.
+fn stiffness(material: &SheetMaterial) -> Option<Verdict> {
+    let [young, density] = [material.young, material.density_kg_m3];
+    (density < LIGHTEST_METAL && young > STIFFEST_PLASTIC * density).then(|| {
+        let message = format!(
+            "young = {young} MPa is {:.0} MPa for each kg/m^3 of the density {density}: plastics without fibres have less than \
+             {STIFFEST_PLASTIC}; in a tensile test check width, thickness, gauge length and units",
+            young / density
+        );
+        verdict(Severity::Warning, message)
+    })
 }
 
 /// Whether the narrowest ligament buckles before it yields in its plane.
@@ -326,6 +344,11 @@ mod tests {
         assert!(
             says(&doubtful, Severity::Warning, "may tear"),
             "{doubtful:?}"
+        );
+        let stiff = check(|material| material.young = 30e3, PAPER);
+        assert!(
+            says(&stiff, Severity::Warning, "22 MPa for each kg/m^3"),
+            "{stiff:?}"
         );
         let steep = check(|material| material.plastic[1][1] = 0.02, PAPER);
         assert!(

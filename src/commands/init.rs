@@ -31,6 +31,7 @@ use toml_edit::DocumentMut;
 /// campaign and training. README.md in the folder lists the commands.
 /// Examples: kirigami init my-sheet --thickness 3 --size 210x297;
 /// kirigami init film --thickness 0.1;
+/// kirigami init leaf --thickness 0.1 --target configs/targets/leaf.svg;
 /// kirigami init thin --like configs/scenes/pet-3x3.toml --thickness 0.1;
 /// kirigami init longer --like configs/scenes/a4-polyester.toml --size 420x594
 #[derive(Args)]
@@ -53,6 +54,10 @@ pub struct InitCommand {
     /// loads open the new sheet as far as that of the scene
     #[arg(long, value_name = "SCENE")]
     like: Option<PathBuf>,
+    /// Outline that the sheet opens onto (SVG, one closed path), scaled to the area of the opened sheet and placed on its
+    /// centre [default: the opened sheet's rectangle]
+    #[arg(long, value_name = "FILE", conflicts_with = "like")]
+    target: Option<PathBuf>,
     /// Weights for this material [default: those for it among the shipped ones; with --like those of its scene]
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
@@ -113,7 +118,11 @@ impl InitCommand {
                 let named = named.map(|weights| weights.regime);
                 let first = FirstScene::new(self.size, sheet.thickness, named)?;
                 let weights = of(first.regime);
-                (first.text(&path(weights))?, first.regime, weights.is_some())
+                (
+                    first.text(&path(weights), self.target.as_deref())?,
+                    first.regime,
+                    weights.is_some(),
+                )
             }
         };
         let name = self
@@ -130,7 +139,7 @@ impl InitCommand {
         let campaign = campaign(&name, solved, tier_of(regime))?;
 
         let template = Template::of(regime);
-        let readme = readme(&self.folder, template.why, trained);
+        let readme = readme(&self.folder, template, regime, trained);
         output_file::create_folder(&self.folder)?;
         for (file, contents) in [
             ("material.toml", &*text),
@@ -257,30 +266,58 @@ pub(crate) fn campaign(name: &str, thickness: f64, tier: Tier) -> Result<String>
 }
 
 /// What the sheet is, and the commands of the project in their order.
-fn readme(folder: &Path, why: &str, trained: bool) -> String {
+fn readme(folder: &Path, template: &Template, regime: Regime, trained: bool) -> String {
     let path = |name: &str| shell_word(&folder.join(name));
-    let (campaign, scene) = (path("campaign.toml"), path("scene.toml"));
+    let (campaign, scene, material) = (
+        path("campaign.toml"),
+        path("scene.toml"),
+        path("material.toml"),
+    );
     let (jobs, database) = (path("campaign"), path("hinges.parquet"));
     let (weights, training) = (path("weights.safetensors"), path("training.toml"));
-    let learn = format!(
+    let (learned, learned_weights) = (path("learned"), path("learned/weights.safetensors"));
+    let judge = match regime {
+        Regime::Film => "--equilibrium   # the deployed sheet by finite elements of its ligaments",
+        Regime::Plate => "--sheet   # the whole sheet by finite elements: whether it stays flat",
+    };
+    let design = format!("kirigami design {scene}\nkirigami verify {scene} {judge}\n");
+    let learn = format!("kirigami material learn {material} --out {learned}\n");
+    let with = format!("kirigami design {scene} --weights {learned_weights}\n");
+    let campaign = format!(
         "kirigami campaign plan {campaign} --folder {jobs}      # number of rays and time\n\
          kirigami campaign run {campaign} --folder {jobs}\n\
          kirigami campaign collect {campaign} --folder {jobs} --out {database}\n\
          kirigami train {database} --config {training} --out {weights}\n"
     );
-    let design = format!("kirigami design {scene}\n");
-    let (first, then) = if trained {
-        (
-            "The material has weights. Design the sheet:",
-            format!("{design}```\n\nTrain weights of your own:\n\n```sh\n{learn}"),
-        )
+    let parts = if trained {
+        vec![
+            (
+                "The material has weights. Design the sheet, and check it:",
+                design,
+            ),
+            (
+                "After a change to the material, fine-tune weights on about an hour of its solves:",
+                learn + &with,
+            ),
+            ("Or train weights from nothing, in many hours:", campaign),
+        ]
     } else {
-        (
-            "The material has no weights yet. Solve its hinges, train them, and design the sheet:",
-            format!("{learn}{design}"),
-        )
+        vec![
+            (
+                "The material has no weights yet. Fine-tune weights on about an hour of its solves, and design the sheet:",
+                learn + &with,
+            ),
+            (
+                "Or train weights from nothing, in many hours; the scene names these:",
+                campaign + &design,
+            ),
+        ]
     };
-    format!("# A sheet of your own\n\n{why}\n\n{first}\n\n```sh\n{then}```\n")
+    let mut text = format!("# A sheet of your own\n\n{}\n", template.why);
+    for (title, commands) in parts {
+        text += &format!("\n{title}\n\n```sh\n{commands}```\n");
+    }
+    text
 }
 
 /// The text of a material file for another folder, in a thickness (mm): the path of its measured curve becomes absolute.
@@ -308,7 +345,8 @@ mod tests {
 
     #[test]
     fn the_commands_of_a_folder_with_a_space_can_be_copied() {
-        let text = readme(Path::new("my sheet"), "It is a film.", true);
+        let template = Template::of(Regime::Film);
+        let text = readme(Path::new("my sheet"), template, Regime::Film, true);
         assert!(
             text.contains("kirigami design 'my sheet/scene.toml'\n"),
             "{text}"

@@ -2,6 +2,7 @@
 
 use crate::commands::input_file;
 use crate::commands::window_args::WindowArgs;
+use crate::ui::exit::Unfinished;
 use crate::ui::progress::watched;
 use crate::ui::table::table;
 use crate::ui::{interrupt, run_folder};
@@ -129,6 +130,7 @@ impl SolveCommand {
         }
         match solution.stopped {
             None => Ok(()),
+            Some(reason) if reason.is_stop() => Err(Unfinished::new(1, "ray").into()),
             Some(reason) => bail!("the solve stopped before the end of the ray: {reason}"),
         }
     }

@@ -53,9 +53,8 @@ pub fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ConfigEr
     let read = document.and_then(|document| T::deserialize(Whole(document)));
     read.map_err(|error| {
         let path = path.to_owned();
-        let line = error
-            .span()
-            .map_or(1, |span| 1 + text[..span.start].matches('\n').count());
+        let start = error.span().map_or(0, |span| span.start);
+        let line = 1 + text[..start].matches('\n').count();
         match unknown_field(error.message()) {
             Some((key, known)) => ConfigError::UnknownKey {
                 path,
@@ -66,10 +65,42 @@ pub fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ConfigEr
             None => ConfigError::Syntax {
                 path,
                 line,
-                message: error.message().to_owned(),
+                message: plain(
+                    error.message(),
+                    text.lines().nth(line - 1).unwrap_or_default(),
+                ),
             },
         }
     })
+}
+
+/// The message of the parser about a line, in words that are not those of Rust, with the key and a hint at decimal commas.
+fn plain(message: &str, line: &str) -> String {
+    let mut words: Vec<&str> = message.split(' ').collect();
+    for word in &mut words {
+        *word = match *word {
+            "f64" | "f32" => "a number",
+            "usize" | "u64" | "u32" | "u16" | "u8" => "a whole number that is not negative",
+            "i64" | "i32" => "a whole number",
+            "bool" => "true or false",
+            word => word,
+        };
+    }
+    let (key, value) = line.split_once('=').unwrap_or_default();
+    let key = match key.trim() {
+        "" => String::new(),
+        key => format!("`{key}`: "),
+    };
+    let comma = value.as_bytes().windows(3).any(|window| {
+        window[1] == b',' && window[0].is_ascii_digit() && window[2].is_ascii_digit()
+    });
+    let hint = match comma {
+        true if !message.contains("decimal sign") => {
+            "; the decimal sign is a point (40.5, not 40,5)"
+        }
+        _ => "",
+    };
+    format!("{key}{}{hint}", words.join(" "))
 }
 
 /// The unknown key and the known keys from serde's message "unknown field `x`, expected one of `a`, `b`".
@@ -185,7 +216,14 @@ mod tests {
 
     #[test]
     fn errors_for_a_wrong_type_and_a_missing_key_name_the_file() {
-        assert!(message(&FILM.replace("0.5", "\"thin\"")).starts_with("film.toml:2: "));
+        let thin = message(&FILM.replace("0.5", "\"thin\""));
+        assert_eq!(
+            thin,
+            "film.toml:2: `thickness`: invalid type: string \"thin\", expected a number"
+        );
+        let comma = message(&FILM.replace("0.5", "0,5"));
+        assert!(comma.starts_with("film.toml:2: `thickness`: "), "{comma}");
+        assert!(comma.ends_with("(40.5, not 40,5)"), "{comma}");
         assert!(message(&FILM.replace("poisson = 0.4\n", "")).contains("missing field `poisson`"));
     }
 }

@@ -160,12 +160,17 @@ fn name(value: impl Serialize) -> String {
     name.as_str().unwrap_or_default().to_owned()
 }
 
+/// A panel [column, row] by its number in the drawings and its place in the scene.
+pub fn panel_name(grid: Grid, [column, row]: [usize; 2]) -> String {
+    format!("panel P{} [{column},{row}]", grid.panel(column, row))
+}
+
 impl SupportConfig {
     fn on(&self, grid: Grid) -> SupportedPanel {
         let [column, row] = self.panel;
         let (holds, motion) = (self.kind.holds(), self.motion());
         SupportedPanel {
-            name: format!("{}, panel [{column},{row}]", name(self.kind)),
+            name: format!("{}, {}", name(self.kind), panel_name(grid, self.panel)),
             panel: grid.panel(column, row),
             motion: std::array::from_fn(|d| holds[d].then_some(motion[d])),
             symbol: self.kind.symbol(),
@@ -176,7 +181,7 @@ impl SupportConfig {
     fn attachment(&self, grid: Grid) -> Attachment {
         let [column, row] = self.panel;
         Attachment {
-            name: format!("{}, panel [{column},{row}]", name(self.kind)),
+            name: format!("{}, {}", name(self.kind), panel_name(grid, self.panel)),
             panel: grid.panel(column, row),
             point: self.at.point(),
             hole: self.hole,
@@ -191,7 +196,7 @@ impl LoadConfig {
         let [column, row] = self.panel;
         let load = self.values(down);
         AppliedLoad {
-            name: format!("load, panel [{column},{row}]"),
+            name: format!("load, {}", panel_name(grid, self.panel)),
             place: Some(self.panel),
             on_panels: vec![(grid.panel(column, row), load)],
             total: load,
@@ -202,7 +207,7 @@ impl LoadConfig {
     fn attachment(&self, grid: Grid) -> Attachment {
         let [column, row] = self.panel;
         Attachment {
-            name: format!("load, panel [{column},{row}]"),
+            name: format!("load, {}", panel_name(grid, self.panel)),
             panel: grid.panel(column, row),
             point: self.at.point(),
             hole: self.hole,

@@ -76,16 +76,10 @@ pub enum InverseDesignError {
     )]
     OtherSize { path: PathBuf },
     #[error(
-        "{path} belongs to a run of another scene: restart the run (--restart), or choose another output folder",
+        "{path} belongs to another run, {changed} changed since: restart it (--restart), or choose another output folder",
         path = .path.display()
     )]
-    OtherScene { path: PathBuf },
-    #[error(
-        "{path} belongs to a run with other weights, another material, another target or an earlier version of \
-         kirigami; restart it, or choose another output folder",
-        path = .path.display()
-    )]
-    OtherModel { path: PathBuf },
+    OtherScene { path: PathBuf, changed: String },
     #[error(
         "{path} is not the run of this scene, {changed} changed since: design it again (`kirigami design --restart`), or \
          name the file with --design to take its design nevertheless",
@@ -97,10 +91,7 @@ pub enum InverseDesignError {
 impl InverseDesignError {
     /// Whether the run folder belongs to another scene, size or model.
     pub fn is_of_another_run(&self) -> bool {
-        matches!(
-            self,
-            Self::OtherSize { .. } | Self::OtherScene { .. } | Self::OtherModel { .. }
-        )
+        matches!(self, Self::OtherSize { .. } | Self::OtherScene { .. })
     }
 }
 
@@ -149,18 +140,11 @@ pub fn design_of_run(
     let Some(state) = State::load(&path)? else {
         return Ok(None);
     };
-    let mut changed: Vec<String> = (state.changed_keys(scene).iter())
-        .filter(|key| !SEARCH_KEYS.contains(&key.as_str()))
-        .map(|key| format!("the key `{key}`"))
-        .collect();
-    let inputs = state.changed_inputs(scene).into_iter();
-    changed.extend(
-        inputs
-            .filter(|input| !(other_weights && *input == WEIGHTS))
-            .map(|input| format!("the {input}")),
-    );
-    if !changed.is_empty() {
-        let changed = changed.join(", ");
+    let weights = other_weights.then_some(WEIGHTS);
+    if let Some(changed) = state.changes(
+        scene,
+        &Vec::from_iter(SEARCH_KEYS.into_iter().chain(weights)),
+    ) {
         return Err(InverseDesignError::Outdated { path, changed });
     }
     if state.search.fits(&scene.start()) {
@@ -270,6 +254,18 @@ impl State {
         })
     }
 
+    /// The keys of the scene and the inputs besides that changed since the run, in words; those `allowed` may.
+    fn changes(&self, scene: &Scene, allowed: &[&str]) -> Option<String> {
+        let forbidden = |name: &&str| !allowed.contains(name);
+        let keys = self.changed_keys(scene);
+        let keys = keys.iter().map(String::as_str).filter(forbidden);
+        let inputs = self.changed_inputs(scene).into_iter().filter(forbidden);
+        let changed: Vec<String> = (keys.map(|key| format!("the key `{key}`")))
+            .chain(inputs.map(|input| format!("the {input}")))
+            .collect();
+        (!changed.is_empty()).then(|| changed.join(", "))
+    }
+
     /// The keys of the scene that changed since the run, without those that may: the number of steps, the title, the
     /// cutting and the tolerances, which change no design, and paths, since [`Scene::model_hash`] identifies what they name.
     fn changed_keys(&self, scene: &Scene) -> BTreeSet<String> {
@@ -306,14 +302,11 @@ impl State {
             return Ok(None);
         };
         let path = path.to_owned();
-        if !state.changed_keys(scene).is_empty() {
-            return Err(InverseDesignError::OtherScene { path });
+        if let Some(changed) = state.changes(scene, &[]) {
+            return Err(InverseDesignError::OtherScene { path, changed });
         }
         if !state.search.fits(&scene.start()) {
             return Err(InverseDesignError::OtherSize { path });
-        }
-        if state.model != scene.model_hash() {
-            return Err(InverseDesignError::OtherModel { path });
         }
         Ok(Some(state))
     }

@@ -61,8 +61,11 @@ const LENGTHS: [(&str, f64); 6] = [
     ("µm", 1e-3),
     ("in", 25.4),
 ];
-const RATIOS: [(&str, f64); 7] = [
+const RATIOS: [(&str, f64); 10] = [
     ("%", 0.01),
+    ("percent", 0.01),
+    ("pct", 0.01),
+    ("prozent", 0.01),
     ("1", 1.0),
     ("-", 1.0),
     ("mm/mm", 1.0),
@@ -223,6 +226,8 @@ mod tests {
             ("Tensile strain (Extension) (%)", Strain, Some("%")),
             ("Strain (mm/mm)", Strain, Some("mm/mm")),
             ("engineering_strain", Strain, None),
+            ("strain_percent", Strain, Some("percent")),
+            ("Strain (percent)", Strain, Some("percent")),
             ("Tensile stress (MPa)", Stress, Some("MPa")),
             ("engineering_stress_mpa", Stress, Some("mpa")),
             ("Spannung N/mm2", Stress, Some("N/mm2")),
@@ -243,6 +248,7 @@ mod tests {
         assert_eq!(Force.factor("kN"), Some(1e3));
         assert_eq!(Stress.factor("Pa"), Some(1e-6));
         assert_eq!(Strain.factor(" % "), Some(0.01));
+        assert_eq!(Strain.factor("Percent"), Some(0.01));
         assert_eq!(Strain.factor("mm"), None);
         // 1 psi = 1 lbf / (25.4 mm)^2.
         let psi = Force.factor("lbf").unwrap() / 25.4f64.powi(2);

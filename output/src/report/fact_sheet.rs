@@ -7,7 +7,7 @@ use design::analysis::actuation_curve::{ActuationCurve, LimitPoint, LoadPeak, Mo
 use design::equilibrium::load_step::Status;
 use design::geometry::polygon::{area, bounds};
 use design::objective::design_problem::{Deployment, DesignProblem};
-use design::scene::{Attachment, HingeModel, Scene};
+use design::scene::{Attachment, HingeModel, Scene, panel_name};
 use design::sheet::kinematics::deployed_corners;
 use serde::Serialize;
 use surrogate::TestErrors;
@@ -399,8 +399,9 @@ fn stroke_of(scene: &Scene, curve: &ActuationCurve) -> String {
         _ => None,
     };
     match place {
-        Some(([column, row], at)) => {
-            format!("{way} of {at}panel [{column}, {row}] along its {load}")
+        Some((panel, at)) => {
+            let panel = panel_name(scene.grid(), panel);
+            format!("{way} of {at}{panel} along its {load}")
         }
         None => format!("mean {way} along the loads, weighted by their {load}s"),
     }

@@ -1,6 +1,6 @@
 //! The report as text for people: about sixty lines for a small sheet.
 
-use crate::report::columns::{columns, fixed};
+use crate::report::columns::{columns, fixed, rounded};
 use crate::report::{HingeRow, Report, Severity};
 use design::objective::scores::{Scores, shown};
 use std::cmp::Ordering;
@@ -21,6 +21,11 @@ domain   whether every state of the path is inside the training domain
 ";
 
 const GAMMA: &str = "Gamma    (21): moment of the weight of a panel that lies on a surface over that of its folded ligament\n";
+
+const OUTLINE_ROSE: &str = "\
+The outline error is larger than at the start although the loss is smaller: the loss also weighs how well the outline
+covers the target, and the terms above. Lower their weights in [objective] for a closer outline.
+";
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -93,7 +98,13 @@ impl Report {
         table.extend(pairs.map(|((name, before), (_, after))| {
             vec![format!("{name:<20}"), shown(before), shown(after)]
         }));
-        columns(&table)
+        let rose = self.after.outline_error > self.before.outline_error;
+        let why = if rose && self.after.loss < self.before.loss {
+            OUTLINE_ROSE
+        } else {
+            ""
+        };
+        columns(&table) + why
     }
 
     /// Whether Gamma is stated, which is of a sheet that lies on a surface.
@@ -150,8 +161,7 @@ impl HingeRow {
             damage,
             peak,
             if self.inside { "inside" } else { "left" }.to_owned(),
-            self.gamma
-                .map_or("-".to_owned(), |gamma| format!("{gamma:.3e}")),
+            self.gamma.map_or("-".to_owned(), |gamma| rounded(gamma, 3)),
         ]
     }
 

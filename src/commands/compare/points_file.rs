@@ -133,16 +133,11 @@ struct Columns {
 
 impl Columns {
     fn new(header: &csv::StringRecord) -> Result<Self> {
-        // Spreadsheets of countries with a decimal comma.
-        ensure!(
-            !header.iter().any(|name| name.contains([';', '\t'])),
-            "the columns must be separated by commas, and decimals have a point"
-        );
         for name in header {
             if !COLUMNS.contains(&name) {
                 let hint = match nearest(name, COLUMNS) {
                     Some(known) => format!("did you mean `{known}`?"),
-                    None => "the columns are panel, corner, x, y and unit, separated by commas"
+                    None => "the columns are panel, corner, x, y and unit, separated by commas, semicolons or tabs"
                         .to_owned(),
                 };
                 bail!("unknown column `{name}`; {hint}");
@@ -174,14 +169,10 @@ impl Columns {
         };
         let length = |axis: usize| -> Result<f64> {
             let value = text(self.position[axis]);
-            value.parse().ok().with_context(|| {
-                let decimals = if value.contains(',') {
-                    "; decimals have a point"
-                } else {
-                    ""
-                };
+            // The decimal sign of some countries, in a file with semicolons or tabs.
+            value.replace(',', ".").parse().ok().with_context(|| {
                 let name = ["x", "y"][axis];
-                format!("column `{name}`: `{value}` is not a number{decimals}")
+                format!("column `{name}`: `{value}` is not a number")
             })
         };
         let corner = self.corner.filter(|&column| !text(column).is_empty());

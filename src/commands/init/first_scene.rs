@@ -11,11 +11,13 @@
 
 use crate::commands::init::edited::{heading, scale, set};
 use crate::commands::init::template::Template;
+use crate::commands::input_file;
 use anyhow::{Context, Result};
+use design::objective::target::{Target, TargetShape};
 use design::scene::rounded;
 use hinge::Regime;
 use std::path::Path;
-use toml_edit::{Array, DocumentMut};
+use toml_edit::{Array, DocumentMut, Item, Table, value};
 
 /// Width and height of the shipped scenes' sheets (mm).
 const A4: [f64; 2] = [210.0, 297.0];
@@ -29,6 +31,8 @@ const OPENING: f64 = 0.436;
 /// Widths of the clips at the top and at the bottom over those of their edges.
 const HELD: f64 = 0.21;
 const PULLED: f64 = 0.14;
+/// Points along a drawn outline from which its area is computed.
+const DRAWING_POINTS: usize = 2000;
 /// Fewest panels along a side: below three, no panel has a neighbour on both sides.
 const FEWEST: usize = 3;
 
@@ -83,8 +87,8 @@ impl FirstScene {
         })
     }
 
-    /// The scene file, in a folder with `material.toml`.
-    pub(super) fn text(&self, weights: &Path) -> Result<String> {
+    /// The scene file, in a folder with `material.toml`; with the outline of a drawing as its target if there is one.
+    pub(super) fn text(&self, weights: &Path, drawing: Option<&Path>) -> Result<String> {
         let template = Template::of(self.regime);
         let factor = self.thickness / template.thickness;
         let [columns, rows] = self.panels;
@@ -120,7 +124,7 @@ impl FirstScene {
             set(&mut attached["panel"], whole(panel));
             set(&mut attached["clip"], rounded(part * edge));
         }
-        let Target {
+        let OpenedSheet {
             centre,
             size,
             rotation_deg,
@@ -141,6 +145,10 @@ impl FirstScene {
         if self.regime == Regime::Plate {
             set(&mut scene["posture"]["down"], Array::from_iter(pull));
         }
+        if let Some(drawing) = drawing {
+            scene["target"] = placed(drawing, centre, size[0] * size[1])?;
+            return Ok(scene.to_string());
+        }
         let target = &mut scene["target"]["rectangle"];
         set(&mut target["centre"], Array::from_iter(centre.map(rounded)));
         set(&mut target["size"], Array::from_iter(size.map(rounded)));
@@ -150,7 +158,7 @@ impl FirstScene {
 
     /// The rectangle of the sheet opened by [`OPENING`] with the panel `held` fixed, and the motion of the
     /// middle of the lower edge of its column.
-    fn target(&self, held: [usize; 2]) -> Target {
+    fn target(&self, held: [usize; 2]) -> OpenedSheet {
         let panel: [f64; 2] = std::array::from_fn(|i| self.size[i] / self.panels[i] as f64);
         let (sin, cos) = (0.5 * OPENING).sin_cos();
         let [a, b] = panel;
@@ -179,7 +187,7 @@ impl FirstScene {
             -cos * down - turned_cos * half,
         ];
         let flat = [0.0, -(steps as f64) * panel[1] - half];
-        Target {
+        OpenedSheet {
             centre: [
                 fixed[0] + cos * arm[0] - sin * arm[1],
                 fixed[1] + sin * arm[0] + cos * arm[1],
@@ -190,6 +198,33 @@ impl FirstScene {
             beyond_clip: [opened[0], opened[1] - half],
         }
     }
+}
+
+/// The table `[target]` of a drawn outline, centred at `centre` (mm) and the given area (mm^2).
+fn placed(drawing: &Path, centre: [f64; 2], area: f64) -> Result<Item> {
+    input_file::require(drawing, "--target")?;
+    let file = std::path::absolute(drawing)?;
+    let of_height_1 = TargetShape::Svg {
+        file: file.clone(),
+        centre: [0.0; 2],
+        height: 1.0,
+    };
+    let outline = Target::sample(&of_height_1, Path::new(""), DRAWING_POINTS)?;
+    let height = (area / outline.area()).sqrt();
+    let offset = outline.mean();
+    let mut svg = Table::new();
+    svg["file"] = value(file.display().to_string());
+    svg["centre"] = value(Array::from_iter(
+        [0, 1].map(|i| rounded(centre[i] - height * offset[i])),
+    ));
+    svg["height"] = value(rounded(height));
+    svg.decor_mut().set_prefix(
+        "\n# A drawing, with the area of the opened sheet: move it by `centre` and scale it by `height` (mm).\n",
+    );
+    let mut target = Table::new();
+    target.set_implicit(true);
+    target["svg"] = Item::Table(svg);
+    Ok(Item::Table(target))
 }
 
 /// The panels along each side: of the usual size if [`FEWEST`] of them fit, else as few; `None` if these have no room for
@@ -203,7 +238,8 @@ fn panels(size: [f64; 2], thickness: f64, regime: Regime) -> Option<[usize; 2]> 
     std::iter::zip(size, panels).all(fits).then_some(panels)
 }
 
-struct Target {
+/// The sheet that [`OPENING`] opens.
+struct OpenedSheet {
     centre: [f64; 2],
     size: [f64; 2],
     rotation_deg: f64,
@@ -242,7 +278,7 @@ mod tests {
     fn the_stroke_is_along_the_pull() {
         let strokes = [(0.1, 30.4), (3.0, 45.4)].map(|(thickness, shipped)| {
             let scene = FirstScene::new(Some(A4), thickness, None).unwrap();
-            let text = scene.text(Path::new("weights.safetensors")).unwrap();
+            let text = scene.text(Path::new("weights.safetensors"), None).unwrap();
             let text: DocumentMut = text.parse().unwrap();
             let stroke = text["drive"]["stroke"].as_float().unwrap();
             assert!((stroke - shipped).abs() < 0.1, "{stroke}");

@@ -39,7 +39,27 @@ pub struct Listed {
     json: bool,
 }
 
+/// A listing with the design that it is of.
+#[derive(Serialize)]
+struct Of<T> {
+    design: String,
+    #[serde(flatten)]
+    listing: T,
+}
+
 impl Inspected {
+    /// Which design [`Inspected::read`] returns.
+    fn which(&self) -> String {
+        let scene = self.scene.display();
+        match &self.design {
+            Some(path) => format!("the design in {}", path.display()),
+            None if self.scene.is_dir() => format!("the best design of the run {scene}"),
+            None => format!(
+                "the start design of {scene}; for that of its run name the run folder, or --design"
+            ),
+        }
+    }
+
     pub(crate) fn read(&self) -> Result<(Scene, DesignVector)> {
         let scene = self.scene()?;
         let design = match &self.design {
@@ -86,10 +106,12 @@ impl Listed {
     }
 
     pub(crate) fn print(&self, listing: impl Serialize + Display) -> Result<()> {
+        let design = self.inspected.which();
         if self.json {
-            println!("{}", serde_json::to_string_pretty(&listing)?);
+            let of = Of { design, listing };
+            println!("{}", serde_json::to_string_pretty(&of)?);
         } else {
-            print!("{listing}");
+            print!("{design}\n\n{listing}");
         }
         Ok(())
     }
