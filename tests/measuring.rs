@@ -112,10 +112,9 @@ fn semicolons_and_decimal_commas_are_read() {
     let points = std::fs::read_to_string(work.path("points.csv")).unwrap();
     let german = points.replace(',', ";").replace('.', ",");
     std::fs::write(work.path("german.csv"), german).unwrap();
-    let [usual, german] =
-        ["points.csv", "german.csv"].map(|file| compared(&work, file)["end"].clone());
-    assert!(usual.is_object(), "{usual}");
-    assert_eq!(usual, german);
+    let [usual, german] = ["points.csv", "german.csv"].map(|file| compared(&work, file));
+    assert_eq!(usual["openings"].as_array().unwrap().len(), 84);
+    assert_eq!(usual["openings"], german["openings"]);
 }
 
 #[test]

@@ -5,22 +5,26 @@ use crate::ui::run_folder;
 use crate::ui::width_by_height::width_by_height;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
+use design::objective::design_problem::Deployment;
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
 use output::cut_file::{
-    CutDrawing, CutLines, OVERLAP, Paper, SheetDrawing, Split, Tiling, attachment_list, cut_list,
-    cut_summary, dxf, mark_errors, split, svg, tiles_pdf,
+    CutDrawing, CutLines, Machines, OVERLAP, Paper, SheetDrawing, Split, Tiling, attachment_list,
+    cut_list, cut_summary, dxf, mark_errors, split, svg, tiles_pdf,
 };
 use output::display::Shape;
 use output::report::{Severity, Warning, warnings};
 use serde_json::json;
 use std::path::{Path, PathBuf};
+use support::nearest::nearest;
 
 /// Write the cut files of a designed sheet, PDF tiles for hand cutting, and parts for a bed or a roll
 ///
 /// Writes DXF, SVG and cut list of the design in the run folder of a scene, with the cutting settings of the scene.
 /// With --paper also a PDF at 1:1 on pages that overlap, with --bed also one DXF and SVG a part. docs/CUTTING.md
-/// describes the files. Example: kirigami cut configs/scenes/demo.toml --paper a4 --bed 900x600
+/// describes the files. With --for the file holds what one kind of machine or service accepts. Examples:
+/// kirigami cut configs/scenes/demo.toml --paper a4 --bed 900x600;
+/// kirigami cut configs/scenes/a4-plate.toml --for laser-service
 #[derive(Args)]
 #[command(mut_arg("design", |arg| arg.help(DESIGN_OF_RUN)))]
 pub struct CutCommand {
@@ -35,6 +39,13 @@ pub struct CutCommand {
     /// Write parts that fit on a bed of this width and height (mm); the height of a roll is inf
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = bed)]
     bed: Option<[f64; 2]>,
+    /// Write one DXF and one SVG for this machine: laser-service, lightburn, knife, plain or one of --machines; for a service
+    /// list which refuse the sheet, and why. With --design start before the search
+    #[arg(long = "for", value_name = "MACHINE", conflicts_with_all = ["paper", "bed"])]
+    machine: Option<String>,
+    /// Table of machines and services (TOML) [default: the shipped configs/machines.toml]
+    #[arg(long, value_name = "FILE", requires = "machine")]
+    machines: Option<PathBuf>,
     /// Width of the adhesive tape on either side of a seam between parts (mm)
     #[arg(long, value_name = "MM", default_value_t = 20.0, value_parser = lap)]
     lap: f64,
@@ -69,6 +80,9 @@ struct Pieces {
 impl CutCommand {
     pub(crate) fn run(&self) -> Result<()> {
         let (scene, design) = self.designed.read_run()?;
+        if let Some(name) = &self.machine {
+            return self.cut_for(name, &scene, &design);
+        }
         let pieces = self.pieces(&scene, &design)?;
         let out = match &self.out {
             Some(out) => out.clone(),
@@ -80,13 +94,66 @@ impl CutCommand {
         self.print(&pieces, &out)
     }
 
-    /// The drawings of a design; an error if it has errors, unless they are marked on request.
-    fn pieces(&self, scene: &Scene, design: &DesignVector) -> Result<Pieces> {
+    /// Writes the file of a machine, and prints what services refuse.
+    fn cut_for(&self, name: &str, scene: &Scene, design: &DesignVector) -> Result<()> {
+        let machines = Machines::read(self.machines.as_deref())?;
+        let machine = machines.machine.iter().find(|machine| machine.name == name);
+        let machine = machine.with_context(|| {
+            let known = machines.machine.iter().map(|machine| &*machine.name);
+            let known: Vec<&str> = known.collect();
+            let near = nearest(name, known.iter().copied());
+            let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
+            format!("unknown machine {name}: use {}{near}", known.join(", "))
+        })?;
+        let (_, cuts, errors) = self.checked(scene, design)?;
+        let mut drawing = machine.drawing(&cuts)?;
+        mark_errors(&mut drawing, &errors);
+        let out = match &self.out {
+            Some(out) => out.clone(),
+            None => scene.output().join("cut").join(name),
+        };
+        let _held = run_folder::hold(&out)?;
+        write_drawing(&out, "cut", &drawing)?;
+        let features = cuts.features();
+        let thickness = scene.material.thickness;
+        let services = machines.service.iter().filter(|_| machine.services);
+        let refusals = services
+            .map(|service| (service, service.refusals(&features, thickness)));
+        let out = out.canonicalize()?;
+        if self.json {
+            let services: Vec<_> = refusals
+                .map(|(service, refuses)| {
+                    json!({ "name": service.name, "source": service.source, "refuses": refuses })
+                })
+                .collect();
+            let value = json!({
+                "machine": name, "features": features, "services": services, "folder": out,
+            });
+            println!("{value:#}");
+            return Ok(());
+        }
+        println!("{name}: {}\n{features}", machine.says);
+        for (service, refuses) in refusals {
+            let refuses = match refuses.is_empty() {
+                true => "no published limit is broken".to_owned(),
+                false => format!("refuses {}", refuses.join("; ")),
+            };
+            println!("{}: {refuses}", service.name);
+        }
+        println!("written to {}", out.display());
+        Ok(())
+    }
+
+    /// The deployed sheet and its cuts, with the errors of the design; an error if it has any, unless it is forced.
+    fn checked(
+        &self,
+        scene: &Scene,
+        design: &DesignVector,
+    ) -> Result<(Deployment, CutLines, Vec<String>)> {
         let deployment = scene.problem()?.deploy(design)?;
-        let (pattern, sheet) = (&deployment.pattern, &deployment.sheet);
         let cuts = CutLines::new(
-            pattern,
-            sheet,
+            &deployment.pattern,
+            &deployment.sheet,
             scene.config.cutting,
             &scene.actuation().attachments,
         );
@@ -99,6 +166,13 @@ impl CutCommand {
             "no cut file: {}; --force writes one",
             errors.join("; ")
         );
+        Ok((deployment, cuts, errors))
+    }
+
+    /// The drawings of a design.
+    fn pieces(&self, scene: &Scene, design: &DesignVector) -> Result<Pieces> {
+        let (deployment, cuts, errors) = self.checked(scene, design)?;
+        let sheet = &deployment.sheet;
         let mut whole = SheetDrawing::new(&cuts, sheet, &scene.material);
         let mut annotated = whole.annotated();
         mark_errors(&mut annotated, &errors);

@@ -22,6 +22,8 @@ pub enum Layer {
     Attachments,
     /// Marks outside of the outline.
     Registration,
+    /// Holes that the tool cannot cut.
+    Punch,
     /// Numbers, scale and cutting instructions.
     Annotation,
     /// The errors of a design whose files were forced.
@@ -29,7 +31,7 @@ pub enum Layer {
 }
 
 /// All layers in the order of cutting: their names in DXF and SVG, red, green and blue, and the AutoCAD colour index.
-const LAYERS: [(Layer, &str, Colour, u8); 10] = [
+const LAYERS: [(Layer, &str, Colour, u8); 11] = [
     (Layer::Holes, "HOLES", [0, 0, 255], 5),
     (Layer::AttachmentHoles, "ATTACHMENT_HOLES", [0, 128, 128], 4),
     (Layer::Cut, "CUT", [255, 0, 0], 1),
@@ -38,6 +40,7 @@ const LAYERS: [(Layer, &str, Colour, u8); 10] = [
     (Layer::Panels, "PANELS", [0, 0, 0], 7),
     (Layer::Attachments, "ATTACHMENTS", [0, 128, 128], 4),
     (Layer::Registration, "REGISTRATION", [0, 128, 0], 3),
+    (Layer::Punch, "PUNCH", [0, 128, 0], 3),
     (Layer::Annotation, "ANNOTATION", [128, 128, 128], 8),
     (Layer::Errors, "ERRORS", [255, 128, 0], 30),
 ];

@@ -173,15 +173,20 @@ impl CutLines {
 
     /// The path of the tool's centre around the sheet (mm).
     pub fn tool_outline(&self) -> [[f64; 2]; 4] {
+        self.outline_at(0.5 * self.kerf)
+    }
+
+    /// The outline moved outwards by a distance (mm).
+    pub(super) fn outline_at(&self, off: f64) -> [[f64; 2]; 4] {
         let outward = |k: usize| {
             let (p, q) = (self.outline[k % 4], self.outline[(k + 1) % 4]);
             let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
             [dy / dx.hypot(dy), -dx / dx.hypot(dy)]
         };
         std::array::from_fn(|k| {
-            // The corner moves so that both of its edges move by half the kerf.
+            // The corner moves so that both of its edges move by the distance.
             let (a, b) = (outward(k + 3), outward(k));
-            let shift = self.kerf / 2.0 / (1.0 + a[0] * b[0] + a[1] * b[1]);
+            let shift = off / (1.0 + a[0] * b[0] + a[1] * b[1]);
             let corner = self.outline[k];
             [
                 corner[0] + shift * (a[0] + b[0]),

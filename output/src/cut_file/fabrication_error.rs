@@ -23,6 +23,11 @@ pub enum FabricationError {
         kerf: f64,
     },
     #[error(
+        "the slits are {slit} mm wide, which must exceed the kerf of the tool, {tool_kerf} mm: increase process.kerf of the scene, \
+         the width of the slits, or use a machine that cuts lines"
+    )]
+    SlitTooNarrow { slit: f64, tool_kerf: f64 },
+    #[error(
         "the cuts at the hinges {} and {} leave {gap:.3} mm between them, less than the kerf of {least} mm: move them \
          apart (objective.panel_shape) or narrow the ligaments",
         .hinges[0], .hinges[1]

@@ -84,7 +84,7 @@ impl SheetDrawing {
 }
 
 /// Three crosses in circles, at all corners of the bounding box but one, so that a turned sheet is noticed.
-fn registration_marks(drawing: &mut CutDrawing, over_run: f64) {
+pub(super) fn registration_marks(drawing: &mut CutDrawing, over_run: f64) {
     let [low, high] = Shape::extent(drawing.on(Layer::Outline));
     let size = f64::max(high[0] - low[0], high[1] - low[1]);
     let radius = (0.004 * size).clamp(1.0, 5.0);

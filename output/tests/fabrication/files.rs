@@ -1,8 +1,11 @@
 //! DXF, SVG and PDF read back by other libraries: the sheet that they describe is the one that was simulated.
 
 use super::{FILLET_RATIO, KERF, distance, irregular_sheets, length, uniform_cuts};
+use design::geometry::polygon::{distance_to_segment, edges};
 use design::sheet::cut_sheet::Sheet;
-use output::cut_file::{CutLines, Layer, Paper, SheetDrawing, Tiling, dxf, svg, tiles_pdf};
+use output::cut_file::{
+    CutLines, Layer, Machines, Paper, SheetDrawing, Tiling, dxf, svg, tiles_pdf,
+};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -346,4 +349,125 @@ fn the_tiles_are_true_to_scale() {
             "{shift:?}"
         );
     }
+}
+
+/// What the tool of each machine leaves, measured in its files: the outline of the slots and the paths of a tool.
+#[test]
+fn the_files_of_every_machine_leave_the_solved_ligaments() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.dxf");
+    let machines = Machines::read(None).unwrap();
+    for (sheet, cuts, _) in irregular_sheets() {
+        let caliper: Vec<f64> = (0..sheet.hinges.len())
+            .map(|hinge| cuts.caliper(hinge))
+            .collect();
+        for machine in &machines.machine {
+            let drawing = machine.drawing(&cuts).unwrap();
+            std::fs::write(&path, dxf(&drawing)).unwrap();
+            let file = read_dxf(&path);
+            assert_eq!(file.defects, [""; 0], "{}", machine.name);
+            let paths = svg_paths(&svg(&drawing));
+            let drawn = file.lines.len() + file.circles.len() + file.polylines.len();
+            assert_eq!(
+                paths.values().map(Vec::len).sum::<usize>(),
+                drawn,
+                "{}",
+                machine.name
+            );
+            match &*machine.name {
+                // Nothing but closed contours, whose edges are those of the finished sheet.
+                "laser-service" => {
+                    assert!(
+                        file.lines.is_empty() && file.circles.is_empty() && file.texts.is_empty()
+                    );
+                    assert!(file.polylines.iter().all(|(_, closed, _)| *closed));
+                    let outlines = file
+                        .polylines
+                        .iter()
+                        .filter(|(layer, ..)| layer == "OUTLINE");
+                    assert_eq!(outlines.count(), 1);
+                    let contours: Vec<_> =
+                        file.polylines.iter().map(|(_, _, points)| points).collect();
+                    for (hinge, expected) in caliper.iter().enumerate() {
+                        let hole = cuts.holes[hinge];
+                        let on_hole = |points: &&&Vec<[f64; 2]>| {
+                            let near = |point: &&[f64; 2]| {
+                                (length([**point, hole.centre]) - hole.radius).abs() < 1e-9
+                            };
+                            points.iter().filter(near).count() > 6
+                        };
+                        let own: Vec<_> = contours.iter().filter(on_hole).collect();
+                        assert_eq!(own.len(), 1, "hole of hinge {hinge}");
+                        // From the tip to all contours but the hole, along the material.
+                        let others = contours.iter().flat_map(|points| edges(points));
+                        let apart = others
+                            .filter(|(p, q)| {
+                                [p, q]
+                                    .iter()
+                                    .all(|end| length([**end, hole.centre]) > 1.2 * hole.radius)
+                            })
+                            .filter(|(p, q)| !own_flank(&cuts, hinge, [*p, *q]))
+                            .map(|(p, q)| distance_to_segment(hole.centre, p, q))
+                            .fold(f64::INFINITY, f64::min);
+                        let left = apart - hole.radius;
+                        assert!(
+                            (left - expected).abs() < 1e-6,
+                            "hinge {hinge}: {left} {expected}"
+                        );
+                    }
+                }
+                "lightburn" => {
+                    // A path of the tool half a kerf inside the hole, and slits half a kerf from their flanks.
+                    for (_, centre, radius) in &file.circles {
+                        let hole = cuts
+                            .holes
+                            .iter()
+                            .find(|hole| length([hole.centre, *centre]) < 1e-9);
+                        assert!((radius + 0.5 * cuts.kerf - hole.unwrap().radius).abs() < 1e-9);
+                    }
+                    assert_eq!(file.circles.len(), cuts.holes.len());
+                    assert!(file.texts.is_empty());
+                }
+                "plain" => {
+                    let radii = file.circles.iter().map(|(.., radius)| *radius);
+                    let nominal = cuts.holes.iter().map(|hole| hole.radius);
+                    let [one, other] = [radii.sum::<f64>(), nominal.sum()];
+                    assert!((one - other).abs() < 1e-6 * other);
+                }
+                "knife" => {
+                    let small = cuts
+                        .holes
+                        .iter()
+                        .filter(|hole| 2.0 * hole.radius < 5.0)
+                        .count();
+                    let crosses = file
+                        .lines
+                        .iter()
+                        .filter(|(layer, _)| layer == "PUNCH")
+                        .count();
+                    assert_eq!(crosses, 2 * small);
+                    assert_eq!(
+                        file.circles
+                            .iter()
+                            .filter(|(layer, ..)| layer == "HOLES")
+                            .count(),
+                        cuts.holes.len() - small
+                    );
+                }
+                other => panic!("the machine {other} has no test"),
+            }
+        }
+    }
+}
+
+/// Whether an edge of a contour is on the slit of a hinge.
+fn own_flank(cuts: &CutLines, hinge: usize, edge: [[f64; 2]; 2]) -> bool {
+    let slit = cuts
+        .slits
+        .iter()
+        .find(|slit| slit.hinges.contains(&Some(hinge)))
+        .unwrap();
+    let [p, q] = slit.ends;
+    edge.iter()
+        .all(|end| distance_to_segment(*end, p, q) < 0.6 * cuts.kerf)
 }

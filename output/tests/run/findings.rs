@@ -118,7 +118,7 @@ fn friction_is_a_warning_with_its_effect() {
     assert_eq!(effect.slips.len(), 9);
     let text = heavy.to_string();
     assert!(text.contains("2 N at a stroke of"), "{text}");
-    assert!(text.contains("clamp, panel [0,1], at ("), "{text}");
+    assert!(text.contains("clamp, panel P3 [0,1], at ("), "{text}");
     // At 4.9 % of the load it is none.
     let light = report(&[], &[LYING, ("[2.0, 0.0]", "[40.5, 0.0]"), SHORT]);
     assert!(found(&light, Concern::Friction).is_empty());

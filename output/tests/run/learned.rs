@@ -328,7 +328,7 @@ fn a_run_is_not_continued_with_another_model() {
         ),
     ];
     let error = run_with(&narrower).err().unwrap().to_string();
-    assert!(error.contains("other weights"), "{error}");
+    assert!(error.contains("the weights changed since"), "{error}");
     let scene = read(folder.path(), &learned(&[("steps = 6", "steps = 1")]));
     remove_run(&scene).unwrap();
     assert_eq!(run(&scene, None).unwrap().history.len(), 2);

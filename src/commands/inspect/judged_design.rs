@@ -1,6 +1,6 @@
 //! The design of a sheet that finite elements judge.
 
-use crate::commands::inspect::scene_args::Inspected;
+use crate::commands::inspect::scene_args::{Inspected, START};
 use anyhow::Result;
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
@@ -10,9 +10,6 @@ use std::path::PathBuf;
 
 /// Help of `--design`.
 pub(crate) const DESIGN_TO_JUDGE: &str = "Design (JSON): the state.json of a run, or a design alone; `start` is the start design of the scene [default: the state.json of the scene's run folder, or the start design if the scene has no run]";
-
-/// The value of `--design` that names no file.
-const START: &str = "start";
 
 impl Inspected {
     /// A scene with the weights that it names.

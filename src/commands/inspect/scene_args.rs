@@ -8,11 +8,14 @@ use design::scene::run_inputs::scene_file;
 use design::scene::{Scene, SceneConfig};
 use serde::Serialize;
 use std::fmt::Display;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use support::toml_file;
 
 /// Help of `--design` for commands that use [`Inspected::read_run`].
-pub(crate) const DESIGN_OF_RUN: &str = "Design (JSON): the state.json of a run, or a design alone [default: the state.json of the scene's run folder]";
+pub(crate) const DESIGN_OF_RUN: &str = "Design (JSON): the state.json of a run, or a design alone; `start` is the start design of the scene [default: the state.json of the scene's run folder]";
+
+/// The value of `--design` that names no file.
+pub(super) const START: &str = "start";
 
 /// A scene and a design of its sheet.
 #[derive(Args)]
@@ -20,7 +23,7 @@ pub struct Inspected {
     /// Scene (TOML); see configs/scenes. Or the folder of a run, which holds its scene, material and weights
     #[arg(value_name = "SCENE")]
     pub(super) scene: PathBuf,
-    /// Design (JSON): the state.json of a run, or a design alone [default: the start design of the scene, or
+    /// Design (JSON): the state.json of a run, or a design alone; `start` is the start design [default: the start design of the scene, or
     /// the design of the run]
     #[arg(long, value_name = "FILE")]
     pub(super) design: Option<PathBuf>,
@@ -63,7 +66,7 @@ impl Inspected {
     pub(crate) fn read(&self) -> Result<(Scene, DesignVector)> {
         let scene = self.scene()?;
         let design = match &self.design {
-            Some(path) => stored_design(path, &scene)?,
+            Some(path) => named_design(path, &scene)?,
             None if self.scene.is_dir() => self.design_of_run(&scene)?,
             None => scene.start(),
         };
@@ -74,7 +77,7 @@ impl Inspected {
     pub(crate) fn read_run(&self) -> Result<(Scene, DesignVector)> {
         let scene = self.scene()?;
         let design = match &self.design {
-            Some(path) => stored_design(path, &scene)?,
+            Some(path) => named_design(path, &scene)?,
             None => self.design_of_run(&scene)?,
         };
         Ok((scene, design))
@@ -98,6 +101,14 @@ impl Inspected {
         }
         Ok(Scene::new(config, &path)?)
     }
+}
+
+/// The design of a file, or the start design of the scene.
+fn named_design(path: &Path, scene: &Scene) -> Result<DesignVector> {
+    if path.as_os_str() == START {
+        return Ok(scene.start());
+    }
+    Ok(stored_design(path, scene)?)
 }
 
 impl Listed {

@@ -1,0 +1,180 @@
+//! Closed contours around what is removed from a sheet: a slit of the kerf's width with the holes at its ends.
+//!
+//! A slit between two hinges is one contour. One that is open on the outline is a notch of the outline, which thereby stays
+//! one contour. Arcs are chords: the contours are polygons.
+
+use crate::cut_file::cut_lines::{CutLines, Slit};
+use design::geometry::polygon::{distance, edges};
+use std::f64::consts::TAU;
+
+/// Maximum distance of a chord from its arc (mm), a tenth of what a laser repeats.
+const CHORD: f64 = 0.002;
+
+/// The contours of a sheet (mm), counter-clockwise.
+pub struct Contours {
+    /// One a slit between two hinges.
+    pub inner: Vec<Vec<[f64; 2]>>,
+    /// The outline with its notches.
+    pub outer: Vec<[f64; 2]>,
+}
+
+impl CutLines {
+    /// The contours that a tool of the given kerf (mm) follows with its centre, half of that from the finished edges; with
+    /// 0 the finished edges themselves. The kerf must be smaller than that of the slits.
+    pub fn contours(&self, tool_kerf: f64) -> Contours {
+        let inset = 0.5 * tool_kerf;
+        let end = |slit: &Slit, which: usize| {
+            slit.hinges[which].map(|hinge| End {
+                at: slit.ends[which],
+                towards: slit.ends[1 - which],
+                radius: self.holes[hinge].radius - inset,
+                half_width: 0.5 * self.kerf - inset,
+            })
+        };
+        let inner = self.slits.iter().filter_map(|slit| {
+            let ends = [end(slit, 0)?, end(slit, 1)?];
+            Some(ends.iter().flat_map(|end| end.around()).collect())
+        });
+        let open: Vec<End> = (self.slits.iter())
+            .filter(|slit| slit.hinges[1].is_none())
+            .filter_map(|slit| end(slit, 0))
+            .collect();
+        Contours {
+            inner: inner.collect(),
+            outer: notched(&self.outline_at(inset), &open),
+        }
+    }
+}
+
+/// The hole at the end of a slit.
+struct End {
+    at: [f64; 2],
+    /// Another point of the slit's line.
+    towards: [f64; 2],
+    radius: f64,
+    half_width: f64,
+}
+
+impl End {
+    /// The angle of the slit at the centre of the hole, and half of the angle of its mouth (rad).
+    fn mouth(&self) -> [f64; 2] {
+        let [dx, dy] = [0, 1].map(|i| self.towards[i] - self.at[i]);
+        [dy.atan2(dx), (self.half_width / self.radius).asin()]
+    }
+
+    /// Points on the hole from one flank of the slit around its back to the other, counter-clockwise.
+    fn around(&self) -> Vec<[f64; 2]> {
+        let [along, half] = self.mouth();
+        let span = TAU - 2.0 * half;
+        let largest = 2.0 * (1.0 - CHORD / self.radius).max(0.0).acos();
+        let chords = (span / largest).ceil().max(8.0) as usize;
+        let point = |i: usize| {
+            let (sin, cos) = (along + half + span * i as f64 / chords as f64).sin_cos();
+            [
+                self.at[0] + self.radius * cos,
+                self.at[1] + self.radius * sin,
+            ]
+        };
+        (0..=chords).map(point).collect()
+    }
+
+    /// Where the flanks cross the line through `p` and `q`, in the order of a walk around the sheet.
+    fn on_edge(&self, [p, q]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
+        let [angle, _] = self.mouth();
+        let (sin, cos) = angle.sin_cos();
+        let edge = [q[0] - p[0], q[1] - p[1]];
+        [-1.0, 1.0].map(|side| {
+            let from = [
+                self.at[0] - side * self.half_width * sin,
+                self.at[1] + side * self.half_width * cos,
+            ];
+            let across = edge[0] * sin - edge[1] * cos;
+            let share = ((from[0] - p[0]) * sin - (from[1] - p[1]) * cos) / across;
+            [p[0] + share * edge[0], p[1] + share * edge[1]]
+        })
+    }
+}
+
+/// A counter-clockwise outline with a notch for each open slit.
+fn notched(outline: &[[f64; 2]; 4], open: &[End]) -> Vec<[f64; 2]> {
+    let sides: Vec<[[f64; 2]; 2]> = edges(outline).map(|(p, q)| [p, q]).collect();
+    let mut notches: Vec<Vec<(f64, Vec<[f64; 2]>)>> = vec![Vec::new(); sides.len()];
+    for end in open {
+        // The side on whose line the slit ends.
+        let off = |&[p, q]: &[[f64; 2]; 2]| {
+            let cross =
+                (q[0] - p[0]) * (end.towards[1] - p[1]) - (q[1] - p[1]) * (end.towards[0] - p[0]);
+            cross.abs() / distance(p, q)
+        };
+        let nearest = (0..sides.len()).min_by(|&i, &j| off(&sides[i]).total_cmp(&off(&sides[j])));
+        let side = nearest.expect("an outline has sides");
+        let [first, second] = end.on_edge(sides[side]);
+        let mut notch = vec![first];
+        // Into the sheet, clockwise around the hole, and out.
+        notch.extend(end.around().into_iter().rev());
+        notch.push(second);
+        notches[side].push((distance(sides[side][0], first), notch));
+    }
+    let mut contour = Vec::new();
+    for ([corner, _], mut notches) in sides.into_iter().zip(notches) {
+        contour.push(corner);
+        notches.sort_by(|a, b| a.0.total_cmp(&b.0));
+        contour.extend(notches.into_iter().flat_map(|(_, notch)| notch));
+    }
+    contour
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use design::geometry::polygon::area;
+    use std::f64::consts::PI;
+
+    fn end(at: [f64; 2], towards: [f64; 2]) -> End {
+        End {
+            at,
+            towards,
+            radius: 1.5,
+            half_width: 0.4,
+        }
+    }
+
+    /// Area of a hole with the beginning of its slit, up to the distance `length` from its centre.
+    fn removed(length: f64) -> f64 {
+        let half = (0.4_f64 / 1.5).asin();
+        (PI - half) * 1.5 * 1.5 + 0.4 * 1.5 * half.cos() + 0.8 * (length - 1.5 * half.cos())
+    }
+
+    #[test]
+    fn a_slot_has_the_area_of_slit_and_holes() {
+        let ends = [[1.0, 2.0], [21.0, 17.0]];
+        let slot: Vec<_> = [end(ends[0], ends[1]), end(ends[1], ends[0])]
+            .iter()
+            .flat_map(End::around)
+            .collect();
+        let exact = 2.0 * removed(12.5);
+        assert!(
+            (area(&slot) / exact - 1.0).abs() < 2e-3,
+            "{} {exact}",
+            area(&slot)
+        );
+        assert!(area(&slot) < exact, "chords are inside of their arcs");
+    }
+
+    #[test]
+    fn a_notch_removes_its_area_from_the_outline() {
+        let outline = [[0.0, 0.0], [40.0, 0.0], [40.0, 30.0], [0.0, 30.0]];
+        let open = [
+            end([10.0, 8.0], [10.0, 0.0]),
+            end([25.0, 8.0], [25.0, 0.0]),
+            end([30.0, 20.0], [40.0, 20.0]),
+        ];
+        let contour = notched(&outline, &open);
+        let exact = 1200.0 - 2.0 * removed(8.0) - removed(10.0);
+        assert!(
+            (area(&contour) - exact).abs() < 0.05,
+            "{} {exact}",
+            area(&contour)
+        );
+    }
+}

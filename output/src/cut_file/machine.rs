@@ -1,0 +1,297 @@
+//! Machines and services: what their files hold, and what they can cut.
+
+use crate::cut_file::cut_drawing::{CutDrawing, Layer};
+use crate::cut_file::cut_lines::CutLines;
+use crate::cut_file::fabrication_error::FabricationError;
+use crate::cut_file::sheet_drawing::registration_marks;
+use crate::display::Shape;
+use design::geometry::polygon::{distance, nearest_on_outline};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::path::Path;
+use support::toml_file::{self, ConfigError};
+
+/// The shipped table.
+const SHIPPED: &str = include_str!("../../../configs/machines.toml");
+
+/// A table of machines and services, `configs/machines.toml`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Machines {
+    /// Machines, by what their files hold.
+    #[serde(default)]
+    pub machine: Vec<Machine>,
+    /// Services, by what they can cut.
+    #[serde(default)]
+    pub service: Vec<Service>,
+}
+
+/// What the file for a machine holds.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Machine {
+    /// The name on the command line, which is also that of the folder of its files.
+    pub name: String,
+    /// What it is, in a line.
+    pub says: String,
+    /// How a slit is drawn.
+    cuts: Cuts,
+    /// Width that the tool removes and the paths allow for (mm); `None`: the kerf of the scene.
+    tool_kerf: Option<f64>,
+    /// Length by which an open slit is cut beyond the outline (mm); `None`: that of the scene.
+    over_run: Option<f64>,
+    /// Diameter of the smallest hole that the tool cuts (mm).
+    #[serde(default)]
+    least_hole: f64,
+    /// Whether services that publish limits are listed.
+    #[serde(default)]
+    pub services: bool,
+    /// Whether marks are drawn.
+    marks: bool,
+}
+
+/// How a slit is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Cuts {
+    /// A line.
+    Lines,
+    /// A closed contour.
+    Slots,
+}
+
+/// What a service can cut; lengths in mm, those ending in `_t` in thicknesses.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Service {
+    /// Its name.
+    pub name: String,
+    /// Where it says so.
+    pub source: String,
+    #[serde(default)]
+    hole: f64,
+    #[serde(default)]
+    hole_t: f64,
+    #[serde(default)]
+    slot: f64,
+    #[serde(default)]
+    slot_t: f64,
+    #[serde(default)]
+    bridge: f64,
+    #[serde(default)]
+    bridge_t: f64,
+    #[serde(default)]
+    edge: f64,
+    #[serde(default)]
+    edge_t: f64,
+    size: Option<[f64; 2]>,
+}
+
+/// The smallest features of a sheet, and its size (mm).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Features {
+    /// Diameter of the smallest hole.
+    pub hole: f64,
+    /// Width of the slits.
+    pub slot: f64,
+    /// The narrowest ligament beside its hole.
+    pub bridge: f64,
+    /// The least distance of a hole from the outline.
+    pub edge: f64,
+    /// Width and height of the sheet.
+    pub size: [f64; 2],
+}
+
+impl Machines {
+    /// The machines of a file, or those shipped.
+    pub fn read(file: Option<&Path>) -> Result<Self, ConfigError> {
+        match file {
+            Some(file) => toml_file::read(file),
+            None => toml_file::parse(SHIPPED, Path::new("configs/machines.toml")),
+        }
+    }
+}
+
+impl Service {
+    /// What it refuses of a sheet of the given thickness (mm), with both sizes and what to change.
+    pub fn refusals(&self, features: &Features, thickness: f64) -> Vec<String> {
+        let limit = |mm: f64, thicknesses: f64| mm.max(thicknesses * thickness);
+        let small = [
+            (
+                "holes of",
+                features.hole,
+                limit(self.hole, self.hole_t),
+                "process.fillet_ratio, ligament.range",
+            ),
+            (
+                "slits of",
+                features.slot,
+                limit(self.slot, self.slot_t),
+                "process.kerf",
+            ),
+            (
+                "ligaments of",
+                features.bridge,
+                limit(self.bridge, self.bridge_t),
+                "ligament.range",
+            ),
+            (
+                "holes to the edge of",
+                features.edge,
+                limit(self.edge, self.edge_t),
+                "ligament.range",
+            ),
+        ]
+        .into_iter()
+        .filter(|(_, found, least, _)| found < least)
+        .map(|(what, found, least, keys)| {
+            format!("{what} {found:.2} mm, at least {least:.2} mm ({keys})")
+        });
+        let sorted = |[a, b]: [f64; 2]| [f64::min(a, b), f64::max(a, b)];
+        let [[short, long], found] =
+            [self.size.unwrap_or([f64::INFINITY; 2]), features.size].map(sorted);
+        let large = (found[0] > short || found[1] > long).then(|| {
+            format!(
+                "a sheet of {:.0} x {:.0} mm, at most {short:.0} x {long:.0} mm (--bed)",
+                found[0], found[1]
+            )
+        });
+        small.chain(large).collect()
+    }
+}
+
+impl Machine {
+    /// The drawing of a sheet for this machine, in cutting order; an error if the paths do not exist.
+    pub fn drawing(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
+        let kerf = self.tool_kerf.unwrap_or(cuts.kerf);
+        let mut cuts = cuts.clone();
+        cuts.cutting.over_run = self.over_run.unwrap_or(cuts.cutting.over_run);
+        let mut drawing = match self.cuts {
+            Cuts::Lines => self.lines(&cuts, kerf),
+            Cuts::Slots => slots(&cuts, kerf)?,
+        };
+        for attachment in &cuts.attachments {
+            if attachment.hole.is_some() || self.marks {
+                attachment.draw(&mut drawing, kerf);
+            }
+        }
+        let mut drawing = drawing.in_cutting_order(cuts.outline[0]);
+        if self.marks {
+            registration_marks(&mut drawing, cuts.cutting.over_run);
+        }
+        Ok(drawing)
+    }
+
+    fn lines(&self, cuts: &CutLines, kerf: f64) -> CutDrawing {
+        let mut drawing = CutDrawing::default();
+        for hole in &cuts.holes {
+            let (centre, radius) = (hole.centre, hole.radius);
+            if 2.0 * radius >= self.least_hole {
+                let radius = radius - 0.5 * kerf;
+                drawing.add(Layer::Holes, Shape::Circle { centre, radius });
+                continue;
+            }
+            let [x, y] = centre;
+            for ends in [
+                [[x - radius, y], [x + radius, y]],
+                [[x, y - radius], [x, y + radius]],
+            ] {
+                drawing.add(Layer::Punch, Shape::Line(ends));
+            }
+        }
+        for slit in &cuts.slits {
+            drawing.add(Layer::Cut, Shape::Line(cuts.tool_slit(slit)));
+        }
+        let outline = cuts.outline_at(0.5 * kerf).to_vec();
+        drawing.add(Layer::Outline, Shape::Polygon(outline));
+        drawing
+    }
+}
+
+/// Closed contours; an error if the tool is as wide as the slits.
+fn slots(cuts: &CutLines, tool_kerf: f64) -> Result<CutDrawing, FabricationError> {
+    if tool_kerf >= cuts.kerf {
+        let slit = cuts.kerf;
+        return Err(FabricationError::SlitTooNarrow { slit, tool_kerf });
+    }
+    let contours = cuts.contours(tool_kerf);
+    let mut drawing = CutDrawing::default();
+    for contour in contours.inner {
+        drawing.add(Layer::Cut, Shape::Polygon(contour));
+    }
+    drawing.add(Layer::Outline, Shape::Polygon(contours.outer));
+    Ok(drawing)
+}
+
+impl CutLines {
+    /// The smallest features of the sheet.
+    pub fn features(&self) -> Features {
+        let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
+        let side = |axis: usize| {
+            let along = self.outline.iter().map(|corner| corner[axis]);
+            along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+        };
+        let to_edge =
+            |centre: [f64; 2]| distance(centre, nearest_on_outline(centre, &self.outline));
+        Features {
+            hole: least(&mut self.holes.iter().map(|hole| 2.0 * hole.radius)),
+            slot: self.kerf,
+            bridge: least(&mut (0..self.holes.len()).map(|hinge| self.caliper(hinge))),
+            edge: least(
+                &mut self
+                    .holes
+                    .iter()
+                    .map(|hole| to_edge(hole.centre) - hole.radius),
+            ),
+            size: [side(0), side(1)],
+        }
+    }
+}
+
+impl fmt::Display for Features {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let [width, height] = self.size;
+        write!(
+            f,
+            "smallest hole {:.2} mm, slits {:.2} mm, narrowest ligament beside its hole {:.2} mm, hole to edge {:.2} mm; sheet {width:.1} \
+             x {height:.1} mm",
+            self.hole, self.slot, self.bridge, self.edge
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_service_names_its_source_and_refuses_what_is_too_small() {
+        let machines = Machines::read(None).unwrap();
+        assert!(machines.service.len() >= 5);
+        let coarse = Features {
+            hole: 10.0,
+            slot: 10.0,
+            bridge: 10.0,
+            edge: 10.0,
+            size: [100.0, 50.0],
+        };
+        let fine = Features {
+            hole: 0.5,
+            slot: 0.2,
+            bridge: 0.4,
+            edge: 0.4,
+            size: [5000.0, 5000.0],
+        };
+        for service in &machines.service {
+            assert!(service.source.contains('/'), "{}", service.name);
+            assert_eq!(service.refusals(&coarse, 3.0), [""; 0]);
+            assert!(!service.refusals(&fine, 3.0).is_empty(), "{}", service.name);
+        }
+        let whys = machines.service[0].refusals(&fine, 3.0);
+        assert_eq!(whys.len(), 3, "{whys:?}");
+        assert!(
+            whys[1].contains("slits of 0.20 mm, at least 1.50 mm (process.kerf)"),
+            "{whys:?}"
+        );
+    }
+}
