@@ -127,7 +127,7 @@ impl Digest {
         let domain = TrainingDomain::covering(states);
         let (Some(first), Some(domain)) = (self.first, domain) else {
             return Err(DatasetError::NoRows {
-                rejected: self.rejected.values().sum(),
+                why: reasons(&self.rejected),
             });
         };
         let split = Split::deal(&self.geometries, plan)?;
@@ -159,4 +159,16 @@ impl Digest {
             split,
         })
     }
+}
+
+/// Why rows were rejected, with their numbers, or what to do where there were none.
+fn reasons(rejected: &BTreeMap<Rejection, usize>) -> String {
+    if rejected.is_empty() {
+        return "run the campaign before collecting it".into();
+    }
+    let reasons = rejected.iter();
+    let reasons: Vec<String> = reasons
+        .map(|(reason, count)| format!("{count} were rejected since {reason}"))
+        .collect();
+    reasons.join("; ")
 }

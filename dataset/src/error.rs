@@ -14,8 +14,8 @@ pub enum DatasetError {
          for the reference"
     )]
     AlreadyCorrected { tier: String },
-    #[error("no rows ({rejected} were rejected); run the campaign before collecting it")]
-    NoRows { rejected: usize },
+    #[error("no rows: {why}")]
+    NoRows { why: String },
     #[error(
         "job {job}: {column} = {found}, but other rows have {expected}; \
          keep them in separate databases, or, if they differ only in material or tier, merge with `--mixed`"

@@ -3,6 +3,7 @@
 use crate::rows::Row;
 use crate::schema::is_finite;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// Limits that an accepted row satisfies.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,6 +35,17 @@ pub enum Rejection {
     Negative,
     /// The energy and the work of the reaction forces differ by more than the limit.
     EnergyResidual,
+}
+
+impl fmt::Display for Rejection {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotFinite => "a number is not finite",
+            Self::InvalidDesign => "the hinge cannot be cut or is outside of the limits of its keys (lengths in mm, angles in rad?)",
+            Self::Negative => "W or D is negative",
+            Self::EnergyResidual => "the energy is not the work of the forces (units of W, forces and lengths?)",
+        })
+    }
 }
 
 impl Gates {

@@ -84,7 +84,7 @@ impl fmt::Display for Summary<'_> {
             known(&manifest.settings_hashes),
         )?;
         for (reason, count) in &manifest.rejected {
-            writeln!(f, "rejected {count} rows: {reason:?}")?;
+            writeln!(f, "rejected {count} rows: {reason}")?;
         }
         for (job, tier) in &self.contents.other_tiers {
             writeln!(f, "ray {job} was solved on the mesh {tier}")?;

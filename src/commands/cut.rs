@@ -117,8 +117,7 @@ impl CutCommand {
         let features = cuts.features();
         let thickness = scene.material.thickness;
         let services = machines.service.iter().filter(|_| machine.services);
-        let refusals = services
-            .map(|service| (service, service.refusals(&features, thickness)));
+        let refusals = services.map(|service| (service, service.refusals(&features, thickness)));
         let out = out.canonicalize()?;
         if self.json {
             let services: Vec<_> = refusals

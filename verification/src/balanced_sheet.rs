@@ -213,21 +213,12 @@ impl Iteration<'_> {
         } = self.solve(windows, deployed)?;
         let force_error = force_error(&self.problem.model, deployed, &ends);
         self.add_missing_forces(deployed, &ends);
-        let designs = deployed.sheet.designs();
-        let corrections = (designs.iter().zip(&self.missing))
-            .map(|(design, missing)| Correction::new(design, missing))
-            .collect();
-        let corrected = Arc::new(CorrectedLaw {
-            law: self.law.clone(),
-            corrections,
-        });
-        let before = std::mem::replace(law_of(&mut self.problem)?, corrected);
-        let next = self.problem.deploy(self.design)?;
-        if let Err(error) = next.at_full_load() {
-            *law_of(&mut self.problem)? = before;
-            return Err(error.into());
-        }
-        let movement = movements(deployed, &next).into_iter().fold(0.0, f64::max);
+        let last = found
+            .rounds
+            .last()
+            .filter(|round| round.tier == windows.tier);
+        let last = last.map_or(f64::INFINITY, |round| round.movement);
+        let (next, movement) = self.step(deployed, last)?;
         if movement <= BALANCED * size(&next) {
             found.ended = BalanceEnd::Converged;
         }
@@ -243,6 +234,64 @@ impl Iteration<'_> {
             unsolved,
         });
         Ok(())
+    }
+
+    /// The sheet with the law corrected to the finite elements so far, and its largest movement (mm).
+    ///
+    /// The slopes between states that hardly differ are those of the noise of their forces, and may throw the sheet far away. A
+    /// step longer than the `last` one is therefore compared with that by the newest forces alone, on the tangent of the law, and
+    /// the shorter one is made; after that by the newest forces the earlier ones are forgotten. After an error the problem has the law that it
+    /// had before.
+    fn step(
+        &mut self,
+        deployed: &Deployment,
+        last: f64,
+    ) -> Result<(Deployment, f64), VerificationError> {
+        let before = law_of(&mut self.problem)?.clone();
+        let secant = self.corrected(deployed, &self.missing.clone());
+        match &secant {
+            Ok((_, movement)) if *movement <= last => return secant,
+            _ if self.missing.iter().all(|missing| missing.len() < 2) => {}
+            _ => {
+                let by_secant = law_of(&mut self.problem)?.clone();
+                let newest = |missing: &Vec<MissingForces>| Vec::from_iter(missing.last().copied());
+                let newest: Vec<_> = self.missing.iter().map(newest).collect();
+                let plain = self.corrected(deployed, &newest);
+                let shorter = match (&plain, &secant) {
+                    (Ok((_, plain)), Ok((_, secant))) => plain < secant,
+                    (plain, _) => plain.is_ok(),
+                };
+                if shorter {
+                    self.missing = newest;
+                    return plain;
+                }
+                *law_of(&mut self.problem)? = by_secant;
+            }
+        }
+        if secant.is_err() {
+            *law_of(&mut self.problem)? = before;
+        }
+        secant
+    }
+
+    /// Deploys the sheet with the law corrected by the missing forces of each hinge.
+    fn corrected(
+        &mut self,
+        deployed: &Deployment,
+        missing: &[Vec<MissingForces>],
+    ) -> Result<(Deployment, f64), VerificationError> {
+        let designs = deployed.sheet.designs();
+        let corrections = (designs.iter().zip(missing))
+            .map(|(design, missing)| Correction::new(design, missing))
+            .collect();
+        *law_of(&mut self.problem)? = Arc::new(CorrectedLaw {
+            law: self.law.clone(),
+            corrections,
+        });
+        let next = self.problem.deploy(self.design)?;
+        next.at_full_load()?;
+        let movement = movements(deployed, &next).into_iter().fold(0.0, f64::max);
+        Ok((next, movement))
     }
 
     /// Solves every hinge along its path in the sheet.

@@ -157,6 +157,11 @@ pub enum InvalidScene {
     #[error("surrogate.ensemble: all networks must be trained on the data of surrogate.weights")]
     OtherTraining,
     #[error(
+        "surrogate.ensemble: {} and {} are the same network, whose spread is zero: name networks of other seeds",
+        files[0].display(), files[1].display()
+    )]
+    SameNetwork { files: [PathBuf; 2] },
+    #[error(
         "condensed: at w_lig = {w_lig} mm the weights have k_a = {} N/mm, k_s = {} N/mm, k_theta = {} N mm, which must \
          all be positive: use hinge = \"surrogate\" or other weights",
         constants[0], constants[1], constants[2]

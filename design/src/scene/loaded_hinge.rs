@@ -182,7 +182,7 @@ fn condensed(
 
 /// The learned law; the contact stiffness is relative to the secant stiffness of a hinge of the start.
 fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge, InvalidScene> {
-    same_training(&networks)?;
+    same_training(config, &networks)?;
     let surrogate = networks.first();
     let surrogate = surrogate.ok_or(InvalidScene::NoSection("surrogate"))?;
     let [_, _, [closed, _]] = surrogate.domain().bounds();
@@ -224,8 +224,20 @@ fn contact(config: &SceneConfig, k_theta: f64, wall: f64) -> Result<Contact, Inv
     Ok(contact?)
 }
 
-/// The spread of networks trained on different data estimates the error of neither.
-fn same_training(networks: &[Surrogate]) -> Result<(), InvalidScene> {
+/// The spread of networks trained on different data estimates the error of neither, and that of one network is zero.
+fn same_training(config: &SceneConfig, networks: &[Surrogate]) -> Result<(), InvalidScene> {
+    let hashes: Vec<String> = networks.iter().map(Surrogate::hash).collect();
+    let twice = (1..hashes.len()).find_map(|j| {
+        let i = hashes[..j].iter().position(|hash| *hash == hashes[j])?;
+        Some([i, j])
+    });
+    if let (Some(twice), Some(learned)) = (twice, &config.surrogate) {
+        let files: Vec<&PathBuf> = std::iter::once(&learned.weights)
+            .chain(&learned.ensemble)
+            .collect();
+        let files = twice.map(|i| files[i].clone());
+        return Err(InvalidScene::SameNetwork { files });
+    }
     let data = |network: &Surrogate| {
         let card = network.card();
         (card.dataset_hash.clone(), card.split_hash.clone())

@@ -6,6 +6,7 @@ use crate::report::fact_sheet::FactSheet;
 use crate::report::hinge_row::HingeRow;
 use crate::report::self_weight::of_the_load;
 use crate::report::warning::{Concern, Severity, Warning};
+use design::analysis::error_budget::ErrorBudget;
 use design::analysis::flatness::expected_departure;
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::geometry::polygon::contains;
@@ -27,6 +28,8 @@ const STAYS_FLAT: f64 = 0.003;
 const TILTS: f64 = 0.05;
 /// Distance of the outline from the target over the longer side of the flat sheet from which the target is missed.
 const MISSED: f64 = 0.01;
+/// Kerf over ligament width for which another kerf than that of the weights was measured (data/pet-0.5mm).
+const MEASURED_KERF: [f64; 2] = [0.002, 0.15];
 /// Relative error of a force (%) above which a law is inaccurate.
 const INACCURATE: f64 = 10.0;
 /// Separation of a path from its ray, in ligament widths, up to which W differs by less than 1 % (docs/results/detours).
@@ -50,17 +53,20 @@ pub(super) struct JudgedRun<'a> {
     pub facts: &'a FactSheet,
     /// The scores of the best design.
     pub after: &'a Scores,
+    /// The error budget of a learned law.
+    pub budget: Option<&'a ErrorBudget>,
 }
 
 type Rule = fn(&Judged) -> Option<Warning>;
 
 /// First those about a design, then those about a run as a whole: what its model leaves out, what its weights are worth,
 /// how well it meets its target.
-const RULES: [Rule; 22] = [
+const RULES: [Rule; 23] = [
     windows_overlap,
     windows_leave_panels,
     cutting,
     ligaments_outside,
+    kerf,
     states_outside,
     path_dependence,
     flanks_touch,
@@ -490,16 +496,46 @@ fn outside(judged: &Judged) -> Option<Warning> {
 }
 
 fn missed(judged: &Judged) -> Option<Warning> {
-    let JudgedRun { facts, after, .. } = judged.run.as_ref()?;
+    let JudgedRun {
+        facts,
+        after,
+        budget,
+        ..
+    } = judged.run.as_ref()?;
     let [width, height] = facts.flat_size;
-    let ratio = after.outline_error / width.max(height);
-    (ratio > MISSED).then(|| {
-        Concern::TargetMissed.of_sheet(format!(
-            "the outline misses the target by {} mm (root mean square), {} % of the longer side of the flat sheet",
-            rounded(after.outline_error, 3),
-            rounded(100.0 * ratio, 2)
-        ))
-    })
+    let error = after.outline_error;
+    let ratio = error / width.max(height);
+    let [uncertain, _] = budget.map_or([f64::INFINITY; 2], |budget| budget.total.corners);
+    if ratio <= MISSED && error <= 2.0 * uncertain {
+        return None;
+    }
+    let mut message = format!(
+        "the outline misses the target by {} mm (root mean square), {} % of the longer side of the flat sheet",
+        rounded(error, 3),
+        rounded(100.0 * ratio, 2)
+    );
+    if error > 2.0 * uncertain {
+        message += &format!(
+            ", {} times what the model does not know about the corners ({} mm): more panels, or another target, come closer, better \
+             weights do not",
+            rounded(error / uncertain, 2),
+            rounded(uncertain, 2)
+        );
+    }
+    Some(Concern::TargetMissed.of_sheet(message))
+}
+
+/// A learned law has the kerf of its training; the effect of another one was measured in a range.
+fn kerf(judged: &Judged) -> Option<Warning> {
+    judged.scene.surrogate()?;
+    let kerf = judged.deployment.sheet.options.process.kerf;
+    let [least, most] = MEASURED_KERF;
+    let beyond = judged.those(|row| !(least..=most).contains(&(kerf / row.w_lig)));
+    let message = format!(
+        "the kerf of {kerf} mm is not between {least} and {most} ligament widths, where its effect on the hinge energy was measured: \
+         use a narrower tool or wider ligaments"
+    );
+    about(Concern::KerfUnknown, beyond, message)
 }
 
 fn other_branch(judged: &Judged) -> Option<Warning> {

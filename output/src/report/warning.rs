@@ -38,6 +38,8 @@ pub enum Concern {
     WindowsLeavePanels,
     /// w_lig or alpha is outside the training domain of the hinge law.
     LigamentsOutsideDomain,
+    /// The effect of the kerf on the hinge energy is not known.
+    KerfUnknown,
     /// The path leaves the training domain of the hinge law.
     StatesOutsideDomain,
     /// The path departs so far from the straight ray to its end that energy and forces depend on it.
@@ -58,7 +60,7 @@ pub enum Concern {
     OtherBranch,
     /// The target outline crosses or touches itself.
     TargetCrosses,
-    /// The outline is further from the target than 1 % of the sheet.
+    /// The outline is further from the target than 1 % of the sheet, or than twice what the model does not know of its corners.
     TargetMissed,
     /// What the model leaves out of a sheet that is held as the scene says.
     NotModelled,
@@ -88,6 +90,7 @@ impl Concern {
             | Self::NotModelled => Severity::Note,
             Self::WindowsOverlap
             | Self::LigamentsOutsideDomain
+            | Self::KerfUnknown
             | Self::StatesOutsideDomain
             | Self::FlanksTouch
             | Self::Path
