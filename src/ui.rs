@@ -13,6 +13,8 @@ pub mod run_folder;
 pub mod shell_word;
 pub mod table;
 pub mod width_by_height;
+#[cfg(feature = "pipeline")]
+pub(crate) mod with_unit;
 
 /// Number of processors of this machine.
 pub fn processors() -> usize {

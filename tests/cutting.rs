@@ -69,3 +69,49 @@ fn a_designed_sheet_is_cut_on_paper_and_in_parts() {
     work.edit(SCENE, &[("over_run = 3.0", "over_run = 300.0")]);
     assert!(work.error(&cut).contains("cutting.over_run"));
 }
+
+/// The files of the machines are measured in output/tests/fabrication; here they are asked for.
+#[test]
+fn a_sheet_is_cut_for_a_machine() {
+    let work = Workplace::new();
+    // Before the search.
+    let said = work.output(&format!("cut {SCENE} --for laser-service --design start"));
+    assert!(
+        said.contains("SendCutSend: ") && said.contains("(process.kerf)"),
+        "{said}"
+    );
+    let folder = "runs/pin-7x7/cut/laser-service";
+    for name in ["cut.dxf", "cut.svg"] {
+        assert!(work.path(folder).join(name).exists(), "{name}");
+    }
+    let json = work.output(&format!("cut {SCENE} --for knife --design start --json"));
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["features"]["slot"], 0.2);
+    assert_eq!(json["services"], serde_json::json!([]));
+    let unknown = work.error(&format!("cut {SCENE} --for nife --design start"));
+    assert!(unknown.contains("did you mean knife?"), "{unknown}");
+
+    // A table of one's own: a tool wider than the slits cannot follow their contours.
+    std::fs::write(
+        work.path("own.toml"),
+        "[[machine]]\nname = \"mine\"\nsays = \"mine\"\ncuts = \"slots\"\ntool_kerf = 0.3\nmarks = false\n",
+    )
+    .unwrap();
+    let wide = work.error(&format!(
+        "cut {SCENE} --for mine --machines own.toml --design start"
+    ));
+    assert!(wide.contains("increase process.kerf"), "{wide}");
+}
+
+#[test]
+fn a_sheet_larger_than_its_stock_is_a_warning() {
+    let work = Workplace::new();
+    let design = format!("design {SCENE} --steps 1 --restart");
+    let stock =
+        |width: f64| format!("[cutting]\nstock = [{width}, 2900.0]\nmargin = 10.0\n\n[process]");
+    work.edit(SCENE, &[("[process]", &stock(2823.0))]);
+    assert!(!work.output(&design).contains("the stock has"));
+    work.edit(SCENE, &[("2823", "2821")]);
+    let said = work.output(&design);
+    assert!(said.contains("the stock has 2801.0 x 2880.0 mm"), "{said}");
+}

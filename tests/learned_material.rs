@@ -78,6 +78,8 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
         .output()
         .unwrap();
     assert_eq!(stopped.status.code(), Some(75), "{stopped:?}");
+    let said = String::from_utf8_lossy(&stopped.stdout);
+    assert!(said.contains("no weights yet"), "{said}");
     assert!(!work.path("learned/weights.safetensors").exists());
     shorten(&work);
 
@@ -105,7 +107,14 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
         POLYPROPYLENE,
         &format!("{OPTIONS} --accuracy 100% --forces 100%"),
     ));
-    assert!(printed.contains("accurate enough"), "{printed}");
+    for text in [
+        "accurate enough",
+        "95 % interval",
+        "asked 100 %",
+        "next:    kirigami init SHEET --material learned/material.toml --weights learned/weights.safetensors",
+    ] {
+        assert!(printed.contains(text), "{text}: {printed}");
+    }
     assert_eq!(
         std::fs::metadata(&fits).unwrap().modified().unwrap(),
         before

@@ -8,25 +8,33 @@ mod training_extremes;
 mod window_extremes;
 
 use anyhow::{Result, ensure};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use dataset::Database;
 use design::objective::design_problem::Model;
 use design::scene::{Scene, SceneConfig};
 use fe_driver::CalculiX;
 use kirigami::ui::progress::Progress;
 use kirigami::ui::run_folder;
+use std::fmt;
 use std::path::{Path, PathBuf};
 use train::TrainingConfig;
 
 /// Solve windows, train networks, evaluate the learned law and deploy sheets at the limits of their inputs
 ///
 /// Checks what is promised of each row: a solved ray, finite errors, a stated equilibrium, or a refusal with its reason; finite
-/// numbers, no damage where it is not known, forces that are the derivative of the energy. Writes extremes.md.
-/// Example: kirigami-studies extremes
+/// numbers, no damage where it is not known, forces that are the derivative of the energy. Writes a file a table.
+/// Example: kirigami-studies extremes windows trainings
 #[derive(Args)]
 pub struct ExtremesStudy {
+    /// Tables to make
+    #[arg(value_name = "TABLE", default_values_t = Table::value_variants().to_vec())]
+    tables: Vec<Table>,
     /// Scene (TOML) with a learned hinge law
-    #[arg(value_name = "SCENE", default_value = "configs/scenes/pet-3x3.toml")]
+    #[arg(
+        long,
+        value_name = "FILE",
+        default_value = "configs/scenes/pet-3x3.toml"
+    )]
     scene: PathBuf,
     /// Scene (TOML) with a linear hinge law
     #[arg(
@@ -58,41 +66,81 @@ pub struct ExtremesStudy {
 }
 
 /// A table of the page.
+#[derive(Clone, Copy, ValueEnum)]
+enum Table {
+    /// Windows: the mesher and the solver.
+    Windows,
+    /// Trainings.
+    Trainings,
+    /// The learned law.
+    Law,
+    /// Equilibria of sheets.
+    Sheets,
+}
+
+/// What a table says.
 struct Checked {
     text: String,
     /// Number of rows whose promise is not kept.
     broken: usize,
 }
 
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Windows => "windows",
+            Self::Trainings => "trainings",
+            Self::Law => "law",
+            Self::Sheets => "sheets",
+        })
+    }
+}
+
 impl ExtremesStudy {
     pub fn run(&self) -> Result<()> {
         let _held = run_folder::hold(&self.out)?;
-        let scene = Scene::read(&self.scene)?;
-        let Model::Equilibrium(mechanics) = scene.problem()?.model else {
-            anyhow::bail!("{}: the hinge law has no energy", self.scene.display());
-        };
-        let solver = CalculiX::find()?;
-        let database = Database::read(&self.database)?;
-        let training: TrainingConfig = support::toml_file::read(&self.training)?;
-        let law = law_extremes::table(&*mechanics.law, &scene.config.process)?;
-        let scenes = [
-            (&scene.config, &*self.scene),
-            (&read(&self.linear)?, &self.linear),
-        ];
-        let extremes = sheet_extremes::all(scenes, self.panels)?;
-        let bar = Progress::new(extremes.len(), "sheets");
-        let sheets = sheet_extremes::table(&extremes, |done, name| bar.show(done, None, name))?;
-        bar.finish();
-        let windows = window_extremes::table(&solver, &scene.material, &self.out.join("window"))?;
-        let trainings = training_extremes::table(&database, &training)?;
-        let tables = [windows, trainings, law, sheets];
-        let text = tables.each_ref().map(|table| table.text.as_str());
-        let page = format!("# At the extremes\n\n{}", text.join("\n"));
-        run_folder::write(&self.out, "extremes.md", &page)?;
-        println!("{page}\nwritten to {}", self.out.display());
-        let broken: usize = tables.iter().map(|table| table.broken).sum();
+        let mut broken = 0;
+        for name in &self.tables {
+            let table = self.table(*name)?;
+            broken += table.broken;
+            run_folder::write(&self.out, &format!("{name}.md"), &table.text)?;
+            println!("{}", table.text);
+        }
+        println!("written to {}", self.out.display());
         ensure!(broken == 0, "{broken} promises are not kept");
         Ok(())
+    }
+
+    fn table(&self, name: Table) -> Result<Checked> {
+        let scene = Scene::read(&self.scene)?;
+        match name {
+            Table::Windows => {
+                let solver = CalculiX::find()?;
+                window_extremes::table(&solver, &scene.material, &self.out.join("window"))
+            }
+            Table::Trainings => {
+                let training: TrainingConfig = support::toml_file::read(&self.training)?;
+                training_extremes::table(&Database::read(&self.database)?, &training)
+            }
+            Table::Law => {
+                let Model::Equilibrium(mechanics) = scene.problem()?.model else {
+                    anyhow::bail!("{}: the hinge law has no energy", self.scene.display());
+                };
+                law_extremes::table(&*mechanics.law, &scene.config.process)
+            }
+            Table::Sheets => {
+                let scenes = [
+                    (&scene.config, &*self.scene),
+                    (&read(&self.linear)?, &self.linear),
+                ];
+                let extremes = sheet_extremes::all(scenes, self.panels)?;
+                let bar = Progress::new(extremes.len(), "sheets");
+                let table =
+                    sheet_extremes::table(&extremes, |done, name| bar.show(done, None, name));
+                bar.finish();
+                table
+            }
+        }
     }
 }
 

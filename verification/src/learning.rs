@@ -7,10 +7,10 @@ use crate::verification_error::VerificationError;
 use dataset::{Database, Row};
 use fe_driver::{Campaign, Progress, RunOptions, Shard, Solver, run, status};
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use surrogate::{SpotCheck, Surrogate};
-use train::spot_check;
+use train::{ErrorInterval, spot_check};
 
 /// What is solved, and when it is enough.
 #[derive(Clone, Copy)]
@@ -57,6 +57,8 @@ pub struct LearningRound {
     pub training_s: f64,
     /// Errors of the weights at the states of the spot check.
     pub check: SpotCheck,
+    /// The errors of W and of the forces there, with their intervals.
+    pub intervals: Option<[ErrorInterval; 2]>,
 }
 
 /// What a caller does in every round.
@@ -96,20 +98,30 @@ pub enum LearningEnd {
     AllRays,
 }
 
-/// Makes rounds until the weights are accurate enough, all rays are solved, or the time is over.
+/// Fewest rays on which a round that the deadline ends is trained: a geometry in each part of the split, and some more.
+const LEAST_RAYS: usize = 6;
+
+/// Makes rounds until the weights are accurate enough, all rays are solved, or the time is over. A round that the deadline ends
+/// early is trained on the rays that it has.
 pub fn learn<S: LearningSteps>(task: LearningTask, steps: &mut S) -> Result<LearningEnd, S::Error> {
     let solved = closed_before(task.folder)?;
     let mut counts = counts(task.first_rays, task.campaign.count).peekable();
+    let mut trained = 0;
     while let Some(rays) = counts.next() {
         if let Some(end) = solve_first(rays, task, steps)? {
+            let closed = closed_before(task.folder)?;
+            let stopped = task.stop.load(Ordering::Relaxed);
+            if !stopped && closed >= LEAST_RAYS && closed > trained {
+                let round = round(closed, task, true, steps)?;
+                if round.is_within(task.accuracy) {
+                    return Ok(LearningEnd::Accurate);
+                }
+            }
             return Ok(end);
         }
-        let database = collected(task.folder)?;
-        let (weights, training_s) = steps.train(rays, &database)?;
-        let round = LearningRound::new(task, &weights, training_s)?;
-        let weights = weights.with_spot_check(round.check.clone());
         let is_latest = counts.peek().is_none_or(|next| *next > solved);
-        steps.round(&round, weights, is_latest)?;
+        let round = round(rays, task, is_latest, steps)?;
+        trained = rays;
         if !is_latest {
             continue;
         }
@@ -126,6 +138,21 @@ pub fn learn<S: LearningSteps>(task: LearningTask, steps: &mut S) -> Result<Lear
         }
     }
     Ok(LearningEnd::AllRays)
+}
+
+/// Trains on the first `rays` rays, which are solved, and tests the weights.
+fn round<S: LearningSteps>(
+    rays: usize,
+    task: LearningTask,
+    is_latest: bool,
+    steps: &mut S,
+) -> Result<LearningRound, S::Error> {
+    let database = collected(task.folder)?;
+    let (weights, training_s) = steps.train(rays, &database)?;
+    let round = LearningRound::new(task, &weights, training_s)?;
+    let weights = weights.with_spot_check(round.check.clone());
+    steps.round(&round, weights, is_latest)?;
+    Ok(round)
 }
 
 /// Number of rays that earlier runs have solved.
@@ -186,6 +213,7 @@ impl LearningRound {
             cpu_s: tally.cpu_seconds,
             training_s,
             check: spot_check(weights, task.spot, &task.campaign.tier.to_string()),
+            intervals: ErrorInterval::of(weights, task.spot),
         })
     }
 

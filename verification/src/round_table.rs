@@ -3,6 +3,13 @@
 use crate::learning::LearningRound;
 use std::fmt;
 use support::table::number_or_dash;
+use train::ErrorInterval;
+
+/// Of a spot check without states.
+const NO_INTERVAL: ErrorInterval = ErrorInterval {
+    error: f64::NAN,
+    interval: [f64::NAN; 2],
+};
 
 impl LearningRound {
     /// The columns of a round that is displayed.
@@ -16,7 +23,8 @@ impl LearningRound {
     /// The rounds as a table.
     pub fn csv(rounds: &[Self]) -> String {
         let mut text = "rays,ended_percent,solver_cpu_s,training_s,states,states_inside,w_percent,f_a_percent,\
-            f_s_percent,m_theta_percent,d_percent,d_peak_percent\n"
+            f_s_percent,m_theta_percent,d_percent,d_peak_percent,\
+            w_low_percent,w_high_percent,forces_percent,forces_low_percent,forces_high_percent\n"
             .to_owned();
         for round in rounds {
             let (complete, inside) = (round.complete_percent(), round.check.inside);
@@ -29,7 +37,10 @@ impl LearningRound {
             for error in round.check.errors.percents() {
                 text += &format!(",{error:.4}");
             }
-            text += "\n";
+            let [w, forces] = round.intervals.unwrap_or([NO_INTERVAL; 2]);
+            let ([w_low, w_high], [low, high]) = (w.interval, forces.interval);
+            let error = forces.error;
+            text += &format!(",{w_low:.4},{w_high:.4},{error:.4},{low:.4},{high:.4}\n");
         }
         text
     }

@@ -12,6 +12,13 @@ pub struct CuttingConfig {
     pub over_run: f64,
     /// Whether registration marks are drawn outside of the outline, on a layer of their own.
     pub registration_marks: bool,
+    /// Width and height of the material that the sheet is cut from (mm), in either orientation. The report warns of a sheet that
+    /// does not fit on it.
+    #[schemars(inner(range(min = 1.0, max = 1e5)))]
+    pub stock: Option<[f64; 2]>,
+    /// Border of the stock that the machine cannot cut (mm).
+    #[schemars(range(min = 0.0, max = 1e3))]
+    pub margin: f64,
 }
 
 impl Default for CuttingConfig {
@@ -19,6 +26,8 @@ impl Default for CuttingConfig {
         Self {
             over_run: 1.0,
             registration_marks: true,
+            stock: None,
+            margin: 0.0,
         }
     }
 }

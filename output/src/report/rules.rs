@@ -1,6 +1,7 @@
 //! The rules of a report: each finds one concern about a design, or nothing.
 
 use crate::cut_file::{CutLines, FabricationError};
+use crate::display::Shape;
 use crate::report::columns::rounded;
 use crate::report::fact_sheet::FactSheet;
 use crate::report::hinge_row::HingeRow;
@@ -61,10 +62,11 @@ type Rule = fn(&Judged) -> Option<Warning>;
 
 /// First those about a design, then those about a run as a whole: what its model leaves out, what its weights are worth,
 /// how well it meets its target.
-const RULES: [Rule; 23] = [
+const RULES: [Rule; 24] = [
     windows_overlap,
     windows_leave_panels,
     cutting,
+    stock,
     ligaments_outside,
     kerf,
     states_outside,
@@ -155,6 +157,24 @@ fn cutting(judged: &Judged) -> Option<Warning> {
         close.map(|(h, _)| h).collect(),
         message,
     )
+}
+
+/// The cuts of a sheet are within the stock that it is cut from.
+fn stock(judged: &Judged) -> Option<Warning> {
+    let cuts = judged.cuts.as_ref().ok()?;
+    let stock = cuts.cutting.stock?;
+    let [low, high] = Shape::extent(cuts.drawing().cuts());
+    let ascending = |[a, b]: [f64; 2]| [a.min(b), a.max(b)];
+    let taken = ascending([0, 1].map(|axis| high[axis] - low[axis]));
+    let room = ascending(stock).map(|side| side - 2.0 * cuts.cutting.margin);
+    let fits = std::iter::zip(taken, room).all(|(taken, room)| taken <= room + ROUNDING);
+    (!fits).then(|| {
+        Concern::StockTooSmall.of_sheet(format!(
+            "the cuts take {:.1} x {:.1} mm with kerf and over-run, but the stock has {:.1} x {:.1} mm inside its margin: use a smaller \
+             sheet.size, a smaller cutting.over_run, or cut it in parts (`kirigami cut --bed`)",
+            taken[0], taken[1], room[0], room[1]
+        ))
+    })
 }
 
 fn ligaments_outside(judged: &Judged) -> Option<Warning> {

@@ -54,6 +54,8 @@ pub enum Concern {
     CutsTooClose,
     /// There are no cut lines.
     CannotBeCut,
+    /// The cuts do not fit on the stock that the scene names.
+    StockTooSmall,
     /// The equilibrium path is not converged and stable throughout.
     Path,
     /// The search met designs whose corrected path was on another branch than the followed one.
@@ -91,6 +93,7 @@ impl Concern {
             Self::WindowsOverlap
             | Self::LigamentsOutsideDomain
             | Self::KerfUnknown
+            | Self::StockTooSmall
             | Self::StatesOutsideDomain
             | Self::FlanksTouch
             | Self::Path

@@ -249,6 +249,12 @@ fn the_report_states_how_far_the_networks_of_an_ensemble_disagree() {
     };
     let ensemble = "weights = \"tiny.safetensors\"\nensemble = [\"other.safetensors\"]";
     let scene = learned(&[("weights = \"tiny.safetensors\"", ensemble)]);
+    save(1.0, &first.card().dataset_hash);
+    let path = folder.path().join("scene.toml");
+    std::fs::write(folder.path().join("film.toml"), FILM).unwrap();
+    std::fs::write(&path, &scene).unwrap();
+    let twice = Scene::read(&path).unwrap_err().to_string();
+    assert!(twice.contains("are the same network"), "{twice}");
     save(1.1, &first.card().dataset_hash);
     let scene_of_two = read(folder.path(), &scene);
     let designed = run(&scene_of_two, None).unwrap();

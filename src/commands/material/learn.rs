@@ -4,19 +4,20 @@
 //! of another material are fine-tuned on all rays. One network learns these rays and, at random states, the median of
 //! the fine-tuned networks. It is tested at random states of rays that no training contains.
 
+mod conclusion;
 mod fine_tuning;
-mod options;
 
 use crate::commands::campaign::RayProgress;
 use crate::commands::init;
+use crate::commands::material::learn::conclusion::conclusion;
 use crate::commands::material::learn::fine_tuning::FineTuning;
-use crate::commands::material::learn::options::{percent, time};
 use crate::commands::solve_args::{SolveArgs, task_error};
 use crate::ui::count::jobs;
 use crate::ui::exit::Unfinished;
 use crate::ui::interrupt;
 use crate::ui::progress::duration;
 use crate::ui::run_folder;
+use crate::ui::with_unit::{percent, time};
 use ::train::{Backend, TrainingConfig, check_pretrained};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
@@ -127,6 +128,10 @@ impl LearnCommand {
         };
         let spot = self.spot_check(&campaign, &region)?;
         println!("{}", LearningRound::HEADING);
+        let accuracy = Accuracy {
+            energy: self.accuracy,
+            forces: self.forces,
+        };
         let task = LearningTask {
             campaign: &campaign,
             folder: &self.out.join("campaign"),
@@ -134,10 +139,7 @@ impl LearnCommand {
             workers: self.solve_args(&campaign).workers(),
             first_rays: usize::from(self.rays),
             spot: spot.rows(),
-            accuracy: Accuracy {
-                energy: self.accuracy,
-                forces: self.forces,
-            },
+            accuracy,
             deadline: began.checked_add(self.time),
             stop: interrupt::stop_flag()?,
         };
@@ -147,13 +149,16 @@ impl LearnCommand {
             rounds: Vec::new(),
             progress: None,
         };
-        match learn(task, &mut steps)? {
+        let end = learn(task, &mut steps)?;
+        let workers = self.solve_args(&campaign).workers();
+        println!(
+            "{}",
+            conclusion(&steps.rounds, accuracy, workers, &self.out)
+        );
+        match end {
             LearningEnd::Accurate => {
-                println!(
-                    "accurate enough after {}; weights written to {}",
-                    duration(began.elapsed().as_secs_f64()),
-                    weights_file(&self.out).display()
-                );
+                let took = duration(began.elapsed().as_secs_f64());
+                println!("accurate enough after {took}");
                 Ok(())
             }
             LearningEnd::Unfinished { left, what } => bail!(Unfinished::new(left, what)),

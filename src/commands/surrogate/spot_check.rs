@@ -7,6 +7,7 @@ use crate::commands::solve_args::{SolveArgs, task_error};
 use crate::commands::surrogate::errors::StateErrors;
 use crate::ui::count::count;
 use crate::ui::run_folder;
+use crate::ui::with_unit::percent;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use dataset::{Database, Gates, SplitPlan};
@@ -14,8 +15,11 @@ use hinge::SheetMaterial;
 use mesher::Tier;
 use std::path::PathBuf;
 use surrogate::Surrogate;
+use train::ErrorInterval;
 use verification::{SpotPath, judging_tier, random_paths, recorded_paths, spot_check};
 
+/// Rays before the first look at the intervals of --within.
+const FIRST_RAYS: usize = 16;
 /// Minimum number of rays of a database, which is split in three parts.
 const MIN_RAYS: usize = 3;
 
@@ -23,20 +27,24 @@ const MIN_RAYS: usize = 3;
 ///
 /// The states lie on no training ray. Solves them by finite elements and writes them as a database, which
 /// must not be used for training, so that `surrogate test` can test other weights on it. Prints the
-/// distribution of the errors and the worst states. With --scene the states are those of the hinges of a design
+/// distribution of the errors, their 95 % intervals over other rays, and the worst states. With --within rays are added until
+/// these intervals are narrow enough. With --scene the states are those of the hinges of a design
 /// along their paths instead. Example:
-/// kirigami surrogate spot-check runs/weights/surrogate.safetensors --count 40 --tier default
+/// kirigami surrogate spot-check runs/weights/surrogate.safetensors --count 400 --within 33% --tier default
 #[derive(Args)]
 pub struct SpotCheckCommand {
     /// Weights (safetensors with their card)
     #[arg(value_name = "WEIGHTS")]
     weights: PathBuf,
-    /// Number of states
+    /// Number of states; with --within at most
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = count::<usize>)]
     count: usize,
     /// States per ray: more states per ray need fewer solves but cover fewer hinges
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..=100))]
     states_per_ray: u16,
+    /// Stop as soon as the 95 % intervals of the errors of W and of the forces are within this part of them, such as 33%
+    #[arg(long, value_name = "PERCENT", value_parser = percent, conflicts_with = "scene")]
+    within: Option<f64>,
     /// Seed of the random states
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     seed: u64,
@@ -98,7 +106,26 @@ impl SpotCheckCommand {
         );
         let _held = run_folder::hold(&self.out)?;
         let windows = self.solve.service(&self.out)?;
-        let check = spot_check(&windows, &paths, &material, tier).map_err(task_error)?;
+        let mut rays = match self.within {
+            Some(_) => FIRST_RAYS.min(paths.len()),
+            None => paths.len(),
+        };
+        let (check, intervals) = loop {
+            let check =
+                spot_check(&windows, &paths[..rays], &material, tier).map_err(task_error)?;
+            let intervals = ErrorInterval::of(&surrogate, &check.rows);
+            let is_known = |within: f64| {
+                let widths = intervals
+                    .iter()
+                    .flatten()
+                    .map(ErrorInterval::relative_half_width);
+                intervals.is_some() && widths.fold(0.0, f64::max) <= within / 100.0
+            };
+            if rays == paths.len() || self.within.is_some_and(is_known) {
+                break (check, intervals);
+            }
+            rays = (rays + rays.div_ceil(2)).min(paths.len());
+        };
         for unsolved in &check.unsolved {
             println!("not solved: {unsolved}");
         }
@@ -113,9 +140,12 @@ impl SpotCheckCommand {
         println!(
             "{} states of {} rays on tier {tier}; {} states on rays that the solver did not follow to their end",
             database.rows().len(),
-            paths.len(),
+            rays,
             check.unknown_states
         );
+        if let Some([w, forces]) = intervals {
+            println!("W {w}; forces {forces}");
+        }
         println!("{}", StateErrors::new(&surrogate, database.rows()));
         println!("written to {}", path.display());
         Ok(())

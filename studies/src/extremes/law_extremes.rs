@@ -52,7 +52,7 @@ pub(super) fn table(law: &dyn HingeLaw, process: &HingeConstants) -> Result<Chec
         .domain()
         .context("the law of the scene has no training domain")?;
     let mut text = format!(
-        "## The learned law\n\n\
+        "# At the extremes: the learned law\n\n\
          {DIRECTIONS} random states of each ligament at each distance from the centre of the training domain, whose edge along \
          a direction is at 1 (the first distance is from the flat state). Promised: numbers are finite; forces are the derivatives of the energy and the tangent \
          those of the forces (difference quotients, relative, below {CONSISTENT:e}); a state is inside if ligament and \

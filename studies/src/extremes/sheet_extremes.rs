@@ -274,7 +274,7 @@ fn deployment(config: &SceneConfig, path: &Path) -> Result<Deployment, String> {
 /// One row for each extreme; `progress` is called with the number of finished rows and the next one.
 pub(super) fn table(extremes: &[Extreme], progress: impl Fn(usize, &str)) -> Result<Checked> {
     let mut text = String::from(
-        "## Sheets\n\n\
+        "# At the extremes: sheets\n\n\
          Promised of every row: finite numbers; a state called an equilibrium is stable and its residual is below the tolerance \
          or its own rounding; without a jump before it, it says whether hinges are outside the training domain; no damage is \
          known of such hinges.\n\n\

@@ -91,7 +91,7 @@ fn all(material: &SheetMaterial) -> Vec<Extreme> {
 pub(super) fn table(solver: &CalculiX, material: &SheetMaterial, folder: &Path) -> Result<Checked> {
     let [judged, judge] = TIERS;
     let mut text = format!(
-        "## Windows\n\n\
+        "# At the extremes: windows\n\n\
          Rays to 60 deg in {}, one input changed at a time, on the tiers `{judged}` and `{judge}`. Promised: the ray is solved to its end \
          with finite numbers and energy = work, or is refused with a reason before anything is solved. Error: of `{judged}` beside `{judge}`, \
          root mean square over the ray.\n\n\

@@ -1,9 +1,9 @@
-//! Values of options with their units.
+//! Values of options with their units: percentages and times.
 
 use std::time::Duration;
 
 /// A percentage such as `1%`, as a percentage.
-pub(super) fn percent(text: &str) -> Result<f64, String> {
+pub(crate) fn percent(text: &str) -> Result<f64, String> {
     let number = text
         .strip_suffix('%')
         .map(|number| number.trim().parse::<f64>());
@@ -14,7 +14,7 @@ pub(super) fn percent(text: &str) -> Result<f64, String> {
 }
 
 /// A time such as `1h`, `30min` or `90s`.
-pub(super) fn time(text: &str) -> Result<Duration, String> {
+pub(crate) fn time(text: &str) -> Result<Duration, String> {
     let units = [("min", 60.0), ("h", 3600.0), ("s", 1.0)];
     units
         .into_iter()
