@@ -9,6 +9,8 @@ mod processes;
 use common::{Workplace, failure};
 use dataset::{Database, Row};
 use failing_ccx::failing_ccx;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 use processes::left_running;
 use std::os::unix::fs::PermissionsExt;
 use std::path::PathBuf;
@@ -432,4 +434,21 @@ fn a_ray_that_is_solved_differently_is_named() {
     assert_eq!(differs.status.code(), Some(1));
     let text = String::from_utf8(differs.stdout).unwrap();
     assert!(text.contains("1 differ") && text.contains(job), "{text}");
+}
+
+#[test]
+fn a_stopped_solve_has_the_exit_code_of_stopped_runs() {
+    let work = Workplace::new();
+    let mut solve = work.program("solve --tier paper --theta-deg 60 --out one");
+    let mut solve = solve
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    while !work.path("one/window.sta").exists() {
+        assert!(solve.try_wait().unwrap().is_none(), "the solve has ended");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    kill(Pid::from_raw(solve.id() as i32), Signal::SIGINT).unwrap();
+    assert_eq!(solve.wait().unwrap().code(), Some(75));
 }

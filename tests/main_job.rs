@@ -296,7 +296,7 @@ fn a_folder_keeps_its_campaign_and_its_scene(work: &Workplace) {
     );
     assert_contains(
         &work.error("design configs/scenes/demo.toml"),
-        &["another scene"],
+        &["another run, the key `loads` changed"],
     );
     assert_eq!(events(work), before, "a refusal changes nothing");
 }

@@ -34,9 +34,13 @@ fn moved_run() -> Workplace {
 fn a_run_is_replayed_from_its_folder_alone() {
     let work = moved_run();
     let after = work.output("inspect equilibrium moved --json");
-    assert_eq!(
-        after,
-        std::fs::read_to_string(work.path("before.json")).unwrap(),
+    // The design is named by its place, which is another one.
+    let steps = |text: &str| -> serde_json::Value {
+        serde_json::from_str::<serde_json::Value>(text).unwrap()["steps"].clone()
+    };
+    let before = std::fs::read_to_string(work.path("before.json")).unwrap();
+    assert!(
+        steps(&before).is_array() && steps(&after) == steps(&before),
         "the same weights, material and loads give the same equilibria"
     );
 

@@ -44,7 +44,7 @@ fn shards_design_all_scenes_and_the_table_compares_them() {
     let message = work.error(&format!("{design} --quiet"));
     assert!(message.contains("1 of 2 runs failed"), "{message}");
     let states = column(&work, "state");
-    assert!(states[0].contains("another scene"), "{states:?}");
+    assert!(states[0].contains("another run"), "{states:?}");
     assert_eq!(states[1], "completed");
 }
 

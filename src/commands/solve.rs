@@ -6,7 +6,7 @@ use crate::ui::exit::Unfinished;
 use crate::ui::progress::watched;
 use crate::ui::table::table;
 use crate::ui::{interrupt, run_folder};
-use anyhow::{Result, bail};
+use anyhow::{Error, Result, bail};
 use clap::Args;
 use comfy_table::Table;
 use fe_driver::{
@@ -93,7 +93,11 @@ impl SolveCommand {
             1,
             || reached(&self.out),
             || solver.attempt(&solve, &self.out, limit, stop),
-        )?;
+        )
+        .map_err(|error| match error.is_stop() {
+            true => Unfinished::new(1, "ray").into(),
+            false => Error::from(error),
+        })?;
         if self.vtu
             && let Some(grid) = solver.fields(&solve, &self.out)?
         {
@@ -130,7 +134,6 @@ impl SolveCommand {
         }
         match solution.stopped {
             None => Ok(()),
-            Some(reason) if reason.is_stop() => Err(Unfinished::new(1, "ray").into()),
             Some(reason) => bail!("the solve stopped before the end of the ray: {reason}"),
         }
     }

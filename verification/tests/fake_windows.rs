@@ -178,47 +178,6 @@ fn a_sheet_is_balanced_on_the_cheaper_mesh_first() {
     assert!((0.5..1.5).contains(&moved), "{moved}");
 }
 
-/// Springs whose forces scatter by 15 %, from one state to the next.
-struct Noisy(NeverFails);
-
-impl Solver for Noisy {
-    fn versions(&self) -> ToolVersions {
-        self.0.versions()
-    }
-
-    fn attempt(
-        &self,
-        solve: &WindowSolve,
-        work: &Path,
-        limit: Duration,
-        stop: &AtomicBool,
-    ) -> Result<Solution, SolveError> {
-        let mut solution = self.0.attempt(solve, work, limit, stop)?;
-        for sample in &mut solution.samples {
-            let scatter = 1.0 + 0.15 * (1e7 * (sample.theta + sample.a + sample.s)).sin();
-            for force in [&mut sample.f_a, &mut sample.f_s, &mut sample.m_theta] {
-                *force *= scatter;
-            }
-        }
-        Ok(solution)
-    }
-}
-
-/// Slopes between nearly equal states are those of the scatter: no round throws the sheet further than the scatter moves it.
-#[test]
-fn forces_that_scatter_do_not_throw_the_sheet_away() {
-    let folder = tempfile::tempdir().unwrap();
-    let noisy = Noisy(NeverFails::new(SPRINGS.map(|k| 1.1 * k), |_| None));
-    let found = balance(&springs(1.0), noisy, &folder, 10).unwrap();
-    let moved: Vec<f64> = found.rounds.iter().map(|round| round.movement).collect();
-    println!("{moved:?} {:?} {}", found.ended, size(found.by_elements()));
-    let first = moved[0];
-    assert!(
-        moved[2..].iter().all(|movement| *movement < first),
-        "{moved:?}"
-    );
-}
-
 #[test]
 fn a_hinge_that_is_never_solved_ends_no_round_and_is_named() {
     let (scene, folder) = (scene(), tempfile::tempdir().unwrap());

@@ -277,7 +277,7 @@ mod tests {
         };
         let fine = Features {
             hole: 0.5,
-            slot: 0.2,
+            slot: 0.1,
             bridge: 0.4,
             edge: 0.4,
             size: [5000.0, 5000.0],
@@ -290,7 +290,7 @@ mod tests {
         let whys = machines.service[0].refusals(&fine, 3.0);
         assert_eq!(whys.len(), 3, "{whys:?}");
         assert!(
-            whys[1].contains("slits of 0.20 mm, at least 1.50 mm (process.kerf)"),
+            whys[1].contains("slits of 0.10 mm, at least 1.50 mm (process.kerf)"),
             "{whys:?}"
         );
     }

@@ -151,10 +151,9 @@ impl LearnCommand {
         };
         let end = learn(task, &mut steps)?;
         let workers = self.solve_args(&campaign).workers();
-        println!(
-            "{}",
-            conclusion(&steps.rounds, accuracy, workers, &self.out)
-        );
+        let (material, weights) = (self.out.join("material.toml"), weights_file(&self.out));
+        let files = [&*material, &*weights];
+        println!("{}", conclusion(&steps.rounds, accuracy, workers, files));
         match end {
             LearningEnd::Accurate => {
                 let took = duration(began.elapsed().as_secs_f64());

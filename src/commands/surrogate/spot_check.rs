@@ -144,7 +144,7 @@ impl SpotCheckCommand {
             check.unknown_states
         );
         if let Some([w, forces]) = intervals {
-            println!("W {w}; forces {forces}");
+            println!("all states: W {w}; forces {forces}");
         }
         println!("{}", StateErrors::new(&surrogate, database.rows()));
         println!("written to {}", path.display());

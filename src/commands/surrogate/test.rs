@@ -6,11 +6,11 @@ use clap::Args;
 use dataset::Database;
 use std::path::PathBuf;
 use surrogate::Surrogate;
-use train::spot_check;
+use train::{ErrorInterval, spot_check};
 
 /// Print the errors of weights on a database, such as a spot check or rays of a finer mesh
 ///
-/// Only states inside the training domain are evaluated. Rays that the weights were trained on count too, if the
+/// Only states inside the training domain are evaluated, except for the 95 % intervals of the errors over other rays. Rays that the weights were trained on count too, if the
 /// database has any. Example: kirigami surrogate test data/pet-0.5mm/medium.safetensors
 /// data/pet-0.5mm/spot-check.parquet
 #[derive(Args)]
@@ -47,6 +47,9 @@ impl TestCommand {
             card.tier, manifest.tier, manifest.rays
         );
         println!("{}", StateErrors::new(&surrogate, database.rows()));
+        if let Some([w, forces]) = ErrorInterval::of(&surrogate, database.rows()) {
+            println!("all states: W {w}; forces {forces}");
+        }
         if self.record {
             let check = spot_check(&surrogate, database.rows(), &manifest.tier);
             surrogate.with_spot_check(check).save(&self.weights)?;

@@ -1,6 +1,5 @@
 //! What `kirigami material learn` says at its end: what was reached, what is left, where the weights are and what comes next.
 
-use crate::commands::material::learn::weights_file;
 use crate::ui::progress::duration;
 use crate::ui::shell_word::shell_word;
 use std::path::Path;
@@ -9,12 +8,12 @@ use verification::{Accuracy, LearningRound};
 /// Exponent of the error in the number of rays below which more rays are no help that can be foretold.
 const FLAT: f64 = 0.1;
 
-/// The last lines of a run with `rounds`, of which only the last one's weights are kept.
+/// The last lines of a run with `rounds`, whose material and weights are in the named files.
 pub(super) fn conclusion(
     rounds: &[LearningRound],
     asked: Accuracy,
     workers: usize,
-    out: &Path,
+    [material, weights]: [&Path; 2],
 ) -> String {
     let Some(last) = rounds.last() else {
         return "no weights yet: not enough rays are solved for a training".into();
@@ -29,12 +28,11 @@ pub(super) fn conclusion(
     if let Some(left) = time_left(rounds, asked, workers) {
         text += &left;
     }
-    let (weights, material) = (weights_file(out), out.join("material.toml"));
     text + &format!(
         "weights: {}\nnext:    kirigami init SHEET --material {} --weights {} --size WIDTHxHEIGHT",
         weights.display(),
-        shell_word(&material),
-        shell_word(&weights)
+        shell_word(material),
+        shell_word(weights)
     )
 }
 
