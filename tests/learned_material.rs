@@ -109,7 +109,6 @@ fn a_stopped_run_is_continued_and_its_folder_belongs_to_one_material() {
     ));
     for text in [
         "accurate enough",
-        "95 % interval",
         "asked 100 %",
         "next:    kirigami init SHEET --material learned/material.toml --weights learned/weights.safetensors",
     ] {

@@ -30,7 +30,7 @@ use support::nearest::nearest;
 pub struct CutCommand {
     #[command(flatten)]
     designed: Inspected,
-    /// Folder of the files [default: `cut` in the run folder of the scene]
+    /// Folder of the files [default: `cut` in the run folder of the scene; with --for `cut/MACHINE`]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// Write tiles for this paper: a4, a3 or letter
@@ -52,7 +52,7 @@ pub struct CutCommand {
     /// Write the files even if the design has errors
     #[arg(long)]
     force: bool,
-    /// Print totals, parts and files as JSON
+    /// Print totals, parts and files as JSON; with --for the smallest features, and what services refuse
     #[arg(long)]
     json: bool,
 }
@@ -105,6 +105,10 @@ impl CutCommand {
             let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
             format!("unknown machine {name}: use {}{near}", known.join(", "))
         })?;
+        ensure!(
+            Path::new(name).file_name().is_some_and(|file| file == name),
+            "the machine {name} cannot name a folder: give it a name without slashes"
+        );
         let (_, cuts, errors) = self.checked(scene, design)?;
         let mut drawing = machine.drawing(&cuts)?;
         mark_errors(&mut drawing, &errors);
@@ -131,7 +135,11 @@ impl CutCommand {
             println!("{value:#}");
             return Ok(());
         }
-        println!("{name}: {}\n{features}", machine.says);
+        println!(
+            "{name}: {}; {}\n{features}",
+            machine.says,
+            self.designed.which_of_run()
+        );
         for (service, refuses) in refusals {
             let refuses = match refuses.is_empty() {
                 true => "no published limit is broken".to_owned(),

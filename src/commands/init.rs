@@ -282,7 +282,7 @@ fn readme(folder: &Path, template: &Template, regime: Regime, trained: bool) -> 
     };
     let design = format!("kirigami design {scene}\nkirigami verify {scene} {judge}\n");
     let learn = format!("kirigami material learn {material} --out {learned}\n");
-    let with = format!("kirigami design {scene} --weights {learned_weights}\n");
+    let with = format!("kirigami design {scene} --weights {learned_weights} --restart\n");
     let campaign = format!(
         "kirigami campaign plan {campaign} --folder {jobs}      # number of rays and time\n\
          kirigami campaign run {campaign} --folder {jobs}\n\

@@ -8,16 +8,18 @@ use serde::de::DeserializeOwned;
 use std::io::{self, Cursor};
 use std::path::Path;
 
-/// A reader of the file's rows.
-pub fn open(path: &Path) -> io::Result<csv::Reader<Cursor<Vec<u8>>>> {
+/// A reader of the file's rows, and what separates their cells.
+pub fn open(path: &Path) -> io::Result<(csv::Reader<Cursor<Vec<u8>>>, u8)> {
     let mut bytes = regular_file::read(path)?;
     // A comment at the end of the file without a line break would be read as a row.
     bytes.push(b'\n');
-    Ok(csv::ReaderBuilder::new()
-        .delimiter(separator(&bytes))
+    let separator = separator(&bytes);
+    let reader = csv::ReaderBuilder::new()
+        .delimiter(separator)
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
-        .from_reader(Cursor::new(bytes)))
+        .from_reader(Cursor::new(bytes));
+    Ok((reader, separator))
 }
 
 /// The separator that the first line which is no comment has most of; a comma if it has none.
@@ -39,7 +41,7 @@ fn separator(bytes: &[u8]) -> u8 {
 /// The header of the file, and its rows, each with the number of its line.
 pub fn read<T: DeserializeOwned>(path: &Path) -> Result<(StringRecord, Vec<(u64, T)>), FileError> {
     let rows = || -> Result<_, csv::Error> {
-        let mut reader = open(path)?;
+        let (mut reader, _) = open(path)?;
         let header = reader.headers()?.clone();
         let rows = reader.into_records().map(|record| {
             let record = record?;
@@ -65,7 +67,7 @@ mod tests {
             ("a\tb\r\n1,5\t2\r\n", ["1,5", "2"]),
         ] {
             std::fs::write(file.path(), text).unwrap();
-            let mut rows = open(file.path()).unwrap().into_records();
+            let mut rows = open(file.path()).unwrap().0.into_records();
             assert_eq!(rows.next().unwrap().unwrap(), cells.to_vec(), "{text}");
         }
     }
@@ -75,7 +77,7 @@ mod tests {
         let file = tempfile::NamedTempFile::new().unwrap();
         for last in ["", "\n", "# end", "# end\n"] {
             std::fs::write(file.path(), format!("# begin\na, b\n1, 2\n{last}")).unwrap();
-            let rows = open(file.path()).unwrap().into_records();
+            let rows = open(file.path()).unwrap().0.into_records();
             let rows: Vec<_> = rows.map(Result::unwrap).collect();
             assert_eq!(rows, [vec!["1", "2"]], "{last}");
         }

@@ -87,18 +87,22 @@ fn plain(message: &str, line: &str) -> String {
         };
     }
     let (key, value) = line.split_once('=').unwrap_or_default();
+    // The span of a missing key is another line.
     let key = match key.trim() {
-        "" => String::new(),
+        key if key.is_empty() || message.starts_with("missing") => String::new(),
         key => format!("`{key}`: "),
     };
-    let comma = value.as_bytes().windows(3).any(|window| {
-        window[1] == b',' && window[0].is_ascii_digit() && window[2].is_ascii_digit()
+    // A number alone: in an array the comma stands between two numbers.
+    let value = value.split('#').next().unwrap_or_default().trim();
+    let number = value.split_once(',').is_some_and(|(whole, rest)| {
+        let digits =
+            |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+        digits(whole.trim_start_matches(['-', '+'])) && digits(rest)
     });
-    let hint = match comma {
-        true if !message.contains("decimal sign") => {
-            "; the decimal sign is a point (40.5, not 40,5)"
-        }
-        _ => "",
+    let hint = if number {
+        "; the decimal sign is a point (40.5, not 40,5)"
+    } else {
+        ""
     };
     format!("{key}{}{hint}", words.join(" "))
 }
@@ -224,6 +228,9 @@ mod tests {
         let comma = message(&FILM.replace("0.5", "0,5"));
         assert!(comma.starts_with("film.toml:2: `thickness`: "), "{comma}");
         assert!(comma.ends_with("(40.5, not 40,5)"), "{comma}");
-        assert!(message(&FILM.replace("poisson = 0.4\n", "")).contains("missing field `poisson`"));
+        assert_eq!(
+            message(&FILM.replace("poisson = 0.4\n", "")),
+            "film.toml:1: missing field `poisson`"
+        );
     }
 }

@@ -12,6 +12,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 use surrogate::Surrogate;
 
+/// Fewest rays of which other rays can be foretold.
+const LEAST_RAYS: usize = 6;
 /// Number of draws.
 const DRAWS: usize = 1000;
 /// The quantiles between which 95 % of the draws lie.
@@ -29,7 +31,8 @@ pub struct ErrorInterval {
 }
 
 impl ErrorInterval {
-    /// Those of W and of the three forces together at the rows, whose rays are their jobs; `None` without a row.
+    /// Those of W and of the three forces together at the rows, whose rays are their jobs; `None` below [`LEAST_RAYS`], and if a force
+    /// is not known or zero everywhere.
     pub fn of(surrogate: &Surrogate, rows: &[Row]) -> Option<[Self; 2]> {
         let parity = Parity::new(surrogate, rows);
         let points: [Vec<[f64; 2]>; QUANTITIES] =
@@ -44,7 +47,9 @@ impl ErrorInterval {
             }
         }
         let rays: Vec<Sums> = rays.into_values().collect();
-        (!rays.is_empty()).then(|| intervals(&rays))
+        let found = (rays.len() >= LEAST_RAYS).then(|| intervals(&rays))?;
+        let is_known = |found: &Self| found.error.is_finite() && found.interval[1].is_finite();
+        found.iter().all(is_known).then_some(found)
     }
 
     /// Half of the width of the interval over the error.
@@ -76,7 +81,7 @@ fn errors<'a>(rays: impl Iterator<Item = &'a Sums>) -> [f64; 2] {
             *sum += part;
         }
     }
-    let [w, forces @ ..] = total.map(|[errors, squares]| errors / squares.max(f64::MIN_POSITIVE));
+    let [w, forces @ ..] = total.map(|[errors, squares]| errors / squares);
     [w, forces.iter().sum::<f64>() / 3.0].map(|square| 100.0 * square.sqrt())
 }
 

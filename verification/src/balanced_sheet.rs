@@ -1,7 +1,7 @@
 //! The equilibrium of a sheet with finite elements for its hinges.
 //!
 //! Every hinge is solved along its path in the sheet. The hinge law is corrected to the forces of the finite elements at
-//! full load, of this round and of those before ([`CorrectedLaw`]), and the sheet is deployed again; hinges then have other
+//! full load, of this round and, unless that makes too long a step, of those before ([`CorrectedLaw`]), and the sheet is deployed again; hinges then have other
 //! states, and this is repeated until the panels stay where they are. It is a quasi-Newton iteration for the equilibrium of
 //! the finite-element hinges: the tangent is that of the hinge law in the first round, and learns from each further one.
 //! Windows of the finest mesh are dear: the sheet is balanced on a cheaper mesh first ([`Tier::draft`]), from which the finest

@@ -109,20 +109,22 @@ pub fn learn<S: LearningSteps>(task: LearningTask, steps: &mut S) -> Result<Lear
     let mut trained = 0;
     while let Some(rays) = counts.next() {
         if let Some(end) = solve_first(rays, task, steps)? {
-            let closed = closed_before(task.folder)?;
+            let tally = status(task.folder).map_err(VerificationError::from)?.tally;
             let stopped = task.stop.load(Ordering::Relaxed);
-            if !stopped && closed >= LEAST_RAYS && closed > trained {
-                let round = round(closed, task, true, steps)?;
+            // Rays with rows.
+            let known = tally.complete + tally.partial;
+            if !stopped && known >= LEAST_RAYS && tally.closed() > trained {
+                let round = round(tally.closed(), task, true, steps)?;
                 if round.is_within(task.accuracy) {
                     return Ok(LearningEnd::Accurate);
                 }
             }
             return Ok(end);
         }
-        let is_latest = counts.peek().is_none_or(|next| *next > solved);
+        let is_latest = rays >= solved || counts.peek().is_none();
         let round = round(rays, task, is_latest, steps)?;
         trained = rays;
-        if !is_latest {
+        if !is_latest && counts.peek().is_some_and(|next| *next <= solved) {
             continue;
         }
         if round.is_within(task.accuracy) {
@@ -140,7 +142,7 @@ pub fn learn<S: LearningSteps>(task: LearningTask, steps: &mut S) -> Result<Lear
     Ok(LearningEnd::AllRays)
 }
 
-/// Trains on the first `rays` rays, which are solved, and tests the weights.
+/// Trains on the `rays` rays that are solved, and tests the weights.
 fn round<S: LearningSteps>(
     rays: usize,
     task: LearningTask,

@@ -28,6 +28,13 @@ pub enum FabricationError {
     )]
     SlitTooNarrow { slit: f64, tool_kerf: f64 },
     #[error(
+        "a hole of {diameter:.3} mm is not wider than the kerf of the tool, {kerf} mm: use a finer tool (tool_kerf), or wider \
+         ligaments or a larger process.fillet_ratio in the scene"
+    )]
+    HoleBelowTool { diameter: f64, kerf: f64 },
+    #[error("machine: {0}")]
+    Machine(#[from] support::key_limits::OutOfRange),
+    #[error(
         "the cuts at the hinges {} and {} leave {gap:.3} mm between them, less than the kerf of {least} mm: move them \
          apart (objective.panel_shape) or narrow the ligaments",
         .hinges[0], .hinges[1]

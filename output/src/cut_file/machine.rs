@@ -6,9 +6,11 @@ use crate::cut_file::fabrication_error::FabricationError;
 use crate::cut_file::sheet_drawing::registration_marks;
 use crate::display::Shape;
 use design::geometry::polygon::{distance, nearest_on_outline};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
+use support::key_limits;
 use support::toml_file::{self, ConfigError};
 
 /// The shipped table.
@@ -27,7 +29,7 @@ pub struct Machines {
 }
 
 /// What the file for a machine holds.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Machine {
     /// The name on the command line, which is also that of the folder of its files.
@@ -37,11 +39,14 @@ pub struct Machine {
     /// How a slit is drawn.
     cuts: Cuts,
     /// Width that the tool removes and the paths allow for (mm); `None`: the kerf of the scene.
+    #[schemars(range(min = 0.0, max = 50.0))]
     tool_kerf: Option<f64>,
     /// Length by which an open slit is cut beyond the outline (mm); `None`: that of the scene.
+    #[schemars(range(min = 0.0, max = 50.0))]
     over_run: Option<f64>,
     /// Diameter of the smallest hole that the tool cuts (mm).
     #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e3))]
     least_hole: f64,
     /// Whether services that publish limits are listed.
     #[serde(default)]
@@ -51,7 +56,7 @@ pub struct Machine {
 }
 
 /// How a slit is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 enum Cuts {
     /// A line.
@@ -163,16 +168,25 @@ impl Service {
 impl Machine {
     /// The drawing of a sheet for this machine, in cutting order; an error if the paths do not exist.
     pub fn drawing(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
-        let kerf = self.tool_kerf.unwrap_or(cuts.kerf);
+        key_limits::check::<Self>(self)?;
+        let kerf = self.tool_kerf.unwrap_or(match self.cuts {
+            Cuts::Lines => cuts.kerf,
+            Cuts::Slots => 0.0,
+        });
         let mut cuts = cuts.clone();
         cuts.cutting.over_run = self.over_run.unwrap_or(cuts.cutting.over_run);
         let mut drawing = match self.cuts {
-            Cuts::Lines => self.lines(&cuts, kerf),
+            Cuts::Lines => self.lines(&cuts, kerf)?,
             Cuts::Slots => slots(&cuts, kerf)?,
         };
         for attachment in &cuts.attachments {
-            if attachment.hole.is_some() || self.marks {
-                attachment.draw(&mut drawing, kerf);
+            match attachment.hole {
+                Some(diameter) => {
+                    let layer = Layer::AttachmentHoles;
+                    self.hole(&mut drawing, layer, attachment.at, diameter, kerf)?;
+                }
+                None if self.marks => attachment.draw(&mut drawing, kerf),
+                None => {}
             }
         }
         let mut drawing = drawing.in_cutting_order(cuts.outline[0]);
@@ -182,29 +196,44 @@ impl Machine {
         Ok(drawing)
     }
 
-    fn lines(&self, cuts: &CutLines, kerf: f64) -> CutDrawing {
+    fn lines(&self, cuts: &CutLines, kerf: f64) -> Result<CutDrawing, FabricationError> {
         let mut drawing = CutDrawing::default();
         for hole in &cuts.holes {
-            let (centre, radius) = (hole.centre, hole.radius);
-            if 2.0 * radius >= self.least_hole {
-                let radius = radius - 0.5 * kerf;
-                drawing.add(Layer::Holes, Shape::Circle { centre, radius });
-                continue;
-            }
-            let [x, y] = centre;
-            for ends in [
-                [[x - radius, y], [x + radius, y]],
-                [[x, y - radius], [x, y + radius]],
-            ] {
-                drawing.add(Layer::Punch, Shape::Line(ends));
-            }
+            let diameter = 2.0 * hole.radius;
+            self.hole(&mut drawing, Layer::Holes, hole.centre, diameter, kerf)?;
         }
         for slit in &cuts.slits {
             drawing.add(Layer::Cut, Shape::Line(cuts.tool_slit(slit)));
         }
         let outline = cuts.outline_at(0.5 * kerf).to_vec();
         drawing.add(Layer::Outline, Shape::Polygon(outline));
-        drawing
+        Ok(drawing)
+    }
+}
+
+impl Machine {
+    /// Adds the path of the tool in a finished hole, or the cross of one that the tool cannot cut.
+    fn hole(
+        &self,
+        drawing: &mut CutDrawing,
+        layer: Layer,
+        centre: [f64; 2],
+        diameter: f64,
+        kerf: f64,
+    ) -> Result<(), FabricationError> {
+        if diameter >= self.least_hole {
+            if diameter <= kerf {
+                return Err(FabricationError::HoleBelowTool { diameter, kerf });
+            }
+            let radius = 0.5 * (diameter - kerf);
+            drawing.add(layer, Shape::Circle { centre, radius });
+            return Ok(());
+        }
+        let ([x, y], arm) = (centre, 0.5 * diameter);
+        for ends in [[[x - arm, y], [x + arm, y]], [[x, y - arm], [x, y + arm]]] {
+            drawing.add(Layer::Punch, Shape::Line(ends));
+        }
+        Ok(())
     }
 }
 
@@ -233,15 +262,20 @@ impl CutLines {
         };
         let to_edge =
             |centre: [f64; 2]| distance(centre, nearest_on_outline(centre, &self.outline));
+        let attached = (self.attachments.iter())
+            .filter_map(|attachment| Some((attachment.at, 0.5 * attachment.hole?)));
+        let holes: Vec<([f64; 2], f64)> = (self.holes.iter())
+            .map(|hole| (hole.centre, hole.radius))
+            .chain(attached)
+            .collect();
         Features {
-            hole: least(&mut self.holes.iter().map(|hole| 2.0 * hole.radius)),
+            hole: least(&mut holes.iter().map(|(_, radius)| 2.0 * radius)),
             slot: self.kerf,
             bridge: least(&mut (0..self.holes.len()).map(|hinge| self.caliper(hinge))),
             edge: least(
-                &mut self
-                    .holes
+                &mut holes
                     .iter()
-                    .map(|hole| to_edge(hole.centre) - hole.radius),
+                    .map(|(centre, radius)| to_edge(*centre) - radius),
             ),
             size: [side(0), side(1)],
         }

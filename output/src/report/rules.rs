@@ -31,6 +31,8 @@ const TILTS: f64 = 0.05;
 const MISSED: f64 = 0.01;
 /// Kerf over ligament width for which another kerf than that of the weights was measured (data/pet-0.5mm).
 const MEASURED_KERF: [f64; 2] = [0.002, 0.15];
+/// Relative difference of two kerfs that is rounding.
+const SAME_KERF: f64 = 1e-6;
 /// Relative error of a force (%) above which a law is inaccurate.
 const INACCURATE: f64 = 10.0;
 /// Separation of a path from its ray, in ligament widths, up to which W differs by less than 1 % (docs/results/detours).
@@ -168,6 +170,7 @@ fn stock(judged: &Judged) -> Option<Warning> {
     let taken = ascending([0, 1].map(|axis| high[axis] - low[axis]));
     let room = ascending(stock).map(|side| side - 2.0 * cuts.cutting.margin);
     let fits = std::iter::zip(taken, room).all(|(taken, room)| taken <= room + ROUNDING);
+    let room = room.map(|side| side.max(0.0));
     (!fits).then(|| {
         Concern::StockTooSmall.of_sheet(format!(
             "the cuts take {:.1} x {:.1} mm with kerf and over-run, but the stock has {:.1} x {:.1} mm inside its margin: use a smaller \
@@ -536,9 +539,8 @@ fn missed(judged: &Judged) -> Option<Warning> {
     );
     if error > 2.0 * uncertain {
         message += &format!(
-            ", {} times what the model does not know about the corners ({} mm): more panels, or another target, come closer, better \
-             weights do not",
-            rounded(error / uncertain, 2),
+            ", more than twice the {} mm by which the known causes of errors move its corners: more panels or another target come \
+             closer",
             rounded(uncertain, 2)
         );
     }
@@ -547,13 +549,17 @@ fn missed(judged: &Judged) -> Option<Warning> {
 
 /// A learned law has the kerf of its training; the effect of another one was measured in a range.
 fn kerf(judged: &Judged) -> Option<Warning> {
-    judged.scene.surrogate()?;
+    let known = judged.scene.surrogate()?.card().hinge.kerf;
     let kerf = judged.deployment.sheet.options.process.kerf;
+    if (kerf / known - 1.0).abs() < SAME_KERF {
+        return None;
+    }
     let [least, most] = MEASURED_KERF;
     let beyond = judged.those(|row| !(least..=most).contains(&(kerf / row.w_lig)));
     let message = format!(
-        "the kerf of {kerf} mm is not between {least} and {most} ligament widths, where its effect on the hinge energy was measured: \
-         use a narrower tool or wider ligaments"
+        "the kerf of {kerf} mm is not that of the weights, {} mm, nor between {least} and {most} ligament widths, where its effect on the hinge energy was measured: \
+         use a narrower tool or wider ligaments",
+        rounded(known, 4)
     );
     about(Concern::KerfUnknown, beyond, message)
 }

@@ -58,11 +58,11 @@ impl Unit {
 impl PointsFile {
     /// Reads a file whose lengths are in `unit`, mm by default, or in that of its column `unit`.
     pub fn read(path: &Path, unit: Option<Unit>, y_down: bool) -> Result<Self> {
-        let mut reader =
+        let (mut reader, separator) =
             csv_table::open(path).with_context(|| format!("cannot read {}", path.display()))?;
         let broken = |error: csv::Error| Error::from(error).context(path.display().to_string());
         let header = reader.headers().map_err(broken)?.clone();
-        let columns = Columns::new(&header)
+        let columns = Columns::new(&header, separator != b',')
             .with_context(|| format!("{}:{}", path.display(), line_of(&header)))?;
         ensure!(
             unit.is_none() || columns.unit.is_none(),
@@ -125,6 +125,8 @@ fn line_of(record: &csv::StringRecord) -> u64 {
 
 /// Places of the columns in a row.
 struct Columns {
+    /// Whether numbers may have a decimal comma.
+    decimal_comma: bool,
     panel: usize,
     corner: Option<usize>,
     position: [usize; 2],
@@ -132,7 +134,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn new(header: &csv::StringRecord) -> Result<Self> {
+    fn new(header: &csv::StringRecord, decimal_comma: bool) -> Result<Self> {
         for name in header {
             if !COLUMNS.contains(&name) {
                 let hint = match nearest(name, COLUMNS) {
@@ -147,6 +149,7 @@ impl Columns {
         let needed =
             |name: &str| place(name).with_context(|| format!("the column `{name}` is missing"));
         Ok(Self {
+            decimal_comma,
             panel: needed("panel")?,
             corner: place("corner"),
             position: [needed("x")?, needed("y")?],
@@ -169,8 +172,11 @@ impl Columns {
         };
         let length = |axis: usize| -> Result<f64> {
             let value = text(self.position[axis]);
-            // The decimal sign of some countries, in a file with semicolons or tabs.
-            value.replace(',', ".").parse().ok().with_context(|| {
+            let number = match self.decimal_comma {
+                true => value.replace(',', "."),
+                false => value.to_owned(),
+            };
+            number.parse().ok().with_context(|| {
                 let name = ["x", "y"][axis];
                 format!("column `{name}`: `{value}` is not a number")
             })

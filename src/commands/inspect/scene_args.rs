@@ -55,11 +55,20 @@ impl Inspected {
     fn which(&self) -> String {
         let scene = self.scene.display();
         match &self.design {
+            Some(path) if path.as_os_str() == START => format!("the start design of {scene}"),
             Some(path) => format!("the design in {}", path.display()),
             None if self.scene.is_dir() => format!("the best design of the run {scene}"),
             None => format!(
                 "the start design of {scene}; for that of its run name the run folder, or --design"
             ),
+        }
+    }
+
+    /// Which design [`Inspected::read_run`] returns.
+    pub(crate) fn which_of_run(&self) -> String {
+        match &self.design {
+            None => "the best design of the run".to_owned(),
+            Some(_) => self.which(),
         }
     }
 

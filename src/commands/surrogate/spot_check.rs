@@ -115,13 +115,18 @@ impl SpotCheckCommand {
                 spot_check(&windows, &paths[..rays], &material, tier).map_err(task_error)?;
             let intervals = ErrorInterval::of(&surrogate, &check.rows);
             let is_known = |within: f64| {
-                let widths = intervals
-                    .iter()
-                    .flatten()
-                    .map(ErrorInterval::relative_half_width);
-                intervals.is_some() && widths.fold(0.0, f64::max) <= within / 100.0
+                intervals.is_some_and(|found| {
+                    let mut widths = found.iter().map(ErrorInterval::relative_half_width);
+                    widths.all(|width| width <= within / 100.0)
+                })
             };
-            if rays == paths.len() || self.within.is_some_and(is_known) {
+            let wanted = self.within.filter(|within| !is_known(*within));
+            if wanted.is_none() && self.within.is_some() || rays == paths.len() {
+                if let Some(within) = wanted {
+                    println!(
+                        "the intervals are not within {within} % of the errors: increase --count"
+                    );
+                }
                 break (check, intervals);
             }
             rays = (rays + rays.div_ceil(2)).min(paths.len());
