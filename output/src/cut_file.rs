@@ -29,6 +29,7 @@ pub use cut_lines::{CutLines, Hole, Slit};
 pub use cut_list::{attachment_list, cut_list, cut_summary};
 pub use dxf::dxf;
 pub use fabrication_error::FabricationError;
+pub(crate) use machine::fits;
 pub use machine::{Features, Machine, Machines, Service};
 pub use parts::{Part, Split, split};
 pub use pdf_tiles::tiles_pdf;

@@ -79,9 +79,9 @@ struct Pieces {
 
 impl CutCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        let (scene, design) = self.designed.read_run()?;
+        let (scene, design, named) = self.designed.read_run()?;
         if let Some(name) = &self.machine {
-            return self.cut_for(name, &scene, &design);
+            return self.cut_for(name, &scene, &design, &named);
         }
         let pieces = self.pieces(&scene, &design)?;
         let out = match &self.out {
@@ -95,7 +95,7 @@ impl CutCommand {
     }
 
     /// Writes the file of a machine, and prints what services refuse.
-    fn cut_for(&self, name: &str, scene: &Scene, design: &DesignVector) -> Result<()> {
+    fn cut_for(&self, name: &str, scene: &Scene, design: &DesignVector, named: &str) -> Result<()> {
         let machines = Machines::read(self.machines.as_deref())?;
         let machine = machines.machine.iter().find(|machine| machine.name == name);
         let machine = machine.with_context(|| {
@@ -135,11 +135,7 @@ impl CutCommand {
             println!("{value:#}");
             return Ok(());
         }
-        println!(
-            "{name}: {}; {}\n{features}",
-            machine.says,
-            self.designed.which_of_run()
-        );
+        println!("{name}: {}; {named}\n{features}", machine.says);
         for (service, refuses) in refusals {
             let refuses = match refuses.is_empty() {
                 true => "no published limit is broken".to_owned(),

@@ -29,7 +29,7 @@ pub struct ExportCommand {
 
 impl ExportCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        let (scene, design) = self.designed.read_run()?;
+        let (scene, design, _) = self.designed.read_run()?;
         let deployment = scene.problem()?.deploy(&design)?;
         let _held = run_folder::hold(&self.out)?;
         let folder = self.out.join("vtk");

@@ -49,27 +49,30 @@ impl InspectCommand {
     pub(crate) fn run(&self) -> Result<()> {
         match &self.stage {
             Stage::Pattern(listed) => {
-                let (scene, design) = listed.read()?;
-                listed.print(PatternListing::new(&scene.problem()?, &design)?)
+                let (scene, design, name) = listed.read()?;
+                listed.print(name, PatternListing::new(&scene.problem()?, &design)?)
             }
             Stage::Deploy(DeployArgs {
                 listed,
                 opening_deg,
             }) => {
-                let (scene, design) = listed.read()?;
+                let (scene, design, name) = listed.read()?;
                 let problem = scene.problem()?;
                 let opening = (opening_deg.map(f64::to_radians))
                     .or(problem.opening(&design))
                     .context("this scene's hinges are not pins: pass --opening-deg")?;
-                listed.print(DeploymentListing::new(&problem, &design, opening)?)
+                listed.print(name, DeploymentListing::new(&problem, &design, opening)?)
             }
             Stage::Equilibrium(listed) => {
-                let (scene, design) = listed.read()?;
-                listed.print(EquilibriumListing::new(&scene.problem()?, &design)?)
+                let (scene, design, name) = listed.read()?;
+                listed.print(name, EquilibriumListing::new(&scene.problem()?, &design)?)
             }
             Stage::Gradient(listed) => {
-                let (scene, design) = listed.read()?;
-                listed.print(GradientListing::new(&scene, &scene.problem()?, &design)?)
+                let (scene, design, name) = listed.read()?;
+                listed.print(
+                    name,
+                    GradientListing::new(&scene, &scene.problem()?, &design)?,
+                )
             }
         }
     }

@@ -15,7 +15,6 @@ use design::scene::{Scene, SceneConfig};
 use fe_driver::CalculiX;
 use kirigami::ui::progress::Progress;
 use kirigami::ui::run_folder;
-use std::fmt;
 use std::path::{Path, PathBuf};
 use train::TrainingConfig;
 
@@ -27,7 +26,7 @@ use train::TrainingConfig;
 #[derive(Args)]
 pub struct ExtremesStudy {
     /// Tables to make
-    #[arg(value_name = "TABLE", default_values_t = Table::value_variants().to_vec())]
+    #[arg(value_name = "TABLE", value_enum, default_values_t = Table::value_variants().to_vec())]
     tables: Vec<Table>,
     /// Scene (TOML) with a learned hinge law
     #[arg(
@@ -85,17 +84,6 @@ struct Checked {
     broken: usize,
 }
 
-impl fmt::Display for Table {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Self::Windows => "windows",
-            Self::Trainings => "trainings",
-            Self::Law => "law",
-            Self::Sheets => "sheets",
-        })
-    }
-}
-
 impl ExtremesStudy {
     pub fn run(&self) -> Result<()> {
         let _held = run_folder::hold(&self.out)?;
@@ -103,7 +91,8 @@ impl ExtremesStudy {
         for name in &self.tables {
             let table = self.table(*name)?;
             broken += table.broken;
-            run_folder::write(&self.out, &format!("{name}.md"), &table.text)?;
+            let name = name.to_possible_value().expect("no table is skipped");
+            run_folder::write(&self.out, &format!("{}.md", name.get_name()), &table.text)?;
             println!("{}", table.text);
         }
         println!("written to {}", self.out.display());

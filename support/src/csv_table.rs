@@ -1,5 +1,5 @@
 //! CSV files that people write: cells may stand between spaces, and lines that start with `#` are comments. The first other
-//! line tells whether cells are separated by commas, semicolons or tabs.
+//! line decides whether cells are separated by commas, semicolons or tabs.
 
 use crate::file_error::FileError;
 use crate::regular_file;

@@ -3,7 +3,7 @@
 
 use crate::nearest::nearest;
 use crate::regular_file;
-use crate::whole_arrays::Whole;
+use crate::whole_arrays::{DECIMAL_POINT, Whole};
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 
@@ -99,12 +99,11 @@ fn plain(message: &str, line: &str) -> String {
             |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
         digits(whole.trim_start_matches(['-', '+'])) && digits(rest)
     });
-    let hint = if number {
-        "; the decimal sign is a point (40.5, not 40,5)"
-    } else {
-        ""
-    };
-    format!("{key}{}{hint}", words.join(" "))
+    let mut plain = format!("{key}{}", words.join(" "));
+    if number {
+        plain += &format!("; {DECIMAL_POINT}");
+    }
+    plain
 }
 
 /// The unknown key and the known keys from serde's message "unknown field `x`, expected one of `a`, `b`".

@@ -9,6 +9,9 @@ use serde::de::{
 };
 use std::fmt;
 
+/// A hint at decimal commas.
+pub(crate) const DECIMAL_POINT: &str = "the decimal sign is a point (40.5, not 40,5)";
+
 /// A deserialiser, visitor, seed or access, and all that it leads to.
 pub(crate) struct Whole<T>(pub T);
 
@@ -84,8 +87,7 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Whole<V> {
             Ok(value)
         } else {
             Err(A::Error::custom(format!(
-                "an array of {expected} has {found} elements: remove those too many; the decimal sign is a point (40.5, not \
-                 40,5)"
+                "an array of {expected} has {found} elements: remove those too many; {DECIMAL_POINT}"
             )))
         }
     }

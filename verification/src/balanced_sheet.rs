@@ -249,24 +249,22 @@ impl Iteration<'_> {
     ) -> Result<(Deployment, f64), VerificationError> {
         let before = law_of(&mut self.problem)?.clone();
         let secant = self.corrected(deployed, &self.missing.clone());
-        match &secant {
-            Ok((_, movement)) if *movement <= last => return secant,
-            _ if self.missing.iter().all(|missing| missing.len() < 2) => {}
-            _ => {
-                let by_secant = law_of(&mut self.problem)?.clone();
-                let newest = |missing: &Vec<MissingForces>| Vec::from_iter(missing.last().copied());
-                let newest: Vec<_> = self.missing.iter().map(newest).collect();
-                let plain = self.corrected(deployed, &newest);
-                let shorter = match (&plain, &secant) {
-                    (Ok((_, plain)), Ok((_, secant))) => plain < secant,
-                    (plain, _) => plain.is_ok(),
-                };
-                if shorter {
-                    self.missing = newest;
-                    return plain;
-                }
-                *law_of(&mut self.problem)? = by_secant;
+        let length = |step: &Result<(Deployment, f64), VerificationError>| {
+            step.as_ref()
+                .map_or(f64::INFINITY, |(_, movement)| *movement)
+        };
+        if length(&secant) > last && self.missing.iter().any(|missing| missing.len() > 1) {
+            let by_secant = law_of(&mut self.problem)?.clone();
+            let newest = self.missing.iter();
+            let newest: Vec<_> = newest
+                .map(|missing| Vec::from_iter(missing.last().copied()))
+                .collect();
+            let plain = self.corrected(deployed, &newest);
+            if length(&plain) < length(&secant) {
+                self.missing = newest;
+                return plain;
             }
+            *law_of(&mut self.problem)? = by_secant;
         }
         if secant.is_err() {
             *law_of(&mut self.problem)? = before;

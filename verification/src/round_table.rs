@@ -3,13 +3,6 @@
 use crate::learning::LearningRound;
 use std::fmt;
 use support::table::number_or_dash;
-use train::ErrorInterval;
-
-/// Of a spot check without states.
-const NO_INTERVAL: ErrorInterval = ErrorInterval {
-    error: f64::NAN,
-    interval: [f64::NAN; 2],
-};
 
 impl LearningRound {
     /// The columns of a round that is displayed.
@@ -37,9 +30,10 @@ impl LearningRound {
             for error in round.check.errors.percents() {
                 text += &format!(",{error:.4}");
             }
-            let [w, forces] = round.intervals.unwrap_or([NO_INTERVAL; 2]);
-            let ([w_low, w_high], [low, high]) = (w.interval, forces.interval);
-            let error = forces.error;
+            let unknown = [[f64::NAN; 2]; 2];
+            let intervals = round.intervals.map(|both| both.map(|error| error.interval));
+            let [[w_low, w_high], [low, high]] = intervals.unwrap_or(unknown);
+            let error = round.check.errors.forces_percent();
             text += &format!(",{w_low:.4},{w_high:.4},{error:.4},{low:.4},{high:.4}\n");
         }
         text

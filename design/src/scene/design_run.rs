@@ -288,10 +288,10 @@ impl State {
     /// The inputs besides the keys of the scene that changed since the run.
     fn changed_inputs(&self, scene: &Scene) -> Vec<&'static str> {
         let now = scene.model_hash();
-        let hashes = self.model.split('-').zip(now.split('-'));
-        let parts = MODEL_PARTS.into_iter().zip(hashes);
+        let mut before = self.model.split('-');
+        let parts = MODEL_PARTS.into_iter().zip(now.split('-'));
         parts
-            .filter(|(_, (before, now))| before != now)
+            .filter(|(_, now)| before.next() != Some(*now))
             .map(|(part, _)| part)
             .collect()
     }

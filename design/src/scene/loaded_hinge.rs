@@ -231,10 +231,8 @@ fn same_training(config: &SceneConfig, networks: &[Surrogate]) -> Result<(), Inv
         let i = hashes[..j].iter().position(|hash| *hash == hashes[j])?;
         Some([i, j])
     });
-    if let (Some(twice), Some(learned)) = (twice, &config.surrogate) {
-        let files: Vec<&PathBuf> = std::iter::once(&learned.weights)
-            .chain(&learned.ensemble)
-            .collect();
+    if let Some(twice) = twice {
+        let files = config.weights_files();
         let files = twice.map(|i| files[i].clone());
         return Err(InvalidScene::SameNetwork { files });
     }

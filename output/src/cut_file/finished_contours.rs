@@ -4,7 +4,7 @@
 //! one contour. Arcs are chords: the contours are polygons.
 
 use crate::cut_file::cut_lines::{CutLines, Slit};
-use design::geometry::polygon::{distance, edges};
+use design::geometry::polygon::{distance, edges, side};
 use std::f64::consts::TAU;
 
 /// Maximum distance of a chord from its arc (mm), a tenth of what a laser repeats.
@@ -101,19 +101,15 @@ fn notched(outline: &[[f64; 2]; 4], open: &[End]) -> Vec<[f64; 2]> {
     let mut notches: Vec<Vec<(f64, Vec<[f64; 2]>)>> = vec![Vec::new(); sides.len()];
     for end in open {
         // The side on whose line the slit ends.
-        let off = |&[p, q]: &[[f64; 2]; 2]| {
-            let cross =
-                (q[0] - p[0]) * (end.towards[1] - p[1]) - (q[1] - p[1]) * (end.towards[0] - p[0]);
-            cross.abs() / distance(p, q)
-        };
+        let off = |&[p, q]: &[[f64; 2]; 2]| (side((p, q), end.towards) / distance(p, q)).abs();
         let nearest = (0..sides.len()).min_by(|&i, &j| off(&sides[i]).total_cmp(&off(&sides[j])));
-        let side = nearest.expect("an outline has sides");
-        let [first, second] = end.on_edge(sides[side]);
+        let at = nearest.expect("an outline has sides");
+        let [first, second] = end.on_edge(sides[at]);
         let mut notch = vec![first];
         // Into the sheet, clockwise around the hole, and out.
         notch.extend(end.around().into_iter().rev());
         notch.push(second);
-        notches[side].push((distance(sides[side][0], first), notch));
+        notches[at].push((distance(sides[at][0], first), notch));
     }
     let mut contour = Vec::new();
     for ([corner, _], mut notches) in sides.into_iter().zip(notches) {

@@ -5,7 +5,7 @@ use crate::cut_file::cut_lines::CutLines;
 use crate::cut_file::fabrication_error::FabricationError;
 use crate::cut_file::sheet_drawing::registration_marks;
 use crate::display::Shape;
-use design::geometry::polygon::{distance, nearest_on_outline};
+use design::geometry::polygon::{bounds, distance, nearest_on_outline};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -152,13 +152,12 @@ impl Service {
         .map(|(what, found, least, keys)| {
             format!("{what} {found:.2} mm, at least {least:.2} mm ({keys})")
         });
-        let sorted = |[a, b]: [f64; 2]| [f64::min(a, b), f64::max(a, b)];
-        let [[short, long], found] =
-            [self.size.unwrap_or([f64::INFINITY; 2]), features.size].map(sorted);
-        let large = (found[0] > short || found[1] > long).then(|| {
+        let too_large = |most: &[f64; 2]| !fits(features.size, *most);
+        let large = self.size.filter(too_large).map(|most| {
+            let [width, height] = features.size;
             format!(
-                "a sheet of {:.0} x {:.0} mm, at most {short:.0} x {long:.0} mm (--bed)",
-                found[0], found[1]
+                "a sheet of {width:.0} x {height:.0} mm, at most {:.0} x {:.0} mm (--bed)",
+                most[0], most[1]
             )
         });
         small.chain(large).collect()
@@ -209,9 +208,7 @@ impl Machine {
         drawing.add(Layer::Outline, Shape::Polygon(outline));
         Ok(drawing)
     }
-}
 
-impl Machine {
     /// Adds the path of the tool in a finished hole, or the cross of one that the tool cannot cut.
     fn hole(
         &self,
@@ -237,6 +234,12 @@ impl Machine {
     }
 }
 
+/// Whether a part with these sides fits on a place in either orientation.
+pub(crate) fn fits(part: [f64; 2], place: [f64; 2]) -> bool {
+    let ascending = |[a, b]: [f64; 2]| [a.min(b), a.max(b)];
+    std::iter::zip(ascending(part), ascending(place)).all(|(part, place)| part <= place)
+}
+
 /// Closed contours; an error if the tool is as wide as the slits.
 fn slots(cuts: &CutLines, tool_kerf: f64) -> Result<CutDrawing, FabricationError> {
     if tool_kerf >= cuts.kerf {
@@ -256,10 +259,7 @@ impl CutLines {
     /// The smallest features of the sheet.
     pub fn features(&self) -> Features {
         let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
-        let side = |axis: usize| {
-            let along = self.outline.iter().map(|corner| corner[axis]);
-            along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
-        };
+        let [low, high] = bounds(self.outline);
         let to_edge =
             |centre: [f64; 2]| distance(centre, nearest_on_outline(centre, &self.outline));
         let attached = (self.attachments.iter())
@@ -277,7 +277,7 @@ impl CutLines {
                     .iter()
                     .map(|(centre, radius)| to_edge(*centre) - radius),
             ),
-            size: [side(0), side(1)],
+            size: [0, 1].map(|axis| high[axis] - low[axis]),
         }
     }
 }

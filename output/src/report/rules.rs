@@ -1,6 +1,6 @@
 //! The rules of a report: each finds one concern about a design, or nothing.
 
-use crate::cut_file::{CutLines, FabricationError};
+use crate::cut_file::{CutLines, FabricationError, fits};
 use crate::display::Shape;
 use crate::report::columns::rounded;
 use crate::report::fact_sheet::FactSheet;
@@ -166,12 +166,9 @@ fn stock(judged: &Judged) -> Option<Warning> {
     let cuts = judged.cuts.as_ref().ok()?;
     let stock = cuts.cutting.stock?;
     let [low, high] = Shape::extent(cuts.drawing().cuts());
-    let ascending = |[a, b]: [f64; 2]| [a.min(b), a.max(b)];
-    let taken = ascending([0, 1].map(|axis| high[axis] - low[axis]));
-    let room = ascending(stock).map(|side| side - 2.0 * cuts.cutting.margin);
-    let fits = std::iter::zip(taken, room).all(|(taken, room)| taken <= room + ROUNDING);
-    let room = room.map(|side| side.max(0.0));
-    (!fits).then(|| {
+    let taken = [0, 1].map(|axis| high[axis] - low[axis]);
+    let room = stock.map(|side| (side - 2.0 * cuts.cutting.margin).max(0.0));
+    (!fits(taken, room.map(|side| side + ROUNDING))).then(|| {
         Concern::StockTooSmall.of_sheet(format!(
             "the cuts take {:.1} x {:.1} mm with kerf and over-run, but the stock has {:.1} x {:.1} mm inside its margin: use a smaller \
              sheet.size, a smaller cutting.over_run, or cut it in parts (`kirigami cut --bed`)",

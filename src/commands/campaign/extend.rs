@@ -44,7 +44,7 @@ const BEYOND: f64 = 1.1;
 impl ExtendCommand {
     pub fn run(&self) -> Result<()> {
         ensure!(self.doubt >= 0.0, "--doubt must not be negative");
-        let (scene, design) = self.inspected.read()?;
+        let (scene, design, _) = self.inspected.read()?;
         let surrogate = scene.surrogate().context(
             "only the data of a surrogate can be extended: set hinge = \"surrogate\" in the scene",
         )?;

@@ -1,11 +1,9 @@
 //! The design of a sheet that finite elements judge.
 
-use crate::commands::inspect::scene_args::{Inspected, START};
+use crate::commands::inspect::scene_args::Inspected;
 use anyhow::Result;
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
-use design::scene::design_run::{design_of_run, stored_design};
-use design::scene::run_inputs::STATE_FILE;
 use std::path::PathBuf;
 
 /// Help of `--design`.
@@ -25,19 +23,11 @@ impl Inspected {
     /// scene's run, or the start design if there is no run.
     pub(crate) fn read_judged(&self) -> Result<(Scene, DesignVector, String)> {
         let scene = self.scene()?;
-        let stored = match &self.design {
-            Some(path) if path.as_os_str() == START => None,
-            Some(path) => Some((stored_design(path, &scene)?, path.clone())),
-            None => design_of_run(&scene, self.weights.is_some())?
-                .map(|design| (design, scene.output().join(STATE_FILE))),
+        let named = match self.named(&scene)? {
+            Some(named) => Some(named),
+            None => self.run(&scene)?,
         };
-        let (design, name) = match stored {
-            Some((design, path)) => (design, format!("design {}", path.display())),
-            None => {
-                let scene_file = self.scene.display();
-                (scene.start(), format!("start design of {scene_file}"))
-            }
-        };
+        let (design, name) = named.unwrap_or_else(|| self.start(&scene));
         Ok((scene, design, name))
     }
 }

@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use design::pattern::design_vector::DesignVector;
 use design::scene::design_run::{design_of_run, stored_design};
-use design::scene::run_inputs::scene_file;
+use design::scene::run_inputs::{STATE_FILE, scene_file};
 use design::scene::{Scene, SceneConfig};
 use serde::Serialize;
 use std::fmt::Display;
@@ -15,7 +15,7 @@ use support::toml_file;
 pub(crate) const DESIGN_OF_RUN: &str = "Design (JSON): the state.json of a run, or a design alone; `start` is the start design of the scene [default: the state.json of the scene's run folder]";
 
 /// The value of `--design` that names no file.
-pub(super) const START: &str = "start";
+const START: &str = "start";
 
 /// A scene and a design of its sheet.
 #[derive(Args)]
@@ -50,50 +50,57 @@ struct Of<T> {
     listing: T,
 }
 
+/// A design and its name for a person.
+type Named = (DesignVector, String);
+
 impl Inspected {
-    /// Which design [`Inspected::read`] returns.
-    fn which(&self) -> String {
-        let scene = self.scene.display();
-        match &self.design {
-            Some(path) if path.as_os_str() == START => format!("the start design of {scene}"),
-            Some(path) => format!("the design in {}", path.display()),
-            None if self.scene.is_dir() => format!("the best design of the run {scene}"),
-            None => format!(
-                "the start design of {scene}; for that of its run name the run folder, or --design"
-            ),
-        }
-    }
-
-    /// Which design [`Inspected::read_run`] returns.
-    pub(crate) fn which_of_run(&self) -> String {
-        match &self.design {
-            None => "the best design of the run".to_owned(),
-            Some(_) => self.which(),
-        }
-    }
-
-    pub(crate) fn read(&self) -> Result<(Scene, DesignVector)> {
+    /// The scene, a design of its sheet and the name of the design: without `--design` that of the run folder that stands for the
+    /// scene, or else the start design.
+    pub(crate) fn read(&self) -> Result<(Scene, DesignVector, String)> {
         let scene = self.scene()?;
-        let design = match &self.design {
-            Some(path) => named_design(path, &scene)?,
-            None if self.scene.is_dir() => self.design_of_run(&scene)?,
-            None => scene.start(),
+        let (design, name) = match self.named(&scene)? {
+            Some(named) => named,
+            None if self.scene.is_dir() => self.needed_run(&scene)?,
+            None => {
+                let (design, name) = self.start(&scene);
+                let hint = "for that of its run name the run folder, or --design";
+                (design, format!("{name}; {hint}"))
+            }
         };
-        Ok((scene, design))
+        Ok((scene, design, name))
     }
 
-    /// The scene with its designed sheet: without `--design`, the state of its run folder.
-    pub(crate) fn read_run(&self) -> Result<(Scene, DesignVector)> {
+    /// The same with the designed sheet: without `--design`, the state of its run folder.
+    pub(crate) fn read_run(&self) -> Result<(Scene, DesignVector, String)> {
         let scene = self.scene()?;
-        let design = match &self.design {
-            Some(path) => named_design(path, &scene)?,
-            None => self.design_of_run(&scene)?,
-        };
-        Ok((scene, design))
+        let named = self.named(&scene)?;
+        let (design, name) = named.map_or_else(|| self.needed_run(&scene), Ok)?;
+        Ok((scene, design, name))
     }
 
-    fn design_of_run(&self, scene: &Scene) -> Result<DesignVector> {
-        design_of_run(scene, self.weights.is_some())?.with_context(|| {
+    /// The design that `--design` names.
+    pub(super) fn named(&self, scene: &Scene) -> Result<Option<Named>> {
+        Ok(match &self.design {
+            None => None,
+            Some(path) if path.as_os_str() == START => Some(self.start(scene)),
+            Some(path) => Some((stored_design(path, scene)?, design_in(path))),
+        })
+    }
+
+    /// The start design of the scene.
+    pub(super) fn start(&self, scene: &Scene) -> Named {
+        let name = format!("start design of {}", self.scene.display());
+        (scene.start(), name)
+    }
+
+    /// The design of the scene's run; `None` if it has no run.
+    pub(super) fn run(&self, scene: &Scene) -> Result<Option<Named>> {
+        let design = design_of_run(scene, self.weights.is_some())?;
+        Ok(design.map(|design| (design, design_in(&scene.output().join(STATE_FILE)))))
+    }
+
+    fn needed_run(&self, scene: &Scene) -> Result<Named> {
+        self.run(scene)?.with_context(|| {
             format!(
                 "the scene {} has no run, there is no state in {}: run `kirigami design` first, or name a design (--design)",
                 self.scene.display(),
@@ -112,21 +119,17 @@ impl Inspected {
     }
 }
 
-/// The design of a file, or the start design of the scene.
-fn named_design(path: &Path, scene: &Scene) -> Result<DesignVector> {
-    if path.as_os_str() == START {
-        return Ok(scene.start());
-    }
-    Ok(stored_design(path, scene)?)
+fn design_in(path: &Path) -> String {
+    format!("design {}", path.display())
 }
 
 impl Listed {
-    pub(crate) fn read(&self) -> Result<(Scene, DesignVector)> {
+    pub(crate) fn read(&self) -> Result<(Scene, DesignVector, String)> {
         self.inspected.read()
     }
 
-    pub(crate) fn print(&self, listing: impl Serialize + Display) -> Result<()> {
-        let design = self.inspected.which();
+    /// Prints the numbers of the design with this name.
+    pub(crate) fn print(&self, design: String, listing: impl Serialize + Display) -> Result<()> {
         if self.json {
             let of = Of { design, listing };
             println!("{}", serde_json::to_string_pretty(&of)?);

@@ -114,18 +114,15 @@ impl SpotCheckCommand {
             let check =
                 spot_check(&windows, &paths[..rays], &material, tier).map_err(task_error)?;
             let intervals = ErrorInterval::of(&surrogate, &check.rows);
-            let is_known = |within: f64| {
+            let is_known = self.within.is_none_or(|within| {
                 intervals.is_some_and(|found| {
                     let mut widths = found.iter().map(ErrorInterval::relative_half_width);
                     widths.all(|width| width <= within / 100.0)
                 })
-            };
-            let wanted = self.within.filter(|within| !is_known(*within));
-            if wanted.is_none() && self.within.is_some() || rays == paths.len() {
-                if let Some(within) = wanted {
-                    println!(
-                        "the intervals are not within {within} % of the errors: increase --count"
-                    );
+            });
+            if is_known || rays == paths.len() {
+                if !is_known {
+                    println!("the intervals are wider than --within: increase --count");
                 }
                 break (check, intervals);
             }
