@@ -8,7 +8,7 @@ use crate::mixing::Mixing;
 use crate::rows::Row;
 use crate::schema;
 use crate::split::{Geometries, Split, SplitPlan};
-use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
+use hinge::{HingeConstants, HingeDeformation, HingeDesign, TrainingDomain};
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -130,6 +130,16 @@ impl Digest {
                 why: reasons(&self.rejected),
             });
         };
+        let holes = self.designs.iter().map(|(design, _)| design.fillet_ratio);
+        let holes = holes.fold(None, |range: Option<[f64; 2]>, hole| {
+            let [least, most] = range.unwrap_or([hole; 2]);
+            Some([least.min(hole), most.max(hole)])
+        });
+        let holes = holes.filter(|[least, most]| least < most);
+        let mut hinge = first.design.constants();
+        if holes.is_some() {
+            hinge.fillet_ratio = HingeConstants::PAPER.fillet_ratio;
+        }
         let split = Split::deal(&self.geometries, plan)?;
         let joined = |values: BTreeSet<String>| Vec::from_iter(values).join(" + ");
         let [material, tier, material_hashes, settings_hashes, gmsh, ccx] = self.texts;
@@ -148,7 +158,8 @@ impl Digest {
             rejected: self.rejected,
             material: joined(material),
             tier: joined(tier),
-            hinge: first.design.constants(),
+            hinge,
+            holes,
             material_hashes,
             settings_hashes,
             gmsh,

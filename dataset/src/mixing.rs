@@ -15,7 +15,7 @@ pub enum Mixing {
 impl Mixing {
     /// Rejects a row that differs from the first one in a quantity that is not a feature of the surrogate.
     pub(crate) fn check(self, first: &Row, row: &Row) -> Result<(), DatasetError> {
-        let constants = |row: &Row| [row.design.fillet_ratio, row.design.kerf, row.design.r_win];
+        let constants = |row: &Row| [row.design.kerf, row.design.r_win];
         if constants(first) == constants(row) && (self == Self::Allowed || same_origin(first, row))
         {
             return Ok(());
@@ -37,7 +37,6 @@ impl Mixing {
     /// The quantities that all rows have in common, as text.
     fn shared(self, row: &Row) -> Vec<(&'static str, String)> {
         let constants = [
-            ("fillet_ratio", row.design.fillet_ratio.to_string()),
             ("kerf", format!("{} mm", row.design.kerf)),
             ("r_win", format!("{} mm", row.design.r_win)),
         ];

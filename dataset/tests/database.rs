@@ -117,10 +117,9 @@ fn an_empty_database_is_an_error() {
 
 #[test]
 fn inconsistent_rows_are_an_error() {
-    let changes: [(Change, &str); 5] = [
+    let changes: [(Change, &str); 4] = [
         (|row| row.material = "steel".into(), "material"),
         (|row| row.tier = "tiny".into(), "tier"),
-        (|row| row.design.fillet_ratio = 0.2, "fillet_ratio"),
         (|row| row.design.kerf = 0.1, "kerf"),
         (|row| row.design.r_win = 70.0, "r_win"),
     ];

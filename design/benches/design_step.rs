@@ -23,7 +23,7 @@ use design::sheet::cut_sheet::{HingePoint, SheetOptions};
 use divan::{Bencher, black_box};
 use hinge::{HingeConstants, TrainingDomain};
 use std::sync::Arc;
-use surrogate::{Card, FEATURE_NAMES, Layer, Layers, Surrogate, Tensor, TestErrors};
+use surrogate::{Card, feature_names, Layer, Layers, Surrogate, Tensor, TestErrors};
 
 fn main() {
     divan::main();
@@ -91,7 +91,7 @@ fn problem(
                 fillet_ratio: 0.16,
                 kerf: 0.2,
                 r_win: 100.0,
-            },
+            }.into(),
         },
         model: Model::Equilibrium(Box::new(Mechanics {
             law: Arc::new(law),
@@ -162,10 +162,10 @@ fn network() -> SurrogateLaw {
         format_version: surrogate::FORMAT_VERSION,
         weights_hash: None,
         units: surrogate::UNITS.into(),
-        features: FEATURE_NAMES.map(String::from).to_vec(),
+        features: feature_names(false).iter().map(ToString::to_string).collect(),
         standardisation: surrogate::Standardisation {
-            mean: [0.0, 0.0, 0.6, 18.0_f64.ln(), 1.57],
-            std: [0.2, 0.2, 0.4, 0.45, 0.45],
+            mean: [0.0, 0.0, 0.6, 18.0_f64.ln(), 1.57].to_vec(),
+            std: [0.2, 0.2, 0.4, 0.45, 0.45].to_vec(),
         },
         energy_scale: 85.0,
         damage_scale: 0.01,
@@ -181,6 +181,7 @@ fn network() -> SurrogateLaw {
             kerf: 0.2,
             r_win: 100.0,
         },
+        holes: None,
         material: "none".into(),
         material_hash: None,
         settings_hash: None,

@@ -21,6 +21,8 @@ pub(crate) use corrected::LENGTHS;
 pub use condensed::{CondensedLaw, Constant};
 pub use contact::{Contact, InvalidContact};
 pub use corrected::{CorrectedLaw, Correction, MissingForces};
-pub use law::{DamageMeasure, HingeDamage, HingeEnergy, HingeLaw, Order, PreparedLaw};
+pub use law::{
+    DamageMeasure, HingeDamage, HingeEnergy, HingeGradient, HingeLaw, Order, PreparedLaw,
+};
 pub use linear::LinearLaw;
 pub use surrogate::SurrogateLaw;

@@ -50,7 +50,7 @@
 //!     widths: WidthChart { w_minus: 10.0, w_plus: 26.0 },
 //!     options: SheetOptions {
 //!         hinge_point: HingePoint::Corner,
-//!         process: HingeConstants::PAPER,
+//!         process: HingeConstants::PAPER.into(),
 //!     },
 //!     model: Model::Equilibrium(Box::new(Mechanics {
 //!         law: Arc::new(LinearLaw::uniform([400.0, 250.0, 300.0], grid.hinge_count())),

@@ -181,7 +181,7 @@ impl TrainCommand {
         });
         let teachers: Vec<Surrogate> = teachers.collect::<Result<_>>()?;
         Ok(teachers.first().map(|first| {
-            let states = distillation_states(first.domain(), &first.card().hinge);
+            let states = distillation_states(first.into());
             Distillation::new(&teachers, &states)
         }))
     }

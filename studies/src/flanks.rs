@@ -96,7 +96,7 @@ impl FlanksStudy {
     /// Rays inside the domain of the weights whose flanks overlap in the plane at their end.
     fn overlapping(&self) -> Result<Vec<HingePath>> {
         let weights = Surrogate::load(&self.weights)?;
-        let drawn = random_paths(weights.domain(), &weights.card().hinge, DRAWN, 1, 0);
+        let drawn = random_paths((&weights).into(), DRAWN, 1, 0);
         let overlap = |hinge: &HingePath| gap_at_hole(&hinge.design, &hinge.path.at(1.0)) < 0.0;
         let mut found: Vec<HingePath> = drawn.into_iter().map(|path| path.hinge).collect();
         found.retain(overlap);

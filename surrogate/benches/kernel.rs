@@ -5,7 +5,7 @@
 
 use hinge::{HingeConstants, HingeDeformation, HingeDesign, TrainingDomain};
 use surrogate::{
-    Card, FEATURE_NAMES, FORMAT_VERSION, Layer, Layers, Order, Standardisation, Surrogate, Tensor,
+    Card, feature_names, FORMAT_VERSION, Layer, Layers, Order, Standardisation, Surrogate, Tensor,
     TestErrors, UNITS,
 };
 
@@ -92,10 +92,10 @@ fn card() -> Card {
         format_version: FORMAT_VERSION,
         weights_hash: None,
         units: UNITS.into(),
-        features: FEATURE_NAMES.map(Into::into).to_vec(),
+        features: feature_names(false).iter().map(ToString::to_string).collect(),
         standardisation: Standardisation {
-            mean: [0.02, 0.0, 0.6, 2.64, 1.6],
-            std: [0.1, 0.1, 0.35, 0.45, 0.45],
+            mean: [0.02, 0.0, 0.6, 2.64, 1.6].to_vec(),
+            std: [0.1, 0.1, 0.35, 0.45, 0.45].to_vec(),
         },
         energy_scale: 85.0,
         damage_scale: 0.012,
@@ -111,6 +111,7 @@ fn card() -> Card {
             kerf: 0.2,
             r_win: 100.0,
         },
+        holes: None,
         material: "benchmark".into(),
         material_hash: None,
         settings_hash: None,

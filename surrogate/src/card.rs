@@ -1,6 +1,6 @@
 //! The card of a weight file: units, scaling, training domain, provenance, test errors.
 
-use crate::features::{FEATURE_NAMES, LOG_WIDTH, Standardisation};
+use crate::features::{LOG_WIDTH, Standardisation, feature_names};
 use crate::network::InvalidWeights;
 use hinge::{HingeConstants, TrainingDomain};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -22,7 +22,7 @@ pub struct Card {
     pub weights_hash: Option<String>,
     /// [`UNITS`]
     pub units: String,
-    /// [`FEATURE_NAMES`]
+    /// [`feature_names`]
     pub features: Vec<String>,
     /// Mean and standard deviation of the features over the training rows.
     pub standardisation: Standardisation,
@@ -37,8 +37,12 @@ pub struct Card {
     pub damage_sharpness: f64,
     /// The states that the training rows cover.
     pub domain: TrainingDomain,
-    /// The components of the hinge design that are not features of (13); the weights are valid only for these values.
+    /// The components of the hinge design that are not features; the weights are valid only for these values. With
+    /// `holes`, its `fillet_ratio` is that of the hinge whose features the networks see ([`crate::NetLigament`]).
     pub hinge: HingeConstants,
+    /// Minimum and maximum radius of the hole over w_lig, if it is a feature.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub holes: Option<[f64; 2]>,
     /// Name of the sheet material.
     pub material: String,
     /// [`hinge::SheetMaterial::law_hash`] of the material, if known; a material may change without a change of name.
@@ -243,12 +247,13 @@ impl Card {
 
     /// Rejects other units or features, scales that are not positive, and means that are not finite.
     pub(crate) fn validate(&self) -> Result<(), InvalidWeights> {
+        let names = feature_names(self.holes.is_some());
         for (key, found, expected) in [
             ("units", self.units.clone(), UNITS.into()),
             (
                 "features",
                 self.features.join(", "),
-                FEATURE_NAMES.join(", "),
+                names.join(", "),
             ),
         ] {
             if found != expected {
@@ -266,14 +271,23 @@ impl Card {
         ]
         .into_iter()
         .chain(damages.map(|scale| ("d_scale".into(), scale)));
-        let deviations = FEATURE_NAMES.iter().zip(self.standardisation.std);
+        let Standardisation { mean, std } = &self.standardisation;
+        for (tensor, values) in [("feat_mean", mean), ("feat_std", std)] {
+            if values.len() != names.len() {
+                return Err(InvalidWeights::Shape {
+                    tensor: tensor.into(),
+                    expected: format!("[{}]", names.len()),
+                    found: vec![values.len()],
+                });
+            }
+        }
+        let deviations = names.iter().zip(std.iter().copied());
         let deviations = deviations.map(|(name, std)| (format!("feat_std of {name}"), std));
         for (name, value) in scales.chain(deviations) {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(InvalidWeights::NotPositive { name, value });
             }
         }
-        let mean = self.standardisation.mean;
         if let Some(index) = mean.iter().position(|value| !value.is_finite()) {
             return Err(InvalidWeights::NotFinite {
                 tensor: "feat_mean".into(),

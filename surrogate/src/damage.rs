@@ -1,4 +1,4 @@
-//! D and D_peak of (14), and their gradients in the hinge deformation and in (w_lig, alpha).
+//! D and D_peak of (14), and their gradients in the hinge deformation and in (w_lig, alpha, rho_f).
 //!
 //! ```text
 //! D = D_s softplus(beta chi_D(xi)) / beta,   softplus(y) = log(1 + e^y)
@@ -7,6 +7,7 @@
 //! D_peak has the same form, with its own network and scale.
 
 use crate::features::{FEATURES, features, pull_back};
+use crate::net_ligament::NetLigament;
 use crate::network::Network;
 use crate::passes::{Passes, chunk_size};
 use hinge::{HingeDeformation, HingeDesign};
@@ -16,32 +17,30 @@ use hinge::{HingeDeformation, HingeDesign};
 pub struct HingeDamage {
     /// D, the consumed fraction of the ligament's ductility: zero in an undamaged hinge.
     pub d: f64,
-    /// dD/d(a, s, theta, w_lig, alpha).
+    /// dD/d(a, s, theta, w_lig, alpha, rho_f).
     pub gradient: [f64; FEATURES],
     /// D_peak, the plastic strain of the most strained part of the ligament, divided by the fracture strain. The
     /// ligament tears at 1. `None` if the weights do not predict it.
     pub d_peak: Option<f64>,
-    /// dD_peak/d(a, s, theta, w_lig, alpha); zero without D_peak.
+    /// dD_peak/d(a, s, theta, w_lig, alpha, rho_f); zero without D_peak.
     pub peak_gradient: [f64; FEATURES],
 }
 
-/// One damage measure of each hinge, and its gradient in (a, s, theta, w_lig, alpha).
+/// One damage measure of each hinge, and its gradient in (a, s, theta, w_lig, alpha, rho_f).
 ///
-/// `head` has one output; `sharpness` is beta. Without `with_gradient` the gradients are zero.
+/// `head` has one output; `sharpness` is beta; `seen` are the hinges that the networks see, with their maps. Without `with_gradient` the gradients are zero.
 pub(crate) fn evaluate(
     head: &Network,
     scale: f64,
     sharpness: f64,
-    designs: &[HingeDesign],
-    deformations: &[HingeDeformation],
+    seen: &[(NetLigament, HingeDesign, HingeDeformation)],
     with_gradient: bool,
 ) -> Vec<(f64, [f64; FEATURES])> {
-    let size = chunk_size(designs.len(), 0);
-    let mut damages = Vec::with_capacity(designs.len());
+    let size = chunk_size(seen.len(), 0);
+    let mut damages = Vec::with_capacity(seen.len());
     Passes::lent(|passes| {
-        for (designs, deformations) in designs.chunks(size).zip(deformations.chunks(size)) {
-            let states = || designs.iter().zip(deformations);
-            let xi: Vec<_> = states().map(|(g, eps)| features(g, eps)).collect();
+        for seen in seen.chunks(size) {
+            let xi: Vec<_> = seen.iter().map(|(_, g, eps)| features(g, eps)).collect();
             passes.forward(head, &xi, 0..0);
             let outputs = passes.outputs().flatten();
             let outputs: Vec<f64> = outputs.map(|&y| sharpness * y).collect();
@@ -53,12 +52,12 @@ pub(crate) fn evaluate(
             let slopes: Vec<f64> = outputs.iter().map(|&y| logistic(y)).collect();
             passes.reverse(head, &slopes, &mut []);
             damages.extend(
-                states()
+                seen.iter()
                     .zip(outputs)
                     .enumerate()
-                    .map(|(hinge, ((g, eps), y))| {
+                    .map(|(hinge, ((ligament, g, eps), y))| {
                         let gradient = passes.gradient(hinge).map(|slope| scale * slope);
-                        (value(y), pull_back(gradient, g, eps))
+                        (value(y), ligament.gradient(pull_back(gradient, g, eps), eps.theta))
                     }),
             );
         }

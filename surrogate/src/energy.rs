@@ -1,4 +1,4 @@
-//! W of (14) and its derivatives in the hinge deformation and in (w_lig, alpha).
+//! W of (14) and its derivatives in the hinge deformation and in (w_lig, alpha, rho_f).
 //!
 //! With r = chi(xi) - chi(xi(0, g)), J = d chi / d xi and J0 = d chi(xi(0, g)) / d g,
 //!
@@ -8,10 +8,11 @@
 //! d2W/dxi2              = 2 W_s (J'J + sum over layers and units of lambda sigma'' grad(a) grad(a)')
 //! ```
 //!
-//! where lambda is the adjoint of a unit, seeded by r. chi(xi(0, g)) depends on the two features of the design, so
+//! where lambda is the adjoint of a unit, seeded by r. chi(xi(0, g)) depends on the features of the design, so
 //! that dW/dg = 2 W_s (J - J0)' r, and d2W/dxi dg is reduced by 2 W_s J' J0.
 
 use crate::features::{FEATURES, features, pull_back};
+use crate::net_ligament::NetLigament;
 use crate::network::Network;
 use crate::passes::{Passes, chunk_size, packed_index, packed_len};
 use faer::Mat;
@@ -29,17 +30,17 @@ pub enum Order {
     Forces,
     /// additionally the Hessian in (a, s, theta)
     Tangent,
-    /// additionally the gradient in (w_lig, alpha) and the mixed second derivatives
+    /// additionally the gradient in (w_lig, alpha, rho_f) and the mixed second derivatives
     Design,
 }
 
 impl Order {
-    /// Number of features with second derivatives.
-    fn tangents(self) -> usize {
+    /// Number of features with second derivatives, of a network with `features` inputs.
+    fn tangents(self, features: usize) -> usize {
         match self {
             Self::Value | Self::Forces => 0,
-            Self::Tangent => DESIGN_FEATURES.start,
-            Self::Design => FEATURES,
+            Self::Tangent => DEFORMATION_FEATURES,
+            Self::Design => features,
         }
     }
 }
@@ -53,44 +54,54 @@ pub struct HingeEnergy {
     pub forces: [f64; 3],
     /// d2W/d(a, s, theta)^2.
     pub tangent: [[f64; 3]; 3],
-    /// dW/d(w_lig, alpha) at fixed (a, s, theta).
-    pub design: [f64; 2],
-    /// d2W/d(a, s, theta)d(w_lig, alpha).
-    pub mixed: [[f64; 2]; 3],
+    /// dW/d(w_lig, alpha, rho_f) at fixed (a, s, theta); rho_f is the radius of the hole over w_lig.
+    pub design: [f64; DESIGN],
+    /// d2W/d(a, s, theta)d(w_lig, alpha, rho_f).
+    pub mixed: [[f64; DESIGN]; 3],
 }
 
 /// Hinge designs with chi(xi(0, g)) and its derivatives, which do not depend on the deformation.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     designs: Vec<HingeDesign>,
+    /// The maps to the hinges that the networks see.
+    ligaments: Vec<NetLigament>,
     /// chi(xi(0, g)), one row per hinge.
     origin: Mat<f64>,
-    /// The derivatives of `origin` in log w_lig and in alpha.
-    origin_tangents: [Mat<f64>; 2],
+    /// The derivatives of `origin` in the features of the design.
+    origin_tangents: Vec<Mat<f64>>,
 }
 
-/// The features that depend on the design only: log w_lig and alpha.
-const DESIGN_FEATURES: Range<usize> = 3..FEATURES;
+/// Number of features of the deformation; the others, log w_lig, alpha and rho_f, depend on the design only.
+const DEFORMATION_FEATURES: usize = 3;
+/// Number of quantities of the design.
+const DESIGN: usize = FEATURES - DEFORMATION_FEATURES;
 
 impl Prepared {
-    pub(crate) fn new(chi: &Network, designs: &[HingeDesign]) -> Self {
+    /// `reference`: the hole of the hinges that the networks see, a multiple of w_lig.
+    pub(crate) fn new(chi: &Network, designs: &[HingeDesign], reference: f64) -> Self {
+        let ligaments: Vec<_> = designs
+            .iter()
+            .map(|design| NetLigament::new(design, reference))
+            .collect();
+        let undeformed: Vec<_> = std::iter::zip(&ligaments, designs)
+            .map(|(ligament, design)| {
+                features(&ligament.design(design), &HingeDeformation::default())
+            })
+            .collect();
+        let of_design = DEFORMATION_FEATURES..chi.features();
         let zeros = || Mat::zeros(designs.len(), chi.outputs());
         let mut origin = zeros();
-        let mut origin_tangents = [zeros(), zeros()];
+        let mut origin_tangents: Vec<_> = of_design.clone().map(|_| zeros()).collect();
         Passes::lent(|passes| {
-            let size = chunk_size(designs.len(), DESIGN_FEATURES.len());
-            for (chunk, designs) in designs.chunks(size).enumerate() {
-                let n = designs.len();
-                let undeformed: Vec<_> = designs
-                    .iter()
-                    .map(|design| features(design, &HingeDeformation::default()))
-                    .collect();
-                passes.forward(chi, &undeformed, DESIGN_FEATURES);
+            let size = chunk_size(designs.len(), of_design.len());
+            for (chunk, undeformed) in undeformed.chunks(size).enumerate() {
+                let n = undeformed.len();
+                passes.forward(chi, undeformed, of_design.clone());
                 let rows = chunk * size..chunk * size + n;
-                let [by_log_w, by_alpha] = &mut origin_tangents;
                 for (output, block) in passes.outputs().enumerate() {
-                    for (target, values) in [&mut origin, by_log_w, by_alpha]
-                        .into_iter()
+                    for (target, values) in std::iter::once(&mut origin)
+                        .chain(&mut origin_tangents)
                         .zip(block.chunks_exact(n))
                     {
                         target.col_as_slice_mut(output)[rows.clone()].copy_from_slice(values);
@@ -100,6 +111,7 @@ impl Prepared {
         });
         Self {
             designs: designs.to_vec(),
+            ligaments,
             origin,
             origin_tangents,
         }
@@ -124,16 +136,24 @@ pub(crate) fn evaluate(
         deformations.len(),
         "one deformation for each prepared hinge"
     );
-    let size = chunk_size(deformations.len(), order.tangents());
+    let size = chunk_size(deformations.len(), order.tangents(chi.features()));
     let of_chunk = |(chunk, deformations): (usize, &[HingeDeformation])| -> Vec<HingeEnergy> {
         let first = chunk * size;
-        let designs = &prepared.designs[first..first + deformations.len()];
+        let chunk = first..first + deformations.len();
+        let ligaments = &prepared.ligaments[chunk.clone()];
+        let seen: Vec<_> = std::iter::zip(&prepared.designs[chunk], deformations)
+            .zip(ligaments)
+            .map(|((design, deformation), ligament)| {
+                (ligament.design(design), ligament.deformation(deformation))
+            })
+            .collect();
         KERNEL.with_borrow_mut(|kernel| {
-            kernel.run(chi, prepared, first, deformations, order);
-            let hinges = std::iter::zip(designs, deformations).enumerate();
+            kernel.run(chi, prepared, first, &seen, order);
+            let hinges = std::iter::zip(ligaments, &seen).enumerate();
             hinges
-                .map(|(hinge, (design, deformation))| {
-                    kernel.energy(hinge, design, deformation, energy_scale, order)
+                .map(|(hinge, (ligament, (design, deformation)))| {
+                    let energy = kernel.energy(hinge, design, deformation, energy_scale, order);
+                    ligament.energy(energy, deformation.theta, order)
                 })
                 .collect()
         })
@@ -176,16 +196,15 @@ impl Kernel {
         chi: &Network,
         prepared: &Prepared,
         first: usize,
-        deformations: &[HingeDeformation],
+        seen: &[(HingeDesign, HingeDeformation)],
         order: Order,
     ) {
-        let n = deformations.len();
+        let n = seen.len();
         let rows = first..first + n;
         self.n = n;
-        self.tangents = order.tangents();
-        let xi: Vec<_> = prepared.designs[rows.clone()]
+        self.tangents = order.tangents(chi.features());
+        let xi: Vec<_> = seen
             .iter()
-            .zip(deformations)
             .map(|(design, deformation)| features(design, deformation))
             .collect();
         self.passes.forward(chi, &xi, 0..self.tangents);
@@ -217,22 +236,22 @@ impl Kernel {
     /// Computes the sums with J0, the derivative of chi(xi(0, g)) with respect to the design.
     fn move_origin(&mut self, prepared: &Prepared, rows: Range<usize>) {
         let n = self.n;
-        reset(&mut self.origin_gradient, 2 * n);
-        reset(&mut self.origin_mixed, 6 * n);
+        reset(&mut self.origin_gradient, DESIGN * n);
+        reset(&mut self.origin_mixed, DEFORMATION_FEATURES * DESIGN * n);
         for (p, by_feature) in prepared.origin_tangents.iter().enumerate() {
             for (output, block) in self.passes.outputs().enumerate() {
                 let by_feature = &by_feature.col_as_slice(output)[rows.clone()];
                 let r = &self.r[n * output..][..n];
                 add_product(&mut self.origin_gradient[n * p..][..n], r, by_feature);
-                for i in 0..DESIGN_FEATURES.start {
-                    let sum = &mut self.origin_mixed[n * (2 * i + p)..][..n];
+                for i in 0..DEFORMATION_FEATURES {
+                    let sum = &mut self.origin_mixed[n * (DESIGN * i + p)..][..n];
                     add_product(sum, &block[n * (1 + i)..][..n], by_feature);
                 }
             }
         }
     }
 
-    /// W_s |r|^2 of one hinge with its derivatives in (a, s, theta, w_lig, alpha).
+    /// W_s |r|^2 of one hinge with its derivatives in (a, s, theta, w_lig, alpha, rho_f).
     fn energy(
         &self,
         hinge: usize,
@@ -251,11 +270,11 @@ impl Kernel {
         let twice = 2.0 * energy_scale;
         let mut gradient = self.passes.gradient(hinge).map(|value| twice * value);
         if order == Order::Design {
-            for p in 0..2 {
-                gradient[3 + p] -= twice * self.origin_gradient[self.n * p + hinge];
+            for p in 0..DESIGN {
+                gradient[DEFORMATION_FEATURES + p] -= twice * self.origin_gradient[self.n * p + hinge];
             }
         }
-        let [f_a, f_s, m_theta, by_w, by_alpha] = pull_back(gradient, design, deformation);
+        let [f_a, f_s, m_theta, by_design @ ..] = pull_back(gradient, design, deformation);
         energy.forces = [f_a, f_s, m_theta];
         if order < Order::Tangent {
             return energy;
@@ -264,15 +283,15 @@ impl Kernel {
         for (i, scale) in [design.w_lig, design.w_lig, 1.0].into_iter().enumerate() {
             let row: [f64; FEATURES] =
                 std::array::from_fn(|j| twice * self.second(hinge, i, j, order));
-            let [by_a, by_s, by_theta, by_w, by_alpha] =
+            let [by_a, by_s, by_theta, by_design @ ..] =
                 pull_back(row, design, deformation).map(|value| value / scale);
             energy.tangent[i] = [by_a, by_s, by_theta];
             if order == Order::Design {
-                energy.mixed[i] = [by_w, by_alpha];
+                energy.mixed[i] = by_design;
             }
         }
         if order == Order::Design {
-            energy.design = [by_w, by_alpha];
+            energy.design = by_design;
             // The factor 1 / w_lig of dW/da and dW/ds depends on w_lig itself.
             energy.mixed[0][0] -= f_a / design.w_lig;
             energy.mixed[1][0] -= f_s / design.w_lig;
@@ -286,8 +305,8 @@ impl Kernel {
             return 0.0;
         }
         let mut value = self.half_hessian[self.n * packed_index(i, j, self.tangents) + hinge];
-        if order == Order::Design && DESIGN_FEATURES.contains(&j) {
-            value -= self.origin_mixed[self.n * (2 * i + j - DESIGN_FEATURES.start) + hinge];
+        if order == Order::Design && j >= DEFORMATION_FEATURES {
+            value -= self.origin_mixed[self.n * (DESIGN * i + j - DEFORMATION_FEATURES) + hinge];
         }
         value
     }

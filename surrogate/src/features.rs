@@ -1,23 +1,39 @@
-//! The features (13) and their standardisation.
+//! The features (13) with the radius of the hole, and their standardisation.
 //!
 //! ```text
-//! xi = [eta_a, eta_s, theta, log w_lig, alpha],   eta = (a, s) / w_lig          (13)
+//! xi = [eta_a, eta_s, theta, log w_lig, alpha, rho_f],   eta = (a, s) / w_lig          (13)
 //! ```
+//!
+//! In weights that were trained at one radius of the hole, rho_f is no feature: the networks have five inputs.
 
 use hinge::{HingeDeformation, HingeDesign};
 use serde::{Deserialize, Serialize};
 
-/// Number of features of (13).
-pub(crate) const FEATURES: usize = 5;
+/// Number of features, that of the hole included.
+pub(crate) const FEATURES: usize = 6;
+
+/// Number of features of weights for one radius of the hole, those of (13).
+const OF_ONE_HOLE: usize = 5;
 
 /// Position of log w_lig among the features.
 pub(crate) const LOG_WIDTH: usize = 3;
 
-/// The features of (13) in their order; the card of a surrogate contains them too.
-pub const FEATURE_NAMES: [&str; FEATURES] =
-    ["a / w_lig", "s / w_lig", "theta", "log w_lig", "alpha"];
+/// The features in their order; the card of a surrogate contains them too.
+pub const FEATURE_NAMES: [&str; FEATURES] = [
+    "a / w_lig",
+    "s / w_lig",
+    "theta",
+    "log w_lig",
+    "alpha",
+    "hole radius / w_lig",
+];
 
-/// The features xi of (13), with w_lig in mm and angles in rad.
+/// The features of weights that were trained on holes of one radius, or of several.
+pub fn feature_names(several_holes: bool) -> &'static [&'static str] {
+    &FEATURE_NAMES[..if several_holes { FEATURES } else { OF_ONE_HOLE }]
+}
+
+/// The features xi, with w_lig in mm and angles in rad.
 pub fn features(design: &HingeDesign, deformation: &HingeDeformation) -> [f64; FEATURES] {
     let [eta_a, eta_s] = deformation.eta(design.w_lig);
     [
@@ -26,21 +42,22 @@ pub fn features(design: &HingeDesign, deformation: &HingeDeformation) -> [f64; F
         deformation.theta,
         design.w_lig.ln(),
         design.alpha,
+        design.fillet_ratio,
     ]
 }
 
 /// Mean and standard deviation of each feature over the training set; the input of the networks is
 /// (xi - mean) / std.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Standardisation {
     /// Mean of each feature, in the order of [`FEATURE_NAMES`].
-    pub mean: [f64; FEATURES],
+    pub mean: Vec<f64>,
     /// Standard deviation of each feature, in the order of [`FEATURE_NAMES`].
-    pub std: [f64; FEATURES],
+    pub std: Vec<f64>,
 }
 
-/// Transforms a gradient in the features (13) to a gradient in (a, s, theta, w_lig, alpha).
+/// Transforms a gradient in the features (13) to a gradient in (a, s, theta, w_lig, alpha, rho_f).
 pub(crate) fn pull_back(
     gradient: [f64; FEATURES],
     design: &HingeDesign,
@@ -48,12 +65,13 @@ pub(crate) fn pull_back(
 ) -> [f64; FEATURES] {
     let w = design.w_lig;
     let [eta_a, eta_s] = deformation.eta(w);
-    let [by_eta_a, by_eta_s, by_theta, by_log_w, by_alpha] = gradient;
+    let [by_eta_a, by_eta_s, by_theta, by_log_w, by_alpha, by_hole] = gradient;
     [
         by_eta_a / w,
         by_eta_s / w,
         by_theta,
         (by_log_w - eta_a * by_eta_a - eta_s * by_eta_s) / w,
         by_alpha,
+        by_hole,
     ]
 }

@@ -6,6 +6,7 @@
 //! xi(eps, g) = [a / w_lig, s / w_lig, theta, log w_lig, alpha]                  (13)
 //! ```
 //!
+//! Weights that were trained on holes of several radii see their radius, too ([`NetLigament`]).
 //! The squared distance makes W >= 0, W(0) = 0 and grad W(0) = 0 for any weights. A surrogate is
 //! loaded from `X.safetensors` and its card `X.json`, and is evaluated in float64 for batches of hinges.
 //!
@@ -39,6 +40,7 @@ mod energy;
 mod ensemble;
 mod features;
 mod model;
+mod net_ligament;
 mod network;
 mod passes;
 mod tanh;
@@ -51,8 +53,9 @@ pub use card::{
 pub use damage::HingeDamage;
 pub use energy::{HingeEnergy, Order, Prepared};
 pub use ensemble::mean_and_variance;
-pub use features::{FEATURE_NAMES, Standardisation, features};
+pub use features::{FEATURE_NAMES, Standardisation, feature_names, features};
 pub use model::{Layers, Surrogate};
+pub use net_ligament::NetLigament;
 pub use network::{InvalidWeights, Layer, Network, Tensor};
 pub use tanh::tanh_in_place;
 pub use weights::WeightsError;

@@ -3,6 +3,7 @@
 use crate::card::{Card, ErrorBin, SpotCheck, TestErrors};
 use crate::damage::{self, HingeDamage};
 use crate::energy::{self, HingeEnergy, Order, Prepared};
+use crate::net_ligament::NetLigament;
 use crate::network::{InvalidWeights, Layer, Network};
 use hinge::{HingeDeformation, HingeDesign, HingeSample, TrainingDomain};
 
@@ -135,17 +136,28 @@ impl Surrogate {
             damage_sharpness,
             domain,
             hinge,
+            holes,
             ..
         } = &self.card;
         let scales = (energy_scale, damage_scale, peak_scale, damage_sharpness);
         let evaluated = serde_json::to_vec(&(standardisation, scales, domain, hinge));
         hasher.update(&evaluated.expect("these are numbers and text"));
+        for radius in holes.iter().flatten() {
+            hasher.update(&radius.to_le_bytes());
+        }
         hasher.finalize().to_hex().to_string()
     }
 
     /// The hinge states that the training data cover.
     pub fn domain(&self) -> &TrainingDomain {
         &self.card.domain
+    }
+
+    /// Whether a state lies inside the training domain, and the hole of its hinge among those of the training.
+    pub fn contains(&self, design: &HingeDesign, deformation: &HingeDeformation) -> bool {
+        let holes = self.card.holes;
+        holes.is_none_or(|[least, most]| (least..=most).contains(&design.fillet_ratio))
+            && self.card.domain.contains(design, deformation)
     }
 
     /// W_s of (14): the root mean square of the training energies (N mm).
@@ -160,7 +172,7 @@ impl Surrogate {
 
     /// Computes the quantities that depend on the designs alone: chi(xi(0, g)) and its derivative in g.
     pub fn prepare(&self, designs: &[HingeDesign]) -> Prepared {
-        Prepared::new(&self.chi, designs)
+        Prepared::new(&self.chi, designs, self.card.hinge.fillet_ratio)
     }
 
     /// W of (14) and its derivatives up to `order`, for each prepared hinge.
@@ -249,10 +261,15 @@ impl Surrogate {
             deformations.len(),
             "one deformation for each hinge"
         );
+        let seen: Vec<_> = std::iter::zip(designs, deformations)
+            .map(|(design, deformation)| {
+                let ligament = NetLigament::new(design, self.card.hinge.fillet_ratio);
+                (ligament, ligament.design(design), ligament.deformation(deformation))
+            })
+            .collect();
         let sharpness = self.card.damage_sharpness;
-        let evaluate = |head, scale| {
-            damage::evaluate(head, scale, sharpness, designs, deformations, with_gradient)
-        };
+        let evaluate =
+            |head, scale| damage::evaluate(head, scale, sharpness, &seen, with_gradient);
         let averages = evaluate(&self.chi_d, self.card.damage_scale).into_iter();
         let mut damages: Vec<HingeDamage> = averages
             .map(|(d, gradient)| HingeDamage {

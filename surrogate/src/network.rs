@@ -82,7 +82,7 @@ impl Network {
                 tensor: format!("{name}.0.weight"),
             });
         }
-        let mut inputs = FEATURES;
+        let mut inputs = standardisation.mean.len();
         for (index, Layer { weight, bias }) in layers.iter().enumerate() {
             let last = index + 1 == layers.len();
             let required = if last { outputs } else { None };
@@ -93,12 +93,18 @@ impl Network {
         }
         let mut affine: Vec<Affine> = layers.iter().map(Affine::new).collect();
         affine[0].fold(standardisation);
+        affine[0].widen();
         Ok(Self { layers, affine })
     }
 
     /// The layers as in the weight file.
     pub fn layers(&self) -> &[Layer] {
         &self.layers
+    }
+
+    /// Number of features that the network depends on.
+    pub(crate) fn features(&self) -> usize {
+        self.layers[0].weight.shape[1]
     }
 
     pub(crate) fn outputs(&self) -> usize {
@@ -123,6 +129,12 @@ impl Affine {
                 *bias -= *weight * standardisation.mean[k];
             }
         }
+    }
+
+    /// Adds the features that the layer does not depend on.
+    fn widen(&mut self) {
+        let outputs = self.weight.nrows();
+        self.weight.resize_with(outputs, FEATURES, |_, _| 0.0);
     }
 }
 

@@ -5,7 +5,7 @@
 //! | `chi.N.weight`, `chi.N.bias` | (out, in), (out) of layer N of the embedding |
 //! | `chi_d.N.weight`, `chi_d.N.bias` | the same for the damage head |
 //! | `chi_p.N.weight`, `chi_p.N.bias` | the same for the head of D_peak, if there is one |
-//! | `feat_mean`, `feat_std` | (5), in the order of (13) |
+//! | `feat_mean`, `feat_std` | (5) or (6), in the order of the features |
 //! | `w_scale` | (1), N mm |
 //! | `d_scale` | (1) or (2), dimensionless: of D, and of D_peak if there is a head for it |
 //!
@@ -285,14 +285,14 @@ fn to_bytes(tensor: &Tensor) -> Vec<u8> {
 
 /// The tensors whose values the card also contains.
 fn scaling(card: &Card) -> [(&'static str, Tensor); 4] {
-    let Standardisation { mean, std } = card.standardisation;
+    let Standardisation { mean, std } = &card.standardisation;
     let vector = |values: &[f64]| Tensor {
         shape: vec![values.len()],
         values: values.to_vec(),
     };
     [
-        ("feat_mean", vector(&mean)),
-        ("feat_std", vector(&std)),
+        ("feat_mean", vector(mean)),
+        ("feat_std", vector(std)),
         ("w_scale", vector(&[card.energy_scale])),
         ("d_scale", vector(&card.damage_scales())),
     ]

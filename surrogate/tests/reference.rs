@@ -5,7 +5,7 @@ mod common;
 use common::{cases, design, tiny, with_peak};
 use hinge::{HingeDeformation, HingeDesign};
 use serde_json::Value;
-use surrogate::{HingeEnergy, Order, Surrogate};
+use surrogate::{HingeEnergy, Layer, Layers, Order, Surrogate, Tensor, feature_names};
 
 /// The reference states, from an independent implementation.
 fn states() -> Vec<Value> {
@@ -58,12 +58,13 @@ fn energy_and_damage_agree_with_the_reference() {
     let damages = surrogate.damage(&designs, &deformations);
     assert_eq!((states.len(), energies.len(), damages.len()), (50, 50, 50));
     for ((state, energy), damage) in states.iter().zip(&energies).zip(&damages) {
+        let mixed = energy.mixed.map(|[by_w, by_alpha, _]| [by_w, by_alpha]);
         let pairs: [(&str, &[f64]); 7] = [
             ("W", &[energy.w]),
             ("grad", &energy.forces),
             ("hessian", energy.tangent.as_flattened()),
-            ("dW_dw_alpha", &energy.design),
-            ("d2W_deps_dw_alpha", energy.mixed.as_flattened()),
+            ("dW_dw_alpha", &energy.design[..2]),
+            ("d2W_deps_dw_alpha", mixed.as_flattened()),
             ("D", &[damage.d]),
             ("dD_deps", &damage.gradient[..3]),
         ];
@@ -94,7 +95,7 @@ fn each_order_contains_the_lower_ones_and_higher_derivatives_are_zero() {
             } else {
                 assert_eq!(energy.tangent, [[0.0; 3]; 3]);
             }
-            assert_eq!((energy.design, energy.mixed), ([0.0; 2], [[0.0; 2]; 3]));
+            assert_eq!((energy.design, energy.mixed), ([0.0; 3], [[0.0; 3]; 3]));
         }
     }
 }
@@ -114,15 +115,41 @@ fn an_undeformed_hinge_has_no_energy_and_no_forces() {
     }
 }
 
-/// Central differences of all hinges in one of (a, s, theta, w_lig, alpha).
+/// [`with_peak`] with the radius of the hole as a feature.
+fn with_holes() -> Surrogate {
+    let one_hole = with_peak();
+    let mut card = one_hole.card().clone();
+    card.features = feature_names(true).iter().map(ToString::to_string).collect();
+    card.holes = Some([0.02, 0.4]);
+    card.standardisation.mean.push(0.2);
+    card.standardisation.std.push(0.1);
+    let Layers { chi, chi_d, chi_p } = one_hole.layers();
+    let widened = |mut layers: Vec<Layer>| {
+        let Tensor { shape, values } = &mut layers[0].weight;
+        let rows = values.chunks(shape[1]).enumerate();
+        *values = rows
+            .flat_map(|(i, row)| [row, &[0.3 * (1.7 * i as f64).sin()]].concat())
+            .collect();
+        shape[1] += 1;
+        layers
+    };
+    let layers = Layers {
+        chi: widened(chi),
+        chi_d: widened(chi_d),
+        chi_p: chi_p.map(widened),
+    };
+    Surrogate::from_parts(layers, card).unwrap()
+}
+
+/// Central differences of all hinges in one of (a, s, theta, w_lig, alpha, rho_f).
 fn differences(
+    hinges: (&[HingeDesign], &[HingeDeformation]),
     evaluate: impl Fn(&[HingeDesign], &[HingeDeformation]) -> Vec<f64>,
     direction: usize,
     step: f64,
 ) -> Vec<f64> {
-    let (designs, deformations) = hinges(&states());
     let moved = |step: f64| {
-        let (mut designs, mut deformations) = (designs.clone(), deformations.clone());
+        let (mut designs, mut deformations) = (hinges.0.to_vec(), hinges.1.to_vec());
         for (design, deformation) in designs.iter_mut().zip(&mut deformations) {
             let unknowns = [
                 &mut deformation.a,
@@ -130,6 +157,7 @@ fn differences(
                 &mut deformation.theta,
                 &mut design.w_lig,
                 &mut design.alpha,
+                &mut design.fillet_ratio,
             ];
             *unknowns.into_iter().nth(direction).unwrap() += step;
         }
@@ -142,7 +170,7 @@ fn differences(
         .collect()
 }
 
-/// The derivatives of W and of the forces in one of (a, s, theta, w_lig, alpha), from a HingeEnergy.
+/// The derivatives of W and of the forces in one of (a, s, theta, w_lig, alpha, rho_f), from a HingeEnergy.
 fn derivative(energy: &HingeEnergy, direction: usize) -> [f64; 4] {
     let first = match direction {
         0..3 => energy.forces[direction],
@@ -157,13 +185,27 @@ fn derivative(energy: &HingeEnergy, direction: usize) -> [f64; 4] {
 
 #[test]
 fn every_derivative_agrees_with_finite_differences() {
-    let surrogate = with_peak();
-    let (designs, deformations) = hinges(&states());
+    derivatives_agree(&with_peak(), 0.16, 5);
+    // In hinges with other holes than that of the features the tip moves with the hole.
+    for fillet_ratio in [0.03, 0.16, 0.37] {
+        derivatives_agree(&with_holes(), fillet_ratio, 6);
+    }
+}
+
+/// The derivatives in the first `directions` of (a, s, theta, w_lig, alpha, rho_f).
+fn derivatives_agree(surrogate: &Surrogate, fillet_ratio: f64, directions: usize) {
+    let (mut designs, deformations) = hinges(&states());
+    for design in &mut designs {
+        design.fillet_ratio = fillet_ratio;
+    }
     let prepared = surrogate.prepare(&designs);
     let exact = surrogate.evaluate(&prepared, &deformations, Order::Design);
     let damages = surrogate.damage(&designs, &deformations);
-    for direction in 0..5 {
+    for direction in 0..directions {
+        // rho_f varies by tenths, the others by one.
+        let unit = if direction == 5 { 0.1 } else { 1.0 };
         let energies = differences(
+            (&designs, &deformations),
             |designs, deformations| {
                 let prepared = surrogate.prepare(designs);
                 let energies = surrogate.evaluate(&prepared, deformations, Order::Forces);
@@ -173,19 +215,20 @@ fn every_derivative_agrees_with_finite_differences() {
                 flat.collect()
             },
             direction,
-            1e-5,
+            1e-5 * unit,
         );
         for (exact, difference) in exact.iter().zip(energies.as_chunks::<4>().0) {
             let what = format!("W in direction {direction}");
             assert_close(&what, difference, &derivative(exact, direction), 2e-7);
         }
         let values = differences(
+            (&designs, &deformations),
             |designs, deformations| {
                 let damages = surrogate.damage(designs, deformations).into_iter();
                 damages.flat_map(|it| [it.d, it.d_peak.unwrap()]).collect()
             },
             direction,
-            1e-4,
+            1e-4 * unit,
         );
         let scales = [
             surrogate.damage_scale(),
@@ -213,7 +256,7 @@ fn a_head_for_d_peak_does_not_change_d() {
     for (one, two) in one.iter().zip(&two) {
         assert_close("D", &[two.d], &[one.d], 1e-14);
         assert_close("dD", &two.gradient, &one.gradient, 1e-14);
-        assert_eq!((one.d_peak, one.peak_gradient), (None, [0.0; 5]));
+        assert_eq!((one.d_peak, one.peak_gradient), (None, [0.0; 6]));
     }
 }
 
@@ -287,9 +330,9 @@ fn weights_of_another_thickness_follow_similarity() {
         assert_close("W", &[thin.w], &[FACTOR * force * thick.w], 1e-12);
         let expected = [force * f_a, force * f_s, FACTOR * force * m];
         assert_close("forces", &thin.forces, &expected, 1e-12);
-        let [by_width, by_angle] = thick.design;
+        let [by_width, by_angle, _] = thick.design;
         let expected = [force * by_width, FACTOR * force * by_angle];
-        assert_close("by design", &thin.design, &expected, 1e-12);
+        assert_close("by design", &thin.design[..2], &expected, 1e-12);
         let expected = FACTOR * thick.tangent[0][0];
         assert_close("tangent", &[thin.tangent[0][0]], &[expected], 1e-12);
     }

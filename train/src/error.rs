@@ -57,6 +57,11 @@ pub enum TrainError {
     )]
     OtherSharpness { found: f64 },
     #[error(
+        "the initial weights are for holes of several radii, but the database has holes of one radius; start with weights \
+         for one radius, or with random weights"
+    )]
+    OneHole,
+    #[error(
         "the initial weights do not have the mirror symmetry; set `mirror = false` in the \
          configuration, or start with random weights"
     )]

@@ -42,7 +42,9 @@ mod tests {
     use burn::tensor::{DType, TensorCreationOptions};
     use dataset::Row;
     use hinge::{HingeConstants, HingeDesign, HingeSample, TrainingDomain};
-    use surrogate::{Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS};
+    use surrogate::{
+        Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_names,
+    };
 
     const SHARPNESS: f64 = 4.0;
 
@@ -86,8 +88,11 @@ mod tests {
             format_version: FORMAT_VERSION,
             weights_hash: None,
             units: UNITS.into(),
-            features: FEATURE_NAMES.map(Into::into).to_vec(),
-            standardisation: scales.standardisation,
+            features: FEATURE_NAMES[..scales.features()]
+                .iter()
+                .map(ToString::to_string)
+                .collect(),
+            standardisation: scales.standardisation.clone(),
             energy_scale: scales.energy,
             damage_scale: scales.damage,
             peak_scale: scales.peak,
@@ -100,6 +105,7 @@ mod tests {
                 kerf: 0.2,
                 r_win: 100.0,
             },
+            holes: (scales.features() == FEATURE_NAMES.len()).then_some([0.05, 0.35]),
             material: String::new(),
             material_hash: None,
             settings_hash: None,
@@ -117,7 +123,8 @@ mod tests {
     }
 
     /// |burn - kernel| / |kernel| over all rows, for W, F_a, F_s, M_theta, D and D_peak.
-    fn disagreement(backend: Backend, dtype: DType) -> [f64; 6] {
+    fn disagreement(backend: Backend, dtype: DType, several_holes: bool) -> [f64; 6] {
+        let features = feature_names(several_holes).len();
         let options = TensorCreationOptions::new(backend.device()).with_dtype(dtype);
         let config = TrainingConfig {
             seed: 1,
@@ -126,14 +133,19 @@ mod tests {
             mirror: true,
             ..config()
         };
-        let networks = Networks::new(&config, true, &options);
-        let rows: Vec<Row> = (0..200).map(row).collect();
-        let scales = Scales::new(&rows, false).unwrap();
+        let networks = Networks::new(&config, features, true, &options);
+        let mut rows: Vec<Row> = (0..200).map(row).collect();
+        if several_holes {
+            for (i, row) in rows.iter_mut().enumerate() {
+                row.design.fillet_ratio = 0.2 + 0.15 * (2.3 * i as f64).sin();
+            }
+        }
+        let scales = Scales::new(&rows, 0.16, feature_names(several_holes), false).unwrap();
         let samples: Vec<_> = rows
             .iter()
             .map(|row| scales.sample(&row.design, &row.sample))
             .collect();
-        let predicted = predict(&networks, &Batch::new(&samples, &options), SHARPNESS);
+        let predicted = predict(&networks, &Batch::new(&samples, features, &options), SHARPNESS);
         let column = |tensor: &burn::tensor::Tensor<2>, k: usize, scale: f64| -> Vec<f64> {
             let column = tensor.clone().inner().narrow(1, k, 1);
             let values: Vec<f64> = column.try_into_vec_as().unwrap();
@@ -162,9 +174,11 @@ mod tests {
     fn the_kernel_agrees_with_burn_in_both_precisions() {
         for &backend in Backend::ALL {
             for (dtype, tolerance) in [(DType::F32, 1e-6), (DType::F64, 1e-14)] {
-                let errors = disagreement(backend, dtype);
-                let close = errors.iter().all(|&error| error < tolerance);
-                assert!(close, "{backend} {dtype:?}: {errors:?}");
+                for several_holes in [false, true] {
+                    let errors = disagreement(backend, dtype, several_holes);
+                    let close = errors.iter().all(|&error| error < tolerance);
+                    assert!(close, "{backend} {dtype:?} {several_holes}: {errors:?}");
+                }
             }
         }
     }

@@ -19,9 +19,9 @@ use crate::networks::Networks;
 use crate::samples::Scales;
 use crate::validation::Parity;
 use burn::tensor::{DType, TensorCreationOptions};
-use dataset::Row;
+use dataset::{Manifest, Row};
 use hinge::HingeConstants;
-use surrogate::{Card, Layer, Layers, Standardisation, Surrogate};
+use surrogate::{Card, Layer, Layers, Standardisation, Surrogate, feature_names};
 
 /// The initial networks and their scales.
 pub(crate) struct Initial {
@@ -30,17 +30,21 @@ pub(crate) struct Initial {
 }
 
 impl Initial {
-    /// The pretrained weights for the windows `hinge`, fitted to the training rows, which include their mirror images if
+    /// The pretrained weights for the windows of a database, fitted to the training rows, which include their mirror images if
     /// `symmetric`.
     pub fn new(
         pretrained: &Surrogate,
         rows: &[Row],
-        hinge: &HingeConstants,
+        manifest: &Manifest,
         symmetric: bool,
     ) -> Result<Self, TrainError> {
-        let pretrained = at_size_of(pretrained, hinge);
+        if pretrained.card().holes.is_some() && manifest.holes.is_none() {
+            return Err(TrainError::OneHole);
+        }
+        let pretrained = at_size_of(pretrained, &manifest.hinge);
         let parity = Parity::new(&pretrained, rows);
-        let own = Scales::new(rows, symmetric)?;
+        let names = feature_names(manifest.holes.is_some());
+        let own = Scales::new(rows, manifest.hinge.fillet_ratio, names, symmetric)?;
         let card = pretrained.card();
         let mut layers = pretrained.layers();
         let (from, to) = (&card.standardisation, &own.standardisation);
@@ -127,16 +131,20 @@ fn factor(points: impl Iterator<Item = [f64; 2]>) -> f64 {
 }
 
 /// Changes a first layer such that its outputs for inputs standardised by `to` are those for inputs standardised by
-/// `from` before.
+/// `from` before. They do not depend on a feature that `to` alone has, the radius of the hole.
 fn restandardise(first: &mut Layer, from: &Standardisation, to: &Standardisation) {
-    let features = from.mean.len();
-    let rows = first.weight.values.chunks_exact_mut(features);
-    for (weights, bias) in rows.zip(&mut first.bias.values) {
-        for (k, weight) in weights.iter_mut().enumerate() {
-            *bias += *weight * (to.mean[k] - from.mean[k]) / from.std[k];
-            *weight *= to.std[k] / from.std[k];
+    let [known, features] = [from, to].map(|features| features.mean.len());
+    let mut weights = Vec::with_capacity(first.bias.values.len() * features);
+    let rows = first.weight.values.chunks_exact(known);
+    for (row, bias) in rows.zip(&mut first.bias.values) {
+        for (k, weight) in row.iter().enumerate() {
+            *bias += weight * (to.mean[k] - from.mean[k]) / from.std[k];
+            weights.push(weight * to.std[k] / from.std[k]);
         }
+        weights.resize(weights.len() + features - known, 0.0);
     }
+    first.weight.shape[1] = features;
+    first.weight.values = weights;
 }
 
 fn multiply(layer: &mut Layer, factor: f64) {

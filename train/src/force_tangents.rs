@@ -20,7 +20,7 @@ pub(crate) struct Embedding {
     pub tangents: Tensor<3>,
 }
 
-/// Evaluates chi and its tangents. `inputs` are those of the undeformed and of the deformed states, (2, n, 5).
+/// Evaluates chi and its tangents. `inputs` are those of the undeformed and of the deformed states, (2, n, features).
 pub(crate) fn with_tangents(layers: &[Affine], inputs: Tensor<3>) -> Embedding {
     let (first, following) = layers
         .split_first()
@@ -59,7 +59,7 @@ mod tests {
     use crate::config::TrainingConfig;
     use crate::loss::tests::config;
     use crate::networks::Networks;
-    use crate::samples::Batch;
+    use crate::samples::{Batch, Sample};
     use crate::samples::tests::samples;
     use burn::tensor::{DType, TensorCreationOptions};
 
@@ -68,23 +68,24 @@ mod tests {
         let step = 1e-5;
         for &backend in Backend::ALL {
             let options = TensorCreationOptions::new(backend.device()).with_dtype(DType::F64);
-            for symmetric in [false, true] {
+            for (symmetric, features) in [(false, 5), (true, 5), (true, 6)] {
                 let config = TrainingConfig {
                     seed: 5,
                     damage: vec![2],
                     mirror: symmetric,
                     ..config()
                 };
-                let chi = Networks::new(&config, true, &options).chi;
+                let chi = Networks::new(&config, features, true, &options).chi;
                 let layers = chi.affine();
-                let embedding = with_tangents(&layers, Batch::new(&samples(6), &options).states);
+                let batch = |samples: &[Sample]| Batch::new(samples, features, &options);
+                let embedding = with_tangents(&layers, batch(&samples(6)).states);
                 for k in 0..3 {
                     let moved = |step: f64| {
                         let mut samples = samples(6);
                         samples
                             .iter_mut()
                             .for_each(|sample| sample.inputs[k] += step);
-                        forward(&layers, Batch::new(&samples, &options).deformed())
+                        forward(&layers, batch(&samples).deformed())
                     };
                     let difference = (moved(step) - moved(-step)).div_scalar(2.0 * step);
                     let tangent = embedding.tangents.clone().narrow(0, k, 1).squeeze_dim(0);

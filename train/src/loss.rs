@@ -121,8 +121,8 @@ pub(crate) mod tests {
             mirror: symmetric,
             ..config()
         };
-        let networks = Networks::new(&config, true, &options);
-        let batch = Batch::new(&samples(8), &options);
+        let networks = Networks::new(&config, 6, true, &options);
+        let batch = Batch::new(&samples(8), 6, &options);
         let gradients = loss(&networks, &batch, &config).backward();
         let step = 1e-5;
         for (head, index) in [(false, 0), (false, 1), (false, 2), (true, 0), (true, 1)] {

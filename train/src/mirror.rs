@@ -1,7 +1,7 @@
 //! Mirror symmetry by construction, instead of learned from mirror images.
 //!
 //! W(a, s, theta; alpha) = W(a, -s, theta; pi - alpha) is W(x) = W(S x) in standardised features,
-//! with S = diag(1, -1, 1, 1, -1) if the means of eta_s and alpha are 0 and pi / 2. The units of
+//! with S = diag(1, -1, 1, 1, -1, 1) if the means of eta_s and alpha are 0 and pi / 2. The units of
 //! each layer form pairs (j, n - 1 - j). One unit of a pair has the value of the other unit at the mirror image:
 //!
 //! ```text
@@ -17,8 +17,12 @@ use burn::tensor::{Tensor, TensorData};
 use std::f64::consts::FRAC_PI_2;
 use surrogate::Standardisation;
 
-/// The diagonal of S.
-const SIGNS: [f64; 5] = [1.0, -1.0, 1.0, 1.0, -1.0];
+/// The diagonal of S. The last feature, the radius of the hole, is that of weights for several radii.
+const SIGNS: [f64; 6] = [1.0, -1.0, 1.0, 1.0, -1.0, 1.0];
+
+/// Positions of the features that change their sign.
+const ETA_S: usize = 1;
+const ALPHA: usize = 4;
 
 /// How a layer is determined by its trained part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +55,8 @@ impl Fold {
             Self::Whole => Affine { weight, bias },
             Self::First => {
                 let options = (&weight.device(), weight.dtype());
-                let signs = TensorData::new(SIGNS.to_vec(), [SIGNS.len(), 1]);
+                let [features, _] = weight.dims();
+                let signs = TensorData::new(SIGNS[..features].to_vec(), [features, 1]);
                 let signs: Tensor<2> = Tensor::from_data(signs, options);
                 let images = (weight.clone() * signs).flip([1]);
                 Affine {
@@ -83,13 +88,12 @@ impl Fold {
 
 /// Whether the mirror image of standardised features x is S x.
 pub(crate) fn is_centred(standardisation: &Standardisation) -> bool {
-    let [_, eta_s, .., alpha] = standardisation.mean;
-    eta_s == 0.0 && alpha == FRAC_PI_2
+    standardisation.mean[ETA_S] == 0.0 && standardisation.mean[ALPHA] == FRAC_PI_2
 }
 
 /// Sets the means of eta_s and alpha of rows with their mirror images to their exact values, so that the mirror image
 /// of standardised features x is S x.
 pub(crate) fn centre(standardisation: &mut Standardisation) {
-    let [_, eta_s, .., alpha] = &mut standardisation.mean;
-    (*eta_s, *alpha) = (0.0, FRAC_PI_2);
+    standardisation.mean[ETA_S] = 0.0;
+    standardisation.mean[ALPHA] = FRAC_PI_2;
 }

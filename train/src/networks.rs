@@ -9,9 +9,6 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use surrogate::{Layer, Layers};
 
-/// The features of (13).
-const INPUTS: usize = 5;
-
 /// The networks have no common layers: D_peak, which has more scatter, would otherwise cause the network of D to
 /// overfit.
 #[derive(Module, Debug)]
@@ -39,12 +36,17 @@ pub(crate) struct Dense {
 impl Networks {
     /// Initial networks with Xavier's uniform weights and zero biases. The random numbers do not come from the backend,
     /// so that a seed gives the same weights on every backend.
-    pub fn new(config: &TrainingConfig, with_peak: bool, options: &TensorCreationOptions) -> Self {
+    pub fn new(
+        config: &TrainingConfig,
+        features: usize,
+        with_peak: bool,
+        options: &TensorCreationOptions,
+    ) -> Self {
         let (embedding, symmetric) = (&config.embedding, config.mirror);
         let mut rng = ChaCha8Rng::seed_from_u64(config.seed);
         let head: Vec<usize> = config.damage.iter().copied().chain([1]).collect();
         let mut network = |widths: &[usize], folds: Vec<Fold>| {
-            let inputs = std::iter::once(INPUTS).chain(widths.iter().copied());
+            let inputs = std::iter::once(features).chain(widths.iter().copied());
             let layers = inputs
                 .zip(widths)
                 .zip(folds)

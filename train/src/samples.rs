@@ -5,12 +5,15 @@ use crate::mirror;
 use burn::tensor::{Tensor, TensorCreationOptions, TensorData};
 use dataset::Row;
 use hinge::{HingeDeformation, HingeDesign, HingeSample};
-use surrogate::{Card, FEATURE_NAMES, Standardisation, features};
+use surrogate::{Card, FEATURE_NAMES, NetLigament, Standardisation, feature_names, features};
 
 /// The scales of (14) and (15), computed from the training rows.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Scales {
+    /// Of the hinges that the networks see; [`NetLigament`].
     pub standardisation: Standardisation,
+    /// The hole of these hinges, over w_lig.
+    pub hole: f64,
     /// W_s: root mean square of W (N mm).
     pub energy: f64,
     /// sigma_F,c: root mean square of (F_a, F_s, M_theta) in (N, N, N mm).
@@ -24,13 +27,16 @@ pub(crate) struct Scales {
     pub peak_weight: f64,
 }
 
+/// Maximum number of features.
+const FEATURES: usize = FEATURE_NAMES.len();
+
 /// One row: inputs of the networks and targets of (15), both of order one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sample {
-    /// Standardised xi(eps, g).
-    pub inputs: [f64; 5],
+    /// Standardised xi(eps, g). The networks see as many of them as the standardisation has.
+    pub inputs: [f64; FEATURES],
     /// Standardised xi(0, g).
-    pub origin: [f64; 5],
+    pub origin: [f64; FEATURES],
     /// Factors from d|r|^2 / d(standardised eta_a, eta_s, theta) to (F_a, F_s, M_theta) / sigma_F.
     pub force_factors: [f64; 3],
     /// W / W_s
@@ -45,7 +51,7 @@ pub(crate) struct Sample {
 
 /// Samples as tensors, one row per sample.
 pub(crate) struct Batch {
-    /// Inputs of the undeformed and the deformed states, (2, n, 5).
+    /// Inputs of the undeformed and the deformed states, (2, n, features).
     pub states: Tensor<3>,
     pub force_factors: Tensor<2>,
     /// (n, 1)
@@ -60,8 +66,14 @@ pub(crate) struct Batch {
 impl Scales {
     /// Computes the scales; an error if a feature is constant, or a target is zero or has outliers.
     ///
-    /// `symmetric`: the rows include their mirror images.
-    pub fn new(rows: &[Row], symmetric: bool) -> Result<Self, TrainError> {
+    /// `hole` is that of the hinges that the networks see, over w_lig, and `names` are their features. `symmetric`: the rows
+    /// include their mirror images.
+    pub fn new(
+        rows: &[Row],
+        hole: f64,
+        names: &[&'static str],
+        symmetric: bool,
+    ) -> Result<Self, TrainError> {
         let count = rows.len() as f64;
         let root_mean_square = |target: &'static str, value: fn(&Row) -> f64| {
             let sum: f64 = rows.iter().map(|row| value(row).powi(2)).sum();
@@ -73,14 +85,23 @@ impl Scales {
                 Err(TrainError::NoScale { target, scale })
             }
         };
-        let xi: Vec<[f64; 5]> = rows.iter().map(row_features).collect();
-        let mean: [f64; 5] =
-            std::array::from_fn(|k| xi.iter().map(|xi| xi[k]).sum::<f64>() / count);
-        let std: [f64; 5] = std::array::from_fn(|k| {
-            let squares: f64 = xi.iter().map(|xi| (xi[k] - mean[k]).powi(2)).sum();
-            (squares / count).sqrt()
-        });
-        for (k, feature) in FEATURE_NAMES.into_iter().enumerate() {
+        let xi: Vec<[f64; FEATURES]> = (rows.iter())
+            .map(|row| {
+                let ligament = NetLigament::new(&row.design, hole);
+                let state = ligament.deformation(&row.sample.deformation());
+                features(&ligament.design(&row.design), &state)
+            })
+            .collect();
+        let mean: Vec<f64> = (0..names.len())
+            .map(|k| xi.iter().map(|xi| xi[k]).sum::<f64>() / count)
+            .collect();
+        let std: Vec<f64> = (0..names.len())
+            .map(|k| {
+                let squares: f64 = xi.iter().map(|xi| (xi[k] - mean[k]).powi(2)).sum();
+                (squares / count).sqrt()
+            })
+            .collect();
+        for (k, &feature) in names.iter().enumerate() {
             // The rounding error of the mean gives a constant feature a standard deviation of this size.
             if !(std[k] > 1e-12 * mean[k].abs() && std[k].is_finite()) {
                 return Err(TrainError::ConstantFeature {
@@ -100,6 +121,7 @@ impl Scales {
         }
         Ok(Self {
             standardisation,
+            hole,
             energy: root_mean_square("W", |row| row.sample.w)?,
             forces: [
                 root_mean_square("F_a", |row| row.sample.f_a)?,
@@ -120,19 +142,32 @@ impl Scales {
     /// The scales of trained weights; those of the forces are computed from the rows.
     pub fn from_card(card: &Card, rows: &[Row], symmetric: bool) -> Result<Self, TrainError> {
         Ok(Self {
-            standardisation: card.standardisation,
+            standardisation: card.standardisation.clone(),
             energy: card.energy_scale,
             damage: card.damage_scale,
             peak: card.peak_scale,
-            ..Self::new(rows, symmetric)?
+            ..Self::new(
+                rows,
+                card.hinge.fillet_ratio,
+                feature_names(card.holes.is_some()),
+                symmetric,
+            )?
         })
+    }
+
+    /// Number of features that the networks see.
+    pub fn features(&self) -> usize {
+        self.standardisation.mean.len()
     }
 
     /// One state in these scales.
     pub fn sample(&self, design: &HingeDesign, sample: &HingeSample) -> Sample {
-        let Standardisation { mean, std } = self.standardisation;
-        let standardise =
-            |xi: [f64; 5]| -> [f64; 5] { std::array::from_fn(|k| (xi[k] - mean[k]) / std[k]) };
+        let Standardisation { mean, std } = &self.standardisation;
+        let standardise = |xi: [f64; FEATURES]| -> [f64; FEATURES] {
+            std::array::from_fn(|k| mean.get(k).map_or(0.0, |mean| (xi[k] - mean) / std[k]))
+        };
+        let ligament = NetLigament::new(design, self.hole);
+        let (design, sample) = (&ligament.design(design), &ligament.sample(sample));
         // d(eta_a, eta_s, theta) / d(a, s, theta)
         let w = design.w_lig;
         let by_deformation = [1.0 / w, 1.0 / w, 1.0];
@@ -185,14 +220,12 @@ fn d_peak(row: &Row) -> f64 {
     row.sample.d_peak.unwrap_or(0.0)
 }
 
-fn row_features(row: &Row) -> [f64; 5] {
-    features(&row.design, &row.sample.deformation())
-}
-
 impl Batch {
-    pub fn new(samples: &[Sample], options: &TensorCreationOptions) -> Self {
-        let undeformed = columns(samples, options, |sample| sample.origin);
-        let deformed = columns(samples, options, |sample| sample.inputs);
+    /// The samples with the first `features` of their inputs.
+    pub fn new(samples: &[Sample], features: usize, options: &TensorCreationOptions) -> Self {
+        let seen = |of: fn(&Sample) -> [f64; FEATURES]| columns(samples, options, of);
+        let undeformed = seen(|sample| sample.origin).narrow(1, 0, features);
+        let deformed = seen(|sample| sample.inputs).narrow(1, 0, features);
         Self {
             states: Tensor::stack(vec![undeformed, deformed], 0),
             force_factors: columns(samples, options, |sample| sample.force_factors),
@@ -203,7 +236,7 @@ impl Batch {
         }
     }
 
-    /// Inputs of the deformed states, (n, 5).
+    /// Inputs of the deformed states, (n, features).
     pub fn deformed(&self) -> Tensor<2> {
         self.states.clone().narrow(0, 1, 1).squeeze_dim(0)
     }
@@ -228,7 +261,7 @@ pub(crate) mod tests {
         let sample = |row| Sample {
             inputs: std::array::from_fn(|k| value(row, k)),
             origin: std::array::from_fn(|k| if k < 3 { -0.3 } else { value(row, k) }),
-            force_factors: std::array::from_fn(|k| 1.0 + 0.5 * value(row, 5 + k)),
+            force_factors: std::array::from_fn(|k| 1.0 + 0.5 * value(row, 14 + k)),
             energy: value(row, 8).powi(2),
             forces: std::array::from_fn(|k| value(row, 9 + k)),
             damage: [12, 13].map(|column| value(row, column).abs()),

@@ -26,7 +26,7 @@ use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::Instant;
-use surrogate::{Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS};
+use surrogate::{Card, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_names};
 
 /// A trained surrogate with its history and test errors.
 #[derive(Clone, Debug)]
@@ -128,14 +128,18 @@ impl Training {
         let (layers, scales) = match (start, &state) {
             (Start::Weights(pretrained), _) => {
                 check_pretrained(pretrained, config, backend)?;
-                let initial = Initial::new(pretrained, &rows, &manifest.hinge, config.mirror)?;
+                let initial = Initial::new(pretrained, &rows, manifest, config.mirror)?;
                 (Some(initial.layers), initial.scales)
             }
             (_, Some(state)) => {
                 let card = &state.progress.card;
                 (None, Scales::from_card(card, &rows, config.mirror)?)
             }
-            (_, None) => (None, Scales::new(&rows, config.mirror)?),
+            (_, None) => {
+                let hole = manifest.hinge.fillet_ratio;
+                let names = feature_names(manifest.holes.is_some());
+                (None, Scales::new(&rows, hole, names, config.mirror)?)
+            }
         };
         let mut card = card(manifest, &rows, &scales, config)?;
         card.distillation = data.record().cloned();
@@ -149,7 +153,12 @@ impl Training {
         let options = options(config, backend);
         let networks = match &layers {
             Some(layers) => Networks::from_layers(layers, config.mirror, &options),
-            None => Networks::new(config, scales.peak.is_some(), &options),
+            None => Networks::new(
+                config,
+                scales.features(),
+                scales.peak.is_some(),
+                &options,
+            ),
         };
         let solved = parts.training.iter().map(|row| (&row.design, &row.sample));
         let distilled = data.distillation.into_iter();
@@ -295,7 +304,7 @@ impl Training {
         let first = (epoch - 1) * self.steps_per_epoch();
         for (step, batch) in order.chunks(self.config.batch_size).enumerate() {
             let samples: Vec<Sample> = batch.iter().map(|&index| self.samples[index]).collect();
-            let batch = Batch::new(&samples, &self.options);
+            let batch = Batch::new(&samples, self.scales.features(), &self.options);
             let value = loss(&networks, &batch, &self.config);
             let gradients = GradientsParams::from_grads(value.backward(), &networks);
             sum += value.try_into_scalar::<f64>()? * samples.len() as f64;
@@ -356,14 +365,18 @@ fn card(
         format_version: FORMAT_VERSION,
         weights_hash: None,
         units: UNITS.into(),
-        features: FEATURE_NAMES.map(Into::into).to_vec(),
-        standardisation: scales.standardisation,
+        features: feature_names(manifest.holes.is_some())
+            .iter()
+            .map(ToString::to_string)
+            .collect(),
+        standardisation: scales.standardisation.clone(),
         energy_scale: scales.energy,
         damage_scale: scales.damage,
         peak_scale: scales.peak,
         damage_sharpness: config.damage_sharpness,
         domain: domain.ok_or(TrainError::NoRows { part: "training" })?,
         hinge: manifest.hinge,
+        holes: manifest.holes,
         material: manifest.material.clone(),
         material_hash: the_only(&manifest.material_hashes),
         settings_hash: the_only(&manifest.settings_hashes),

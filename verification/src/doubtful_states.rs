@@ -27,7 +27,7 @@ pub struct DoubtfulState {
 /// Random states of the training domain that the networks share, those with the largest doubt first.
 pub fn doubtful_states(networks: &[Surrogate]) -> Vec<DoubtfulState> {
     let shared = &networks[0];
-    let paths = random_paths(shared.domain(), &shared.card().hinge, DRAWN, 1, 0);
+    let paths = random_paths(shared.into(), DRAWN, 1, 0);
     let designs: Vec<HingeDesign> = paths.iter().map(|path| path.hinge.design).collect();
     let states: Vec<HingeDeformation> = paths.iter().map(|path| path.hinge.path.at(1.0)).collect();
     let energies: Vec<Vec<f64>> = networks

@@ -36,7 +36,7 @@
 //!     stop: &AtomicBool::new(false),
 //!     progress: Box::new(|done, all| println!("{done} of {all}")),
 //! };
-//! let paths = random_paths(weights.domain(), &weights.card().hinge, 8, 4, 0);
+//! let paths = random_paths((&weights).into(), 8, 4, 0);
 //! let check = spot_check(&windows, &paths, &film, Tier::Tiny)?;
 //! assert_eq!((check.rows.len(), check.unsolved.len()), (8, 0));
 //! # Ok::<_, Box<dyn std::error::Error>>(())
@@ -76,7 +76,7 @@ pub use learning::{Accuracy, LearningEnd, LearningRound, LearningSteps, Learning
 pub use networks::{ensemble, judging_tier};
 pub use polish::{PolishGain, PolishTask, Polished, polish};
 pub use recorded_path::{RecordedPath, paths_of, recorded_paths};
-pub use region::{distillation_states, region};
+pub use region::{distillation_states, drawn, region};
 pub use replay::{ElementWindows, Replay, ReplayedHinge, UnsolvedHinge};
 pub use rows::{InvalidRow, collected, collected_windows, rows};
 pub use sheet_check::{
@@ -84,6 +84,6 @@ pub use sheet_check::{
 };
 pub use sheet_cost::SheetCost;
 pub use sheet_errors::SheetErrors;
-pub use spot_check::{SpotCheck, SpotPath, random_paths, spot_check};
+pub use spot_check::{DrawnStates, SpotCheck, SpotPath, random_paths, spot_check};
 pub use verification_error::VerificationError;
 pub use whole_sheet::{Branch, sheet_problem, usual_sheet_tier};

@@ -1,8 +1,8 @@
 //! The region of states that the rays of a campaign cover, as far as it is needed before they are solved.
 
-use crate::spot_check::{SpotPath, random_paths};
+use crate::spot_check::{DrawnStates, SpotPath, random_paths};
 use fe_driver::{Campaign, Ray};
-use hinge::{HingeConstants, HingeDeformation, HingeDesign, TrainingDomain};
+use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
 
 /// The states that the campaign's rays pass through if they are solved to their ends. It does not depend on the number of
 /// rays, so that the spot check remains the same when the campaign is enlarged.
@@ -13,6 +13,15 @@ pub fn region(campaign: &Campaign) -> Option<TrainingDomain> {
     let rays = rays.into_iter().flat_map(|ray| [ray, ray.mirrored()]);
     let states: Vec<_> = rays.flat_map(|ray| states(ray, STATES)).collect();
     TrainingDomain::covering(states)
+}
+
+/// The states of a campaign's region.
+pub fn drawn<'a>(campaign: &'a Campaign, region: &'a TrainingDomain) -> DrawnStates<'a> {
+    DrawnStates {
+        domain: region,
+        constants: &campaign.design,
+        holes: campaign.rays.fillet_ratio,
+    }
 }
 
 /// States at equal distances on a ray, up to its end.
@@ -28,13 +37,10 @@ const DISTILLATION_STATES: usize = 20_000;
 /// the campaign alone, the network is free in the corners that no ray passes: the moment of one of steel was wrong by 27 times
 /// the root mean square there, although those of the networks were not (`docs/results/fine-tuning`). Some states lie outside
 /// the training domain of the solved rays: the networks extrapolate there, and the one network follows their median.
-pub fn distillation_states(
-    region: &TrainingDomain,
-    constants: &HingeConstants,
-) -> Vec<(HingeDesign, HingeDeformation)> {
+pub fn distillation_states(drawn: DrawnStates) -> Vec<(HingeDesign, HingeDeformation)> {
     // Other states than those of a spot check, whose seeds are small by habit.
     const SEED: u64 = u64::MAX;
-    let paths = random_paths(region, constants, DISTILLATION_STATES, 1, SEED);
+    let paths = random_paths(drawn, DISTILLATION_STATES, 1, SEED);
     let state = |path: &SpotPath| (path.hinge.design, path.hinge.path.at(1.0));
     paths.iter().map(state).collect()
 }
@@ -50,7 +56,7 @@ mod tests {
             Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/campaigns/pet-0.5mm.toml");
         let campaign = Campaign::load(&file).unwrap();
         let region = region(&campaign).unwrap();
-        let states = distillation_states(&region, &campaign.design);
+        let states = distillation_states(drawn(&campaign, &region));
         assert_eq!(states.len(), DISTILLATION_STATES);
         assert!(
             states

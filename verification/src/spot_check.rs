@@ -15,6 +15,7 @@ use mesher::Tier;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeSet;
+use surrogate::Surrogate;
 
 /// A hinge driven along a path, and the fractions of the path at which weights are compared with it.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,10 +39,30 @@ pub struct SpotCheck {
     pub cpu_seconds: f64,
 }
 
-/// `count` states drawn uniformly inside a domain, `each` of them on one ray.
+/// The hinges and states that are drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct DrawnStates<'a> {
+    /// Widths, cut angles and deformations.
+    pub domain: &'a TrainingDomain,
+    /// Kerf, window and, unless it is drawn, the hole.
+    pub constants: &'a HingeConstants,
+    /// Minimum and maximum radius of the hole over w_lig, if it is drawn.
+    pub holes: Option<[f64; 2]>,
+}
+
+impl<'a> From<&'a Surrogate> for DrawnStates<'a> {
+    fn from(weights: &'a Surrogate) -> Self {
+        Self {
+            domain: weights.domain(),
+            constants: &weights.card().hinge,
+            holes: weights.card().holes,
+        }
+    }
+}
+
+/// `count` states drawn uniformly, `each` of them on one ray.
 pub fn random_paths(
-    domain: &TrainingDomain,
-    constants: &HingeConstants,
+    drawn: DrawnStates,
     count: usize,
     each: usize,
     seed: u64,
@@ -51,7 +72,7 @@ pub fn random_paths(
     let mut left = count;
     while left > 0 {
         let states = each.min(left);
-        paths.push(random_path(domain, constants, states, &mut random));
+        paths.push(random_path(drawn, states, &mut random));
         left -= states;
     }
     paths
@@ -100,17 +121,16 @@ impl SpotCheck {
 }
 
 /// A random ray inside the training domain with `states` uniformly distributed states on it.
-fn random_path(
-    domain: &TrainingDomain,
-    constants: &HingeConstants,
-    states: usize,
-    random: &mut ChaCha8Rng,
-) -> SpotPath {
+fn random_path(drawn: DrawnStates, states: usize, random: &mut ChaCha8Rng) -> SpotPath {
+    let domain = drawn.domain;
     let mut between = |[from, to]: [f64; 2]| from + (to - from) * random.random::<f64>();
-    let design = constants.hinge(
+    let mut design = drawn.constants.hinge(
         between(domain.w_lig.map(f64::ln)).exp(),
         between(domain.alpha),
     );
+    if let Some(holes) = drawn.holes {
+        design.fillet_ratio = between(holes);
+    }
     let bounds = domain.bounds();
     let direction = loop {
         let [eta_a, eta_s, theta] = bounds.map(&mut between);
@@ -157,11 +177,16 @@ mod tests {
     fn states_are_uniform_inside_the_domain() {
         let state = [[-0.8, 0.2], [-0.4, 0.4], [-0.1, 1.3]];
         let domain = TrainingDomain::from_box(state, [5.0, 25.0], [0.8, 2.3]);
+        let drawn = DrawnStates {
+            domain: &domain,
+            constants: &HingeConstants::PAPER,
+            holes: Some([0.1, 0.3]),
+        };
         let mut random = ChaCha8Rng::seed_from_u64(1);
-        let mut counts = [0; 4];
+        let mut counts = [0; 5];
         let mut all = 0;
         for _ in 0..500 {
-            let spot = random_path(&domain, &HingeConstants::PAPER, 4, &mut random);
+            let spot = random_path(drawn, 4, &mut random);
             assert_eq!(spot.fractions.last(), Some(&1.0));
             for fraction in &spot.fractions {
                 let state = spot.hinge.path.at(*fraction);
@@ -172,6 +197,7 @@ mod tests {
                 counts[1] += usize::from(eta_s > 0.0);
                 counts[2] += usize::from(state.theta > 0.6);
                 counts[3] += usize::from(spot.hinge.design.w_lig > 125f64.sqrt());
+                counts[4] += usize::from(spot.hinge.design.fillet_ratio > 0.2);
                 all += 1;
             }
         }

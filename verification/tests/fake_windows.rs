@@ -15,7 +15,7 @@ use surrogate::Surrogate;
 use tempfile::TempDir;
 use verification::{
     Accuracy, BALANCED, BalanceEnd, Balanced, ElementWindows, LearningEnd, LearningRound,
-    LearningSteps, LearningTask, Replay, VerificationError, balanced, distillation_states, learn,
+    LearningSteps, LearningTask, Replay, VerificationError, balanced, distillation_states, drawn, learn,
     movements, random_paths, recorded_paths, region, size, spot_check,
 };
 
@@ -267,8 +267,7 @@ fn a_replay_compares_every_state_and_names_what_failed() {
 fn a_spot_check_keeps_the_states_of_the_windows_that_are_solved() {
     let (scene, folder) = (scene(), tempfile::tempdir().unwrap());
     let surrogate = scene.surrogate().unwrap();
-    let (domain, constants) = (surrogate.domain(), &surrogate.card().hinge);
-    let paths = random_paths(domain, constants, 12, 3, 0);
+    let paths = random_paths((&*surrogate).into(), 12, 3, 0);
     let first = paths[0].hinge.clone();
     let diverges = FakeSolver::new(STIFFNESS, |solve: &WindowSolve| {
         (solve.problem.hinge == first).then_some(Fault::Diverges(0.4))
@@ -326,10 +325,10 @@ fn rays_are_solved_in_rounds_until_the_weights_are_accurate() {
     let mut campaign = Campaign::load(&path).unwrap();
     campaign.count = 12;
     let region = region(&campaign).unwrap();
-    assert!(!distillation_states(&region, &campaign.design).is_empty());
+    assert!(!distillation_states(drawn(&campaign, &region)).is_empty());
     let solver = healthy();
     let windows = service(&solver, &folder);
-    let paths = random_paths(&region, &campaign.design, 12, 4, 1);
+    let paths = random_paths(drawn(&campaign, &region), 12, 4, 1);
     let check = spot_check(&windows, &paths, &campaign.material, campaign.tier).unwrap();
     let rays = folder.path().join("campaign");
     let learned = |accuracy: f64, deadline: Option<Instant>| {

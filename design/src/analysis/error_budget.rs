@@ -414,7 +414,7 @@ impl Deployed<'_> {
         let tolerance = tolerance.ok_or("no tolerances.kerf in the scene")?;
         let narrower = -0.5 * tolerance / TOLERANCE;
         let errors: Vec<[f64; 3]> = (self.energies.iter())
-            .map(|energy| energy.mixed.map(|[by_width, _]| narrower * by_width))
+            .map(|energy| energy.mixed.map(|[by_width, ..]| narrower * by_width))
             .collect();
         let source = format!("+- {tolerance} mm, two standard deviations");
         Ok((ForceErrors::common(&errors), source))

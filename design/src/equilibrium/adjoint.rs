@@ -18,7 +18,7 @@ use crate::equilibrium::refined_solve::refined_solve;
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::equilibrium::weight::add_weight_gradient;
 use crate::geometry::plane::{add, complex};
-use crate::hinge_law::Order;
+use crate::hinge_law::{HingeGradient, Order};
 use crate::sheet::cut_sheet::SheetGradient;
 use crate::sheet::kinematics::{HingeGeometryGradient, HingeMotion};
 use crate::sheet::panel_vectors::{add_at_hinge, at_hinge};
@@ -38,7 +38,7 @@ pub struct SingularTangent {
 /// The gradient of a function of the path.
 pub(crate) struct PathGradient<'a> {
     /// `by_states[h][i]`: in (a, s, theta, w_lig, alpha) of hinge h at load step i.
-    pub by_states: &'a [Vec<[f64; 5]>],
+    pub by_states: &'a [Vec<HingeGradient>],
     /// In the load factor of each load step; read under displacement control only.
     pub by_load_factors: &'a [f64],
     /// In the last configuration.
@@ -77,7 +77,7 @@ pub(crate) fn adjoint(
     };
     for (i, (step, mut by_q)) in std::iter::zip(path, by_configurations).enumerate() {
         let is_read =
-            by_load_factors[i] != 0.0 || by_states.iter().any(|hinge| hinge[i] != [0.0; 5]);
+            by_load_factors[i] != 0.0 || by_states.iter().any(|hinge| hinge[i] != [0.0; 6]);
         if !is_read && i + 1 < path.len() {
             continue;
         }
@@ -133,6 +133,7 @@ pub(crate) fn adjoint(
             }
             by_sheet.widths[h] += by_state[3] - against(energy.mixed.map(|row| row[0]));
             by_sheet.alphas[h] += by_state[4] - against(energy.mixed.map(|row| row[1]));
+            by_sheet.holes[h] += by_state[5] - against(energy.mixed.map(|row| row[2]));
         }
     }
     Ok(sums)

@@ -4,7 +4,7 @@
 //! The known state is first carried over by the hinge law linearised about it,
 //!
 //! ```text
-//! f = f_0 + K_0 (eps - eps_0) + C_0 (g - g_0),     g = (w_lig, alpha)
+//! f = f_0 + K_0 (eps - eps_0) + C_0 (g - g_0),     g = (w_lig, alpha, rho_f)
 //! ```
 //!
 //! whose equilibrium in the new sheet requires no evaluation of the hinges. Newton's method then corrects it. The states are
@@ -37,8 +37,8 @@ pub struct KnownPath {
 struct LinearisedLaw<'a> {
     deformations: &'a [HingeDeformation],
     energies: &'a [HingeEnergy],
-    /// Changes of w_lig (mm) and alpha (rad).
-    changes: &'a [[f64; 2]],
+    /// Changes of w_lig (mm), alpha (rad) and rho_f.
+    changes: &'a [[f64; 3]],
 }
 
 impl PreparedLaw for LinearisedLaw<'_> {
@@ -76,8 +76,14 @@ impl EquilibriumSolver {
         {
             return None;
         }
-        let changes: Vec<[f64; 2]> = std::iter::zip(sheet.sheet.designs(), &known.designs)
-            .map(|(to, from)| [to.w_lig - from.w_lig, to.alpha - from.alpha])
+        let changes: Vec<[f64; 3]> = std::iter::zip(sheet.sheet.designs(), &known.designs)
+            .map(|(to, from)| {
+                [
+                    to.w_lig - from.w_lig,
+                    to.alpha - from.alpha,
+                    to.fillet_ratio - from.fillet_ratio,
+                ]
+            })
             .collect();
         let (weighed, loaded) = known.steps.split_at(self.weight_steps());
         let mut path = Vec::with_capacity(known.steps.len());
@@ -96,7 +102,7 @@ impl Branch<'_> {
         &mut self,
         at: f64,
         known: &LoadStep,
-        changes: &[[f64; 2]],
+        changes: &[[f64; 3]],
     ) -> Option<LoadStep> {
         let start = self.carried_over(at, known, changes)?;
         let found = self.balanced(start.clone())?;
@@ -109,7 +115,7 @@ impl Branch<'_> {
     }
 
     /// The equilibrium of this sheet with the hinge law linearised about the states of a known load step.
-    fn carried_over(&mut self, at: f64, known: &LoadStep, changes: &[[f64; 2]]) -> Option<Place> {
+    fn carried_over(&mut self, at: f64, known: &LoadStep, changes: &[[f64; 3]]) -> Option<Place> {
         let law = LinearisedLaw {
             deformations: &known.deformations,
             energies: &known.hinges,

@@ -26,7 +26,7 @@ pub struct CondensedLaw {
 }
 
 impl CondensedLaw {
-    /// (k_a, k_s, k_theta) of each design (N/mm, N/mm, N mm) with their gradients in (w_lig, alpha).
+    /// (k_a, k_s, k_theta) of each design (N/mm, N/mm, N mm) with their gradients in (w_lig, alpha, rho_f).
     pub fn constants(&self, designs: &[HingeDesign]) -> Vec<[Constant; 3]> {
         let prepared = self.surrogate.prepare(designs);
         let mut constants = vec![[Constant::default(); 3]; designs.len()];
@@ -43,7 +43,7 @@ impl CondensedLaw {
                 let weight = 1.0 / (states.len() as f64 * size);
                 for (constants, energy) in std::iter::zip(&mut constants, energies) {
                     constants[c].value += weight * energy.forces[c];
-                    (0..2).for_each(|g| constants[c].gradient[g] += weight * energy.mixed[c][g]);
+                    (0..3).for_each(|g| constants[c].gradient[g] += weight * energy.mixed[c][g]);
                 }
             }
         }
@@ -51,13 +51,13 @@ impl CondensedLaw {
     }
 }
 
-/// A spring constant and its gradient in (w_lig, alpha).
+/// A spring constant and its gradient in (w_lig, alpha, rho_f).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Constant {
     /// k_a or k_s (N/mm), or k_theta (N mm).
     pub value: f64,
-    /// Gradient of `value` in w_lig (per mm) and alpha (per rad).
-    pub gradient: [f64; 2],
+    /// Gradient of `value` in w_lig (per mm), alpha (per rad) and rho_f.
+    pub gradient: [f64; 3],
 }
 
 impl HingeLaw for CondensedLaw {

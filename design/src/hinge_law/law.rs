@@ -6,6 +6,9 @@ use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// A gradient in (a, s, theta, w_lig, alpha, rho_f) of a hinge; rho_f is the radius of its hole over w_lig.
+pub type HingeGradient = [f64; 6];
+
 /// The damage measure of an objective.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

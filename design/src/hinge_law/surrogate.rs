@@ -13,7 +13,7 @@
 //! to its interval by the same psi.
 
 use crate::hinge_law::law::{
-    DamageMeasure, HingeDamage, HingeEnergy, HingeLaw, Order, PreparedLaw,
+    DamageMeasure, HingeDamage, HingeEnergy, HingeGradient, HingeLaw, Order, PreparedLaw,
 };
 use hinge::{HingeDeformation, HingeDesign, Jet, TrainingDomain};
 use std::array::from_fn;
@@ -137,7 +137,7 @@ impl PreparedLaw for PreparedSurrogate<'_> {
 
     fn inside(&self, deformations: &[HingeDeformation]) -> Vec<bool> {
         std::iter::zip(&self.designs, deformations)
-            .map(|(design, deformation)| self.surrogate.domain().contains(design, deformation))
+            .map(|(design, deformation)| self.surrogate.contains(design, deformation))
             .collect()
     }
 }
@@ -202,16 +202,20 @@ impl Continuation {
             energy.tangent = from_fn(|j| from_fn(|k| law.hessian[j][k]));
         }
         if order >= Order::Design {
-            energy.design = [grown * at.design[0] + law.gradient[3], grown * at.design[1]];
-            energy.mixed = from_fn(|j| [mixed(j, 0) + law.hessian[j][3], mixed(j, 1)]);
+            energy.design = at.design.map(|slope| grown * slope);
+            energy.design[0] += law.gradient[3];
+            energy.mixed = from_fn(|j| from_fn(|g| mixed(j, g)));
+            for j in 0..3 {
+                energy.mixed[j][0] += law.hessian[j][3];
+            }
         }
         energy
     }
 
-    /// A gradient in (a, s, theta, w_lig, alpha) at y, pulled back to x.
-    fn gradient(&self, at: &[f64; 5]) -> [f64; 5] {
+    /// A gradient at y, pulled back to x.
+    fn gradient(&self, at: &HingeGradient) -> HingeGradient {
         let along = |j: usize| sum(|i| at[i] * self.mapped[i].gradient[j]);
-        [along(0), along(1), along(2), at[3] + along(3), at[4]]
+        [along(0), along(1), along(2), at[3] + along(3), at[4], at[5]]
     }
 }
 

@@ -4,7 +4,7 @@ use crate::equilibrium::adjoint::{PathGradient, adjoint};
 use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::nearby_path::KnownPath;
 use crate::geometry::plane::add;
-use crate::hinge_law::{Order, PreparedLaw};
+use crate::hinge_law::{HingeGradient, Order, PreparedLaw};
 use crate::objective::design_problem::{
     Deployment, DesignError, DesignProblem, Evaluation, Model, Sensitivities,
 };
@@ -23,7 +23,7 @@ struct Partials<'a> {
     /// In their deployed positions.
     by_outline: &'a [[f64; 2]],
     /// In (a, s, theta, w_lig, alpha) per hinge and step of `path`.
-    by_states: &'a [Vec<[f64; 5]>],
+    by_states: &'a [Vec<HingeGradient>],
     /// In the load factor of each step of `path`.
     by_load_factors: &'a [f64],
     /// In the flat corners of every panel; `None` if all are zero.
@@ -89,7 +89,7 @@ impl DesignProblem {
             }
             law = Some(prepared);
         }
-        let by_states = vec![vec![[0.0; 5]]; sheet.hinges.len()];
+        let by_states = vec![vec![[0.0; 6]]; sheet.hinges.len()];
         let vectors = shape.curvature(&deployment.outline(&outline));
         let gradients = vectors.iter().map(|by_outline| {
             let partials = Partials {

@@ -1,6 +1,7 @@
 //! What a term of the objective is: a function of a deployed sheet, with its derivatives in what the sheet consists of.
 
 use crate::equilibrium::load_step::LoadStep;
+use crate::hinge_law::HingeGradient;
 use crate::sheet::cut_sheet::Sheet;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -65,8 +66,8 @@ pub struct TermGradient {
     /// Of the sum over hinges, of which terms are the mean: in the measures (eta_a, eta_s, D, D_peak) of a hinge at a load
     /// step.
     pub by_measures: Vec<Vec<[f64; 4]>>,
-    /// In (a, s, theta, w_lig, alpha) per hinge and load step.
-    pub by_states: Vec<Vec<[f64; 5]>>,
+    /// In the state and the design of each hinge at each load step.
+    pub by_states: Vec<Vec<HingeGradient>>,
     /// In the load factor of each load step, which a prescribed stroke determines.
     pub by_load_factors: Vec<f64>,
     /// In the flat corners of every panel.
@@ -80,7 +81,7 @@ impl TermGradient {
         Self {
             by_outline: vec![[0.0; 2]; at.outline.len()],
             by_measures: vec![vec![[0.0; 4]; steps]; hinges],
-            by_states: vec![vec![[0.0; 5]; steps]; hinges],
+            by_states: vec![vec![[0.0; 6]; steps]; hinges],
             by_load_factors: vec![0.0; steps],
             by_corners: vec![[[0.0; 2]; 4]; at.sheet.panels.len()],
         }

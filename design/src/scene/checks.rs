@@ -122,7 +122,7 @@ fn ligament(scene: &SceneConfig) -> Result<(), InvalidScene> {
     }
     // A slit is at most as long as two panels and is shortened at each end by a ligament and its hole.
     let panel = scene.sheet.mean_panel_area().sqrt();
-    let taken = (1.0 + process.fillet_ratio) * min;
+    let taken = min + process.hole_radius(min);
     if taken >= panel {
         return Err(InvalidScene::NoSlit { min, taken, panel });
     }

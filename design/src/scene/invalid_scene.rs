@@ -205,6 +205,15 @@ pub enum InvalidScene {
     NoDamage,
 }
 
+/// One radius of holes over w_lig, or the range of several.
+fn ratios([least, most]: [f64; 2]) -> String {
+    if least == most {
+        format!("{least}")
+    } else {
+        format!("{least:.3} to {most:.3}")
+    }
+}
+
 /// What weights are for, if not for the hinges of the scene.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
@@ -229,8 +238,12 @@ pub enum WeightsMismatch {
         trained[0], trained[1], range[0], range[1]
     )]
     Regime { trained: [f64; 2], range: [f64; 2] },
-    #[error("fillet_ratio = {trained}, but the scene has process.fillet_ratio = {scene}")]
-    FilletRatio { trained: f64, scene: f64 },
+    #[error(
+        "holes with a radius of {} w_lig, but the scene has {}: change `fillet_ratio` or `hole_diameter` in [process], \
+         or name weights for such holes",
+        ratios(*trained), ratios(*scene)
+    )]
+    Holes { trained: [f64; 2], scene: [f64; 2] },
     #[error(
         "windows of r_win = {trained} mm in a sheet of this thickness, but the scene has process.r_win = {scene}"
     )]

@@ -15,7 +15,8 @@ use crate::scene::posture::PostureConfig;
 use crate::scene::sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 use crate::scene::tolerances::ToleranceConfig;
 use crate::sheet::cut_sheet::HingePoint;
-use hinge::{HingeConstants, SheetMaterial};
+use crate::sheet::cutting_process::CuttingProcess;
+use hinge::SheetMaterial;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -51,7 +52,7 @@ pub struct SceneConfig {
     #[serde(default)]
     pub start: StartConfig,
     /// The cutting tool and the windows of the hinges.
-    pub process: HingeConstants,
+    pub process: CuttingProcess,
     /// How the sheet is cut.
     #[serde(default)]
     pub cutting: CuttingConfig,

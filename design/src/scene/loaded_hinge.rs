@@ -330,9 +330,12 @@ fn fitted(
     if range.into_iter().any(|width| Regime::of(width) != regime) {
         return Err(WeightsMismatch::Regime { trained, range });
     }
-    let (trained, scene) = (card.hinge.fillet_ratio, process.fillet_ratio);
-    if trained != scene {
-        return Err(WeightsMismatch::FilletRatio { trained, scene });
+    let trained = card.holes.unwrap_or([card.hinge.fillet_ratio; 2]);
+    let [narrowest, widest] = config.ligament.range;
+    // The widest ligament has the smallest ratio of a hole of given diameter.
+    let scene = [widest, narrowest].map(|w_lig| process.hinge(w_lig, FRAC_PI_2).fillet_ratio);
+    if scene[0] < trained[0] || scene[1] > trained[1] {
+        return Err(WeightsMismatch::Holes { trained, scene });
     }
     let (trained, scene) = (scale * card.hinge.r_win, process.r_win);
     if (scene / trained - 1.0).abs() > ROUNDED {

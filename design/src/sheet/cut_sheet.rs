@@ -13,9 +13,10 @@
 use crate::geometry::plane::{I, add, complex, cross, dot, point};
 use crate::pattern::cut_pattern::{CutPattern, Outline};
 use crate::pattern::grid::{Grid, NE, NW, SE, SW};
+use crate::sheet::cutting_process::CuttingProcess;
 use crate::sheet::topology::{HingeSite, PanelCorner, hinge_sites, panel_endpoints};
 use faer::c64;
-use hinge::{HingeConstants, HingeDesign};
+use hinge::HingeDesign;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -74,7 +75,7 @@ pub struct SheetOptions {
     /// The point at which (8) is measured.
     pub hinge_point: HingePoint,
     /// The cutting tool and the windows.
-    pub process: HingeConstants,
+    pub process: CuttingProcess,
 }
 
 /// A rigid panel in the flat sheet.
@@ -151,8 +152,10 @@ pub struct SheetGradient {
     pub frame_angles: Vec<f64>,
     /// With respect to alpha, per hinge.
     pub alphas: Vec<f64>,
-    /// With respect to w_lig, per hinge, at a fixed attachment point.
+    /// With respect to w_lig, per hinge, at a fixed attachment point and a fixed radius of the hole over w_lig.
     pub widths: Vec<f64>,
+    /// With respect to the radius of the hole over w_lig, per hinge.
+    pub holes: Vec<f64>,
 }
 
 impl SheetGradient {
@@ -168,6 +171,7 @@ impl SheetGradient {
             frame_angles: vec![0.0; hinges],
             alphas: vec![0.0; hinges],
             widths: vec![0.0; hinges],
+            holes: vec![0.0; hinges],
         }
     }
 }
@@ -281,6 +285,7 @@ impl Sheet {
         }
         let mut widths = gradient.widths.clone();
         for (h, hinge) in self.hinges.iter().enumerate() {
+            widths[h] += gradient.holes[h] * self.options.process.ratio_by_width(hinge.w_lig);
             let attachment = complex(gradient.attachments[h]);
             add(&mut points[hinge.site.corner], attachment);
             let (mut by_alpha, mut by_main_angle) = (gradient.alphas[h], 0.0);

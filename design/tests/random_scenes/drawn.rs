@@ -214,7 +214,7 @@ impl Drawn {
     fn options(&self) -> SheetOptions {
         SheetOptions {
             hinge_point: self.hinge_point,
-            process: self.process,
+            process: self.process.into(),
         }
     }
 

@@ -5,13 +5,13 @@ use design::pattern::coordinates::PatternCoordinates;
 use design::pattern::cut_pattern::{CutPattern, Outline};
 use design::pattern::grid::Grid;
 use design::sheet::cut_sheet::{HingePoint, Sheet, SheetOptions};
-use hinge::HingeConstants;
+use design::sheet::cutting_process::{CuttingProcess, Hole};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 /// Hinge constants that a sheet needs besides w_lig and alpha; no case depends on them.
-pub const PROCESS: HingeConstants = HingeConstants {
-    fillet_ratio: 0.16,
+pub const PROCESS: CuttingProcess = CuttingProcess {
+    hole: Hole::Ratio(0.16),
     kerf: 0.2,
     r_win: 100.0,
 };

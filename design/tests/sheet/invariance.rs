@@ -12,7 +12,7 @@ use design::pattern::coordinates::PatternCoordinates;
 use design::pattern::cut_pattern::{CutPattern, Outline};
 use design::pattern::grid::{Endpoint, Grid};
 use design::sheet::cut_sheet::{Hinge, HingePoint, Sheet, SheetOptions};
-use hinge::HingeConstants;
+use design::sheet::cutting_process::CuttingProcess;
 use std::f64::consts::PI;
 
 const CONSTANTS: [f64; 3] = [90.0, 40.0, 0.8];
@@ -28,7 +28,7 @@ fn cut(outline: Outline, w_lig: f64, hinge_point: HingePoint, kerf: f64) -> Shee
     let pattern = CutPattern::new(grid, outline, &coordinates(&case)).unwrap();
     let options = SheetOptions {
         hinge_point,
-        process: HingeConstants {
+        process: CuttingProcess {
             kerf,
             ..AT_CORNER.process
         },

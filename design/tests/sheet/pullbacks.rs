@@ -6,6 +6,7 @@ use design::analysis::taylor::central_slope;
 use design::pattern::cut_pattern::{CutPattern, Outline};
 use design::pattern::design_vector::{DesignVector, WidthChart};
 use design::sheet::cut_sheet::{Grip, HingePoint, PanelPoint, Sheet, SheetGradient, SheetOptions};
+use design::sheet::cutting_process::{CuttingProcess, Hole};
 use design::sheet::ideal_deployment::{ideal_deployment, ideal_deployment_pullback};
 
 const WIDTHS: WidthChart = WidthChart {
@@ -74,9 +75,13 @@ fn gradients_in_the_sheet_are_pulled_back_to_the_design() {
     let given = outline(&case("p1_3x3_random"));
     for hinge_point in [HingePoint::Corner, HingePoint::CutTip] {
         for outline in [given, TAPERED] {
+            // A hole of the same diameter at every hinge has a radius over w_lig that depends on the width.
             let options = SheetOptions {
                 hinge_point,
-                process: PROCESS,
+                process: CuttingProcess {
+                    hole: Hole::Diameter(0.3),
+                    ..PROCESS
+                },
             };
             let gripped = |design: &DesignVector| {
                 let (pattern, sheet) = cut(design, outline, options);
@@ -120,6 +125,7 @@ fn random_weights(sheet: &Sheet) -> SheetGradient {
         frame_angles: random.numbers(hinges, 1.0),
         alphas: random.numbers(hinges, 1.0),
         widths: random.numbers(hinges, 1.0),
+        holes: random.numbers(hinges, 1.0),
     }
 }
 
@@ -139,6 +145,7 @@ fn weighted(sheet: &Sheet, weights: &SheetGradient) -> f64 {
         sum += product(&hinge.attachment, &weights.attachments[h]);
         sum += weights.frame_angles[h] * hinge.e_sec[1].atan2(hinge.e_sec[0]);
         sum += weights.alphas[h] * hinge.alpha + weights.widths[h] * hinge.w_lig;
+        sum += weights.holes[h] * sheet.designs()[h].fillet_ratio;
     }
     sum
 }

@@ -22,6 +22,7 @@ use design::pattern::cut_pattern::Outline;
 use design::pattern::design_vector::{DesignVector, WidthChart};
 use design::pattern::grid::Grid;
 use design::sheet::cut_sheet::{Grip, HingePoint, PanelPoint, SheetOptions};
+use design::sheet::cutting_process::Hole;
 use hinge::TrainingDomain;
 use std::path::Path;
 use std::sync::Arc;
@@ -324,6 +325,15 @@ fn linear_law_condensed_from_the_surrogate() {
 fn surrogate_law_at_the_tip() {
     let model = mechanics(tiny(), 40.0, East::Pulled(2.0));
     assert_order_two(&problem(model, HingePoint::CutTip), &start());
+}
+
+/// A hole of the same diameter at every hinge: its radius over w_lig depends on the width.
+#[test]
+fn surrogate_law_with_drilled_holes() {
+    let model = mechanics(tiny(), 20.0, East::Pulled(3.0));
+    let mut problem = problem(model, HingePoint::CutTip);
+    problem.options.process.hole = Hole::Diameter(4.0);
+    assert_order_two(&problem, &start());
 }
 
 /// The same problem for a sheet with a weight, held and pulled at other points than centroids.

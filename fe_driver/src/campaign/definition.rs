@@ -164,12 +164,15 @@ impl CampaignFile {
         ))
     }
 
-    /// The defect of the narrowest or the widest hinge of the box; all others lie between them.
+    /// The defect of the narrowest or the widest hinge of the box, with the smallest hole; all others lie between them.
     fn impossible_design(&self) -> Option<InvalidDesign> {
+        let smallest = self.rays.fillet_ratio.map(|[smallest, _]| smallest);
+        let constants = HingeConstants {
+            fillet_ratio: smallest.unwrap_or(self.design.fillet_ratio),
+            ..self.design
+        };
         self.rays.w_lig.into_iter().find_map(|w_lig| {
-            let design = self
-                .design
-                .hinge(w_lig, self.rays.alpha_deg[0].to_radians());
+            let design = constants.hinge(w_lig, self.rays.alpha_deg[0].to_radians());
             design.validate().err()
         })
     }

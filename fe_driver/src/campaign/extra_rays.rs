@@ -1,7 +1,7 @@
 //! Rays that a campaign solves in addition to those of its box, at states that designs reach outside the data.
 //!
 //! They are in a CSV file with the columns `w_lig` (mm), `alpha_deg`, `eta_a`, `eta_s`, `theta_deg`, one ray per
-//! row. The campaign's key `extra_rays` is the path of the file. Lines that start with `#` are comments.
+//! row, and `fillet_ratio` where hinges have other holes than that of the campaign's `[design]`. The campaign's key `extra_rays` is the path of the file. Lines that start with `#` are comments.
 
 use crate::solve::hinge_path::Ray;
 use hinge::{HingeConstants, HingeDeformation};
@@ -21,10 +21,13 @@ pub enum ExtraRaysError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error(
-        "{path} has its columns in another order: rays are appended below `{header}`",
-        path = .path.display(), header = COLUMNS.join(",")
+        "{path} has other columns, or in another order: rays are appended below `{header}`",
+        path = .path.display(), header = .header.join(",")
     )]
-    Order { path: PathBuf },
+    Order {
+        path: PathBuf,
+        header: &'static [&'static str],
+    },
     #[error("{path}, ray {row}: {reason}", path = .path.display())]
     Ray {
         path: PathBuf,
@@ -34,7 +37,14 @@ pub enum ExtraRaysError {
 }
 
 /// The columns in the order in which rays are appended.
-const COLUMNS: [&str; 5] = ["w_lig", "alpha_deg", "eta_a", "eta_s", "theta_deg"];
+const COLUMNS: [&str; 6] = [
+    "w_lig",
+    "alpha_deg",
+    "eta_a",
+    "eta_s",
+    "theta_deg",
+    "fillet_ratio",
+];
 
 /// One row of the file: a hinge and the end of its ray. Its fields are in the order of [`COLUMNS`].
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -45,6 +55,8 @@ struct Row {
     eta_a: f64,
     eta_s: f64,
     theta_deg: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    fillet_ratio: Option<f64>,
 }
 
 /// Reads the rays of hinges with the constants `common`.
@@ -79,16 +91,22 @@ pub struct Added {
     pub refused: usize,
 }
 
-/// Appends rays to the file, which is created if it does not exist.
+/// Appends rays to the file, which is created if it does not exist. Rays of hinges with one hole are those of a campaign with
+/// this hole; otherwise, and in a file with that column, `fillet_ratio` is written too.
 pub fn add_extra_rays(path: &Path, rays: &[Ray]) -> Result<Added, ExtraRaysError> {
     let (header, rows) = if path.exists() {
         csv_table::read(path)?
     } else {
         Default::default()
     };
-    if !header.is_empty() && header != COLUMNS[..] {
-        let path = path.to_owned();
-        return Err(ExtraRaysError::Order { path });
+    let several = rays
+        .iter()
+        .any(|ray| ray.design.fillet_ratio != rays[0].design.fillet_ratio);
+    let with_holes = several || header.iter().any(|column| column == COLUMNS[5]);
+    let columns = &COLUMNS[..if with_holes { 6 } else { 5 }];
+    if !header.is_empty() && header != columns {
+        let (path, header) = (path.to_owned(), columns);
+        return Err(ExtraRaysError::Order { path, header });
     }
     let mut rows: Vec<Row> = rows.into_iter().map(|(_, row)| row).collect();
     let mut count = Added::default();
@@ -96,7 +114,7 @@ pub fn add_extra_rays(path: &Path, rays: &[Ray]) -> Result<Added, ExtraRaysError
         .has_headers(header.is_empty())
         .from_writer(Vec::new());
     for ray in rays {
-        let row = Row::from_ray(ray);
+        let row = Row::from_ray(ray, with_holes);
         if row.defect(ray).is_some() {
             count.refused += 1;
         } else if rows.contains(&row) {
@@ -122,7 +140,7 @@ pub fn add_extra_rays(path: &Path, rays: &[Ray]) -> Result<Added, ExtraRaysError
 
 impl Row {
     /// The row of a ray. Numbers are rounded to four decimals, which is accurate enough and keeps the file readable.
-    fn from_ray(ray: &Ray) -> Self {
+    fn from_ray(ray: &Ray, with_hole: bool) -> Self {
         let ray = acute(*ray);
         let [eta_a, eta_s] = ray.end.eta(ray.design.w_lig);
         let round = |x: f64| (1e4 * x).round() / 1e4;
@@ -132,13 +150,18 @@ impl Row {
             eta_a: round(eta_a),
             eta_s: round(eta_s),
             theta_deg: round(ray.end.theta.to_degrees()),
+            fillet_ratio: with_hole.then(|| round(ray.design.fillet_ratio)),
         }
     }
 
     fn ray(&self, common: &HingeConstants) -> Ray {
         let theta = self.theta_deg.to_radians();
+        let constants = HingeConstants {
+            fillet_ratio: self.fillet_ratio.unwrap_or(common.fillet_ratio),
+            ..*common
+        };
         acute(Ray {
-            design: common.hinge(self.w_lig, self.alpha_deg.to_radians()),
+            design: constants.hinge(self.w_lig, self.alpha_deg.to_radians()),
             end: HingeDeformation::from_eta(self.eta_a, self.eta_s, theta, self.w_lig),
         })
     }
@@ -215,6 +238,27 @@ mod tests {
         assert!((rays[0].design.w_lig - 17.1235).abs() < 1e-12);
         assert!((rays[1].design.alpha.to_degrees() - 80.0).abs() < 1e-9);
         assert!((rays[1].end.s + rays[0].end.s).abs() < 1e-9);
+    }
+
+    #[test]
+    fn rays_with_holes_of_several_radii_keep_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rays.csv");
+        let mut wide = ray(70.0);
+        wide.design.fillet_ratio = 0.3;
+        add_extra_rays(&path, &[ray(80.0), wide]).unwrap();
+        // A file with the column keeps it.
+        add_extra_rays(&path, &[ray(60.0)]).unwrap();
+        let holes = |path: &Path| -> Vec<f64> {
+            let rays = read_extra_rays(path, &COMMON).unwrap();
+            rays.iter().map(|ray| ray.design.fillet_ratio).collect()
+        };
+        assert_eq!(holes(&path), [0.16, 0.3, 0.16]);
+        let without = folder.path().join("one.csv");
+        add_extra_rays(&without, &[ray(80.0)]).unwrap();
+        let error = add_extra_rays(&without, &[ray(60.0), wide]).unwrap_err();
+        assert!(error.to_string().contains("theta_deg,fillet_ratio"), "{error}");
+        assert_eq!(holes(&without), [0.16]);
     }
 
     #[test]

@@ -21,7 +21,7 @@
 //! deployed hinge.
 
 use crate::solve::hinge_path::Ray;
-use hinge::{HingeConstants, HingeDeformation};
+use hinge::{HingeConstants, HingeDeformation, HingeDesign};
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -35,8 +35,9 @@ const ROTATION_EVERY: usize = 8;
 /// Fraction of the other rays that end in tension; compared to compression, its range is narrower and its forces
 /// are larger.
 const TENSION_SHARE: f64 = 0.4;
-/// Coordinates of the hypercube: log w_lig, alpha, theta, eta_a, eta_s.
-const DIMENSIONS: usize = 5;
+/// Coordinates of the hypercube: log w_lig, alpha, theta, eta_a, eta_s, fillet_ratio. The last is drawn last, so that the
+/// others are the same whether the hole is sampled or not.
+const DIMENSIONS: usize = 6;
 
 /// The region of designs and ray ends.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -46,6 +47,9 @@ pub struct RayBox {
     pub w_lig: [f64; 2],
     /// Minimum and maximum cut angle (deg), above 0 and at most 90, because mirroring gives the rest.
     pub alpha_deg: [f64; 2],
+    /// Minimum and maximum radius of the hole, over w_lig, in place of the constant one of `[design]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fillet_ratio: Option<[f64; 2]>,
     /// The axial opening of a ligament that turns freely, over w_lig: coefficients of theta and theta^2 (rad). A plate's
     /// ligament turns about its middle, [0.5, 0.16]. Pure rotations end there, and `eta_a` is measured from there.
     #[serde(default)]
@@ -82,7 +86,7 @@ impl RayBox {
 
     /// The ray at a point of the unit cube.
     fn ray(&self, common: &HingeConstants, point: [f64; DIMENSIONS], pure_rotation: bool) -> Ray {
-        let [log_w, alpha, theta, eta_a, eta_s] = point;
+        let [log_w, alpha, theta, eta_a, eta_s, hole] = point;
         let between = |[from, to]: [f64; 2], share: f64| from + (to - from) * share;
         let w_lig = between(self.w_lig.map(f64::ln), log_w).exp();
         let [eta_a, eta_s, theta_deg] = if pure_rotation {
@@ -104,8 +108,15 @@ impl RayBox {
         };
         let theta = theta_deg.to_radians();
         let eta_a = self.free(theta) + eta_a;
+        let fillet_ratio = match self.fillet_ratio {
+            Some(range) => between(range, hole),
+            None => common.fillet_ratio,
+        };
         Ray {
-            design: common.hinge(w_lig, between(self.alpha_deg, alpha).to_radians()),
+            design: HingeDesign {
+                fillet_ratio,
+                ..common.hinge(w_lig, between(self.alpha_deg, alpha).to_radians())
+            },
             end: HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig),
         }
     }
@@ -144,6 +155,11 @@ impl RayBox {
                     && self.alpha_deg[0] <= self.alpha_deg[1]
                     && self.alpha_deg[1] <= 90.0,
                 "0 < alpha_deg[0] <= alpha_deg[1] <= 90 (mirroring gives the rest)",
+            ),
+            (
+                self.fillet_ratio
+                    .is_none_or(|[from, to]| 0.0 < from && from <= to && to < 1.0),
+                "0 < fillet_ratio[0] <= fillet_ratio[1] < 1",
             ),
             (
                 self.alpha_deg[1] >= 5.0,
@@ -207,6 +223,7 @@ mod tests {
     const BOX: RayBox = RayBox {
         w_lig: [5.0, 25.0],
         alpha_deg: [45.0, 90.0],
+        fillet_ratio: None,
         free_opening: [0.0, 0.0],
         eta_a: [-0.8, 0.25],
         eta_s: 0.4,
@@ -296,6 +313,33 @@ mod tests {
             ..BOX
         };
         assert!(turned.defect().unwrap().contains("free_opening"));
+    }
+
+    /// Sampling the hole changes no other coordinate of a ray.
+    #[test]
+    fn the_hole_is_sampled_over_its_range() {
+        let range = [0.03, 0.4];
+        let sampled = RayBox {
+            fillet_ratio: Some(range),
+            ..BOX
+        };
+        let rays = sampled.rays(&COMMON, 80, 1);
+        for (ray, plain) in std::iter::zip(&rays, BOX.rays(&COMMON, 80, 1)) {
+            let design = HingeDesign {
+                fillet_ratio: COMMON.fillet_ratio,
+                ..ray.design
+            };
+            assert_eq!((design, ray.end), (plain.design, plain.end));
+            ray.design.validate().unwrap();
+        }
+        let holes = || rays.iter().map(|ray| ray.design.fillet_ratio);
+        assert!(holes().all(|hole| (range[0]..=range[1]).contains(&hole)));
+        assert!(holes().any(|hole| hole < 0.04) && holes().any(|hole| hole > 0.39));
+        let turned = RayBox {
+            fillet_ratio: Some([0.4, 0.03]),
+            ..BOX
+        };
+        assert!(turned.defect().unwrap().contains("fillet_ratio[0] <="));
     }
 
     /// Every octant of the states of deployed hinges contains rays, including compressed states with small

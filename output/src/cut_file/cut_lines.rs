@@ -78,7 +78,7 @@ impl CutLines {
             .iter()
             .map(|hinge| Hole {
                 centre: hinge.tip,
-                radius: process.fillet_ratio * hinge.w_lig,
+                radius: process.hole_radius(hinge.w_lig),
             })
             .collect();
         for (hinge, hole) in holes.iter().enumerate() {

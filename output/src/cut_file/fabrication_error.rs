@@ -29,7 +29,7 @@ pub enum FabricationError {
     SlitTooNarrow { slit: f64, tool_kerf: f64 },
     #[error(
         "a hole of {diameter:.3} mm is not wider than the kerf of the tool, {kerf} mm: use a finer tool (tool_kerf), or wider \
-         ligaments or a larger process.fillet_ratio in the scene"
+         ligaments or a larger hole (process.fillet_ratio or hole_diameter) in the scene"
     )]
     HoleBelowTool { diameter: f64, kerf: f64 },
     #[error("machine: {0}")]

@@ -126,7 +126,7 @@ impl Service {
                 "holes of",
                 features.hole,
                 limit(self.hole, self.hole_t),
-                "process.fillet_ratio, ligament.range",
+                "process.hole_diameter (or fillet_ratio), ligament.range",
             ),
             (
                 "slits of",

@@ -85,7 +85,7 @@ impl Finished {
     fn ligaments(&self, sheet: &Sheet) -> Result<(), FabricationError> {
         for (hinge, simulated) in sheet.hinges.iter().enumerate() {
             let tip = simulated.tip;
-            let nominal = sheet.options.process.fillet_ratio * simulated.w_lig;
+            let nominal = sheet.options.process.hole_radius(simulated.w_lig);
             let its = |cut: &&Cut| cut.hinges == [hinge];
             let hole = self.holes.iter().find(its);
             let written = hole.map_or(0.0, |hole| hole.radius);
@@ -216,7 +216,7 @@ mod tests {
         let pattern = CutPattern::new(grid, outline, &PatternCoordinates::uniform(grid)).unwrap();
         let options = SheetOptions {
             hinge_point: HingePoint::CutTip,
-            process: HingeConstants::PAPER,
+            process: HingeConstants::PAPER.into(),
         };
         let sheet = Sheet::new(&pattern, &[18.0; 12], options).unwrap();
         let cuts = CutLines::new(&pattern, &sheet, CuttingConfig::default(), &[]).unwrap();

@@ -50,7 +50,7 @@ fn deployed() -> (DesignProblem, Deployment) {
         },
         options: SheetOptions {
             hinge_point: HingePoint::Corner,
-            process: HingeConstants::PAPER,
+            process: HingeConstants::PAPER.into(),
         },
         model: Model::Equilibrium(Box::new(Mechanics {
             law: Arc::new(law),

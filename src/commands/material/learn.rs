@@ -31,7 +31,7 @@ use std::time::{Duration, Instant};
 use surrogate::Surrogate;
 use verification::{
     Accuracy, LearningEnd, LearningRound, LearningSteps, LearningTask, VerificationError,
-    distillation_states, learn, random_paths, region, spot_check,
+    distillation_states, drawn, learn, random_paths, region, spot_check,
 };
 
 /// Solve hinge windows of a material and train its weights until they are accurate enough
@@ -123,7 +123,7 @@ impl LearnCommand {
         let fine_tuning = FineTuning {
             parents,
             config,
-            distillation: distillation_states(&region, &campaign.design),
+            distillation: distillation_states(drawn(&campaign, &region)),
             fits: self.out.join("fits"),
         };
         let spot = self.spot_check(&campaign, &region)?;
@@ -205,8 +205,12 @@ impl LearnCommand {
     /// The states on which weights are tested, drawn uniformly inside the region of the campaign.
     fn spot_check(&self, campaign: &Campaign, region: &TrainingDomain) -> Result<Database> {
         let count = STATES_PER_RAY * usize::from(self.spot_rays);
-        let (design, seed) = (&campaign.design, self.spot_seed);
-        let paths = random_paths(region, design, count, STATES_PER_RAY, seed);
+        let paths = random_paths(
+            drawn(campaign, region),
+            count,
+            STATES_PER_RAY,
+            self.spot_seed,
+        );
         let windows = self
             .solve_args(campaign)
             .service(&self.out.join("spot-check"))?;

@@ -43,9 +43,13 @@ impl CardCommand {
             println!("distilled from weights {weights}, fine-tuned from {from}");
         }
         let hinge = card.hinge;
+        let radius = match card.holes {
+            Some([least, most]) => format!("{least:.3} to {most:.3}"),
+            None => hinge.fillet_ratio.to_string(),
+        };
         println!(
-            "hinges with fillet_ratio {}, kerf {} mm, r_win {} mm",
-            hinge.fillet_ratio, hinge.kerf, hinge.r_win
+            "hinges with fillet_ratio {radius}, kerf {} mm, r_win {} mm",
+            hinge.kerf, hinge.r_win
         );
         let domain = &card.domain;
         let [eta_a, eta_s, theta] = domain.bounds();

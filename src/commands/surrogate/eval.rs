@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use design::hinge_law::{HingeLaw, Order, SurrogateLaw};
-use hinge::{HingeDeformation, HingeDesign};
+use hinge::{HingeConstants, HingeDeformation, HingeDesign};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use support::regular_file;
@@ -11,8 +11,8 @@ use surrogate::Surrogate;
 
 /// Evaluate energy, forces, tangent and damage at the hinge states of a CSV file
 ///
-/// Reads the columns w_lig, a, s (mm), alpha and theta (rad) or alpha_deg and theta_deg (deg); other columns are
-/// ignored. Outside the training domain energy, forces and tangent are those of the continued law that designs use.
+/// Reads the columns w_lig, a, s (mm), alpha and theta (rad) or alpha_deg and theta_deg (deg), and fillet_ratio, the
+/// radius of the hole over w_lig, for weights with holes of several radii; other columns are ignored. Outside the training domain energy, forces and tangent are those of the continued law that designs use.
 #[derive(Args)]
 pub struct EvalCommand {
     /// Weights (safetensors with their card)
@@ -33,6 +33,7 @@ struct State {
     a: f64,
     s: f64,
     theta: f64,
+    fillet_ratio: Option<f64>,
 }
 
 /// A row of the CSV file, each angle in radians or in degrees.
@@ -45,6 +46,7 @@ struct StateRow {
     s: f64,
     theta: Option<f64>,
     theta_deg: Option<f64>,
+    fillet_ratio: Option<f64>,
 }
 
 impl StateRow {
@@ -61,6 +63,7 @@ impl StateRow {
             a: self.a,
             s: self.s,
             theta: angle("theta", self.theta, self.theta_deg)?,
+            fillet_ratio: self.fillet_ratio,
         })
     }
 }
@@ -84,7 +87,15 @@ struct Answer {
 impl EvalCommand {
     pub fn run(&self) -> Result<()> {
         let surrogate = Surrogate::load(&self.weights)?;
-        let answers = answers(surrogate, &read_states(&self.states)?);
+        let states = read_states(&self.states)?;
+        if let Some([least, most]) = surrogate.card().holes {
+            ensure!(
+                states.iter().all(|state| state.fillet_ratio.is_some()),
+                "{} has no column fillet_ratio: these weights are for holes with a radius of {least:.3} to {most:.3} w_lig",
+                self.states.display()
+            );
+        }
+        let answers = answers(surrogate, &states);
         if self.json {
             println!("{}", serde_json::to_string_pretty(&answers)?);
             return Ok(());
@@ -115,6 +126,10 @@ fn answers(surrogate: Surrogate, states: &[State]) -> Vec<Answer> {
         .iter()
         .map(|state| {
             let deformation = HingeDeformation::from([state.a, state.s, state.theta]);
+            let constants = HingeConstants {
+                fillet_ratio: state.fillet_ratio.unwrap_or(constants.fillet_ratio),
+                ..constants
+            };
             (constants.hinge(state.w_lig, state.alpha), deformation)
         })
         .unzip();

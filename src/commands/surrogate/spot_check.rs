@@ -154,9 +154,8 @@ impl SpotCheckCommand {
     }
 
     fn random(&self, surrogate: &Surrogate) -> Vec<SpotPath> {
-        let (domain, hinge) = (surrogate.domain(), &surrogate.card().hinge);
         let each = usize::from(self.states_per_ray);
-        random_paths(domain, hinge, self.count, each, self.seed)
+        random_paths(surrogate.into(), self.count, each, self.seed)
     }
 
     fn on_paths(&self) -> Result<Vec<SpotPath>> {

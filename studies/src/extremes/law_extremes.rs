@@ -3,7 +3,8 @@
 use super::{Checked, kept};
 use anyhow::{Context, Result};
 use design::hinge_law::{HingeEnergy, HingeLaw, Order};
-use hinge::{HingeConstants, HingeDeformation, HingeDesign, TrainingDomain};
+use design::sheet::cutting_process::CuttingProcess;
+use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::array::from_fn;
@@ -47,7 +48,7 @@ struct Found {
 }
 
 /// One row for each ligament at each place.
-pub(super) fn table(law: &dyn HingeLaw, process: &HingeConstants) -> Result<Checked> {
+pub(super) fn table(law: &dyn HingeLaw, process: &CuttingProcess) -> Result<Checked> {
     let domain = law
         .domain()
         .context("the law of the scene has no training domain")?;

@@ -83,7 +83,7 @@ fn problem(grid: Grid, load: f64) -> Result<(DesignProblem, usize)> {
         },
         options: SheetOptions {
             hinge_point: HingePoint::Corner,
-            process: HingeConstants::PAPER,
+            process: HingeConstants::PAPER.into(),
         },
         model: Model::Equilibrium(Box::new(Mechanics {
             law: Arc::new(LinearLaw::uniform(SPRINGS, grid.hinge_count())),

@@ -9,6 +9,7 @@
 //! A state beyond the domain by a tenth of the range costs 1. The penalty begins at 98 % of the domain, because
 //! otherwise a minimum would lie just outside.
 
+use crate::hinge_law::HingeGradient;
 use crate::objective::term::{Deployed, Term, TermGradient};
 use hinge::{HingeDeformation, TrainingDomain};
 
@@ -56,17 +57,17 @@ impl Term for DomainPenalty {
     }
 }
 
-/// The contribution of one state, and its gradient in (a, s, theta, w_lig, alpha).
+/// The contribution of one state, and its gradient.
 fn excess_of_state(
     domain: &TrainingDomain,
     w_lig: f64,
     alpha: f64,
     state: &HingeDeformation,
-) -> (f64, [f64; 5]) {
+) -> (f64, HingeGradient) {
     let width = excess(domain.w_lig, w_lig);
     let angle = excess(domain.alpha, alpha);
     let mut value = width.0 + angle.0;
-    let mut gradient = [0.0, 0.0, 0.0, width.1, angle.1];
+    let mut gradient = [0.0, 0.0, 0.0, width.1, angle.1, 0.0];
     if domain.gauge(w_lig, state) > EDGE {
         let gauge = domain.gauge_jet(w_lig, state);
         let scaled = PER_HALF_RANGE * (gauge.value - EDGE);
