@@ -23,7 +23,7 @@ use design::sheet::cut_sheet::{HingePoint, SheetOptions};
 use divan::{Bencher, black_box};
 use hinge::{HingeConstants, TrainingDomain};
 use std::sync::Arc;
-use surrogate::{Card, feature_names, Layer, Layers, Surrogate, Tensor, TestErrors};
+use surrogate::{Card, Layer, Layers, Surrogate, Tensor, TestErrors, feature_names};
 
 fn main() {
     divan::main();
@@ -91,7 +91,8 @@ fn problem(
                 fillet_ratio: 0.16,
                 kerf: 0.2,
                 r_win: 100.0,
-            }.into(),
+            }
+            .into(),
         },
         model: Model::Equilibrium(Box::new(Mechanics {
             law: Arc::new(law),
@@ -162,7 +163,10 @@ fn network() -> SurrogateLaw {
         format_version: surrogate::FORMAT_VERSION,
         weights_hash: None,
         units: surrogate::UNITS.into(),
-        features: feature_names(false).iter().map(ToString::to_string).collect(),
+        features: feature_names(false)
+            .iter()
+            .map(ToString::to_string)
+            .collect(),
         standardisation: surrogate::Standardisation {
             mean: [0.0, 0.0, 0.6, 18.0_f64.ln(), 1.57].to_vec(),
             std: [0.2, 0.2, 0.4, 0.45, 0.45].to_vec(),

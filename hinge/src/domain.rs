@@ -8,7 +8,8 @@
 //! gamma = (sum over m of max(0, m . y / s(m; w_lig))^p)^(1/p) <= 1,      p = 24
 //! ```
 //!
-//! and w_lig and alpha lie in their intervals. gamma is smooth except at the centre, where it vanishes. It
+//! and w_lig and alpha lie in their intervals. If hinges have holes of several radii, eta_a and eta_s are those of the hinge
+//! with one hole and the same net ligament ([`NetLigament`]). gamma is smooth except at the centre, where it vanishes. It
 //! rounds the corners of the polytope inwards and grows in proportion to the distance from the centre.
 //! s is stored at widths in geometric progression and is blended between them with zero slope at both
 //! ends, so that gamma is twice differentiable in w_lig.
@@ -21,7 +22,8 @@ mod stored_domain;
 pub use stored_domain::InvalidDomain;
 
 use crate::domain::directions::{DIRECTION, DIRECTIONS, EXPONENT, dot, norm};
-use crate::{HingeDeformation, HingeDesign, Jet};
+use crate::net_ligament::{NetLigament, NetLigamentJet};
+use crate::{HingeConstants, HingeDeformation, HingeDesign, Jet};
 use serde::{Deserialize, Serialize};
 use std::array::from_fn;
 
@@ -34,6 +36,9 @@ pub struct TrainingDomain {
     pub w_lig: [f64; 2],
     /// Interval of the cut angle (rad).
     pub alpha: [f64; 2],
+    /// The hole, over w_lig, of the hinges in whose measures the domain is, if hinges have holes of several radii.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    hole: Option<f64>,
     /// Centre of (eta_a, eta_s, theta).
     centre: [f64; 3],
     half_range: [f64; 3],
@@ -56,25 +61,24 @@ impl TrainingDomain {
 
     /// 1 - gamma of the state: 1 at the centre of the domain, 0 at its edge, negative outside.
     pub fn depth(&self, design: &HingeDesign, deformation: &HingeDeformation) -> f64 {
-        1.0 - self.gauge(design.w_lig, deformation)
+        1.0 - self.gauge(design, deformation)
     }
 
     /// The gauge gamma.
-    pub fn gauge(&self, w_lig: f64, deformation: &HingeDeformation) -> f64 {
-        let [eta_a, eta_s] = deformation.eta(w_lig);
-        let y = self.scaled([eta_a, eta_s, deformation.theta]);
-        let (row, [blend, ..]) = self.place(w_lig);
+    pub fn gauge(&self, design: &HingeDesign, deformation: &HingeDeformation) -> f64 {
+        let y = self.scaled(measures(self.hole, design, deformation));
+        let (row, [blend, ..]) = self.place(design.w_lig);
         norm(from_fn(|m| {
             let support = self.supports[row][m] + blend * self.rise(row, m);
             dot(DIRECTION[m], y) / support
         }))
     }
 
-    /// The gauge gamma with its derivatives in (a, s, theta, w_lig). At the centre they do not exist.
-    pub fn gauge_jet(&self, w_lig: f64, deformation: &HingeDeformation) -> Jet {
-        let y = self.scaled_jet(w_lig, deformation);
-        let (row, blend) = self.place(w_lig);
-        let blend = Jet::variable(3, w_lig).map(blend);
+    /// The gauge gamma with its derivatives in (a, s, theta, w_lig, rho_f). At the centre they do not exist.
+    pub fn gauge_jet(&self, design: &HingeDesign, deformation: &HingeDeformation) -> Jet {
+        let y = self.scaled_jet(design, deformation);
+        let (row, blend) = self.place(design.w_lig);
+        let blend = Jet::variable(3, design.w_lig).map(blend);
         let ratios: [Jet; DIRECTIONS] = from_fn(|m| {
             let support = Jet::constant(self.supports[row][m]) + blend * self.rise(row, m);
             let components = std::iter::zip(DIRECTION[m], y);
@@ -113,6 +117,23 @@ impl TrainingDomain {
         })
     }
 
+    /// The deformation of a hinge with the given (eta_a, eta_s, theta) of the domain.
+    pub fn state(&self, design: &HingeDesign, [eta_a, eta_s, theta]: [f64; 3]) -> HingeDeformation {
+        let of = |w_lig: f64| HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig);
+        match self.hole {
+            None => of(design.w_lig),
+            Some(reference) => {
+                let ligament = NetLigament::new(design, reference);
+                ligament.actual(&of(ligament.design(design).w_lig))
+            }
+        }
+    }
+
+    /// The map to the hinges in whose measures the domain is, for a hinge.
+    pub fn ligament_jet(&self, design: &HingeDesign) -> NetLigamentJet {
+        NetLigamentJet::new(design, self.hole)
+    }
+
     /// The boundary of the domain in the plane of (eta_a, eta_s) at a width (mm) and a rotation (rad): a closed
     /// polyline, empty if the point (eta_a, eta_s) of the centre is outside the domain.
     pub fn slice(&self, w_lig: f64, theta: f64) -> Vec<[f64; 2]> {
@@ -125,9 +146,14 @@ impl TrainingDomain {
                 centre_s + radius * self.half_range[1] * sin,
             ]
         };
+        let constants = HingeConstants {
+            fillet_ratio: self.hole.unwrap_or(HingeConstants::PAPER.fillet_ratio),
+            ..HingeConstants::PAPER
+        };
+        let design = constants.hinge(w_lig, self.alpha[0]);
         let inside = |[eta_a, eta_s]: [f64; 2]| {
             let state = HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig);
-            self.gauge(w_lig, &state) <= 1.0
+            self.gauge(&design, &state) <= 1.0
         };
         if !inside(at(0.0, 0.0)) {
             return Vec::new();
@@ -162,12 +188,13 @@ impl TrainingDomain {
         from_fn(|i| (x[i] - self.centre[i]) / self.half_range[i])
     }
 
-    fn scaled_jet(&self, w_lig: f64, deformation: &HingeDeformation) -> [Jet; 3] {
+    fn scaled_jet(&self, design: &HingeDesign, deformation: &HingeDeformation) -> [Jet; 3] {
         let state = deformation.to_array();
-        let per_width = Jet::variable(3, w_lig).recip();
+        let ligament = self.ligament_jet(design);
+        let seen = ligament.deformation(from_fn(|i| Jet::variable(i, state[i])));
+        let per_width = ligament.width.recip();
         from_fn(|i| {
-            let x = Jet::variable(i, state[i]);
-            let x = if i < 2 { x * per_width } else { x };
+            let x = if i < 2 { seen[i] * per_width } else { seen[i] };
             (x - Jet::constant(self.centre[i])) * (1.0 / self.half_range[i])
         })
     }
@@ -216,14 +243,38 @@ impl TrainingDomain {
     }
 }
 
+/// (eta_a, eta_s, theta) of the hinge with the hole `reference`, or of the hinge itself.
+fn measures(
+    reference: Option<f64>,
+    design: &HingeDesign,
+    deformation: &HingeDeformation,
+) -> [f64; 3] {
+    let [eta_a, eta_s] = match reference {
+        None => deformation.eta(design.w_lig),
+        Some(reference) => {
+            let ligament = NetLigament::new(design, reference);
+            ligament
+                .deformation(deformation)
+                .eta(ligament.design(design).w_lig)
+        }
+    };
+    [eta_a, eta_s, deformation.theta]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::HingeConstants;
     use crate::domain::covered_states::MOST_WIDTHS;
 
     fn design(w_lig: f64) -> HingeDesign {
         HingeConstants::PAPER.hinge(w_lig, 1.3)
+    }
+
+    fn with_hole(w_lig: f64, fillet_ratio: f64) -> HingeDesign {
+        HingeDesign {
+            fillet_ratio,
+            ..design(w_lig)
+        }
     }
 
     /// Ends of rays in a cone, and their mirror images: tension and shear increase with the rotation and decrease
@@ -285,17 +336,27 @@ mod tests {
 
     #[test]
     fn the_derivatives_of_the_gauge_agree_with_finite_differences() {
-        let domain = domain(&cone());
+        let several = cone().into_iter().enumerate().map(|(i, (g, x))| {
+            let fillet_ratio = [0.05, 0.16, 0.3][i % 3];
+            (HingeDesign { fillet_ratio, ..g }, x)
+        });
+        for domain in [domain(&cone()), domain(&several.collect::<Vec<_>>())] {
+            derivatives_agree(&domain);
+        }
+    }
+
+    fn derivatives_agree(domain: &TrainingDomain) {
         for x in [
-            [0.9, -0.4, 0.5, 8.0],
-            [-2.0, 3.0, 1.5, 14.0],
-            [0.1, 0.2, -0.1, 5.2],
+            [0.9, -0.4, 0.5, 8.0, 0.2],
+            [-2.0, 3.0, 1.5, 14.0, 0.16],
+            [0.1, 0.2, -0.1, 5.2, 0.05],
         ] {
-            let jet = |x: [f64; 4]| domain.gauge_jet(x[3], &[x[0], x[1], x[2]].into());
+            let jet =
+                |x: [f64; 5]| domain.gauge_jet(&with_hole(x[3], x[4]), &[x[0], x[1], x[2]].into());
             let found = jet(x);
-            let value = domain.gauge(x[3], &[x[0], x[1], x[2]].into());
+            let value = domain.gauge(&with_hole(x[3], x[4]), &[x[0], x[1], x[2]].into());
             assert!((found.value - value).abs() < 1e-13 * value);
-            for i in 0..4 {
+            for i in 0..5 {
                 let h = 1e-5;
                 let at = |step: f64| jet(from_fn(|j| if i == j { x[j] + step } else { x[j] }));
                 let (plus, minus) = (at(h), at(-h));
@@ -304,7 +365,7 @@ mod tests {
                     (found.gradient[i] - slope).abs() < 1e-7 * slope.abs().max(1.0),
                     "{i}"
                 );
-                for j in 0..4 {
+                for j in 0..5 {
                     let slope = (plus.gradient[j] - minus.gradient[j]) / (2.0 * h);
                     let error = (found.hessian[i][j] - slope).abs();
                     assert!(error < 1e-5 * slope.abs().max(1.0), "{i} {j}: {slope}");
@@ -323,7 +384,7 @@ mod tests {
             theta: 0.7,
         };
         for width in [10.0 / 2f64.sqrt(), 10.0, 20.0] {
-            let at = |step: f64| domain.gauge_jet(width + step, &state);
+            let at = |step: f64| domain.gauge_jet(&design(width + step), &state);
             let (plus, minus) = (at(1e-6), at(-1e-6));
             assert!((plus.gradient[3] - minus.gradient[3]).abs() < 1e-6);
             assert!((plus.hessian[3][3] - minus.hessian[3][3]).abs() < 1e-3);

@@ -1,17 +1,17 @@
-//! Forward-mode automatic differentiation to second order in (a, s, theta, w_lig), for inexpensive functions.
+//! Forward-mode automatic differentiation to second order in (a, s, theta, w_lig, rho_f), for inexpensive functions.
 
 use std::array::from_fn;
 use std::ops::{Add, Mul, Sub};
 
-/// A number, its gradient and its Hessian in (a, s, theta, w_lig).
+/// A number, its gradient and its Hessian in (a, s, theta, w_lig, rho_f).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jet {
     /// The number.
     pub value: f64,
-    /// Its gradient in (a, s, theta, w_lig).
-    pub gradient: [f64; 4],
-    /// Its Hessian in (a, s, theta, w_lig).
-    pub hessian: [[f64; 4]; 4],
+    /// Its gradient in (a, s, theta, w_lig, rho_f).
+    pub gradient: [f64; 5],
+    /// Its Hessian in (a, s, theta, w_lig, rho_f).
+    pub hessian: [[f64; 5]; 5],
 }
 
 impl Jet {
@@ -19,12 +19,12 @@ impl Jet {
     pub const fn constant(value: f64) -> Self {
         Self {
             value,
-            gradient: [0.0; 4],
-            hessian: [[0.0; 4]; 4],
+            gradient: [0.0; 5],
+            hessian: [[0.0; 5]; 5],
         }
     }
 
-    /// One of the four variables: index 0 is a, 1 is s, 2 is theta, 3 is w_lig.
+    /// One of the five variables: index 0 is a, 1 is s, 2 is theta, 3 is w_lig, 4 is rho_f.
     pub fn variable(index: usize, value: f64) -> Self {
         Self {
             gradient: from_fn(|i| f64::from(u8::from(i == index))),
@@ -113,17 +113,17 @@ impl Mul for Jet {
 mod tests {
     use super::*;
 
-    /// (a s - theta)^3 / (2 w)
-    fn number(x: [f64; 4]) -> Jet {
-        let [a, s, theta, w] = from_fn(|i| Jet::variable(i, x[i]));
-        (a * s - theta).powf(3.0) * w.recip() * 0.5
+    /// (a s - theta)^3 / (2 w) + a rho_f^2
+    fn number(x: [f64; 5]) -> Jet {
+        let [a, s, theta, w, hole] = from_fn(|i| Jet::variable(i, x[i]));
+        (a * s - theta).powf(3.0) * w.recip() * 0.5 + a * hole * hole
     }
 
     #[test]
     fn derivatives_agree_with_finite_differences() {
-        let x = [2.0, 1.5, 0.4, 3.0];
+        let x = [2.0, 1.5, 0.4, 3.0, 0.2];
         let found = number(x);
-        for i in 0..4 {
+        for i in 0..5 {
             let h = 1e-5;
             let at = |step: f64| number(from_fn(|j| if i == j { x[j] + step } else { x[j] }));
             let (plus, minus) = (at(h), at(-h));
@@ -132,7 +132,7 @@ mod tests {
                 (found.gradient[i] - slope).abs() < 1e-8 * slope.abs(),
                 "{i}"
             );
-            for j in 0..4 {
+            for j in 0..5 {
                 let slope = (plus.gradient[j] - minus.gradient[j]) / (2.0 * h);
                 assert!((found.hessian[i][j] - slope).abs() < 1e-7, "{i} {j}");
             }

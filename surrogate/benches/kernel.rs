@@ -5,8 +5,8 @@
 
 use hinge::{HingeConstants, HingeDeformation, HingeDesign, TrainingDomain};
 use surrogate::{
-    Card, feature_names, FORMAT_VERSION, Layer, Layers, Order, Standardisation, Surrogate, Tensor,
-    TestErrors, UNITS,
+    Card, FORMAT_VERSION, Layer, Layers, Order, Standardisation, Surrogate, Tensor, TestErrors,
+    UNITS, feature_names,
 };
 
 const HINGES: usize = 275;
@@ -92,7 +92,10 @@ fn card() -> Card {
         format_version: FORMAT_VERSION,
         weights_hash: None,
         units: UNITS.into(),
-        features: feature_names(false).iter().map(ToString::to_string).collect(),
+        features: feature_names(false)
+            .iter()
+            .map(ToString::to_string)
+            .collect(),
         standardisation: Standardisation {
             mean: [0.02, 0.0, 0.6, 2.64, 1.6].to_vec(),
             std: [0.1, 0.1, 0.35, 0.45, 0.45].to_vec(),

@@ -38,7 +38,7 @@ pub struct Card {
     /// The states that the training rows cover.
     pub domain: TrainingDomain,
     /// The components of the hinge design that are not features; the weights are valid only for these values. With
-    /// `holes`, its `fillet_ratio` is that of the hinge whose features the networks see ([`crate::NetLigament`]).
+    /// `holes`, its `fillet_ratio` is that of the hinge whose features the networks see ([`hinge::NetLigament`]).
     pub hinge: HingeConstants,
     /// Minimum and maximum radius of the hole over w_lig, if it is a feature.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -146,7 +146,7 @@ pub struct TestErrors {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ErrorBin {
-    /// `eta_a`, `eta_s`, `theta_deg`, `w_lig`, `alpha_deg`, or `edge`, which is [`TrainingDomain::depth`]: 0 at the
+    /// `eta_a`, `eta_s`, `theta_deg`, `w_lig`, `alpha_deg`, `fillet_ratio`, or `edge`, which is [`TrainingDomain::depth`]: 0 at the
     /// edge of the training domain and 1 at its centre.
     pub quantity: String,
     /// Lower and upper limit; the upper limit belongs to the next bin.
@@ -250,11 +250,7 @@ impl Card {
         let names = feature_names(self.holes.is_some());
         for (key, found, expected) in [
             ("units", self.units.clone(), UNITS.into()),
-            (
-                "features",
-                self.features.join(", "),
-                names.join(", "),
-            ),
+            ("features", self.features.join(", "), names.join(", ")),
         ] {
             if found != expected {
                 return Err(InvalidWeights::OtherConvention {

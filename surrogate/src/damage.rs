@@ -7,10 +7,10 @@
 //! D_peak has the same form, with its own network and scale.
 
 use crate::features::{FEATURES, features, pull_back};
-use crate::net_ligament::NetLigament;
 use crate::network::Network;
 use crate::passes::{Passes, chunk_size};
-use hinge::{HingeDeformation, HingeDesign};
+use crate::seen_hinge;
+use hinge::{HingeDeformation, HingeDesign, NetLigament};
 
 /// Damage measures of one hinge and their gradients.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -51,15 +51,13 @@ pub(crate) fn evaluate(
             }
             let slopes: Vec<f64> = outputs.iter().map(|&y| logistic(y)).collect();
             passes.reverse(head, &slopes, &mut []);
-            damages.extend(
-                seen.iter()
-                    .zip(outputs)
-                    .enumerate()
-                    .map(|(hinge, ((ligament, g, eps), y))| {
-                        let gradient = passes.gradient(hinge).map(|slope| scale * slope);
-                        (value(y), ligament.gradient(pull_back(gradient, g, eps), eps.theta))
-                    }),
-            );
+            damages.extend(seen.iter().zip(outputs).enumerate().map(
+                |(hinge, ((ligament, g, eps), y))| {
+                    let gradient = passes.gradient(hinge).map(|slope| scale * slope);
+                    let seen = pull_back(gradient, g, eps);
+                    (value(y), seen_hinge::gradient(ligament, seen, eps.theta))
+                },
+            ));
         }
     });
     damages

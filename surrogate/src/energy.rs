@@ -12,11 +12,11 @@
 //! that dW/dg = 2 W_s (J - J0)' r, and d2W/dxi dg is reduced by 2 W_s J' J0.
 
 use crate::features::{FEATURES, features, pull_back};
-use crate::net_ligament::NetLigament;
 use crate::network::Network;
 use crate::passes::{Passes, chunk_size, packed_index, packed_len};
+use crate::seen_hinge;
 use faer::Mat;
-use hinge::{HingeDeformation, HingeDesign};
+use hinge::{HingeDeformation, HingeDesign, NetLigament};
 use rayon::prelude::*;
 use std::cell::RefCell;
 use std::ops::Range;
@@ -144,7 +144,7 @@ pub(crate) fn evaluate(
         let seen: Vec<_> = std::iter::zip(&prepared.designs[chunk], deformations)
             .zip(ligaments)
             .map(|((design, deformation), ligament)| {
-                (ligament.design(design), ligament.deformation(deformation))
+                seen_hinge::seen(ligament, design, deformation)
             })
             .collect();
         KERNEL.with_borrow_mut(|kernel| {
@@ -153,7 +153,7 @@ pub(crate) fn evaluate(
             hinges
                 .map(|(hinge, (ligament, (design, deformation)))| {
                     let energy = kernel.energy(hinge, design, deformation, energy_scale, order);
-                    ligament.energy(energy, deformation.theta, order)
+                    seen_hinge::energy(ligament, energy, deformation.theta, order)
                 })
                 .collect()
         })
@@ -271,7 +271,8 @@ impl Kernel {
         let mut gradient = self.passes.gradient(hinge).map(|value| twice * value);
         if order == Order::Design {
             for p in 0..DESIGN {
-                gradient[DEFORMATION_FEATURES + p] -= twice * self.origin_gradient[self.n * p + hinge];
+                gradient[DEFORMATION_FEATURES + p] -=
+                    twice * self.origin_gradient[self.n * p + hinge];
             }
         }
         let [f_a, f_s, m_theta, by_design @ ..] = pull_back(gradient, design, deformation);

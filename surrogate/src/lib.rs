@@ -6,7 +6,7 @@
 //! xi(eps, g) = [a / w_lig, s / w_lig, theta, log w_lig, alpha]                  (13)
 //! ```
 //!
-//! Weights that were trained on holes of several radii see their radius, too ([`NetLigament`]).
+//! Weights that were trained on holes of several radii see their radius, too ([`hinge::NetLigament`]).
 //! The squared distance makes W >= 0, W(0) = 0 and grad W(0) = 0 for any weights. A surrogate is
 //! loaded from `X.safetensors` and its card `X.json`, and is evaluated in float64 for batches of hinges.
 //!
@@ -40,9 +40,9 @@ mod energy;
 mod ensemble;
 mod features;
 mod model;
-mod net_ligament;
 mod network;
 mod passes;
+mod seen_hinge;
 mod tanh;
 mod weights;
 
@@ -55,7 +55,6 @@ pub use energy::{HingeEnergy, Order, Prepared};
 pub use ensemble::mean_and_variance;
 pub use features::{FEATURE_NAMES, Standardisation, feature_names, features};
 pub use model::{Layers, Surrogate};
-pub use net_ligament::NetLigament;
 pub use network::{InvalidWeights, Layer, Network, Tensor};
 pub use tanh::tanh_in_place;
 pub use weights::WeightsError;

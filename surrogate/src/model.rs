@@ -3,9 +3,9 @@
 use crate::card::{Card, ErrorBin, SpotCheck, TestErrors};
 use crate::damage::{self, HingeDamage};
 use crate::energy::{self, HingeEnergy, Order, Prepared};
-use crate::net_ligament::NetLigament;
 use crate::network::{InvalidWeights, Layer, Network};
-use hinge::{HingeDeformation, HingeDesign, HingeSample, TrainingDomain};
+use crate::seen_hinge;
+use hinge::{HingeDeformation, HingeDesign, HingeSample, NetLigament, TrainingDomain};
 
 /// The networks of (14), with the card that contains their scaling and provenance.
 #[derive(Clone, Debug)]
@@ -264,12 +264,12 @@ impl Surrogate {
         let seen: Vec<_> = std::iter::zip(designs, deformations)
             .map(|(design, deformation)| {
                 let ligament = NetLigament::new(design, self.card.hinge.fillet_ratio);
-                (ligament, ligament.design(design), ligament.deformation(deformation))
+                let (design, deformation) = seen_hinge::seen(&ligament, design, deformation);
+                (ligament, design, deformation)
             })
             .collect();
         let sharpness = self.card.damage_sharpness;
-        let evaluate =
-            |head, scale| damage::evaluate(head, scale, sharpness, &seen, with_gradient);
+        let evaluate = |head, scale| damage::evaluate(head, scale, sharpness, &seen, with_gradient);
         let averages = evaluate(&self.chi_d, self.card.damage_scale).into_iter();
         let mut damages: Vec<HingeDamage> = averages
             .map(|(d, gradient)| HingeDamage {

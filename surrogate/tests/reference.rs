@@ -119,7 +119,10 @@ fn an_undeformed_hinge_has_no_energy_and_no_forces() {
 fn with_holes() -> Surrogate {
     let one_hole = with_peak();
     let mut card = one_hole.card().clone();
-    card.features = feature_names(true).iter().map(ToString::to_string).collect();
+    card.features = feature_names(true)
+        .iter()
+        .map(ToString::to_string)
+        .collect();
     card.holes = Some([0.02, 0.4]);
     card.standardisation.mean.push(0.2);
     card.standardisation.std.push(0.1);

@@ -12,9 +12,14 @@ const BINS: usize = 5;
 type Quantity<'a> = &'a dyn Fn(&Row) -> f64;
 
 /// Errors on `rows`, whose targets and predictions are `parity`, by compression, shear,
-/// rotation, ligament width, cut angle, and distance from the edge of the domain. Bins without rows
+/// rotation, ligament width, cut angle, hole if it is a feature, and distance from the edge of the domain. Bins without rows
 /// are omitted.
-pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain) -> Vec<ErrorBin> {
+pub(crate) fn error_bins(
+    parity: &Parity,
+    rows: &[Row],
+    domain: &TrainingDomain,
+    holes: Option<[f64; 2]>,
+) -> Vec<ErrorBin> {
     let degrees = |[minimum, maximum]: [f64; 2]| [minimum.to_degrees(), maximum.to_degrees()];
     let edge = |row: &Row| {
         domain
@@ -22,6 +27,9 @@ pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain)
             .max(0.0)
     };
     let [eta_a, eta_s, theta] = domain.bounds();
+    let hole = |row: &Row| row.design.fillet_ratio;
+    let hole: Option<(&str, [f64; 2], Quantity)> =
+        holes.map(|range| ("fillet_ratio", range, &hole as Quantity));
     let quantities: [(&str, [f64; 2], Quantity); 6] = [
         ("eta_a", eta_a, &|row| row.eta()[0]),
         ("eta_s", eta_s, &|row| row.eta()[1]),
@@ -35,7 +43,7 @@ pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain)
         ("edge", [0.0, 1.0], &edge),
     ];
     let mut bins = Vec::new();
-    for (quantity, [minimum, maximum], value) in quantities {
+    for (quantity, [minimum, maximum], value) in quantities.into_iter().chain(hole) {
         let width = (maximum - minimum) / BINS as f64;
         for bin in 0..BINS {
             let lower = minimum + bin as f64 * width;
@@ -101,8 +109,16 @@ mod tests {
         };
         let state = [[-1.0, 1.0], [-1.0, 1.0], [0.0, 1.0]];
         let domain = TrainingDomain::from_box(state, [5.0, 25.0], [1.0, 2.0]);
-        let bins = error_bins(&parity, &rows, &domain);
-        for quantity in ["eta_a", "eta_s", "theta_deg", "w_lig", "alpha_deg", "edge"] {
+        let bins = error_bins(&parity, &rows, &domain, Some([0.1, 0.3]));
+        for quantity in [
+            "eta_a",
+            "eta_s",
+            "theta_deg",
+            "w_lig",
+            "alpha_deg",
+            "fillet_ratio",
+            "edge",
+        ] {
             let of = bins.iter().filter(|bin| bin.quantity == quantity);
             assert_eq!(
                 of.map(|bin| bin.errors.rows).sum::<usize>(),

@@ -145,7 +145,11 @@ mod tests {
             .iter()
             .map(|row| scales.sample(&row.design, &row.sample))
             .collect();
-        let predicted = predict(&networks, &Batch::new(&samples, features, &options), SHARPNESS);
+        let predicted = predict(
+            &networks,
+            &Batch::new(&samples, features, &options),
+            SHARPNESS,
+        );
         let column = |tensor: &burn::tensor::Tensor<2>, k: usize, scale: f64| -> Vec<f64> {
             let column = tensor.clone().inner().narrow(1, k, 1);
             let values: Vec<f64> = column.try_into_vec_as().unwrap();

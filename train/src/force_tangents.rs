@@ -59,8 +59,8 @@ mod tests {
     use crate::config::TrainingConfig;
     use crate::loss::tests::config;
     use crate::networks::Networks;
-    use crate::samples::{Batch, Sample};
     use crate::samples::tests::samples;
+    use crate::samples::{Batch, Sample};
     use burn::tensor::{DType, TensorCreationOptions};
 
     #[test]

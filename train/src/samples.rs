@@ -4,8 +4,8 @@ use crate::error::TrainError;
 use crate::mirror;
 use burn::tensor::{Tensor, TensorCreationOptions, TensorData};
 use dataset::Row;
-use hinge::{HingeDeformation, HingeDesign, HingeSample};
-use surrogate::{Card, FEATURE_NAMES, NetLigament, Standardisation, feature_names, features};
+use hinge::{HingeDeformation, HingeDesign, HingeSample, NetLigament};
+use surrogate::{Card, FEATURE_NAMES, Standardisation, feature_names, features};
 
 /// The scales of (14) and (15), computed from the training rows.
 #[derive(Clone, Debug, PartialEq)]

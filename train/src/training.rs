@@ -153,12 +153,7 @@ impl Training {
         let options = options(config, backend);
         let networks = match &layers {
             Some(layers) => Networks::from_layers(layers, config.mirror, &options),
-            None => Networks::new(
-                config,
-                scales.features(),
-                scales.peak.is_some(),
-                &options,
-            ),
+            None => Networks::new(config, scales.features(), scales.peak.is_some(), &options),
         };
         let solved = parts.training.iter().map(|row| (&row.design, &row.sample));
         let distilled = data.distillation.into_iter();
@@ -262,7 +257,12 @@ impl Training {
         let best = export(&self.best, &self.card)?;
         let parity = Parity::new(&best, &self.parts.test);
         let test_errors = parity.errors();
-        let bins = error_bins(&parity, &self.parts.test, &self.card.domain);
+        let bins = error_bins(
+            &parity,
+            &self.parts.test,
+            &self.card.domain,
+            self.card.holes,
+        );
         let last = export(&self.networks, &self.card)?;
         let last_errors = Parity::new(&last, &self.parts.test).errors();
         Ok(Trained {

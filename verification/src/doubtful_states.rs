@@ -2,8 +2,8 @@
 
 use crate::spot_check::random_paths;
 use fe_driver::Ray;
-use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
-use surrogate::{Order, Surrogate, mean_and_variance};
+use hinge::{HingeDeformation, HingeDesign, HingeSample, TrainingDomain};
+use surrogate::{Surrogate, mean_and_variance};
 
 /// Number of states drawn: a part of a thousandth of the domain has fifty.
 const DRAWN: usize = 50_000;
@@ -19,43 +19,67 @@ pub struct DoubtfulState {
     pub design: HingeDesign,
     /// Its deformation.
     pub state: HingeDeformation,
-    /// Standard deviation of the energies, relative to their mean or to a hundredth of the median energy, whichever is
-    /// larger; infinite if an energy is not finite.
-    pub doubt: f64,
+    /// Standard deviations over the networks: of the energies, relative to their mean or to a hundredth of the median energy,
+    /// whichever is larger; of the forces (F_a, F_s, M_theta / w_lig) and of D, relative to the root mean square over the domain.
+    /// Infinite if a value is not finite.
+    pub doubts: [f64; 3],
+}
+
+impl DoubtfulState {
+    /// The largest of the doubts.
+    pub fn doubt(&self) -> f64 {
+        self.doubts.into_iter().fold(0.0, f64::max)
+    }
 }
 
 /// Random states of the training domain that the networks share, those with the largest doubt first.
 pub fn doubtful_states(networks: &[Surrogate]) -> Vec<DoubtfulState> {
-    let shared = &networks[0];
-    let paths = random_paths(shared.into(), DRAWN, 1, 0);
+    let paths = random_paths((&networks[0]).into(), DRAWN, 1, 0);
     let designs: Vec<HingeDesign> = paths.iter().map(|path| path.hinge.design).collect();
     let states: Vec<HingeDeformation> = paths.iter().map(|path| path.hinge.path.at(1.0)).collect();
-    let energies: Vec<Vec<f64>> = networks
+    let predicted: Vec<Vec<HingeSample>> = networks
         .iter()
-        .map(|network| {
-            let prepared = network.prepare(&designs);
-            let energies = network.evaluate(&prepared, &states, Order::Value);
-            energies.iter().map(|energy| energy.w).collect()
-        })
+        .map(|network| network.samples(&designs, &states))
         .collect();
-    let mut sizes: Vec<f64> = energies[0].iter().map(|w| w.abs()).collect();
+    let forces = |k: usize, sample: &HingeSample| {
+        [sample.f_a, sample.f_s, sample.m_theta / designs[k].w_lig]
+    };
+    let mut sizes: Vec<f64> = predicted[0].iter().map(|sample| sample.w.abs()).collect();
     sizes.sort_by(f64::total_cmp);
     let min_energy = MIN_ENERGY * sizes[DRAWN / 2];
+    let root_mean_square = |square: &dyn Fn(usize, &HingeSample) -> f64| {
+        let squares = predicted[0].iter().enumerate();
+        (squares.map(|(k, sample)| square(k, sample)).sum::<f64>() / DRAWN as f64).sqrt()
+    };
+    let force_scale = root_mean_square(&|k, sample| forces(k, sample).iter().map(|f| f * f).sum());
+    let damage_scale = root_mean_square(&|_, sample| sample.d * sample.d);
     let mut found: Vec<DoubtfulState> = (0..DRAWN)
-        .map(|k| DoubtfulState {
-            design: designs[k],
-            state: states[k],
-            doubt: deviation(energies.iter().map(|network| network[k]), min_energy),
+        .map(|k| {
+            let of = |value: &dyn Fn(&HingeSample) -> f64| {
+                let values: Vec<f64> = predicted.iter().map(|of| value(&of[k])).collect();
+                mean_and_variance(values)
+            };
+            let [mean, variance] = of(&|sample| sample.w);
+            let of_forces: f64 = (0..3).map(|c| of(&|sample| forces(k, sample)[c])[1]).sum();
+            let [_, of_damage] = of(&|sample| sample.d);
+            DoubtfulState {
+                design: designs[k],
+                state: states[k],
+                doubts: [
+                    relative(variance, mean.abs().max(min_energy)),
+                    relative(of_forces, force_scale),
+                    relative(of_damage, damage_scale),
+                ],
+            }
         })
         .collect();
-    found.sort_by(|a, b| b.doubt.total_cmp(&a.doubt));
+    found.sort_by(|a, b| b.doubt().total_cmp(&a.doubt()));
     found
 }
 
-/// Standard deviation of energies relative to their mean, or to `min_energy` if that is larger.
-fn deviation(energies: impl Iterator<Item = f64> + Clone, min_energy: f64) -> f64 {
-    let [mean, variance] = mean_and_variance(energies);
-    let deviation = variance.sqrt() / mean.abs().max(min_energy);
+/// The root of a variance over a scale; infinite if it is not a number.
+fn relative(variance: f64, scale: f64) -> f64 {
+    let deviation = variance.sqrt() / scale;
     if deviation.is_nan() {
         return f64::INFINITY;
     }
@@ -118,21 +142,37 @@ mod tests {
     use super::*;
     use hinge::HingeConstants;
     use std::f64::consts::PI;
+    use std::path::Path;
 
     fn doubtful(w_lig: f64, alpha: f64, eta_s: f64, doubt: f64) -> DoubtfulState {
         DoubtfulState {
             design: HingeConstants::PAPER.hinge(w_lig, alpha),
             state: HingeDeformation::from_eta(0.1, eta_s, 0.3, w_lig),
-            doubt,
+            doubts: [0.5 * doubt, doubt, 0.0],
         }
     }
 
     #[test]
-    fn deviations_are_relative_to_the_mean_or_the_minimum_energy() {
-        let relative = |energies: [f64; 2], min| deviation(energies.into_iter(), min);
-        assert!((relative([9.0, 11.0], 1.0) - 0.02f64.sqrt()).abs() < 1e-15);
-        assert!((relative([0.0, 0.2], 1.0) - 0.02f64.sqrt()).abs() < 1e-15);
-        assert_eq!(relative([1.0, f64::NAN], 1.0), f64::INFINITY);
+    fn a_doubt_is_a_deviation_over_its_scale_and_infinite_where_a_network_has_no_number() {
+        assert_eq!(relative(0.04, 10.0), 0.02);
+        assert_eq!(relative(f64::NAN, 1.0), f64::INFINITY);
+        let state = doubtful(10.0, 1.0, 0.2, 0.3);
+        assert_eq!(state.doubt(), 0.3);
+    }
+
+    /// Networks of different seeds disagree about every quantity, and a network with itself about none.
+    #[test]
+    fn energies_forces_and_damage_are_doubted() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/pet-0.5mm");
+        let [one, other] = ["small", "distilled"].map(|name| {
+            Surrogate::load(&folder.join(name).with_added_extension("safetensors")).unwrap()
+        });
+        let states = doubtful_states(&[one.clone(), other]);
+        assert!(states.is_sorted_by(|a, b| a.doubt() >= b.doubt()));
+        let mean = |i: usize| states.iter().map(|state| state.doubts[i]).sum::<f64>();
+        assert!((0..3).all(|i| mean(i) > 1e-3 * states.len() as f64));
+        let same = doubtful_states(&[one.clone(), one]);
+        assert!(same.iter().all(|state| state.doubts == [0.0; 3]));
     }
 
     #[test]

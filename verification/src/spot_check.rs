@@ -61,12 +61,7 @@ impl<'a> From<&'a Surrogate> for DrawnStates<'a> {
 }
 
 /// `count` states drawn uniformly, `each` of them on one ray.
-pub fn random_paths(
-    drawn: DrawnStates,
-    count: usize,
-    each: usize,
-    seed: u64,
-) -> Vec<SpotPath> {
+pub fn random_paths(drawn: DrawnStates, count: usize, each: usize, seed: u64) -> Vec<SpotPath> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut paths = Vec::new();
     let mut left = count;
@@ -133,8 +128,7 @@ fn random_path(drawn: DrawnStates, states: usize, random: &mut ChaCha8Rng) -> Sp
     }
     let bounds = domain.bounds();
     let direction = loop {
-        let [eta_a, eta_s, theta] = bounds.map(&mut between);
-        let state = HingeDeformation::from_eta(eta_a, eta_s, theta, design.w_lig);
+        let state = domain.state(&design, bounds.map(&mut between));
         if domain.contains(&design, &state) {
             break state;
         }

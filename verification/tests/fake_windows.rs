@@ -15,8 +15,8 @@ use surrogate::Surrogate;
 use tempfile::TempDir;
 use verification::{
     Accuracy, BALANCED, BalanceEnd, Balanced, ElementWindows, LearningEnd, LearningRound,
-    LearningSteps, LearningTask, Replay, VerificationError, balanced, distillation_states, drawn, learn,
-    movements, random_paths, recorded_paths, region, size, spot_check,
+    LearningSteps, LearningTask, Replay, VerificationError, balanced, distillation_states, drawn,
+    learn, movements, random_paths, recorded_paths, region, size, spot_check,
 };
 
 /// (k_a, k_s) (N/mm) and k_theta (N mm/rad) of the hinges of film.

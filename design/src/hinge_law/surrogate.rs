@@ -86,8 +86,8 @@ impl PreparedSurrogate<'_> {
         let hinges = std::iter::zip(&self.designs, deformations);
         hinges
             .map(|(design, deformation)| {
-                let beyond = domain.gauge(design.w_lig, deformation) > 1.0;
-                let beyond = beyond.then(|| Continuation::new(domain, design.w_lig, deformation));
+                let beyond = domain.gauge(design, deformation) > 1.0;
+                let beyond = beyond.then(|| Continuation::new(domain, design, deformation));
                 let mapped = beyond.as_ref().map_or(*deformation, Continuation::mapped);
                 (mapped, beyond)
             })
@@ -151,19 +151,25 @@ struct Continuation {
 }
 
 impl Continuation {
-    fn new(domain: &TrainingDomain, w_lig: f64, deformation: &HingeDeformation) -> Self {
-        let gauge = domain.gauge_jet(w_lig, deformation);
+    fn new(domain: &TrainingDomain, design: &HingeDesign, deformation: &HingeDeformation) -> Self {
+        let gauge = domain.gauge_jet(design, deformation);
         let drawn = gauge.map(saturated(gauge.value)) * gauge.recip();
         let state = deformation.to_array();
         let centre = domain.centre();
+        // The domain is star-shaped in the measures of its own hinges.
+        let ligament = domain.ligament_jet(design);
+        let seen = ligament.deformation(from_fn(|i| Jet::variable(i, state[i])));
         let mapped = from_fn(|i| {
             let centre = match i {
                 2 => Jet::constant(centre[2]),
-                _ => Jet::variable(3, w_lig) * centre[i],
+                _ => ligament.width * centre[i],
             };
-            centre + (Jet::variable(i, state[i]) - centre) * drawn
+            centre + (seen[i] - centre) * drawn
         });
-        Self { gauge, mapped }
+        Self {
+            gauge,
+            mapped: ligament.actual(mapped),
+        }
     }
 
     fn mapped(&self) -> HingeDeformation {
@@ -179,7 +185,7 @@ impl Continuation {
         let curvature = |j: usize, k: usize| {
             sum(|i| y[i].gradient[j] * stiffness(i, k) + at.forces[i] * y[i].hessian[j][k])
         };
-        // W(y) as a function of (a, s, theta, w_lig), if the network's own dependence on w_lig is left out.
+        // W(y) as a function of (a, s, theta, w_lig, rho_f), without the network's own dependence on the last two.
         let drawn = Jet {
             value: at.w,
             gradient: from_fn(|j| sum(|i| at.forces[i] * y[i].gradient[j])),
@@ -204,9 +210,11 @@ impl Continuation {
         if order >= Order::Design {
             energy.design = at.design.map(|slope| grown * slope);
             energy.design[0] += law.gradient[3];
+            energy.design[2] += law.gradient[4];
             energy.mixed = from_fn(|j| from_fn(|g| mixed(j, g)));
             for j in 0..3 {
                 energy.mixed[j][0] += law.hessian[j][3];
+                energy.mixed[j][2] += law.hessian[j][4];
             }
         }
         energy
@@ -215,7 +223,14 @@ impl Continuation {
     /// A gradient at y, pulled back to x.
     fn gradient(&self, at: &HingeGradient) -> HingeGradient {
         let along = |j: usize| sum(|i| at[i] * self.mapped[i].gradient[j]);
-        [along(0), along(1), along(2), at[3] + along(3), at[4], at[5]]
+        [
+            along(0),
+            along(1),
+            along(2),
+            at[3] + along(3),
+            at[4],
+            at[5] + along(4),
+        ]
     }
 }
 
@@ -405,7 +420,7 @@ mod tests {
                 let [eta_a, eta_s, theta] = from_fn(|j| centre[j] + t * outwards[j]);
                 HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig)
             };
-            let edge = 1.0 / domain.gauge(w_lig, &state(1.0));
+            let edge = 1.0 / domain.gauge(&design, &state(1.0));
             let prepared = law.prepare(&[design]);
             // The derivative of W in gamma.
             let slope = |gamma: f64| {

@@ -276,7 +276,14 @@ mod tests {
         let HingeDeformation { a, theta, .. } = *state;
         let per_width = theta * theta * (1.0 + a);
         let by_a = w_lig * theta * theta;
-        let gradient = [by_a, 0.0, 2.0 * w_lig * theta * (1.0 + a), per_width, 0.0, 0.0];
+        let gradient = [
+            by_a,
+            0.0,
+            2.0 * w_lig * theta * (1.0 + a),
+            per_width,
+            0.0,
+            0.0,
+        ];
         HingeDamage {
             d: w_lig * per_width,
             gradient,

@@ -82,7 +82,8 @@ mod tests {
                     fillet_ratio: 0.16,
                     kerf: 0.01,
                     r_win: 0.3,
-                }.into(),
+                }
+                .into(),
             },
             model: Model::Ideal { opening: 0.5 },
             objective: Objective::from_shape(Shape::new(vec![[3.0, 3.0]])),

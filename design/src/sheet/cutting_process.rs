@@ -47,7 +47,9 @@ struct ProcessKeys {
 
 /// Why `[process]` does not define a hole.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("[process] needs either fillet_ratio (radius of the hole over w_lig) or hole_diameter (mm)")]
+#[error(
+    "[process] needs either fillet_ratio (radius of the hole over w_lig) or hole_diameter (mm)"
+)]
 struct OneHole;
 
 impl TryFrom<ProcessKeys> for CuttingProcess {
@@ -132,7 +134,10 @@ mod tests {
         };
         let drilled = read("hole_diameter = 2.0").unwrap();
         assert_eq!(drilled.hinge(10.0, 1.5).fillet_ratio, 0.1);
-        assert_eq!([drilled.hole_radius(10.0), drilled.hole_radius(5.0)], [1.0; 2]);
+        assert_eq!(
+            [drilled.hole_radius(10.0), drilled.hole_radius(5.0)],
+            [1.0; 2]
+        );
         let papers = read("fillet_ratio = 0.16").unwrap();
         assert_eq!(papers, HingeConstants::PAPER.into());
         assert_eq!(papers.hole_radius(10.0), 1.6);

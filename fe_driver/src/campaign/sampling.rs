@@ -21,7 +21,7 @@
 //! deployed hinge.
 
 use crate::solve::hinge_path::Ray;
-use hinge::{HingeConstants, HingeDeformation, HingeDesign};
+use hinge::{HingeConstants, HingeDeformation, NetLigament};
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -47,7 +47,8 @@ pub struct RayBox {
     pub w_lig: [f64; 2],
     /// Minimum and maximum cut angle (deg), above 0 and at most 90, because mirroring gives the rest.
     pub alpha_deg: [f64; 2],
-    /// Minimum and maximum radius of the hole, over w_lig, in place of the constant one of `[design]`.
+    /// Minimum and maximum radius of the hole, over w_lig. The ends of the rays are then those of the hinge with the hole of
+    /// `[design]` and the same net ligament.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fillet_ratio: Option<[f64; 2]>,
     /// The axial opening of a ligament that turns freely, over w_lig: coefficients of theta and theta^2 (rad). A plate's
@@ -88,7 +89,15 @@ impl RayBox {
     fn ray(&self, common: &HingeConstants, point: [f64; DIMENSIONS], pure_rotation: bool) -> Ray {
         let [log_w, alpha, theta, eta_a, eta_s, hole] = point;
         let between = |[from, to]: [f64; 2], share: f64| from + (to - from) * share;
-        let w_lig = between(self.w_lig.map(f64::ln), log_w).exp();
+        let mut design = common.hinge(
+            between(self.w_lig.map(f64::ln), log_w).exp(),
+            between(self.alpha_deg, alpha).to_radians(),
+        );
+        if let Some(range) = self.fillet_ratio {
+            design.fillet_ratio = between(range, hole);
+        }
+        let ligament = NetLigament::new(&design, common.fillet_ratio);
+        let w_lig = ligament.design(&design).w_lig;
         let [eta_a, eta_s, theta_deg] = if pure_rotation {
             [0.0, 0.0, self.theta_deg[1]]
         } else {
@@ -108,16 +117,10 @@ impl RayBox {
         };
         let theta = theta_deg.to_radians();
         let eta_a = self.free(theta) + eta_a;
-        let fillet_ratio = match self.fillet_ratio {
-            Some(range) => between(range, hole),
-            None => common.fillet_ratio,
-        };
+        let end = HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig);
         Ray {
-            design: HingeDesign {
-                fillet_ratio,
-                ..common.hinge(w_lig, between(self.alpha_deg, alpha).to_radians())
-            },
-            end: HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig),
+            design,
+            end: ligament.actual(&end),
         }
     }
 
@@ -315,7 +318,7 @@ mod tests {
         assert!(turned.defect().unwrap().contains("free_opening"));
     }
 
-    /// Sampling the hole changes no other coordinate of a ray.
+    /// Sampling the hole changes no other coordinate of a ray, in the measures of the hinge with the same net ligament.
     #[test]
     fn the_hole_is_sampled_over_its_range() {
         let range = [0.03, 0.4];
@@ -325,11 +328,14 @@ mod tests {
         };
         let rays = sampled.rays(&COMMON, 80, 1);
         for (ray, plain) in std::iter::zip(&rays, BOX.rays(&COMMON, 80, 1)) {
-            let design = HingeDesign {
-                fillet_ratio: COMMON.fillet_ratio,
-                ..ray.design
-            };
-            assert_eq!((design, ray.end), (plain.design, plain.end));
+            assert_eq!(ray.design.w_lig, plain.design.w_lig);
+            assert_eq!(ray.design.alpha, plain.design.alpha);
+            assert_eq!(ray.end.theta, plain.end.theta);
+            let ligament = NetLigament::new(&ray.design, COMMON.fillet_ratio);
+            let [eta_a, eta_s] = ligament
+                .deformation(&ray.end)
+                .eta(ligament.design(&ray.design).w_lig);
+            assert!(eta_a > -0.81 && eta_a < 0.26 && eta_s.abs() < 0.41);
             ray.design.validate().unwrap();
         }
         let holes = || rays.iter().map(|ray| ray.design.fillet_ratio);

@@ -1,8 +1,8 @@
 //! The training domain of given states.
 
-use crate::domain::TrainingDomain;
 use crate::domain::directions::{DIRECTION, DIRECTIONS, dot, norm};
-use crate::{HingeDeformation, HingeDesign};
+use crate::domain::{TrainingDomain, measures};
+use crate::{HingeConstants, HingeDeformation, HingeDesign};
 use std::array::from_fn;
 
 /// Maximum number of widths at which the supports are stored.
@@ -17,16 +17,20 @@ const LEAST_SIZE: f64 = 0.01;
 const FLAT: f64 = 0.98;
 
 impl TrainingDomain {
-    /// The domain of the given states and the flat state; `None` if no state is given.
+    /// The domain of the given states and the flat state; `None` if no state is given. If the hinges have holes of several
+    /// radii, it is in the measures of hinges with the paper's hole.
     ///
     /// The states are passed through several times, and none is kept.
     pub fn covering(
         states: impl IntoIterator<Item = (HingeDesign, HingeDeformation), IntoIter: Clone>,
     ) -> Option<Self> {
-        let states = states.into_iter().map(|(design, deformation)| {
-            let [eta_a, eta_s] = deformation.eta(design.w_lig);
-            ([eta_a, eta_s, deformation.theta], design)
-        });
+        let states = states.into_iter();
+        let mut holes = states.clone().map(|(design, _)| design.fillet_ratio);
+        let first = holes.next();
+        let several = holes.any(|hole| Some(hole) != first);
+        let hole = several.then_some(HingeConstants::PAPER.fillet_ratio);
+        let states =
+            states.map(|(design, deformation)| (measures(hole, &design, &deformation), design));
         let states = || states.clone();
         let count = states().count();
         if count == 0 {
@@ -35,6 +39,7 @@ impl TrainingDomain {
         let mut domain = Self {
             w_lig: interval(states().map(|(_, design)| design.w_lig)),
             alpha: interval(states().map(|(_, design)| design.alpha)),
+            hole,
             centre: from_fn(|i| states().map(|(x, _)| x[i]).sum::<f64>() / count as f64),
             half_range: from_fn(|i| {
                 let [minimum, maximum] = interval(states().map(|(x, _)| x[i]));
@@ -59,6 +64,7 @@ impl TrainingDomain {
         let mut domain = Self {
             w_lig,
             alpha,
+            hole: None,
             centre: state.map(|[minimum, maximum]| 0.5 * (minimum + maximum)),
             half_range: state.map(|[minimum, maximum]| (0.5 * (maximum - minimum)).max(LEAST_SIZE)),
             supports: Vec::new(),

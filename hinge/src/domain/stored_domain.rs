@@ -15,6 +15,8 @@ pub struct InvalidDomain(&'static str);
 pub(super) struct Stored {
     w_lig: [f64; 2],
     alpha: [f64; 2],
+    #[serde(default)]
+    hole: Option<f64>,
     centre: [f64; 3],
     half_range: [f64; 3],
     supports: Vec<[f64; DIRECTIONS]>,
@@ -27,6 +29,7 @@ impl TryFrom<Stored> for TrainingDomain {
         let Stored {
             w_lig,
             alpha,
+            hole,
             centre,
             half_range,
             supports,
@@ -44,12 +47,17 @@ impl TryFrom<Stored> for TrainingDomain {
                 is_interval(w_lig) && w_lig[0] > 0.0,
             ),
             ("minimum <= maximum for alpha", is_interval(alpha)),
+            (
+                "0 < hole < 1",
+                hole.is_none_or(|hole| 0.0 < hole && hole < 1.0),
+            ),
         ];
         match rules.into_iter().find(|(_, holds)| !holds) {
             Some((rule, _)) => Err(InvalidDomain(rule)),
             None => Ok(Self {
                 w_lig,
                 alpha,
+                hole,
                 centre,
                 half_range,
                 supports,

@@ -19,6 +19,8 @@ const ROOM: f64 = 0.17;
 const COLLAR: f64 = 0.08;
 /// Ratio of the radii of two circles of the collar, at most.
 const COLLAR_GROWTH: f64 = 2.0;
+/// The least growth of a collar, as a part of a doubling of the radius.
+const THINNEST_RING: f64 = 0.5;
 /// Weight of the true polar angle, relative to equal angles, in the spacing of columns at a hole up to [`LARGE_HOLE`].
 /// It grows to 1 at twice that: columns oblique to a large hole fold.
 const ANGLE_BLEND: f64 = 0.5;
@@ -152,14 +154,30 @@ fn inner_radius(fillet_ratio: f64) -> f64 {
 
 /// Radius of the circle about the tip that block 1 begins at (mm): the hole, or the rim of its collar.
 fn inner_circle(window: &Window) -> f64 {
-    window.0.fillet_radius().max(COLLAR * window.0.w_lig)
+    match collar_rings(window) {
+        0 => window.0.fillet_radius(),
+        _ => COLLAR * window.0.w_lig,
+    }
+}
+
+/// Number of rings of the collar. A hole that is little smaller than the collar's rim has none: its ring would be of slivers.
+fn collar_rings(window: &Window) -> i32 {
+    let doublings = (COLLAR / window.0.fillet_ratio).ln() / COLLAR_GROWTH.ln();
+    if doublings < THINNEST_RING {
+        0
+    } else {
+        doublings.ceil() as i32
+    }
 }
 
 /// Radii of the circles from the hole to the beginning of block 1 (mm), in constant ratio: the hole's alone if it has no
 /// collar.
 fn collar_radii(window: &Window) -> Vec<f64> {
-    let (hole, last) = (window.0.fillet_radius(), inner_circle(window));
-    let rings = ((last / hole).ln() / COLLAR_GROWTH.ln()).ceil() as i32;
+    let (hole, last, rings) = (
+        window.0.fillet_radius(),
+        inner_circle(window),
+        collar_rings(window),
+    );
     let growth = (last / hole).powf(1.0 / f64::from(rings.max(1)));
     (0..=rings).map(|ring| hole * growth.powi(ring)).collect()
 }

@@ -50,7 +50,8 @@ fn sheet(grid: Grid, coordinates: &PatternCoordinates, w_lig: f64) -> (CutPatter
             fillet_ratio: FILLET_RATIO,
             kerf: KERF,
             r_win: 100.0,
-        }.into(),
+        }
+        .into(),
     };
     let widths = vec![w_lig; grid.hinge_count()];
     let sheet = Sheet::new(&pattern, &widths, options).unwrap();

@@ -16,7 +16,7 @@ use verification::{
 /// A hinge is selected if a state on its path lies outside the training domain, or if the forces of
 /// an ensemble (train --seeds) deviate there by more than --doubt. A ray is then added through the
 /// outermost such state, ending 10 % beyond it. With --anywhere, rays are added through random states of the whole
-/// training domain instead, where the energies of the ensemble deviate most. The rays are appended to a CSV
+/// training domain instead, where energies, forces or D of the ensemble deviate most. The rays are appended to a CSV
 /// file, which a campaign names as extra_rays. Example: kirigami campaign extend configs/scenes/pet-3x3.toml --design
 /// runs/pet-3x3/state.json --rays configs/campaigns/pet-0.5mm-rays.csv
 #[derive(Args)]
@@ -26,8 +26,8 @@ pub struct ExtendCommand {
     /// Weights of further networks trained on the same data [default: the ensemble of the scene, none with --weights]
     #[arg(long, value_name = "FILE", num_args = 1..)]
     ensemble: Vec<PathBuf>,
-    /// Maximum standard deviation of the ensemble: of its forces, relative to their root mean square, or with --anywhere of
-    /// its energies, relative to their mean or to a hundredth of the median energy
+    /// Maximum standard deviation of the ensemble: of its forces, relative to their root mean square; with --anywhere also of
+    /// D, likewise, and of its energies, relative to their mean or to a hundredth of the median energy
     #[arg(long, value_name = "FRACTION", default_value_t = 0.05)]
     doubt: f64,
     /// Add at most N rays through states of the training domain, without a design
@@ -66,7 +66,7 @@ impl ExtendCommand {
             refused,
         } = add_extra_rays(&self.rays, &rays)?;
         println!(
-            "{found}; {added} rays added to {}, {known} already in the file, {refused} rejected (beyond |eta| = 1 or -30 to \
+            "{found}\n{added} rays added to {}, {known} already in the file, {refused} rejected (beyond |eta| = 1 or -30 to \
              120 deg)\nTo solve the new rays, set extra_rays = \"FILE\" in a campaign (path relative to the campaign file).",
             self.rays.display()
         );
@@ -97,16 +97,20 @@ impl ExtendCommand {
             "--anywhere needs an ensemble: pass further networks with --ensemble, or name them in the scene"
         );
         let states = doubtful_states(networks);
-        let worst = states.first().map_or(0.0, |state| state.doubt);
-        let doubted = || states.iter().filter(|state| state.doubt > self.doubt);
-        let share = doubted().count() as f64 / states.len() as f64;
-        let rays = rays_through(doubted(), networks[0].domain(), count, BEYOND);
-        let found = format!(
-            "the energies of {} networks deviate by more than {:.3} in {:.2} % of the training domain, by {worst:.2} at most",
+        let doubted = states.iter().filter(|state| state.doubt() > self.doubt);
+        let rays = rays_through(doubted, networks[0].domain(), count, BEYOND);
+        let mut found = format!(
+            "{} networks deviate by more than {:.3} in these parts of the training domain:",
             networks.len(),
-            self.doubt,
-            100.0 * share
+            self.doubt
         );
+        for (i, quantity) in ["energies", "forces", "D"].into_iter().enumerate() {
+            let doubts = || states.iter().map(|state| state.doubts[i]);
+            let share = doubts().filter(|doubt| *doubt > self.doubt).count() as f64;
+            let percent = 100.0 * share / states.len() as f64;
+            let most = doubts().fold(0.0, f64::max);
+            found += &format!("\n{quantity:8}  {percent:7.3} %, by {most:.2} at most");
+        }
         Ok((rays, found))
     }
 }

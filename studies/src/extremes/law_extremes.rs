@@ -110,7 +110,7 @@ impl Found {
             let along =
                 |length: f64| -> [f64; 3] { from_fn(|i| centre[i] + length * direction[i]) };
             // The gauge is homogeneous about the centre of the domain.
-            let edge = 1.0 / domain.gauge(design.w_lig, &deformation(design, along(1.0)));
+            let edge = 1.0 / domain.gauge(design, &deformation(design, along(1.0)));
             let state = if distance == DISTANCES[0] {
                 direction.map(|x| distance * x)
             } else {

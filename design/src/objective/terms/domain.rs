@@ -11,7 +11,7 @@
 
 use crate::hinge_law::HingeGradient;
 use crate::objective::term::{Deployed, Term, TermGradient};
-use hinge::{HingeDeformation, TrainingDomain};
+use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
 
 /// Gauge above which a state is penalised.
 const EDGE: f64 = 0.98;
@@ -42,11 +42,12 @@ impl Term for DomainPenalty {
         };
         let per_state = 1.0 / (at.sheet.hinges.len() * at.path.len()) as f64;
         let mut value = 0.0;
-        let hinges = std::iter::zip(&at.sheet.hinges, &mut gradient.by_states);
-        for (h, (hinge, by_hinge)) in hinges.enumerate() {
+        let designs = at.sheet.designs();
+        let hinges = std::iter::zip(&designs, &mut gradient.by_states);
+        for (h, (design, by_hinge)) in hinges.enumerate() {
             for (step, slopes) in std::iter::zip(at.path, by_hinge) {
                 let state = &step.deformations[h];
-                let (excess, by) = excess_of_state(domain, hinge.w_lig, hinge.alpha, state);
+                let (excess, by) = excess_of_state(domain, design, state);
                 value += per_state * excess;
                 for (slope, by) in std::iter::zip(slopes, by) {
                     *slope += weight * per_state * by;
@@ -60,20 +61,19 @@ impl Term for DomainPenalty {
 /// The contribution of one state, and its gradient.
 fn excess_of_state(
     domain: &TrainingDomain,
-    w_lig: f64,
-    alpha: f64,
+    design: &HingeDesign,
     state: &HingeDeformation,
 ) -> (f64, HingeGradient) {
-    let width = excess(domain.w_lig, w_lig);
-    let angle = excess(domain.alpha, alpha);
+    let width = excess(domain.w_lig, design.w_lig);
+    let angle = excess(domain.alpha, design.alpha);
     let mut value = width.0 + angle.0;
     let mut gradient = [0.0, 0.0, 0.0, width.1, angle.1, 0.0];
-    if domain.gauge(w_lig, state) > EDGE {
-        let gauge = domain.gauge_jet(w_lig, state);
+    if domain.gauge(design, state) > EDGE {
+        let gauge = domain.gauge_jet(design, state);
         let scaled = PER_HALF_RANGE * (gauge.value - EDGE);
         value += scaled * scaled;
-        for (by, slope) in std::iter::zip(&mut gradient, gauge.gradient) {
-            *by += 2.0 * PER_HALF_RANGE * scaled * slope;
+        for (component, slope) in std::iter::zip([0, 1, 2, 3, 5], gauge.gradient) {
+            gradient[component] += 2.0 * PER_HALF_RANGE * scaled * slope;
         }
     }
     (value, gradient)
@@ -92,15 +92,51 @@ fn excess([minimum, maximum]: [f64; 2], at: f64) -> (f64, f64) {
 mod tests {
     use super::*;
     use crate::analysis::taylor::central_slope;
+    use hinge::HingeConstants;
 
     fn domain() -> TrainingDomain {
         let state = [[-0.8, 0.2], [-0.4, 0.4], [-0.1, 1.3]];
         TrainingDomain::from_box(state, [5.0, 25.0], [0.8, 2.3])
     }
 
-    fn value(x: &[f64]) -> f64 {
+    /// x = (a, s, theta, w_lig, alpha, rho_f)
+    fn design(x: &[f64]) -> HingeDesign {
+        HingeDesign {
+            fillet_ratio: x[5],
+            ..HingeConstants::PAPER.hinge(x[3], x[4])
+        }
+    }
+
+    fn value_in(domain: &TrainingDomain, x: &[f64]) -> f64 {
         let state = [x[0], x[1], x[2]].into();
-        excess_of_state(&domain(), x[3], x[4], &state).0
+        excess_of_state(domain, &design(x), &state).0
+    }
+
+    fn value(x: &[f64]) -> f64 {
+        value_in(&domain(), &[x, &[0.16]].concat())
+    }
+
+    /// The domain of a few hinges with holes of several radii.
+    fn of_several_holes() -> TrainingDomain {
+        let states = (0..40).map(|i| {
+            let part = |number: f64| (f64::from(i) * number).fract();
+            let x = [
+                0.0,
+                0.0,
+                0.0,
+                5.0 + 20.0 * part(0.618),
+                0.8 + 1.5 * part(0.414),
+                0.4 * part(0.732),
+            ];
+            let design = design(&x);
+            let eta = [0.8 * part(0.236) - 0.6, 0.8 * part(0.645) - 0.4];
+            let theta = 1.3 * part(0.316);
+            (
+                design,
+                HingeDeformation::from_eta(eta[0], eta[1], theta, design.w_lig),
+            )
+        });
+        TrainingDomain::covering(states.collect::<Vec<_>>()).unwrap()
     }
 
     #[test]
@@ -121,20 +157,22 @@ mod tests {
     #[test]
     fn gradients_agree_with_differences() {
         let outside = [
-            [5.0, -9.0, 1.4, 15.0, 2.4],
-            [-30.0, 12.0, -0.2, 26.0, 0.7],
-            [1.0, 0.5, 0.3, 4.0, 1.5],
+            [5.0, -9.0, 1.4, 15.0, 2.4, 0.16],
+            [-30.0, 12.0, -0.2, 26.0, 0.7, 0.3],
+            [1.0, 0.5, 0.3, 4.0, 1.5, 0.05],
         ];
-        for x in outside {
-            let state = [x[0], x[1], x[2]].into();
-            let (_, gradient) = excess_of_state(&domain(), x[3], x[4], &state);
-            for (i, found) in gradient.into_iter().enumerate() {
-                let unit: Vec<f64> = (0..5).map(|j| f64::from(i == j)).collect();
-                let slope = central_slope(value, &x, &unit, 1e-6);
-                assert!(
-                    (found - slope).abs() < 1e-6 * slope.abs().max(1.0),
-                    "{i}: {found} {slope}"
-                );
+        for domain in [domain(), of_several_holes()] {
+            for x in outside {
+                let state = [x[0], x[1], x[2]].into();
+                let (_, gradient) = excess_of_state(&domain, &design(&x), &state);
+                for (i, found) in gradient.into_iter().enumerate() {
+                    let unit: Vec<f64> = (0..6).map(|j| f64::from(i == j)).collect();
+                    let slope = central_slope(|x| value_in(&domain, x), &x, &unit, 1e-6);
+                    assert!(
+                        (found - slope).abs() < 1e-6 * slope.abs().max(1.0),
+                        "{i}: {found} {slope}"
+                    );
+                }
             }
         }
     }
