@@ -41,7 +41,7 @@ mod tests {
     use crate::validation::Parity;
     use burn::tensor::{DType, TensorCreationOptions};
     use dataset::Row;
-    use hinge::{HingeConstants, HingeDesign, HingeSample, TrainingDomain};
+    use hinge::{HingeConstants, HingeDesign, HingeSample, NetLigament, TrainingDomain};
     use surrogate::{
         Card, FEATURE_NAMES, FORMAT_VERSION, Surrogate, TestErrors, UNITS, feature_names,
     };
@@ -155,7 +155,7 @@ mod tests {
             let values: Vec<f64> = column.try_into_vec_as().unwrap();
             values.into_iter().map(|value| scale * value).collect()
         };
-        let burn = [
+        let mut burn = [
             column(&predicted.energy, 0, scales.energy),
             column(&predicted.forces, 0, scales.forces[0]),
             column(&predicted.forces, 1, scales.forces[1]),
@@ -163,6 +163,11 @@ mod tests {
             column(&predicted.damage, 0, scales.damage),
             column(&predicted.damage, 1, scales.peak.unwrap()),
         ];
+        // Burn's moment is that of the hinge that the networks see.
+        for (i, row) in rows.iter().enumerate() {
+            let ligament = NetLigament::new(&row.design, scales.hole);
+            burn[3][i] += burn[1][i] * ligament.by_theta(row.sample.theta)[0];
+        }
         let parity = Parity::new(&surrogate(&networks, &scales), &rows);
         std::array::from_fn(|quantity| {
             let pairs = || burn[quantity].iter().zip(parity.points(quantity));
