@@ -262,7 +262,10 @@ fn rays_are_proposed_where_networks_disagree(work: &Workplace) {
     let extend = "campaign extend configs/scenes/demo.toml --anywhere 5 --doubt 0 --rays configs/campaigns/anywhere.csv";
     assert_contains(&work.error(extend), &["--ensemble"]);
     let extend = format!("{extend} --ensemble runs/demo/surrogate-last.safetensors");
-    assert_contains(&work.output(&extend), &["100.00 % of the training domain"]);
+    assert_contains(
+        &work.output(&extend),
+        &["energies  100.000 %", "forces    100.000 %"],
+    );
     let rays = std::fs::read_to_string(work.path("configs/campaigns/anywhere.csv")).unwrap();
     assert_eq!(rays.lines().count(), 6, "{rays}");
 }

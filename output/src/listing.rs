@@ -10,8 +10,10 @@ mod deployment;
 mod equilibrium;
 mod gradient;
 mod pattern;
+mod tolerances;
 
 pub use deployment::DeploymentListing;
 pub use equilibrium::{EnergyParts, EquilibriumListing, StepListing};
 pub use gradient::GradientListing;
 pub use pattern::{HingeListing, PatternListing};
+pub use tolerances::{Allowed, ToleranceListing, ToleranceQuestion};

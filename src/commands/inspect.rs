@@ -5,11 +5,15 @@ pub(crate) mod judged_design;
 pub mod scene_args;
 
 use crate::commands::inspect::scene_args::Listed;
+use crate::ui::progress::Progress;
 use anyhow::{Context, Result};
 use clap::{Args, Subcommand};
-use output::listing::{DeploymentListing, EquilibriumListing, GradientListing, PatternListing};
+use output::listing::{
+    DeploymentListing, EquilibriumListing, GradientListing, PatternListing, ToleranceListing,
+    ToleranceQuestion,
+};
 
-/// Print the numbers of one stage of a design: pattern, deploy, equilibrium, gradient
+/// Print the numbers of one stage of a design: pattern, deploy, equilibrium, gradient, tolerances
 #[derive(Args)]
 pub struct InspectCommand {
     #[command(subcommand)]
@@ -34,6 +38,45 @@ enum Stage {
     ///
     /// Example: kirigami inspect gradient configs/scenes/linear-7x7.toml --json
     Gradient(Listed),
+    /// Print what errors of cutting do to the deployed sheet, and which tolerances keep it within an error
+    ///
+    /// Each ligament, the kerf and the thickness are changed by one standard deviation, half of their tolerance, and the
+    /// sheet is deployed again; then sheets with all errors at random. Tolerances are those of the scene ([tolerances]) unless
+    /// they are named. Example: kirigami inspect tolerances runs/a4-plate --ligament 0.05 --kerf 0.05 --samples 200
+    Tolerances(ToleranceArgs),
+}
+
+#[derive(Args)]
+struct ToleranceArgs {
+    #[command(flatten)]
+    listed: Listed,
+    /// Tolerance +- of the width of every ligament by itself, two standard deviations (mm)
+    #[arg(long, value_name = "MM", value_parser = length)]
+    ligament: Option<f64>,
+    /// Tolerance +- of the width that the cutter removes (mm)
+    #[arg(long, value_name = "MM", value_parser = length)]
+    kerf: Option<f64>,
+    /// Tolerance +- of the thickness of the sheet (mm)
+    #[arg(long, value_name = "MM", value_parser = length)]
+    thickness: Option<f64>,
+    /// Number of sheets with errors at random; 0 for none
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    samples: usize,
+    /// Seed of the random sheets
+    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    seed: u64,
+    /// Movement of the corners that is allowed, root mean square, one standard deviation (mm) [default: that of the known errors of
+    /// the model]
+    #[arg(long, value_name = "MM", value_parser = length)]
+    within: Option<f64>,
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    let length = text
+        .parse()
+        .ok()
+        .filter(|length| *length > 0.0 && *length < 1e3);
+    length.ok_or_else(|| "must be a length above 0 (mm)".into())
 }
 
 #[derive(Args)]
@@ -67,6 +110,7 @@ impl InspectCommand {
                 let (scene, design, name) = listed.read()?;
                 listed.print(name, EquilibriumListing::new(&scene.problem()?, &design)?)
             }
+            Stage::Tolerances(args) => args.run(),
             Stage::Gradient(listed) => {
                 let (scene, design, name) = listed.read()?;
                 listed.print(
@@ -75,5 +119,34 @@ impl InspectCommand {
                 )
             }
         }
+    }
+}
+
+impl ToleranceArgs {
+    fn run(&self) -> Result<()> {
+        let (scene, design, name) = self.listed.read()?;
+        let mut tolerances = scene.config.tolerances;
+        for (given, named) in [
+            (&mut tolerances.ligament, self.ligament),
+            (&mut tolerances.kerf, self.kerf),
+            (&mut tolerances.thickness, self.thickness),
+        ] {
+            *given = named.or(*given);
+        }
+        let question = ToleranceQuestion {
+            tolerances,
+            samples: self.samples,
+            seed: self.seed,
+            within: self.within,
+        };
+        let bar = Progress::new(0, "sheets");
+        let mut progress = |done: usize, all: usize| {
+            bar.set_total(all);
+            bar.show(done, None, "");
+        };
+        let problem = scene.problem()?;
+        let listing = ToleranceListing::new(&scene, &problem, &design, question, &mut progress)?;
+        bar.finish();
+        self.listed.print(name, listing)
     }
 }

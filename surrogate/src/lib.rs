@@ -39,6 +39,7 @@ mod damage;
 mod energy;
 mod ensemble;
 mod features;
+mod hinge_energy;
 mod model;
 mod network;
 mod passes;
@@ -51,9 +52,10 @@ pub use card::{
     UNITS,
 };
 pub use damage::HingeDamage;
-pub use energy::{HingeEnergy, Order, Prepared};
+pub use energy::Prepared;
 pub use ensemble::mean_and_variance;
 pub use features::{FEATURE_NAMES, Standardisation, feature_names, features};
+pub use hinge_energy::{HingeEnergy, Order};
 pub use model::{Layers, Surrogate};
 pub use network::{InvalidWeights, Layer, Network, Tensor};
 pub use tanh::tanh_in_place;

@@ -1,8 +1,8 @@
 //! Energy and damage of a hinge from those of the hinge that the networks see: that with the hole of reference and the same net
 //! ligament ([`NetLigament`]), with the derivatives of this map.
 
-use crate::energy::{HingeEnergy, Order};
 use crate::features::FEATURES;
+use crate::hinge_energy::{HingeEnergy, Order};
 use hinge::{HingeDeformation, HingeDesign, NetLigament};
 use std::array::from_fn;
 

@@ -25,6 +25,9 @@ use std::sync::Arc;
 /// Largest movement of a panel corner in a round, relative to the size of the deployed sheet, at which the iteration
 /// ends: a tenth of a millimetre in a metre.
 pub const BALANCED: f64 = 1e-4;
+/// Largest force error of a round at which the iteration ends: panels that hardly move do not show that stiff hinges carry
+/// another load.
+pub const BALANCED_FORCES: f64 = 0.02;
 
 /// One round: the hinges are solved, and the sheet is deployed with their forces.
 #[derive(Clone, Debug, Serialize)]
@@ -60,10 +63,10 @@ pub struct Balanced {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BalanceEnd {
-    /// The last round moved the panels by less than [`BALANCED`]. Forces at the new states are not solved; the force error of
-    /// the round is that of the states before.
+    /// The last round moved the panels by less than [`BALANCED`], and its forces differed by less than [`BALANCED_FORCES`]. Forces at
+    /// the new states are not solved; the force error of the round is that of the states before.
     Converged,
-    /// All rounds were made, and the panels still move.
+    /// All rounds were made, and the panels still move or the forces still differ.
     RoundsMade,
     /// A round after the first failed. The results are those of the rounds before.
     Failed(String),
@@ -74,7 +77,9 @@ impl BalanceEnd {
     pub fn warning(&self) -> Option<String> {
         match self {
             Self::Converged => None,
-            Self::RoundsMade => Some("the panels still move: use more --rounds".into()),
+            Self::RoundsMade => {
+                Some("the panels still move, or the forces still differ: use more --rounds".into())
+            }
             Self::Failed(reason) => Some(format!("a further round failed: {reason}")),
         }
     }
@@ -219,7 +224,7 @@ impl Iteration<'_> {
             .filter(|round| round.tier == windows.tier);
         let last = last.map_or(f64::INFINITY, |round| round.movement);
         let (next, movement) = self.step(deployed, last)?;
-        if movement <= BALANCED * size(&next) {
+        if movement <= BALANCED * size(&next) && force_error <= BALANCED_FORCES {
             found.ended = BalanceEnd::Converged;
         }
         for (known, end) in found.hinges.iter_mut().zip(ends) {

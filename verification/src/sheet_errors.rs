@@ -1,6 +1,8 @@
 //! The error of a deployed sheet, judged by finite elements for its hinges.
 
-use crate::balanced_sheet::{BALANCED, BalanceEnd, Balanced, Round, movements, size};
+use crate::balanced_sheet::{
+    BALANCED, BALANCED_FORCES, BalanceEnd, Balanced, Round, movements, size,
+};
 use design::analysis::error_budget::{Cause, Effect, ErrorBudget};
 use design::objective::design_problem::Deployment;
 use mesher::Tier;
@@ -134,8 +136,9 @@ impl fmt::Display for SheetErrors {
         writeln!(
             f,
             "\nForce error: finite elements against the law of the round, root mean square over all hinges. Movement: of the \
-             panel corner that moves furthest. {ended} {:.3} mm ({BALANCED:.0e} of the sheet).\n",
+             panel corner that moves furthest. {ended} {:.3} mm ({BALANCED:.0e} of the sheet), forces within {:.0} %.\n",
             BALANCED * self.size,
+            100.0 * BALANCED_FORCES,
         )?;
         self.write_errors(f)?;
         self.write_unsolved(f)?;

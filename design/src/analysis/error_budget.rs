@@ -10,7 +10,7 @@
 //! | material law | in proportion to the force | common | the material file |
 //! | imperfection | in proportion to the force | independent | docs/results/window, docs/results/plates |
 //! | loading path | in proportion to the force and the separation from the ray | independent | docs/results/detours |
-//! | kerf | -1/2 d(force)/d(w_lig) of its tolerance | common | the scene |
+//! | kerf | of a ligament that is narrower and of a hole that is wider, each by half of its tolerance | common | the scene |
 //! | thickness | by similarity, of its tolerance | common | the scene |
 //!
 //! Finite elements of all hinges of the sheet replace the first two and the loading path. What they leave is the movement of the
@@ -414,7 +414,13 @@ impl Deployed<'_> {
         let tolerance = tolerance.ok_or("no tolerances.kerf in the scene")?;
         let narrower = -0.5 * tolerance / TOLERANCE;
         let errors: Vec<[f64; 3]> = (self.energies.iter())
-            .map(|energy| energy.mixed.map(|[by_width, ..]| narrower * by_width))
+            .zip(&self.designs)
+            .map(|(energy, design)| {
+                let by_hole = (1.0 + design.fillet_ratio) / design.w_lig;
+                energy
+                    .mixed
+                    .map(|[by_width, _, by_ratio]| narrower * (by_width - by_hole * by_ratio))
+            })
             .collect();
         let source = format!("+- {tolerance} mm, two standard deviations");
         Ok((ForceErrors::common(&errors), source))

@@ -223,9 +223,20 @@ impl DesignProblem {
         let w_lig: Vec<f64> = (design.omega.iter())
             .map(|&omega| self.widths.width(omega))
             .collect();
-        let sheet = Sheet::new(&pattern, &w_lig, self.options)?;
+        let sheet = self.sheet(&pattern, &w_lig, self.options)?;
+        Ok((pattern, sheet))
+    }
+
+    /// The sheet of a pattern with the given ligament widths (mm) and options, held and pulled where the problem's sheet is.
+    pub fn sheet(
+        &self,
+        pattern: &CutPattern,
+        w_lig: &[f64],
+        options: SheetOptions,
+    ) -> Result<Sheet, SheetError> {
+        let sheet = Sheet::new(pattern, w_lig, options)?;
         let grips = (self.model.mechanics()).map_or(&[][..], |mechanics| mechanics.solver.grips());
-        Ok((pattern, sheet.gripped(grips)))
+        Ok(sheet.gripped(grips))
     }
 
     /// Lines 2-5 of Algorithm 1. A path that diverges ends early; see [`LoadStep::status`].

@@ -6,7 +6,7 @@ use design::objective::design_problem::Deployment;
 use design::scene::{Scene, SceneConfig};
 use design::sheet::kinematics::deployed_corners;
 
-fn film(change: impl Fn(&mut SceneConfig)) -> Scene {
+pub fn film(change: impl Fn(&mut SceneConfig)) -> Scene {
     scene("a4-polyester.toml", |config| {
         config.solver.tolerance = 1e-12;
         change(config);
@@ -22,7 +22,7 @@ fn budget(scene: &Scene, residual: Option<&[f64]>) -> ErrorBudget {
     ErrorBudget::new(scene, &problem, &deployed(scene), residual).unwrap()
 }
 
-fn effect(budget: &ErrorBudget, cause: Cause) -> Option<&Effect> {
+pub fn effect(budget: &ErrorBudget, cause: Cause) -> Option<&Effect> {
     let part = budget.contributions.iter().find(|part| part.cause == cause);
     part.unwrap().effect.as_ref()
 }

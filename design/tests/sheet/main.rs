@@ -3,6 +3,7 @@
 
 mod cases;
 mod closed_forms;
+mod cutting_errors;
 mod driven;
 mod equilibrium;
 mod error_budget;

@@ -18,6 +18,7 @@ use design::scene::design_run::Designed;
 use design::scene::{Posture, Scene};
 use design::sheet::cut_sheet::PanelPoint;
 use design::sheet::hinge_window::Window;
+use hinge::Regime;
 
 /// Weight or friction over load from which a sheet opens otherwise than without it.
 const HEAVY: f64 = 0.05;
@@ -29,8 +30,10 @@ const STAYS_FLAT: f64 = 0.003;
 const TILTS: f64 = 0.05;
 /// Distance of the outline from the target over the longer side of the flat sheet from which the target is missed.
 const MISSED: f64 = 0.01;
-/// Kerf over ligament width for which another kerf than that of the weights was measured (data/pet-0.5mm).
-const MEASURED_KERF: [f64; 2] = [0.002, 0.15];
+/// Kerf over ligament width for which another kerf than that of the weights was measured, in a film (data/pet-0.5mm) and in a
+/// plate (data/polypropylene-3mm).
+const MEASURED_KERF_OF_FILM: [f64; 2] = [0.002, 0.15];
+const MEASURED_KERF_OF_PLATE: [f64; 2] = [0.05, 0.54];
 /// Relative difference of two kerfs that is rounding.
 const SAME_KERF: f64 = 1e-6;
 /// Relative error of a force (%) above which a law is inaccurate.
@@ -551,7 +554,14 @@ fn kerf(judged: &Judged) -> Option<Warning> {
     if (kerf / known - 1.0).abs() < SAME_KERF {
         return None;
     }
-    let [least, most] = MEASURED_KERF;
+    let regime = judged
+        .scene
+        .material
+        .regime(judged.scene.config.ligament.start);
+    let [least, most] = match regime {
+        Regime::Film => MEASURED_KERF_OF_FILM,
+        Regime::Plate => MEASURED_KERF_OF_PLATE,
+    };
     let beyond = judged.those(|row| !(least..=most).contains(&(kerf / row.w_lig)));
     let message = format!(
         "the kerf of {kerf} mm is not that of the weights, {} mm, nor between {least} and {most} ligament widths, where its effect on the hinge energy was measured: \

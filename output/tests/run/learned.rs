@@ -71,7 +71,7 @@ pub fn weights_of_another_hinge_or_material_are_refused() {
     assert!(message.contains("another material law"), "{message}");
     let message = refusal(&[], &[("fillet_ratio = 0.16", "fillet_ratio = 0.2")]);
     assert!(
-        message.contains("fillet_ratio = 0.16, but the scene has process.fillet_ratio = 0.2"),
+        message.contains("a radius of 0.16 w_lig, but the scene has 0.2"),
         "{message}"
     );
     // A sheet of a fifth of the thickness has windows of a fifth of the radius.

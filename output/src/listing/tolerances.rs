@@ -1,0 +1,258 @@
+//! What the tolerances of cutting do to a deployed sheet, in numbers.
+
+use design::analysis::cutting_errors::{
+    CuttingError, CuttingErrors, CuttingErrorsError, ErrorEffect, FirstOrder, SampledSheets,
+};
+use design::analysis::error_budget::{Cause, ErrorBudget};
+use design::objective::design_problem::DesignProblem;
+use design::pattern::design_vector::DesignVector;
+use design::scene::{Scene, ToleranceConfig};
+use serde::Serialize;
+use std::fmt;
+use support::table::number_or_dash;
+
+/// Number of single ligaments that are shown.
+const SHOWN: usize = 8;
+
+/// The effects of tolerances on the deployed sheet.
+#[derive(Clone, Debug, Serialize)]
+pub struct ToleranceListing {
+    /// Two standard deviations each (mm).
+    pub tolerances: ToleranceConfig,
+    /// To first order.
+    pub first_order: FirstOrder,
+    /// Sheets with errors at random, if there were any.
+    pub samples: Option<SampledSheets>,
+    /// The movement of the corners that is allowed, root mean square, one standard deviation (mm); `None` if none is known.
+    pub within: Option<f64>,
+    /// Whether it is that of the known errors of the model.
+    within_model: bool,
+    /// The tolerance of the ligaments, the kerf and the thickness, each alone, that moves the corners by that (mm).
+    pub allowed: Option<Allowed>,
+}
+
+/// Tolerances that each alone move the corners by a given distance (mm).
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Allowed {
+    /// Of every ligament.
+    pub ligament: Option<f64>,
+    /// Of the kerf.
+    pub kerf: Option<f64>,
+    /// Of the thickness.
+    pub thickness: Option<f64>,
+}
+
+/// What is asked.
+#[derive(Clone, Copy, Debug)]
+pub struct ToleranceQuestion {
+    /// Two standard deviations each (mm).
+    pub tolerances: ToleranceConfig,
+    /// Number of sheets at random.
+    pub samples: usize,
+    /// Their seed.
+    pub seed: u64,
+    /// The movement that is allowed (mm); by default that of the model's known errors.
+    pub within: Option<f64>,
+}
+
+impl ToleranceListing {
+    /// The effects on a design of a scene and its problem. `progress` is called with the number of errors and sheets that are
+    /// done, and of all.
+    pub fn new(
+        scene: &Scene,
+        problem: &DesignProblem,
+        design: &DesignVector,
+        question: ToleranceQuestion,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Self, CuttingErrorsError> {
+        let ToleranceQuestion {
+            tolerances,
+            samples,
+            seed,
+            within,
+        } = question;
+        let errors = CuttingErrors::new(scene, problem, design, tolerances)?;
+        let all = errors.errors().len() + samples;
+        let mut done = 0;
+        let mut tick = || {
+            done += 1;
+            progress(done, all);
+        };
+        let first_order = errors.first_order(&mut tick)?;
+        let samples = (samples > 0)
+            .then(|| errors.sampled(samples, seed, &mut tick))
+            .transpose()?;
+        let model = || {
+            let budget = ErrorBudget::new(scene, problem, errors.designed(), None)?;
+            let cut = [Cause::Kerf, Cause::Thickness];
+            let [rms, _] = budget.sum(|cause| !cut.contains(&cause)).corners;
+            (rms > 0.0).then_some(rms)
+        };
+        let within_model = within.is_none();
+        let within = within.or_else(model);
+        Ok(Self {
+            tolerances,
+            allowed: within.map(|within| Allowed::new(&first_order, tolerances, within)),
+            first_order,
+            samples,
+            within,
+            within_model,
+        })
+    }
+}
+
+impl Allowed {
+    fn new(first_order: &FirstOrder, tolerances: ToleranceConfig, within: f64) -> Self {
+        let [rms, _] = first_order.corners;
+        let alone = |given: Option<f64>, is: &dyn Fn(CuttingError) -> bool| {
+            let effects = first_order.errors.iter().filter(|effect| is(effect.error));
+            let moved = rms * effects.map(|effect| effect.share).sum::<f64>().sqrt();
+            given
+                .map(|tolerance| tolerance * within / moved)
+                .filter(|allowed| allowed.is_finite())
+        };
+        Self {
+            ligament: alone(tolerances.ligament, &|error| {
+                matches!(error, CuttingError::Ligament(_))
+            }),
+            kerf: alone(tolerances.kerf, &|error| error == CuttingError::Kerf),
+            thickness: alone(tolerances.thickness, &|error| {
+                error == CuttingError::Thickness
+            }),
+        }
+    }
+}
+
+fn name(error: CuttingError) -> String {
+    match error {
+        CuttingError::Ligament(hinge) => format!("ligament of hinge {hinge}"),
+        CuttingError::Kerf => "kerf".into(),
+        CuttingError::Thickness => "thickness".into(),
+    }
+}
+
+/// A relative change in per cent.
+fn percent(change: Option<f64>) -> String {
+    change.map_or("-".into(), |change| format!("{:.2} %", 100.0 * change))
+}
+
+impl fmt::Display for ToleranceListing {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let ToleranceConfig {
+            ligament,
+            kerf,
+            thickness,
+        } = self.tolerances;
+        let given = [
+            ("ligament", ligament),
+            ("kerf", kerf),
+            ("thickness", thickness),
+        ];
+        let given: Vec<String> = (given.into_iter())
+            .filter_map(|(name, tolerance)| Some(format!("{name} +- {} mm", tolerance?)))
+            .collect();
+        writeln!(
+            f,
+            "tolerances, two standard deviations: {}\n",
+            given.join(", ")
+        )?;
+        writeln!(
+            f,
+            "{:<26}{:>14}{:>14}{:>12}{:>10}{:>9}",
+            "one standard deviation of", "corners, mm", "largest, mm", "load", "D_peak", "share"
+        )?;
+        let mut row = |name: &str,
+                       [rms, most]: [f64; 2],
+                       load: Option<f64>,
+                       peak: Option<f64>,
+                       share: Option<f64>| {
+            writeln!(
+                f,
+                "{name:<26}{rms:>14.3}{most:>14.3}{:>12}{:>10}{:>9}",
+                percent(load),
+                number_or_dash(peak.unwrap_or(f64::NAN), 4),
+                share.map_or(String::new(), |share| format!("{:.0} %", 100.0 * share)),
+            )
+        };
+        let FirstOrder {
+            errors,
+            corners,
+            load,
+            d_peak,
+        } = &self.first_order;
+        for ErrorEffect {
+            error,
+            corners,
+            load,
+            d_peak,
+            share,
+            ..
+        } in errors.iter().take(SHOWN)
+        {
+            row(&name(*error), *corners, *load, *d_peak, Some(*share))?;
+        }
+        row("all, to first order", *corners, *load, *d_peak, None)?;
+        if let Some(samples) = &self.samples {
+            let of = |moments: Option<[f64; 2]>| moments.map(|[_, deviation]| deviation);
+            let name = format!("all, {} sheets", samples.deployed);
+            row(
+                &name,
+                samples.corners,
+                of(samples.load),
+                of(samples.d_peak),
+                None,
+            )?;
+        }
+        if errors.len() > SHOWN {
+            writeln!(
+                f,
+                "{} further errors have smaller shares (--json)",
+                errors.len() - SHOWN
+            )?;
+        }
+        if let Some(samples) = &self.samples {
+            let [median, most] = samples.largest;
+            writeln!(
+                f,
+                "\nthe corner that moves most moves by {median:.3} mm in the median sheet, and by less than {most:.3} mm in 95 % of them"
+            )?;
+            if let Some([mean, deviation]) = samples.d_peak {
+                writeln!(
+                    f,
+                    "the largest D_peak changes by {mean:+.4} +- {deviation:.4}"
+                )?;
+            }
+            if samples.failed > 0 {
+                writeln!(
+                    f,
+                    "{} sheets have no equilibrium at full load and are not counted",
+                    samples.failed
+                )?;
+            }
+        }
+        let (Some(within), Some(allowed)) = (self.within, self.allowed) else {
+            return Ok(());
+        };
+        let what = match self.within_model {
+            true => "the known errors of the model move the corners by",
+            false => "allowed movement of the corners:",
+        };
+        write!(
+            f,
+            "\n{what} {within:.3} mm (root mean square, one standard deviation). That much moves them, each alone:"
+        )?;
+        for (name, tolerance) in [
+            ("ligament", allowed.ligament),
+            ("kerf", allowed.kerf),
+            ("thickness", allowed.thickness),
+        ] {
+            if let Some(tolerance) = tolerance {
+                write!(f, "  {name} +- {tolerance:.3} mm")?;
+            }
+        }
+        writeln!(
+            f,
+            "\nNot in these numbers: holes that are off by other than the kerf, cuts that are rough, material that differs along the sheet"
+        )
+    }
+}
