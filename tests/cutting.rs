@@ -80,6 +80,12 @@ fn a_sheet_is_cut_for_a_machine() {
         said.contains("SendCutSend: ") && said.contains("(process.kerf)"),
         "{said}"
     );
+    let root = env!("CARGO_MANIFEST_DIR");
+    let said = work.output(&format!(
+        "cut {root}/configs/scenes/a4-plate-service.toml --for laser-service --design start --out drilled"
+    ));
+    assert!(said.contains("SendCutSend: no published limit"), "{said}");
+    assert!(said.contains("smallest hole 1.60 mm"), "{said}");
     let folder = "runs/pin-7x7/cut/laser-service";
     for name in ["cut.dxf", "cut.svg"] {
         assert!(work.path(folder).join(name).exists(), "{name}");

@@ -1,5 +1,5 @@
 //! The output of `inspect` `pattern`, `deploy`, `equilibrium` and `gradient` with `--json`, against the reference
-//! cases. The panels of the cases are 1 x 1; here they are 100 mm wide, with the constants of (11) that
+//! cases, and that of `tolerances`. The panels of the cases are 1 x 1; here they are 100 mm wide, with the constants of (11) that
 //! give the same shape.
 
 mod common;
@@ -213,4 +213,36 @@ fn equilibria_objective_and_gradient() {
         assert_close(&found["pattern"][key], &expected[key], area, 1e-8, key);
     }
     assert_close(&found["omega"], &expected["omega"], area, 1e-8, "omega");
+}
+
+/// Twice as wide a tolerance has twice the effect, and the same tolerance stays allowed.
+#[test]
+fn tolerances() {
+    let work = Workplace::new();
+    let root = env!("CARGO_MANIFEST_DIR");
+    let scene =
+        format!("inspect tolerances {root}/configs/scenes/a4-polyester.toml --design start");
+    let message = work.error(&scene);
+    assert!(
+        message.contains("[tolerances] ligament, kerf or thickness"),
+        "{message}"
+    );
+    let message = work.error(&format!("{scene} --ligament -1"));
+    assert!(message.contains("length above 0"), "{message}");
+    let listed = |ligament: f64| -> Value {
+        let options = format!("--ligament {ligament} --samples 4 --json");
+        serde_json::from_str(&work.output(&format!("{scene} {options}"))).unwrap()
+    };
+    let (one, two) = (listed(0.02), listed(0.04));
+    let number = |of: &Value, path: &str| of.pointer(path).unwrap().as_f64().unwrap();
+    let rms = |of: &Value| number(of, "/first_order/corners/0");
+    assert!((rms(&two) / rms(&one) - 2.0).abs() < 0.01);
+    let allowed = |of: &Value| number(of, "/allowed/ligament");
+    assert!((allowed(&two) / allowed(&one) - 1.0).abs() < 0.01);
+    assert_eq!(number(&one, "/samples/deployed"), 4.0);
+    let text = work.output(&format!("{scene} --ligament 0.02 --samples 4"));
+    assert!(
+        text.contains("ligament of hinge") && text.contains("all, 4 sheets"),
+        "{text}"
+    );
 }

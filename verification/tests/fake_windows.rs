@@ -267,7 +267,7 @@ fn a_replay_compares_every_state_and_names_what_failed() {
 fn a_spot_check_keeps_the_states_of_the_windows_that_are_solved() {
     let (scene, folder) = (scene(), tempfile::tempdir().unwrap());
     let surrogate = scene.surrogate().unwrap();
-    let paths = random_paths((&*surrogate).into(), 12, 3, 0);
+    let paths = random_paths(surrogate.into(), 12, 3, 0);
     let first = paths[0].hinge.clone();
     let diverges = FakeSolver::new(STIFFNESS, |solve: &WindowSolve| {
         (solve.problem.hinge == first).then_some(Fault::Diverges(0.4))
