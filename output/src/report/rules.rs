@@ -33,7 +33,7 @@ const MISSED: f64 = 0.01;
 /// Kerf over ligament width for which another kerf than that of the weights was measured, in a film (data/pet-0.5mm) and in a
 /// plate (data/polypropylene-3mm).
 const MEASURED_KERF_OF_FILM: [f64; 2] = [0.002, 0.15];
-const MEASURED_KERF_OF_PLATE: [f64; 2] = [0.05, 0.54];
+const MEASURED_KERF_OF_PLATE: [f64; 2] = [0.05, 0.64];
 /// Relative difference of two kerfs that is rounding.
 const SAME_KERF: f64 = 1e-6;
 /// Relative error of a force (%) above which a law is inaccurate.
