@@ -45,6 +45,24 @@ fn a_written_database_is_read_back_bit_exactly() {
     assert_eq!(manifest.units["F_a"], "N");
 }
 
+/// Holes of several radii are a range, beside the paper's hole, in whose measures the domain is.
+#[test]
+fn holes_of_several_radii_are_a_range() {
+    let one = collect(rows()).unwrap();
+    assert_eq!(one.manifest().holes, None);
+    let several: Vec<Row> = (rows().into_iter())
+        .map(|mut row| {
+            let odd = row.job.ends_with(['1', '3', '5', '7', '9']);
+            row.design.fillet_ratio = if odd { 0.3 } else { 0.05 };
+            row
+        })
+        .collect();
+    let several = collect(several).unwrap();
+    assert_eq!(several.manifest().holes, Some([0.05, 0.3]));
+    assert_eq!(several.manifest().hinge.fillet_ratio, 0.16);
+    assert_ne!(several.manifest().domain, one.manifest().domain);
+}
+
 #[test]
 fn rows_are_sorted_by_job_and_lambda_so_that_the_file_is_the_same() {
     let database = collect(rows()).unwrap();

@@ -119,14 +119,9 @@ impl TrainingDomain {
 
     /// The deformation of a hinge with the given (eta_a, eta_s, theta) of the domain.
     pub fn state(&self, design: &HingeDesign, [eta_a, eta_s, theta]: [f64; 3]) -> HingeDeformation {
-        let of = |w_lig: f64| HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig);
-        match self.hole {
-            None => of(design.w_lig),
-            Some(reference) => {
-                let ligament = NetLigament::new(design, reference);
-                ligament.actual(&of(ligament.design(design).w_lig))
-            }
-        }
+        let ligament = ligament(self.hole, design);
+        let w_lig = ligament.design(design).w_lig;
+        ligament.actual(&HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig))
     }
 
     /// The map to the hinges in whose measures the domain is, for a hinge.
@@ -243,22 +238,21 @@ impl TrainingDomain {
     }
 }
 
+/// The map of a hinge to that with the hole `reference`, or to itself.
+fn ligament(reference: Option<f64>, design: &HingeDesign) -> NetLigament {
+    NetLigament::new(design, reference.unwrap_or(design.fillet_ratio))
+}
+
 /// (eta_a, eta_s, theta) of the hinge with the hole `reference`, or of the hinge itself.
 fn measures(
     reference: Option<f64>,
     design: &HingeDesign,
     deformation: &HingeDeformation,
 ) -> [f64; 3] {
-    let [eta_a, eta_s] = match reference {
-        None => deformation.eta(design.w_lig),
-        Some(reference) => {
-            let ligament = NetLigament::new(design, reference);
-            ligament
-                .deformation(deformation)
-                .eta(ligament.design(design).w_lig)
-        }
-    };
-    [eta_a, eta_s, deformation.theta]
+    let ligament = ligament(reference, design);
+    let seen = ligament.deformation(deformation);
+    let [eta_a, eta_s] = seen.eta(ligament.design(design).w_lig);
+    [eta_a, eta_s, seen.theta]
 }
 
 #[cfg(test)]

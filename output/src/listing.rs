@@ -16,4 +16,4 @@ pub use deployment::DeploymentListing;
 pub use equilibrium::{EnergyParts, EquilibriumListing, StepListing};
 pub use gradient::GradientListing;
 pub use pattern::{HingeListing, PatternListing};
-pub use tolerances::{Allowed, ToleranceListing, ToleranceQuestion};
+pub use tolerances::{ToleranceListing, ToleranceQuestion};

@@ -1,7 +1,7 @@
 //! The report of a design run: the objective before and after, all hinges, warnings.
 
 mod budget;
-mod columns;
+pub(crate) mod columns;
 mod estimate;
 mod fact_sheet;
 mod hinge_row;

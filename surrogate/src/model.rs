@@ -154,10 +154,15 @@ impl Surrogate {
         &self.card.domain
     }
 
+    /// Minimum and maximum radius of the holes of the training, over w_lig.
+    pub fn holes(&self) -> [f64; 2] {
+        (self.card.holes).unwrap_or([self.card.hinge.fillet_ratio; 2])
+    }
+
     /// Whether a state lies inside the training domain, and the hole of its hinge among those of the training.
     pub fn contains(&self, design: &HingeDesign, deformation: &HingeDeformation) -> bool {
-        let holes = self.card.holes;
-        holes.is_none_or(|[least, most]| (least..=most).contains(&design.fillet_ratio))
+        let [least, most] = self.holes();
+        (least..=most).contains(&design.fillet_ratio)
             && self.card.domain.contains(design, deformation)
     }
 

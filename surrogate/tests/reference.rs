@@ -195,6 +195,19 @@ fn every_derivative_agrees_with_finite_differences() {
     }
 }
 
+/// A hole that is not among those of the training is not inside, wherever the hinge is.
+#[test]
+fn a_hole_of_another_radius_is_outside() {
+    let flat = HingeDeformation::default();
+    let at = |fillet_ratio: f64| HingeDesign {
+        fillet_ratio,
+        ..design(12.0, 1.5)
+    };
+    let (one, several) = (with_peak(), with_holes());
+    assert!(one.contains(&at(0.16), &flat) && !one.contains(&at(0.2), &flat));
+    assert!(several.contains(&at(0.2), &flat) && !several.contains(&at(0.5), &flat));
+}
+
 /// The derivatives in the first `directions` of (a, s, theta, w_lig, alpha, rho_f).
 fn derivatives_agree(surrogate: &Surrogate, fillet_ratio: f64, directions: usize) {
     let (mut designs, deformations) = hinges(&states());

@@ -55,18 +55,16 @@ pub fn doubtful_states(networks: &[Surrogate]) -> Vec<DoubtfulState> {
     let damage_scale = root_mean_square(&|_, sample| sample.d * sample.d);
     let mut found: Vec<DoubtfulState> = (0..DRAWN)
         .map(|k| {
-            let of = |value: &dyn Fn(&HingeSample) -> f64| {
-                let values: Vec<f64> = predicted.iter().map(|of| value(&of[k])).collect();
-                mean_and_variance(values)
-            };
-            let [mean, variance] = of(&|sample| sample.w);
-            let of_forces: f64 = (0..3).map(|c| of(&|sample| forces(k, sample)[c])[1]).sum();
-            let [_, of_damage] = of(&|sample| sample.d);
+            let samples = || predicted.iter().map(|of| &of[k]);
+            let of_force =
+                |c: usize| mean_and_variance(samples().map(|sample| forces(k, sample)[c]))[1];
+            let of_forces: f64 = (0..3).map(of_force).sum();
+            let [_, of_damage] = mean_and_variance(samples().map(|sample| sample.d));
             DoubtfulState {
                 design: designs[k],
                 state: states[k],
                 doubts: [
-                    relative(variance, mean.abs().max(min_energy)),
+                    deviation(samples().map(|sample| sample.w), min_energy),
                     relative(of_forces, force_scale),
                     relative(of_damage, damage_scale),
                 ],
@@ -75,6 +73,12 @@ pub fn doubtful_states(networks: &[Surrogate]) -> Vec<DoubtfulState> {
         .collect();
     found.sort_by(|a, b| b.doubt().total_cmp(&a.doubt()));
     found
+}
+
+/// Standard deviation of energies relative to their mean, or to `min_energy` if that is larger.
+fn deviation(energies: impl Iterator<Item = f64> + Clone, min_energy: f64) -> f64 {
+    let [mean, variance] = mean_and_variance(energies);
+    relative(variance, mean.abs().max(min_energy))
 }
 
 /// The root of a variance over a scale; infinite if it is not a number.
@@ -153,11 +157,17 @@ mod tests {
     }
 
     #[test]
-    fn a_doubt_is_a_deviation_over_its_scale_and_infinite_where_a_network_has_no_number() {
+    fn deviations_are_relative_to_the_mean_or_the_minimum_energy() {
+        let relative = |energies: [f64; 2], min| deviation(energies.into_iter(), min);
+        assert!((relative([9.0, 11.0], 1.0) - 0.02f64.sqrt()).abs() < 1e-15);
+        assert!((relative([0.0, 0.2], 1.0) - 0.02f64.sqrt()).abs() < 1e-15);
+        assert_eq!(relative([1.0, f64::NAN], 1.0), f64::INFINITY);
+    }
+
+    #[test]
+    fn the_doubt_of_a_state_is_the_largest_of_its_quantities() {
         assert_eq!(relative(0.04, 10.0), 0.02);
-        assert_eq!(relative(f64::NAN, 1.0), f64::INFINITY);
-        let state = doubtful(10.0, 1.0, 0.2, 0.3);
-        assert_eq!(state.doubt(), 0.3);
+        assert_eq!(doubtful(10.0, 1.0, 0.2, 0.3).doubt(), 0.3);
     }
 
     /// Networks of different seeds disagree about every quantity, and a network with itself about none.

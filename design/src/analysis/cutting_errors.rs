@@ -14,6 +14,7 @@
 //! (Haldar and Mahadevan, "Probability, Reliability and Statistical Methods in Engineering Design", 2000.)
 
 use crate::analysis::actuation_curve::ActuationCurve;
+use crate::analysis::error_budget::TOLERANCE;
 use crate::equilibrium::nearby_path::KnownPath;
 use crate::hinge_law::{DamageMeasure, HingeLaw, SurrogateLaw};
 use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Mechanics};
@@ -26,8 +27,6 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 use support::statistics::rms_and_maximum;
 
-/// Standard deviations in a tolerance.
-const TOLERANCE: f64 = 2.0;
 /// Number of hinges above which single ligaments are not studied: two equilibria each.
 const MOST_HINGES: usize = 2000;
 
@@ -223,7 +222,9 @@ impl<'a> CuttingErrors<'a> {
                     corners: rms_and_maximum(lengths()),
                     load: effect.load,
                     d_peak: effect.d_peak,
-                    share: lengths().map(|length| length * length).sum::<f64>() / all,
+                    // Without any effect there is nothing to share.
+                    share: lengths().map(|length| length * length).sum::<f64>()
+                        / all.max(f64::MIN_POSITIVE),
                 }
             })
             .collect();
@@ -357,9 +358,7 @@ impl<'a> CuttingErrors<'a> {
         let hinges = self.designed.sheet.hinges.iter().zip(&errors.widths);
         let widths: Vec<f64> = hinges.map(|(hinge, error)| hinge.w_lig + error).collect();
         let pattern = self.designed.pattern.clone();
-        let sheet = self
-            .problem
-            .sheet(&pattern, &widths, self.problem.options)?;
+        let sheet = self.problem.sheet(&pattern, &widths)?;
         let thinner = self
             .scene
             .surrogate()
@@ -383,10 +382,7 @@ impl<'a> CuttingErrors<'a> {
         }
         let prepared = law.prepare(&designs);
         let hinged = self.mechanics.hinged(&sheet, &*prepared, false);
-        let solver = &self.mechanics.solver;
-        let near = solver.path_near(hinged, &self.known);
-        let followed = near.is_none();
-        let path = near.unwrap_or_else(|| solver.path(hinged));
+        let (path, followed) = self.mechanics.path(hinged, Some(&self.known));
         drop(prepared);
         let deployment = Deployment {
             pattern,

@@ -40,7 +40,7 @@ const PLATE_IMPERFECTION: [[f64; 2]; 3] = [[1.0 / 3.0, 0.0127], [2.0 / 3.0, 0.00
 /// the law through all detours (docs/results/detours/detours.md, polyester film of 0.5 mm).
 const DETOUR: [f64; 2] = [0.17, 0.05];
 /// Standard deviations in the tolerance of a cut sheet.
-const TOLERANCE: f64 = 2.0;
+pub(crate) const TOLERANCE: f64 = 2.0;
 /// Number of hinges above which no budget is made: it takes three solves a hinge and more.
 const MOST_HINGES: usize = 2000;
 

@@ -137,7 +137,7 @@ impl PreparedLaw for PreparedSurrogate<'_> {
 
     fn inside(&self, deformations: &[HingeDeformation]) -> Vec<bool> {
         std::iter::zip(&self.designs, deformations)
-            .map(|(design, deformation)| self.surrogate.contains(design, deformation))
+            .map(|(design, deformation)| self.surrogate.domain().contains(design, deformation))
             .collect()
     }
 }

@@ -223,18 +223,13 @@ impl DesignProblem {
         let w_lig: Vec<f64> = (design.omega.iter())
             .map(|&omega| self.widths.width(omega))
             .collect();
-        let sheet = self.sheet(&pattern, &w_lig, self.options)?;
+        let sheet = self.sheet(&pattern, &w_lig)?;
         Ok((pattern, sheet))
     }
 
-    /// The sheet of a pattern with the given ligament widths (mm) and options, held and pulled where the problem's sheet is.
-    pub fn sheet(
-        &self,
-        pattern: &CutPattern,
-        w_lig: &[f64],
-        options: SheetOptions,
-    ) -> Result<Sheet, SheetError> {
-        let sheet = Sheet::new(pattern, w_lig, options)?;
+    /// The sheet of a pattern with the given ligament widths (mm), held and pulled where the problem's sheet is.
+    pub(crate) fn sheet(&self, pattern: &CutPattern, w_lig: &[f64]) -> Result<Sheet, SheetError> {
+        let sheet = Sheet::new(pattern, w_lig, self.options)?;
         let grips = (self.model.mechanics()).map_or(&[][..], |mechanics| mechanics.solver.grips());
         Ok(sheet.gripped(grips))
     }
@@ -266,9 +261,7 @@ impl DesignProblem {
                 mechanics.solver.check_supports(&sheet)?;
                 let law = mechanics.law.prepare(&sheet.designs());
                 let hinged = mechanics.hinged(&sheet, &*law, gradient);
-                let near = known.and_then(|known| mechanics.solver.path_near(hinged, known));
-                let followed = near.is_none();
-                let path = near.unwrap_or_else(|| mechanics.solver.path(hinged));
+                let (path, followed) = mechanics.path(hinged, known);
                 path.iter()
                     .for_each(|step| verbose::note(|| step.to_string()));
                 (path, followed, Some(law))
@@ -308,6 +301,18 @@ impl DesignProblem {
 }
 
 impl Mechanics {
+    /// The path of a sheet, corrected from a `known` one that is near enough, or else followed from the flat sheet, and whether it
+    /// was followed.
+    pub(crate) fn path(
+        &self,
+        hinged: HingedSheet,
+        known: Option<&KnownPath>,
+    ) -> (Vec<LoadStep>, bool) {
+        let near = known.and_then(|known| self.solver.path_near(hinged, known));
+        let followed = near.is_none();
+        (near.unwrap_or_else(|| self.solver.path(hinged)), followed)
+    }
+
     /// The sheet with its prepared hinge law and contact, as the solver reads it.
     pub fn hinged<'a>(
         &'a self,

@@ -330,7 +330,7 @@ fn fitted(
     if range.into_iter().any(|width| Regime::of(width) != regime) {
         return Err(WeightsMismatch::Regime { trained, range });
     }
-    let trained = card.holes.unwrap_or([card.hinge.fillet_ratio; 2]);
+    let trained = surrogate.holes();
     let [narrowest, widest] = config.ligament.range;
     // The widest ligament has the smallest ratio of a hole of given diameter.
     let scene = [widest, narrowest].map(|w_lig| process.hinge(w_lig, FRAC_PI_2).fillet_ratio);

@@ -1,7 +1,8 @@
 //! What the tolerances of cutting do to a deployed sheet, in numbers.
 
+use crate::report::columns::rounded;
 use design::analysis::cutting_errors::{
-    CuttingError, CuttingErrors, CuttingErrorsError, ErrorEffect, FirstOrder, SampledSheets,
+    CuttingError, CuttingErrors, CuttingErrorsError, FirstOrder, SampledSheets,
 };
 use design::analysis::error_budget::{Cause, ErrorBudget};
 use design::objective::design_problem::DesignProblem;
@@ -28,18 +29,7 @@ pub struct ToleranceListing {
     /// Whether it is that of the known errors of the model.
     within_model: bool,
     /// The tolerance of the ligaments, the kerf and the thickness, each alone, that moves the corners by that (mm).
-    pub allowed: Option<Allowed>,
-}
-
-/// Tolerances that each alone move the corners by a given distance (mm).
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Allowed {
-    /// Of every ligament.
-    pub ligament: Option<f64>,
-    /// Of the kerf.
-    pub kerf: Option<f64>,
-    /// Of the thickness.
-    pub thickness: Option<f64>,
+    pub allowed: Option<ToleranceConfig>,
 }
 
 /// What is asked.
@@ -92,7 +82,7 @@ impl ToleranceListing {
         let within = within.or_else(model);
         Ok(Self {
             tolerances,
-            allowed: within.map(|within| Allowed::new(&first_order, tolerances, within)),
+            allowed: within.map(|within| allowed(&first_order, tolerances, within)),
             first_order,
             samples,
             within,
@@ -101,26 +91,44 @@ impl ToleranceListing {
     }
 }
 
-impl Allowed {
-    fn new(first_order: &FirstOrder, tolerances: ToleranceConfig, within: f64) -> Self {
-        let [rms, _] = first_order.corners;
-        let alone = |given: Option<f64>, is: &dyn Fn(CuttingError) -> bool| {
-            let effects = first_order.errors.iter().filter(|effect| is(effect.error));
-            let moved = rms * effects.map(|effect| effect.share).sum::<f64>().sqrt();
-            given
-                .map(|tolerance| tolerance * within / moved)
-                .filter(|allowed| allowed.is_finite())
-        };
-        Self {
-            ligament: alone(tolerances.ligament, &|error| {
-                matches!(error, CuttingError::Ligament(_))
-            }),
-            kerf: alone(tolerances.kerf, &|error| error == CuttingError::Kerf),
-            thickness: alone(tolerances.thickness, &|error| {
-                error == CuttingError::Thickness
-            }),
-        }
+/// The tolerances that each alone move the corners by `within` (mm).
+fn allowed(first_order: &FirstOrder, tolerances: ToleranceConfig, within: f64) -> ToleranceConfig {
+    let [rms, _] = first_order.corners;
+    let alone = |given: Option<f64>, is: fn(CuttingError) -> bool| {
+        let effects = first_order.errors.iter().filter(|effect| is(effect.error));
+        let moved = rms * effects.map(|effect| effect.share).sum::<f64>().sqrt();
+        given
+            .map(|tolerance| tolerance * within / moved)
+            .filter(|allowed| allowed.is_finite())
+    };
+    ToleranceConfig {
+        ligament: alone(tolerances.ligament, |error| {
+            matches!(error, CuttingError::Ligament(_))
+        }),
+        kerf: alone(tolerances.kerf, |error| error == CuttingError::Kerf),
+        thickness: alone(tolerances.thickness, |error| {
+            error == CuttingError::Thickness
+        }),
     }
+}
+
+/// The given tolerances in words, with their unit.
+fn in_words(tolerances: ToleranceConfig) -> String {
+    let ToleranceConfig {
+        ligament,
+        kerf,
+        thickness,
+    } = tolerances;
+    let all = [
+        ("ligament", ligament),
+        ("kerf", kerf),
+        ("thickness", thickness),
+    ];
+    let given = all.into_iter().filter_map(|(name, tolerance)| {
+        let millimetres = rounded(tolerance?, 3);
+        Some(format!("{name} +- {millimetres} mm"))
+    });
+    given.collect::<Vec<_>>().join(", ")
 }
 
 fn name(error: CuttingError) -> String {
@@ -136,100 +144,118 @@ fn percent(change: Option<f64>) -> String {
     change.map_or("-".into(), |change| format!("{:.2} %", 100.0 * change))
 }
 
-impl fmt::Display for ToleranceListing {
+/// A line of the table of standard deviations.
+struct Line<'a> {
+    name: &'a str,
+    corners: [f64; 2],
+    load: Option<f64>,
+    d_peak: Option<f64>,
+    share: Option<f64>,
+}
+
+impl fmt::Display for Line<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let ToleranceConfig {
-            ligament,
-            kerf,
-            thickness,
-        } = self.tolerances;
-        let given = [
-            ("ligament", ligament),
-            ("kerf", kerf),
-            ("thickness", thickness),
-        ];
-        let given: Vec<String> = (given.into_iter())
-            .filter_map(|(name, tolerance)| Some(format!("{name} +- {} mm", tolerance?)))
-            .collect();
+        let [rms, most] = self.corners;
+        let share = self.share;
         writeln!(
             f,
-            "tolerances, two standard deviations: {}\n",
-            given.join(", ")
-        )?;
+            "{:<26}{rms:>14.3}{most:>14.3}{:>12}{:>10}{:>9}",
+            self.name,
+            percent(self.load),
+            number_or_dash(self.d_peak.unwrap_or(f64::NAN), 4),
+            share.map_or(String::new(), |share| format!("{:.0} %", 100.0 * share)),
+        )
+    }
+}
+
+impl fmt::Display for ToleranceListing {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let given = in_words(self.tolerances);
+        writeln!(f, "tolerances, two standard deviations: {given}\n")?;
+        self.write_deviations(f)?;
+        self.write_samples(f)?;
+        self.write_allowed(f)?;
+        writeln!(
+            f,
+            "\nNot in these numbers: holes that are off by other than the kerf, cuts that are rough, material that differs along the sheet"
+        )
+    }
+}
+
+impl ToleranceListing {
+    fn write_deviations(&self, f: &mut fmt::Formatter) -> fmt::Result {
         writeln!(
             f,
             "{:<26}{:>14}{:>14}{:>12}{:>10}{:>9}",
             "one standard deviation of", "corners, mm", "largest, mm", "load", "D_peak", "share"
         )?;
-        let mut row = |name: &str,
-                       [rms, most]: [f64; 2],
-                       load: Option<f64>,
-                       peak: Option<f64>,
-                       share: Option<f64>| {
-            writeln!(
-                f,
-                "{name:<26}{rms:>14.3}{most:>14.3}{:>12}{:>10}{:>9}",
-                percent(load),
-                number_or_dash(peak.unwrap_or(f64::NAN), 4),
-                share.map_or(String::new(), |share| format!("{:.0} %", 100.0 * share)),
-            )
-        };
         let FirstOrder {
             errors,
             corners,
             load,
             d_peak,
         } = &self.first_order;
-        for ErrorEffect {
-            error,
-            corners,
-            load,
-            d_peak,
-            share,
-            ..
-        } in errors.iter().take(SHOWN)
-        {
-            row(&name(*error), *corners, *load, *d_peak, Some(*share))?;
+        for effect in errors.iter().take(SHOWN) {
+            let line = Line {
+                name: &name(effect.error),
+                corners: effect.corners,
+                load: effect.load,
+                d_peak: effect.d_peak,
+                share: Some(effect.share),
+            };
+            write!(f, "{line}")?;
         }
-        row("all, to first order", *corners, *load, *d_peak, None)?;
+        let all = Line {
+            name: "all, to first order",
+            corners: *corners,
+            load: *load,
+            d_peak: *d_peak,
+            share: None,
+        };
+        write!(f, "{all}")?;
         if let Some(samples) = &self.samples {
-            let of = |moments: Option<[f64; 2]>| moments.map(|[_, deviation]| deviation);
-            let name = format!("all, {} sheets", samples.deployed);
-            row(
-                &name,
-                samples.corners,
-                of(samples.load),
-                of(samples.d_peak),
-                None,
-            )?;
+            let deviation = |moments: Option<[f64; 2]>| moments.map(|[_, deviation]| deviation);
+            let sampled = Line {
+                name: &format!("all, {} sheets", samples.deployed),
+                corners: samples.corners,
+                load: deviation(samples.load),
+                d_peak: deviation(samples.d_peak),
+                share: None,
+            };
+            write!(f, "{sampled}")?;
         }
-        if errors.len() > SHOWN {
+        if let further @ 1.. = errors.len().saturating_sub(SHOWN) {
+            writeln!(f, "{further} further errors have smaller shares (--json)")?;
+        }
+        Ok(())
+    }
+
+    fn write_samples(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Some(samples) = &self.samples else {
+            return Ok(());
+        };
+        let [median, most] = samples.largest;
+        writeln!(
+            f,
+            "\nthe corner that moves most moves by {median:.3} mm in the median sheet, and by less than {most:.3} mm in 95 % of them"
+        )?;
+        if let Some([mean, deviation]) = samples.d_peak {
             writeln!(
                 f,
-                "{} further errors have smaller shares (--json)",
-                errors.len() - SHOWN
+                "the largest D_peak changes by {mean:+.4} +- {deviation:.4}"
             )?;
         }
-        if let Some(samples) = &self.samples {
-            let [median, most] = samples.largest;
+        if samples.failed > 0 {
             writeln!(
                 f,
-                "\nthe corner that moves most moves by {median:.3} mm in the median sheet, and by less than {most:.3} mm in 95 % of them"
+                "{} sheets have no equilibrium at full load and are not counted",
+                samples.failed
             )?;
-            if let Some([mean, deviation]) = samples.d_peak {
-                writeln!(
-                    f,
-                    "the largest D_peak changes by {mean:+.4} +- {deviation:.4}"
-                )?;
-            }
-            if samples.failed > 0 {
-                writeln!(
-                    f,
-                    "{} sheets have no equilibrium at full load and are not counted",
-                    samples.failed
-                )?;
-            }
         }
+        Ok(())
+    }
+
+    fn write_allowed(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let (Some(within), Some(allowed)) = (self.within, self.allowed) else {
             return Ok(());
         };
@@ -237,22 +263,10 @@ impl fmt::Display for ToleranceListing {
             true => "the known errors of the model move the corners by",
             false => "allowed movement of the corners:",
         };
-        write!(
-            f,
-            "\n{what} {within:.3} mm (root mean square, one standard deviation). That much moves them, each alone:"
-        )?;
-        for (name, tolerance) in [
-            ("ligament", allowed.ligament),
-            ("kerf", allowed.kerf),
-            ("thickness", allowed.thickness),
-        ] {
-            if let Some(tolerance) = tolerance {
-                write!(f, "  {name} +- {tolerance:.3} mm")?;
-            }
-        }
         writeln!(
             f,
-            "\nNot in these numbers: holes that are off by other than the kerf, cuts that are rough, material that differs along the sheet"
+            "\n{what} {within:.3} mm (root mean square, one standard deviation). That much moves them, each alone: {}",
+            in_words(allowed)
         )
     }
 }

@@ -21,7 +21,7 @@ impl<'a> StateErrors<'a> {
     pub fn new(surrogate: &Surrogate, rows: &'a [Row]) -> Self {
         let inside = |row: &&Row| {
             let state = row.sample.deformation();
-            surrogate.domain().contains(&row.design, &state)
+            surrogate.contains(&row.design, &state)
         };
         let inside: Vec<&Row> = rows.iter().filter(inside).collect();
         let (designs, deformations): (Vec<_>, Vec<_>) = inside

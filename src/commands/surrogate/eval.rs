@@ -134,10 +134,12 @@ fn answers(surrogate: Surrogate, states: &[State]) -> Vec<Answer> {
         })
         .unzip();
     let law = SurrogateLaw { surrogate };
-    let law = law.prepare(&designs);
-    let energies = law.energies(&deformations, Order::Tangent);
-    let damages = law.damage(&deformations, false);
-    std::iter::zip(law.inside(&deformations), energies.iter().zip(damages))
+    let prepared = law.prepare(&designs);
+    let energies = prepared.energies(&deformations, Order::Tangent);
+    let damages = prepared.damage(&deformations, false);
+    let inside = std::iter::zip(&designs, &deformations)
+        .map(|(design, deformation)| law.surrogate.contains(design, deformation));
+    std::iter::zip(inside, energies.iter().zip(damages))
         .map(|(inside, (energy, damage))| Answer {
             inside,
             w: energy.w,
