@@ -1,5 +1,6 @@
 //! The subcommands, one per file.
 
+pub mod calibrate;
 #[cfg(feature = "pipeline")]
 pub mod campaign;
 pub mod compare;
@@ -26,6 +27,7 @@ pub mod material;
 pub mod mesh;
 #[cfg(feature = "pipeline")]
 pub(crate) mod pipeline;
+mod points_file;
 #[cfg(feature = "pipeline")]
 pub mod solve;
 #[cfg(feature = "pipeline")]

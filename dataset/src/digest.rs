@@ -130,14 +130,8 @@ impl Digest {
                 why: reasons(&self.rejected),
             });
         };
-        let holes = self.designs.iter().map(|(design, _)| design.fillet_ratio);
-        let holes = holes.fold(None, |range: Option<[f64; 2]>, hole| {
-            let [least, most] = range.unwrap_or([hole; 2]);
-            Some([least.min(hole), most.max(hole)])
-        });
-        let holes = holes.filter(|[least, most]| least < most);
         let mut hinge = first.design.constants();
-        if holes.is_some() {
+        if domain.holes.is_some() {
             hinge.fillet_ratio = HingeConstants::PAPER.fillet_ratio;
         }
         let split = Split::deal(&self.geometries, plan)?;
@@ -159,7 +153,6 @@ impl Digest {
             material: joined(material),
             tier: joined(tier),
             hinge,
-            holes,
             material_hashes,
             settings_hashes,
             gmsh,

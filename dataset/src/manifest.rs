@@ -42,11 +42,8 @@ pub struct Manifest {
     pub settings_hashes: BTreeSet<String>,
     /// Tier of the window mesh, as parsed by [`Fidelity::from_tier`](crate::Fidelity::from_tier); mixed tiers are written "a + b".
     pub tier: String,
-    /// The constants of all hinges; with `holes`, `fillet_ratio` is the paper's.
+    /// The constants of all hinges; if they have holes of several radii (`domain.holes`), `fillet_ratio` is the paper's.
     pub hinge: HingeConstants,
-    /// Minimum and maximum radius of the hole over w_lig, if the hinges have holes of several radii.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub holes: Option<[f64; 2]>,
     /// Versions of gmsh that meshed the rows.
     pub gmsh: BTreeSet<String>,
     /// Versions of ccx that solved the rows.

@@ -49,7 +49,7 @@ fn a_written_database_is_read_back_bit_exactly() {
 #[test]
 fn holes_of_several_radii_are_a_range() {
     let one = collect(rows()).unwrap();
-    assert_eq!(one.manifest().holes, None);
+    assert_eq!(one.manifest().domain.holes, None);
     let several: Vec<Row> = (rows().into_iter())
         .map(|mut row| {
             let odd = row.job.ends_with(['1', '3', '5', '7', '9']);
@@ -58,7 +58,7 @@ fn holes_of_several_radii_are_a_range() {
         })
         .collect();
     let several = collect(several).unwrap();
-    assert_eq!(several.manifest().holes, Some([0.05, 0.3]));
+    assert_eq!(several.manifest().domain.holes, Some([0.05, 0.3]));
     assert_eq!(several.manifest().hinge.fillet_ratio, 0.16);
     assert_ne!(several.manifest().domain, one.manifest().domain);
 }

@@ -185,7 +185,6 @@ fn network() -> SurrogateLaw {
             kerf: 0.2,
             r_win: 100.0,
         },
-        holes: None,
         material: "none".into(),
         material_hash: None,
         settings_hash: None,

@@ -2,6 +2,7 @@
 //! measured points (section 4.4), paths of the hinges (section 5.2).
 
 pub mod actuation_curve;
+pub mod calibration;
 pub mod cutting_errors;
 pub mod degeneration;
 pub mod error_budget;
@@ -17,6 +18,7 @@ pub mod measured_openings;
 pub mod measured_sheet;
 pub mod misread;
 pub mod path_separation;
+pub mod real_sheet;
 pub mod robust_pose;
 pub mod shape_path;
 pub mod solution_set;

@@ -8,9 +8,13 @@
 //! gamma = (sum over m of max(0, m . y / s(m; w_lig))^p)^(1/p) <= 1,      p = 24
 //! ```
 //!
-//! and w_lig and alpha lie in their intervals. If hinges have holes of several radii, eta_a and eta_s are those of the hinge
-//! with one hole and the same net ligament ([`NetLigament`]). gamma is smooth except at the centre, where it vanishes. It
-//! rounds the corners of the polytope inwards and grows in proportion to the distance from the centre.
+//! and w_lig, alpha and rho_f lie in their intervals. gamma is smooth except at the centre, where it vanishes. It rounds the
+//! corners of the polytope inwards and grows in proportion to the distance from the centre.
+//!
+//! In plates, eta_a is measured from the mean path of the states, c_1 theta + c_2 theta^2 by least squares: their ligaments turn
+//! freely along a curve, and a polytope around a curve holds states far beyond any ray. If hinges have holes of several radii,
+//! eta_a and eta_s are those of the hinge with the paper's hole and the same net ligament ([`NetLigament`]).
+//!
 //! s is stored at widths in geometric progression and is blended between them with zero slope at both
 //! ends, so that gamma is twice differentiable in w_lig.
 //! (Klosowski et al., "Efficient collision detection using bounding volume hierarchies of k-DOPs", 1998.)
@@ -36,10 +40,13 @@ pub struct TrainingDomain {
     pub w_lig: [f64; 2],
     /// Interval of the cut angle (rad).
     pub alpha: [f64; 2],
-    /// The hole, over w_lig, of the hinges in whose measures the domain is, if hinges have holes of several radii.
+    /// Interval of the radius of the hole over w_lig, if hinges have holes of several radii.
     #[serde(skip_serializing_if = "Option::is_none")]
-    hole: Option<f64>,
-    /// Centre of (eta_a, eta_s, theta).
+    pub holes: Option<[f64; 2]>,
+    /// c_1 and c_2 of the mean path.
+    #[serde(skip_serializing_if = "is_straight")]
+    mean_path: [f64; 2],
+    /// Centre of (eta_a, eta_s, theta), eta_a from the mean path.
     centre: [f64; 3],
     half_range: [f64; 3],
     /// s(m), one row for each stored width, from the narrowest to the widest.
@@ -52,11 +59,13 @@ impl TrainingDomain {
         self.has_ligament(design) && self.depth(design, deformation) >= 0.0
     }
 
-    /// Whether the width and the angle of a ligament are within their intervals.
+    /// Whether the width, the angle and the hole of a ligament are within their intervals.
     pub fn has_ligament(&self, design: &HingeDesign) -> bool {
         let within =
             |[minimum, maximum]: [f64; 2], value: f64| minimum <= value && value <= maximum;
-        within(self.w_lig, design.w_lig) && within(self.alpha, design.alpha)
+        within(self.w_lig, design.w_lig)
+            && within(self.alpha, design.alpha)
+            && (self.holes).is_none_or(|holes| within(holes, design.fillet_ratio))
     }
 
     /// 1 - gamma of the state: 1 at the centre of the domain, 0 at its edge, negative outside.
@@ -66,7 +75,7 @@ impl TrainingDomain {
 
     /// The gauge gamma.
     pub fn gauge(&self, design: &HingeDesign, deformation: &HingeDeformation) -> f64 {
-        let y = self.scaled(measures(self.hole, design, deformation));
+        let y = self.scaled(self.coordinates(design, deformation));
         let (row, [blend, ..]) = self.place(design.w_lig);
         norm(from_fn(|m| {
             let support = self.supports[row][m] + blend * self.rise(row, m);
@@ -76,7 +85,9 @@ impl TrainingDomain {
 
     /// The gauge gamma with its derivatives in (a, s, theta, w_lig, rho_f). At the centre they do not exist.
     pub fn gauge_jet(&self, design: &HingeDesign, deformation: &HingeDeformation) -> Jet {
-        let y = self.scaled_jet(design, deformation);
+        let y = self.coordinates_jet(design, deformation);
+        let y: [Jet; 3] =
+            from_fn(|i| (y[i] - Jet::constant(self.centre[i])) * (1.0 / self.half_range[i]));
         let (row, blend) = self.place(design.w_lig);
         let blend = Jet::variable(3, design.w_lig).map(blend);
         let ratios: [Jet; DIRECTIONS] = from_fn(|m| {
@@ -94,12 +105,12 @@ impl TrainingDomain {
         sum.powf(1.0 / EXPONENT) * largest
     }
 
-    /// (eta_a, eta_s, theta) at the centre of the gauge.
+    /// The coordinates of the centre of the gauge.
     pub fn centre(&self) -> [f64; 3] {
         self.centre
     }
 
-    /// Intervals of (eta_a, eta_s, theta) that the domain spans over all widths; theta in rad.
+    /// Intervals of the coordinates that the domain spans over all widths; theta in rad.
     pub fn bounds(&self) -> [[f64; 2]; 3] {
         from_fn(|i| {
             let side = |sign: f64| {
@@ -117,23 +128,77 @@ impl TrainingDomain {
         })
     }
 
-    /// The deformation of a hinge with the given (eta_a, eta_s, theta) of the domain.
+    /// The coordinates in which the domain is a rounded polytope: (eta_a, eta_s, theta), eta_a from the mean path.
+    pub fn coordinates(&self, design: &HingeDesign, deformation: &HingeDeformation) -> [f64; 3] {
+        let ligament = self.ligament(design);
+        let seen = ligament.deformation(deformation);
+        let [eta_a, eta_s] = seen.eta(ligament.design(design).w_lig);
+        [eta_a - self.mean_path(seen.theta), eta_s, seen.theta]
+    }
+
+    /// The deformation of a hinge with the given coordinates.
     pub fn state(&self, design: &HingeDesign, [eta_a, eta_s, theta]: [f64; 3]) -> HingeDeformation {
-        let ligament = ligament(self.hole, design);
+        let ligament = self.ligament(design);
         let w_lig = ligament.design(design).w_lig;
+        let eta_a = eta_a + self.mean_path(theta);
         ligament.actual(&HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig))
     }
 
-    /// The map to the hinges in whose measures the domain is, for a hinge.
-    pub fn ligament_jet(&self, design: &HingeDesign) -> NetLigamentJet {
-        NetLigamentJet::new(design, self.hole)
+    /// The coordinates as functions of (a, s, theta, w_lig, rho_f).
+    pub fn coordinates_jet(
+        &self,
+        design: &HingeDesign,
+        deformation: &HingeDeformation,
+    ) -> [Jet; 3] {
+        let state = deformation.to_array();
+        let ligament = NetLigamentJet::new(design, self.hole());
+        let [a, s, theta] = ligament.deformation(from_fn(|i| Jet::variable(i, state[i])));
+        let per_width = ligament.width.recip();
+        [
+            a * per_width - self.mean_path_jet(theta),
+            s * per_width,
+            theta,
+        ]
     }
 
-    /// The boundary of the domain in the plane of (eta_a, eta_s) at a width (mm) and a rotation (rad): a closed
-    /// polyline, empty if the point (eta_a, eta_s) of the centre is outside the domain.
+    /// The deformation with the given coordinates, as functions of (a, s, theta, w_lig, rho_f).
+    pub fn state_jet(&self, design: &HingeDesign, [eta_a, eta_s, theta]: [Jet; 3]) -> [Jet; 3] {
+        let ligament = NetLigamentJet::new(design, self.hole());
+        let eta_a = eta_a + self.mean_path_jet(theta);
+        ligament.actual([eta_a * ligament.width, eta_s * ligament.width, theta])
+    }
+
+    /// eta_a of the mean path.
+    fn mean_path(&self, theta: f64) -> f64 {
+        let [first, second] = self.mean_path;
+        theta * (first + second * theta)
+    }
+
+    fn mean_path_jet(&self, theta: Jet) -> Jet {
+        let [first, second] = self.mean_path;
+        theta.map([
+            self.mean_path(theta.value),
+            first + 2.0 * second * theta.value,
+            2.0 * second,
+        ])
+    }
+
+    /// The hole, over w_lig, of the hinges in whose measures the domain is; `None`: those of the hinges themselves.
+    fn hole(&self) -> Option<f64> {
+        self.holes.map(|_| HingeConstants::PAPER.fillet_ratio)
+    }
+
+    /// The map of a hinge to that in whose measures the domain is.
+    fn ligament(&self, design: &HingeDesign) -> NetLigament {
+        NetLigament::new(design, self.hole().unwrap_or(design.fillet_ratio))
+    }
+
+    /// The boundary of the domain in the plane of (eta_a, eta_s) at a width (mm) and a rotation (rad), for the paper's hole: a
+    /// closed polyline, empty if the point of the centre in this plane is outside the domain.
     pub fn slice(&self, w_lig: f64, theta: f64) -> Vec<[f64; 2]> {
         const POINTS: u32 = 72;
         let [centre_a, centre_s, _] = self.centre;
+        let centre_a = centre_a + self.mean_path(theta);
         let at = |radius: f64, angle: f64| {
             let (sin, cos) = angle.sin_cos();
             [
@@ -141,11 +206,7 @@ impl TrainingDomain {
                 centre_s + radius * self.half_range[1] * sin,
             ]
         };
-        let constants = HingeConstants {
-            fillet_ratio: self.hole.unwrap_or(HingeConstants::PAPER.fillet_ratio),
-            ..HingeConstants::PAPER
-        };
-        let design = constants.hinge(w_lig, self.alpha[0]);
+        let design = HingeConstants::PAPER.hinge(w_lig, self.alpha[0]);
         let inside = |[eta_a, eta_s]: [f64; 2]| {
             let state = HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig);
             self.gauge(&design, &state) <= 1.0
@@ -173,6 +234,7 @@ impl TrainingDomain {
     /// The domain whose states are the states of this one multiplied by `factor`.
     pub fn scaled_by(&self, factor: f64) -> Self {
         Self {
+            mean_path: [self.mean_path[0], self.mean_path[1] / factor],
             centre: self.centre.map(|x| factor * x),
             half_range: self.half_range.map(|x| factor * x),
             ..self.clone()
@@ -181,17 +243,6 @@ impl TrainingDomain {
 
     fn scaled(&self, x: [f64; 3]) -> [f64; 3] {
         from_fn(|i| (x[i] - self.centre[i]) / self.half_range[i])
-    }
-
-    fn scaled_jet(&self, design: &HingeDesign, deformation: &HingeDeformation) -> [Jet; 3] {
-        let state = deformation.to_array();
-        let ligament = self.ligament_jet(design);
-        let seen = ligament.deformation(from_fn(|i| Jet::variable(i, state[i])));
-        let per_width = ligament.width.recip();
-        from_fn(|i| {
-            let x = if i < 2 { seen[i] * per_width } else { seen[i] };
-            (x - Jet::constant(self.centre[i])) * (1.0 / self.half_range[i])
-        })
     }
 
     /// Fractional index of a width among the `widths` stored widths, counted from 0.
@@ -238,21 +289,9 @@ impl TrainingDomain {
     }
 }
 
-/// The map of a hinge to that with the hole `reference`, or to itself.
-fn ligament(reference: Option<f64>, design: &HingeDesign) -> NetLigament {
-    NetLigament::new(design, reference.unwrap_or(design.fillet_ratio))
-}
-
-/// (eta_a, eta_s, theta) of the hinge with the hole `reference`, or of the hinge itself.
-fn measures(
-    reference: Option<f64>,
-    design: &HingeDesign,
-    deformation: &HingeDeformation,
-) -> [f64; 3] {
-    let ligament = ligament(reference, design);
-    let seen = ligament.deformation(deformation);
-    let [eta_a, eta_s] = seen.eta(ligament.design(design).w_lig);
-    [eta_a, eta_s, seen.theta]
+/// Whether eta_a is measured from zero.
+fn is_straight(mean_path: &[f64; 2]) -> bool {
+    *mean_path == [0.0; 2]
 }
 
 #[cfg(test)]
@@ -289,6 +328,18 @@ mod tests {
             .collect()
     }
 
+    /// The same states about a ligament that turns freely along a curve, narrower in eta_a.
+    fn bent() -> Vec<(HingeDesign, HingeDeformation)> {
+        let bend = |(design, x): (HingeDesign, HingeDeformation)| {
+            let [eta_a, eta_s] = x.eta(design.w_lig);
+            let free = x.theta * (0.5 + 0.3 * x.theta);
+            let eta_a = free + 0.3 * eta_a;
+            let state = HingeDeformation::from_eta(eta_a, eta_s, x.theta, design.w_lig);
+            (design, state)
+        };
+        cone().into_iter().map(bend).collect()
+    }
+
     fn domain(states: &[(HingeDesign, HingeDeformation)]) -> TrainingDomain {
         TrainingDomain::covering(states.iter().copied()).unwrap()
     }
@@ -317,6 +368,24 @@ mod tests {
         );
     }
 
+    /// Between the ends of the curve a polytope would hold the chord, which is beyond the states on either side.
+    #[test]
+    fn a_domain_follows_a_curved_path() {
+        let domain = domain(&bent());
+        let at = |eta_a: f64, theta: f64| {
+            let state = HingeDeformation::from_eta(eta_a, 0.0, theta, 10.0);
+            domain.contains(&design(10.0), &state)
+        };
+        for theta in [0.2, 0.5, 0.8] {
+            let free = theta * (0.5 + 0.3 * theta);
+            assert!(at(free, theta) && !at(free + 0.1, theta) && !at(free - 0.1, theta));
+        }
+        let state = HingeDeformation::from_eta(0.4, 0.02, 0.6, 10.0);
+        let found = domain.state(&design(10.0), domain.coordinates(&design(10.0), &state));
+        let difference = std::iter::zip(found.to_array(), state.to_array());
+        assert!(difference.into_iter().all(|(x, y)| (x - y).abs() < 1e-12));
+    }
+
     #[test]
     fn mirror_images_have_the_same_depth() {
         let domain = domain(&cone());
@@ -334,8 +403,8 @@ mod tests {
             let fillet_ratio = [0.05, 0.16, 0.3][i % 3];
             (HingeDesign { fillet_ratio, ..g }, x)
         });
-        for domain in [domain(&cone()), domain(&several.collect::<Vec<_>>())] {
-            derivatives_agree(&domain);
+        for states in [cone(), several.collect(), bent()] {
+            derivatives_agree(&domain(&states));
         }
     }
 

@@ -150,6 +150,18 @@ impl SheetMaterial {
         }
     }
 
+    /// The material with `factor` times the stress at every strain.
+    #[must_use]
+    pub fn stressed(&self, factor: f64) -> Self {
+        Self {
+            young: factor * self.young,
+            plastic: (self.plastic.iter())
+                .map(|[stress, strain]| [factor * stress, *strain])
+                .collect(),
+            ..self.clone()
+        }
+    }
+
     /// Mass of a unit of area (kg/mm^2).
     pub fn mass_by_area(&self) -> f64 {
         1e-9 * self.density_kg_m3 * self.thickness

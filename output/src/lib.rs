@@ -22,6 +22,7 @@
 
 #![warn(missing_docs)]
 
+pub mod calibration;
 pub mod cut_file;
 mod deployment_states;
 pub mod display;

@@ -1,20 +1,17 @@
 //! `kirigami compare`: points measured on a deployed sheet, compared with its predicted equilibrium path.
 
-mod points_file;
-
 use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
+use crate::commands::points_file::PointArgs;
 use crate::ui::{picture, run_folder};
-use anyhow::{Context, Result, bail, ensure};
-use clap::{Args, ValueEnum};
+use anyhow::{Context, Result, ensure};
+use clap::Args;
 use design::analysis::marks::Mark;
 use design::analysis::measured_sheet::MeasuredSheet;
 use design::analysis::shape_path::ShapePath;
-use design::geometry::similarity::Scale;
 use design::scene::Scene;
 use design::sheet::cut_sheet::Sheet;
 use output::drawing;
 use output::measurement::MeasurementReport;
-use points_file::{PointsFile, Unit};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -38,15 +35,8 @@ pub struct CompareCommand {
     /// one frame, the slip of the supports
     #[arg(long, value_name = "FILE")]
     closed: Option<PathBuf>,
-    /// Unit of x and y, if the file has no column `unit` [default: mm]
-    #[arg(long, value_name = "UNIT")]
-    unit: Option<Unit>,
-    /// Whether the scale of the measurement is known or fitted [default: free for px, given otherwise]
-    #[arg(long, value_name = "SCALE")]
-    scale: Option<ScaleArg>,
-    /// y counts downwards, as in the pixels of a picture
-    #[arg(long)]
-    y_down: bool,
+    #[command(flatten)]
+    points: PointArgs,
     /// Write an empty table of all points and a picture of their numbers, and compare nothing
     #[arg(long, conflicts_with_all = ["measured", "closed"])]
     template: bool,
@@ -56,15 +46,6 @@ pub struct CompareCommand {
     /// Print the report as JSON
     #[arg(long)]
     json: bool,
-}
-
-/// Whether the scale of the measurement is known.
-#[derive(Clone, Copy, ValueEnum)]
-enum ScaleArg {
-    /// Lengths are measured in a known unit.
-    Given,
-    /// The scale is fitted.
-    Free,
 }
 
 /// Width of the pictures (px).
@@ -116,14 +97,7 @@ impl CompareCommand {
     }
 
     fn fit(&self, file: &Path, path: &ShapePath) -> Result<MeasuredSheet> {
-        let file = PointsFile::read(file, self.unit, self.y_down)?;
-        let scale = match (self.scale, file.unit) {
-            (Some(ScaleArg::Given), Unit::Px) => {
-                bail!("pixels have no known scale: use --scale free, or convert the file to mm")
-            }
-            (None, Unit::Px) | (Some(ScaleArg::Free), _) => Scale::Free,
-            (None | Some(ScaleArg::Given), _) => Scale::Given,
-        };
+        let (file, scale) = self.points.read(file)?;
         MeasuredSheet::new(path, &file.points, scale).map_err(|error| file.located(error))
     }
 

@@ -114,7 +114,6 @@ fn card() -> Card {
             kerf: 0.2,
             r_win: 100.0,
         },
-        holes: None,
         material: "benchmark".into(),
         material_hash: None,
         settings_hash: None,

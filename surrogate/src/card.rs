@@ -37,12 +37,9 @@ pub struct Card {
     pub damage_sharpness: f64,
     /// The states that the training rows cover.
     pub domain: TrainingDomain,
-    /// The components of the hinge design that are not features; the weights are valid only for these values. With
-    /// `holes`, its `fillet_ratio` is that of the hinge whose features the networks see ([`hinge::NetLigament`]).
+    /// The components of the hinge design that are not features; the weights are valid only for these values. If the domain
+    /// has holes of several radii, `fillet_ratio` is that of the hinge whose features the networks see ([`hinge::NetLigament`]).
     pub hinge: HingeConstants,
-    /// Minimum and maximum radius of the hole over w_lig, if it is a feature.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub holes: Option<[f64; 2]>,
     /// Name of the sheet material.
     pub material: String,
     /// [`hinge::SheetMaterial::law_hash`] of the material, if known; a material may change without a change of name.
@@ -247,7 +244,7 @@ impl Card {
 
     /// Rejects other units or features, scales that are not positive, and means that are not finite.
     pub(crate) fn validate(&self) -> Result<(), InvalidWeights> {
-        let names = feature_names(self.holes.is_some());
+        let names = feature_names(self.domain.holes.is_some());
         for (key, found, expected) in [
             ("units", self.units.clone(), UNITS.into()),
             ("features", self.features.join(", "), names.join(", ")),

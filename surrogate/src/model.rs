@@ -6,7 +6,9 @@ use crate::energy::{self, Prepared};
 use crate::hinge_energy::{HingeEnergy, Order};
 use crate::network::{InvalidWeights, Layer, Network};
 use crate::seen_hinge;
-use hinge::{HingeDeformation, HingeDesign, HingeSample, NetLigament, TrainingDomain};
+use hinge::{
+    HingeDeformation, HingeDesign, HingeSample, NetLigament, SheetMaterial, TrainingDomain,
+};
 
 /// The networks of (14), with the card that contains their scaling and provenance.
 #[derive(Clone, Debug)]
@@ -103,6 +105,21 @@ impl Surrogate {
             .expect("layers and scales were valid before")
     }
 
+    /// The surrogate of a material with `factor` times the stress at every strain: energies and forces are multiplied by it. Its card
+    /// names that `material`, or none.
+    ///
+    /// # Panics
+    /// If `factor` is not positive and finite.
+    pub fn stressed(mut self, factor: f64, material: Option<&SheetMaterial>) -> Self {
+        assert!(
+            factor > 0.0 && factor.is_finite(),
+            "the ratio of two stresses is positive"
+        );
+        self.card.energy_scale *= factor;
+        self.card.material_hash = material.map(SheetMaterial::law_hash);
+        self
+    }
+
     /// The metadata: training data, scaling, test errors.
     pub fn card(&self) -> &Card {
         &self.card
@@ -137,15 +154,11 @@ impl Surrogate {
             damage_sharpness,
             domain,
             hinge,
-            holes,
             ..
         } = &self.card;
         let scales = (energy_scale, damage_scale, peak_scale, damage_sharpness);
         let evaluated = serde_json::to_vec(&(standardisation, scales, domain, hinge));
         hasher.update(&evaluated.expect("these are numbers and text"));
-        for radius in holes.iter().flatten() {
-            hasher.update(&radius.to_le_bytes());
-        }
         hasher.finalize().to_hex().to_string()
     }
 
@@ -156,7 +169,7 @@ impl Surrogate {
 
     /// Minimum and maximum radius of the holes of the training, over w_lig.
     pub fn holes(&self) -> [f64; 2] {
-        (self.card.holes).unwrap_or([self.card.hinge.fillet_ratio; 2])
+        (self.card.domain.holes).unwrap_or([self.card.hinge.fillet_ratio; 2])
     }
 
     /// Whether a state lies inside the training domain, and the hole of its hinge among those of the training.

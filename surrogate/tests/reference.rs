@@ -123,7 +123,7 @@ fn with_holes() -> Surrogate {
         .iter()
         .map(ToString::to_string)
         .collect();
-    card.holes = Some([0.02, 0.4]);
+    card.domain.holes = Some([0.02, 0.4]);
     card.standardisation.mean.push(0.2);
     card.standardisation.std.push(0.1);
     let Layers { chi, chi_d, chi_p } = one_hole.layers();

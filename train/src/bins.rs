@@ -14,25 +14,21 @@ type Quantity<'a> = &'a dyn Fn(&Row) -> f64;
 /// Errors on `rows`, whose targets and predictions are `parity`, by compression, shear,
 /// rotation, ligament width, cut angle, hole if it is a feature, and distance from the edge of the domain. Bins without rows
 /// are omitted.
-pub(crate) fn error_bins(
-    parity: &Parity,
-    rows: &[Row],
-    domain: &TrainingDomain,
-    holes: Option<[f64; 2]>,
-) -> Vec<ErrorBin> {
+pub(crate) fn error_bins(parity: &Parity, rows: &[Row], domain: &TrainingDomain) -> Vec<ErrorBin> {
     let degrees = |[minimum, maximum]: [f64; 2]| [minimum.to_degrees(), maximum.to_degrees()];
     let edge = |row: &Row| {
         domain
             .depth(&row.design, &row.sample.deformation())
             .max(0.0)
     };
+    let coordinates = |row: &Row| domain.coordinates(&row.design, &row.sample.deformation());
     let [eta_a, eta_s, theta] = domain.bounds();
     let hole = |row: &Row| row.design.fillet_ratio;
     let hole: Option<(&str, [f64; 2], Quantity)> =
-        holes.map(|range| ("fillet_ratio", range, &hole as Quantity));
+        (domain.holes).map(|range| ("fillet_ratio", range, &hole as Quantity));
     let quantities: [(&str, [f64; 2], Quantity); 6] = [
-        ("eta_a", eta_a, &|row| row.eta()[0]),
-        ("eta_s", eta_s, &|row| row.eta()[1]),
+        ("eta_a", eta_a, &|row| coordinates(row)[0]),
+        ("eta_s", eta_s, &|row| coordinates(row)[1]),
         ("theta_deg", degrees(theta), &|row| {
             row.sample.theta.to_degrees()
         }),
@@ -108,8 +104,9 @@ mod tests {
             states: [0.1, 0.2, 0.4].map(state_of).to_vec(),
         };
         let state = [[-1.0, 1.0], [-1.0, 1.0], [0.0, 1.0]];
-        let domain = TrainingDomain::from_box(state, [5.0, 25.0], [1.0, 2.0]);
-        let bins = error_bins(&parity, &rows, &domain, Some([0.1, 0.3]));
+        let mut domain = TrainingDomain::from_box(state, [5.0, 25.0], [1.0, 2.0]);
+        domain.holes = Some([0.1, 0.3]);
+        let bins = error_bins(&parity, &rows, &domain);
         for quantity in [
             "eta_a",
             "eta_s",

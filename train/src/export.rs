@@ -84,6 +84,8 @@ mod tests {
     }
 
     fn surrogate(networks: &Networks, scales: &Scales) -> Surrogate {
+        let mut domain = TrainingDomain::from_box([[0.0; 2]; 3], [1.0; 2], [1.0; 2]);
+        domain.holes = (scales.features() == FEATURE_NAMES.len()).then_some([0.05, 0.35]);
         let card = Card {
             format_version: FORMAT_VERSION,
             weights_hash: None,
@@ -99,13 +101,12 @@ mod tests {
             damage_sharpness: SHARPNESS,
             fine_tuned_from: None,
             distillation: None,
-            domain: TrainingDomain::from_box([[0.0; 2]; 3], [1.0; 2], [1.0; 2]),
+            domain,
             hinge: HingeConstants {
                 fillet_ratio: 0.16,
                 kerf: 0.2,
                 r_win: 100.0,
             },
-            holes: (scales.features() == FEATURE_NAMES.len()).then_some([0.05, 0.35]),
             material: String::new(),
             material_hash: None,
             settings_hash: None,

@@ -38,12 +38,12 @@ impl Initial {
         manifest: &Manifest,
         symmetric: bool,
     ) -> Result<Self, TrainError> {
-        if pretrained.card().holes.is_some() && manifest.holes.is_none() {
+        if pretrained.card().domain.holes.is_some() && manifest.domain.holes.is_none() {
             return Err(TrainError::OneHole);
         }
         let pretrained = at_size_of(pretrained, &manifest.hinge);
         let parity = Parity::new(&pretrained, rows);
-        let names = feature_names(manifest.holes.is_some());
+        let names = feature_names(manifest.domain.holes.is_some());
         let own = Scales::new(rows, manifest.hinge.fillet_ratio, names, symmetric)?;
         let card = pretrained.card();
         let mut layers = pretrained.layers();

@@ -149,7 +149,7 @@ impl Scales {
             ..Self::new(
                 rows,
                 card.hinge.fillet_ratio,
-                feature_names(card.holes.is_some()),
+                feature_names(card.domain.holes.is_some()),
                 symmetric,
             )?
         })

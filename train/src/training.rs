@@ -137,7 +137,7 @@ impl Training {
             }
             (_, None) => {
                 let hole = manifest.hinge.fillet_ratio;
-                let names = feature_names(manifest.holes.is_some());
+                let names = feature_names(manifest.domain.holes.is_some());
                 (None, Scales::new(&rows, hole, names, config.mirror)?)
             }
         };
@@ -257,12 +257,7 @@ impl Training {
         let best = export(&self.best, &self.card)?;
         let parity = Parity::new(&best, &self.parts.test);
         let test_errors = parity.errors();
-        let bins = error_bins(
-            &parity,
-            &self.parts.test,
-            &self.card.domain,
-            self.card.holes,
-        );
+        let bins = error_bins(&parity, &self.parts.test, &self.card.domain);
         let last = export(&self.networks, &self.card)?;
         let last_errors = Parity::new(&last, &self.parts.test).errors();
         Ok(Trained {
@@ -365,7 +360,7 @@ fn card(
         format_version: FORMAT_VERSION,
         weights_hash: None,
         units: UNITS.into(),
-        features: feature_names(manifest.holes.is_some())
+        features: feature_names(manifest.domain.holes.is_some())
             .iter()
             .map(ToString::to_string)
             .collect(),
@@ -376,7 +371,6 @@ fn card(
         damage_sharpness: config.damage_sharpness,
         domain: domain.ok_or(TrainError::NoRows { part: "training" })?,
         hinge: manifest.hinge,
-        holes: manifest.holes,
         material: manifest.material.clone(),
         material_hash: the_only(&manifest.material_hashes),
         settings_hash: the_only(&manifest.settings_hashes),

@@ -20,7 +20,6 @@ pub fn drawn<'a>(campaign: &'a Campaign, region: &'a TrainingDomain) -> DrawnSta
     DrawnStates {
         domain: region,
         constants: &campaign.design,
-        holes: campaign.rays.fillet_ratio,
     }
 }
 

@@ -42,12 +42,10 @@ pub struct SpotCheck {
 /// The hinges and states that are drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct DrawnStates<'a> {
-    /// Widths, cut angles and deformations.
+    /// Widths, cut angles, holes if they have several radii, and deformations.
     pub domain: &'a TrainingDomain,
-    /// Kerf, window and, unless it is drawn, the hole.
+    /// Kerf, window and, unless several are in the domain, the hole.
     pub constants: &'a HingeConstants,
-    /// Minimum and maximum radius of the hole over w_lig, if it is drawn.
-    pub holes: Option<[f64; 2]>,
 }
 
 impl<'a> From<&'a Surrogate> for DrawnStates<'a> {
@@ -55,7 +53,6 @@ impl<'a> From<&'a Surrogate> for DrawnStates<'a> {
         Self {
             domain: weights.domain(),
             constants: &weights.card().hinge,
-            holes: weights.card().holes,
         }
     }
 }
@@ -123,7 +120,7 @@ fn random_path(drawn: DrawnStates, states: usize, random: &mut ChaCha8Rng) -> Sp
         between(domain.w_lig.map(f64::ln)).exp(),
         between(domain.alpha),
     );
-    if let Some(holes) = drawn.holes {
+    if let Some(holes) = domain.holes {
         design.fillet_ratio = between(holes);
     }
     let bounds = domain.bounds();
@@ -170,11 +167,11 @@ mod tests {
     #[test]
     fn states_are_uniform_inside_the_domain() {
         let state = [[-0.8, 0.2], [-0.4, 0.4], [-0.1, 1.3]];
-        let domain = TrainingDomain::from_box(state, [5.0, 25.0], [0.8, 2.3]);
+        let mut domain = TrainingDomain::from_box(state, [5.0, 25.0], [0.8, 2.3]);
+        domain.holes = Some([0.1, 0.3]);
         let drawn = DrawnStates {
             domain: &domain,
             constants: &HingeConstants::PAPER,
-            holes: Some([0.1, 0.3]),
         };
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let mut counts = [0; 5];
@@ -185,7 +182,7 @@ mod tests {
             for fraction in &spot.fractions {
                 let state = spot.hinge.path.at(*fraction);
                 assert!(domain.contains(&spot.hinge.design, &state));
-                let [eta_a, eta_s] = state.eta(spot.hinge.design.w_lig);
+                let [eta_a, eta_s, _] = domain.coordinates(&spot.hinge.design, &state);
                 // Counts in halves of the domain.
                 counts[0] += usize::from(eta_a > -0.3);
                 counts[1] += usize::from(eta_s > 0.0);

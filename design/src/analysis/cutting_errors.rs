@@ -1,8 +1,6 @@
 //! What errors of a cut sheet do to it: to its deployed corners, its load and its largest D_peak.
 //!
-//! The errors are independent and normal, and a tolerance is two of their standard deviations. A ligament is wider or narrower
-//! because the tip of its main cut is elsewhere. A wider kerf makes all ligaments narrower by half of its error on either side, at
-//! their secondary cuts and at their holes, and leaves their tips. A sheet of another thickness has the same cuts; its hinges follow from similarity.
+//! The errors ([`Deviation`]) are independent and normal, and a tolerance is two of their standard deviations.
 //! To first order (first-order second-moment method) the variances add up:
 //!
 //! ```text
@@ -15,8 +13,8 @@
 
 use crate::analysis::actuation_curve::ActuationCurve;
 use crate::analysis::error_budget::TOLERANCE;
-use crate::equilibrium::nearby_path::KnownPath;
-use crate::hinge_law::{DamageMeasure, HingeLaw, SurrogateLaw};
+use crate::analysis::real_sheet::{Deviation, RealSheet};
+use crate::hinge_law::DamageMeasure;
 use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Mechanics};
 use crate::pattern::design_vector::DesignVector;
 use crate::scene::{Scene, ToleranceConfig};
@@ -107,13 +105,6 @@ pub struct SampledSheets {
     pub d_peak: Option<[f64; 2]>,
 }
 
-/// Errors of one sheet (mm).
-struct Errors {
-    widths: Vec<f64>,
-    kerf: f64,
-    thickness: f64,
-}
-
 /// What is compared of a deployed sheet.
 struct Outcome {
     corners: Vec<[f64; 2]>,
@@ -123,11 +114,7 @@ struct Outcome {
 
 /// A designed sheet and the standard deviations of its errors.
 pub struct CuttingErrors<'a> {
-    scene: &'a Scene,
-    problem: &'a DesignProblem,
-    mechanics: &'a Mechanics,
-    designed: Deployment,
-    known: KnownPath,
+    sheet: RealSheet<'a>,
     outcome: Outcome,
     /// Of every ligament, the kerf and the thickness (mm).
     deviations: [f64; 3],
@@ -152,35 +139,30 @@ impl<'a> CuttingErrors<'a> {
         }
         let mechanics = problem.model.mechanics();
         let mechanics = mechanics.ok_or(CuttingErrorsError::NoEquilibrium)?;
-        if deviations[2] > 0.0 && scene.surrogate().is_none() {
+        let sheet = RealSheet::new(scene, problem, design)?;
+        if deviations[2] > 0.0 && !sheet.has_similar_laws() {
             return Err(CuttingErrorsError::NoThickness);
         }
-        let designed = problem.deploy(design)?;
-        designed.at_full_load()?;
-        let hinges = designed.sheet.hinges.len();
+        let hinges = sheet.designed().sheet.hinges.len();
         if hinges > MOST_HINGES {
             return Err(CuttingErrorsError::TooManyHinges(hinges));
         }
         Ok(Self {
-            scene,
-            problem,
-            mechanics,
-            known: designed.known_path(),
-            outcome: Outcome::new(mechanics, &designed),
-            designed,
+            outcome: Outcome::new(mechanics, sheet.designed()),
+            sheet,
             deviations,
         })
     }
 
     /// The designed sheet without errors.
     pub fn designed(&self) -> &Deployment {
-        &self.designed
+        self.sheet.designed()
     }
 
     /// All errors that have a tolerance.
     pub fn errors(&self) -> Vec<CuttingError> {
         let [ligament, kerf, thickness] = self.deviations.map(|deviation| deviation > 0.0);
-        let ligaments = (0..self.designed.sheet.hinges.len()).map(CuttingError::Ligament);
+        let ligaments = (0..self.designed().sheet.hinges.len()).map(CuttingError::Ligament);
         let common = [
             (kerf, CuttingError::Kerf),
             (thickness, CuttingError::Thickness),
@@ -327,16 +309,15 @@ impl<'a> CuttingErrors<'a> {
         })
     }
 
-    fn none(&self) -> Errors {
-        Errors {
-            widths: vec![0.0; self.designed.sheet.hinges.len()],
-            kerf: 0.0,
-            thickness: 0.0,
+    fn none(&self) -> Deviation {
+        Deviation {
+            widths: vec![0.0; self.designed().sheet.hinges.len()],
+            ..Deviation::default()
         }
     }
 
     /// Independent normal errors.
-    fn drawn(&self, random: &mut ChaCha8Rng) -> Errors {
+    fn drawn(&self, random: &mut ChaCha8Rng) -> Deviation {
         let [ligament, kerf, thickness] = self.deviations;
         // Box and Muller, "A note on the generation of random normal deviates", 1958.
         let mut normal = || {
@@ -353,45 +334,9 @@ impl<'a> CuttingErrors<'a> {
         errors
     }
 
-    /// The deployed sheet with errors.
-    fn outcome_of(&self, errors: &Errors) -> Result<Outcome, DesignError> {
-        let hinges = self.designed.sheet.hinges.iter().zip(&errors.widths);
-        let widths: Vec<f64> = hinges.map(|(hinge, error)| hinge.w_lig + error).collect();
-        let pattern = self.designed.pattern.clone();
-        let sheet = self.problem.sheet(&pattern, &widths)?;
-        let thinner = self
-            .scene
-            .surrogate()
-            .filter(|_| errors.thickness != 0.0)
-            .map(|weights| {
-                let factor = 1.0 + errors.thickness / self.scene.material.thickness;
-                SurrogateLaw {
-                    surrogate: weights.clone().scaled(factor),
-                }
-            });
-        let law: &dyn HingeLaw = match &thinner {
-            Some(law) => law,
-            None => &*self.mechanics.law,
-        };
-        // The kerf moves the edges on either side of a ligament, that of its secondary cut and that of its hole.
-        let mut designs = sheet.designs();
-        for (design, hinge) in designs.iter_mut().zip(&self.designed.sheet.hinges) {
-            let radius = self.problem.options.process.hole_radius(hinge.w_lig);
-            design.w_lig -= 0.5 * errors.kerf;
-            design.fillet_ratio = (radius + 0.5 * errors.kerf) / design.w_lig;
-        }
-        let prepared = law.prepare(&designs);
-        let hinged = self.mechanics.hinged(&sheet, &*prepared, false);
-        let (path, followed) = self.mechanics.path(hinged, Some(&self.known));
-        drop(prepared);
-        let deployment = Deployment {
-            pattern,
-            sheet,
-            path,
-            followed,
-        };
-        deployment.at_full_load()?;
-        Ok(Outcome::new(self.mechanics, &deployment))
+    fn outcome_of(&self, errors: &Deviation) -> Result<Outcome, DesignError> {
+        let (deployment, mechanics) = self.sheet.deployed(errors)?;
+        Ok(Outcome::new(&mechanics, &deployment))
     }
 }
 

@@ -68,10 +68,7 @@ pub(crate) struct Problem<'a> {
 impl Problem<'_> {
     /// Number of unknowns: the position on the path, the motion and, if requested, the scale.
     fn unknowns(&self) -> f64 {
-        match self.scale {
-            Scale::Given => 4.0,
-            Scale::Free => 5.0,
-        }
+        1.0 + self.scale.unknowns()
     }
 
     /// Predicted and measured positions of `points` at a position of the path.

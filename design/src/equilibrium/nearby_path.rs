@@ -67,16 +67,55 @@ impl EquilibriumSolver {
     /// The load steps of a sheet near that of the path `known`. `None` if that is not complete or jumps, or
     /// if a state is not a stable equilibrium close to the known one: then the path must be followed.
     pub fn path_near(&self, sheet: HingedSheet, known: &KnownPath) -> Option<Vec<LoadStep>> {
+        if known.steps.len() != self.weight_steps() + self.steps {
+            return None;
+        }
+        let (weighed, loaded) = known.steps.split_at(self.weight_steps());
+        let near = |stage, steps| {
+            let ends: Vec<f64> = self.ends(stage).collect();
+            self.steps_near(sheet, stage, &ends, &known.designs, steps)
+        };
+        let mut path = near(Stage::Weight, weighed)?;
+        path.extend(near(Stage::Actuation, loaded)?);
+        Some(path)
+    }
+
+    /// The [`readings`](Self::readings) of a sheet near another one of which `known` are the readings at the same parameters;
+    /// `None` as for a path.
+    pub fn readings_near(
+        &self,
+        sheet: HingedSheet,
+        parameters: &[f64],
+        known: &KnownPath,
+    ) -> Option<Vec<LoadStep>> {
+        if known.steps.len() != parameters.len() {
+            return None;
+        }
+        self.steps_near(
+            sheet,
+            Stage::Actuation,
+            parameters,
+            &known.designs,
+            &known.steps,
+        )
+    }
+
+    /// The load steps that end at load parameters, each from the known one there.
+    fn steps_near(
+        &self,
+        sheet: HingedSheet,
+        stage: Stage,
+        ends: &[f64],
+        designs: &[HingeDesign],
+        known: &[LoadStep],
+    ) -> Option<Vec<LoadStep>> {
         let smooth = |step: &LoadStep| {
             matches!(step.status, Status::Converged | Status::LeftDomain) && step.jumps == 0
         };
-        if known.steps.len() != self.weight_steps() + self.steps
-            || !known.steps.iter().all(smooth)
-            || self.lbfgs.is_some()
-        {
+        if !known.iter().all(smooth) || self.lbfgs.is_some() {
             return None;
         }
-        let changes: Vec<[f64; 3]> = std::iter::zip(sheet.sheet.designs(), &known.designs)
+        let changes: Vec<[f64; 3]> = std::iter::zip(sheet.sheet.designs(), designs)
             .map(|(to, from)| {
                 [
                     to.w_lig - from.w_lig,
@@ -85,15 +124,10 @@ impl EquilibriumSolver {
                 ]
             })
             .collect();
-        let (weighed, loaded) = known.steps.split_at(self.weight_steps());
-        let mut path = Vec::with_capacity(known.steps.len());
-        for (stage, known) in [(Stage::Weight, weighed), (Stage::Actuation, loaded)] {
-            let mut branch = Branch::new(self, sheet, stage);
-            for (at, known) in std::iter::zip(self.ends(stage), known) {
-                path.push(branch.load_step_near(at, known, &changes)?);
-            }
-        }
-        Some(path)
+        let mut branch = Branch::new(self, sheet, stage);
+        std::iter::zip(ends, known)
+            .map(|(at, known)| branch.load_step_near(*at, known, &changes))
+            .collect()
     }
 }
 

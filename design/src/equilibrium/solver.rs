@@ -15,6 +15,7 @@ use crate::equilibrium::weight::hung_from;
 use crate::pattern::grid::Grid;
 use crate::sheet::cut_sheet::{Grip, Sheet};
 use crate::sheet::kinematics::Configuration;
+use std::sync::Arc;
 
 /// Supports, loads or settings that do not define an equilibrium problem.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -58,7 +59,7 @@ pub enum EquilibriumError {
 const WEIGHT_STEPS: usize = 2;
 
 /// Supports and loads of a sheet, with everything that depends on its topology alone.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct EquilibriumSolver {
     pub(crate) grid: Grid,
     pub(crate) settings: SolverSettings,
@@ -78,8 +79,8 @@ pub struct EquilibriumSolver {
     pub(crate) held: Box<[[f64; 3]]>,
     /// Under displacement control, the direction of the stroke and its value at full load.
     pub(crate) drive: Option<(Box<Stroke>, f64)>,
-    /// Boxed because it is much larger than the other fields.
-    pub(crate) pattern: Box<TangentPattern>,
+    /// Shared by the solvers of one sheet with other loads.
+    pub(crate) pattern: Arc<TangentPattern>,
 }
 
 impl EquilibriumSolver {
@@ -128,7 +129,7 @@ impl EquilibriumSolver {
             settings,
             steps,
             lbfgs: None,
-            pattern: Box::new(TangentPattern::new(grid, supported.as_flattened())),
+            pattern: Arc::new(TangentPattern::new(grid, supported.as_flattened())),
             supports: supports.into(),
             weight: [0.0; 2],
             grips: Box::default(),

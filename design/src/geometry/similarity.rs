@@ -22,6 +22,16 @@ pub enum Scale {
     Free,
 }
 
+impl Scale {
+    /// Number of unknowns of a motion with this scale.
+    pub(crate) fn unknowns(self) -> f64 {
+        match self {
+            Self::Given => 3.0,
+            Self::Free => 4.0,
+        }
+    }
+}
+
 /// z -> turn z + shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Similarity {

@@ -154,21 +154,15 @@ impl Continuation {
     fn new(domain: &TrainingDomain, design: &HingeDesign, deformation: &HingeDeformation) -> Self {
         let gauge = domain.gauge_jet(design, deformation);
         let drawn = gauge.map(saturated(gauge.value)) * gauge.recip();
-        let state = deformation.to_array();
-        let centre = domain.centre();
-        // The domain is star-shaped in the measures of its own hinges.
-        let ligament = domain.ligament_jet(design);
-        let seen = ligament.deformation(from_fn(|i| Jet::variable(i, state[i])));
+        // The domain is star-shaped in its coordinates.
+        let at = domain.coordinates_jet(design, deformation);
         let mapped = from_fn(|i| {
-            let centre = match i {
-                2 => Jet::constant(centre[2]),
-                _ => ligament.width * centre[i],
-            };
-            centre + (seen[i] - centre) * drawn
+            let centre = Jet::constant(domain.centre()[i]);
+            centre + (at[i] - centre) * drawn
         });
         Self {
             gauge,
-            mapped: ligament.actual(mapped),
+            mapped: domain.state_jet(design, mapped),
         }
     }
 
@@ -416,10 +410,7 @@ mod tests {
                 let number = [0.732_050_807_6, 0.236_067_977_5, 0.645_751_311_1][j];
                 (part(i, number) - 0.5) * (bounds[j][1] - bounds[j][0])
             });
-            let state = |t: f64| {
-                let [eta_a, eta_s, theta] = from_fn(|j| centre[j] + t * outwards[j]);
-                HingeDeformation::from_eta(eta_a, eta_s, theta, w_lig)
-            };
+            let state = |t: f64| domain.state(&design, from_fn(|j| centre[j] + t * outwards[j]));
             let edge = 1.0 / domain.gauge(&design, &state(1.0));
             let prepared = law.prepare(&[design]);
             // The derivative of W in gamma.

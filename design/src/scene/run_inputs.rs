@@ -8,8 +8,10 @@
 //! | `inputs/weights.safetensors`, `.json` | weights and card, if the hinge law reads them |
 //! | `inputs/ensemble-N.safetensors`, `.json` | the further networks, from 1 |
 //!
-//! The state of the run holds the BLAKE3 hash of each of them.
+//! The state of the run holds the BLAKE3 hash of each of them. The scene of a calibrated sheet has the same files, with its own
+//! thickness, kerf, material and weights.
 
+use crate::analysis::real_sheet::Deviation;
 use crate::scene::checked_scene::Scene;
 use crate::scene::keys::{SceneConfig, beside};
 use serde::{Deserialize, Serialize};
@@ -19,6 +21,7 @@ use std::path::{Path, PathBuf};
 use support::file_error::FileError;
 use support::sealed_json::{self, SealError};
 use support::{regular_file, whole_file};
+use surrogate::{Surrogate, WeightsError};
 
 /// The state of a run, in its folder.
 pub const STATE_FILE: &str = "state.json";
@@ -111,16 +114,78 @@ pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
         *file = kept.copy(&beside(&scene.path, file), &name)?;
     }
     for (i, weights) in config.weights_files_mut().into_iter().enumerate() {
-        let stem = match i {
-            0 => format!("{FOLDER}/weights"),
-            _ => format!("{FOLDER}/ensemble-{i}"),
-        };
+        let name = weights_name(i);
         let original = beside(&scene.path, weights);
-        kept.copy(&original.with_extension("json"), &format!("{stem}.json"))?;
-        *weights = kept.copy(&original, &format!("{stem}.safetensors"))?;
+        let card = Path::new(&name).with_extension("json");
+        kept.copy(&original.with_extension("json"), &card.to_string_lossy())?;
+        *weights = kept.copy(&original, &name)?;
     }
     kept.write(SCENE_FILE, &toml(&config, &folder)?)?;
     Ok(kept.hashes)
+}
+
+/// Writes the scene of a sheet that was calibrated, with the files that it reads, to a folder: `comment` is its head. Its designs
+/// are for the thickness, the kerf and the stresses of the sheet that was measured.
+pub fn write_calibrated(
+    scene: &Scene,
+    sheet: &Deviation,
+    folder: &Path,
+    comment: &str,
+) -> Result<PathBuf, CalibratedSceneError> {
+    let inputs = folder.join(FOLDER);
+    whole_file::create_folder(&inputs).map_err(FileError::at(&inputs))?;
+    let mut config = scene.config.without_unread_weights();
+    let thickness = scene.material.thickness + sheet.thickness;
+    config.process.r_win *= thickness / scene.material.thickness;
+    config.process.kerf += sheet.kerf;
+    config.thickness = Some(thickness);
+    config.output = "run".into();
+    let material = scene.measured.stressed(1.0 + sheet.stress);
+    write_to(folder, MATERIAL_FILE, &toml(&material, folder)?)?;
+    config.material = MATERIAL_FILE.into();
+    if let Some((file, kind)) = config.target.file_mut() {
+        let name = format!("{FOLDER}/target.{kind}");
+        write_to(folder, &name, &read(&beside(&scene.path, file))?)?;
+        *file = name.into();
+    }
+    for (i, weights) in config.weights_files_mut().into_iter().enumerate() {
+        let name = weights_name(i);
+        let trained = Surrogate::load(&beside(&scene.path, weights))?;
+        let own = trained.stressed(1.0 + sheet.stress, Some(&material));
+        own.save(&folder.join(&name))?;
+        *weights = name.into();
+    }
+    let mut text = comment.as_bytes().to_vec();
+    text.extend(toml(&config, folder)?);
+    write_to(folder, SCENE_FILE, &text)?;
+    Ok(folder.join(SCENE_FILE))
+}
+
+/// Why the scene of a calibrated sheet cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
+pub enum CalibratedSceneError {
+    #[error("cannot use {0}")]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Weights(#[from] WeightsError),
+}
+
+/// The name of the weights of a run and, from 1, of the further networks.
+fn weights_name(i: usize) -> String {
+    match i {
+        0 => format!("{FOLDER}/weights.safetensors"),
+        _ => format!("{FOLDER}/ensemble-{i}.safetensors"),
+    }
+}
+
+/// Writes a file of a folder unless it has these contents already.
+fn write_to(folder: &Path, name: &str, contents: &[u8]) -> Result<(), FileError> {
+    let path = folder.join(name);
+    if !path.exists() || read(&path)? != contents {
+        whole_file::write(&path, contents).map_err(FileError::at(&path))?;
+    }
+    Ok(())
 }
 
 /// The files that were written to a run folder.
@@ -132,10 +197,7 @@ struct Kept<'a> {
 impl Kept<'_> {
     /// Writes a file unless it has these contents already; returns its path relative to the run folder.
     fn write(&mut self, name: &str, contents: &[u8]) -> Result<PathBuf, FileError> {
-        let path = self.scene.output().join(name);
-        if !path.exists() || read(&path)? != contents {
-            whole_file::write(&path, contents).map_err(FileError::at(&path))?;
-        }
+        write_to(&self.scene.output(), name, contents)?;
         let hash = blake3::hash(contents).to_hex().to_string();
         self.hashes.insert(name.to_owned(), hash);
         Ok(name.into())

@@ -1,8 +1,8 @@
 //! The training domain of given states.
 
+use crate::domain::TrainingDomain;
 use crate::domain::directions::{DIRECTION, DIRECTIONS, dot, norm};
-use crate::domain::{TrainingDomain, measures};
-use crate::{HingeConstants, HingeDeformation, HingeDesign};
+use crate::{HingeDeformation, HingeDesign};
 use std::array::from_fn;
 
 /// Maximum number of widths at which the supports are stored.
@@ -13,44 +13,61 @@ const STATES_A_WIDTH: usize = 4000;
 const REACH: f64 = 0.75;
 /// Minimum support and minimum half-range, so that a domain of one state has a non-zero size.
 const LEAST_SIZE: f64 = 0.01;
+/// A mean path counts if the range of eta_a about it is at most this fraction of the whole range: a sixth in plates, which turn
+/// freely along it. Thin ligaments buckle at any eta_a: about their mean path the domain would be a tenth larger.
+const NARROWED: f64 = 0.5;
 /// Maximum gamma of the flat state, where W and its gradient vanish for any weights.
 const FLAT: f64 = 0.98;
 
 impl TrainingDomain {
-    /// The domain of the given states and the flat state; `None` if no state is given. If the hinges have holes of several
-    /// radii, it is in the measures of hinges with the paper's hole.
+    /// The domain of the given states and the flat state; `None` if no state is given.
     ///
     /// The states are passed through several times, and none is kept.
     pub fn covering(
         states: impl IntoIterator<Item = (HingeDesign, HingeDeformation), IntoIter: Clone>,
     ) -> Option<Self> {
         let states = states.into_iter();
-        let mut holes = states.clone().map(|(design, _)| design.fillet_ratio);
-        let first = holes.next();
-        let several = holes.any(|hole| Some(hole) != first);
-        let hole = several.then_some(HingeConstants::PAPER.fillet_ratio);
-        let states =
-            states.map(|(design, deformation)| (measures(hole, &design, &deformation), design));
-        let states = || states.clone();
-        let count = states().count();
+        let designs = || states.clone().map(|(design, _)| design);
+        let count = designs().count();
         if count == 0 {
             return None;
         }
+        let holes = interval(designs().map(|design| design.fillet_ratio));
         let mut domain = Self {
-            w_lig: interval(states().map(|(_, design)| design.w_lig)),
-            alpha: interval(states().map(|(_, design)| design.alpha)),
-            hole,
-            centre: from_fn(|i| states().map(|(x, _)| x[i]).sum::<f64>() / count as f64),
-            half_range: from_fn(|i| {
-                let [minimum, maximum] = interval(states().map(|(x, _)| x[i]));
-                (0.5 * (maximum.max(0.0) - minimum.min(0.0))).max(LEAST_SIZE)
-            }),
+            w_lig: interval(designs().map(|design| design.w_lig)),
+            alpha: interval(designs().map(|design| design.alpha)),
+            holes: (holes[0] < holes[1]).then_some(holes),
+            mean_path: [0.0; 2],
+            centre: [0.0; 3],
+            half_range: [1.0; 3],
             supports: Vec::new(),
         };
+        let coordinates = |domain: &Self| {
+            let domain = domain.clone();
+            (states.clone()).map(move |(g, x)| (domain.coordinates(&g, &x), g))
+        };
+        let width = |domain: &Self| {
+            let [least, most] = interval(coordinates(domain).map(|(x, _)| x[0]));
+            most - least
+        };
+        let straight = width(&domain);
+        domain.mean_path = mean_path(coordinates(&domain).map(|(x, _)| x));
+        if width(&domain) > NARROWED * straight {
+            domain.mean_path = [0.0; 2];
+        }
+        let measured = || coordinates(&domain);
+        let (centre, half_range) = (
+            from_fn(|i| measured().map(|(x, _)| x[i]).sum::<f64>() / count as f64),
+            from_fn(|i| {
+                let [minimum, maximum] = interval(measured().map(|(x, _)| x[i]));
+                (0.5 * (maximum.max(0.0) - minimum.min(0.0))).max(LEAST_SIZE)
+            }),
+        );
+        (domain.centre, domain.half_range) = (centre, half_range);
         let widths = (count / STATES_A_WIDTH).clamp(1, MOST_WIDTHS);
         domain.supports = (0..widths)
             .map(|width| {
-                let near = states()
+                let near = coordinates(&domain)
                     .filter(|(_, g)| (domain.along(g.w_lig, widths) - width as f64).abs() <= REACH)
                     .map(|(x, _)| domain.scaled(x));
                 domain.support(near)
@@ -64,7 +81,8 @@ impl TrainingDomain {
         let mut domain = Self {
             w_lig,
             alpha,
-            hole: None,
+            holes: None,
+            mean_path: [0.0; 2],
             centre: state.map(|[minimum, maximum]| 0.5 * (minimum + maximum)),
             half_range: state.map(|[minimum, maximum]| (0.5 * (maximum - minimum)).max(LEAST_SIZE)),
             supports: Vec::new(),
@@ -87,6 +105,31 @@ impl TrainingDomain {
         let grown = norm(from_fn(|m| dot(DIRECTION[m], flat) / support[m])) / FLAT;
         support.map(|s| grown.max(1.0) * s)
     }
+}
+
+/// c_1 and c_2 of the parabola eta_a = c_1 theta + c_2 theta^2 by least squares; zero if the states do not determine it.
+fn mean_path(coordinates: impl Iterator<Item = [f64; 3]>) -> [f64; 2] {
+    // Sums of theta^2, theta^3, theta^4, eta_a theta and eta_a theta^2.
+    let [second, third, fourth, first_moment, second_moment] =
+        coordinates.fold([0.0; 5], |sums: [f64; 5], [eta_a, _, theta]| {
+            let square = theta * theta;
+            let terms = [
+                square,
+                square * theta,
+                square * square,
+                eta_a * theta,
+                eta_a * square,
+            ];
+            from_fn(|i| sums[i] + terms[i])
+        });
+    let determinant = second * fourth - third * third;
+    if determinant <= 1e-9 * second * fourth {
+        return [0.0; 2];
+    }
+    [
+        (first_moment * fourth - second_moment * third) / determinant,
+        (second_moment * second - first_moment * third) / determinant,
+    ]
 }
 
 /// The smallest interval that holds every value.

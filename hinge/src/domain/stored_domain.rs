@@ -16,7 +16,9 @@ pub(super) struct Stored {
     w_lig: [f64; 2],
     alpha: [f64; 2],
     #[serde(default)]
-    hole: Option<f64>,
+    holes: Option<[f64; 2]>,
+    #[serde(default)]
+    mean_path: [f64; 2],
     centre: [f64; 3],
     half_range: [f64; 3],
     supports: Vec<[f64; DIRECTIONS]>,
@@ -29,7 +31,8 @@ impl TryFrom<Stored> for TrainingDomain {
         let Stored {
             w_lig,
             alpha,
-            hole,
+            holes,
+            mean_path,
             centre,
             half_range,
             supports,
@@ -48,8 +51,12 @@ impl TryFrom<Stored> for TrainingDomain {
             ),
             ("minimum <= maximum for alpha", is_interval(alpha)),
             (
-                "0 < hole < 1",
-                hole.is_none_or(|hole| 0.0 < hole && hole < 1.0),
+                "0 <= minimum < maximum < 1 for holes",
+                holes.is_none_or(|[least, most]| 0.0 <= least && least < most && most < 1.0),
+            ),
+            (
+                "mean_path is finite",
+                mean_path.iter().all(|c| c.is_finite()),
             ),
         ];
         match rules.into_iter().find(|(_, holds)| !holds) {
@@ -57,7 +64,8 @@ impl TryFrom<Stored> for TrainingDomain {
             None => Ok(Self {
                 w_lig,
                 alpha,
-                hole,
+                holes,
+                mean_path,
                 centre,
                 half_range,
                 supports,

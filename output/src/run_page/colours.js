@@ -6,7 +6,7 @@ DIRECTIONS.splice(13, 1);
 
 /** The support of the training domain in every direction at the width of a hinge. */
 function supports(hinge) {
-  const domain = run.domain[0];
+  const domain = run.domain;
   supports.of ??= [];
   supports.of[hinge] ??= (() => {
     const [row, blend] = place(domain, run.hinges.w_lig[hinge]);
@@ -16,10 +16,23 @@ function supports(hinge) {
   return supports.of[hinge];
 }
 
+/** eta_a of the mean path of the training domain. */
+function meanPath(theta) {
+  const [first, second] = run.domain.mean_path ?? [0, 0];
+  return theta * (first + second * theta);
+}
+
+/** w' / w_lig of the hinge with the paper's hole and the same net ligament (hinge/src/net_ligament.rs). */
+function netRatio(hinge) {
+  return run.domain.holes ? (1 - run.hinges.fillet_ratio[hinge]) / (1 - 0.16) : 1;
+}
+
 /** The gauge of the training domain: 0 at its centre, 1 at its edge, more outside. */
 function gauge(hinge, etaA, etaS, theta) {
-  const { centre, half_range: half } = run.domain[0];
-  const [y0, y1, y2] = [(etaA - centre[0]) / half[0], (etaS - centre[1]) / half[1], (theta - centre[2]) / half[2]];
+  const { centre, half_range: half } = run.domain;
+  const net = netRatio(hinge);
+  const coordinates = [(etaA - 2 * Math.sin(theta / 2) * (1 - net)) / net - meanPath(theta), etaS / net, theta];
+  const [y0, y1, y2] = coordinates.map((x, i) => (x - centre[i]) / half[i]);
   const support = supports(hinge);
   let sum = 0;
   for (let m = 0; m < 26; m++) {

@@ -59,8 +59,11 @@ function drawHinge(state, h) {
 /** The boundary of the domain in the plane of (eta_a or eta_s, theta) through the state of a hinge; theta in deg. */
 function section(h, axis, eta, theta) {
   const at = (x, t) => gauge(h, axis === 0 ? x : eta[0], axis === 0 ? eta[1] : x, t);
-  const [centre, half] = [run.domain[0].centre, run.domain[0].half_range];
-  const inside = [[eta[axis], theta], [centre[axis], centre[2]]].find(([x, t]) => at(x, t) <= 1);
+  const { centre, half_range: half } = run.domain;
+  const net = netRatio(h);
+  const etaA = (centre[0] + meanPath(centre[2])) * net + 2 * Math.sin(centre[2] / 2) * (1 - net);
+  const middle = [[etaA, centre[1] * net][axis], centre[2]];
+  const inside = [[eta[axis], theta], middle].find(([x, t]) => at(x, t) <= 1);
   if (!inside) return [];
   const points = [];
   for (let i = 0; i < 60; i++) {
@@ -90,10 +93,6 @@ function drawDomain(state, h) {
     const region = run.domain ? section(h, axis, [a, s], theta) : [];
     cuts ||= region.length > 0;
     const known = points.concat(region, [[0, 0]]);
-    if (run.domain) {
-      const bounds = run.domain[1];
-      for (const end of [0, 1]) known.push([bounds[axis][end], bounds[2][end] * DEG]);
-    }
     const span = (c) => {
       const values = known.map((p) => p[c]);
       const [low, high] = [Math.min(...values), Math.max(...values)];
@@ -112,8 +111,8 @@ function drawDomain(state, h) {
 
 function domainNote(h, cuts) {
   if (!run.domain) return "Path of the hinge from the flat sheet; large: the state shown.";
-  const [low, high] = run.domain[0].w_lig;
-  const [least, most] = run.domain[0].alpha.map((angle) => angle * DEG);
+  const [low, high] = run.domain.w_lig;
+  const [least, most] = run.domain.alpha.map((angle) => angle * DEG);
   const [w, alpha] = [run.hinges.w_lig[h], run.hinges.alpha_deg[h]];
   const ligament = [];
   if (w < low || w > high) ligament.push(`w_lig is outside the trained ${fixed(low, 1)} to ${fixed(high, 1)} mm.`);

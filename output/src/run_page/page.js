@@ -251,7 +251,7 @@ function domainDisagreements() {
   let count = 0;
   for (let i = 0; run.domain && i < stateCount; i++)
     for (let h = 0; h < hingeCount; h++) {
-      const { w_lig, alpha } = run.domain[0];
+      const { w_lig, alpha } = run.domain;
       const within = ([low, high], x) => x >= low * (1 - 1e-6) && x <= high * (1 + 1e-6);
       const ligament = within(w_lig, run.hinges.w_lig[h]) && within(alpha, run.hinges.alpha_deg[h] / DEG);
       const g = ligament ? gaugeOf(i, h) : Infinity;

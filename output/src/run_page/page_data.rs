@@ -42,8 +42,8 @@ pub(super) struct PageData<'a> {
     /// Closed outlines: of the flat sheet and of the target (mm).
     outline: [[f64; 2]; 4],
     target: Packed,
-    /// The training domain of the hinge law, and its bounds.
-    domain: Option<(&'a TrainingDomain, [[f64; 2]; 3])>,
+    /// The training domain of the hinge law.
+    domain: Option<&'a TrainingDomain>,
 }
 
 /// The error budget: what it is, its table, and what it leaves out.
@@ -79,6 +79,7 @@ struct Hinges {
     sites: Vec<[usize; 4]>,
     w_lig: Packed,
     alpha_deg: Packed,
+    fillet_ratio: Packed,
     gamma: Packed,
     /// Maxima along the path; NaN if not known or not predicted.
     damage: Packed,
@@ -121,7 +122,7 @@ impl<'a> PageData<'a> {
             target: (kept(target.len(), MOST_POINTS).into_iter())
                 .flat_map(|i| target[i])
                 .collect(),
-            domain: domain.map(|domain| (domain, domain.bounds())),
+            domain,
         }
     }
 }
@@ -182,6 +183,7 @@ impl Hinges {
                 .collect(),
             w_lig: rows.iter().map(|row| row.w_lig).collect(),
             alpha_deg: rows.iter().map(|row| row.alpha_deg).collect(),
+            fillet_ratio: sheet.designs().iter().map(|g| g.fillet_ratio).collect(),
             gamma: rows
                 .iter()
                 .map(|row| row.gamma.unwrap_or(f64::NAN))

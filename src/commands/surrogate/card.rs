@@ -43,7 +43,7 @@ impl CardCommand {
             println!("distilled from weights {weights}, fine-tuned from {from}");
         }
         let hinge = card.hinge;
-        let radius = match card.holes {
+        let radius = match card.domain.holes {
             Some([least, most]) => format!("{least:.3} to {most:.3}"),
             None => hinge.fillet_ratio.to_string(),
         };

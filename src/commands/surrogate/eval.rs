@@ -88,7 +88,7 @@ impl EvalCommand {
     pub fn run(&self) -> Result<()> {
         let surrogate = Surrogate::load(&self.weights)?;
         let states = read_states(&self.states)?;
-        if let Some([least, most]) = surrogate.card().holes {
+        if let Some([least, most]) = surrogate.domain().holes {
             ensure!(
                 states.iter().all(|state| state.fillet_ratio.is_some()),
                 "{} has no column fillet_ratio: these weights are for holes with a radius of {least:.3} to {most:.3} w_lig",

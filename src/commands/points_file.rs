@@ -1,9 +1,10 @@
-//! The CSV file of a measurement; errors name file, line and column.
+//! The CSV file of measured points, and the arguments that say how to read it; errors name file, line and column.
 
 use anyhow::{Context, Error, Result, anyhow, bail, ensure};
-use clap::ValueEnum;
+use clap::{Args, ValueEnum};
 use design::analysis::marks::{Mark, MeasuredPoint};
 use design::analysis::measured_sheet::{MeasurementError, PointFault};
+use design::geometry::similarity::Scale;
 use std::path::{Path, PathBuf};
 use support::csv_table;
 use support::nearest::nearest;
@@ -21,7 +22,7 @@ const COLUMNS: [&str; 7] = [
 
 /// Unit of measured lengths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Unit {
+enum Unit {
     /// Millimetres.
     Mm,
     /// Centimetres.
@@ -32,6 +33,44 @@ pub(super) enum Unit {
     Px,
 }
 
+/// How a file of measured points is read.
+#[derive(Args)]
+pub(super) struct PointArgs {
+    /// Unit of x and y, if the file has no column `unit` [default: mm]
+    #[arg(long, value_name = "UNIT")]
+    unit: Option<Unit>,
+    /// Whether the scale of the measurement is known or fitted [default: free for px, given otherwise]
+    #[arg(long, value_name = "SCALE")]
+    scale: Option<ScaleArg>,
+    /// y counts downwards, as in the pixels of a picture
+    #[arg(long)]
+    y_down: bool,
+}
+
+/// Whether the scale of the measurement is known.
+#[derive(Clone, Copy, ValueEnum)]
+enum ScaleArg {
+    /// Lengths are measured in a known unit.
+    Given,
+    /// The scale is fitted.
+    Free,
+}
+
+impl PointArgs {
+    /// The points of a file, and whether their scale is known.
+    pub fn read(&self, file: &Path) -> Result<(PointsFile, Scale)> {
+        let file = PointsFile::read(file, self.unit, self.y_down)?;
+        let scale = match (self.scale, file.unit) {
+            (Some(ScaleArg::Given), Unit::Px) => {
+                bail!("pixels have no known scale: use --scale free, or convert the file to mm")
+            }
+            (None, Unit::Px) | (Some(ScaleArg::Free), _) => Scale::Free,
+            (None | Some(ScaleArg::Given), _) => Scale::Given,
+        };
+        Ok((file, scale))
+    }
+}
+
 /// The points of a file.
 #[derive(Debug)]
 pub(super) struct PointsFile {
@@ -40,8 +79,7 @@ pub(super) struct PointsFile {
     pub points: Vec<MeasuredPoint>,
     /// The line of every point.
     lines: Vec<u64>,
-    /// The unit of the file.
-    pub unit: Unit,
+    unit: Unit,
 }
 
 impl Unit {
@@ -57,7 +95,7 @@ impl Unit {
 
 impl PointsFile {
     /// Reads a file whose lengths are in `unit`, mm by default, or in that of its column `unit`.
-    pub fn read(path: &Path, unit: Option<Unit>, y_down: bool) -> Result<Self> {
+    fn read(path: &Path, unit: Option<Unit>, y_down: bool) -> Result<Self> {
         let (mut reader, separator) =
             csv_table::open(path).with_context(|| format!("cannot read {}", path.display()))?;
         let broken = |error: csv::Error| Error::from(error).context(path.display().to_string());

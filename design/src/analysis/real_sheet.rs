@@ -1,0 +1,191 @@
+//! A sheet as it was cut, which differs from that of its drawing.
+//!
+//! A ligament is wider or narrower because the tip of its main cut is elsewhere. A wider kerf makes all ligaments narrower by half
+//! of its error on either side, at their secondary cuts and at their holes, and leaves their tips. A sheet of another thickness or
+//! of a stronger material has the same cuts; its hinges follow from similarity and in proportion, and its weight from its thickness.
+
+use crate::analysis::actuation_curve::ActuationCurve;
+use crate::equilibrium::load_step::{LoadStep, Status};
+use crate::equilibrium::nearby_path::KnownPath;
+use crate::hinge_law::SurrogateLaw;
+use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Mechanics};
+use crate::pattern::design_vector::DesignVector;
+use crate::scene::Scene;
+use crate::sheet::cut_sheet::Sheet;
+use hinge::HingeDesign;
+use std::sync::Arc;
+
+/// The differences of a cut sheet from its drawing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Deviation {
+    /// Of the ligament width of every hinge (mm); empty for none.
+    pub widths: Vec<f64>,
+    /// Of the width that the cutter removes (mm).
+    pub kerf: f64,
+    /// Of the thickness (mm).
+    pub thickness: f64,
+    /// Of all stresses at equal strain, relative.
+    pub stress: f64,
+}
+
+/// Parts of an actuation, with the states of the drawing's sheet there.
+pub struct ReadingPlan {
+    parts: Vec<f64>,
+    known: KnownPath,
+}
+
+/// A cut sheet at the parts of a plan.
+pub struct Read {
+    /// The flat sheet.
+    pub sheet: Sheet,
+    /// Its equilibria.
+    pub steps: Vec<LoadStep>,
+    /// (displacement, load) as in [`ActuationCurve`]; `None` if nothing moves the sheet.
+    pub points: Option<Vec<[f64; 2]>>,
+}
+
+/// A designed sheet of which there are cut ones.
+pub struct RealSheet<'a> {
+    scene: &'a Scene,
+    problem: &'a DesignProblem,
+    mechanics: &'a Mechanics,
+    designed: Deployment,
+    known: KnownPath,
+}
+
+impl<'a> RealSheet<'a> {
+    /// The sheet of a design, which has an equilibrium at full load.
+    pub fn new(
+        scene: &'a Scene,
+        problem: &'a DesignProblem,
+        design: &DesignVector,
+    ) -> Result<Self, DesignError> {
+        let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
+        let designed = problem.deploy(design)?;
+        designed.at_full_load()?;
+        Ok(Self {
+            scene,
+            problem,
+            mechanics,
+            known: designed.known_path(),
+            designed,
+        })
+    }
+
+    /// The sheet of the drawing.
+    pub fn designed(&self) -> &Deployment {
+        &self.designed
+    }
+
+    /// Its thickness (mm).
+    pub fn thickness(&self) -> f64 {
+        self.scene.material.thickness
+    }
+
+    /// Whether a sheet of another thickness, or of stronger material, can be computed: with a learned hinge law.
+    pub fn has_similar_laws(&self) -> bool {
+        self.scene.surrogate().is_some()
+    }
+
+    /// A cut sheet at full load, with the mechanics that it has.
+    ///
+    /// # Panics
+    /// If the thickness or the stresses deviate and the hinge law is not a learned one.
+    pub fn deployed(&self, deviation: &Deviation) -> Result<(Deployment, Mechanics), DesignError> {
+        let (sheet, designs, mechanics) = self.cut(deviation)?;
+        let prepared = mechanics.law.prepare(&designs);
+        let hinged = mechanics.hinged(&sheet, &*prepared, false);
+        let (path, followed) = mechanics.path(hinged, Some(&self.known));
+        drop(prepared);
+        let deployment = Deployment {
+            pattern: self.designed.pattern.clone(),
+            sheet,
+            path,
+            followed,
+        };
+        deployment.at_full_load()?;
+        Ok((deployment, mechanics))
+    }
+
+    /// The drawing's sheet at parts of its actuation, in ascending order, from which those of cut sheets are found.
+    pub fn reading_plan(&self, parts: &[f64]) -> Result<ReadingPlan, DesignError> {
+        let mut plan = ReadingPlan {
+            parts: parts.to_vec(),
+            known: KnownPath {
+                designs: self.designed.sheet.designs(),
+                steps: Vec::new(),
+            },
+        };
+        plan.known.steps = self.read(&plan, &Deviation::default())?.steps;
+        Ok(plan)
+    }
+
+    /// A cut sheet at the parts of a plan.
+    ///
+    /// # Panics
+    /// See [`deployed`](Self::deployed).
+    pub fn read(&self, plan: &ReadingPlan, deviation: &Deviation) -> Result<Read, DesignError> {
+        let (sheet, designs, mechanics) = self.cut(deviation)?;
+        let prepared = mechanics.law.prepare(&designs);
+        let hinged = mechanics.hinged(&sheet, &*prepared, false);
+        let solver = &mechanics.solver;
+        let steps = solver.readings_near(hinged, &plan.parts, &plan.known);
+        let steps = steps.unwrap_or_else(|| solver.readings(hinged, &plan.parts));
+        if let Some(last) = steps.iter().find(|step| step.status == Status::Diverged) {
+            return Err(DesignError::NoEquilibrium {
+                reached: last.load_factor,
+                residual: last.residual,
+                end: last.descent_end,
+            });
+        }
+        let flat = (0.0, solver.flat());
+        let states = (steps.iter()).map(|step| (step.load_factor, &step.configuration[..]));
+        let curve = ActuationCurve::through(&mechanics, &sheet, &flat, states);
+        let points = curve.map(|curve| curve.points[1..].to_vec());
+        drop(prepared);
+        Ok(Read {
+            sheet,
+            steps,
+            points,
+        })
+    }
+
+    /// The flat sheet, its hinges and its mechanics.
+    fn cut(
+        &self,
+        deviation: &Deviation,
+    ) -> Result<(Sheet, Vec<HingeDesign>, Mechanics), DesignError> {
+        let hinges = &self.designed.sheet.hinges;
+        let wider = deviation.widths.iter().chain(std::iter::repeat(&0.0));
+        let widths: Vec<f64> = std::iter::zip(hinges, wider)
+            .map(|(hinge, wider)| hinge.w_lig + wider)
+            .collect();
+        let sheet = self.problem.sheet(&self.designed.pattern, &widths)?;
+        let mut designs = sheet.designs();
+        for (design, hinge) in designs.iter_mut().zip(hinges) {
+            let radius = self.problem.options.process.hole_radius(hinge.w_lig);
+            design.w_lig -= 0.5 * deviation.kerf;
+            design.fillet_ratio = (radius + 0.5 * deviation.kerf) / design.w_lig;
+        }
+        Ok((sheet, designs, self.mechanics(deviation)))
+    }
+
+    fn mechanics(&self, deviation: &Deviation) -> Mechanics {
+        let thicker = 1.0 + deviation.thickness / self.scene.material.thickness;
+        let mut solver = self.mechanics.solver.clone();
+        solver.weight = solver.weight.map(|weight| thicker * weight);
+        let mut law = Arc::clone(&self.mechanics.law);
+        if (deviation.thickness, deviation.stress) != (0.0, 0.0) {
+            let weights = self.scene.surrogate();
+            let weights = weights.expect("a learned hinge law").clone();
+            law = Arc::new(SurrogateLaw {
+                surrogate: (weights.scaled(thicker)).stressed(1.0 + deviation.stress, None),
+            });
+        }
+        Mechanics {
+            law,
+            contact: self.mechanics.contact,
+            solver,
+        }
+    }
+}

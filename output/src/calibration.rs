@@ -1,0 +1,175 @@
+//! The report of a calibrated sheet.
+
+use design::analysis::calibration::{Calibration, GroupFit, Quantity};
+use design::scene::Scene;
+use serde::Serialize;
+use std::fmt;
+
+/// Reduced chi^2 above which a group of measurements fits worse than its stated errors: with 20 values or more, one true model in a
+/// thousand.
+const MISFIT: f64 = 2.5;
+/// Absolute correlation above which two estimates are hard to tell apart.
+const ALIKE: f64 = 0.9;
+
+/// A calibrated sheet beside its drawing.
+#[derive(Clone, Debug, Serialize)]
+pub struct CalibrationReport {
+    /// Title of the scene.
+    pub title: String,
+    /// Which design was measured.
+    pub design: String,
+    /// The width that the cutter removes (mm).
+    pub kerf: f64,
+    /// The thickness of the sheet (mm).
+    pub thickness: f64,
+    /// The stresses at equal strain over those of the material file.
+    pub stress: f64,
+    /// The fit.
+    pub calibration: Calibration,
+    /// Kerf and thickness of the scene (mm).
+    nominal: [f64; 2],
+}
+
+impl CalibrationReport {
+    /// The report of a calibration of the design with the name `design`.
+    pub fn new(scene: &Scene, design: String, calibration: Calibration) -> Self {
+        let deviation = calibration.deviation();
+        let nominal = [scene.config.process.kerf, scene.material.thickness];
+        Self {
+            title: scene.config.title.clone(),
+            design,
+            kerf: nominal[0] + deviation.kerf,
+            thickness: nominal[1] + deviation.thickness,
+            stress: 1.0 + deviation.stress,
+            calibration,
+            nominal,
+        }
+    }
+
+    /// The head of the calibrated scene: where its numbers are from.
+    pub fn comment(&self) -> String {
+        let mut text = format!(
+            "# The scene of a calibrated sheet, by `kirigami calibrate`.\n# {}: {}\n",
+            self.title, self.design
+        );
+        for line in self.quantities() {
+            text += &format!("# {}\n", line.join("  "));
+        }
+        text
+    }
+
+    /// Name, value of the drawing, calibrated value and two standard errors.
+    fn quantities(&self) -> Vec<[String; 4]> {
+        let [kerf, thickness] = self.nominal;
+        let row = |quantity: Quantity| -> [String; 4] {
+            let (name, nominal, value, unit, digits) = match quantity {
+                Quantity::Kerf => ("kerf", kerf, self.kerf, "mm", 3),
+                Quantity::Thickness => ("thickness", thickness, self.thickness, "mm", 4),
+                Quantity::Stress => ("stress", 1.0, self.stress, "of the material's", 3),
+            };
+            let mut estimates = self.calibration.estimates.iter();
+            let estimate = estimates.find(|estimate| estimate.quantity == quantity);
+            let found = match estimate {
+                Some(estimate) => format!(
+                    "{value:.digits$} +- {:.digits$}",
+                    2.0 * estimate.standard_error
+                ),
+                None => "left alone".into(),
+            };
+            [
+                name.into(),
+                format!("{nominal:.digits$}"),
+                found,
+                unit.into(),
+            ]
+        };
+        Quantity::ALL.into_iter().map(row).collect()
+    }
+
+    fn write_fit(
+        f: &mut fmt::Formatter,
+        name: &str,
+        fit: &GroupFit,
+        unit: (f64, &str),
+    ) -> fmt::Result {
+        let (factor, unit) = unit;
+        let [before, after] = fit.residual.map(|residual| factor * residual);
+        let left_out = match fit.outliers {
+            0 => String::new(),
+            outliers => format!(", {outliers} points left out as outliers"),
+        };
+        writeln!(
+            f,
+            "{name}: root mean square of {before:.3} {unit} from the drawing, {after:.3} {unit} from the calibrated sheet ({} \
+             values{left_out})",
+            fit.values
+        )?;
+        if fit.chi_squared > MISFIT {
+            writeln!(
+                f,
+                "  that is {:.1} times the stated error: the errors are larger than stated, the measurements contradict each \
+                 other, or the model is wrong in something that is not calibrated. The standard errors below are widened by it",
+                fit.chi_squared.sqrt()
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for CalibrationReport {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        writeln!(f, "{}\n{}\n", self.title, self.design)?;
+        let Calibration {
+            estimates,
+            undetermined,
+            correlations,
+            points,
+            loads,
+            ..
+        } = &self.calibration;
+        if let Some(fit) = points {
+            Self::write_fit(f, "points", fit, (1.0, "mm"))?;
+        }
+        if let Some(fit) = loads {
+            Self::write_fit(f, "readings", fit, (100.0, "% of the largest"))?;
+        }
+        writeln!(
+            f,
+            "\n{:<12}{:>12}{:>22}",
+            "", "drawing", "cut, +- 2 std. errors"
+        )?;
+        for [name, nominal, found, unit] in self.quantities() {
+            writeln!(f, "{name:<12}{nominal:>12}{found:>22}  {unit}")?;
+        }
+        for (quantity, error) in undetermined {
+            let guess = quantity.guess(self.nominal[1]);
+            writeln!(
+                f,
+                "{}: the measurements do not determine it ({}, known before to {guess:.3}); left as in the drawing",
+                quantity.name(),
+                match error.is_finite() {
+                    true => format!("standard error {error:.3}"),
+                    false => "they do not depend on it".into(),
+                }
+            )?;
+        }
+        for (i, one) in estimates.iter().enumerate() {
+            for (j, other) in estimates.iter().enumerate().skip(i + 1) {
+                let correlation = correlations[i][j];
+                if correlation.abs() > ALIKE {
+                    writeln!(
+                        f,
+                        "{} and {} are hard to tell apart (correlation {correlation:.2}): measure one of them by itself",
+                        one.quantity.name(),
+                        other.quantity.name()
+                    )?;
+                }
+            }
+        }
+        writeln!(
+            f,
+            "\nNot calibrated: single ligaments, modulus and yield against each other (that takes a tensile test: kirigami material \
+             fit), friction, the weight of the panels beyond their thickness, the model itself"
+        )
+    }
+}
