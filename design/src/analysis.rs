@@ -21,6 +21,7 @@ pub mod path_separation;
 pub mod real_sheet;
 pub mod robust_pose;
 pub mod shape_path;
+pub mod simulated_measurements;
 pub mod solution_set;
 pub mod taylor;
 pub mod tension_lines;

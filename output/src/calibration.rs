@@ -9,7 +9,7 @@ use std::fmt;
 /// thousand.
 const MISFIT: f64 = 2.5;
 /// Absolute correlation above which two estimates are hard to tell apart.
-const ALIKE: f64 = 0.9;
+const ALIKE: f64 = 0.8;
 
 /// A calibrated sheet beside its drawing.
 #[derive(Clone, Debug, Serialize)]
@@ -74,7 +74,7 @@ impl CalibrationReport {
                     "{value:.digits$} +- {:.digits$}",
                     2.0 * estimate.standard_error
                 ),
-                None => "left alone".into(),
+                None => "not asked for".into(),
             };
             [
                 name.into(),
@@ -121,7 +121,6 @@ impl fmt::Display for CalibrationReport {
         writeln!(f, "{}\n{}\n", self.title, self.design)?;
         let Calibration {
             estimates,
-            undetermined,
             correlations,
             points,
             loads,
@@ -141,16 +140,12 @@ impl fmt::Display for CalibrationReport {
         for [name, nominal, found, unit] in self.quantities() {
             writeln!(f, "{name:<12}{nominal:>12}{found:>22}  {unit}")?;
         }
-        for (quantity, error) in undetermined {
-            let guess = quantity.guess(self.nominal[1]);
+        for estimate in estimates.iter().filter(|estimate| !estimate.determined) {
             writeln!(
                 f,
-                "{}: the measurements do not determine it ({}, known before to {guess:.3}); left as in the drawing",
-                quantity.name(),
-                match error.is_finite() {
-                    true => format!("standard error {error:.3}"),
-                    false => "they do not depend on it".into(),
-                }
+                "{}: the measurements hardly determine it; before, two standard deviations were {:.3}. Measure it by itself",
+                estimate.quantity.name(),
+                2.0 * estimate.quantity.guess(self.nominal[1])
             )?;
         }
         for (i, one) in estimates.iter().enumerate() {

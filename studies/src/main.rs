@@ -4,6 +4,7 @@ mod actuations;
 mod approaches;
 mod attempt;
 mod budget;
+mod calibration;
 mod capacity;
 mod chain;
 mod charts;
@@ -65,6 +66,7 @@ enum Study {
     Compact(compact::CompactStudy),
     Actuations(actuations::ActuationStudy),
     Budget(budget::BudgetStudy),
+    Calibration(calibration::CalibrationStudy),
     Capacity(capacity::CapacityStudy),
     Localisation(localisation::LocalisationStudy),
     Extremes(extremes::ExtremesStudy),
@@ -93,6 +95,7 @@ impl Study {
             Self::Compact(study) => study.run(),
             Self::Actuations(study) => study.run(),
             Self::Budget(study) => study.run(),
+            Self::Calibration(study) => study.run(),
             Self::Capacity(study) => study.run(),
             Self::Localisation(study) => study.run(),
             Self::Extremes(study) => study.run(),

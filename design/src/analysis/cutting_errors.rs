@@ -22,8 +22,7 @@ use crate::sheet::kinematics::deployed_corners;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
-use std::f64::consts::TAU;
-use support::statistics::rms_and_maximum;
+use support::statistics::{normal, rms_and_maximum};
 
 /// Number of hinges above which single ligaments are not studied: two equilibria each.
 const MOST_HINGES: usize = 2000;
@@ -319,11 +318,7 @@ impl<'a> CuttingErrors<'a> {
     /// Independent normal errors.
     fn drawn(&self, random: &mut ChaCha8Rng) -> Deviation {
         let [ligament, kerf, thickness] = self.deviations;
-        // Box and Muller, "A note on the generation of random normal deviates", 1958.
-        let mut normal = || {
-            let radius = (-2.0 * (1.0 - random.random::<f64>()).ln()).sqrt();
-            radius * (TAU * random.random::<f64>()).cos()
-        };
+        let mut normal = || normal([random.random(), random.random()]);
         let mut errors = self.none();
         errors
             .widths

@@ -5,6 +5,7 @@
 //! of a stronger material has the same cuts; its hinges follow from similarity and in proportion, and its weight from its thickness.
 
 use crate::analysis::actuation_curve::ActuationCurve;
+use crate::equilibrium::displacement_control::magnitude;
 use crate::equilibrium::load_step::{LoadStep, Status};
 use crate::equilibrium::nearby_path::KnownPath;
 use crate::hinge_law::SurrogateLaw;
@@ -80,6 +81,13 @@ impl<'a> RealSheet<'a> {
     /// Its thickness (mm).
     pub fn thickness(&self) -> f64 {
         self.scene.material.thickness
+    }
+
+    /// The place in (displacement, load) of what the sheet answers with: 0 under dead loads, 1 if its motion is prescribed.
+    pub fn answer(&self) -> usize {
+        let solver = &self.mechanics.solver;
+        let dead_loads = solver.stroke().is_none() && magnitude(&solver.loads).is_some();
+        usize::from(!dead_loads)
     }
 
     /// Whether a sheet of another thickness, or of stronger material, can be computed: with a learned hinge law.
