@@ -168,6 +168,11 @@ impl TrainingDomain {
         ligament.actual([eta_a * ligament.width, eta_s * ligament.width, theta])
     }
 
+    /// c_1 and c_2 of the mean path from which eta_a is counted; `None` if it is counted from zero.
+    pub fn curve(&self) -> Option<[f64; 2]> {
+        (!is_straight(&self.mean_path)).then_some(self.mean_path)
+    }
+
     /// eta_a of the mean path.
     fn mean_path(&self, theta: f64) -> f64 {
         let [first, second] = self.mean_path;

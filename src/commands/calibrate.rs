@@ -12,6 +12,7 @@ use design::analysis::calibration::{
     CalibrationError, LoadData, Measurements, PointData, Quantity, calibrate,
 };
 use design::analysis::real_sheet::RealSheet;
+use design::scene::Scene;
 use design::scene::run_inputs::write_calibrated;
 use output::calibration::CalibrationReport;
 use readings_file::ReadingsFile;
@@ -140,10 +141,11 @@ impl CalibrateCommand {
             println!("{json}");
         } else {
             print!("{report}");
-            println!(
-                "\nthe scene of this sheet: {file}\nnext: kirigami design {file}",
-                file = file.display()
-            );
+            println!("\nthe scene of this sheet: {}", file.display());
+            match Scene::read(&file) {
+                Ok(_) => println!("next: kirigami design {}", file.display()),
+                Err(error) => println!("before a design it needs a change: {error}"),
+            }
         }
         Ok(())
     }

@@ -39,7 +39,7 @@ pub struct CalibrationStudy {
     #[arg(
         long,
         value_name = "MM",
-        default_value_t = 0.3,
+        default_value_t = 0.1,
         allow_negative_numbers = true
     )]
     kerf: f64,
@@ -53,7 +53,7 @@ pub struct CalibrationStudy {
     #[arg(long, value_name = "MM", default_value_t = 0.2)]
     ligament: f64,
     /// Standard error of a coordinate (mm)
-    #[arg(long, value_name = "MM", default_value_t = 0.5)]
+    #[arg(long, value_name = "MM", default_value_t = 0.2)]
     point_error: f64,
     /// Standard error of a reading (% of the largest)
     #[arg(long, value_name = "PERCENT", default_value_t = 2.0)]
@@ -102,9 +102,9 @@ impl CalibrationStudy {
         };
         let data =
             Measurements::exact(&sheet, &cut, READINGS, errors)?.with_errors(&sheet, &mut random);
-        self.write(&data)?;
+        self.write(&data, "first")?;
         let found = calibrate(&before.problem, &sheet, &data, &Quantity::ALL, &mut || ())?;
-        let report = CalibrationReport::new(&scene, scene.config.title.clone(), found);
+        let report = CalibrationReport::new(&scene, "the first design".into(), found);
         let deviation = report.calibration.deviation();
         let folder = self.out.join("calibrated");
         let file = write_calibrated(&scene, &deviation, &folder, &report.comment())?;
@@ -112,6 +112,9 @@ impl CalibrationStudy {
         let after = designed(&scene, &mut |_| ())?;
         let cut = self.cut(&scene, real, cut.widths.len(), &mut random);
         let second = row("designed again", &scene, &after.design, &cut)?;
+        let sheet = RealSheet::new(&scene, &after.problem, &after.design)?;
+        let again = Measurements::exact(&sheet, &cut, READINGS, errors)?;
+        self.write(&again.with_errors(&sheet, &mut random), "second")?;
         let page = self.page(real, &[first, second], &report);
         run_folder::write(&self.out, "calibration.md", &page)?;
         println!("{page}\nwritten to {}", self.out.display());
@@ -143,19 +146,19 @@ impl CalibrationStudy {
         }
     }
 
-    /// The tables that `kirigami calibrate` reads.
-    fn write(&self, data: &Measurements) -> Result<()> {
+    /// The tables that `kirigami compare` and `calibrate` read, of the first or the second sheet.
+    fn write(&self, data: &Measurements, sheet: &str) -> Result<()> {
         let mut text = "panel,corner,x,y\n".to_owned();
         for MeasuredPoint { mark, position } in data.points.iter().flat_map(|data| &data.points) {
             let (corner, [x, y]) = (mark.corner.unwrap_or_default(), position);
             writeln!(text, "{},{corner},{x:.2},{y:.2}", mark.panel)?;
         }
-        run_folder::write(&self.out, "points.csv", &text)?;
+        run_folder::write(&self.out, &format!("{sheet}-points.csv"), &text)?;
         let mut text = "displacement_mm,load_N\n".to_owned();
         for [displacement, load] in data.loads.iter().flat_map(|data| &data.readings) {
             writeln!(text, "{displacement:.2},{load:.3}")?;
         }
-        run_folder::write(&self.out, "readings.csv", &text)
+        run_folder::write(&self.out, &format!("{sheet}-readings.csv"), &text)
     }
 
     fn page(

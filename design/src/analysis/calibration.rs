@@ -128,6 +128,10 @@ pub enum CalibrationError {
     NoLearnedLaw,
     #[error("nothing moves this sheet: loads cannot be compared")]
     NothingMoves,
+    #[error(
+        "readings are not compared for a sheet that hangs: its weight moves it before its loads; measure points at full load"
+    )]
+    Hanging,
     #[error("reading {index}: {fault}")]
     Reading { index: usize, fault: ReadingFault },
     #[error(
@@ -294,6 +298,9 @@ impl Prescribed {
         data: &LoadData,
     ) -> Result<Self, CalibrationError> {
         let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
+        if mechanics.solver.weight() != [0.0; 2] {
+            return Err(CalibrationError::Hanging);
+        }
         let curve = ActuationCurve::new(mechanics, sheet.designed());
         let full = curve.and_then(|curve| curve.points.last().copied());
         let full = full.ok_or(CalibrationError::NothingMoves)?;

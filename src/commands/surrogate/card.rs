@@ -63,6 +63,11 @@ impl CardCommand {
         ] {
             println!("{name:12} from {:.3} to {:.3}", scale * min, scale * max);
         }
+        if let Some([first, second]) = domain.curve() {
+            println!(
+                "a / w_lig is counted from the mean path of the states, {first:.3} theta + {second:.3} theta^2 (rad)"
+            );
+        }
         println!("\n{}", error_table(&card.test_errors, UNSEEN));
         if !card.error_bins.is_empty() {
             println!("\n{}", bin_table(&card.error_bins));
