@@ -84,13 +84,25 @@ fn wrong_tables_are_refused_with_their_line() {
     };
     refused(
         "displacement,load_N\n1,2\n",
-        &["no column of the displacement", "displacement_mm"],
+        &["0 columns of the displacement", "displacement_mm"],
     );
     refused(
         "displacement_mm,load_N\n40,x\n",
         &["readings.csv:2", "`load_N`", "not a number"],
     );
     refused("displacement_mm,load_N\n", &["no readings"]);
+    refused(
+        "displacement_mm,load_Nmm\n40,9\n",
+        &["displacement_deg with load_Nmm"],
+    );
+    refused(
+        "displacement_deg,load_Nmm\n40,9\n",
+        &["readings.csv", "moved by forces"],
+    );
+    refused(
+        "displacement_mm,load_N,mass_g\n40,9,900\n",
+        &["2 columns of the load"],
+    );
     refused(
         "displacement_mm,load_N\n0,0\n",
         &["readings.csv:2", "before its loads"],
@@ -103,4 +115,33 @@ fn wrong_tables_are_refused_with_their_line() {
         "displacement_mm,load_N\n40,9\n50,8\n",
         &["readings.csv:3", "ascending"],
     );
+}
+
+/// A softer sheet than there can be: the search ends with a message.
+#[test]
+fn a_reading_that_no_sheet_has_is_no_panic() {
+    let work = Workplace::new();
+    scene(&work, "drawing.toml", 0.5);
+    std::fs::write(work.path("readings.csv"), "displacement_mm,load_N\n250,7\n").unwrap();
+    for quantity in ["stress", "thickness", "kerf"] {
+        let calibrate = "calibrate drawing.toml --design start --readings readings.csv";
+        let output = (work
+            .program(&format!("{calibrate} --fit {quantity}"))
+            .output())
+        .unwrap();
+        let code = output.status.code();
+        assert!(code == Some(0) || code == Some(1), "{quantity}: {code:?}");
+    }
+}
+
+#[test]
+fn a_scene_or_a_run_is_not_replaced() {
+    let work = Workplace::new();
+    std::fs::create_dir(work.path("own")).unwrap();
+    scene(&work, "own/scene.toml", 0.5);
+    std::fs::write(work.path("readings.csv"), "displacement_mm,load_N\n40,9\n").unwrap();
+    let error = work.error(
+        "calibrate own/scene.toml --design start --readings readings.csv --fit stress --out own",
+    );
+    assert!(error.contains("no calibration has written"), "{error}");
 }

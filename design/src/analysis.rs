@@ -2,6 +2,7 @@
 //! measured points (section 4.4), paths of the hinges (section 5.2).
 
 pub mod actuation_curve;
+pub mod calibrated_scene;
 pub mod calibration;
 pub mod cutting_errors;
 pub mod degeneration;

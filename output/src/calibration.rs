@@ -5,9 +5,10 @@ use design::scene::Scene;
 use serde::Serialize;
 use std::fmt;
 
-/// Reduced chi^2 above which a group of measurements fits worse than its stated errors: with 20 values or more, one true model in a
-/// thousand.
-const MISFIT: f64 = 2.5;
+/// Standard deviations of the reduced chi^2, above 1, beyond which a group of measurements fits worse than its stated errors.
+const MISFIT: f64 = 3.5;
+/// Deviation in standard deviations of what was known before, beyond which a quantity is hardly what it seems.
+const UNLIKELY: f64 = 3.0;
 /// Absolute correlation above which two estimates are hard to tell apart.
 const ALIKE: f64 = 0.8;
 
@@ -104,7 +105,7 @@ impl CalibrationReport {
              values{left_out})",
             fit.values
         )?;
-        if fit.chi_squared > MISFIT {
+        if fit.chi_squared > 1.0 + MISFIT * (2.0 / fit.free).sqrt() {
             writeln!(
                 f,
                 "  that is {:.1} times the stated error: the errors are larger than stated, the measurements contradict each \
@@ -143,10 +144,22 @@ impl fmt::Display for CalibrationReport {
         for estimate in estimates.iter().filter(|estimate| !estimate.determined) {
             writeln!(
                 f,
-                "{}: the measurements hardly determine it; before, two standard deviations were {:.3}. Measure it by itself",
+                "{}: the measurements hardly determine it (two standard deviations were {:.3} before): it stays near the drawing's value. \
+                 Measure it by itself",
                 estimate.quantity.name(),
                 2.0 * estimate.quantity.guess(self.nominal[1])
             )?;
+        }
+        for estimate in estimates {
+            let guess = estimate.quantity.guess(self.nominal[1]);
+            if estimate.deviation.abs() > UNLIKELY * guess {
+                writeln!(
+                    f,
+                    "{}: {:.0} times as far from the drawing as usual. A unit, the wrong design, or something that is not calibrated",
+                    estimate.quantity.name(),
+                    estimate.deviation.abs() / guess
+                )?;
+            }
         }
         for (i, one) in estimates.iter().enumerate() {
             for (j, other) in estimates.iter().enumerate().skip(i + 1) {

@@ -8,12 +8,13 @@ use crate::ui::progress::Progress;
 use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};
+use design::analysis::calibrated_scene::write_calibrated;
 use design::analysis::calibration::{
     CalibrationError, LoadData, Measurements, PointData, Quantity, calibrate,
 };
 use design::analysis::real_sheet::RealSheet;
 use design::scene::Scene;
-use design::scene::run_inputs::write_calibrated;
+use design::scene::run_inputs::{SCENE_FILE, STATE_FILE};
 use output::calibration::CalibrationReport;
 use readings_file::ReadingsFile;
 use std::path::PathBuf;
@@ -21,9 +22,9 @@ use std::path::PathBuf;
 /// Find kerf, thickness and stresses of a cut sheet from measurements on it, and write its scene
 ///
 /// Measured points (--points, the table of `kirigami compare`) are those of the sheet at full load. Readings (--readings) are a CSV
-/// file with the columns displacement_mm and load_N, or mass_g for weights that hang; displacement_deg and load_Nmm for couples;
-/// both count from the sheet before its loads. Quantities that the measurements do not determine are named and left alone. Writes
-/// the scene of the calibrated sheet, with its material and weights, for the next design. Example: kirigami calibrate runs/a4-polyester
+/// file with the columns displacement_mm and load_N, or mass_g for weights that pull; displacement_deg and load_Nmm for couples;
+/// both count from the sheet before its loads. Quantities that the measurements hardly determine are named; they stay near the
+/// scene's values. Writes the scene of the calibrated sheet, with its material and weights, for the next design. Example: kirigami calibrate runs/a4-polyester
 /// --points points.csv --readings readings.csv --out runs/calibrated
 #[derive(Args)]
 #[command(mut_arg("design", |arg| arg.help(DESIGN_OF_RUN)))]
@@ -54,6 +55,9 @@ pub struct CalibrateCommand {
     #[arg(long)]
     json: bool,
 }
+
+/// The report as JSON, in the folder of a calibration.
+const REPORT: &str = "calibration.json";
 
 #[derive(Clone, Copy, ValueEnum)]
 enum QuantityArg {
@@ -98,6 +102,7 @@ impl CalibrateCommand {
             }),
             loads: readings.as_ref().map(|file| LoadData {
                 readings: file.readings.clone(),
+                translational: file.translational,
                 error: 0.01 * self.reading_error,
             }),
         };
@@ -107,6 +112,12 @@ impl CalibrateCommand {
                 quantities.push(quantity);
             }
         }
+        ensure!(
+            self.out.join(REPORT).exists()
+                || (!self.out.join(SCENE_FILE).exists() && !self.out.join(STATE_FILE).exists()),
+            "{} holds a scene or a run that no calibration has written: choose another folder with --out",
+            self.out.display()
+        );
         let _held = run_folder::hold(&self.out)?;
         let sheet = RealSheet::new(&scene, &problem, &design)?;
         let bar = Progress::new(0, "steps");
@@ -122,17 +133,18 @@ impl CalibrateCommand {
             (CalibrationError::Reading { index, fault }, _, Some(file)) => {
                 file.located(index, &fault)
             }
+            (error @ CalibrationError::OtherUnits(_), _, Some(file)) => file.of_file(&error),
             (error, ..) => error.into(),
         })?;
         let report = CalibrationReport::new(&scene, name, found);
         ensure!(
             report.kerf > 0.0,
-            "the fit has a kerf of {:.3} mm: no cutter removes less than nothing. Measure what was cut, or leave it alone: --fit \
-             thickness,stress",
+            "the fit has a kerf of {:.3} mm: no cutter removes less than nothing. Measure the \
+             kerf by itself and leave it out of --fit",
             report.kerf
         );
         let json = serde_json::to_string_pretty(&report)?;
-        run_folder::write(&self.out, "calibration.json", &json)?;
+        run_folder::write(&self.out, REPORT, &json)?;
         run_folder::write(&self.out, "calibration.txt", &report.to_string())?;
         let deviation = report.calibration.deviation();
         let file = write_calibrated(&scene, &deviation, &self.out, &report.comment())
@@ -140,12 +152,12 @@ impl CalibrateCommand {
         if self.json {
             println!("{json}");
         } else {
-            print!("{report}");
-            println!("\nthe scene of this sheet: {}", file.display());
-            match Scene::read(&file) {
-                Ok(_) => println!("next: kirigami design {}", file.display()),
-                Err(error) => println!("before a design it needs a change: {error}"),
-            }
+            print!("{report}\nthe scene of this sheet: {}\n", file.display());
+        }
+        match Scene::read(&file) {
+            Err(error) => eprintln!("before a design the scene needs a change: {error}"),
+            Ok(_) if !self.json => println!("next: kirigami design {}", file.display()),
+            Ok(_) => {}
         }
         Ok(())
     }

@@ -143,7 +143,7 @@ pub struct TestErrors {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ErrorBin {
-    /// `eta_a`, `eta_s`, `theta_deg`, `w_lig`, `alpha_deg`, `fillet_ratio`, or `edge`, which is [`TrainingDomain::depth`]: 0 at the
+    /// `eta_a`, `eta_s`, `theta_deg` (the coordinates of the domain, [`TrainingDomain::coordinates`]), `w_lig`, `alpha_deg`, `fillet_ratio`, or `edge`, which is [`TrainingDomain::depth`]: 0 at the
     /// edge of the training domain and 1 at its centre.
     pub quantity: String,
     /// Lower and upper limit; the upper limit belongs to the next bin.

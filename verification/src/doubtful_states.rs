@@ -123,13 +123,13 @@ fn distance(one: &[f64; 5], other: &[f64; 5]) -> f64 {
     squares.sum::<f64>().sqrt()
 }
 
-/// log w_lig, alpha, eta_a, eta_s and theta over their ranges in the domain; 0 for a coordinate that is constant there.
+/// log w_lig, alpha and the coordinates of the domain over their ranges in the domain; 0 for a coordinate that is constant there.
 fn coordinates(
     domain: &TrainingDomain,
     design: &HingeDesign,
     state: &HingeDeformation,
 ) -> [f64; 5] {
-    let [eta_a, eta_s] = state.eta(design.w_lig);
+    let [eta_a, eta_s, theta] = domain.coordinates(design, state);
     let [of_a, of_s, of_theta] = domain.bounds();
     let over = |value: f64, [from, to]: [f64; 2]| if to > from { value / (to - from) } else { 0.0 };
     [
@@ -137,7 +137,7 @@ fn coordinates(
         over(design.alpha, domain.alpha),
         over(eta_a, of_a),
         over(eta_s, of_s),
-        over(state.theta, of_theta),
+        over(theta, of_theta),
     ]
 }
 

@@ -1,6 +1,7 @@
 //! States drawn uniformly inside a domain, and their windows solved by finite elements.
 //!
-//! The training domain is convex and contains the flat state. Draw a state x uniformly inside it; x fixes a
+//! The training domain contains the flat state, and the straight ray from there to a state inside, as the rays of the training
+//! have (those of plates about their mean path, too). Draw a state x uniformly inside it; x fixes a
 //! direction with the density of uniform states. With R the distance to the boundary along it and u uniform in
 //! (0, 1), the state at the distance R u^(1/3) is again uniform. Several states can therefore lie on one ray.
 

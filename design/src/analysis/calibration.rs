@@ -34,11 +34,15 @@ const MOST_STEPS: usize = 20;
 const CONVERGED: f64 = 1e-4;
 /// Differences for the derivatives, in guesses.
 const DIFFERENCE: f64 = 0.02;
-/// A quantity is determined by the measurements if they halve the variance that it had before.
+/// See [`Estimate::determined`], as a standard error in guesses.
 const DETERMINED: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Ratio of the largest measured answer and the predicted one, and its reciprocal, beyond which a reading is a mistake: a plate whose
 /// ligaments of 2 mm are 0.3 mm narrower has half the load.
 const IMPLAUSIBLE: f64 = 5.0;
+/// By how much a reading may be beyond full load, where it counts as full load.
+const FULL: f64 = 0.02;
+/// Largest step, in guesses, that the search may leave undone because none of its parts is better.
+const UNDONE: f64 = 0.01;
 /// Maximum number of times that the outliers among the points are looked for.
 const MOST_OUTLIER_ROUNDS: usize = 5;
 
@@ -102,6 +106,8 @@ pub struct PointData {
 pub struct LoadData {
     /// (displacement, load) in ascending order: mm and N, or rad and N mm.
     pub readings: Vec<[f64; 2]>,
+    /// Whether they are mm and N.
+    pub translational: bool,
     /// Standard error of what the sheet answers with: of the load if its motion is prescribed, of the displacement if its loads
     /// are; relative to its largest reading.
     pub error: f64,
@@ -123,11 +129,13 @@ pub enum CalibrationError {
     #[error("nothing was measured: give points, or readings of displacement and load")]
     NoData,
     #[error(
-        "thickness and stress are calibrated for a learned hinge law alone: leave them out, or set hinge = \"surrogate\""
+        "thickness and stress are calibrated for a learned hinge law alone: use --fit kerf, or set hinge = \"surrogate\""
     )]
     NoLearnedLaw,
     #[error("nothing moves this sheet: loads cannot be compared")]
     NothingMoves,
+    #[error("this sheet is moved by {0}")]
+    OtherUnits(&'static str),
     #[error(
         "readings are not compared for a sheet that hangs: its weight moves it before its loads; measure points at full load"
     )]
@@ -138,7 +146,9 @@ pub enum CalibrationError {
         "the measurements say less about every quantity than is known already: measure more points and loads, or with smaller errors"
     )]
     Undetermined,
-    #[error("no sheet fits: after {0} steps the fit still moves")]
+    #[error(
+        "no sheet fits: the search ends after {0} steps without a minimum; check the measurements, and that they are of this design"
+    )]
     NotConverged(usize),
     #[error(transparent)]
     Points(#[from] MeasurementError),
@@ -151,11 +161,12 @@ pub enum CalibrationError {
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum ReadingFault {
     #[error(
-        "a {what} of {value:.4} is not above 0 and at most that at full load, {full:.4}{}",
+        "a {what} of {value:.4} {unit} is not above 0 and at most that at full load, {full:.4} {unit}{}",
         if *.swapped { "; the columns of displacement and load seem to be swapped" } else { "" }
     )]
     OutOfRange {
         what: &'static str,
+        unit: &'static str,
         value: f64,
         full: f64,
         swapped: bool,
@@ -163,12 +174,13 @@ pub enum ReadingFault {
     #[error("readings are in ascending order, but this one is not above the one before it")]
     NotAscending,
     #[error(
-        "a {what} of {value:.4} is {:.3} times that of the drawing's sheet, {predicted:.4}: check the units{}",
+        "a {what} of {value:.4} {unit} is {:.3} times that of the drawing's sheet, {predicted:.4} {unit}: check the units{}",
         value / predicted,
         if *.swapped { ", and whether the columns of displacement and load are swapped" } else { "" }
     )]
     Implausible {
         what: &'static str,
+        unit: &'static str,
         value: f64,
         predicted: f64,
         swapped: bool,
@@ -184,7 +196,7 @@ pub struct Estimate {
     pub deviation: f64,
     /// Standard deviation of that.
     pub standard_error: f64,
-    /// Whether the measurements say more about it than was known before.
+    /// Whether the measurements halve the variance that it had before.
     pub determined: bool,
 }
 
@@ -198,7 +210,9 @@ pub struct GroupFit {
     /// Root mean square of the residuals of the sheet of the drawing and of the calibrated one: mm of one coordinate, or relative
     /// to the largest reading.
     pub residual: [f64; 2],
-    /// Reduced chi^2 of the calibrated sheet.
+    /// Degrees of freedom: values that the fit could have missed.
+    pub free: f64,
+    /// Reduced chi^2 of the calibrated sheet: that over the degrees of freedom.
     pub chi_squared: f64,
 }
 
@@ -258,8 +272,8 @@ pub fn calibrate(
     // Points are at full load.
     let plan = sheet.reading_plan(&parts)?;
     if let Some(loads) = &loads {
-        let predicted = sheet.read(&plan, &Deviation::default())?.points;
-        loads.check(&predicted.ok_or(CalibrationError::NothingMoves)?)?;
+        let predicted = sheet.read(&plan, &Deviation::default())?.curve;
+        loads.check(&predicted.ok_or(CalibrationError::NothingMoves)?.points[1..])?;
     }
     let mut fit = Fit {
         problem,
@@ -287,6 +301,7 @@ struct Prescribed {
     /// Standard error of an answer.
     error: f64,
     largest: f64,
+    unit: &'static str,
     /// Whether the other column could be what is prescribed.
     swapped: bool,
 }
@@ -302,25 +317,36 @@ impl Prescribed {
             return Err(CalibrationError::Hanging);
         }
         let curve = ActuationCurve::new(mechanics, sheet.designed());
-        let full = curve.and_then(|curve| curve.points.last().copied());
-        let full = full.ok_or(CalibrationError::NothingMoves)?;
+        let curve = curve.ok_or(CalibrationError::NothingMoves)?;
+        if curve.translational != data.translational {
+            return Err(CalibrationError::OtherUnits(if curve.translational {
+                "forces or translations: write displacement_mm and load_N or mass_g"
+            } else {
+                "couples or rotations: write displacement_deg and load_Nmm"
+            }));
+        }
+        let full = *curve.points.last().ok_or(CalibrationError::NothingMoves)?;
+        let units = curve.units();
         let answer = sheet.answer();
         let given = 1 - answer;
+        let is_part = |part: &f64| *part > 0.0 && *part <= 1.0 + FULL;
         let parts: Vec<f64> = (data.readings.iter())
             .map(|reading| reading[given] / full[given])
             .collect();
-        let is_part = |part: &f64| *part > 0.0 && *part <= 1.0 + 1e-9;
         let other = |reading: &[f64; 2]| is_part(&(reading[1 - given] / full[given]));
         let swapped = data.readings.iter().all(other);
         if let Some(index) = parts.iter().position(|part| !is_part(part)) {
             let fault = ReadingFault::OutOfRange {
                 what: WHAT[given],
+                unit: units[given],
                 value: data.readings[index][given],
                 full: full[given],
                 swapped,
             };
             return Err(CalibrationError::Reading { index, fault });
         }
+        // A reading at full load is never quite at it.
+        let parts: Vec<f64> = parts.into_iter().map(|part| part.min(1.0)).collect();
         if let Some(index) = parts.windows(2).position(|pair| pair[1] <= pair[0]) {
             return Err(CalibrationError::Reading {
                 index: index + 1,
@@ -334,11 +360,12 @@ impl Prescribed {
             .collect();
         let largest = answers.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         Ok(Self {
-            parts: parts.into_iter().map(|part| part.min(1.0)).collect(),
+            parts,
             answer,
             answers,
             error: data.error * largest,
             largest,
+            unit: units[answer],
             swapped,
         })
     }
@@ -357,6 +384,7 @@ impl Prescribed {
         if !(ratio > IMPLAUSIBLE.recip() && ratio < IMPLAUSIBLE) {
             let fault = ReadingFault::Implausible {
                 what: WHAT[self.answer],
+                unit: self.unit,
                 value,
                 predicted,
                 swapped: self.swapped,
@@ -395,13 +423,14 @@ impl Fit<'_> {
         self.keep(&fitted)?;
         for _ in 0..MOST_OUTLIER_ROUNDS {
             fitted = self.minimise(quantities, fitted, &mut steps, progress)?;
-            let before = self.kept.len();
+            let before = self.kept.clone();
             self.keep(&fitted)?;
-            if self.kept.len() == before {
+            if self.kept == before {
                 break;
             }
         }
-        let chi_squared = self.chi_squared(&self.residuals(&fitted)?, quantities.len());
+        let freedom = self.freedom(quantities, &fitted)?;
+        let chi_squared = chi_squared(&self.residuals(&fitted)?, freedom);
         self.factors = chi_squared.map(|chi_squared| chi_squared.sqrt().max(1.0));
         if self.factors != [1.0; 2] {
             fitted = self.minimise(quantities, fitted, &mut steps, progress)?;
@@ -442,11 +471,13 @@ impl Fit<'_> {
             self.residuals(&Deviation::default())?,
             self.residuals(fitted)?,
         );
-        let chi = self.chi_squared(&after, unknowns);
+        let freedom = self.freedom(free, fitted)?;
+        let chi = chi_squared(&after, freedom);
         let fit = |group: usize, unit: f64| GroupFit {
             values: after[group].len(),
             outliers: 0,
             residual: [&before, &after].map(|residuals| unit * rms(&residuals[group])),
+            free: freedom[group],
             chi_squared: chi[group],
         };
         Ok(Calibration {
@@ -509,26 +540,36 @@ impl Fit<'_> {
             let moved = step.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
             let stays = next == at;
             (at, residuals) = (next, found);
-            if moved < CONVERGED || stays {
+            if moved < CONVERGED || (stays && moved < UNDONE) {
                 return Ok(at);
             }
+            if stays {
+                break;
+            }
         }
-        Err(CalibrationError::NotConverged(MOST_STEPS))
+        Err(CalibrationError::NotConverged(*steps))
     }
 
-    /// Reduced chi^2 of the points and of the readings, each of which lose their part of the unknowns; 1 where it is not known.
-    fn chi_squared(&self, residuals: &Residuals, unknowns: usize) -> [f64; 2] {
-        let all: usize = residuals.iter().map(Vec::len).sum();
-        [0, 1].map(|group| {
-            let values = residuals[group].len() as f64;
-            let motion = match (group, &self.data.points) {
-                (0, Some(data)) => data.scale.unknowns(),
-                _ => 0.0,
-            };
-            let free = values - motion - unknowns as f64 * values / all as f64;
-            let square: f64 = residuals[group].iter().map(|r| r * r).sum();
-            if free > 0.0 { square / free } else { 1.0 }
-        })
+    /// Degrees of freedom of the points and of the readings: their values less those of the rigid motion and less the part of the
+    /// unknowns that they, and not what was known before, determine: the trace of J (J^T J + 1)^-1 J^T over their rows.
+    fn freedom(&self, free: &[Quantity], at: &Deviation) -> Result<[f64; 2], CalibrationError> {
+        let jacobian = self.jacobian(free, at)?;
+        let spread = &jacobian * information(&jacobian).partial_piv_lu().inverse();
+        let of_row = |i: usize| -> f64 {
+            (0..free.len())
+                .map(|k| spread[(i, k)] * jacobian[(i, k)])
+                .sum()
+        };
+        let points = 2 * self.kept.len();
+        let motion = match &self.data.points {
+            Some(data) => data.scale.unknowns(),
+            None => 0.0,
+        };
+        let rows = jacobian.nrows();
+        Ok([
+            points as f64 - motion - (0..points).map(of_row).sum::<f64>(),
+            (rows - points) as f64 - (points..rows).map(of_row).sum::<f64>(),
+        ])
     }
 
     fn covariance(&self, free: &[Quantity], at: &Deviation) -> Result<Mat<f64>, CalibrationError> {
@@ -600,13 +641,25 @@ impl Fit<'_> {
                 .collect();
         }
         if let Some(loads) = &self.loads {
-            let found = read.points.ok_or(CalibrationError::NothingMoves)?;
-            residuals[1] = std::iter::zip(&loads.answers, &found)
+            let found = read.curve.ok_or(CalibrationError::NothingMoves)?;
+            residuals[1] = std::iter::zip(&loads.answers, &found.points[1..])
                 .map(|(measured, found)| (measured - found[loads.answer]) / loads.error)
                 .collect();
         }
         Ok(residuals)
     }
+}
+
+/// Reduced chi^2 of the points and of the readings; 1 where it is not known.
+fn chi_squared(residuals: &Residuals, freedom: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|group| {
+        let square: f64 = residuals[group].iter().map(|r| r * r).sum();
+        if freedom[group] > 0.5 {
+            square / freedom[group]
+        } else {
+            1.0
+        }
+    })
 }
 
 /// J^T J + 1, the unknowns in guesses.

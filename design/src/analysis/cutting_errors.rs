@@ -232,7 +232,11 @@ impl<'a> CuttingErrors<'a> {
             let errors = self.drawn(&mut random);
             match self.outcome_of(&errors) {
                 Ok(outcome) => found.push(outcome.minus(&self.outcome)),
-                Err(DesignError::NoEquilibrium { .. } | DesignError::Sheet(_)) => failed += 1,
+                Err(
+                    DesignError::NoEquilibrium { .. }
+                    | DesignError::Sheet(_)
+                    | DesignError::ImpossibleSheet,
+                ) => failed += 1,
                 Err(error) => return Err(error),
             }
             deployed();

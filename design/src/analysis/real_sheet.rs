@@ -41,8 +41,8 @@ pub struct Read {
     pub sheet: Sheet,
     /// Its equilibria.
     pub steps: Vec<LoadStep>,
-    /// (displacement, load) as in [`ActuationCurve`]; `None` if nothing moves the sheet.
-    pub points: Option<Vec<[f64; 2]>>,
+    /// From the flat sheet on; `None` if nothing moves the sheet.
+    pub curve: Option<ActuationCurve>,
 }
 
 /// A designed sheet of which there are cut ones.
@@ -149,12 +149,11 @@ impl<'a> RealSheet<'a> {
         let flat = (0.0, solver.flat());
         let states = (steps.iter()).map(|step| (step.load_factor, &step.configuration[..]));
         let curve = ActuationCurve::through(&mechanics, &sheet, &flat, states);
-        let points = curve.map(|curve| curve.points[1..].to_vec());
         drop(prepared);
         Ok(Read {
             sheet,
             steps,
-            points,
+            curve,
         })
     }
 
@@ -174,6 +173,13 @@ impl<'a> RealSheet<'a> {
             let radius = self.problem.options.process.hole_radius(hinge.w_lig);
             design.w_lig -= 0.5 * deviation.kerf;
             design.fillet_ratio = (radius + 0.5 * deviation.kerf) / design.w_lig;
+        }
+        let impossible = designs
+            .iter()
+            .any(|design| !(design.w_lig > 0.0 && design.fillet_ratio < 1.0));
+        let positive = 1.0 + deviation.stress > 0.0 && self.thickness() + deviation.thickness > 0.0;
+        if impossible || !positive {
+            return Err(DesignError::ImpossibleSheet);
         }
         Ok((sheet, designs, self.mechanics(deviation)))
     }

@@ -44,8 +44,9 @@ impl Measurements {
         });
         Ok(Self {
             points,
-            loads: read.points.map(|readings| LoadData {
-                readings,
+            loads: read.curve.map(|curve| LoadData {
+                readings: curve.points[1..].to_vec(),
+                translational: curve.translational,
                 error: errors.reading,
             }),
         })

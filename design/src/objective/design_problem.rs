@@ -34,6 +34,10 @@ pub enum DesignError {
     Equilibrium(#[from] EquilibriumError),
     #[error("hinge = \"pin\" has no equilibrium; set hinge = \"linear\" or \"surrogate\"")]
     NoMechanics,
+    #[error(
+        "a sheet with these errors cannot exist: a ligament, the thickness or the stresses are not positive"
+    )]
+    ImpossibleSheet,
     #[error("the target has no points")]
     EmptyTarget,
     #[error("the opening angle {0} rad is not a finite number")]

@@ -31,7 +31,7 @@ pub struct Scene {
     /// The material of the sheet, in its thickness.
     pub material: SheetMaterial,
     /// The material in the thickness of its file, which is that of the training of learned laws.
-    pub(super) measured: SheetMaterial,
+    pub(crate) measured: SheetMaterial,
     /// The target outline.
     pub target: Target,
     /// The hinge law, with the files that it reads.
@@ -84,6 +84,11 @@ impl Scene {
     /// Further weights for the hinges of this scene, at the thickness of its sheet.
     pub fn network(&self, weights: &Path) -> Result<Surrogate, SceneError> {
         network(&self.config, &self.measured, &self.path, weights)
+    }
+
+    /// A path that the scene names.
+    pub(crate) fn file(&self, path: &Path) -> PathBuf {
+        beside(&self.path, path)
     }
 
     /// Thickness of the sheet over that of the material file, at which learned laws were trained.

@@ -8,10 +8,8 @@
 //! | `inputs/weights.safetensors`, `.json` | weights and card, if the hinge law reads them |
 //! | `inputs/ensemble-N.safetensors`, `.json` | the further networks, from 1 |
 //!
-//! The state of the run holds the BLAKE3 hash of each of them. The scene of a calibrated sheet has the same files, with its own
-//! thickness, kerf, material and weights.
+//! The state of the run holds the BLAKE3 hash of each of them.
 
-use crate::analysis::real_sheet::Deviation;
 use crate::scene::checked_scene::Scene;
 use crate::scene::keys::{SceneConfig, beside};
 use serde::{Deserialize, Serialize};
@@ -21,7 +19,6 @@ use std::path::{Path, PathBuf};
 use support::file_error::FileError;
 use support::sealed_json::{self, SealError};
 use support::{regular_file, whole_file};
-use surrogate::{Surrogate, WeightsError};
 
 /// The state of a run, in its folder.
 pub const STATE_FILE: &str = "state.json";
@@ -124,53 +121,6 @@ pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
     Ok(kept.hashes)
 }
 
-/// Writes the scene of a sheet that was calibrated, with the files that it reads, to a folder: `comment` is its head. Its designs
-/// are for the thickness, the kerf and the stresses of the sheet that was measured.
-pub fn write_calibrated(
-    scene: &Scene,
-    sheet: &Deviation,
-    folder: &Path,
-    comment: &str,
-) -> Result<PathBuf, CalibratedSceneError> {
-    let inputs = folder.join(FOLDER);
-    whole_file::create_folder(&inputs).map_err(FileError::at(&inputs))?;
-    let mut config = scene.config.without_unread_weights();
-    let thickness = scene.material.thickness + sheet.thickness;
-    config.process.r_win *= thickness / scene.material.thickness;
-    config.process.kerf += sheet.kerf;
-    config.thickness = Some(thickness);
-    config.output = "run".into();
-    let material = scene.measured.stressed(1.0 + sheet.stress);
-    write_to(folder, MATERIAL_FILE, &toml(&material, folder)?)?;
-    config.material = MATERIAL_FILE.into();
-    if let Some((file, kind)) = config.target.file_mut() {
-        let name = format!("{FOLDER}/target.{kind}");
-        write_to(folder, &name, &read(&beside(&scene.path, file))?)?;
-        *file = name.into();
-    }
-    for (i, weights) in config.weights_files_mut().into_iter().enumerate() {
-        let name = weights_name(i);
-        let trained = Surrogate::load(&beside(&scene.path, weights))?;
-        let own = trained.stressed(1.0 + sheet.stress, Some(&material));
-        own.save(&folder.join(&name))?;
-        *weights = name.into();
-    }
-    let mut text = comment.as_bytes().to_vec();
-    text.extend(toml(&config, folder)?);
-    write_to(folder, SCENE_FILE, &text)?;
-    Ok(folder.join(SCENE_FILE))
-}
-
-/// Why the scene of a calibrated sheet cannot be written.
-#[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "the message of a variant is its documentation")]
-pub enum CalibratedSceneError {
-    #[error("cannot use {0}")]
-    File(#[from] FileError),
-    #[error(transparent)]
-    Weights(#[from] WeightsError),
-}
-
 /// The name of the weights of a run and, from 1, of the further networks.
 fn weights_name(i: usize) -> String {
     match i {
@@ -180,7 +130,7 @@ fn weights_name(i: usize) -> String {
 }
 
 /// Writes a file of a folder unless it has these contents already.
-fn write_to(folder: &Path, name: &str, contents: &[u8]) -> Result<(), FileError> {
+pub(crate) fn write_to(folder: &Path, name: &str, contents: &[u8]) -> Result<(), FileError> {
     let path = folder.join(name);
     if !path.exists() || read(&path)? != contents {
         whole_file::write(&path, contents).map_err(FileError::at(&path))?;
@@ -228,11 +178,11 @@ impl SceneConfig {
     }
 }
 
-fn toml(value: &impl Serialize, folder: &Path) -> Result<Vec<u8>, FileError> {
+pub(crate) fn toml(value: &impl Serialize, folder: &Path) -> Result<Vec<u8>, FileError> {
     let text = toml::to_string(value).map_err(io::Error::other);
     Ok(text.map_err(FileError::at(folder))?.into_bytes())
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, FileError> {
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     regular_file::read(path).map_err(FileError::at(path))
 }

@@ -38,7 +38,7 @@ impl SceneConfig {
     }
 
     /// The same, to be changed.
-    pub(super) fn weights_files_mut(&mut self) -> Vec<&mut PathBuf> {
+    pub(crate) fn weights_files_mut(&mut self) -> Vec<&mut PathBuf> {
         match self.hinge {
             HingeModel::Pin => Vec::new(),
             HingeModel::Linear => {
@@ -55,7 +55,7 @@ impl SceneConfig {
     }
 
     /// The same scene without the sections of weights that its hinge law does not read.
-    pub(super) fn without_unread_weights(&self) -> Self {
+    pub(crate) fn without_unread_weights(&self) -> Self {
         let mut config = self.clone();
         if config.hinge != HingeModel::Surrogate {
             config.surrogate = None;

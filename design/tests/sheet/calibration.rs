@@ -184,3 +184,20 @@ fn wrong_readings_are_refused() {
         assert!(matches!(none, CalibrationError::NoData));
     });
 }
+
+/// Correct readings are no misfit, however few: the degrees of freedom are those that what was known before leaves.
+#[test]
+fn few_correct_readings_are_no_misfit() {
+    with(&film(|_| ()), |sheet, fit| {
+        let mut data = Measurements::exact(sheet, &cut(), 4, ERRORS).unwrap();
+        data.points = None;
+        let chi_squared = |seed: u64| {
+            let found = fit(&with_errors(sheet, &data, seed), &Quantity::ALL).unwrap();
+            let loads = found.loads.unwrap();
+            assert!(loads.free > 2.0 && loads.free < 4.0, "{loads:?}");
+            loads.chi_squared
+        };
+        let mean = (0..20).map(chi_squared).sum::<f64>() / 20.0;
+        assert!((mean - 1.0).abs() < 0.6, "{mean}");
+    });
+}

@@ -117,6 +117,10 @@ function domainNote(h, cuts) {
   const ligament = [];
   if (w < low || w > high) ligament.push(`w_lig is outside the trained ${fixed(low, 1)} to ${fixed(high, 1)} mm.`);
   if (alpha < least || alpha > most) ligament.push(`\u03b1 is outside the trained ${fixed(least, 0)} to ${fixed(most, 0)} deg.`);
+  const { holes } = run.domain;
+  const hole = run.hinges.fillet_ratio[h];
+  if (holes && (hole < holes[0] || hole > holes[1]))
+    ligament.push(`The hole of ${fixed(hole, 3)} w_lig is outside the trained ${fixed(holes[0], 3)} to ${fixed(holes[1], 3)}.`);
   const region = cuts
     ? `Shaded: the training domain at w_lig = ${fixed(w, 1)} mm and \u03b1 = ${fixed(alpha, 0)} deg, cut through the state shown (large).`
     : "No state with these \u03b7 is in the training domain.";

@@ -251,9 +251,9 @@ function domainDisagreements() {
   let count = 0;
   for (let i = 0; run.domain && i < stateCount; i++)
     for (let h = 0; h < hingeCount; h++) {
-      const { w_lig, alpha } = run.domain;
+      const { w_lig, alpha, holes } = run.domain;
       const within = ([low, high], x) => x >= low * (1 - 1e-6) && x <= high * (1 + 1e-6);
-      const ligament = within(w_lig, run.hinges.w_lig[h]) && within(alpha, run.hinges.alpha_deg[h] / DEG);
+      const ligament = within(w_lig, run.hinges.w_lig[h]) && within(alpha, run.hinges.alpha_deg[h] / DEG) && (!holes || within(holes, run.hinges.fillet_ratio[h]));
       const g = ligament ? gaugeOf(i, h) : Infinity;
       if (Math.abs(g - 1) > 1e-5 && (g <= 1) !== (of(states.inside, i, h) === 1)) count += 1;
     }

@@ -1,18 +1,41 @@
 //! The CSV file of displacements and loads; errors name file and line.
 
 use anyhow::{Context, Error, Result, anyhow, bail, ensure};
-use design::analysis::calibration::ReadingFault;
+use design::analysis::calibration::{CalibrationError, ReadingFault};
 use hinge::STANDARD_GRAVITY;
 use std::path::{Path, PathBuf};
 use support::csv_table;
 
-/// The columns, whether they are displacements, and their unit in mm or rad, N or N mm.
-const COLUMNS: [(&str, bool, f64); 5] = [
-    ("displacement_mm", true, 1.0),
-    ("displacement_deg", true, std::f64::consts::PI / 180.0),
-    ("load_N", false, 1.0),
-    ("load_Nmm", false, 1.0),
-    ("mass_g", false, 1e-3 * STANDARD_GRAVITY),
+/// A column of a table.
+struct Column {
+    name: &'static str,
+    displacement: bool,
+    /// Whether it is of translations and forces.
+    translational: bool,
+    /// mm or rad, N or N mm.
+    unit: f64,
+}
+
+const fn column(name: &'static str, displacement: bool, translational: bool, unit: f64) -> Column {
+    Column {
+        name,
+        displacement,
+        translational,
+        unit,
+    }
+}
+
+const COLUMNS: [Column; 5] = [
+    column("displacement_mm", true, true, 1.0),
+    column(
+        "displacement_deg",
+        true,
+        false,
+        std::f64::consts::PI / 180.0,
+    ),
+    column("load_N", false, true, 1.0),
+    column("load_Nmm", false, false, 1.0),
+    column("mass_g", false, true, 1e-3 * STANDARD_GRAVITY),
 ];
 
 /// The readings of a file.
@@ -20,6 +43,8 @@ pub(super) struct ReadingsFile {
     path: PathBuf,
     /// (displacement, load): mm and N, or rad and N mm.
     pub readings: Vec<[f64; 2]>,
+    /// Whether they are mm and N.
+    pub translational: bool,
     /// The line of every reading.
     lines: Vec<u64>,
 }
@@ -30,35 +55,45 @@ impl ReadingsFile {
             csv_table::open(path).with_context(|| format!("cannot read {}", path.display()))?;
         let broken = |error: csv::Error| Error::from(error).context(path.display().to_string());
         let header = reader.headers().map_err(broken)?.clone();
-        let column = |displacement: bool| {
-            let named = header.iter().enumerate().find_map(|(place, name)| {
-                let known = COLUMNS.iter().find(|known| known.0 == name);
-                known
-                    .filter(|known| known.1 == displacement)
-                    .map(|known| (place, name.to_owned(), known.2))
-            });
-            named.with_context(|| {
-                let names = COLUMNS.iter().filter(|known| known.1 == displacement);
-                let names: Vec<&str> = names.map(|known| known.0).collect();
-                format!(
-                    "{}: no column of the {}: {}",
-                    path.display(),
-                    if displacement { "displacement" } else { "load" },
-                    names.join(" or ")
-                )
-            })
+        let one = |displacement: bool| -> Result<(usize, &Column)> {
+            let known = || {
+                COLUMNS
+                    .iter()
+                    .filter(|column| column.displacement == displacement)
+            };
+            let place = |column: &Column| header.iter().position(|name| name == column.name);
+            let found: Vec<_> = known()
+                .filter_map(|column| Some((place(column)?, column)))
+                .collect();
+            let names: Vec<&str> = known().map(|column| column.name).collect();
+            ensure!(
+                found.len() == 1,
+                "{} has {} columns of the {}: write one, {}",
+                path.display(),
+                found.len(),
+                if displacement { "displacement" } else { "load" },
+                names.join(" or ")
+            );
+            Ok(found[0])
         };
-        let columns = [column(true)?, column(false)?];
+        let columns = [one(true)?, one(false)?];
+        let [translational, other] = columns.map(|(_, column)| column.translational);
+        ensure!(
+            translational == other,
+            "{}: displacement_mm goes with load_N or mass_g, displacement_deg with load_Nmm",
+            path.display()
+        );
         let mut file = Self {
             path: path.to_owned(),
             readings: Vec::new(),
+            translational,
             lines: Vec::new(),
         };
         for record in reader.records() {
             let record = record.map_err(broken)?;
             let line = record.position().map_or(0, csv::Position::line);
-            let number = |(place, name, unit): &(usize, String, f64)| -> Result<f64> {
-                let text = record.get(*place).unwrap_or_default();
+            let number = |(place, column): (usize, &Column)| -> Result<f64> {
+                let text = record.get(place).unwrap_or_default();
                 let plain = match separator {
                     b',' => text.to_owned(),
                     _ => text.replace(',', "."),
@@ -67,14 +102,15 @@ impl ReadingsFile {
                 let number = number.filter(|number| number.is_finite());
                 let number = number.with_context(|| {
                     format!(
-                        "{}:{line}: column `{name}`: `{text}` is not a number",
-                        path.display()
+                        "{}:{line}: column `{}`: `{text}` is not a number",
+                        path.display(),
+                        column.name
                     )
                 })?;
-                Ok(number * unit)
+                Ok(number * column.unit)
             };
             file.readings
-                .push([number(&columns[0])?, number(&columns[1])?]);
+                .push([number(columns[0])?, number(columns[1])?]);
             file.lines.push(line);
         }
         ensure!(
@@ -94,6 +130,11 @@ impl ReadingsFile {
             );
         }
         Ok(file)
+    }
+
+    /// The error with the name of the file.
+    pub fn of_file(&self, error: &CalibrationError) -> Error {
+        anyhow!("{}: {error}", self.path.display())
     }
 
     /// The error with the name of the file and the line of its reading.

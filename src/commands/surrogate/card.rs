@@ -54,19 +54,20 @@ impl CardCommand {
         let domain = &card.domain;
         let [eta_a, eta_s, theta] = domain.bounds();
         println!("training domain: ranges of the training states");
+        let along = match domain.curve() {
+            None => "a / w_lig".to_owned(),
+            Some([first, second]) => {
+                format!("a / w_lig beyond {first:.3} theta + {second:.3} theta^2")
+            }
+        };
         for (name, [min, max], scale) in [
-            ("a / w_lig", eta_a, 1.0),
+            (along.as_str(), eta_a, 1.0),
             ("s / w_lig", eta_s, 1.0),
             ("theta (deg)", theta, 1f64.to_degrees()),
             ("w_lig (mm)", domain.w_lig, 1.0),
             ("alpha (deg)", domain.alpha, 1f64.to_degrees()),
         ] {
             println!("{name:12} from {:.3} to {:.3}", scale * min, scale * max);
-        }
-        if let Some([first, second]) = domain.curve() {
-            println!(
-                "a / w_lig is counted from the mean path of the states, {first:.3} theta + {second:.3} theta^2 (rad)"
-            );
         }
         println!("\n{}", error_table(&card.test_errors, UNSEEN));
         if !card.error_bins.is_empty() {

@@ -100,15 +100,20 @@ impl Found {
         let energy =
             |state: [f64; 3]| prepared.energies(&[deformation(design, state)], Order::Tangent)[0];
         let inside = |state: [f64; 3]| prepared.inside(&[deformation(design, state)])[0];
-        let reference = energy(domain.centre());
+        // (eta_a, eta_s, theta) of the coordinates of the domain.
+        let measured = |coordinates: [f64; 3]| {
+            let state = domain.state(design, coordinates);
+            let [eta_a, eta_s] = state.eta(design.w_lig);
+            [eta_a, eta_s, state.theta]
+        };
+        let reference = energy(measured(domain.centre()));
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let extent = domain.bounds().map(|[from, to]| 0.5 * (to - from));
         let mut found = Self::default();
         for _ in 0..DIRECTIONS {
             let direction: [f64; 3] = from_fn(|i| extent[i] * random.random_range(-1.0..1.0));
             let centre = domain.centre();
-            let along =
-                |length: f64| -> [f64; 3] { from_fn(|i| centre[i] + length * direction[i]) };
+            let along = |length: f64| measured(from_fn(|i| centre[i] + length * direction[i]));
             // The gauge is homogeneous about the centre of the domain.
             let edge = 1.0 / domain.gauge(design, &deformation(design, along(1.0)));
             let state = if distance == DISTANCES[0] {
@@ -127,7 +132,7 @@ impl Found {
 
 /// The state (eta_a, eta_s, theta) of a hinge.
 fn deformation(design: &HingeDesign, [eta_a, eta_s, theta]: [f64; 3]) -> HingeDeformation {
-    HingeDeformation::from([eta_a * design.w_lig, eta_s * design.w_lig, theta])
+    HingeDeformation::from_eta(eta_a, eta_s, theta, design.w_lig)
 }
 
 fn is_finite(energy: &HingeEnergy) -> bool {
