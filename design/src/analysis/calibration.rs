@@ -101,7 +101,7 @@ pub struct PointData {
     pub error: f64,
 }
 
-/// Displacements and loads read on the way, as in [`ActuationCurve`](crate::analysis::actuation_curve::ActuationCurve).
+/// Displacements and loads read on the way, as in [`ActuationCurve`].
 #[derive(Clone, Debug)]
 pub struct LoadData {
     /// (displacement, load) in ascending order: mm and N, or rad and N mm.
