@@ -523,7 +523,11 @@ impl Fit<'_> {
         };
         let mut residuals = self.weighed(&at)?;
         for _ in 0..MOST_STEPS {
-            let jacobian = self.jacobian(free, &at)?;
+            // After a step, a sheet beside this one that cannot be computed is the fault of the measurements.
+            let jacobian = self.jacobian(free, &at).map_err(|error| match error {
+                CalibrationError::Design(_) if *steps > 0 => CalibrationError::NotConverged(*steps),
+                error => error,
+            })?;
             let step = gauss_newton(&jacobian, &residuals, &self.guesses(free, &at));
             *steps += 1;
             progress();
