@@ -125,7 +125,11 @@ fn problem(
             penalties: Vec::new(),
         },
     };
-    // Perturbs the symmetric pattern, whose hinges are all equal.
+    (problem, perturbed(grid))
+}
+
+/// The symmetric pattern, whose hinges are all equal, perturbed.
+fn perturbed(grid: Grid) -> DesignVector {
     let mut design = DesignVector::uniform(grid);
     let wave = (0..).map(|i: i32| 0.5 * f64::from(i * i).sin());
     design
@@ -134,7 +138,7 @@ fn problem(
         .iter_mut()
         .zip(wave)
         .for_each(|(z, wave)| *z = wave);
-    (problem, design)
+    design
 }
 
 /// The paper's network with weights of the magnitude that training starts from.

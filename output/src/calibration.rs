@@ -63,10 +63,10 @@ impl CalibrationReport {
     fn quantities(&self) -> Vec<[String; 4]> {
         let [kerf, thickness] = self.nominal;
         let row = |quantity: Quantity| -> [String; 4] {
-            let (name, nominal, value, unit, digits) = match quantity {
-                Quantity::Kerf => ("kerf", kerf, self.kerf, "mm", 3),
-                Quantity::Thickness => ("thickness", thickness, self.thickness, "mm", 4),
-                Quantity::Stress => ("stress", 1.0, self.stress, "of the material's", 3),
+            let (nominal, value, unit, digits) = match quantity {
+                Quantity::Kerf => (kerf, self.kerf, "mm", 3),
+                Quantity::Thickness => (thickness, self.thickness, "mm", 4),
+                Quantity::Stress => (1.0, self.stress, "of the material's", 3),
             };
             let mut estimates = self.calibration.estimates.iter();
             let estimate = estimates.find(|estimate| estimate.quantity == quantity);
@@ -78,7 +78,7 @@ impl CalibrationReport {
                 None => "not asked for".into(),
             };
             [
-                name.into(),
+                quantity.name().into(),
                 format!("{nominal:.digits$}"),
                 found,
                 unit.into(),

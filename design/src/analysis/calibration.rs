@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Loads alone cannot tell a softer material from a thinner sheet: each then has its part of the deviation, and a standard error that
-//! says so. An unknown on which the measurements do not depend keeps its nominal value. The rigid motion of the points is fitted anew at
+//! says so. An unknown on which the measurements do not depend keeps its nominal value. The rigid motion of the points is fitted again at
 //! every p, so that it has its part in J. If the residuals of the points, or those of the readings, are larger than their standard errors
 //! (reduced chi^2 > 1), the model or the stated errors are wrong: the errors of that group are then multiplied by the root of chi^2
 //! (Birge's ratio), which widens the covariance.
@@ -272,8 +272,8 @@ pub fn calibrate(
     // Points are at full load.
     let plan = sheet.reading_plan(&parts)?;
     if let Some(loads) = &loads {
-        let predicted = sheet.read(&plan, &Deviation::default())?.curve;
-        loads.check(&predicted.ok_or(CalibrationError::NothingMoves)?.points[1..])?;
+        let drawn = plan.drawn.as_ref();
+        loads.check(&drawn.ok_or(CalibrationError::NothingMoves)?.points[1..])?;
     }
     let mut fit = Fit {
         problem,
@@ -429,7 +429,7 @@ impl Fit<'_> {
                 break;
             }
         }
-        let freedom = self.freedom(quantities, &fitted)?;
+        let freedom = self.freedom(&self.jacobian(quantities, &fitted)?);
         let chi_squared = chi_squared(&self.residuals(&fitted)?, freedom);
         self.factors = chi_squared.map(|chi_squared| chi_squared.sqrt().max(1.0));
         if self.factors != [1.0; 2] {
@@ -449,7 +449,8 @@ impl Fit<'_> {
         fitted: &Deviation,
         steps: usize,
     ) -> Result<Calibration, CalibrationError> {
-        let covariance = self.covariance(free, fitted)?;
+        let jacobian = self.jacobian(free, fitted)?;
+        let covariance = information(&jacobian).partial_piv_lu().inverse();
         let error = |i: usize| covariance[(i, i)].sqrt();
         let unknowns = free.len();
         let correlations = (0..unknowns)
@@ -471,7 +472,7 @@ impl Fit<'_> {
             self.residuals(&Deviation::default())?,
             self.residuals(fitted)?,
         );
-        let freedom = self.freedom(free, fitted)?;
+        let freedom = self.freedom(&jacobian);
         let chi = chi_squared(&after, freedom);
         let fit = |group: usize, unit: f64| GroupFit {
             values: after[group].len(),
@@ -556,11 +557,10 @@ impl Fit<'_> {
 
     /// Degrees of freedom of the points and of the readings: their values less those of the rigid motion and less the part of the
     /// unknowns that they, and not what was known before, determine: the trace of J (J^T J + 1)^-1 J^T over their rows.
-    fn freedom(&self, free: &[Quantity], at: &Deviation) -> Result<[f64; 2], CalibrationError> {
-        let jacobian = self.jacobian(free, at)?;
-        let spread = &jacobian * information(&jacobian).partial_piv_lu().inverse();
+    fn freedom(&self, jacobian: &Mat<f64>) -> [f64; 2] {
+        let spread = jacobian * information(jacobian).partial_piv_lu().inverse();
         let of_row = |i: usize| -> f64 {
-            (0..free.len())
+            (0..jacobian.ncols())
                 .map(|k| spread[(i, k)] * jacobian[(i, k)])
                 .sum()
         };
@@ -570,16 +570,10 @@ impl Fit<'_> {
             None => 0.0,
         };
         let rows = jacobian.nrows();
-        Ok([
+        [
             points as f64 - motion - (0..points).map(of_row).sum::<f64>(),
             (rows - points) as f64 - (points..rows).map(of_row).sum::<f64>(),
-        ])
-    }
-
-    fn covariance(&self, free: &[Quantity], at: &Deviation) -> Result<Mat<f64>, CalibrationError> {
-        Ok(information(&self.jacobian(free, at)?)
-            .partial_piv_lu()
-            .inverse())
+        ]
     }
 
     /// d(residuals) / d(unknowns), these in guesses.

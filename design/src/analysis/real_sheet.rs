@@ -6,10 +6,10 @@
 
 use crate::analysis::actuation_curve::ActuationCurve;
 use crate::equilibrium::displacement_control::magnitude;
-use crate::equilibrium::load_step::{LoadStep, Status};
+use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::nearby_path::KnownPath;
 use crate::hinge_law::SurrogateLaw;
-use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Mechanics};
+use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Mechanics, found};
 use crate::pattern::design_vector::DesignVector;
 use crate::scene::Scene;
 use crate::sheet::cut_sheet::Sheet;
@@ -33,6 +33,8 @@ pub struct Deviation {
 pub struct ReadingPlan {
     parts: Vec<f64>,
     known: KnownPath,
+    /// The curve of the drawing's sheet.
+    pub drawn: Option<ActuationCurve>,
 }
 
 /// A cut sheet at the parts of a plan.
@@ -123,8 +125,10 @@ impl<'a> RealSheet<'a> {
                 designs: self.designed.sheet.designs(),
                 steps: Vec::new(),
             },
+            drawn: None,
         };
-        plan.known.steps = self.read(&plan, &Deviation::default())?.steps;
+        let drawn = self.read(&plan, &Deviation::default())?;
+        (plan.known.steps, plan.drawn) = (drawn.steps, drawn.curve);
         Ok(plan)
     }
 
@@ -139,13 +143,7 @@ impl<'a> RealSheet<'a> {
         let solver = &mechanics.solver;
         let steps = solver.readings_near(hinged, &plan.parts, &plan.known);
         let steps = steps.unwrap_or_else(|| solver.readings(hinged, &plan.parts));
-        if let Some(last) = steps.iter().find(|step| step.status == Status::Diverged) {
-            return Err(DesignError::NoEquilibrium {
-                reached: last.load_factor,
-                residual: last.residual,
-                end: last.descent_end,
-            });
-        }
+        steps.iter().try_for_each(|step| found(step).map(|_| ()))?;
         let flat = (0.0, solver.flat());
         let states = (steps.iter()).map(|step| (step.load_factor, &step.configuration[..]));
         let curve = ActuationCurve::through(&mechanics, &sheet, &flat, states);

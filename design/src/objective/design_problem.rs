@@ -175,15 +175,7 @@ impl Deployment {
 
     /// The state at full load, or an error if it was not reached.
     pub fn at_full_load(&self) -> Result<&LoadStep, DesignError> {
-        let last = self.final_step();
-        match last.status {
-            Status::Diverged => Err(DesignError::NoEquilibrium {
-                reached: last.load_factor,
-                residual: last.residual,
-                end: last.descent_end,
-            }),
-            _ => Ok(last),
-        }
+        found(self.final_step())
     }
 
     /// Deployed positions of panel corners at the last step (mm).
@@ -301,6 +293,18 @@ impl DesignProblem {
             path: &deployment.path,
             outline: &deployment.outline(outline),
         }))
+    }
+}
+
+/// The load step, or an error if it is no equilibrium.
+pub(crate) fn found(step: &LoadStep) -> Result<&LoadStep, DesignError> {
+    match step.status {
+        Status::Diverged => Err(DesignError::NoEquilibrium {
+            reached: step.load_factor,
+            residual: step.residual,
+            end: step.descent_end,
+        }),
+        _ => Ok(step),
     }
 }
 

@@ -111,22 +111,16 @@ pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
         *file = kept.copy(&beside(&scene.path, file), &name)?;
     }
     for (i, weights) in config.weights_files_mut().into_iter().enumerate() {
-        let name = weights_name(i);
+        let stem = match i {
+            0 => format!("{FOLDER}/weights"),
+            _ => format!("{FOLDER}/ensemble-{i}"),
+        };
         let original = beside(&scene.path, weights);
-        let card = Path::new(&name).with_extension("json");
-        kept.copy(&original.with_extension("json"), &card.to_string_lossy())?;
-        *weights = kept.copy(&original, &name)?;
+        kept.copy(&original.with_extension("json"), &format!("{stem}.json"))?;
+        *weights = kept.copy(&original, &format!("{stem}.safetensors"))?;
     }
     kept.write(SCENE_FILE, &toml(&config, &folder)?)?;
     Ok(kept.hashes)
-}
-
-/// The name of the weights of a run and, from 1, of the further networks.
-fn weights_name(i: usize) -> String {
-    match i {
-        0 => format!("{FOLDER}/weights.safetensors"),
-        _ => format!("{FOLDER}/ensemble-{i}.safetensors"),
-    }
 }
 
 /// Writes a file of a folder unless it has these contents already.
