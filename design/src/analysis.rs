@@ -24,6 +24,7 @@ pub mod robust_pose;
 pub mod shape_path;
 pub mod simulated_measurements;
 pub mod solution_set;
+pub mod springback;
 pub mod taylor;
 pub mod tension_lines;
 pub mod threshold;

@@ -9,6 +9,7 @@ pub mod friction;
 pub mod hinged_sheet;
 pub mod lbfgs;
 pub mod lbfgs_memory;
+pub mod let_go;
 pub mod load_step;
 pub mod nearby_path;
 pub mod newton;

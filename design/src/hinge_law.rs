@@ -5,6 +5,7 @@
 //! | [`LinearLaw`] | (11), three springs | constants |
 //! | [`CondensedLaw`] | (11) with the constants of a learned energy | weights |
 //! | [`SurrogateLaw`] | (14), continued beyond the training domain | weights |
+//! | [`ReleasedLaw`] | elastic about the deformation that stays when a hinge is let go | rest deformations and stiffnesses |
 //! | [`CorrectedLaw`] | another law, corrected to forces measured at some states of each hinge | those forces |
 //!
 //! A law is prepared once for the hinges of a sheet and then evaluated for all of them at once.
@@ -14,6 +15,7 @@ mod contact;
 mod corrected;
 mod law;
 mod linear;
+mod released;
 mod surrogate;
 
 pub(crate) use corrected::LENGTHS;
@@ -25,4 +27,5 @@ pub use law::{
     DamageMeasure, HingeDamage, HingeEnergy, HingeGradient, HingeLaw, Order, PreparedLaw,
 };
 pub use linear::LinearLaw;
+pub use released::ReleasedLaw;
 pub use surrogate::SurrogateLaw;

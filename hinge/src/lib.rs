@@ -8,6 +8,7 @@
 //! | sheet material | [`SheetMaterial`] | section 4.1 |
 //! | films and plates | [`Regime`] | section 5.1 |
 //! | training domain | [`TrainingDomain`] | section 2.4 |
+//! | a hinge that was let go | [`ReleasedHinge`] | - |
 //! | one converged increment of a window solve | [`HingeSample`] | section 2.4 |
 //!
 //! Units: mm, N, MPa, N mm, rad. Angles in degrees have names that end in `_deg`.
@@ -41,6 +42,7 @@ mod jet;
 mod material;
 mod net_ligament;
 mod regime;
+mod released;
 mod sample;
 mod strain_volumes;
 pub mod tensile;
@@ -52,6 +54,7 @@ pub use jet::Jet;
 pub use material::{InvalidMaterial, MaterialError, STANDARD_GRAVITY, SheetMaterial};
 pub use net_ligament::{NetLigament, NetLigamentJet};
 pub use regime::Regime;
+pub use released::{ReleasedHinge, ReleasedSample};
 pub use sample::HingeSample;
 pub use strain_volumes::{NoHistogram, StrainVolumes};
 pub use tensile::TensileError;

@@ -1,5 +1,5 @@
 //! All numbers of a design, for comparison with other programs: pattern, ideal deployment, equilibria,
-//! gradient. `Serialize` writes all of them, `Display` a short table.
+//! gradient, tolerances, springback. `Serialize` writes all of them, `Display` a short table.
 //!
 //! Orders: vertices j (M+1) + i; panels q M + p; corners SW SE NE NW; hinges by vertex, x before x';
 //! r row by row; tau on the edges bottom right top left; motions (u_x, u_y, phi); hinge
@@ -10,10 +10,12 @@ mod deployment;
 mod equilibrium;
 mod gradient;
 mod pattern;
+mod springback;
 mod tolerances;
 
 pub use deployment::DeploymentListing;
 pub use equilibrium::{EnergyParts, EquilibriumListing, StepListing};
 pub use gradient::GradientListing;
 pub use pattern::{HingeListing, PatternListing};
+pub use springback::SpringbackListing;
 pub use tolerances::{ToleranceListing, ToleranceQuestion};

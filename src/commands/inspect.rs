@@ -5,15 +5,18 @@ pub(crate) mod judged_design;
 pub mod scene_args;
 
 use crate::commands::inspect::scene_args::Listed;
+use crate::ui::output_file;
 use crate::ui::progress::Progress;
 use anyhow::{Context, Result};
 use clap::{Args, Subcommand};
 use output::listing::{
-    DeploymentListing, EquilibriumListing, GradientListing, PatternListing, ToleranceListing,
-    ToleranceQuestion,
+    DeploymentListing, EquilibriumListing, GradientListing, PatternListing, SpringbackListing,
+    ToleranceListing, ToleranceQuestion,
 };
+use std::path::PathBuf;
+use surrogate::Springback;
 
-/// Print the numbers of one stage of a design: pattern, deploy, equilibrium, gradient, tolerances
+/// Print the numbers of one stage of a design: pattern, deploy, equilibrium, gradient, tolerances, springback
 #[derive(Args)]
 pub struct InspectCommand {
     #[command(subcommand)]
@@ -44,6 +47,24 @@ enum Stage {
     /// sheet is deployed again; then sheets with all errors at random. Tolerances are those of the scene ([tolerances]) unless
     /// they are named. Example: kirigami inspect tolerances runs/a4-plate --ligament 0.05 --kerf 0.05 --samples 200
     Tolerances(ToleranceArgs),
+    /// Print what stays of the opening when the loads are taken off
+    ///
+    /// Every hinge springs back elastically towards the deformation that stays by the law of `kirigami surrogate release`, and the sheet
+    /// finds its equilibrium without loads, under its weight if it has one. Example: kirigami inspect springback runs/a4-plate
+    /// --law data/polypropylene-3mm/springback.json --picture runs/a4-plate/released.svg
+    Springback(SpringbackArgs),
+}
+
+#[derive(Args)]
+struct SpringbackArgs {
+    #[command(flatten)]
+    listed: Listed,
+    /// Law of released hinges (JSON)
+    #[arg(long, value_name = "FILE")]
+    law: PathBuf,
+    /// Draw the sheet without loads to this file (SVG)
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
 }
 
 #[derive(Args)]
@@ -111,6 +132,7 @@ impl InspectCommand {
                 listed.print(name, EquilibriumListing::new(&scene.problem()?, &design)?)
             }
             Stage::Tolerances(args) => args.run(),
+            Stage::Springback(args) => args.run(),
             Stage::Gradient(listed) => {
                 let (scene, design, name) = listed.read()?;
                 listed.print(
@@ -119,6 +141,19 @@ impl InspectCommand {
                 )
             }
         }
+    }
+}
+
+impl SpringbackArgs {
+    fn run(&self) -> Result<()> {
+        let (scene, design, name) = self.listed.read()?;
+        let law = Springback::load(&self.law)?;
+        let problem = scene.problem()?;
+        let listing = SpringbackListing::new(&scene, &problem, &design, &law)?;
+        if let Some(path) = &self.picture {
+            output_file::write(path, &listing.picture(&scene))?;
+        }
+        self.listed.print(name, listing)
     }
 }
 

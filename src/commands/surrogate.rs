@@ -3,6 +3,7 @@
 mod card;
 mod errors;
 mod eval;
+mod release;
 mod spot_check;
 mod test;
 
@@ -22,6 +23,7 @@ enum Action {
     Card(card::CardCommand),
     Test(test::TestCommand),
     SpotCheck(spot_check::SpotCheckCommand),
+    Release(release::ReleaseCommand),
 }
 
 impl SurrogateCommand {
@@ -31,6 +33,7 @@ impl SurrogateCommand {
             Action::Card(command) => command.run(),
             Action::Test(command) => command.run(),
             Action::SpotCheck(command) => command.run(),
+            Action::Release(command) => command.run(),
         }
     }
 }

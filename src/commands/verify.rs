@@ -17,13 +17,13 @@ use mesher::Tier;
 use output::drawing;
 use serde::Serialize;
 use std::collections::BTreeSet;
-use std::fmt::Display;
+use std::fmt::{self, Display};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use surrogate::Surrogate;
+use surrogate::{Springback, Surrogate};
 use verification::{
-    ElementWindows, PolishTask, Replay, SheetErrors, balanced, ensemble, judging_tier,
-    recorded_paths,
+    ElementWindows, PolishTask, ReleasedByElements, Replay, SheetErrors, balanced, ensemble,
+    judging_tier, recorded_paths, released_by_elements,
 };
 
 /// Solve the hinges of a design by finite elements, along their paths in the sheet
@@ -62,6 +62,14 @@ pub struct VerifyCommand {
     /// is found by finite elements again, and write it with its cut files
     #[arg(long, value_name = "N", requires = "equilibrium", value_parser = count::<NonZeroUsize>)]
     polish: Option<NonZeroUsize>,
+    /// Then take the loads off, with the law of released hinges (JSON, `kirigami surrogate release`) and finite elements. Writes released.md
+    #[arg(
+        long,
+        value_name = "LAW",
+        requires = "equilibrium",
+        conflicts_with = "polish"
+    )]
+    released: Option<PathBuf>,
     /// Write the cut files of a polished design even if its report has errors
     #[arg(long, requires = "polish")]
     force: bool,
@@ -90,6 +98,19 @@ pub struct VerifyCommand {
     out: PathBuf,
     #[command(flatten)]
     solve: SolveArgs,
+}
+
+/// A sheet balanced by finite elements, and let go.
+#[derive(Serialize)]
+struct Released {
+    equilibrium: SheetErrors,
+    released: ReleasedByElements,
+}
+
+impl Display for Released {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}\n{}", self.equilibrium, self.released)
+    }
 }
 
 impl VerifyCommand {
@@ -122,15 +143,27 @@ impl VerifyCommand {
         let windows = ElementWindows { tier, service };
         match self.polish {
             None => {
+                let law = self.released.as_deref().map(Springback::load).transpose()?;
                 let found = balanced(&scene, design, &windows, self.rounds);
-                let (found, _) = found.map_err(task_error)?;
+                let (found, problem) = found.map_err(task_error)?;
                 let end = found.by_elements();
                 let picture = drawing::deployed(&scene, &end.sheet, end.final_step());
                 run_folder::write(&self.out, "deployed.svg", &picture)?;
                 let budget = found.budget(&scene)?;
                 let errors = SheetErrors::new(&found, name, budget.as_ref());
                 run_folder::write(&self.out, "equilibrium.md", &errors.to_string())?;
-                self.print(&errors)
+                let Some(law) = law else {
+                    return self.print(&errors);
+                };
+                let rounds = self.rounds;
+                let released =
+                    released_by_elements(&scene, &found, &problem, &law, &windows, rounds);
+                let released = released.map_err(task_error)?;
+                run_folder::write(&self.out, "released.md", &released.to_string())?;
+                self.print(&Released {
+                    equilibrium: errors,
+                    released,
+                })
             }
             Some(steps) => {
                 scene.config.output = std::path::absolute(&self.out)?;

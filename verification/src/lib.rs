@@ -54,6 +54,8 @@ mod patch;
 mod polish;
 mod recorded_path;
 mod region;
+mod released_sheet;
+mod releases;
 mod replay;
 mod replay_page;
 mod round_table;
@@ -77,6 +79,8 @@ pub use networks::{ensemble, judging_tier};
 pub use polish::{PolishGain, PolishTask, Polished, polish};
 pub use recorded_path::{RecordedPath, paths_of, recorded_paths};
 pub use region::{distillation_states, drawn, region};
+pub use released_sheet::{ReleasedByElements, released_by_elements};
+pub use releases::{Releases, first_guess, releases};
 pub use replay::{ElementWindows, Replay, ReplayedHinge, UnsolvedHinge};
 pub use rows::{InvalidRow, collected, collected_windows, rows};
 pub use sheet_check::{

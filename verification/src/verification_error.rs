@@ -1,6 +1,7 @@
 //! Errors of this crate.
 
 use dataset::DatasetError;
+use design::analysis::springback::LetGoError;
 use design::objective::design_problem::DesignError;
 use design::scene::SceneError;
 use fe_driver::{CampaignError, SolveListError};
@@ -30,6 +31,10 @@ pub enum VerificationError {
     NoStates(usize),
     #[error("at least one round is needed")]
     NoRounds,
+    #[error(transparent)]
+    LetGo(#[from] LetGoError),
+    #[error("a hinge that was let go has no positive stiffness by the law of released hinges")]
+    NotElastic,
     #[error(
         "the equilibrium needs the forces of the hinges, and none is solved: {0}. Try another mesh with --tier"
     )]

@@ -50,13 +50,13 @@ pub(crate) fn write_material(d: &mut String, material: &SheetMaterial) -> fmt::R
         .try_for_each(|[stress, strain]| writeln!(d, "{},{}", real(*stress), real(*strain)))
 }
 
-/// A table of (time, value).
+/// A table of (time since the beginning of the first step, value).
 pub(crate) fn write_amplitude(
     d: &mut String,
     name: &str,
     pairs: impl IntoIterator<Item = [f64; 2]>,
 ) -> fmt::Result {
-    writeln!(d, "*AMPLITUDE,NAME={name}")?;
+    writeln!(d, "*AMPLITUDE,NAME={name},TIME=TOTAL TIME")?;
     let pairs: Vec<String> = (pairs.into_iter())
         .map(|[time, value]| format!("{},{}", real(time), real(value)))
         .collect();

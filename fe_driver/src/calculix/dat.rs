@@ -22,7 +22,7 @@ pub struct Layout {
 /// The printed output of one converged increment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {
-    /// Step time: the fraction of the ray.
+    /// Total time: the fraction of the path.
     pub lambda: f64,
     /// Total internal energy: stored plus dissipated (N mm).
     pub energy: f64,

@@ -1,6 +1,7 @@
 //! The CalculiX input deck of one window solve.
 //!
-//! Arc B is driven along its path ([`DrivenArc`]). All output is printed in every increment, because CalculiX accumulates the
+//! Arc B is driven along its path ([`DrivenArc`]). A path that turns back has a second step from there on: an increment ends where the
+//! hinge is unloaded, which would otherwise not reach that state. All output is printed in every increment, because CalculiX accumulates the
 //! total internal energy between *printed* increments and it would otherwise be wrong.
 
 use crate::calculix::cards::{
@@ -10,6 +11,7 @@ use crate::calculix::driven_arc::{DrivenArc, even_lambdas};
 use crate::calculix::model::WindowModel;
 use crate::calculix::panel_motion::PanelMotion;
 use crate::solve::deformation_path::DeformationPath;
+use crate::solve::step_control::StepControl;
 use std::fmt::{self, Write};
 
 /// The deck that drives the window along its path.
@@ -44,15 +46,32 @@ fn write_deck(d: &mut String, model: &WindowModel) -> fmt::Result {
     arc.write_equations(d, &mesh.nodes)?;
     let motion = |lambda| PanelMotion::new(&model.path.at(lambda));
     arc.write_amplitudes(d, &lambdas(model.path), 1.0, motion)?;
-    writeln!(d, "*STEP,NLGEOM,INC={}\n*STATIC", model.step.max_increments)?;
-    write_increments(d, model.step, 1.0)?;
+    let turn = model.path.first_turn();
+    write_step(d, model.step, turn.unwrap_or(1.0))?;
     writeln!(d, "*BOUNDARY\nARCA,1,3,0.\nARCB,3,3,0.\nCONTROL,3,3,0.")?;
     arc.write_boundary(d)?;
     writeln!(d, "*NODE PRINT,NSET=ARCB,FREQUENCY=1\nRF")?;
     let displaced = if model.print_all { "NALL" } else { "BOTTOM" };
     writeln!(d, "*NODE PRINT,NSET={displaced},FREQUENCY=1\nU")?;
     writeln!(d, "*EL PRINT,ELSET=EALL,TOTALS=ONLY,FREQUENCY=1\nELSE")?;
-    writeln!(d, "*EL PRINT,ELSET=EALL,FREQUENCY=1\nPEEQ,S\n*END STEP")
+    writeln!(d, "*EL PRINT,ELSET=EALL,FREQUENCY=1\nPEEQ,S\n*END STEP")?;
+    let Some(turn) = turn else {
+        return Ok(());
+    };
+    // Boundary conditions and output are those of the step before. Unloading needs no shorter increments than a whole path.
+    let duration = 1.0 - turn;
+    let unloading = StepControl {
+        greatest: (model.step.greatest / duration).min(1.0),
+        ..*model.step
+    };
+    write_step(d, &unloading, duration)?;
+    writeln!(d, "*END STEP")
+}
+
+/// The head of a step of the given duration.
+fn write_step(d: &mut String, step: &StepControl, duration: f64) -> fmt::Result {
+    writeln!(d, "*STEP,NLGEOM,INC={}\n*STATIC", step.max_increments)?;
+    write_increments(d, step, duration)
 }
 
 /// The lambdas of the amplitude tables of a path.

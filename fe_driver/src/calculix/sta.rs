@@ -7,7 +7,7 @@
 /// One attempted increment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Increment {
-    /// Step time (lambda): at the end of the increment if it converged, otherwise at its start.
+    /// Total time (lambda): at the end of the increment if it converged, otherwise at its start.
     pub lambda: f64,
     /// Newton iterations of the attempt.
     pub iterations: usize,
@@ -25,14 +25,23 @@ pub fn read_sta(bytes: &[u8]) -> Vec<Increment> {
 /// Parses STEP INC ATT ITRS TOT-TIME STEP-TIME INC-TIME; a U after ATT means that the attempt diverged.
 fn attempt(line: &str) -> Option<Increment> {
     let fields: Vec<_> = line.split_whitespace().collect();
-    let [step, increment, attempt, iterations, total, lambda, length] = fields[..] else {
+    let [
+        step,
+        increment,
+        attempt,
+        iterations,
+        lambda,
+        in_step,
+        length,
+    ] = fields[..]
+    else {
         return None;
     };
     let number = attempt.trim_end_matches('U');
     for count in [step, increment, number] {
         count.parse::<usize>().ok()?;
     }
-    let [_, lambda, _] = [total, lambda, length].map(|time| {
+    let [lambda, ..] = [lambda, in_step, length].map(|time| {
         let time = time.parse::<f64>().ok();
         time.filter(|time| time.is_finite() && *time >= 0.0)
     });

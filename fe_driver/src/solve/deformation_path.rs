@@ -119,6 +119,28 @@ impl DeformationPath {
         self.knots.iter().map(|(lambda, _)| *lambda)
     }
 
+    /// The first corner at which the path turns back, by more than a right angle where each component is relative to its largest value
+    /// on the path: from there on the hinge is unloaded.
+    pub fn first_turn(&self) -> Option<f64> {
+        let state = |i: usize| self.knots[i].1.to_array();
+        let largest: [f64; 3] = std::array::from_fn(|c| {
+            let values = (0..self.knots.len()).map(|i| state(i)[c].abs());
+            values.fold(f64::MIN_POSITIVE, f64::max)
+        });
+        let leg = |i: usize| -> [f64; 3] {
+            std::array::from_fn(|c| (state(i + 1)[c] - state(i)[c]) / largest[c])
+        };
+        let turns = |i: &usize| {
+            let (before, after) = (leg(i - 1), leg(*i));
+            std::iter::zip(before, after)
+                .map(|(x, y)| x * y)
+                .sum::<f64>()
+                < 0.0
+        };
+        let turn = (1..self.knots.len() - 1).find(turns);
+        turn.map(|i| self.knots[i].0)
+    }
+
     /// The state at `lambda` in [0, 1].
     pub fn at(&self, lambda: f64) -> HingeDeformation {
         let after = self.knots.partition_point(|(at, _)| *at < lambda);
@@ -162,6 +184,23 @@ mod tests {
 
     fn state(eta_a: f64, eta_s: f64, theta_deg: f64) -> HingeDeformation {
         HingeDeformation::from_eta(eta_a, eta_s, theta_deg.to_radians(), 20.0)
+    }
+
+    #[test]
+    fn a_path_turns_back_where_it_is_unloaded() {
+        let through = |states: &[[f64; 3]]| {
+            let states: Vec<_> = states.iter().map(|&[a, s, t]| state(a, s, t)).collect();
+            DeformationPath::through(&states).unwrap().first_turn()
+        };
+        assert_eq!(through(&[[-0.1, 0.0, 40.0]]), None);
+        assert_eq!(through(&[[-0.1, 0.0, 20.0], [-0.3, 0.1, 40.0]]), None);
+        let released = [
+            [-0.1, 0.0, 20.0],
+            [-0.2, 0.0, 40.0],
+            [-0.2, 0.1, 20.0],
+            [0.0, 0.0, 10.0],
+        ];
+        assert_eq!(through(&released), Some(0.5));
     }
 
     #[test]

@@ -16,6 +16,8 @@ use serde::{Deserialize, Serialize};
 ///
 /// 2: D_peak is the mean over the most strained 1 % of the ligament.
 const RECIPE_VERSION: u32 = 2;
+/// That of paths that turn back. 3: an increment ends at the turn.
+const TURNING_VERSION: u32 = 3;
 
 /// A window problem, without what solves it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -61,9 +63,12 @@ impl WindowSolve {
     pub fn new(problem: WindowProblem, tools: &ToolVersions) -> Self {
         Self {
             mesh: problem.tier.recipe(),
+            recipe_version: match problem.hinge.path.first_turn() {
+                None => RECIPE_VERSION,
+                Some(_) => TURNING_VERSION,
+            },
             problem,
             tools: tools.clone(),
-            recipe_version: RECIPE_VERSION,
         }
     }
 

@@ -1,0 +1,164 @@
+//! A deployed sheet that is let go: its equilibrium without loads, with hinges that are elastic about what stays of their
+//! deformations.
+
+use crate::analysis::actuation_curve::{ActuationCurve, Mover};
+use crate::equilibrium::hinged_sheet::HingedSheet;
+use crate::equilibrium::load_step::LoadStep;
+use crate::geometry::polygon::distance;
+use crate::hinge_law::{HingeLaw, ReleasedLaw};
+use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, found};
+use crate::objective::scores::outline_error;
+use crate::scene::Scene;
+use crate::sheet::kinematics::deployed_corners;
+use hinge::ReleasedHinge;
+use serde::Serialize;
+use support::statistics::rms_and_maximum;
+use surrogate::Springback;
+
+/// Number of steps in which the loads are taken off.
+const STEPS: usize = 10;
+
+/// Why nothing can be said of a sheet that is let go.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
+pub enum LetGoError {
+    #[error(
+        "the law of released hinges is for {law}, and the sheet is of another material, {sheet}"
+    )]
+    Material { law: String, sheet: String },
+    #[error(
+        "the law of released hinges is for holes with a radius of {law} w_lig, and those of the sheet have {sheet:.3} w_lig"
+    )]
+    Hole { law: f64, sheet: f64 },
+    #[error(transparent)]
+    Design(#[from] DesignError),
+}
+
+/// A sheet without loads, after they have opened it.
+pub struct ReleasedSheet {
+    /// The hinges.
+    pub hinges: Vec<ReleasedHinge>,
+    /// The load steps from the deployed sheet to that without loads.
+    pub path: Vec<LoadStep>,
+}
+
+/// What stays of the opening of a sheet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WhatStays {
+    /// Rotation of every hinge under load and without (rad).
+    pub rotations: Vec<[f64; 2]>,
+    /// Rotation at which every hinge by itself would be without forces (rad).
+    pub rest_rotations: Vec<f64>,
+    /// Displacement along the loads, under load and without (mm, or rad for couples); `None` if supports moved the sheet.
+    pub displacement: Option<[f64; 2]>,
+    /// Movement of the panel corners: root mean square and maximum (mm).
+    pub corners: [f64; 2],
+    /// Whether the sheet snaps to another state while the loads are taken off.
+    pub snaps: bool,
+    /// Root mean square distance of the outline to the target, under load and without (mm).
+    pub outline_error: [f64; 2],
+}
+
+impl WhatStays {
+    /// Mean rotation without load over that under load; `None` if the hinges have not opened.
+    pub fn share(&self) -> Option<f64> {
+        let sum = |i: usize| self.rotations.iter().map(|pair| pair[i].abs()).sum::<f64>();
+        let [loaded, free] = [sum(0), sum(1)];
+        (loaded > 0.0).then(|| free / loaded)
+    }
+}
+
+/// The hinges of a deployed sheet of a scene after they were let go.
+pub fn released_hinges(
+    scene: &Scene,
+    law: &Springback,
+    deployment: &Deployment,
+) -> Result<Vec<ReleasedHinge>, LetGoError> {
+    /// Relative difference of two radii that rounding may cause.
+    const ROUNDED: f64 = 1e-6;
+    if law.material_hash != scene.measured.law_hash() {
+        return Err(LetGoError::Material {
+            law: law.material.clone(),
+            sheet: scene.measured.name.clone(),
+        });
+    }
+    let scale = scene.scale();
+    let step = deployment.at_full_load()?;
+    std::iter::zip(deployment.sheet.designs(), &step.deformations)
+        .map(|(design, reached)| {
+            if (design.fillet_ratio / law.fillet_ratio - 1.0).abs() > ROUNDED {
+                let (law, sheet) = (law.fillet_ratio, design.fillet_ratio);
+                return Err(LetGoError::Hole { law, sheet });
+            }
+            let (design, reached) = (design.scaled(scale.recip()), reached.scaled(scale.recip()));
+            Ok(law.released(&design, &reached).scaled(scale))
+        })
+        .collect()
+}
+
+impl DesignProblem {
+    /// Takes the loads off a deployed sheet with these hinges.
+    pub fn let_go(
+        &self,
+        deployment: &Deployment,
+        hinges: Vec<ReleasedHinge>,
+    ) -> Result<ReleasedSheet, DesignError> {
+        let mechanics = self.model.mechanics().ok_or(DesignError::NoMechanics)?;
+        let sheet = &deployment.sheet;
+        let start = deployment.at_full_load()?.configuration.clone();
+        let law = ReleasedLaw(hinges);
+        let prepared = law.prepare(&sheet.designs());
+        let hinged = HingedSheet {
+            sheet,
+            law: &*prepared,
+            contact: mechanics.contact.as_ref(),
+            damage_gradient: false,
+        };
+        let path = mechanics.solver.let_go(hinged, start, STEPS)?;
+        drop(prepared);
+        Ok(ReleasedSheet {
+            hinges: law.0,
+            path,
+        })
+    }
+
+    /// What stays of the opening of a sheet that was let go.
+    pub fn what_stays(
+        &self,
+        deployment: &Deployment,
+        released: &ReleasedSheet,
+    ) -> Result<WhatStays, DesignError> {
+        let loaded = deployment.at_full_load()?;
+        let last = released.path.last().expect("a path has at least one step");
+        let free = found(last)?;
+        let sheet = &deployment.sheet;
+        let [before, after] =
+            [loaded, free].map(|step| deployed_corners(sheet, &step.configuration));
+        let moved = std::iter::zip(before.as_flattened(), after.as_flattened());
+        let curve = self.model.mechanics().and_then(|mechanics| {
+            let start = (loaded.load_factor, loaded.configuration.clone());
+            let end = std::iter::once((0.0, &*free.configuration));
+            ActuationCurve::through(mechanics, sheet, &start, end)
+        });
+        let curve = curve.filter(|curve| curve.mover == Mover::Loads);
+        let let_go = Deployment {
+            pattern: deployment.pattern.clone(),
+            sheet: sheet.clone(),
+            path: vec![free.clone()],
+            followed: true,
+        };
+        let rotations = std::iter::zip(&loaded.deformations, &free.deformations);
+        Ok(WhatStays {
+            rotations: rotations.map(|(on, off)| [on.theta, off.theta]).collect(),
+            rest_rotations: released
+                .hinges
+                .iter()
+                .map(|hinge| hinge.rest.theta)
+                .collect(),
+            displacement: curve.map(|curve| [curve.points[0][0], curve.points[1][0]]),
+            snaps: released.path.iter().any(|step| step.jumps > 0),
+            corners: rms_and_maximum(moved.map(|(p, q)| distance(*p, *q))),
+            outline_error: [deployment, &let_go].map(|of| outline_error(&self.objective, of)),
+        })
+    }
+}

@@ -1,0 +1,51 @@
+//! A sheet that is let go: from a configuration to the equilibrium without loads.
+//!
+//! The forces that would hold the panels in the configuration are taken off in proportion. The path begins in balance, whatever
+//! the forces of the hinge law are there. Supports that rest and the weight of the sheet stay; supports that moved it let go, too.
+
+use crate::equilibrium::hinged_sheet::HingedSheet;
+use crate::equilibrium::load_step::LoadStep;
+use crate::equilibrium::potential::{Potential, Stage};
+use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
+use crate::equilibrium::supports::Support;
+use crate::sheet::kinematics::Configuration;
+
+impl EquilibriumSolver {
+    /// The load steps from the configuration `start`, of which the last one is without loads.
+    pub fn let_go(
+        &self,
+        sheet: HingedSheet,
+        start: Configuration,
+        steps: usize,
+    ) -> Result<Vec<LoadStep>, EquilibriumError> {
+        let resting = self.supports.iter().filter(|support| support.value == 0.0);
+        let resting: Vec<Support> = resting.copied().collect();
+        let mut free = Self {
+            lbfgs: self.lbfgs,
+            weight: self.weight,
+            grips: self.grips.clone(),
+            ..Self::new(self.grid, &resting, &[], steps, self.settings)?
+        };
+        free.check_supports(sheet.sheet)?;
+        if let Some(holding) = free.holding(sheet, start.clone()) {
+            free.loads = holding.iter().map(|force| force.map(|x| -x)).collect();
+            free.held = holding.into();
+        }
+        Ok(free.path_from(sheet, start))
+    }
+
+    /// The forces (F_x, F_y, M) on the free panels that balance a configuration without loads; `None` if its energy is not finite.
+    fn holding(&self, sheet: HingedSheet, configuration: Configuration) -> Option<Vec<[f64; 3]>> {
+        let potential = Potential {
+            solver: self,
+            sheet,
+            stage: Stage::Actuation,
+            at: 0.0,
+            panel_size: 1.0,
+            friction: None,
+            force: 0.0,
+        };
+        let state = potential.state(configuration)?;
+        Some(self.pattern.spread(&state.gradient))
+    }
+}

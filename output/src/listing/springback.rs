@@ -1,0 +1,137 @@
+//! What stays of the opening of a sheet when its loads are taken off, in numbers.
+
+use crate::drawing;
+use design::analysis::springback::{LetGoError, ReleasedSheet, WhatStays, released_hinges};
+use design::objective::design_problem::{Deployment, DesignProblem};
+use design::pattern::design_vector::DesignVector;
+use design::scene::Scene;
+use serde::Serialize;
+use std::fmt;
+use surrogate::{Springback, SpringbackErrors};
+
+/// A sheet that was let go.
+#[derive(Serialize)]
+pub struct SpringbackListing {
+    /// What stays.
+    #[serde(flatten)]
+    pub stays: WhatStays,
+    /// Mean rotation of the hinges without load over that under load; `None` if they have not opened.
+    pub share: Option<f64>,
+    /// Errors of the law at hinges that it has not seen.
+    pub law: SpringbackErrors,
+    /// Number of hinges in states outside the training domain, about which nothing is known.
+    pub outside: usize,
+    #[serde(skip)]
+    deployment: Deployment,
+    #[serde(skip)]
+    released: ReleasedSheet,
+}
+
+impl SpringbackListing {
+    /// Deploys a design of a scene and its problem, and lets it go.
+    pub fn new(
+        scene: &Scene,
+        problem: &DesignProblem,
+        design: &DesignVector,
+        law: &Springback,
+    ) -> Result<Self, LetGoError> {
+        let deployment = problem.deploy(design)?;
+        let hinges = released_hinges(scene, law, &deployment)?;
+        let released = problem.let_go(&deployment, hinges)?;
+        let stays = problem.what_stays(&deployment, &released)?;
+        let inside = &deployment.final_step().inside;
+        Ok(Self {
+            share: stays.share(),
+            stays,
+            law: law.errors,
+            outside: inside.iter().filter(|inside| !**inside).count(),
+            deployment,
+            released,
+        })
+    }
+
+    /// The sheet without loads (SVG).
+    pub fn picture(&self, scene: &Scene) -> String {
+        let last = self.released.path.last().expect("it was found");
+        drawing::deployed(scene, &self.deployment.sheet, last)
+    }
+}
+
+impl fmt::Display for SpringbackListing {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let WhatStays {
+            rotations,
+            rest_rotations,
+            displacement,
+            corners,
+            snaps,
+            outline_error,
+        } = &self.stays;
+        let count = rotations.len() as f64;
+        let mean = |of: &mut dyn Iterator<Item = f64>| (of.sum::<f64>() / count).to_degrees();
+        let [loaded, free] = [0, 1].map(|i| mean(&mut rotations.iter().map(|pair| pair[i].abs())));
+        let alone = mean(&mut rest_rotations.iter().map(|theta| theta.abs()));
+        writeln!(f, "{:<44}{:>12}{:>12}", "", "loaded", "let go")?;
+        writeln!(
+            f,
+            "{:<44}{loaded:>12.2}{free:>12.2}",
+            "mean rotation of the hinges, deg"
+        )?;
+        if let Some([under, without]) = displacement {
+            writeln!(
+                f,
+                "{:<44}{under:>12.2}{without:>12.2}",
+                "displacement along the loads"
+            )?;
+        }
+        let [before, after] = outline_error;
+        writeln!(
+            f,
+            "{:<44}{before:>12.3}{after:>12.3}",
+            "outline to target, root mean square, mm"
+        )?;
+        let [rms, most] = corners;
+        writeln!(
+            f,
+            "\npanel corners move by {rms:.2} mm (root mean square), at most {most:.2} mm, when the loads are taken off"
+        )?;
+        if *snaps {
+            writeln!(
+                f,
+                "the sheet snaps to another state while they are taken off"
+            )?;
+        }
+        if let Some(share) = self.share {
+            writeln!(
+                f,
+                "{:.0} % of the opening stays; of hinges that were cut free, {:.0} %",
+                100.0 * share,
+                100.0 * alone / loaded
+            )?;
+        }
+        if self.outside > 0 {
+            writeln!(
+                f,
+                "{} hinges were outside the training domain: what stays of them is not known",
+                self.outside
+            )?;
+        }
+        let [.., theta] = self.law.rest;
+        writeln!(
+            f,
+            "the law of released hinges is off by {:.2} deg and by {:.0} % of the stiffness (root mean squares at {} hinges that it has not seen)",
+            theta.to_degrees(),
+            100.0 * self.law.stiffness,
+            self.law.hinges
+        )?;
+        writeln!(
+            f,
+            "up to the opening that was reached hinges are elastic: the load that opened the sheet opens it again"
+        )?;
+        writeln!(
+            f,
+            "\nNot in these numbers: creep under the load and recovery after it, kinematic hardening (a material that yields sooner the other \
+             way), panels that leave the plane"
+        )
+    }
+}

@@ -1,0 +1,123 @@
+//! `kirigami surrogate release`: hinges deformed and let go by finite elements, and their law.
+
+use crate::commands::input_file;
+use crate::commands::solve_args::{SolveArgs, task_error};
+use crate::ui::count::count;
+use crate::ui::run_folder;
+use anyhow::{Result, ensure};
+use clap::Args;
+use hinge::SheetMaterial;
+use mesher::Tier;
+use std::fmt;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use surrogate::{Springback, Surrogate};
+use verification::{first_guess, judging_tier, random_paths, releases};
+
+/// Deform hinges by finite elements, let them go, and learn what stays
+///
+/// The states are drawn uniformly inside the training domain of the weights, one a hinge. Each hinge is deformed along the straight
+/// ray to its state and unloaded until it is without forces; that takes two to three windows. Writes released.csv, the
+/// deformation that stays and the stiffness about it, and springback.json, the law that `kirigami inspect springback` reads, with its
+/// errors at hinges that the fit has not seen. Example:
+/// kirigami surrogate release data/polypropylene-3mm/medium.safetensors --material configs/materials/polypropylene-3mm.toml --count 80
+#[derive(Args)]
+pub struct ReleaseCommand {
+    /// Weights (safetensors with their card)
+    #[arg(value_name = "WEIGHTS")]
+    weights: PathBuf,
+    /// Number of hinges
+    #[arg(long, value_name = "N", default_value = "80", value_parser = count::<NonZeroUsize>)]
+    count: NonZeroUsize,
+    /// Number of hinges of these, the last ones, that the law is judged by and not fitted to
+    #[arg(long, value_name = "N", default_value_t = 30, value_parser = count::<usize>)]
+    unseen: usize,
+    /// Seed of the random states
+    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    seed: u64,
+    /// Sheet material that the weights were trained on (TOML)
+    #[arg(long, value_name = "FILE")]
+    material: PathBuf,
+    /// Mesh tier of the windows [default: that of the weights' database, or the finer tier that the
+    /// database was corrected to]
+    #[arg(long, value_name = "TIER")]
+    tier: Option<Tier>,
+    /// Folder for the table and the solutions
+    #[arg(long, value_name = "FOLDER", default_value = "runs/release")]
+    out: PathBuf,
+    #[command(flatten)]
+    solve: SolveArgs,
+}
+
+impl ReleaseCommand {
+    pub fn run(&self) -> Result<()> {
+        let surrogate = Surrogate::load(&self.weights)?;
+        input_file::require(&self.material, "--material")?;
+        let material = SheetMaterial::load(&self.material)?;
+        let tier = judging_tier(self.tier, &surrogate)?;
+        let _held = run_folder::hold(&self.out)?;
+        let windows = self.solve.service(&self.out)?;
+        let drawn = random_paths((&surrogate).into(), self.count.get(), 1, self.seed);
+        let hinges: Vec<_> = drawn.into_iter().map(|path| path.hinge).collect();
+        let guess = |design: &_, reached: &_| first_guess(&material, design, reached);
+        let found = releases(&windows, &hinges, &material, tier, guess).map_err(task_error)?;
+        for reason in &found.failed {
+            println!("not let go: {reason}");
+        }
+        ensure!(
+            !found.rows.is_empty(),
+            "no hinge was let go; see {}",
+            self.out.display()
+        );
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        for row in &found.rows {
+            writer.serialize(row)?;
+        }
+        run_folder::write(&self.out, "released.csv", &writer.into_inner()?)?;
+        println!(
+            "{} of {} hinges were let go on tier {tier}: {} windows, {:.0} s of one core",
+            found.rows.len(),
+            hinges.len(),
+            found.windows,
+            found.cpu_seconds
+        );
+        let fitted = found.rows.len().saturating_sub(self.unseen);
+        let (fitted, unseen) = found.rows.split_at(fitted);
+        let law = Springback::fit(fitted, unseen, &material, &tier.to_string())?;
+        let path = self.out.join("springback.json");
+        law.save(&path)?;
+        println!("{}", SpringbackCard(&law));
+        println!("written to {}", path.display());
+        Ok(())
+    }
+}
+
+/// The errors of a law for a person.
+struct SpringbackCard<'a>(&'a Springback);
+
+impl fmt::Display for SpringbackCard<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Springback { hinges, errors, .. } = self.0;
+        writeln!(
+            f,
+            "law of {hinges} hinges, at {} others (root mean squares):",
+            errors.hinges
+        )?;
+        writeln!(
+            f,
+            "{:<34}{:>9}{:>9}{:>12}",
+            "", "eta_a", "eta_s", "theta, deg"
+        )?;
+        for (name, [a, s, theta]) in [
+            ("springs back", errors.sprung),
+            ("error of what stays", errors.rest),
+        ] {
+            writeln!(f, "{name:<34}{a:>9.4}{s:>9.4}{:>12.2}", theta.to_degrees())?;
+        }
+        write!(
+            f,
+            "error of the stiffness about it: {:.1} %",
+            100.0 * errors.stiffness
+        )
+    }
+}

@@ -1,0 +1,410 @@
+//! The learned law of hinges that were let go: what stays of a deformation, and how stiff the hinge is about it, as functions of the
+//! hinge and of the state that it reached.
+//!
+//! ```text
+//! r = (r_a, r_theta, r_s),      K = U diag(exp d) U^T,      U = unit lower triangle in the order (a, theta, s)
+//! ```
+//!
+//! r and K are in units of (w_lig, 1, w_lig). K is positive definite for any coefficients. Each of r_a, r_theta, d and u_{theta a} is a
+//! polynomial of second degree in x = (ln w_lig, alpha - 90 deg, eta_a, eta_s, theta) whose terms are even in (alpha - 90 deg,
+//! eta_s), each of r_s, u_{s a} and u_{s theta} one whose terms are odd: the law of the mirrored hinge is the mirrored law.
+//! A sheet of another thickness has similar hinges: [`ReleasedHinge::scaled`].
+
+use faer::linalg::solvers::{Llt, Solve};
+use faer::{Mat, Side};
+use hinge::{HingeDeformation, HingeDesign, ReleasedHinge, ReleasedSample, SheetMaterial};
+use serde::{Deserialize, Serialize};
+use std::array::from_fn;
+use std::f64::consts::FRAC_PI_2;
+use std::io;
+use std::path::{Path, PathBuf};
+use support::sealed_json::{self, SealError};
+use support::statistics::root_mean_square;
+use support::{regular_file, whole_file};
+
+/// Numbers of terms and of outputs that are even, and that are odd.
+const EVEN: [usize; 2] = [13, 6];
+const ODD: [usize; 2] = [8, 3];
+/// Ridge of the fit, relative to the number of hinges: terms that hardly vary get small coefficients.
+const RIDGE: f64 = 1e-4;
+/// Fewest hinges of a fit: three for each even term.
+const FEWEST: usize = 3 * EVEN[0];
+
+/// The law, with its training and its errors.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Springback {
+    /// Name of the sheet material.
+    pub material: String,
+    /// [`SheetMaterial::law_hash`] of the material.
+    pub material_hash: String,
+    /// Thickness of the windows (mm).
+    pub thickness: f64,
+    /// Radius of their holes over w_lig.
+    pub fillet_ratio: f64,
+    /// Tier of their mesh.
+    pub tier: String,
+    /// Number of hinges that the law was fitted to.
+    pub hinges: usize,
+    /// Errors at hinges that the fit has not seen.
+    pub errors: SpringbackErrors,
+    /// Mean and standard deviation of ln w_lig, eta_a and theta.
+    means: [[f64; 2]; 3],
+    /// Root mean squares of alpha - 90 deg and eta_s.
+    spans: [f64; 2],
+    /// Coefficients of the even outputs, a row a term.
+    even: Vec<[f64; EVEN[1]]>,
+    /// Coefficients of the odd outputs.
+    odd: Vec<[f64; ODD[1]]>,
+}
+
+/// Errors of the law at a set of hinges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpringbackErrors {
+    /// Number of hinges.
+    pub hinges: usize,
+    /// Root mean squares of the errors of r in (eta_a, eta_s, theta (rad)).
+    pub rest: [f64; 3],
+    /// The same of what springs back, the reached state minus r.
+    pub sprung: [f64; 3],
+    /// Root mean square of |K - K_fe| / |K_fe|, Frobenius norms in units of (w_lig, w_lig, 1).
+    pub stiffness: f64,
+}
+
+/// Why there is no law.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the message of a variant is its documentation")]
+pub enum SpringbackError {
+    #[error("{0} hinges are too few for a law: at least {FEWEST}")]
+    TooFew(usize),
+    #[error(
+        "row {0} has a number that is not finite, or a stiffness that is not positive definite"
+    )]
+    Row(usize),
+    #[error("cannot read {path}: {source}", path = .path.display())]
+    Read { path: PathBuf, source: io::Error },
+    #[error("{path} is not a law of released hinges: {source}", path = .path.display())]
+    File { path: PathBuf, source: SealError },
+    #[error("cannot write {path}: {source}", path = .path.display())]
+    Write { path: PathBuf, source: io::Error },
+}
+
+impl Springback {
+    /// Fits the law to hinges, and measures its errors at `unseen` ones.
+    pub fn fit(
+        rows: &[ReleasedSample],
+        unseen: &[ReleasedSample],
+        material: &SheetMaterial,
+        tier: &str,
+    ) -> Result<Self, SpringbackError> {
+        if rows.len() < FEWEST {
+            return Err(SpringbackError::TooFew(rows.len()));
+        }
+        let inputs: Vec<[f64; 5]> = rows
+            .iter()
+            .map(|row| inputs(&row.design(), &row.reached()))
+            .collect();
+        let column = |i: usize| inputs.iter().map(move |x| x[i]);
+        let count = rows.len() as f64;
+        let mean = |i: usize| {
+            let mean = column(i).sum::<f64>() / count;
+            let deviation = root_mean_square(column(i).map(|x| x - mean));
+            [mean, deviation.max(f64::MIN_POSITIVE)]
+        };
+        let mut law = Self {
+            material: material.name.clone(),
+            material_hash: material.law_hash(),
+            thickness: material.thickness,
+            fillet_ratio: rows[0].fillet_ratio,
+            tier: tier.to_owned(),
+            hinges: rows.len(),
+            errors: SpringbackErrors::default(),
+            means: [mean(0), mean(2), mean(4)],
+            spans: [1, 3].map(|i| root_mean_square(column(i)).max(f64::MIN_POSITIVE)),
+            even: Vec::new(),
+            odd: Vec::new(),
+        };
+        let outputs: Vec<_> = (rows.iter().enumerate())
+            .map(|(i, row)| {
+                let outputs = outputs(row.w_lig, &row.released());
+                outputs.ok_or(SpringbackError::Row(i + 1))
+            })
+            .collect::<Result<_, _>>()?;
+        let (even, odd): (Vec<_>, Vec<_>) = inputs.iter().map(|x| law.terms(x)).unzip();
+        let (of_even, of_odd): (Vec<_>, Vec<_>) = outputs.into_iter().unzip();
+        law.even = ridge(&even, &of_even);
+        law.odd = ridge(&odd, &of_odd);
+        law.errors = law.errors_at(unseen);
+        Ok(law)
+    }
+
+    /// A hinge of the thickness of the windows after it was let go at a state.
+    pub fn released(&self, design: &HingeDesign, reached: &HingeDeformation) -> ReleasedHinge {
+        let (even, odd) = self.terms(&inputs(design, reached));
+        let [r_a, r_theta, d_a, d_theta, d_s, u_theta] = product(&even, &self.even);
+        let [r_s, u_s, u_s_theta] = product(&odd, &self.odd);
+        let unit = [[1.0, 0.0, 0.0], [u_theta, 1.0, 0.0], [u_s, u_s_theta, 1.0]];
+        let pivots = [d_a, d_theta, d_s].map(f64::exp);
+        let w = design.w_lig;
+        // In the order (a, theta, s), where the places of (a, s, theta) are:
+        let place = [0, 2, 1];
+        let lengths = [w, w, 1.0];
+        ReleasedHinge {
+            rest: HingeDeformation::from_eta(r_a, r_s, r_theta, w),
+            stiffness: from_fn(|i| {
+                from_fn(|j| {
+                    let [p, q] = [place[i], place[j]];
+                    let sum: f64 = (0..3).map(|k| unit[p][k] * pivots[k] * unit[q][k]).sum();
+                    sum / (lengths[i] * lengths[j])
+                })
+            }),
+        }
+    }
+
+    /// The errors of the law at hinges of finite elements.
+    pub fn errors_at(&self, rows: &[ReleasedSample]) -> SpringbackErrors {
+        let errors = rows.iter().map(|row| {
+            let (law, solved) = (self.released(&row.design(), &row.reached()), row.released());
+            let eta = |of: [f64; 3]| [of[0] / row.w_lig, of[1] / row.w_lig, of[2]];
+            let [found, rest, reached] =
+                [law.rest, solved.rest, row.reached()].map(|state| eta(state.to_array()));
+            let lengths = [row.w_lig, row.w_lig, 1.0];
+            let norm = |of: &dyn Fn(usize, usize) -> f64| {
+                let squares =
+                    (0..9).map(|k| (of(k / 3, k % 3) * lengths[k / 3] * lengths[k % 3]).powi(2));
+                squares.sum::<f64>().sqrt()
+            };
+            let (k, k_fe) = (law.stiffness, solved.stiffness);
+            let stiffness = norm(&|i, j| k[i][j] - k_fe[i][j]) / norm(&|i, j| k_fe[i][j]);
+            let rest_error: [f64; 3] = from_fn(|i| found[i] - rest[i]);
+            (
+                rest_error,
+                from_fn::<f64, 3, _>(|i| reached[i] - rest[i]),
+                stiffness,
+            )
+        });
+        let errors: Vec<_> = errors.collect();
+        SpringbackErrors {
+            hinges: rows.len(),
+            rest: from_fn(|i| root_mean_square(errors.iter().map(|(rest, ..)| rest[i]))),
+            sprung: from_fn(|i| root_mean_square(errors.iter().map(|(_, sprung, _)| sprung[i]))),
+            stiffness: root_mean_square(errors.iter().map(|(.., stiffness)| *stiffness)),
+        }
+    }
+
+    /// Reads a law from its file.
+    pub fn load(path: &Path) -> Result<Self, SpringbackError> {
+        let bytes = regular_file::read(path).map_err(|source| SpringbackError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        let law: Self =
+            sealed_json::from_slice(&bytes).map_err(|source| SpringbackError::File {
+                path: path.to_owned(),
+                source,
+            })?;
+        Ok(law)
+    }
+
+    /// Writes the law to its file.
+    pub fn save(&self, path: &Path) -> Result<(), SpringbackError> {
+        let bytes = sealed_json::to_vec(self).map_err(io::Error::other);
+        let written = bytes.and_then(|bytes| whole_file::write(path, &bytes));
+        written.map_err(|source| SpringbackError::Write {
+            path: path.to_owned(),
+            source,
+        })
+    }
+
+    /// The even and the odd terms of the polynomials.
+    fn terms(&self, x: &[f64; 5]) -> ([f64; EVEN[0]], [f64; ODD[0]]) {
+        let of = |i: usize, [mean, deviation]: [f64; 2]| (x[i] - mean) / deviation;
+        let [w, a, t] = [
+            of(0, self.means[0]),
+            of(2, self.means[1]),
+            of(4, self.means[2]),
+        ];
+        let [c, s] = [x[1] / self.spans[0], x[3] / self.spans[1]];
+        (
+            [
+                1.0,
+                w,
+                a,
+                t,
+                w * w,
+                w * a,
+                w * t,
+                a * a,
+                a * t,
+                t * t,
+                c * c,
+                c * s,
+                s * s,
+            ],
+            [c, s, c * w, c * a, c * t, s * w, s * a, s * t],
+        )
+    }
+}
+
+/// (ln w_lig, alpha - 90 deg, eta_a, eta_s, theta)
+fn inputs(design: &HingeDesign, reached: &HingeDeformation) -> [f64; 5] {
+    let [eta_a, eta_s] = reached.eta(design.w_lig);
+    [
+        design.w_lig.ln(),
+        design.alpha - FRAC_PI_2,
+        eta_a,
+        eta_s,
+        reached.theta,
+    ]
+}
+
+/// (r_a, r_theta, d_a, d_theta, d_s, u_{theta a}) and (r_s, u_{s a}, u_{s theta}) of a hinge; `None` if its stiffness is not positive
+/// definite.
+fn outputs(w: f64, hinge: &ReleasedHinge) -> Option<([f64; EVEN[1]], [f64; ODD[1]])> {
+    let k = &hinge.stiffness;
+    let (aa, ta, tt) = (k[0][0] * w * w, k[2][0] * w, k[2][2]);
+    let (sa, st, ss) = (k[1][0] * w * w, k[1][2] * w, k[1][1] * w * w);
+    let u_theta = ta / aa;
+    let d_theta = tt - u_theta * ta;
+    let u_s = sa / aa;
+    let u_s_theta = (st - u_s * ta) / d_theta;
+    let d_s = ss - u_s * sa - u_s_theta * u_s_theta * d_theta;
+    let [eta_a, eta_s] = hinge.rest.eta(w);
+    let all = [aa, d_theta, d_s].map(f64::ln);
+    let even = [eta_a, hinge.rest.theta, all[0], all[1], all[2], u_theta];
+    let odd = [eta_s, u_s, u_s_theta];
+    let finite = even.iter().chain(&odd).all(|x| x.is_finite());
+    finite.then_some((even, odd))
+}
+
+fn product<const T: usize, const N: usize>(terms: &[f64; T], rows: &[[f64; N]]) -> [f64; N] {
+    from_fn(|n| std::iter::zip(terms, rows).map(|(x, row)| x * row[n]).sum())
+}
+
+/// The coefficients that fit outputs to terms best, by least squares with [`RIDGE`].
+fn ridge<const T: usize, const N: usize>(
+    terms: &[[f64; T]],
+    outputs: &[[f64; N]],
+) -> Vec<[f64; N]> {
+    let count = terms.len() as f64;
+    let normal = Mat::from_fn(T, T, |p, q| {
+        let sum: f64 = terms.iter().map(|row| row[p] * row[q]).sum();
+        sum + if p == q { RIDGE * count } else { 0.0 }
+    });
+    let right = Mat::from_fn(T, N, |p, n| {
+        let pairs = std::iter::zip(terms, outputs);
+        pairs.map(|(row, output)| row[p] * output[n]).sum::<f64>()
+    });
+    let factor = Llt::new(normal.as_ref(), Side::Lower).expect("the ridge is positive");
+    let found = factor.solve(right);
+    (0..T).map(|p| from_fn(|n| found[(p, n)])).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hinge::{HingeConstants, HingeForces};
+
+    fn material() -> SheetMaterial {
+        SheetMaterial {
+            name: "plate".into(),
+            thickness: 3.0,
+            young: 1300.0,
+            poisson: 0.4,
+            density_kg_m3: 900.0,
+            fracture_strain: 1.0,
+            plastic: vec![[30.0, 0.0]],
+            stress_deviation: None,
+        }
+    }
+
+    /// Hinges whose law is in the space of the fit, with small but full stiffness.
+    fn rows(count: usize) -> Vec<ReleasedSample> {
+        let wave = |i: usize, k: usize| ((1 + i) as f64 * (k as f64 + 0.37).sqrt() * 1.7).sin();
+        (0..count)
+            .map(|i| {
+                let design = HingeConstants::PAPER
+                    .hinge(1.7 + 0.8 * wave(i, 0), FRAC_PI_2 + 0.6 * wave(i, 1));
+                let w = design.w_lig;
+                let theta = 0.5 + 0.4 * wave(i, 2);
+                let reached = HingeDeformation::from_eta(0.4 * theta, 0.1 * wave(i, 3), theta, w);
+                let [eta_a, eta_s] = reached.eta(w);
+                let rest = HingeDeformation::from_eta(0.8 * eta_a, 0.7 * eta_s, theta - 0.15, w);
+                // In units of (w, 1, w) and the order (a, theta, s).
+                let (d, u) = (
+                    [900.0 * w, 40.0, 300.0 * w * w],
+                    [-0.3, 0.1 * eta_s, 0.2 * eta_s],
+                );
+                let ta = u[0] * d[0];
+                let (sa, st) = (u[1] * d[0], u[1] * ta + u[2] * d[1]);
+                let tt = d[1] + u[0] * ta;
+                let ss = d[2] + u[1] * sa + u[2] * u[2] * d[1];
+                let stiffness = [
+                    [d[0] / (w * w), sa / (w * w), ta / w],
+                    [sa / (w * w), ss / (w * w), st / w],
+                    [ta / w, st / w, tt],
+                ];
+                let hinge = ReleasedHinge { rest, stiffness };
+                ReleasedSample::new(&design, &reached, &HingeForces::default(), 0.5, &hinge)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_law_of_its_own_kind_is_found() {
+        let rows = rows(160);
+        let law = Springback::fit(&rows[..120], &rows[120..], &material(), "plate").unwrap();
+        let SpringbackErrors {
+            hinges,
+            rest,
+            sprung,
+            stiffness,
+        } = law.errors;
+        assert_eq!(hinges, 40);
+        for i in 0..3 {
+            assert!(rest[i] < 0.01 * sprung[i], "{rest:?} {sprung:?}");
+        }
+        assert!(stiffness < 0.01, "{stiffness}");
+    }
+
+    #[test]
+    fn the_law_of_the_mirrored_hinge_is_the_mirrored_law() {
+        let rows = rows(60);
+        let law = Springback::fit(&rows, &[], &material(), "plate").unwrap();
+        for row in &rows[..10] {
+            let (design, reached) = (row.design(), row.reached());
+            let mirrored = law.released(&design.mirrored(), &reached.mirrored());
+            let expected = law.released(&design, &reached).mirrored();
+            let close = |x: f64, y: f64| (x - y).abs() < 1e-9 * (1.0 + y.abs());
+            let pairs = std::iter::zip(mirrored.rest.to_array(), expected.rest.to_array());
+            let stiffness = std::iter::zip(mirrored.stiffness, expected.stiffness);
+            let stiffness = stiffness.flat_map(|(x, y)| std::iter::zip(x, y));
+            assert!(pairs.chain(stiffness).all(|(x, y)| close(x, y)));
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_fitted_is_refused() {
+        let mut rows = rows(60);
+        let fit = |rows: &[ReleasedSample]| Springback::fit(rows, &[], &material(), "plate");
+        assert!(matches!(fit(&rows[..20]), Err(SpringbackError::TooFew(20))));
+        rows[3].k_tt = -1.0;
+        assert!(matches!(fit(&rows), Err(SpringbackError::Row(4))));
+    }
+
+    #[test]
+    fn a_file_keeps_the_law_and_a_damaged_one_is_refused() {
+        let law = Springback::fit(&rows(60), &[], &material(), "plate").unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("springback.json");
+        law.save(&path).unwrap();
+        assert_eq!(Springback::load(&path).unwrap(), law);
+        let text = std::fs::read_to_string(&path).unwrap();
+        std::fs::write(&path, text.replace("\"hinges\": 60", "\"hinges\": 61")).unwrap();
+        assert!(matches!(
+            Springback::load(&path),
+            Err(SpringbackError::File { .. })
+        ));
+    }
+}

@@ -1,0 +1,209 @@
+//! A sheet that is let go, with finite elements for its hinges.
+//!
+//! Every hinge is solved along its path in the deployed sheet, and from there straight to its state without loads by the law of released
+//! hinges: it is elastic on the way, and the way does not matter. The
+//! deformation at which the law is without forces is moved until the law has the forces of the finite elements there, and the sheet
+//! is let go again; this is repeated until the panels stay where they are.
+
+use crate::balanced_sheet::{BALANCED, Balanced, size};
+use crate::recorded_path::paths_of;
+use crate::releases::solved;
+use crate::replay::ElementWindows;
+use crate::verification_error::VerificationError;
+use design::analysis::springback::{ReleasedSheet, WhatStays, released_hinges};
+use design::objective::design_problem::{Deployment, DesignProblem};
+use design::scene::Scene;
+use design::sheet::kinematics::deployed_corners;
+use hinge::{HingeDeformation, ReleasedHinge};
+use serde::Serialize;
+use std::array::from_fn;
+use std::fmt;
+use support::statistics::rms_and_maximum;
+use surrogate::Springback;
+
+/// What finite elements say of a sheet that was let go.
+#[derive(Clone, Debug, Serialize)]
+pub struct ReleasedByElements {
+    /// What stays by the law of released hinges.
+    pub by_law: WhatStays,
+    /// What stays by finite elements.
+    pub by_elements: WhatStays,
+    /// Distance of the panel corners between the two: root mean square and maximum (mm).
+    pub corners: [f64; 2],
+    /// Largest movement of a panel corner in every round (mm).
+    pub movements: Vec<f64>,
+    /// Whether the last of them is below [`BALANCED`] times the size of the sheet.
+    pub is_balanced: bool,
+    /// Largest share of the load that hinges carry without loads, of root mean square forces (F_a, F_s, M_theta / w_lig): what the hinges do
+    /// to each other.
+    pub own_forces: f64,
+}
+
+/// Lets a balanced sheet go, in at most `rounds` rounds.
+pub fn released_by_elements(
+    scene: &Scene,
+    found: &Balanced,
+    problem: &DesignProblem,
+    law: &Springback,
+    windows: &ElementWindows,
+    rounds: usize,
+) -> Result<ReleasedByElements, VerificationError> {
+    let deployed = found.by_elements();
+    let mut released = problem.let_go(deployed, released_hinges(scene, law, deployed)?)?;
+    let by_law = problem.what_stays(deployed, &released)?;
+    let first = corners(deployed, &released);
+    let mut last = first.clone();
+    let mut movements = Vec::new();
+    let mut own_forces = 0.0;
+    for _ in 0..rounds {
+        let ends = element_forces(scene, deployed, &released, windows)?;
+        own_forces = share(deployed, found, &ends);
+        let states = &released.path[released.path.len() - 1].deformations;
+        let hinges = (released.hinges.iter().zip(states).zip(&ends))
+            .map(|((hinge, state), forces)| {
+                let back = solved(hinge.stiffness, *forces).ok_or(VerificationError::NotElastic)?;
+                let state = state.to_array();
+                let rest = from_fn(|i| state[i] - back[i]);
+                Ok(ReleasedHinge {
+                    rest: rest.into(),
+                    ..*hinge
+                })
+            })
+            .collect::<Result<_, VerificationError>>()?;
+        released = problem.let_go(deployed, hinges)?;
+        let now = corners(deployed, &released);
+        let [_, movement] = distances(&last, &now);
+        movements.push(movement);
+        last = now;
+        if movement <= BALANCED * size(deployed) {
+            break;
+        }
+    }
+    Ok(ReleasedByElements {
+        by_elements: problem.what_stays(deployed, &released)?,
+        by_law,
+        corners: distances(&first, &last),
+        is_balanced: movements
+            .last()
+            .is_some_and(|last| *last <= BALANCED * size(deployed)),
+        movements,
+        own_forces,
+    })
+}
+
+/// The forces of every hinge by finite elements, along its path in the deployed sheet and back.
+fn element_forces(
+    scene: &Scene,
+    deployed: &Deployment,
+    released: &ReleasedSheet,
+    windows: &ElementWindows,
+) -> Result<Vec<[f64; 3]>, VerificationError> {
+    /// States on the way back, each with the part of the path that a load step has.
+    const BACK: usize = 5;
+    let mut paths = paths_of(deployed);
+    for path in &mut paths {
+        let last = &released.path[released.path.len() - 1];
+        let [from, to] = [path.end(), last.deformations[path.hinge]].map(|state| state.to_array());
+        path.states.extend((1..=BACK).map(|k| {
+            let share = k as f64 / BACK as f64;
+            HingeDeformation::from(from_fn(|i| from[i] + share * (to[i] - from[i])))
+        }));
+    }
+    let solved = windows.solve(&paths, &scene.material)?;
+    let forces = solved.iter().map(|window| {
+        let samples = window.complete();
+        let samples =
+            samples.map_err(|unsolved| VerificationError::NoHinge(unsolved.to_string()))?;
+        let last = samples.last().copied().unwrap_or_default();
+        Ok(last.forces().to_array())
+    });
+    forces.collect()
+}
+
+/// Root mean square of forces over that of the forces under load.
+fn share(deployed: &Deployment, found: &Balanced, forces: &[[f64; 3]]) -> f64 {
+    let designs = deployed.sheet.designs();
+    let square = |[a, s, m]: [f64; 3], w: f64| a * a + s * s + (m / w).powi(2);
+    let of = |forces: &mut dyn Iterator<Item = [f64; 3]>| -> f64 {
+        let hinges = std::iter::zip(&designs, forces);
+        hinges
+            .map(|(design, forces)| square(forces, design.w_lig))
+            .sum()
+    };
+    let loaded = found
+        .hinges
+        .iter()
+        .map(|end| end.unwrap_or_default().forces().to_array());
+    (of(&mut forces.iter().copied()) / of(&mut { loaded }).max(f64::MIN_POSITIVE)).sqrt()
+}
+
+fn corners(deployed: &Deployment, released: &ReleasedSheet) -> Vec<[f64; 2]> {
+    let last = &released.path[released.path.len() - 1];
+    deployed_corners(&deployed.sheet, &last.configuration).concat()
+}
+
+fn distances(from: &[[f64; 2]], to: &[[f64; 2]]) -> [f64; 2] {
+    let pairs = std::iter::zip(from, to);
+    rms_and_maximum(pairs.map(|([x, y], [x2, y2])| f64::hypot(x2 - x, y2 - y)))
+}
+
+impl fmt::Display for ReleasedByElements {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let mean = |stays: &WhatStays, i: usize| {
+            let sum: f64 = stays.rotations.iter().map(|pair| pair[i].abs()).sum();
+            (sum / stays.rotations.len() as f64).to_degrees()
+        };
+        let [law, elements] = [&self.by_law, &self.by_elements];
+        writeln!(f, "# The sheet let go\n")?;
+        writeln!(f, "| | by the law | by finite elements |\n|---|---|---|")?;
+        writeln!(
+            f,
+            "| mean rotation of the hinges under load, deg | {:.2} | {:.2} |",
+            mean(law, 0),
+            mean(elements, 0)
+        )?;
+        writeln!(
+            f,
+            "| mean rotation that stays, deg | {:.2} | {:.2} |",
+            mean(law, 1),
+            mean(elements, 1)
+        )?;
+        writeln!(
+            f,
+            "| movement of the panel corners, root mean square, mm | {:.2} | {:.2} |",
+            law.corners[0], elements.corners[0]
+        )?;
+        if let (Some([_, by_law]), Some([_, by_elements])) =
+            (law.displacement, elements.displacement)
+        {
+            writeln!(
+                f,
+                "| displacement along the loads that stays | {by_law:.2} | {by_elements:.2} |"
+            )?;
+        }
+        let [rms, most] = self.corners;
+        writeln!(
+            f,
+            "\nThe law places the corners of the sheet without loads {rms:.2} mm from finite elements (root mean square), at most {most:.2} mm."
+        )?;
+        writeln!(
+            f,
+            "Without loads hinges hold each other with {:.0} % of the forces that they had under load.",
+            100.0 * self.own_forces
+        )?;
+        let movements = self
+            .movements
+            .iter()
+            .map(|movement| format!("{movement:.3}"));
+        writeln!(
+            f,
+            "Rounds, largest movement of a corner, mm: {}{}",
+            movements.collect::<Vec<_>>().join(", "),
+            if self.is_balanced {
+                ""
+            } else {
+                " (still moving: use more --rounds)"
+            }
+        )
+    }
+}
