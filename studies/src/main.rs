@@ -3,7 +3,6 @@
 mod actuations;
 mod approaches;
 mod attempt;
-mod budget;
 mod calibration;
 mod capacity;
 mod chain;
@@ -14,7 +13,6 @@ mod cpu_seconds;
 mod designed;
 mod drawing;
 mod extremes;
-mod flanks;
 mod flatness;
 mod free_panels;
 mod gradient;
@@ -65,12 +63,10 @@ enum Study {
     Silhouettes(silhouettes::SilhouetteStudy),
     Compact(compact::CompactStudy),
     Actuations(actuations::ActuationStudy),
-    Budget(budget::BudgetStudy),
     Calibration(calibration::CalibrationStudy),
     Capacity(capacity::CapacityStudy),
     Localisation(localisation::LocalisationStudy),
     Extremes(extremes::ExtremesStudy),
-    Flanks(flanks::FlanksStudy),
     Flatness(flatness::FlatnessStudy),
     Surrogate(surrogate::SurrogateStudy),
     Tradeoff(tradeoff::TradeoffCommand),
@@ -94,12 +90,10 @@ impl Study {
             Self::Silhouettes(study) => study.run(),
             Self::Compact(study) => study.run(),
             Self::Actuations(study) => study.run(),
-            Self::Budget(study) => study.run(),
             Self::Calibration(study) => study.run(),
             Self::Capacity(study) => study.run(),
             Self::Localisation(study) => study.run(),
             Self::Extremes(study) => study.run(),
-            Self::Flanks(study) => study.run(),
             Self::Flatness(study) => study.run(),
             Self::Surrogate(study) => study.run(),
             Self::Tradeoff(command) => command.run(),

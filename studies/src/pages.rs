@@ -14,30 +14,27 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::SystemTime;
 
-/// Write the pages of docs/results, all or those named, and the page that joins their tables
+/// Write the named pages of docs/results, and the page that joins their tables; without a name, list the pages and their questions
 ///
-/// Run it in the root of the repository. All pages together take hours; an interrupted page continues when it
+/// Run it in the root of the repository. A page takes minutes to hours; an interrupted one continues when it
 /// is started again. Example: kirigami-studies pages window sheet
 #[derive(Args)]
 pub struct PagesCommand {
-    /// Pages to make, by default all
+    /// Pages to make
     #[arg(value_name = "PAGE")]
     pages: Vec<String>,
     /// Pages, their commands and the products they need (TOML)
     #[arg(long, value_name = "FILE", default_value = "docs/results/pages.toml")]
     file: PathBuf,
     /// Record the present inputs of the named pages without making them: only for changes that change no figure, as of a format
-    #[arg(long, requires = "pages", conflicts_with = "list")]
+    #[arg(long, requires = "pages")]
     accept: bool,
-    /// List the pages and their questions
-    #[arg(long)]
-    list: bool,
 }
 
 impl PagesCommand {
     pub fn run(&self) -> Result<()> {
         let book: Book = support::toml_file::read(&self.file)?;
-        if self.list {
+        if self.pages.is_empty() {
             for page in &book.page {
                 let stale = page
                     .stale
@@ -68,12 +65,11 @@ impl PagesCommand {
 
 impl Book {
     fn chosen(&self, names: &[String]) -> Result<Vec<&Page>> {
-        if names.is_empty() {
-            return Ok(self.page.iter().collect());
-        }
         let page = |name: &String| {
             let page = self.page.iter().find(|page| page.name == *name);
-            page.with_context(|| format!("there is no page `{name}`; --list prints all"))
+            page.with_context(|| {
+                format!("there is no page `{name}`; `kirigami-studies pages` lists all")
+            })
         };
         names.iter().map(page).collect()
     }

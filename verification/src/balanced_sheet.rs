@@ -16,7 +16,6 @@ use design::objective::design_problem::{Deployment, DesignError, DesignProblem, 
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
 use design::sheet::kinematics::deployed_corners;
-use fe_driver::SolveService;
 use hinge::HingeSample;
 use mesher::Tier;
 use serde::Serialize;
@@ -101,17 +100,7 @@ pub fn balanced(
 ) -> Result<(Balanced, DesignProblem), VerificationError> {
     let draft = windows.tier.draft().map(|tier| (tier, DRAFT_ROUNDS));
     let meshes: Vec<_> = draft.into_iter().chain([(windows.tier, rounds)]).collect();
-    balanced_on(&meshes, scene, design, windows.service)
-}
-
-/// The same on the meshes that are named, in their order, each with its most rounds.
-pub fn balanced_on(
-    meshes: &[(Tier, usize)],
-    scene: &Scene,
-    design: &DesignVector,
-    service: &SolveService,
-) -> Result<(Balanced, DesignProblem), VerificationError> {
-    if meshes.iter().any(|(_, rounds)| *rounds == 0) {
+    if rounds == 0 {
         return Err(VerificationError::NoRounds);
     }
     let mut problem = scene.problem()?;
@@ -140,7 +129,7 @@ pub fn balanced_on(
             found.draft_ended = Some(ended);
             iteration.start_from_corrected_law()?;
         }
-        let windows = ElementWindows { tier, service };
+        let windows = ElementWindows { tier, ..*windows };
         iteration.rounds(&windows, rounds, &mut found)?;
     }
     Ok((found, iteration.problem))

@@ -69,7 +69,7 @@ mod verification_error;
 mod whole_sheet;
 
 pub use balanced_sheet::{
-    BALANCED, BALANCED_FORCES, BalanceEnd, Balanced, Round, balanced, balanced_on, movements, size,
+    BALANCED, BALANCED_FORCES, BalanceEnd, Balanced, Round, balanced, movements, size,
 };
 pub use compared_states::{SCALE, each_relative, spread_table};
 pub use doubtful_states::{DoubtfulState, doubtful_states, rays_through};

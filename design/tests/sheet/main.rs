@@ -14,6 +14,7 @@ mod force_response;
 mod gradient;
 mod invariance;
 mod kinematics;
+mod let_go;
 mod limits;
 mod load_steps;
 mod nearby_paths;
