@@ -1,7 +1,7 @@
 # Two commands: `make demo` runs the main job, `make test` passes all tests.
 # Both first install what is missing.
 
-.PHONY: demo test lint tools test-tools
+.PHONY: demo test lint python tools test-tools
 
 demo: tools
 	cargo run --release --locked -- demo
@@ -14,6 +14,12 @@ lint:
 	cargo clippy --release --locked --workspace --all-targets -- -D warnings
 	cargo check --release --locked -p kirigami --no-default-features
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --locked --workspace --lib --no-deps
+
+# The Python package and its tests, in an environment of their own.
+python:
+	python3 -m venv target/python
+	target/python/bin/pip install --quiet './python[test]'
+	target/python/bin/pytest python
 
 tools:
 	scripts/install-tools

@@ -25,4 +25,4 @@ pub use law::{
     DamageMeasure, HingeDamage, HingeEnergy, HingeGradient, HingeLaw, Order, PreparedLaw,
 };
 pub use linear::LinearLaw;
-pub use surrogate::SurrogateLaw;
+pub use surrogate::{PreparedSurrogate, SurrogateLaw};
