@@ -46,29 +46,14 @@ def equilibrium(problem: Problem) -> Callable[..., Equilibrium]:
     shapes = _implicit.input_shapes(problem)
     defaults = _implicit.Inputs(None, problem.loads, problem.thickness, 1.0)
 
-    def on_host(function: Callable, shapes: tuple, *arguments: jax.Array) -> tuple:
-        def call(*arguments):
-            # No JAX inside of the callback: it could wait for itself.
-            return tuple(function(*(np.asarray(argument) for argument in arguments)))
+    def solve(*inputs):
+        return _implicit.solve(problem, _implicit.Inputs(*inputs))
 
-        results = tuple(jax.ShapeDtypeStruct(shape, np.float64) for shape in shapes)
-        return jax.pure_callback(call, results, *arguments, vmap_method="broadcast_all")
+    def pullback(*arrays):
+        return _implicit.pullback(problem, _implicit.Inputs(*arrays[:4]), _implicit.Solution(*arrays[4:]))
 
-    def solved(*inputs):
-        solve = lambda *inputs: _implicit.solve(problem, _implicit.Inputs(*inputs))
-        return on_host(solve, _implicit.output_shapes(problem), *inputs)
-
-    @jax.custom_vjp
-    def pulled_back(inputs, solution):
-        def pullback(*both):
-            return _implicit.pullback(problem, _implicit.Inputs(*both[:4]), _implicit.Solution(*both[4:]))
-
-        return on_host(pullback, shapes, *inputs, *solution)
-
-    def refuse_twice(inputs, solution):
-        raise NotImplementedError(_implicit.TWICE)
-
-    pulled_back.defvjp(refuse_twice, refuse_twice)
+    solved = _on_host(solve, _implicit.output_shapes(problem))
+    pulled_back = _on_host(pullback, shapes)
 
     @jax.custom_vjp
     def function(x, loads, thickness, stress):
@@ -85,7 +70,7 @@ def equilibrium(problem: Problem) -> Callable[..., Equilibrium]:
         values, configuration = known
         zero = jax.custom_derivatives.SymbolicZero
         instantiated = (jnp.zeros(by.shape, by.dtype) if isinstance(by, zero) else by for by in by_outputs)
-        return pulled_back(values, (*instantiated, configuration))
+        return pulled_back(*values, *instantiated, configuration)
 
     function.defvjp(forward, backward, symbolic_zeros=True)
 
@@ -101,3 +86,22 @@ def equilibrium(problem: Problem) -> Callable[..., Equilibrium]:
         return function(*inputs)
 
     return with_defaults
+
+
+def _on_host(function: Callable, shapes: tuple) -> Callable:
+    """A function of NumPy arrays as one of JAX, without a derivative."""
+
+    def call(*arguments):
+        # No JAX inside of the callback: it could wait for itself.
+        return tuple(function(*(np.asarray(argument) for argument in arguments)))
+
+    @jax.custom_vjp
+    def on_host(*arguments):
+        results = tuple(jax.ShapeDtypeStruct(shape, np.float64) for shape in shapes)
+        return jax.pure_callback(call, results, *arguments, vmap_method="broadcast_all")
+
+    def refuse(*_):
+        raise NotImplementedError(_implicit.TWICE)
+
+    on_host.defvjp(refuse, refuse)
+    return on_host
