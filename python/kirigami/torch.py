@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 import torch
-from torch.autograd.function import once_differentiable
 
 from kirigami import _implicit
 from kirigami._kirigami import Problem
@@ -56,7 +55,7 @@ def equilibrium(
         value = torch.as_tensor(default if given is None else given, dtype=torch.float64)
         if value.shape not in (shape, (*lead, *shape)):
             raise ValueError(f"`{name}` has the shape {tuple(value.shape)}, expected {(*lead, *shape)}")
-        inputs.append(value.expand(*lead, *shape))
+        inputs.append(value.expand((*lead, *shape)))
     _implicit.refuse(problem, {name: given.requires_grad for name, given in zip(shapes._fields[2:], inputs[2:], strict=True)})
     return Equilibrium(*_Solve.apply(problem, *inputs))
 
@@ -71,12 +70,23 @@ class _Solve(torch.autograd.Function):
         return tuple(outputs)
 
     @staticmethod
-    @once_differentiable
     def backward(ctx, *by_outputs):
-        *inputs, configuration = map(_array, ctx.saved_tensors)
-        solution = _implicit.Solution(*map(_array, by_outputs), configuration)
-        gradient = _implicit.pullback(ctx.problem, _implicit.Inputs(*inputs), solution)
-        return None, *(torch.from_numpy(np.array(column)) for column in gradient)
+        *inputs, configuration = ctx.saved_tensors
+        return None, *_Pullback.apply(ctx.problem, *inputs, *by_outputs, configuration)
+
+
+class _Pullback(torch.autograd.Function):
+    """The gradient as a function of its own, so that its derivative is refused; without it a gradient of a gradient would be constant."""
+
+    @staticmethod
+    def forward(ctx, problem, *tensors):
+        arrays = [_array(tensor) for tensor in tensors]
+        gradient = _implicit.pullback(problem, _implicit.Inputs(*arrays[:4]), _implicit.Solution(*arrays[4:]))
+        return tuple(torch.from_numpy(np.array(column)) for column in gradient)
+
+    @staticmethod
+    def backward(ctx, *_):
+        raise NotImplementedError(_implicit.TWICE)
 
 
 def _array(tensor: torch.Tensor) -> np.ndarray:

@@ -47,9 +47,6 @@ pub(crate) struct HingeStates {
 
 #[pymethods]
 impl Surrogate {
-    /// load(weights, ensemble=())
-    /// --
-    ///
     /// Weights (.safetensors) with the card (.json) beside them, and further networks of the same training, whose
     /// disagreement is the spread.
     #[staticmethod]
@@ -72,9 +69,6 @@ impl Surrogate {
         plain(py, self.networks[0].card())
     }
 
-    /// hinges(w_lig, alpha, hole=None)
-    /// --
-    ///
     /// Hinges prepared for evaluation.
     ///
     /// w_lig: ligament width (mm), a number or an array of the shape of the hinges; alpha: cut angle (rad), likewise; hole: radius of
@@ -90,9 +84,6 @@ impl Surrogate {
         self.prepared(py, None, w_lig, alpha, hole)
     }
 
-    /// __call__(states, w_lig, alpha, hole=None, order="tangent")
-    /// --
-    ///
     /// The states (a, s, theta), an array of shape (..., 3) in (mm, mm, rad), of hinges of the shape (...) or of a single design.
     /// For many evaluations of the same hinges, prepare them by `hinges`.
     #[pyo3(signature = (states, w_lig, alpha, hole=None, order="tangent"))]
@@ -214,9 +205,6 @@ fn read_order(order: &str) -> PyResult<Order> {
 
 #[pymethods]
 impl Hinges {
-    /// __call__(states, order="tangent")
-    /// --
-    ///
     /// The states (a, s, theta) (mm, mm, rad) of all hinges, an array of their shape + (3,).
     ///
     /// order: "value" evaluates W, "forces" its gradient, "tangent" its Hessian, "design" the derivatives in (w_lig, alpha, hole) too.

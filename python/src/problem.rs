@@ -24,10 +24,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A design problem: sheet, material, supports, loads, target and objective of a scene.
 ///
-/// Problem(scene, folder=".")
+/// Problem(scene, folder=None)
 ///
 /// scene: the file of a scene (TOML), the folder of a run, or a dict with the keys of a scene (docs/KEYS.md), whose paths are relative
-/// to `folder`. A design is a vector x of `size` numbers; `blocks` names its parts. Units are mm, N, N mm and rad.
+/// to `folder`, by default the working folder. A design is a vector x of `size` numbers; `blocks` names its parts. Units are mm, N, N mm and rad.
 #[pyclass(frozen, module = "kirigami")]
 pub(crate) struct Problem {
     scene: Scene,
@@ -78,10 +78,10 @@ struct Given<'py> {
 #[pymethods]
 impl Problem {
     #[new]
-    #[pyo3(signature = (scene, folder=PathBuf::from(".")))]
-    fn new(py: Python, scene: &Bound<PyAny>, folder: PathBuf) -> PyResult<Self> {
+    #[pyo3(signature = (scene, folder=None))]
+    fn new(py: Python, scene: &Bound<PyAny>, folder: Option<PathBuf>) -> PyResult<Self> {
         let scene = if let Ok(keys) = scene.cast::<PyDict>() {
-            scene_of(keys, &folder)?
+            scene_of(keys, &folder.unwrap_or_default())?
         } else {
             let path: PathBuf = scene.extract().map_err(|_| {
                 PyTypeError::new_err(
@@ -200,9 +200,6 @@ impl Problem {
         Ok(Sheet(Arc::new(sheet)))
     }
 
-    /// deploy(x, loads=None, thickness=None, stress=1.0, warm=True)
-    /// --
-    ///
     /// The deployed sheet with its path, which ends early where no equilibrium is found; with pins the kinematic deployment.
     ///
     /// loads: (F_x, F_y, M) on every panel, shape (panels, 3), instead of the scene's; thickness (mm) instead of the scene's; stress: all
@@ -231,9 +228,6 @@ impl Problem {
         Ok(Deployment::new(problem, deployment))
     }
 
-    /// equilibrium(x, loads=None, thickness=None, stress=1.0, warm=True)
-    /// --
-    ///
     /// The same as `deploy`, but NoEquilibrium is raised if none was found at full load.
     #[pyo3(signature = (x, loads=None, thickness=None, stress=1.0, warm=true))]
     fn equilibrium(
@@ -251,9 +245,6 @@ impl Problem {
         Ok(deployment)
     }
 
-    /// solve(x, loads=None, thickness=None, stress=1.0, warm=True)
-    /// --
-    ///
     /// The equilibrium at full load alone: deployed corners, reactions, load factor. It costs a fraction of the path.
     #[pyo3(signature = (x, loads=None, thickness=None, stress=1.0, warm=true))]
     fn solve(
@@ -278,9 +269,6 @@ impl Problem {
         Ok(State(response))
     }
 
-    /// solve_many(x, loads=None, thickness=None, stress=1.0, strict=True)
-    /// --
-    ///
     /// Many equilibria at full load in one call, over all threads: x of shape (n, size) or (size,), loads of shape (n, panels, 3) or
     /// (panels, 3), thickness and stress of shape (n,) or numbers. All start from the last state of the problem.
     ///
@@ -319,9 +307,6 @@ impl Problem {
         Ok(list)
     }
 
-    /// pullback(x, configuration, corners, reactions, load_factor, loads=None, thickness=None, stress=1.0)
-    /// --
-    ///
     /// The gradient in the inputs of a function of the equilibrium at full load, from its gradient in the outputs: the implicit
     /// derivative, by one adjoint solve.
     ///
@@ -389,9 +374,6 @@ impl Problem {
         Ok(gradient)
     }
 
-    /// loss_and_gradient(x, warm=True)
-    /// --
-    ///
     /// The objective (16) of the scene (mm^2) and its gradient, shape (size,).
     #[pyo3(signature = (x, warm=true))]
     fn loss_and_gradient<'py>(
@@ -405,9 +387,6 @@ impl Problem {
         Ok((evaluation.loss, array(py, gradient, &[self.size()])))
     }
 
-    /// terms(x, warm=True)
-    /// --
-    ///
     /// The terms of the objective by name, unweighted.
     #[pyo3(signature = (x, warm=true))]
     fn terms<'py>(
@@ -420,9 +399,6 @@ impl Problem {
         plain(py, &evaluation.terms)
     }
 
-    /// design(start=None, steps=None, method=None, learning_rate=None, callback=None)
-    /// --
-    ///
     /// The search of the scene, Algorithm 1, in memory: no file is written.
     ///
     /// callback: called after every step with a dict (step, loss, outline_error, the terms, ...); the search ends if it returns True.

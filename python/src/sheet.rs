@@ -105,7 +105,7 @@ impl Pattern {
 #[pymethods]
 impl Sheet {
     #[new]
-    #[pyo3(signature = (pattern, w_lig, kerf=HingeConstants::PAPER.kerf))]
+    #[pyo3(signature = (pattern, w_lig, kerf=0.2))]
     fn new(pattern: &Pattern, w_lig: &Bound<PyAny>, kerf: f64) -> PyResult<Self> {
         let hinges = pattern.hinges();
         let widths = numbers(w_lig, "w_lig")?.filled("w_lig", &[hinges], hinges)?;

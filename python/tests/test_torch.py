@@ -45,7 +45,7 @@ def test_a_batch_is_its_elements(problem):
 def test_derivatives_that_do_not_exist_are_refused(problem):
     x = torch.tensor(problem.start, requires_grad=True)
     (gradient,) = torch.autograd.grad(kirigami.torch.equilibrium(problem, x).corners.sum(), x, create_graph=True)
-    with pytest.raises(RuntimeError, match="once_differentiable"):
+    with pytest.raises(NotImplementedError, match="cannot be differentiated twice"):
         gradient.sum().backward()
     springs = kg.Problem(SCENES / "linear-7x7.toml")
     thickness = torch.tensor(springs.thickness, dtype=torch.float64, requires_grad=True)
@@ -71,10 +71,10 @@ def test_an_objective_through_a_network(problem):
     network.bias.data = torch.tensor(problem.start)
     optimiser = torch.optim.Adam(network.parameters(), 0.01)
     width = lambda: kirigami.torch.equilibrium(problem, network(torch.ones(1, dtype=torch.float64))).corners[..., 0].max()
-    first = float(width())
+    first = width().item()
     for _ in range(5):
         optimiser.zero_grad()
         loss = -width()
         loss.backward()
         optimiser.step()
-    assert float(width()) > first
+    assert width().item() > first
