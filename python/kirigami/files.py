@@ -26,9 +26,9 @@ def read_database(path: str | os.PathLike[str], library: str = "polars") -> Any:
     if library == "polars":
         import polars
 
-        return polars.read_parquet(path)
+        return polars.read_parquet(Path(path))
     if library == "pandas":
-        import pandas
+        import pandas  # type: ignore[import-untyped]
 
         return pandas.read_parquet(path)
     raise ValueError(f'`library` is "{library}", expected "polars" or "pandas"')

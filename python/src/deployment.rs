@@ -2,7 +2,7 @@
 
 use crate::arrays::{Doubles, array, bools, plain, triples};
 use crate::errors;
-use crate::sheet::{Sheet, quadrilaterals};
+use crate::flat_sheet::{Sheet, quadrilaterals};
 use design::equilibrium::load_step::LoadStep;
 use design::hinge_law::HingeDamage;
 use design::objective::response::Response;

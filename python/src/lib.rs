@@ -5,7 +5,7 @@
 //! | `arrays` | NumPy arrays in and out |
 //! | `errors` | errors as exceptions, with the words of the command line |
 //! | `hinges` | the learned hinge energy |
-//! | `sheet` | pattern and flat sheet |
+//! | `flat_sheet` | pattern and flat sheet |
 //! | `deployment` | deployed sheets: a path, or the state at full load |
 //! | `problem` | a prepared design problem |
 //! | `waiting` | Ctrl-C during long calls |
@@ -17,9 +17,9 @@
 mod arrays;
 mod deployment;
 mod errors;
+mod flat_sheet;
 mod hinges;
 mod problem;
-mod sheet;
 mod waiting;
 
 use pyo3::prelude::*;
@@ -33,9 +33,9 @@ mod _kirigami {
         InvalidDesign, InvalidScene, KirigamiError, NoEquilibrium, SingularTangent, WeightsError,
     };
     #[pymodule_export]
+    use crate::flat_sheet::{Pattern, Sheet};
+    #[pymodule_export]
     use crate::hinges::{HingeStates, Hinges, Surrogate};
     #[pymodule_export]
     use crate::problem::Problem;
-    #[pymodule_export]
-    use crate::sheet::{Pattern, Sheet};
 }

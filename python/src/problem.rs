@@ -3,7 +3,7 @@
 use crate::arrays::{Doubles, Numbers, array, numbers, plain, shaped, triples, tuple, wrong_shape};
 use crate::deployment::{Deployment, State};
 use crate::errors;
-use crate::sheet::Sheet;
+use crate::flat_sheet::Sheet;
 use crate::waiting::while_polling;
 use design::equilibrium::nearby_path::KnownPath;
 use design::objective::response::{Conditions, Response, ResponseCotangent, ResponseGradient};
