@@ -7,7 +7,22 @@ from typing import Any, Literal, TypeAlias, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__: list[str]
+__all__ = [
+    "Deployment",
+    "HingeStates",
+    "Hinges",
+    "InvalidDesign",
+    "InvalidScene",
+    "KirigamiError",
+    "NoEquilibrium",
+    "Pattern",
+    "Problem",
+    "Sheet",
+    "SingularTangent",
+    "State",
+    "Surrogate",
+    "WeightsError",
+]
 
 _Doubles: TypeAlias = NDArray[np.float64]
 _Path: TypeAlias = str | os.PathLike[str]
