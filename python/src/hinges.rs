@@ -9,6 +9,7 @@ use hinge::{HingeConstants, HingeDeformation, HingeDesign};
 use numpy::PyArrayDyn;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
 use surrogate::mean_and_variance;
@@ -29,9 +30,15 @@ pub(crate) struct Surrogate {
 #[pyclass(frozen, module = "kirigami")]
 pub(crate) struct Hinges(Arc<Prepared>);
 
+/// Hinges that one thread evaluates together.
+const CHUNK: usize = 2048;
+
+type Law = PreparedSurrogate<Arc<surrogate::Surrogate>>;
+
 struct Prepared {
     networks: Vec<Arc<surrogate::Surrogate>>,
-    law: PreparedSurrogate<Arc<surrogate::Surrogate>>,
+    /// Of the first network, one for each chunk of the designs.
+    laws: Vec<Law>,
     designs: Vec<HingeDesign>,
     shape: Vec<usize>,
 }
@@ -41,7 +48,8 @@ struct Prepared {
 pub(crate) struct HingeStates {
     hinges: Arc<Prepared>,
     deformations: Vec<HingeDeformation>,
-    energies: Vec<HingeEnergy>,
+    /// Of each chunk.
+    energies: Vec<Vec<HingeEnergy>>,
     order: Order,
 }
 
@@ -167,10 +175,10 @@ impl Surrogate {
             design.validate().map_err(wrong)
         })?;
         let networks = self.networks.clone();
-        let law = py.detach(|| PreparedSurrogate::new(Arc::clone(&networks[0]), &designs));
+        let laws = py.detach(|| prepared(&networks[0], &designs));
         Ok(Hinges(Arc::new(Prepared {
             networks,
-            law,
+            laws,
             designs,
             shape,
         })))
@@ -233,7 +241,11 @@ impl Hinges {
             .map(|state| HingeDeformation::from(*state))
             .collect();
         let hinges = Arc::clone(&self.0);
-        let energies = py.detach(|| hinges.law.energies(&deformations, order));
+        let energies = py.detach(|| {
+            by_chunk(&hinges.laws, &deformations, |law, states| {
+                law.energies(states, order)
+            })
+        });
         Ok(HingeStates {
             hinges,
             deformations,
@@ -304,8 +316,8 @@ impl HingeStates {
     /// Whether each state, the width, the angle and the hole of its hinge are inside the training domain (bool).
     #[getter]
     fn inside<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<bool>> {
-        let inside = self.hinges.law.inside(&self.deformations);
-        bools(py, inside, &self.hinges.shape)
+        let inside = py.detach(|| by_chunk(&self.hinges.laws, &self.deformations, Law::inside));
+        bools(py, inside.concat(), &self.hinges.shape)
     }
 
     /// Standard deviation over the networks of the ensemble of (W, F_a, F_s, M_theta), shape (..., 4).
@@ -323,9 +335,11 @@ impl HingeStates {
             ));
         }
         let spreads = py.detach(|| {
+            let forces =
+                |law: &Law, states: &[HingeDeformation]| law.energies(states, Order::Forces);
             let of_networks: Vec<Vec<HingeEnergy>> = (networks.iter())
-                .map(|network| PreparedSurrogate::new(Arc::clone(network), designs))
-                .map(|law| law.energies(&self.deformations, Order::Forces))
+                .map(|network| prepared(network, designs))
+                .map(|laws| by_chunk(&laws, &self.deformations, forces).concat())
                 .collect();
             let spread = |hinge: usize, quantity: usize| {
                 let values = of_networks.iter().map(|energies| {
@@ -362,24 +376,46 @@ impl HingeStates {
         of: impl Fn(&HingeEnergy) -> [f64; N],
         shape: &[usize],
     ) -> Doubles<'py> {
-        let values = self.energies.iter().flat_map(of).collect();
+        let values = self.energies.iter().flatten().flat_map(of).collect();
         array(py, values, &followed_by(&self.hinges.shape, shape))
     }
 
     fn damaged<'py>(
         &self,
         py: Python<'py>,
-        of: impl Fn(&HingeDamage) -> Option<f64>,
+        of: impl Fn(&HingeDamage) -> Option<f64> + Sync,
     ) -> Doubles<'py> {
-        let law = &self.hinges.law;
-        let (damages, inside) = py.detach(|| {
-            let damages = law.damage(&self.deformations, false);
-            (damages, law.inside(&self.deformations))
-        });
-        let known = std::iter::zip(&damages, inside)
-            .map(|(damage, inside)| of(damage).filter(|_| inside).unwrap_or(f64::NAN));
-        array(py, known.collect(), &self.hinges.shape)
+        let known = |law: &Law, states: &[HingeDeformation]| -> Vec<f64> {
+            let damages = law.damage(states, false);
+            let known = std::iter::zip(&damages, law.inside(states));
+            let known = known.map(|(damage, inside)| of(damage).filter(|_| inside));
+            known.map(|damage| damage.unwrap_or(f64::NAN)).collect()
+        };
+        let values = py.detach(|| by_chunk(&self.hinges.laws, &self.deformations, known));
+        array(py, values.concat(), &self.hinges.shape)
     }
+}
+
+/// The law of a network prepared for each chunk of some hinges.
+fn prepared(network: &Arc<surrogate::Surrogate>, designs: &[HingeDesign]) -> Vec<Law> {
+    let chunks = designs.par_chunks(CHUNK);
+    chunks
+        .map(|designs| PreparedSurrogate::new(Arc::clone(network), designs))
+        .collect()
+}
+
+/// What a law says of the states of each chunk.
+fn by_chunk<T: Send>(
+    laws: &[Law],
+    states: &[HingeDeformation],
+    of: impl Fn(&Law, &[HingeDeformation]) -> Vec<T> + Sync,
+) -> Vec<Vec<T>> {
+    // A single chunk takes less time than waking another thread.
+    if let [law] = laws {
+        return vec![of(law, states)];
+    }
+    let chunks = laws.par_iter().zip(states.par_chunks(CHUNK));
+    chunks.map(|(law, states)| of(law, states)).collect()
 }
 
 fn flat([a, b, c]: [[f64; 3]; 3]) -> [f64; 9] {

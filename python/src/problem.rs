@@ -616,7 +616,7 @@ fn scene_of(keys: &Bound<PyDict>, folder: &Path) -> PyResult<Scene> {
         .call_method1("_json", (keys,))?
         .extract()?;
     let path = folder.join("scene (dict)");
-    let keys: toml::Value = serde_json::from_str(&text).map_err(|error| errors::scene(error))?;
+    let keys: toml::Value = serde_json::from_str(&text).map_err(errors::scene)?;
     let text = toml::to_string(&keys).map_err(errors::scene)?;
     let config: SceneConfig = support::toml_file::parse(&text, &path).map_err(errors::scene)?;
     py.detach(|| Scene::new(config, &path))

@@ -240,3 +240,25 @@ def test_other_threads_run_while_a_path_is_followed(film_problem):
 def test_a_vector_of_another_size_is_refused(film_problem, x):
     with pytest.raises((ValueError, TypeError), match="`x`"):
         film_problem.solve(x)
+
+
+def test_a_jump_at_a_limit_point_is_reported_and_the_gradient_is_that_of_the_new_branch(film_problem):
+    """Pushed instead of pulled, the sheet snaps to another branch, as `kirigami inspect equilibrium` reports it."""
+    problem, x = film_problem, film_problem.start
+    loads = -problem.loads
+    path = problem.equilibrium(x, loads=loads, warm=False)
+    assert "limit-point" in path.status
+    state = problem.solve(x, loads=loads, warm=False)
+    assert state.status == "limit-point"
+    weights = RANDOM.standard_normal(state.corners.shape)
+    gradient = problem.pullback(x, state.configuration, weights, np.zeros_like(state.reactions), 0.0, loads=loads)
+    value = lambda factor: np.sum(weights * problem.solve(x, factor * loads, warm=False).corners)
+    assert np.sum(gradient["loads"] * loads) == pytest.approx(slope(value, 1.0, 1.0, 1e-3), rel=1e-4)
+
+
+def test_a_configuration_that_is_no_equilibrium_has_no_gradient(film_problem):
+    problem, x = film_problem, film_problem.start
+    state = problem.solve(x)
+    by = np.ones_like(state.corners), np.zeros_like(state.reactions), 0.0
+    with pytest.raises(kg.NoEquilibrium, match="no equilibrium was found beyond load factor 1.0000"):
+        problem.pullback(x, state.configuration + 0.1, *by)
