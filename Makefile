@@ -1,7 +1,7 @@
 # Two commands: `make demo` runs the main job, `make test` passes all tests.
 # Both first install what is missing.
 
-.PHONY: demo test lint tools test-tools
+.PHONY: demo test lint python python-torch tools test-tools python-tools
 
 demo: tools
 	cargo run --release --locked -- demo
@@ -15,8 +15,21 @@ lint:
 	cargo check --release --locked -p kirigami --no-default-features
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --locked --workspace --lib --no-deps
 
+# The Python package and its tests, in an environment of their own. Those of PyTorch need 5 GB: by a command of their own.
+python: python-tools
+	python3 -m venv target/python
+	target/python/bin/pip install --quiet './python[test]'
+	target/python/bin/pytest python
+
+python-torch: python
+	target/python/bin/pip install --quiet './python[torch]'
+	target/python/bin/pytest python/tests/test_torch.py
+
 tools:
 	scripts/install-tools
 
 test-tools:
 	scripts/install-tools tests
+
+python-tools:
+	scripts/install-tools python

@@ -28,4 +28,4 @@ pub use law::{
 };
 pub use linear::LinearLaw;
 pub use released::ReleasedLaw;
-pub use surrogate::SurrogateLaw;
+pub use surrogate::{PreparedSurrogate, SurrogateLaw};

@@ -6,6 +6,7 @@ mod design_gradient;
 pub mod design_problem;
 pub mod hinge_measures;
 pub mod loss;
+pub mod response;
 pub mod scores;
 pub mod shape;
 pub mod target;

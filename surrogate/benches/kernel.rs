@@ -22,6 +22,28 @@ fn energy(bencher: divan::Bencher, order: Order) {
     bencher.bench(|| surrogate.evaluate(&prepared, &deformations, order));
 }
 
+/// 100 000 hinges of shipped weights, which python/benchmarks/cost.py evaluates from Python.
+#[divan::bench(args = [Order::Value, Order::Forces, Order::Tangent], sample_count = 10)]
+fn shipped(bencher: divan::Bencher, order: Order) {
+    let weights = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../data/pet-0.5mm/medium.safetensors"
+    );
+    let surrogate = Surrogate::load(std::path::Path::new(weights)).expect("shipped weights");
+    let design = surrogate.card().hinge.hinge(18.0, 1.2);
+    let states = (0..100_000).map(|i| {
+        let x = f64::from(i);
+        HingeDeformation::from([
+            0.3 * (2.1 * x).sin(),
+            0.3 * (3.7 * x).sin(),
+            0.35 + 0.25 * (0.9 * x).sin(),
+        ])
+    });
+    let states: Vec<HingeDeformation> = states.collect();
+    let prepared = surrogate.prepare(&vec![design; states.len()]);
+    bencher.bench(|| surrogate.evaluate(&prepared, &states, order));
+}
+
 #[divan::bench]
 fn prepare(bencher: divan::Bencher) {
     let (surrogate, designs, _) = case();

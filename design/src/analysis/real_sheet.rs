@@ -8,13 +8,11 @@ use crate::analysis::actuation_curve::ActuationCurve;
 use crate::equilibrium::displacement_control::magnitude;
 use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::nearby_path::KnownPath;
-use crate::hinge_law::SurrogateLaw;
 use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Mechanics, found};
 use crate::pattern::design_vector::DesignVector;
 use crate::scene::Scene;
 use crate::sheet::cut_sheet::Sheet;
 use hinge::HingeDesign;
-use std::sync::Arc;
 
 /// The differences of a cut sheet from its drawing.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -94,13 +92,10 @@ impl<'a> RealSheet<'a> {
 
     /// Whether a sheet of another thickness, or of stronger material, can be computed: with a learned hinge law.
     pub fn has_similar_laws(&self) -> bool {
-        self.scene.surrogate().is_some()
+        self.mechanics.law.scales() == [true; 2]
     }
 
     /// A cut sheet at full load, with the mechanics that it has.
-    ///
-    /// # Panics
-    /// If the thickness or the stresses deviate and the hinge law is not a learned one.
     pub fn deployed(&self, deviation: &Deviation) -> Result<(Deployment, Mechanics), DesignError> {
         let (sheet, designs, mechanics) = self.cut(deviation)?;
         let prepared = mechanics.law.prepare(&designs);
@@ -133,9 +128,6 @@ impl<'a> RealSheet<'a> {
     }
 
     /// A cut sheet at the parts of a plan.
-    ///
-    /// # Panics
-    /// See [`deployed`](Self::deployed).
     pub fn read(&self, plan: &ReadingPlan, deviation: &Deviation) -> Result<Read, DesignError> {
         let (sheet, designs, mechanics) = self.cut(deviation)?;
         let prepared = mechanics.law.prepare(&designs);
@@ -175,29 +167,11 @@ impl<'a> RealSheet<'a> {
         let impossible = designs
             .iter()
             .any(|design| !(design.w_lig > 0.0 && design.fillet_ratio < 1.0));
-        let positive = 1.0 + deviation.stress > 0.0 && self.thickness() + deviation.thickness > 0.0;
-        if impossible || !positive {
+        if impossible {
             return Err(DesignError::ImpossibleSheet);
         }
-        Ok((sheet, designs, self.mechanics(deviation)))
-    }
-
-    fn mechanics(&self, deviation: &Deviation) -> Mechanics {
-        let thicker = 1.0 + deviation.thickness / self.scene.material.thickness;
-        let mut solver = self.mechanics.solver.clone();
-        solver.weight = solver.weight.map(|weight| thicker * weight);
-        let mut law = Arc::clone(&self.mechanics.law);
-        if (deviation.thickness, deviation.stress) != (0.0, 0.0) {
-            let weights = self.scene.surrogate();
-            let weights = weights.expect("a learned hinge law").clone();
-            law = Arc::new(SurrogateLaw {
-                surrogate: (weights.scaled(thicker)).stressed(1.0 + deviation.stress, None),
-            });
-        }
-        Mechanics {
-            law,
-            contact: self.mechanics.contact,
-            solver,
-        }
+        let thicker = 1.0 + deviation.thickness / self.thickness();
+        let mechanics = self.mechanics.similar(thicker, 1.0 + deviation.stress)?;
+        Ok((sheet, designs, mechanics))
     }
 }

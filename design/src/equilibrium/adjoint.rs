@@ -10,10 +10,15 @@
 //! virtual work. Under displacement
 //! control the system has the border of the stroke, whose condition (f . q)/F = stroke also depends on the loads. A function
 //! that depends on the load factor zeta_i, by g_zeta, has the condition (f . lambda_i)/F = -g_zeta/F.
+//!
+//! The supports resist with the forces r = grad Pi at the supported degrees of freedom. For a function that depends on them, by
+//! g_r, lambda is -g_r there, and the equations of the free degrees of freedom have the right-hand side g_i + H g_r.
 
+use crate::equilibrium::branch::Branch;
 use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::LoadStep;
+use crate::equilibrium::potential::Stage;
 use crate::equilibrium::refined_solve::refined_solve;
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::equilibrium::weight::add_weight_gradient;
@@ -43,6 +48,8 @@ pub(crate) struct PathGradient<'a> {
     pub by_load_factors: &'a [f64],
     /// In the last configuration.
     pub by_last: Vec<[f64; 3]>,
+    /// In the forces (F_x, F_y, M) of the supports in the last state; zero at free degrees of freedom. `None` if it depends on none.
+    pub by_reactions: Option<Vec<[f64; 3]>>,
 }
 
 /// What the adjoint computes besides the gradient with respect to the sheet.
@@ -51,6 +58,9 @@ pub(crate) struct AdjointSums {
     pub loads: Vec<[f64; 3]>,
     /// Gradient with respect to (k_a, k_s, k_theta) of every hinge; zero for a law without such constants.
     pub constants: Vec<[f64; 3]>,
+    /// lambda of the last state, a virtual motion of every panel: the function changes by minus the work on it of an additional
+    /// force of the hinges.
+    pub virtual_motion: Vec<[f64; 3]>,
     /// Maximum componentwise backward error of the solves.
     pub residual: f64,
 }
@@ -65,6 +75,7 @@ pub(crate) fn adjoint(
         by_states,
         by_load_factors,
         by_last,
+        by_reactions,
     }: PathGradient,
     by_sheet: &mut SheetGradient,
 ) -> Result<AdjointSums, SingularTangent> {
@@ -73,6 +84,7 @@ pub(crate) fn adjoint(
     let mut sums = AdjointSums {
         loads: vec![[0.0; 3]; sheet.sheet.panels.len()],
         constants: vec![[0.0; 3]; sheet.sheet.hinges.len()],
+        virtual_motion: Vec::new(),
         residual: 0.0,
     };
     for (i, (step, mut by_q)) in std::iter::zip(path, by_configurations).enumerate() {
@@ -87,6 +99,11 @@ pub(crate) fn adjoint(
             let [a, s, theta, ..] = by_states[h][i];
             add_at_hinge(&mut by_q, hinge, motions[h].forces([a, s, theta]));
         }
+        let by_supports = by_reactions.as_ref().filter(|_| i + 1 == path.len());
+        let held = by_supports.map(|by_reactions| held_motion(solver, sheet, step, by_reactions));
+        if let Some(held) = &held {
+            add_motions(&mut by_q, &held.resistance, -1.0);
+        }
         let rhs = solver.pattern.gather(&by_q);
         let stroke = solver.stroke();
         let slack = stroke.map_or(0.0, |stroke| stroke.slack(by_load_factors[i]));
@@ -97,7 +114,10 @@ pub(crate) fn adjoint(
                 load_factor: step.load_factor,
             })?;
         sums.residual = sums.residual.max(solution.error);
-        let lambda = solver.pattern.spread(&solution.x);
+        let mut lambda = solver.pattern.spread(&solution.x);
+        if let Some(held) = &held {
+            add_motions(&mut lambda, &held.motion, 1.0);
+        }
         for (sum, lambda) in std::iter::zip(&mut sums.loads, &lambda) {
             (0..3).for_each(|d| sum[d] += step.load_factor * lambda[d]);
         }
@@ -135,8 +155,39 @@ pub(crate) fn adjoint(
             by_sheet.alphas[h] += by_state[4] - against(energy.mixed.map(|row| row[1]));
             by_sheet.holes[h] += by_state[5] - against(energy.mixed.map(|row| row[2]));
         }
+        sums.virtual_motion = lambda;
     }
     Ok(sums)
+}
+
+/// The virtual motion of the supports, and the forces that resist it.
+struct HeldMotion {
+    motion: Vec<[f64; 3]>,
+    resistance: Vec<[f64; 3]>,
+}
+
+/// The virtual motion of the supports for a function with the given gradient in their forces, minus that gradient.
+fn held_motion(
+    solver: &EquilibriumSolver,
+    sheet: HingedSheet,
+    step: &LoadStep,
+    by_reactions: &[[f64; 3]],
+) -> HeldMotion {
+    let mut motion = vec![[0.0; 3]; by_reactions.len()];
+    add_motions(&mut motion, by_reactions, -1.0);
+    let potential = Branch::new(solver, sheet, Stage::Actuation).potential(1.0);
+    let state = potential.state(step.configuration.clone());
+    let state = state.expect("the energy of an equilibrium is finite");
+    HeldMotion {
+        resistance: potential.resistance(&state, &motion),
+        motion,
+    }
+}
+
+fn add_motions(sum: &mut [[f64; 3]], motion: &[[f64; 3]], factor: f64) {
+    for (sum, entry) in std::iter::zip(sum.as_flattened_mut(), motion.as_flattened()) {
+        *sum += factor * entry;
+    }
 }
 
 fn add_geometry(

@@ -60,6 +60,16 @@ impl Stroke {
         std::iter::zip(loads, configuration).map(by_load).collect()
     }
 
+    /// Whether the sum F is differentiable in each component of the load on a panel.
+    pub fn smooth_in(&self, &[x, y, m]: &[f64; 3]) -> [bool; 3] {
+        let pulled = x.hypot(y) > 0.0;
+        if self.of_forces {
+            [pulled, pulled, true]
+        } else {
+            [false, false, m != 0.0]
+        }
+    }
+
     /// The stroke of the adjoint of a function with the given derivative in the load factor.
     pub fn slack(&self, by_load_factor: f64) -> f64 {
         -by_load_factor / self.size

@@ -16,13 +16,15 @@ use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{LoadStep, Status};
 use crate::equilibrium::place::Place;
-use crate::equilibrium::potential::Stage;
+use crate::equilibrium::potential::{Stage, moved};
 use crate::equilibrium::solver::EquilibriumSolver;
 use crate::hinge_law::{HingeEnergy, Order, PreparedLaw};
 use hinge::{HingeDeformation, HingeDesign};
 
 /// Maximum distance of an equilibrium from that of the linearised law (rad, or panel sizes for hinge translations).
 const NEARBY: f64 = 0.02;
+/// Difference of the stroke of a known state from that at its load parameter, relative to the whole, that rounding may cause.
+const ROUNDED: f64 = 1e-9;
 
 /// The equilibrium path of a sheet.
 #[derive(Clone, Debug)]
@@ -148,6 +150,23 @@ impl Branch<'_> {
         (step.status != Status::Almost).then_some(step)
     }
 
+    /// Moves a known state to the stroke at its load parameter, which loads in another direction change.
+    fn hold_stroke(&self, place: &mut Place) {
+        let Some((stroke, full)) = &self.solver.drive else {
+            return;
+        };
+        let target = match self.stage {
+            Stage::Weight => 0.0,
+            Stage::Actuation => place.at * full,
+        };
+        let pattern = &self.solver.pattern;
+        let short = target - stroke.of(&pattern.gather(&place.configuration));
+        if short.abs() > ROUNDED * full.abs() {
+            let motion = pattern.spread(&stroke.motion(short));
+            place.configuration = moved(&place.configuration, &motion, 1.0);
+        }
+    }
+
     /// The equilibrium of this sheet with the hinge law linearised about the states of a known load step.
     fn carried_over(&mut self, at: f64, known: &LoadStep, changes: &[[f64; 3]]) -> Option<Place> {
         let law = LinearisedLaw {
@@ -162,11 +181,12 @@ impl Branch<'_> {
             ..self.sheet
         };
         let mut branch = Branch::new(self.solver, linearised, self.stage);
-        let start = Place {
+        let mut start = Place {
             at,
             configuration: known.configuration.clone(),
             forces: known.hinges.iter().map(|hinge| hinge.forces).collect(),
         };
+        self.hold_stroke(&mut start);
         let found = branch.close(start, None, f64::INFINITY).ok();
         self.effort.iterations += branch.effort.iterations;
         self.effort.factorisations += branch.effort.factorisations;

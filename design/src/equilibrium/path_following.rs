@@ -118,6 +118,42 @@ impl EquilibriumSolver {
         self.read(sheet, Stage::Actuation, start, parameters.iter().copied())
     }
 
+    /// The load step at full load in a configuration that is in equilibrium there, as one of a path is.
+    ///
+    /// # Panics
+    /// If the grids of sheet and solver differ.
+    pub fn full_load(&self, sheet: HingedSheet, configuration: Configuration) -> LoadStep {
+        let mut branch = Branch::new(self, sheet, Stage::Actuation);
+        let potential = branch.potential(1.0);
+        let Some(state) = potential.state_up_to(configuration.clone(), Order::Design) else {
+            return not_finite(sheet, configuration);
+        };
+        let (tangent, factor) = branch.factor(&potential, &state);
+        let found = state.residual <= self.settings.loose_tolerance().max(state.rounding);
+        let minimum = Minimum {
+            state,
+            tangent,
+            factor,
+        };
+        let step = branch.load_step(minimum, 0);
+        if found {
+            return step;
+        }
+        LoadStep {
+            status: Status::Diverged,
+            ..step
+        }
+    }
+
+    /// The forces (F_x, F_y, M) by which the supports hold the panels in an equilibrium at full load (N, N, N mm); zero at free
+    /// degrees of freedom.
+    pub fn reactions(&self, sheet: HingedSheet, configuration: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let potential = Branch::new(self, sheet, Stage::Actuation).potential(1.0);
+        let state = potential.state_up_to(configuration.to_vec(), Order::Forces);
+        let state = state.expect("the energy of an equilibrium is finite");
+        self.at_supports(&state.unbalanced)
+    }
+
     /// The load steps that end at load parameters in ascending order. The path ends early if no equilibrium is found.
     fn read(
         &self,
@@ -127,13 +163,7 @@ impl EquilibriumSolver {
         ends: impl Iterator<Item = f64>,
     ) -> Vec<LoadStep> {
         let Some(mut follower) = self.follower(sheet, stage, start.clone()) else {
-            return vec![LoadStep {
-                load_factor: 0.0,
-                status: Status::Diverged,
-                residual: f64::INFINITY,
-                descent_end: Some(DescentEnd::NotFinite),
-                ..LoadStep::ideal(sheet.sheet, start)
-            }];
+            return vec![not_finite(sheet, start)];
         };
         let mut path: Vec<LoadStep> = Vec::with_capacity(self.steps);
         for end in ends {
@@ -176,6 +206,17 @@ impl EquilibriumSolver {
         );
         assert_eq!(start.len(), self.grid.panel_count(), "one motion per panel");
         Follower::new(self, sheet, stage, start)
+    }
+}
+
+/// The end of a path in a configuration whose energy is not finite.
+fn not_finite(sheet: HingedSheet, configuration: Configuration) -> LoadStep {
+    LoadStep {
+        load_factor: 0.0,
+        status: Status::Diverged,
+        residual: f64::INFINITY,
+        descent_end: Some(DescentEnd::NotFinite),
+        ..LoadStep::ideal(sheet.sheet, configuration)
     }
 }
 

@@ -68,6 +68,8 @@ pub(crate) struct State {
     /// Hinge forces predicted by their rates, if they shall replace the actual ones in the part
     /// f . d2(eps) of the tangent.
     pub expected: Option<Vec<[f64; 3]>>,
+    /// d Pi / d q over all degrees of freedom: at the supports, the forces that hold them (N, N, N mm).
+    pub unbalanced: Vec<[f64; 3]>,
     /// d Pi / d q over the free degrees of freedom.
     pub gradient: Vec<f64>,
     /// Maximum unbalanced force, relative to `force`.
@@ -168,6 +170,7 @@ impl Potential<'_> {
             rounding: over_force(self.rounding(&motions, &energies)),
             force,
             expected: None,
+            unbalanced,
             gradient,
             load_factor,
             configuration,

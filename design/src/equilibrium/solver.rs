@@ -139,6 +139,62 @@ impl EquilibriumSolver {
         })
     }
 
+    /// The same problem with other loads (F_x, F_y, M) on the panels at full load (N, N, N mm); those of a stroke give its direction.
+    ///
+    /// # Panics
+    /// If there is not one load for each panel.
+    pub fn loaded(mut self, loads: &[[f64; 3]]) -> Result<Self, EquilibriumError> {
+        assert_eq!(loads.len(), self.loads.len(), "one load per panel");
+        for (panel, load) in loads.iter().enumerate() {
+            if let Some(&value) = load.iter().find(|value| !value.is_finite()) {
+                let what = "a load";
+                return Err(EquilibriumError::NotFinite { what, panel, value });
+            }
+        }
+        let held = self.supports.iter();
+        if let Some(support) = held
+            .into_iter()
+            .find(|s| loads[s.panel][s.dof.index()] != 0.0)
+        {
+            let Support { panel, dof, .. } = *support;
+            return Err(EquilibriumError::LoadOnSupport { panel, dof });
+        }
+        self.loads = loads.into();
+        match self.drive.take() {
+            Some((_, stroke)) => self.driven(stroke),
+            None => Ok(self),
+        }
+    }
+
+    /// Loads (F_x, F_y, M) on the panels at full load (N, N, N mm).
+    pub fn loads(&self) -> &[[f64; 3]] {
+        &self.loads
+    }
+
+    /// A gradient in the loads, zero in those that are no variables: at the supports, and under displacement control those whose
+    /// magnitude has a kink in the sum of all, at panels without them.
+    pub(crate) fn in_loads(&self, gradient: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let mut gradient = self.pattern.spread(&self.pattern.gather(gradient));
+        if let Some(stroke) = self.stroke() {
+            for (gradient, load) in std::iter::zip(&mut gradient, &self.loads) {
+                for (entry, smooth) in std::iter::zip(gradient, stroke.smooth_in(load)) {
+                    *entry *= f64::from(smooth);
+                }
+            }
+        }
+        gradient
+    }
+
+    /// The components of forces on the panels at the supports; at the free degrees of freedom they are zero.
+    pub(crate) fn at_supports(&self, forces: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let mut at_supports = vec![[0.0; 3]; forces.len()];
+        for support in &self.supports {
+            let (panel, dof) = (support.panel, support.dof.index());
+            at_supports[panel][dof] = forces[panel][dof];
+        }
+        at_supports
+    }
+
     /// The direction in which the stroke of the loads is prescribed, if it is.
     pub(crate) fn stroke(&self) -> Option<&Stroke> {
         self.drive.as_ref().map(|(stroke, _)| &**stroke)

@@ -5,6 +5,7 @@ pub use ::surrogate::{HingeDamage, HingeEnergy, Order};
 use hinge::{HingeDeformation, HingeDesign, TrainingDomain};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A gradient in (a, s, theta, w_lig, alpha, rho_f) of a hinge; rho_f is the radius of its hole over w_lig.
 pub type HingeGradient = [f64; 6];
@@ -43,6 +44,17 @@ pub trait HingeLaw: Send + Sync {
     /// The training domain of the law, if it has one.
     fn domain(&self) -> Option<&TrainingDomain> {
         None
+    }
+
+    /// The law of a sheet of `thicker` times the thickness, of a material with `stronger` times the stress at every strain; `None` if
+    /// the law does not determine it, see [`scales`](Self::scales).
+    fn similar(&self, _thicker: f64, _stronger: f64) -> Option<Arc<dyn HingeLaw>> {
+        None
+    }
+
+    /// Whether the law determines that of a sheet of another thickness, and that of a stronger material.
+    fn scales(&self) -> [bool; 2] {
+        [false; 2]
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::hinge_law::law::{HingeEnergy, HingeLaw, Order, PreparedLaw};
 use hinge::{HingeDeformation, HingeDesign};
+use std::sync::Arc;
 
 /// Three uncoupled springs per hinge.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +26,20 @@ impl HingeLaw for LinearLaw {
     fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a> {
         assert_eq!(self.stiffness.len(), designs.len(), "one triple per hinge");
         Box::new(self)
+    }
+
+    /// The constants of another thickness are not known.
+    fn similar(&self, thicker: f64, stronger: f64) -> Option<Arc<dyn HingeLaw>> {
+        let stronger = |constants: &[f64; 3]| constants.map(|constant| stronger * constant);
+        (thicker == 1.0).then(|| -> Arc<dyn HingeLaw> {
+            Arc::new(Self {
+                stiffness: self.stiffness.iter().map(stronger).collect(),
+            })
+        })
+    }
+
+    fn scales(&self) -> [bool; 2] {
+        [false, true]
     }
 }
 

@@ -17,6 +17,8 @@ use crate::hinge_law::law::{
 };
 use hinge::{HingeDeformation, HingeDesign, Jet, TrainingDomain};
 use std::array::from_fn;
+use std::ops::Deref;
+use std::sync::Arc;
 use surrogate::{Prepared, Surrogate};
 
 /// delta: maximum distance outside the domain at which the network is evaluated, relative to the half-range.
@@ -40,19 +42,7 @@ pub struct SurrogateLaw {
 
 impl HingeLaw for SurrogateLaw {
     fn prepare<'a>(&'a self, designs: &[HingeDesign]) -> Box<dyn PreparedLaw + 'a> {
-        let (mapped, angle_slopes): (Vec<HingeDesign>, Vec<f64>) = designs
-            .iter()
-            .map(|design| {
-                let [alpha, slope] = drawn_in(self.surrogate.domain().alpha, design.alpha);
-                (HingeDesign { alpha, ..*design }, slope)
-            })
-            .unzip();
-        Box::new(PreparedSurrogate {
-            surrogate: &self.surrogate,
-            designs: designs.to_vec(),
-            angle_slopes,
-            prepared: self.surrogate.prepare(&mapped),
-        })
+        Box::new(PreparedSurrogate::new(&self.surrogate, designs))
     }
 
     fn damage_scale(&self, measure: DamageMeasure) -> Option<f64> {
@@ -65,10 +55,22 @@ impl HingeLaw for SurrogateLaw {
     fn domain(&self) -> Option<&TrainingDomain> {
         Some(self.surrogate.domain())
     }
+
+    fn similar(&self, thicker: f64, stronger: f64) -> Option<Arc<dyn HingeLaw>> {
+        let surrogate = self.surrogate.clone().scaled(thicker);
+        Some(Arc::new(Self {
+            surrogate: surrogate.stressed(stronger, None),
+        }))
+    }
+
+    fn scales(&self) -> [bool; 2] {
+        [true; 2]
+    }
 }
 
-struct PreparedSurrogate<'a> {
-    surrogate: &'a Surrogate,
+/// The learned hinge law prepared for some hinges; `S` refers to its surrogate.
+pub struct PreparedSurrogate<S> {
+    surrogate: S,
     designs: Vec<HingeDesign>,
     /// d(mapped cut angle) / d(cut angle of the hinge), per hinge.
     angle_slopes: Vec<f64>,
@@ -76,7 +78,24 @@ struct PreparedSurrogate<'a> {
     prepared: Prepared,
 }
 
-impl PreparedSurrogate<'_> {
+impl<S: Deref<Target = Surrogate>> PreparedSurrogate<S> {
+    /// Computes what depends on the designs alone.
+    pub fn new(surrogate: S, designs: &[HingeDesign]) -> Self {
+        let (mapped, angle_slopes): (Vec<HingeDesign>, Vec<f64>) = designs
+            .iter()
+            .map(|design| {
+                let [alpha, slope] = drawn_in(surrogate.domain().alpha, design.alpha);
+                (HingeDesign { alpha, ..*design }, slope)
+            })
+            .unzip();
+        Self {
+            designs: designs.to_vec(),
+            angle_slopes,
+            prepared: surrogate.prepare(&mapped),
+            surrogate,
+        }
+    }
+
     /// The states at which the network is evaluated, and for hinges outside the domain their map from the actual state.
     fn mapped(
         &self,
@@ -95,7 +114,7 @@ impl PreparedSurrogate<'_> {
     }
 }
 
-impl PreparedLaw for PreparedSurrogate<'_> {
+impl<S: Deref<Target = Surrogate>> PreparedLaw for PreparedSurrogate<S> {
     fn energies(&self, deformations: &[HingeDeformation], order: Order) -> Vec<HingeEnergy> {
         let (mapped, continuations) = self.mapped(deformations);
         let mut energies = self.surrogate.evaluate(&self.prepared, &mapped, order);

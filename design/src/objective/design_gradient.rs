@@ -15,19 +15,33 @@ use crate::sheet::kinematics::deployed_pullback;
 use crate::sheet::topology::PanelCorner;
 
 /// The partial derivatives of a function of a deployment.
-struct Partials<'a> {
+pub(super) struct Partials<'a> {
     /// The load steps on which the function depends, the last one among them.
-    path: &'a [LoadStep],
-    /// The outline points.
-    outline: &'a [PanelCorner],
+    pub path: &'a [LoadStep],
+    /// The panel corners whose deployed positions the function depends on.
+    pub outline: &'a [PanelCorner],
     /// In their deployed positions.
-    by_outline: &'a [[f64; 2]],
+    pub by_outline: &'a [[f64; 2]],
     /// In (a, s, theta, w_lig, alpha) per hinge and step of `path`.
-    by_states: &'a [Vec<HingeGradient>],
+    pub by_states: &'a [Vec<HingeGradient>],
     /// In the load factor of each step of `path`.
-    by_load_factors: &'a [f64],
+    pub by_load_factors: &'a [f64],
     /// In the flat corners of every panel; `None` if all are zero.
-    by_corners: Option<&'a [[[f64; 2]; 4]]>,
+    pub by_corners: Option<&'a [[[f64; 2]; 4]]>,
+    /// In the forces of the supports in the last step; `None` if all are zero.
+    pub by_reactions: Option<Vec<[f64; 3]>>,
+}
+
+/// The gradient of a function of a deployment.
+pub(super) struct Gradient {
+    /// In the design.
+    pub design: DesignVector,
+    /// In the constants of the problem.
+    pub sensitivities: Sensitivities,
+    /// [`AdjointSums::virtual_motion`](crate::equilibrium::adjoint::AdjointSums::virtual_motion); empty without equilibrium.
+    pub virtual_motion: Vec<[f64; 3]>,
+    /// [`Evaluation::adjoint_residual`].
+    pub adjoint_residual: f64,
 }
 
 impl DesignProblem {
@@ -54,16 +68,16 @@ impl DesignProblem {
             by_states: &judgement.gradient.by_states,
             by_load_factors: &judgement.gradient.by_load_factors,
             by_corners: Some(&judgement.gradient.by_corners),
+            by_reactions: None,
         };
-        let (gradient, sensitivities, adjoint_residual) =
-            self.design_gradient(design, &deployment, law.as_deref(), &partials)?;
+        let gradient = self.design_gradient(design, &deployment, law.as_deref(), partials)?;
         Ok(Evaluation {
             loss: judgement.loss,
             terms: judgement.terms,
-            gradient,
-            sensitivities,
+            gradient: gradient.design,
+            sensitivities: gradient.sensitivities,
             deployment,
-            adjoint_residual,
+            adjoint_residual: gradient.adjoint_residual,
         })
     }
 
@@ -99,30 +113,30 @@ impl DesignProblem {
                 by_states: &by_states,
                 by_load_factors: &[0.0],
                 by_corners: None,
+                by_reactions: None,
             };
-            let (gradient, ..) =
-                self.design_gradient(design, deployment, law.as_deref(), &partials)?;
-            Ok(gradient.to_flat())
+            let gradient = self.design_gradient(design, deployment, law.as_deref(), partials)?;
+            Ok(gradient.design.to_flat())
         });
         gradients.collect()
     }
 
-    /// The gradient in the design, and in the constants of the problem, of a function of the deployment, and
-    /// [`Evaluation::adjoint_residual`].
-    fn design_gradient(
+    /// The gradient of a function of the deployment.
+    pub(super) fn design_gradient(
         &self,
         design: &DesignVector,
         deployment: &Deployment,
         law: Option<&dyn PreparedLaw>,
-        partials: &Partials,
-    ) -> Result<(DesignVector, Sensitivities, f64), DesignError> {
+        partials: Partials,
+    ) -> Result<Gradient, DesignError> {
         let (sheet, last) = (&deployment.sheet, deployment.final_step());
         let mut by_sheet = SheetGradient::zeros(self.grid);
         if let Some(by_corners) = partials.by_corners {
             by_sheet.corners.copy_from_slice(by_corners);
         }
-        let by_last = outline_pullback(sheet, last, partials, &mut by_sheet);
+        let by_last = outline_pullback(sheet, last, &partials, &mut by_sheet);
         let (mut by_opening, mut adjoint_residual) = (None, 0.0);
+        let mut virtual_motion = Vec::new();
         let mut sensitivities = Sensitivities::default();
         match &self.model {
             Model::Ideal { opening } => {
@@ -140,25 +154,32 @@ impl DesignProblem {
                         by_states: partials.by_states,
                         by_load_factors: partials.by_load_factors,
                         by_last,
+                        by_reactions: partials.by_reactions,
                     },
                     &mut by_sheet,
                 )?;
                 adjoint_residual = sums.residual;
                 sensitivities.loads = sums.loads;
                 sensitivities.constants = sums.constants;
+                virtual_motion = sums.virtual_motion;
             }
         }
         let (by_points, by_width) = sheet.pullback(&by_sheet);
         let (by_pattern, by_outline) = deployment.pattern.pullback(&by_points);
         sensitivities.outline = by_outline;
-        let gradient = DesignVector {
+        let design = DesignVector {
             pattern: by_pattern,
             omega: std::iter::zip(&design.omega, by_width)
                 .map(|(&omega, by_width)| by_width * self.widths.slope(omega))
                 .collect(),
             opening: by_opening,
         };
-        Ok((gradient, sensitivities, adjoint_residual))
+        Ok(Gradient {
+            design,
+            sensitivities,
+            virtual_motion,
+            adjoint_residual,
+        })
     }
 }
 

@@ -40,6 +40,10 @@ pub enum DesignError {
     ImpossibleSheet,
     #[error("the target has no points")]
     EmptyTarget,
+    #[error(
+        "the hinge law does not determine the hinges of a sheet of another thickness, or of a stronger material: use hinge = \"surrogate\""
+    )]
+    NoSimilarLaw,
     #[error("the opening angle {0} rad is not a finite number")]
     Opening(f64),
     #[error(
@@ -232,7 +236,16 @@ impl DesignProblem {
 
     /// Lines 2-5 of Algorithm 1. A path that diverges ends early; see [`LoadStep::status`].
     pub fn deploy(&self, design: &DesignVector) -> Result<Deployment, DesignError> {
-        Ok(self.deploy_prepared(design, false, None)?.0)
+        self.deploy_near(design, None)
+    }
+
+    /// The same, with the path corrected from the `known` one of another design if that is near enough.
+    pub fn deploy_near(
+        &self,
+        design: &DesignVector,
+        known: Option<&KnownPath>,
+    ) -> Result<Deployment, DesignError> {
+        Ok(self.deploy_prepared(design, false, known)?.0)
     }
 
     /// The deployment, its damage with or without `gradient`, and the hinge law prepared for its sheet. The path is
@@ -309,6 +322,25 @@ pub(crate) fn found(step: &LoadStep) -> Result<&LoadStep, DesignError> {
 }
 
 impl Mechanics {
+    /// The mechanics of a sheet of `thicker` times the thickness, of a material with `stronger` times the stress at every strain. Its
+    /// weight grows with the thickness; contact is not changed.
+    pub(crate) fn similar(&self, thicker: f64, stronger: f64) -> Result<Self, DesignError> {
+        if !(thicker > 0.0 && stronger > 0.0 && thicker.is_finite() && stronger.is_finite()) {
+            return Err(DesignError::ImpossibleSheet);
+        }
+        let mut similar = Self {
+            law: Arc::clone(&self.law),
+            contact: self.contact,
+            solver: self.solver.clone(),
+        };
+        if (thicker, stronger) != (1.0, 1.0) {
+            let law = self.law.similar(thicker, stronger);
+            similar.law = law.ok_or(DesignError::NoSimilarLaw)?;
+            similar.solver.weight = self.solver.weight.map(|weight| thicker * weight);
+        }
+        Ok(similar)
+    }
+
     /// The path of a sheet, corrected from a `known` one that is near enough, or else followed from the flat sheet, and whether it
     /// was followed.
     pub(crate) fn path(

@@ -1,0 +1,276 @@
+//! The equilibrium at full load as a function: its gradient in every input by Taylor remainders, balance of loads, reactions and
+//! weight, and inputs that are refused.
+
+use design::analysis::taylor::TaylorRemainders;
+use design::equilibrium::load_step::Status;
+use design::equilibrium::solver::EquilibriumError;
+use design::objective::response::{Conditions, Response, ResponseCotangent};
+use design::{DesignError, DesignProblem, DesignVector, Scene};
+use std::path::Path;
+
+/// Dead loads on a clamped film; a hanging plate, heavy and with a prescribed stroke; springs.
+const SCENES: [&str; 3] = ["pet-3x3", "a4-plate", "linear-7x7"];
+
+fn problem(scene: &str) -> (DesignProblem, DesignVector) {
+    let path = format!(
+        "{}/../configs/scenes/{scene}.toml",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let scene = Scene::read(Path::new(&path)).unwrap();
+    (scene.problem().unwrap(), scene.start())
+}
+
+fn loads(problem: &DesignProblem) -> Vec<[f64; 3]> {
+    problem.model.mechanics().unwrap().solver.loads().to_vec()
+}
+
+/// A vector with entries of order one that has no symmetry.
+fn wave(length: usize, phase: f64) -> Vec<f64> {
+    (0..length)
+        .map(|i| (1.7 * i as f64 + phase).sin())
+        .collect()
+}
+
+fn triples(values: &[f64]) -> Vec<[f64; 3]> {
+    values
+        .chunks(3)
+        .map(|row| [row[0], row[1], row[2]])
+        .collect()
+}
+
+/// A function of the outputs: linear in forces and the load factor, quadratic in the corners.
+fn value(response: &Response) -> f64 {
+    let by = cotangent(response);
+    let corners = response.corners();
+    let corners = std::iter::zip(by.corners.as_flattened(), corners.as_flattened());
+    let forces = std::iter::zip(
+        by.reactions.as_flattened(),
+        response.reactions.as_flattened(),
+    );
+    corners
+        .map(|(by, at)| 0.5 * (by[0] * at[0] + by[1] * at[1]))
+        .sum::<f64>()
+        + forces.map(|(by, force)| by * force).sum::<f64>()
+        + by.load_factor * response.state().load_factor
+}
+
+fn cotangent(response: &Response) -> ResponseCotangent {
+    let mut corners = response.corners();
+    let weights = wave(corners.as_flattened().len(), 0.3);
+    for (corner, weight) in corners.as_flattened_mut().iter_mut().zip(weights) {
+        *corner = corner.map(|x| 1e-3 * weight * x);
+    }
+    ResponseCotangent {
+        corners,
+        reactions: triples(&wave(3 * response.reactions.len(), 0.7)),
+        load_factor: 2.0,
+    }
+}
+
+/// Entries: design, loads at free degrees of freedom, logarithms of thickness and stresses.
+struct Inputs {
+    design: DesignVector,
+    conditions: Conditions,
+}
+
+impl Inputs {
+    fn at(design: &DesignVector, loads: &[[f64; 3]], free: &[[f64; 3]], x: &[f64]) -> Self {
+        let start = design.to_flat();
+        let (by_design, rest) = x.split_at(start.len());
+        let (by_loads, by_logarithms) = rest.split_at(3 * loads.len());
+        let moved: Vec<f64> = std::iter::zip(start, by_design)
+            .map(|(x, d)| x + d)
+            .collect();
+        let loads: Vec<f64> = (loads.as_flattened().iter())
+            .zip(by_loads)
+            .zip(free.as_flattened())
+            .map(|((load, d), free)| load + free * d)
+            .collect();
+        Self {
+            design: design.with_flat(&moved),
+            conditions: Conditions {
+                loads: Some(triples(&loads)),
+                thickness: by_logarithms[0].exp(),
+                stress: by_logarithms[1].exp(),
+            },
+        }
+    }
+}
+
+#[test]
+fn the_gradient_in_every_input() {
+    for scene in SCENES {
+        let (problem, design) = problem(scene);
+        let loads = loads(&problem);
+        let response = problem.response(&design, None).unwrap();
+        assert!(response.deployment.followed);
+        let by = cotangent(&response);
+        let found = problem.response_pullback(&design, &response, &by).unwrap();
+        let known = response.deployment.known_path();
+        // 1 where the response is a differentiable function of the load.
+        let driven = problem.model.mechanics().unwrap().solver.is_driven();
+        let variable = |panel: usize, d: usize| {
+            let mut with = vec![[0.0; 3]; loads.len()];
+            with[panel][d] = 1.0;
+            let conditions = Conditions {
+                loads: Some(with),
+                ..Conditions::default()
+            };
+            let kink = driven && d < 2 && loads[panel][..2] == [0.0; 2];
+            problem.under(&conditions).is_ok() && !kink
+        };
+        let free: Vec<[f64; 3]> = (0..loads.len())
+            .map(|panel| [0, 1, 2].map(|d| f64::from(variable(panel, d))))
+            .collect();
+        let variables = design.to_flat().len();
+        let mut gradient = found.design.to_flat();
+        gradient.extend(found.loads.as_flattened());
+        gradient.extend([found.thickness.unwrap_or(0.0), found.stress.unwrap()]);
+        let load = loads
+            .as_flattened()
+            .iter()
+            .fold(0.0, |most: f64, x| most.max(x.abs()));
+        let blocks = [
+            ("design", 0..variables, 1.0),
+            ("loads", variables..gradient.len() - 2, load),
+            // The response is smooth enough for steps that lift the remainders above rounding.
+            ("thickness", gradient.len() - 2..gradient.len() - 1, 5.0),
+            ("stresses", gradient.len() - 1..gradient.len(), 5.0),
+        ];
+        for (block, range, size) in blocks {
+            if block == "thickness" && found.thickness.is_none() {
+                continue;
+            }
+            let mut direction = vec![0.0; gradient.len()];
+            for (entry, wave) in direction[range.clone()]
+                .iter_mut()
+                .zip(wave(range.len(), 0.5))
+            {
+                *entry = size * wave;
+            }
+            let free = free.as_flattened();
+            for (entry, free) in direction[variables..].iter_mut().zip(free) {
+                *entry *= free;
+            }
+            let free = triples(free);
+            let at = |x: &[f64]| -> Result<f64, DesignError> {
+                let inputs = Inputs::at(&design, &loads, &free, x);
+                let problem = problem.under(&inputs.conditions)?;
+                let response = problem.response(&inputs.design, Some(&known))?;
+                Ok(value(&response))
+            };
+            let flat = vec![0.0; gradient.len()];
+            let taylor = TaylorRemainders::new(at, &flat, &gradient, &direction, 4e-3, 4).unwrap();
+            let orders = taylor.orders();
+            assert!(
+                orders.iter().all(|order| (1.9..2.3).contains(order)),
+                "{scene}, {block}: orders {orders:?} of {taylor:?}"
+            );
+        }
+    }
+}
+
+/// The state that is known gives the same outputs and the same gradient without a path.
+#[test]
+fn a_known_configuration_gives_the_same_response() {
+    for scene in SCENES {
+        let (problem, design) = problem(scene);
+        let response = problem.response(&design, None).unwrap();
+        let configuration = &response.state().configuration;
+        let again = problem.response_at(&design, configuration).unwrap();
+        assert_eq!(again.corners(), response.corners());
+        assert_eq!(again.reactions, response.reactions);
+        let by = cotangent(&response);
+        let [first, second] = [&response, &again].map(|response| {
+            let gradient = problem.response_pullback(&design, response, &by).unwrap();
+            gradient.design.to_flat()
+        });
+        let size = first.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        for (first, second) in std::iter::zip(first, second) {
+            assert!((first - second).abs() < 1e-8 * size, "{first} {second}");
+        }
+        let mut elsewhere = configuration.clone();
+        elsewhere[4][2] += 0.1;
+        let error = problem.response_at(&design, &elsewhere).err().unwrap();
+        assert!(
+            matches!(error, DesignError::NoEquilibrium { .. }),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn reactions_balance_loads_and_weight() {
+    for scene in SCENES {
+        let (problem, design) = problem(scene);
+        let response = problem.response(&design, None).unwrap();
+        let state = response.state();
+        let weight = problem.model.mechanics().unwrap().solver.weight();
+        let panels = &response.deployment.sheet.panels;
+        let area: f64 = panels.iter().map(|panel| panel.area).sum();
+        for d in 0..2 {
+            let load: f64 = loads(&problem).iter().map(|load| load[d]).sum();
+            let reaction: f64 = response.reactions.iter().map(|reaction| reaction[d]).sum();
+            let sum = state.load_factor * load + weight[d] * area + reaction;
+            assert!(
+                sum.abs() < 1e-6 * (1.0 + reaction.abs()),
+                "{scene}: {sum} {reaction}"
+            );
+        }
+        // The path of the command line ends in the same state.
+        let path = problem.deploy(&design).unwrap();
+        assert_ne!(path.final_step().status, Status::Diverged);
+        let of_path = path.final_step().configuration.as_flattened();
+        for (q, expected) in std::iter::zip(state.configuration.as_flattened(), of_path) {
+            assert!((q - expected).abs() < 1e-6, "{scene}: {q} {expected}");
+        }
+    }
+}
+
+#[test]
+fn what_no_response_is_known_for_is_refused() {
+    let (springs, _) = problem("linear-7x7");
+    let thicker = Conditions {
+        thickness: 1.1,
+        ..Conditions::default()
+    };
+    assert!(matches!(
+        springs.under(&thicker),
+        Err(DesignError::NoSimilarLaw)
+    ));
+    let (film, design) = problem("pet-3x3");
+    for (thickness, stress) in [
+        (0.0, 1.0),
+        (1.0, -1.0),
+        (f64::NAN, 1.0),
+        (1.0, f64::INFINITY),
+    ] {
+        let conditions = Conditions {
+            loads: None,
+            thickness,
+            stress,
+        };
+        assert!(matches!(
+            film.under(&conditions),
+            Err(DesignError::ImpossibleSheet)
+        ));
+    }
+    let mut on_clamp = loads(&film);
+    on_clamp[3][0] = 1.0;
+    let conditions = Conditions {
+        loads: Some(on_clamp),
+        ..Conditions::default()
+    };
+    assert!(matches!(
+        film.under(&conditions),
+        Err(DesignError::Equilibrium(EquilibriumError::LoadOnSupport {
+            panel: 3,
+            ..
+        }))
+    ));
+    let (pins, _) = problem("pin-7x7");
+    assert!(matches!(
+        pins.response(&design, None),
+        Err(DesignError::NoMechanics)
+    ));
+}

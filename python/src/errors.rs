@@ -1,0 +1,71 @@
+//! Errors as Python exceptions. The message is that of the command line.
+
+use design::DesignError;
+use pyo3::create_exception;
+use pyo3::exceptions::PyException;
+use pyo3::prelude::*;
+use std::fmt::Display;
+
+create_exception!(
+    kirigami,
+    KirigamiError,
+    PyException,
+    "What kirigami reports: the base of all its exceptions."
+);
+create_exception!(
+    kirigami,
+    WeightsError,
+    KirigamiError,
+    "Weights or their card cannot be read, or do not belong together."
+);
+create_exception!(
+    kirigami,
+    InvalidScene,
+    KirigamiError,
+    "A scene, or a file that it names, is not valid; the message names the file and the key."
+);
+create_exception!(
+    kirigami,
+    InvalidDesign,
+    KirigamiError,
+    "A design has no sheet: its cuts or its ligaments cannot exist."
+);
+create_exception!(
+    kirigami,
+    NoEquilibrium,
+    KirigamiError,
+    "No equilibrium was found at full load."
+);
+create_exception!(
+    kirigami,
+    SingularTangent,
+    KirigamiError,
+    "The tangent of the equilibrium is singular, as at a limit point: the gradient does not exist."
+);
+
+/// The exception of weights that cannot be read.
+pub(crate) fn weights(error: surrogate::WeightsError) -> PyErr {
+    WeightsError::new_err(error.to_string())
+}
+
+/// The exception of a scene, or of a file that it names.
+pub(crate) fn scene(error: impl Display) -> PyErr {
+    InvalidScene::new_err(error.to_string())
+}
+
+/// The same exception, with the element of a batch in its message.
+pub(crate) fn of_element(py: Python, element: usize, error: PyErr) -> PyErr {
+    let message = format!("element {element}: {}", error.value(py));
+    let kind = error.get_type(py).call1((message,));
+    kind.map_or(error, PyErr::from_value)
+}
+
+/// The exception of a design without a value or a gradient.
+pub(crate) fn design(error: DesignError) -> PyErr {
+    let message = error.to_string();
+    match error {
+        DesignError::NoEquilibrium { .. } => NoEquilibrium::new_err(message),
+        DesignError::SingularTangent(_) => SingularTangent::new_err(message),
+        _ => InvalidDesign::new_err(message),
+    }
+}

@@ -1,0 +1,635 @@
+//! A prepared design problem: its scene is read once, its solves start from the last state.
+
+use crate::arrays::{Doubles, Numbers, array, numbers, plain, shaped, triples, tuple, wrong_shape};
+use crate::deployment::{Deployment, State};
+use crate::errors;
+use crate::flat_sheet::Sheet;
+use crate::waiting::while_polling;
+use design::equilibrium::nearby_path::KnownPath;
+use design::objective::response::{Conditions, Response, ResponseCotangent, ResponseGradient};
+use design::scene::design_run::{design_of_run, stored_design};
+use design::scene::run_inputs::scene_file;
+use design::scene::{Scene, SceneConfig};
+use design::{
+    DesignError, DesignProblem, DesignVector, Evaluation, SearchMethod, SearchState, optimise,
+};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList, PyTuple};
+use rayon::prelude::*;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// A design problem: sheet, material, supports, loads, target and objective of a scene.
+///
+/// Problem(scene, folder=None)
+///
+/// scene: the file of a scene (TOML), the folder of a run, or a dict with the keys of a scene (docs/KEYS.md), whose paths are relative
+/// to `folder`, by default the working folder. A design is a vector x of `size` numbers; `blocks` names its parts. Units are mm, N, N mm and rad.
+#[pyclass(frozen, module = "kirigami")]
+pub(crate) struct Problem {
+    scene: Scene,
+    problem: Arc<DesignProblem>,
+    start: DesignVector,
+    warm: Mutex<Warm>,
+}
+
+/// What the next solves start from.
+#[derive(Default)]
+struct Warm {
+    path: Known,
+    state: Known,
+}
+
+/// Load steps that are known, and how many solves have been corrected from one another since the last followed path.
+#[derive(Default)]
+struct Known {
+    path: Option<Arc<KnownPath>>,
+    corrected: usize,
+}
+
+impl Known {
+    /// The path to start from; none when the next one is to be followed from the flat sheet.
+    fn usable(&self, follow_every: usize) -> Option<Arc<KnownPath>> {
+        self.path
+            .clone()
+            .filter(|_| self.corrected + 1 < follow_every)
+    }
+
+    fn keep(&mut self, deployment: &design::Deployment) {
+        self.corrected = if deployment.followed {
+            0
+        } else {
+            self.corrected + 1
+        };
+        self.path = Some(Arc::new(deployment.known_path()));
+    }
+}
+
+/// What a solve is given besides the design.
+struct Given<'py> {
+    loads: Option<Bound<'py, PyAny>>,
+    thickness: Option<f64>,
+    stress: f64,
+}
+
+#[pymethods]
+impl Problem {
+    #[new]
+    #[pyo3(signature = (scene, folder=None))]
+    fn new(py: Python, scene: &Bound<PyAny>, folder: Option<PathBuf>) -> PyResult<Self> {
+        let scene = if let Ok(keys) = scene.cast::<PyDict>() {
+            scene_of(keys, &folder.unwrap_or_default())?
+        } else {
+            let path: PathBuf = scene.extract().map_err(|_| {
+                PyTypeError::new_err(
+                    "`scene` is neither a path nor a dict with the keys of a scene",
+                )
+            })?;
+            py.detach(|| {
+                let path = scene_file(&path).map_err(errors::scene)?;
+                Scene::read(&path).map_err(errors::scene)
+            })?
+        };
+        let problem = py.detach(|| scene.problem()).map_err(errors::scene)?;
+        Ok(Self {
+            start: scene.start(),
+            problem: Arc::new(problem),
+            scene,
+            warm: Mutex::default(),
+        })
+    }
+
+    /// Number of design variables.
+    #[getter]
+    fn size(&self) -> usize {
+        self.start.to_flat().len()
+    }
+
+    /// The start design of the scene, shape (size,).
+    #[getter]
+    fn start<'py>(&self, py: Python<'py>) -> Doubles<'py> {
+        array(py, self.start.to_flat(), &[self.size()])
+    }
+
+    /// The parts of a design by name, as slices: `z`, the logits of the void aspect ratios; `ell`, those of the intervals between the cuts
+    /// on the edges; `omega`, those of the ligament widths in their range; `opening` (rad), if it is a design variable.
+    #[getter]
+    fn blocks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let blocks = PyDict::new(py);
+        let pattern = &self.start.pattern;
+        let ell = pattern.ell.iter().map(Vec::len).sum();
+        let opening = usize::from(self.start.opening.is_some());
+        let lengths = [pattern.z.len(), ell, self.start.omega.len(), opening];
+        let mut end = 0;
+        for (name, length) in ["z", "ell", "omega", "opening"].into_iter().zip(lengths) {
+            let Range { start, end: stop } = end..end + length;
+            end = stop;
+            let slice = py
+                .import("builtins")?
+                .call_method1("slice", (start, stop))?;
+            blocks.set_item(name, slice)?;
+        }
+        Ok(blocks)
+    }
+
+    /// Panels along x and y.
+    #[getter]
+    fn panels(&self) -> (usize, usize) {
+        (self.problem.grid.m, self.problem.grid.n)
+    }
+
+    /// Thickness of the sheet (mm).
+    #[getter]
+    fn thickness(&self) -> f64 {
+        self.scene.material.thickness
+    }
+
+    /// (F_x, F_y, M) on every panel at full load (N, N, N mm), shape (panels, 3).
+    #[getter]
+    fn loads<'py>(&self, py: Python<'py>) -> PyResult<Doubles<'py>> {
+        Ok(triples(py, self.mechanics()?.solver.loads()))
+    }
+
+    /// Names of the inputs in which the equilibrium has a derivative: the design, the loads and, if the hinge law determines them,
+    /// the thickness and the stresses.
+    #[getter]
+    fn differentiable(&self) -> PyResult<Vec<&'static str>> {
+        let [thickness, stress] = self.mechanics()?.law.scales();
+        let optional = [("thickness", thickness), ("stress", stress)];
+        let others = optional.into_iter().filter(|(_, known)| *known);
+        Ok(["design", "loads"]
+            .into_iter()
+            .chain(others.map(|(name, _)| name))
+            .collect())
+    }
+
+    /// The design with other ligament widths (mm), a number or an array of shape (hinges,), inside the range of the scene.
+    fn with_widths<'py>(
+        &self,
+        py: Python<'py>,
+        x: &Bound<PyAny>,
+        w_lig: &Bound<PyAny>,
+    ) -> PyResult<Doubles<'py>> {
+        let mut design = self.design_of(x)?;
+        let hinges = design.omega.len();
+        let widths = numbers(w_lig, "w_lig")?.filled("w_lig", &[hinges], hinges)?;
+        let range = self.problem.widths;
+        for (h, (omega, &width)) in design.omega.iter_mut().zip(&widths).enumerate() {
+            if !(range.w_minus < width && width < range.w_plus) {
+                return Err(PyValueError::new_err(format!(
+                    "w_lig[{h}] = {width} mm violates {} < w_lig < {}, ligament.range of the scene",
+                    range.w_minus, range.w_plus
+                )));
+            }
+            *omega = range.omega(width);
+        }
+        let flat = design.to_flat();
+        let size = flat.len();
+        Ok(array(py, flat, &[size]))
+    }
+
+    /// The flat sheet of a design.
+    fn sheet(&self, x: &Bound<PyAny>) -> PyResult<Sheet> {
+        let (_, sheet) = self
+            .problem
+            .cut(&self.design_of(x)?)
+            .map_err(errors::design)?;
+        Ok(Sheet(Arc::new(sheet)))
+    }
+
+    /// The deployed sheet with its path, which ends early where no equilibrium is found; with pins the kinematic deployment.
+    ///
+    /// loads: (F_x, F_y, M) on every panel, shape (panels, 3), instead of the scene's; thickness (mm) instead of the scene's; stress: all
+    /// stresses at equal strain over those of the material; warm: correct the path from the last one if that is near, instead of
+    /// following it from the flat sheet.
+    #[pyo3(signature = (x, loads=None, thickness=None, stress=1.0, warm=true))]
+    fn deploy(
+        &self,
+        py: Python,
+        x: &Bound<PyAny>,
+        loads: Option<Bound<PyAny>>,
+        thickness: Option<f64>,
+        stress: f64,
+        warm: bool,
+    ) -> PyResult<Deployment> {
+        let problem = self.under(&Given {
+            loads,
+            thickness,
+            stress,
+        })?;
+        let design = self.design_of(x)?;
+        let known = self.known(warm, |warm| &warm.path);
+        let deployment = py.detach(|| problem.deploy_near(&design, known.as_deref()));
+        let deployment = deployment.map_err(errors::design)?;
+        self.warm().path.keep(&deployment);
+        Ok(Deployment::new(problem, deployment))
+    }
+
+    /// The same as `deploy`, but NoEquilibrium is raised if none was found at full load.
+    #[pyo3(signature = (x, loads=None, thickness=None, stress=1.0, warm=true))]
+    fn equilibrium(
+        &self,
+        py: Python,
+        x: &Bound<PyAny>,
+        loads: Option<Bound<PyAny>>,
+        thickness: Option<f64>,
+        stress: f64,
+        warm: bool,
+    ) -> PyResult<Deployment> {
+        self.mechanics()?;
+        let deployment = self.deploy(py, x, loads, thickness, stress, warm)?;
+        deployment.at_full_load()?;
+        Ok(deployment)
+    }
+
+    /// The equilibrium at full load alone: deployed corners, reactions, load factor. It costs a fraction of the path.
+    #[pyo3(signature = (x, loads=None, thickness=None, stress=1.0, warm=true))]
+    fn solve(
+        &self,
+        py: Python,
+        x: &Bound<PyAny>,
+        loads: Option<Bound<PyAny>>,
+        thickness: Option<f64>,
+        stress: f64,
+        warm: bool,
+    ) -> PyResult<State> {
+        let problem = self.under(&Given {
+            loads,
+            thickness,
+            stress,
+        })?;
+        let design = self.design_of(x)?;
+        let known = self.known(warm, |warm| &warm.state);
+        let response = py.detach(|| problem.response(&design, known.as_deref()));
+        let response = response.map_err(errors::design)?;
+        self.warm().state.keep(&response.deployment);
+        Ok(State(response))
+    }
+
+    /// Many equilibria at full load in one call, over all threads: x of shape (n, size) or (size,), loads of shape (n, panels, 3) or
+    /// (panels, 3), thickness and stress of shape (n,) or numbers. All start from the last state of the problem.
+    ///
+    /// Returns a list of n states. strict: the first equilibrium that is not found is raised; otherwise its place holds the exception.
+    #[pyo3(signature = (x, loads=None, thickness=None, stress=None, strict=true))]
+    fn solve_many<'py>(
+        &self,
+        py: Python<'py>,
+        x: &Bound<PyAny>,
+        loads: Option<&Bound<PyAny>>,
+        thickness: Option<&Bound<PyAny>>,
+        stress: Option<&Bound<PyAny>>,
+        strict: bool,
+    ) -> PyResult<Bound<'py, PyList>> {
+        let many = self.many(x, loads, thickness, stress)?;
+        let known = self.known(true, |warm| &warm.state);
+        let stop = AtomicBool::new(false);
+        let answers = while_polling(py, &stop, || {
+            many.par_iter()
+                .map(|(design, conditions)| {
+                    (!stop.load(Ordering::Relaxed)).then(|| {
+                        let problem = self.problem.under(conditions)?;
+                        problem.response(design, known.as_deref())
+                    })
+                })
+                .collect::<Option<Vec<Result<Response, DesignError>>>>()
+        })?;
+        let list = PyList::empty(py);
+        for (i, answer) in answers.unwrap_or_default().into_iter().enumerate() {
+            match answer.map_err(errors::design) {
+                Ok(response) => list.append(State(response))?,
+                Err(error) if strict => return Err(errors::of_element(py, i, error)),
+                Err(error) => list.append(error.into_value(py))?,
+            }
+        }
+        Ok(list)
+    }
+
+    /// The gradient in the inputs of a function of the equilibrium at full load, from its gradient in the outputs: the implicit
+    /// derivative, by one adjoint solve.
+    ///
+    /// configuration: that of the state that `solve` found with the same inputs; corners, reactions, load_factor: the gradient in these
+    /// outputs, of their shapes. Returns a dict: `design` (size,), `loads` (panels, 3), and `thickness` (1/mm) and `stress`, which are
+    /// None where the hinge law does not determine them.
+    #[pyo3(signature = (x, configuration, corners, reactions, load_factor, loads=None, thickness=None, stress=1.0))]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "inputs and outputs of the equilibrium, by keyword in Python"
+    )]
+    fn pullback<'py>(
+        &self,
+        py: Python<'py>,
+        x: &Bound<PyAny>,
+        configuration: &Bound<PyAny>,
+        corners: &Bound<PyAny>,
+        reactions: &Bound<PyAny>,
+        load_factor: f64,
+        loads: Option<Bound<PyAny>>,
+        thickness: Option<f64>,
+        stress: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let problem = self.under(&Given {
+            loads,
+            thickness,
+            stress,
+        })?;
+        let design = self.design_of(x)?;
+        let configuration = self.by_panel(configuration, "configuration")?;
+        let panels = problem.grid.panel_count();
+        let expected = tuple(&[panels, 4, 2]);
+        let corners = shaped(
+            corners,
+            "corners",
+            &[Some(panels), Some(4), Some(2)],
+            &expected,
+        )?;
+        let by = ResponseCotangent {
+            corners: (corners.values.as_chunks::<8>().0.iter())
+                .map(|row| std::array::from_fn(|c| [row[2 * c], row[2 * c + 1]]))
+                .collect(),
+            reactions: self.by_panel(reactions, "reactions")?,
+            load_factor,
+        };
+        let gradient = py.detach(|| {
+            let response = problem.response_at(&design, &configuration)?;
+            problem.response_pullback(&design, &response, &by)
+        });
+        let ResponseGradient {
+            design,
+            loads,
+            thickness: of_thickness,
+            stress: of_stress,
+        } = gradient.map_err(errors::design)?;
+        let gradient = PyDict::new(py);
+        let flat = design.to_flat();
+        let size = flat.len();
+        gradient.set_item("design", array(py, flat, &[size]))?;
+        gradient.set_item("loads", triples(py, &loads))?;
+        // From logarithms to mm and to the factor.
+        let thickness = thickness.unwrap_or(self.thickness());
+        gradient.set_item("thickness", of_thickness.map(|slope| slope / thickness))?;
+        gradient.set_item("stress", of_stress.map(|slope| slope / stress))?;
+        Ok(gradient)
+    }
+
+    /// The objective (16) of the scene (mm^2) and its gradient, shape (size,).
+    #[pyo3(signature = (x, warm=true))]
+    fn loss_and_gradient<'py>(
+        &self,
+        py: Python<'py>,
+        x: &Bound<PyAny>,
+        warm: bool,
+    ) -> PyResult<(f64, Doubles<'py>)> {
+        let evaluation = self.evaluated(py, x, warm)?;
+        let gradient = evaluation.gradient.to_flat();
+        Ok((evaluation.loss, array(py, gradient, &[self.size()])))
+    }
+
+    /// The terms of the objective by name, unweighted.
+    #[pyo3(signature = (x, warm=true))]
+    fn terms<'py>(
+        &self,
+        py: Python<'py>,
+        x: &Bound<PyAny>,
+        warm: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let evaluation = self.evaluated(py, x, warm)?;
+        plain(py, &evaluation.terms)
+    }
+
+    /// The search of the scene, Algorithm 1, in memory: no file is written.
+    ///
+    /// callback: called after every step with a dict (step, loss, outline_error, the terms, ...); the search ends if it returns True.
+    /// Ctrl-C ends it after the step. Returns (x, why it ended, the history, one dict a step).
+    #[pyo3(signature = (start=None, steps=None, method=None, learning_rate=None, callback=None))]
+    fn design<'py>(
+        &self,
+        py: Python<'py>,
+        start: Option<&Bound<PyAny>>,
+        steps: Option<usize>,
+        method: Option<&str>,
+        learning_rate: Option<f64>,
+        callback: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let optimiser = self.scene.config.optimiser;
+        let start = start.map_or(Ok(self.start.clone()), |x| self.design_of(x))?;
+        let method = match method {
+            Some(name) => read_method(name)?,
+            None => optimiser.method,
+        };
+        let rate = learning_rate.unwrap_or(optimiser.learning_rate);
+        let steps = steps.unwrap_or(optimiser.steps);
+        let (problem, stop) = (&self.problem, AtomicBool::new(false));
+        let told = |search: &SearchState| {
+            Python::attach(|py| {
+                py.check_signals()?;
+                if let Some(callback) = &callback {
+                    let record = plain(py, search.last())?;
+                    let ends = callback.call1(py, (record,))?.is_truthy(py)?;
+                    stop.fetch_or(ends, Ordering::Relaxed);
+                }
+                Ok::<_, PyErr>(())
+            })
+        };
+        let (search, ended) = py.detach(|| {
+            let evaluation = problem.evaluate(&start).map_err(errors::design)?;
+            let mut search = SearchState::new(problem, start, &evaluation, method, rate);
+            told(&search)?;
+            let ended = optimise(problem, &mut search, steps, &stop, &mut |search| {
+                told(search)
+            })?;
+            Ok::<_, PyErr>((search, ended))
+        })?;
+        let best = array(py, search.best.to_flat(), &[self.size()]);
+        let (ended, history) = (plain(py, &ended)?, plain(py, &search.history)?);
+        PyTuple::new(py, [best.into_any(), ended, history])
+    }
+
+    /// The design of the run of this scene, or in a file (`state.json` of a run, or a design alone), shape (size,).
+    #[pyo3(signature = (file=None))]
+    fn stored<'py>(&self, py: Python<'py>, file: Option<PathBuf>) -> PyResult<Doubles<'py>> {
+        let design = match file {
+            Some(file) => stored_design(&file, &self.scene).map_err(errors::scene)?,
+            None => design_of_run(&self.scene, false)
+                .map_err(errors::scene)?
+                .ok_or_else(|| {
+                    errors::scene(format!(
+                        "there is no run in {}",
+                        self.scene.output().display()
+                    ))
+                })?,
+        };
+        Ok(array(py, design.to_flat(), &[self.size()]))
+    }
+
+    /// Forgets the last states: the next solves follow their paths from the flat sheet.
+    fn forget(&self) {
+        *self.warm() = Warm::default();
+    }
+
+    fn __repr__(&self) -> String {
+        let grid = self.problem.grid;
+        format!(
+            "Problem({:?}, {} x {} panels)",
+            self.scene.config.title, grid.m, grid.n
+        )
+    }
+}
+
+impl Problem {
+    fn mechanics(&self) -> PyResult<&design::Mechanics> {
+        let mechanics = self.problem.model.mechanics();
+        mechanics.ok_or_else(|| errors::design(DesignError::NoMechanics))
+    }
+
+    fn warm(&self) -> MutexGuard<'_, Warm> {
+        self.warm.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn known(&self, warm: bool, part: impl Fn(&Warm) -> &Known) -> Option<Arc<KnownPath>> {
+        let follow_every = self.scene.config.solver.follow_every;
+        part(&self.warm()).usable(follow_every).filter(|_| warm)
+    }
+
+    fn design_of(&self, x: &Bound<PyAny>) -> PyResult<DesignVector> {
+        let size = self.size();
+        let flat = shaped(x, "x", &[Some(size)], &tuple(&[size]))?;
+        Ok(self.start.with_flat(&flat.values))
+    }
+
+    fn by_panel(&self, argument: &Bound<PyAny>, name: &str) -> PyResult<Vec<[f64; 3]>> {
+        let panels = self.problem.grid.panel_count();
+        let given = shaped(
+            argument,
+            name,
+            &[Some(panels), Some(3)],
+            &tuple(&[panels, 3]),
+        )?;
+        Ok(given.values.as_chunks::<3>().0.to_vec())
+    }
+
+    /// The problem under the given conditions.
+    fn under(&self, given: &Given) -> PyResult<Arc<DesignProblem>> {
+        let loads = given
+            .loads
+            .as_ref()
+            .map(|loads| self.by_panel(loads, "loads"));
+        let conditions = Conditions {
+            loads: loads.transpose()?,
+            thickness: given
+                .thickness
+                .map_or(1.0, |thickness| thickness / self.thickness()),
+            stress: given.stress,
+        };
+        if conditions == Conditions::default() {
+            return Ok(Arc::clone(&self.problem));
+        }
+        Ok(Arc::new(
+            self.problem.under(&conditions).map_err(errors::design)?,
+        ))
+    }
+
+    fn evaluated(&self, py: Python, x: &Bound<PyAny>, warm: bool) -> PyResult<Evaluation> {
+        let design = self.design_of(x)?;
+        let known = self.known(warm, |warm| &warm.path);
+        let evaluation = py.detach(|| self.problem.evaluate_near(&design, known.as_deref()));
+        let evaluation = evaluation.map_err(errors::design)?;
+        self.warm().path.keep(&evaluation.deployment);
+        Ok(evaluation)
+    }
+
+    /// The inputs of many solves.
+    fn many(
+        &self,
+        x: &Bound<PyAny>,
+        loads: Option<&Bound<PyAny>>,
+        thickness: Option<&Bound<PyAny>>,
+        stress: Option<&Bound<PyAny>>,
+    ) -> PyResult<Vec<(DesignVector, Conditions)>> {
+        let read = |argument: Option<&Bound<PyAny>>, name| {
+            argument.map(|argument| numbers(argument, name)).transpose()
+        };
+        let given = [
+            ("x", Some(numbers(x, "x")?), vec![self.size()]),
+            (
+                "loads",
+                read(loads, "loads")?,
+                vec![self.problem.grid.panel_count(), 3],
+            ),
+            ("thickness", read(thickness, "thickness")?, vec![]),
+            ("stress", read(stress, "stress")?, vec![]),
+        ];
+        let mut count = None;
+        for (name, numbers, one) in &given {
+            let Some(Numbers { shape, .. }) = numbers else {
+                continue;
+            };
+            if shape == one {
+                continue;
+            }
+            let many = shape.first().copied().unwrap_or(0);
+            let expected = |n: String| format!("{} or ({n}, ...) of these", tuple(one));
+            if shape.len() != one.len() + 1 || shape[1..] != one[..] {
+                return Err(wrong_shape(name, shape, &expected("n".into())));
+            }
+            if count.is_some_and(|count| count != many) {
+                return Err(wrong_shape(
+                    name,
+                    shape,
+                    &expected(count.unwrap_or(0).to_string()),
+                ));
+            }
+            count = Some(many);
+        }
+        let [x, loads, thickness, stress] = given.map(|(_, numbers, one)| {
+            let length: usize = one.iter().product();
+            move |i: usize| -> Option<Vec<f64>> {
+                let values = &numbers.as_ref()?.values;
+                let first = if values.len() == length {
+                    0
+                } else {
+                    i * length
+                };
+                Some(values[first..first + length].to_vec())
+            }
+        });
+        let inputs = (0..count.unwrap_or(1)).map(|i| {
+            let design = self.start.with_flat(&x(i).unwrap_or_default());
+            let conditions = Conditions {
+                loads: loads(i).map(|loads| loads.as_chunks::<3>().0.to_vec()),
+                thickness: thickness(i).map_or(1.0, |mm| mm[0] / self.thickness()),
+                stress: stress(i).map_or(1.0, |factor| factor[0]),
+            };
+            (design, conditions)
+        });
+        Ok(inputs.collect())
+    }
+}
+
+/// The scene with the keys of a dict.
+fn scene_of(keys: &Bound<PyDict>, folder: &Path) -> PyResult<Scene> {
+    let py = keys.py();
+    let text: String = py
+        .import("kirigami.files")?
+        .call_method1("_json", (keys,))?
+        .extract()?;
+    let path = folder.join("scene (dict)");
+    let keys: toml::Value = serde_json::from_str(&text).map_err(errors::scene)?;
+    let text = toml::to_string(&keys).map_err(errors::scene)?;
+    let config: SceneConfig = support::toml_file::parse(&text, &path).map_err(errors::scene)?;
+    py.detach(|| Scene::new(config, &path))
+        .map_err(errors::scene)
+}
+
+fn read_method(name: &str) -> PyResult<SearchMethod> {
+    match name {
+        "adam" => Ok(SearchMethod::Adam),
+        "lbfgs" => Ok(SearchMethod::Lbfgs),
+        "gauss-newton" => Ok(SearchMethod::GaussNewton),
+        _ => Err(PyValueError::new_err(format!(
+            "`method` is \"{name}\", expected \"adam\", \"lbfgs\" or \"gauss-newton\""
+        ))),
+    }
+}
