@@ -155,6 +155,11 @@ impl ReleasedSample {
         [self.a, self.s, self.theta].into()
     }
 
+    /// The forces (F_a, F_s, M_theta) there (N, N, N mm).
+    pub fn forces(&self) -> [f64; 3] {
+        [self.f_a, self.f_s, self.m_theta]
+    }
+
     /// The hinge after it was let go.
     pub fn released(&self) -> ReleasedHinge {
         ReleasedHinge {

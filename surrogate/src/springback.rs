@@ -2,12 +2,13 @@
 //! hinge and of the state that it reached.
 //!
 //! ```text
-//! r = (r_a, r_theta, r_s),      K = U diag(exp d) U^T,      U = unit lower triangle in the order (a, theta, s)
+//! r = x - K^-1 f + e,      K = U diag(exp d) U^T,      U = unit lower triangle in the order (a, theta, s)
 //! ```
 //!
-//! r and K are in units of (w_lig, 1, w_lig). K is positive definite for any coefficients. Each of r_a, r_theta, d and u_{theta a} is a
-//! polynomial of second degree in x = (ln w_lig, alpha - 90 deg, eta_a, eta_s, theta) whose terms are even in (alpha - 90 deg,
-//! eta_s), each of r_s, u_{s a} and u_{s theta} one whose terms are odd: the law of the mirrored hinge is the mirrored law.
+//! x is the reached state and f its forces: a hinge of stiffness K springs back by K^-1 f, and e is what that leaves where the stiffness
+//! changes on the way. All are in units of (w_lig, 1, w_lig). K is positive definite for any coefficients. Each of e_a, e_theta, d and
+//! u_{theta a} is a polynomial of second degree in (ln w_lig, alpha - 90 deg, eta_a, eta_s, theta) whose terms are even in (alpha - 90 deg,
+//! eta_s), each of e_s, u_{s a} and u_{s theta} one whose terms are odd: the law of the mirrored hinge is the mirrored law.
 //! A sheet of another thickness has similar hinges: [`ReleasedHinge::scaled`].
 
 use faer::linalg::solvers::{Llt, Solve};
@@ -22,13 +23,12 @@ use support::sealed_json::{self, SealError};
 use support::statistics::root_mean_square;
 use support::{regular_file, whole_file};
 
-/// Numbers of terms and of outputs that are even, and that are odd.
-const EVEN: [usize; 2] = [13, 6];
-const ODD: [usize; 2] = [8, 3];
+/// Numbers of even and of odd terms.
+const TERMS: [usize; 2] = [13, 8];
 /// Ridge of the fit, relative to the number of hinges: terms that hardly vary get small coefficients.
 const RIDGE: f64 = 1e-4;
 /// Fewest hinges of a fit: three for each even term.
-const FEWEST: usize = 3 * EVEN[0];
+const FEWEST: usize = 3 * TERMS[0];
 
 /// The law, with its training and its errors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -52,10 +52,14 @@ pub struct Springback {
     means: [[f64; 2]; 3],
     /// Root mean squares of alpha - 90 deg and eta_s.
     spans: [f64; 2],
-    /// Coefficients of the even outputs, a row a term.
-    even: Vec<[f64; EVEN[1]]>,
-    /// Coefficients of the odd outputs.
-    odd: Vec<[f64; ODD[1]]>,
+    /// Coefficients of (d_a, d_theta, d_s, u_{theta a}), a row a term.
+    stiffness_even: Vec<[f64; 4]>,
+    /// Of (u_{s a}, u_{s theta}).
+    stiffness_odd: Vec<[f64; 2]>,
+    /// Of (e_a, e_theta).
+    rest_even: Vec<[f64; 2]>,
+    /// Of e_s.
+    rest_odd: Vec<[f64; 1]>,
 }
 
 /// Errors of the law at a set of hinges.
@@ -122,39 +126,69 @@ impl Springback {
             errors: SpringbackErrors::default(),
             means: [mean(0), mean(2), mean(4)],
             spans: [1, 3].map(|i| root_mean_square(column(i)).max(f64::MIN_POSITIVE)),
-            even: Vec::new(),
-            odd: Vec::new(),
+            stiffness_even: Vec::new(),
+            stiffness_odd: Vec::new(),
+            rest_even: vec![[0.0; 2]; TERMS[0]],
+            rest_odd: vec![[0.0; 1]; TERMS[1]],
         };
-        let outputs: Vec<_> = (rows.iter().enumerate())
+        let factors: Vec<_> = (rows.iter().enumerate())
             .map(|(i, row)| {
-                let outputs = outputs(row.w_lig, &row.released());
-                outputs.ok_or(SpringbackError::Row(i + 1))
+                let factors = factors(row.w_lig, &row.released().stiffness);
+                let known = row
+                    .forces()
+                    .iter()
+                    .chain(&row.released().rest.to_array())
+                    .all(|x| x.is_finite());
+                factors.filter(|_| known).ok_or(SpringbackError::Row(i + 1))
             })
             .collect::<Result<_, _>>()?;
         let (even, odd): (Vec<_>, Vec<_>) = inputs.iter().map(|x| law.terms(x)).unzip();
-        let (of_even, of_odd): (Vec<_>, Vec<_>) = outputs.into_iter().unzip();
-        law.even = ridge(&even, &of_even);
-        law.odd = ridge(&odd, &of_odd);
+        let (of_even, of_odd): (Vec<_>, Vec<_>) = factors.into_iter().unzip();
+        law.stiffness_even = ridge(&even, &of_even);
+        law.stiffness_odd = ridge(&odd, &of_odd);
+        // So far e is zero: what is left is what it has to be.
+        let left = rows.iter().map(|row| {
+            let without = law
+                .released(&row.design(), &row.reached(), &row.forces())
+                .rest;
+            let [a, s, theta] =
+                from_fn(|i| row.released().rest.to_array()[i] - without.to_array()[i]);
+            ([a / row.w_lig, theta], [s / row.w_lig])
+        });
+        let (of_even, of_odd): (Vec<_>, Vec<_>) = left.unzip();
+        law.rest_even = ridge(&even, &of_even);
+        law.rest_odd = ridge(&odd, &of_odd);
         law.errors = law.errors_at(unseen);
         Ok(law)
     }
 
-    /// A hinge of the thickness of the windows after it was let go at a state.
-    pub fn released(&self, design: &HingeDesign, reached: &HingeDeformation) -> ReleasedHinge {
+    /// A hinge of the thickness of the windows after it was let go at a state with these forces (F_a, F_s, M_theta) (N, N, N mm).
+    pub fn released(
+        &self,
+        design: &HingeDesign,
+        reached: &HingeDeformation,
+        forces: &[f64; 3],
+    ) -> ReleasedHinge {
         let (even, odd) = self.terms(&inputs(design, reached));
-        let [r_a, r_theta, d_a, d_theta, d_s, u_theta] = product(&even, &self.even);
-        let [r_s, u_s, u_s_theta] = product(&odd, &self.odd);
+        let [d_a, d_theta, d_s, u_theta] = product(&even, &self.stiffness_even);
+        let [u_s, u_s_theta] = product(&odd, &self.stiffness_odd);
         let unit = [[1.0, 0.0, 0.0], [u_theta, 1.0, 0.0], [u_s, u_s_theta, 1.0]];
         let pivots = [d_a, d_theta, d_s].map(f64::exp);
         let w = design.w_lig;
-        // In the order (a, theta, s), where the places of (a, s, theta) are:
-        let place = [0, 2, 1];
         let lengths = [w, w, 1.0];
+        let sprung = back(&unit, &pivots, PLACES.map(|i| forces[i] * lengths[i]));
+        let ([e_a, e_theta], [e_s]) = (
+            product(&even, &self.rest_even),
+            product(&odd, &self.rest_odd),
+        );
+        let left = [e_a, e_s, e_theta];
+        let reached = reached.to_array();
+        let rest: [f64; 3] = from_fn(|i| reached[i] + lengths[i] * (left[i] - sprung[PLACES[i]]));
         ReleasedHinge {
-            rest: HingeDeformation::from_eta(r_a, r_s, r_theta, w),
+            rest: rest.into(),
             stiffness: from_fn(|i| {
                 from_fn(|j| {
-                    let [p, q] = [place[i], place[j]];
+                    let [p, q] = [PLACES[i], PLACES[j]];
                     let sum: f64 = (0..3).map(|k| unit[p][k] * pivots[k] * unit[q][k]).sum();
                     sum / (lengths[i] * lengths[j])
                 })
@@ -165,7 +199,8 @@ impl Springback {
     /// The errors of the law at hinges of finite elements.
     pub fn errors_at(&self, rows: &[ReleasedSample]) -> SpringbackErrors {
         let errors = rows.iter().map(|row| {
-            let (law, solved) = (self.released(&row.design(), &row.reached()), row.released());
+            let law = self.released(&row.design(), &row.reached(), &row.forces());
+            let solved = row.released();
             let eta = |of: [f64; 3]| [of[0] / row.w_lig, of[1] / row.w_lig, of[2]];
             let [found, rest, reached] =
                 [law.rest, solved.rest, row.reached()].map(|state| eta(state.to_array()));
@@ -218,7 +253,7 @@ impl Springback {
     }
 
     /// The even and the odd terms of the polynomials.
-    fn terms(&self, x: &[f64; 5]) -> ([f64; EVEN[0]], [f64; ODD[0]]) {
+    fn terms(&self, x: &[f64; 5]) -> ([f64; TERMS[0]], [f64; TERMS[1]]) {
         let of = |i: usize, [mean, deviation]: [f64; 2]| (x[i] - mean) / deviation;
         let [w, a, t] = [
             of(0, self.means[0]),
@@ -259,10 +294,11 @@ fn inputs(design: &HingeDesign, reached: &HingeDeformation) -> [f64; 5] {
     ]
 }
 
-/// (r_a, r_theta, d_a, d_theta, d_s, u_{theta a}) and (r_s, u_{s a}, u_{s theta}) of a hinge; `None` if its stiffness is not positive
-/// definite.
-fn outputs(w: f64, hinge: &ReleasedHinge) -> Option<([f64; EVEN[1]], [f64; ODD[1]])> {
-    let k = &hinge.stiffness;
+/// Where (a, s, theta) are in the order (a, theta, s), and the reverse.
+const PLACES: [usize; 3] = [0, 2, 1];
+
+/// (d_a, d_theta, d_s, u_{theta a}) and (u_{s a}, u_{s theta}) of a stiffness; `None` if it is not positive definite.
+fn factors(w: f64, k: &[[f64; 3]; 3]) -> Option<([f64; 4], [f64; 2])> {
     let (aa, ta, tt) = (k[0][0] * w * w, k[2][0] * w, k[2][2]);
     let (sa, st, ss) = (k[1][0] * w * w, k[1][2] * w, k[1][1] * w * w);
     let u_theta = ta / aa;
@@ -270,12 +306,22 @@ fn outputs(w: f64, hinge: &ReleasedHinge) -> Option<([f64; EVEN[1]], [f64; ODD[1
     let u_s = sa / aa;
     let u_s_theta = (st - u_s * ta) / d_theta;
     let d_s = ss - u_s * sa - u_s_theta * u_s_theta * d_theta;
-    let [eta_a, eta_s] = hinge.rest.eta(w);
-    let all = [aa, d_theta, d_s].map(f64::ln);
-    let even = [eta_a, hinge.rest.theta, all[0], all[1], all[2], u_theta];
-    let odd = [eta_s, u_s, u_s_theta];
-    let finite = even.iter().chain(&odd).all(|x| x.is_finite());
-    finite.then_some((even, odd))
+    let [d_a, d_theta, d_s] = [aa, d_theta, d_s].map(f64::ln);
+    let found = ([d_a, d_theta, d_s, u_theta], [u_s, u_s_theta]);
+    let finite = found.0.iter().chain(&found.1).all(|x| x.is_finite());
+    finite.then_some(found)
+}
+
+/// The solution of U diag(pivots) U^T x = right.
+fn back(unit: &[[f64; 3]; 3], pivots: &[f64; 3], right: [f64; 3]) -> [f64; 3] {
+    let mut x = right;
+    for i in 0..3 {
+        x[i] -= (0..i).map(|k| unit[i][k] * x[k]).sum::<f64>();
+    }
+    for i in (0..3).rev() {
+        x[i] = x[i] / pivots[i] - (i + 1..3).map(|k| unit[k][i] * x[k]).sum::<f64>();
+    }
+    x
 }
 
 fn product<const T: usize, const N: usize>(terms: &[f64; T], rows: &[[f64; N]]) -> [f64; N] {
@@ -346,7 +392,10 @@ mod tests {
                     [ta / w, st / w, tt],
                 ];
                 let hinge = ReleasedHinge { rest, stiffness };
-                ReleasedSample::new(&design, &reached, &HingeForces::default(), 0.5, &hinge)
+                // Not quite those that a constant stiffness would have.
+                let [f_a, f_s, m_theta] = hinge.forces(&reached).map(|force| 0.9 * force);
+                let forces = HingeForces { f_a, f_s, m_theta };
+                ReleasedSample::new(&design, &reached, &forces, 0.5, &hinge)
             })
             .collect()
     }
@@ -373,9 +422,14 @@ mod tests {
         let rows = rows(60);
         let law = Springback::fit(&rows, &[], &material(), "plate").unwrap();
         for row in &rows[..10] {
-            let (design, reached) = (row.design(), row.reached());
-            let mirrored = law.released(&design.mirrored(), &reached.mirrored());
-            let expected = law.released(&design, &reached).mirrored();
+            let (design, reached, forces) = (row.design(), row.reached(), row.forces());
+            let [f_a, f_s, m_theta] = forces;
+            let mirrored = law.released(
+                &design.mirrored(),
+                &reached.mirrored(),
+                &[f_a, -f_s, m_theta],
+            );
+            let expected = law.released(&design, &reached, &forces).mirrored();
             let close = |x: f64, y: f64| (x - y).abs() < 1e-9 * (1.0 + y.abs());
             let pairs = std::iter::zip(mirrored.rest.to_array(), expected.rest.to_array());
             let stiffness = std::iter::zip(mirrored.stiffness, expected.stiffness);

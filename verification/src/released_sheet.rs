@@ -49,7 +49,8 @@ pub fn released_by_elements(
     rounds: usize,
 ) -> Result<ReleasedByElements, VerificationError> {
     let deployed = found.by_elements();
-    let mut released = problem.let_go(deployed, released_hinges(scene, law, deployed)?)?;
+    let hinges = released_hinges(scene, problem, law, deployed)?;
+    let mut released = problem.let_go(deployed, hinges)?;
     let by_law = problem.what_stays(deployed, &released)?;
     let first = corners(deployed, &released);
     let mut last = first.clone();

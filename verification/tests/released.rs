@@ -210,8 +210,9 @@ fn a_law_for_another_material_is_refused() {
         ..scene.material.clone()
     };
     let law = Springback::fit(&rows, &[], &other, "tiny").unwrap();
-    let deployed = scene.problem().unwrap().deploy(&scene.start()).unwrap();
-    let refused = released_hinges(&scene, &law, &deployed).unwrap_err();
+    let problem = scene.problem().unwrap();
+    let deployed = problem.deploy(&scene.start()).unwrap();
+    let refused = released_hinges(&scene, &problem, &law, &deployed).unwrap_err();
     assert!(
         refused.to_string().contains("another material"),
         "{refused}"

@@ -5,7 +5,7 @@ use crate::analysis::actuation_curve::{ActuationCurve, Mover};
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::LoadStep;
 use crate::geometry::polygon::distance;
-use crate::hinge_law::{HingeLaw, ReleasedLaw};
+use crate::hinge_law::{HingeLaw, Order, ReleasedLaw};
 use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, found};
 use crate::objective::scores::outline_error;
 use crate::scene::Scene;
@@ -68,9 +68,10 @@ impl WhatStays {
     }
 }
 
-/// The hinges of a deployed sheet of a scene after they were let go.
+/// The hinges of a deployed sheet of a scene and its problem after they were let go, with the forces of the problem's hinge law.
 pub fn released_hinges(
     scene: &Scene,
+    problem: &DesignProblem,
     law: &Springback,
     deployment: &Deployment,
 ) -> Result<Vec<ReleasedHinge>, LetGoError> {
@@ -82,16 +83,28 @@ pub fn released_hinges(
             sheet: scene.measured.name.clone(),
         });
     }
+    let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
+    let (designs, states) = (
+        deployment.sheet.designs(),
+        &deployment.at_full_load()?.deformations,
+    );
+    let energies = mechanics
+        .law
+        .prepare(&designs)
+        .energies(states, Order::Forces);
     let scale = scene.scale();
-    let step = deployment.at_full_load()?;
-    std::iter::zip(deployment.sheet.designs(), &step.deformations)
-        .map(|(design, reached)| {
+    std::iter::zip(designs, states)
+        .zip(energies)
+        .map(|((design, reached), energy)| {
             if (design.fillet_ratio / law.fillet_ratio - 1.0).abs() > ROUNDED {
                 let (law, sheet) = (law.fillet_ratio, design.fillet_ratio);
                 return Err(LetGoError::Hole { law, sheet });
             }
             let (design, reached) = (design.scaled(scale.recip()), reached.scaled(scale.recip()));
-            Ok(law.released(&design, &reached).scaled(scale))
+            // Forces grow with the square of the thickness, moments with its cube.
+            let [f_a, f_s, m_theta] = energy.forces.map(|force| force / (scale * scale));
+            let forces = [f_a, f_s, m_theta / scale];
+            Ok(law.released(&design, &reached, &forces).scaled(scale))
         })
         .collect()
 }

@@ -36,7 +36,7 @@ impl SpringbackListing {
         law: &Springback,
     ) -> Result<Self, LetGoError> {
         let deployment = problem.deploy(design)?;
-        let hinges = released_hinges(scene, law, &deployment)?;
+        let hinges = released_hinges(scene, problem, law, &deployment)?;
         let released = problem.let_go(&deployment, hinges)?;
         let stays = problem.what_stays(&deployment, &released)?;
         let inside = &deployment.final_step().inside;
