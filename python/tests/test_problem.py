@@ -262,3 +262,14 @@ def test_a_configuration_that_is_no_equilibrium_has_no_gradient(film_problem):
     by = np.ones_like(state.corners), np.zeros_like(state.reactions), 0.0
     with pytest.raises(kg.NoEquilibrium, match="no equilibrium was found beyond load factor 1.0000"):
         problem.pullback(x, state.configuration + 0.1, *by)
+
+
+def test_another_thickness_is_that_of_the_scene(film_problem):
+    keys = kg.read_scene(SCENES / "pet-3x3.toml")
+    keys["thickness"] = 1.02 * film_problem.thickness
+    keys["process"]["r_win"] *= 1.02
+    thicker = kg.Problem(keys, folder=SCENES)
+    expected = thicker.solve(thicker.start)
+    found = film_problem.solve(film_problem.start, thickness=keys["thickness"], warm=False)
+    np.testing.assert_allclose(found.corners, expected.corners, atol=1e-7)
+    np.testing.assert_allclose(found.reactions, expected.reactions, atol=1e-6)
