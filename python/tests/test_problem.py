@@ -107,11 +107,11 @@ def test_warm_starts_agree_and_are_followed_now_and_then(film_problem):
 def test_a_batch_is_its_elements(problem):
     x = problem.start + 0.02 * RANDOM.standard_normal((5, problem.size))
     states = problem.solve_many(x)
-    for row, state in zip(x, states, strict=True):
+    for row, state in zip(x, states):
         np.testing.assert_allclose(state.corners, problem.solve(row, warm=False).corners, atol=1e-7)
     stresses = np.array([0.9, 1.0, 1.1])
     states = problem.solve_many(problem.start, stress=stresses)
-    for stress, state in zip(stresses, states, strict=True):
+    for stress, state in zip(stresses, states):
         np.testing.assert_allclose(state.corners, problem.solve(problem.start, stress=stress, warm=False).corners, atol=1e-7)
 
 
