@@ -18,7 +18,7 @@ lint:
 # The Python package and its tests, in an environment of their own. Those of PyTorch need 5 GB: by a command of their own.
 python: python-tools
 	python3 -m venv target/python
-	target/python/bin/pip install --quiet './python[test]'
+	target/python/bin/pip install --quiet -r python/tests/requirements.txt ./python
 	target/python/bin/pytest python
 
 python-torch: python

@@ -49,7 +49,7 @@ def solve(problem: Problem, inputs: Inputs) -> Solution:
         states = [problem.solve(inputs.x, inputs.loads, float(inputs.thickness), float(inputs.stress))]
     columns = ([getattr(state, name) for state in states] for name in Solution._fields)
     shapes = output_shapes(problem)
-    return Solution(*(np.reshape(column, lead + shape) for column, shape in zip(columns, shapes, strict=True)))
+    return Solution(*(np.reshape(column, lead + shape) for column, shape in zip(columns, shapes)))
 
 
 def pullback(problem: Problem, inputs: Inputs, solution: Solution) -> Inputs:
@@ -69,8 +69,8 @@ def pullback(problem: Problem, inputs: Inputs, solution: Solution) -> Inputs:
     else:
         with ThreadPoolExecutor(os.cpu_count()) as threads:
             gradients = list(threads.map(one, range(count)))
-    columns = zip(*gradients, strict=True)
-    return Inputs(*(np.reshape(column, lead + shape) for column, shape in zip(columns, input_shapes(problem), strict=True)))
+    columns = zip(*gradients)
+    return Inputs(*(np.reshape(column, lead + shape) for column, shape in zip(columns, input_shapes(problem))))
 
 
 def refuse(problem: Problem, differentiated: dict[str, bool]) -> None:

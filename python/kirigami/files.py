@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,11 @@ import numpy as np
 
 def read_scene(path: str | os.PathLike[str]) -> dict[str, Any]:
     """The keys of a scene file (docs/KEYS.md) as a dict, to be changed and given to `Problem(keys, folder=Path(path).parent)`."""
+    try:
+        import tomllib
+    except ModuleNotFoundError:  # before Python 3.11
+        import tomli as tomllib  # type: ignore[import-not-found, no-redef]
+
     with open(path, "rb") as file:
         return tomllib.load(file)
 

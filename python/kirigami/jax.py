@@ -60,7 +60,7 @@ def equilibrium(problem: Problem) -> Callable[..., Equilibrium]:
         return Equilibrium(*solved(x, loads, thickness, stress)[:3])
 
     def forward(*inputs):
-        perturbed = {name: bool(given.perturbed) for name, given in zip(shapes._fields, inputs, strict=True)}
+        perturbed = {name: bool(given.perturbed) for name, given in zip(shapes._fields, inputs)}
         _implicit.refuse(problem, {name: perturbed[name] for name in ("thickness", "stress")})
         values = tuple(given.value for given in inputs)
         *outputs, configuration = solved(*values)
@@ -78,7 +78,7 @@ def equilibrium(problem: Problem) -> Callable[..., Equilibrium]:
         if not jax.config.jax_enable_x64:
             raise TypeError('equilibria are solved in double precision: jax.config.update("jax_enable_x64", True)')
         inputs = []
-        for name, given, default, shape in zip(shapes._fields, (x, loads, thickness, stress), defaults, shapes, strict=True):
+        for name, given, default, shape in zip(shapes._fields, (x, loads, thickness, stress), defaults, shapes):
             value = jnp.asarray(default if given is None else given, dtype=np.float64)
             if value.shape != shape:
                 raise ValueError(f"`{name}` has the shape {value.shape}, expected {shape}")

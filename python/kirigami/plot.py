@@ -41,7 +41,7 @@ def rotation(weights: Surrogate, widths: Any, alpha: float = np.pi / 2, most: fl
     theta = np.linspace(0.0, most, 91)
     for width in np.atleast_1d(widths):
         states = weights(np.column_stack([0 * theta, 0 * theta, theta]), width, alpha)
-        for axis, values in zip(axes, (states.energy, states.forces[:, 2]), strict=True):
+        for axis, values in zip(axes, (states.energy, states.forces[:, 2])):
             (line,) = axis.plot(np.degrees(theta), np.where(states.inside, values, np.nan), label=f"{width:g} mm")
             axis.plot(np.degrees(theta), values, linestyle="--", linewidth=0.8, color=line.get_color())
     axes[0].set(xlabel="rotation (deg)", ylabel="W (N mm)")

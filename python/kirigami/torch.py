@@ -51,12 +51,12 @@ def equilibrium(
     shapes = _implicit.input_shapes(problem)
     defaults = _implicit.Inputs(x, problem.loads, problem.thickness, 1.0)
     inputs = []
-    for name, given, default, shape in zip(shapes._fields, (x, loads, thickness, stress), defaults, shapes, strict=True):
+    for name, given, default, shape in zip(shapes._fields, (x, loads, thickness, stress), defaults, shapes):
         value = torch.as_tensor(default if given is None else given, dtype=torch.float64)
         if value.shape not in (shape, (*lead, *shape)):
             raise ValueError(f"`{name}` has the shape {tuple(value.shape)}, expected {(*lead, *shape)}")
         inputs.append(value.expand((*lead, *shape)))
-    _implicit.refuse(problem, {name: given.requires_grad for name, given in zip(shapes._fields[2:], inputs[2:], strict=True)})
+    _implicit.refuse(problem, {name: given.requires_grad for name, given in zip(shapes._fields[2:], inputs[2:])})
     return Equilibrium(*_Solve.apply(problem, *inputs))
 
 

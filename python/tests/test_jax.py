@@ -53,7 +53,7 @@ def test_jit_and_vmap_agree_with_single_calls(problem, equilibrium):
     stresses = jnp.array([0.95, 1.0, 1.05, 1.1])
     value_and_gradient = jax.value_and_grad(width, argnums=(0, 1))
     values, (by_design, by_stress) = jax.jit(jax.vmap(value_and_gradient))(designs, stresses)
-    for i, (x, stress) in enumerate(zip(designs, stresses, strict=True)):
+    for i, (x, stress) in enumerate(zip(designs, stresses)):
         value, (of_design, of_stress) = value_and_gradient(x, stress)
         assert float(values[i]) == pytest.approx(float(value), rel=1e-9)
         np.testing.assert_allclose(by_design[i], of_design, rtol=1e-6, atol=1e-6 * np.abs(of_design).max())

@@ -29,6 +29,18 @@ def test_the_reader_of_the_docs_page_agrees_with_the_kernel(film):
     np.testing.assert_allclose(reader["damage"](tensors, card, *hinges), expected, rtol=1e-12)
 
 
+def test_the_code_of_the_docs_page_runs(monkeypatch):
+    pytest.importorskip("jax")
+    page = (REPOSITORY / "docs" / "PYTHON.md").read_text()
+    monkeypatch.chdir(REPOSITORY)
+    names = {}
+    for code in re.findall(r"```python\n(.*?)```", page, re.DOTALL):
+        if "import torch" in code:
+            continue
+        exec(code, names)
+    assert names["ended"] == "completed" and np.isfinite(names["by_thickness"])
+
+
 def test_databases_are_read_by_polars_and_pandas():
     path = DATA / "pet-0.5mm" / "spot-check.parquet"
     polars, pandas = kg.read_database(path), kg.read_database(path, "pandas")

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import kirigami as kg
 import numpy as np
@@ -107,11 +108,11 @@ def test_warm_starts_agree_and_are_followed_now_and_then(film_problem):
 def test_a_batch_is_its_elements(problem):
     x = problem.start + 0.02 * RANDOM.standard_normal((5, problem.size))
     states = problem.solve_many(x)
-    for row, state in zip(x, states, strict=True):
+    for row, state in zip(x, states):
         np.testing.assert_allclose(state.corners, problem.solve(row, warm=False).corners, atol=1e-7)
     stresses = np.array([0.9, 1.0, 1.1])
     states = problem.solve_many(problem.start, stress=stresses)
-    for stress, state in zip(stresses, states, strict=True):
+    for stress, state in zip(stresses, states):
         np.testing.assert_allclose(state.corners, problem.solve(problem.start, stress=stress, warm=False).corners, atol=1e-7)
 
 
@@ -262,3 +263,39 @@ def test_a_configuration_that_is_no_equilibrium_has_no_gradient(film_problem):
     by = np.ones_like(state.corners), np.zeros_like(state.reactions), 0.0
     with pytest.raises(kg.NoEquilibrium, match="no equilibrium was found beyond load factor 1.0000"):
         problem.pullback(x, state.configuration + 0.1, *by)
+
+
+def test_another_thickness_is_that_of_the_scene(film_problem):
+    keys = kg.read_scene(SCENES / "pet-3x3.toml")
+    keys["thickness"] = 1.02 * film_problem.thickness
+    keys["process"]["r_win"] *= 1.02
+    thicker = kg.Problem(keys, folder=SCENES)
+    expected = thicker.solve(thicker.start)
+    found = film_problem.solve(film_problem.start, thickness=keys["thickness"], warm=False)
+    np.testing.assert_allclose(found.corners, expected.corners, atol=1e-7)
+    np.testing.assert_allclose(found.reactions, expected.reactions, atol=1e-6)
+
+
+def test_loads_that_are_no_inputs_have_no_gradient():
+    """At supports no load is possible; under a prescribed stroke the sum of forces has a kink at panels without one."""
+    problem = kg.Problem(SCENES / "a4-plate.toml")
+    state = problem.solve(problem.start)
+    by = np.ones_like(state.corners), np.ones_like(state.reactions), 1.0
+    gradient = problem.pullback(problem.start, state.configuration, *by)["loads"]
+    pulled = np.hypot(*problem.loads[:, :2].T) > 0
+    assert pulled.sum() == 1 and np.abs(gradient[pulled]).min() > 0
+    assert (gradient[~pulled, :2] == 0).all()
+    clamped = np.abs(state.reactions).max(axis=1) > 0
+    assert (gradient[clamped] == 0).all()
+    loads = problem.loads
+    loads[clamped] = 1.0
+    with pytest.raises(kg.InvalidDesign, match="where it is supported: loads act on free degrees of freedom"):
+        problem.solve(problem.start, loads=loads)
+
+
+def test_a_problem_is_shared_by_threads(film_problem):
+    designs = film_problem.start + 0.02 * RANDOM.standard_normal((16, film_problem.size))
+    with ThreadPoolExecutor(4) as threads:
+        states = list(threads.map(film_problem.solve, designs))
+    for x, state in zip(designs, states):
+        np.testing.assert_allclose(state.corners, film_problem.solve(x, warm=False).corners, atol=1e-7)

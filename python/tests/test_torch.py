@@ -36,7 +36,7 @@ def test_a_batch_is_its_elements(problem):
     corners = kirigami.torch.equilibrium(problem, x).corners
     assert corners.shape == (3, *problem.solve(problem.start).corners.shape)
     corners[..., 0].amax((1, 2)).sum().backward()
-    for design, gradient in zip(designs, x.grad, strict=True):
+    for design, gradient in zip(designs, x.grad):
         alone = torch.tensor(design, requires_grad=True)
         kirigami.torch.equilibrium(problem, alone).corners[..., 0].max().backward()
         torch.testing.assert_close(gradient, alone.grad, rtol=1e-6, atol=1e-6 * float(alone.grad.abs().max()))
