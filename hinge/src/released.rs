@@ -83,8 +83,8 @@ pub struct ReleasedSample {
     pub f_s: f64,
     /// and M_theta (N mm).
     pub m_theta: f64,
-    /// D_peak there.
-    pub d_peak: f64,
+    /// D_peak there, if it was evaluated.
+    pub d_peak: Option<f64>,
     /// The deformation that stays without forces: a (mm),
     pub rest_a: f64,
     /// s (mm),
@@ -111,7 +111,7 @@ impl ReleasedSample {
         design: &HingeDesign,
         reached: &HingeDeformation,
         forces: &HingeForces,
-        d_peak: f64,
+        d_peak: Option<f64>,
         ReleasedHinge { rest, stiffness }: &ReleasedHinge,
     ) -> Self {
         Self {
@@ -215,7 +215,7 @@ mod tests {
     fn a_row_has_its_hinge() {
         let design = crate::HingeConstants::PAPER.hinge(18.0, 1.4);
         let (reached, forces) = ([0.1, 0.2, 0.5].into(), HingeForces::default());
-        let row = ReleasedSample::new(&design, &reached, &forces, 0.2, &hinge());
+        let row = ReleasedSample::new(&design, &reached, &forces, Some(0.2), &hinge());
         assert_eq!(
             (row.design(), row.reached(), row.released()),
             (design, reached, hinge())

@@ -41,7 +41,8 @@ impl Numbers {
 
 /// The numbers of an argument: an array, nested lists or a number. Integers and short floats are converted, as they are exact.
 pub(crate) fn numbers(argument: &Bound<PyAny>, name: &str) -> PyResult<Numbers> {
-    let numbers = if let Ok(array) = argument.cast_exact::<PyArrayDyn<f64>>() {
+    let direct = argument.cast_exact::<PyArrayDyn<f64>>();
+    let numbers = if let Some(array) = direct.ok().filter(|array| is_regular(array)) {
         copied(array)
     } else {
         copied(converted(argument, name)?.cast()?)
@@ -119,6 +120,21 @@ pub(crate) fn plain<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bo
 /// The lengths of `shape` followed by others.
 pub(crate) fn followed_by(shape: &[usize], by: &[usize]) -> Vec<usize> {
     [shape, by].concat()
+}
+
+/// Whether every element is at a multiple of its size from the others, as a field of a structured array need not be.
+fn is_regular(array: &Bound<PyArrayDyn<f64>>) -> bool {
+    let size = size_of::<f64>() as isize;
+    array.is_aligned() && array.strides().iter().all(|stride| stride % size == 0)
+}
+
+/// A number that must be finite.
+pub(crate) fn finite(name: &str, value: f64) -> PyResult<f64> {
+    if value.is_finite() {
+        return Ok(value);
+    }
+    let message = format!("`{name}` = {value} is not a finite number");
+    Err(PyValueError::new_err(message))
 }
 
 fn copied(array: &Bound<PyArrayDyn<f64>>) -> Numbers {

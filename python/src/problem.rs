@@ -1,6 +1,8 @@
 //! A prepared design problem: its scene is read once, its solves start from the last state.
 
-use crate::arrays::{Doubles, Numbers, array, numbers, plain, shaped, triples, tuple, wrong_shape};
+use crate::arrays::{
+    Doubles, Numbers, array, finite, numbers, plain, shaped, triples, tuple, wrong_shape,
+};
 use crate::deployment::{Deployment, State};
 use crate::errors;
 use crate::flat_sheet::Sheet;
@@ -337,6 +339,7 @@ impl Problem {
         })?;
         let design = self.design_of(x)?;
         let configuration = self.by_panel(configuration, "configuration")?;
+        let load_factor = finite("load_factor", load_factor)?;
         let panels = problem.grid.panel_count();
         let expected = tuple(&[panels, 4, 2]);
         let corners = shaped(
@@ -419,7 +422,10 @@ impl Problem {
             Some(name) => read_method(name)?,
             None => optimiser.method,
         };
-        let rate = learning_rate.unwrap_or(optimiser.learning_rate);
+        let rate = finite(
+            "learning_rate",
+            learning_rate.unwrap_or(optimiser.learning_rate),
+        )?;
         let steps = steps.unwrap_or(optimiser.steps);
         let (problem, stop) = (&self.problem, AtomicBool::new(false));
         let told = |search: &SearchState| {
@@ -518,10 +524,11 @@ impl Problem {
             .map(|loads| self.by_panel(loads, "loads"));
         let conditions = Conditions {
             loads: loads.transpose()?,
-            thickness: given
-                .thickness
-                .map_or(1.0, |thickness| thickness / self.thickness()),
-            stress: given.stress,
+            thickness: match given.thickness {
+                Some(thickness) => finite("thickness", thickness)? / self.thickness(),
+                None => 1.0,
+            },
+            stress: finite("stress", given.stress)?,
         };
         if conditions == Conditions::default() {
             return Ok(Arc::clone(&self.problem));

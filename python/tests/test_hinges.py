@@ -81,6 +81,13 @@ def test_spread_and_what_is_not_known(film):
         _ = alone([0.1, 0.1, 0.3], WIDTH, ANGLE, order="forces").tangent
 
 
+def test_a_field_of_records_is_read_as_its_numbers(film):
+    records = np.zeros(3, dtype=[("id", "i4"), ("w_lig", "f8")])
+    records["w_lig"] = [9.0, 12.0, 18.0]
+    states = np.full((3, 3), 0.1)
+    np.testing.assert_array_equal(film(states, records["w_lig"], ANGLE).energy, film(states, [9.0, 12.0, 18.0], ANGLE).energy)
+
+
 @pytest.mark.parametrize("layout", [np.asfortranarray, lambda x: np.repeat(x, 2, axis=0)[::2], lambda x: x[::-1][::-1], lambda x: x.astype(">f8"), lambda x: x.tolist()])
 def test_the_layout_in_memory_does_not_matter(film, layout):
     states = random_states(7)

@@ -7,14 +7,39 @@ mod release;
 mod spot_check;
 mod test;
 
-use anyhow::Result;
+use crate::commands::input_file;
+use ::surrogate::Surrogate;
+use anyhow::{Result, ensure};
 use clap::{Args, Subcommand};
+use hinge::SheetMaterial;
+use std::path::Path;
 
 /// Evaluate exported weights, and measure their errors against finite elements
 #[derive(Args)]
 pub struct SurrogateCommand {
     #[command(subcommand)]
     action: Action,
+}
+
+/// The material of a file, on which the weights must have been trained.
+fn trained_material(
+    surrogate: &Surrogate,
+    weights: &Path,
+    material: &Path,
+) -> Result<SheetMaterial> {
+    input_file::require(material, "--material")?;
+    let sheet = SheetMaterial::load(material)?;
+    let card = surrogate.card();
+    ensure!(
+        card.material_hash
+            .as_ref()
+            .is_none_or(|hash| *hash == sheet.law_hash()),
+        "{} were trained on {}, but {} is another material law: pass the right file with --material",
+        weights.display(),
+        card.material,
+        material.display()
+    );
+    Ok(sheet)
 }
 
 #[derive(Subcommand)]

@@ -11,6 +11,7 @@ use crate::ui::count::count;
 use crate::ui::run_folder;
 use anyhow::{Context, Result};
 use clap::Args;
+use design::analysis::springback::check_springback;
 use design::pattern::design_vector::DesignVector;
 use design::scene::{Posture, Scene};
 use mesher::Tier;
@@ -144,6 +145,9 @@ impl VerifyCommand {
         match self.polish {
             None => {
                 let law = self.released.as_deref().map(Springback::load).transpose()?;
+                if let Some(law) = &law {
+                    check_springback(&scene, law)?;
+                }
                 let found = balanced(&scene, design, &windows, self.rounds);
                 let (found, problem) = found.map_err(task_error)?;
                 let end = found.by_elements();

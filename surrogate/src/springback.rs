@@ -13,7 +13,9 @@
 
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
-use hinge::{HingeDeformation, HingeDesign, ReleasedHinge, ReleasedSample, SheetMaterial};
+use hinge::{
+    HingeConstants, HingeDeformation, HingeDesign, ReleasedHinge, ReleasedSample, SheetMaterial,
+};
 use serde::{Deserialize, Serialize};
 use std::array::from_fn;
 use std::f64::consts::FRAC_PI_2;
@@ -27,8 +29,10 @@ use support::{regular_file, whole_file};
 const TERMS: [usize; 2] = [13, 8];
 /// Ridge of the fit, relative to the number of hinges: terms that hardly vary get small coefficients.
 const RIDGE: f64 = 1e-4;
+/// Smallest deviation that a quantity is divided by: one that does not vary has no effect.
+const NARROWEST: f64 = 1e-3;
 /// Fewest hinges of a fit: three for each even term.
-const FEWEST: usize = 3 * TERMS[0];
+pub const FEWEST: usize = 3 * TERMS[0];
 
 /// The law, with its training and its errors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,26 +44,26 @@ pub struct Springback {
     pub material_hash: String,
     /// Thickness of the windows (mm).
     pub thickness: f64,
-    /// Radius of their holes over w_lig.
-    pub fillet_ratio: f64,
+    /// Hole, kerf and radius of the windows.
+    pub hinge: HingeConstants,
     /// Tier of their mesh.
     pub tier: String,
     /// Number of hinges that the law was fitted to.
     pub hinges: usize,
-    /// Errors at hinges that the fit has not seen.
-    pub errors: SpringbackErrors,
+    /// Errors at hinges that the fit has not seen, with the forces of their windows; `None` without any.
+    pub errors: Option<SpringbackErrors>,
     /// Mean and standard deviation of ln w_lig, eta_a and theta.
     means: [[f64; 2]; 3],
     /// Root mean squares of alpha - 90 deg and eta_s.
     spans: [f64; 2],
     /// Coefficients of (d_a, d_theta, d_s, u_{theta a}), a row a term.
-    stiffness_even: Vec<[f64; 4]>,
+    stiffness_even: [[f64; 4]; TERMS[0]],
     /// Of (u_{s a}, u_{s theta}).
-    stiffness_odd: Vec<[f64; 2]>,
+    stiffness_odd: [[f64; 2]; TERMS[1]],
     /// Of (e_a, e_theta).
-    rest_even: Vec<[f64; 2]>,
+    rest_even: [[f64; 2]; TERMS[0]],
     /// Of e_s.
-    rest_odd: Vec<[f64; 1]>,
+    rest_odd: [[f64; 1]; TERMS[1]],
 }
 
 /// Errors of the law at a set of hinges.
@@ -83,6 +87,10 @@ pub enum SpringbackError {
     #[error("{0} hinges are too few for a law: at least {FEWEST}")]
     TooFew(usize),
     #[error(
+        "row {0} has another hole, kerf or window than the first one, and a law knows one of each: use weights for holes of one radius"
+    )]
+    Constants(usize),
+    #[error(
         "row {0} has a number that is not finite, or a stiffness that is not positive definite"
     )]
     Row(usize),
@@ -105,6 +113,11 @@ impl Springback {
         if rows.len() < FEWEST {
             return Err(SpringbackError::TooFew(rows.len()));
         }
+        let hinge = rows[0].design().constants();
+        let other = |row: &ReleasedSample| row.design().constants() != hinge;
+        if let Some(other) = rows.iter().position(other) {
+            return Err(SpringbackError::Constants(other + 1));
+        }
         let inputs: Vec<[f64; 5]> = rows
             .iter()
             .map(|row| inputs(&row.design(), &row.reached()))
@@ -114,22 +127,22 @@ impl Springback {
         let mean = |i: usize| {
             let mean = column(i).sum::<f64>() / count;
             let deviation = root_mean_square(column(i).map(|x| x - mean));
-            [mean, deviation.max(f64::MIN_POSITIVE)]
+            [mean, deviation.max(NARROWEST)]
         };
         let mut law = Self {
             material: material.name.clone(),
             material_hash: material.law_hash(),
             thickness: material.thickness,
-            fillet_ratio: rows[0].fillet_ratio,
+            hinge,
             tier: tier.to_owned(),
             hinges: rows.len(),
-            errors: SpringbackErrors::default(),
+            errors: None,
             means: [mean(0), mean(2), mean(4)],
-            spans: [1, 3].map(|i| root_mean_square(column(i)).max(f64::MIN_POSITIVE)),
-            stiffness_even: Vec::new(),
-            stiffness_odd: Vec::new(),
-            rest_even: vec![[0.0; 2]; TERMS[0]],
-            rest_odd: vec![[0.0; 1]; TERMS[1]],
+            spans: [1, 3].map(|i| root_mean_square(column(i)).max(NARROWEST)),
+            stiffness_even: [[0.0; 4]; TERMS[0]],
+            stiffness_odd: [[0.0; 2]; TERMS[1]],
+            rest_even: [[0.0; 2]; TERMS[0]],
+            rest_odd: [[0.0; 1]; TERMS[1]],
         };
         let factors: Vec<_> = (rows.iter().enumerate())
             .map(|(i, row)| {
@@ -158,7 +171,7 @@ impl Springback {
         let (of_even, of_odd): (Vec<_>, Vec<_>) = left.unzip();
         law.rest_even = ridge(&even, &of_even);
         law.rest_odd = ridge(&odd, &of_odd);
-        law.errors = law.errors_at(unseen);
+        law.errors = (!unseen.is_empty()).then(|| law.errors_at(unseen));
         Ok(law)
     }
 
@@ -324,7 +337,7 @@ fn back(unit: &[[f64; 3]; 3], pivots: &[f64; 3], right: [f64; 3]) -> [f64; 3] {
     x
 }
 
-fn product<const T: usize, const N: usize>(terms: &[f64; T], rows: &[[f64; N]]) -> [f64; N] {
+fn product<const T: usize, const N: usize>(terms: &[f64; T], rows: &[[f64; N]; T]) -> [f64; N] {
     from_fn(|n| std::iter::zip(terms, rows).map(|(x, row)| x * row[n]).sum())
 }
 
@@ -332,7 +345,7 @@ fn product<const T: usize, const N: usize>(terms: &[f64; T], rows: &[[f64; N]]) 
 fn ridge<const T: usize, const N: usize>(
     terms: &[[f64; T]],
     outputs: &[[f64; N]],
-) -> Vec<[f64; N]> {
+) -> [[f64; N]; T] {
     let count = terms.len() as f64;
     let normal = Mat::from_fn(T, T, |p, q| {
         let sum: f64 = terms.iter().map(|row| row[p] * row[q]).sum();
@@ -344,7 +357,7 @@ fn ridge<const T: usize, const N: usize>(
     });
     let factor = Llt::new(normal.as_ref(), Side::Lower).expect("the ridge is positive");
     let found = factor.solve(right);
-    (0..T).map(|p| from_fn(|n| found[(p, n)])).collect()
+    from_fn(|p| from_fn(|n| found[(p, n)]))
 }
 
 #[cfg(test)]
@@ -395,7 +408,7 @@ mod tests {
                 // Not quite those that a constant stiffness would have.
                 let [f_a, f_s, m_theta] = hinge.forces(&reached).map(|force| 0.9 * force);
                 let forces = HingeForces { f_a, f_s, m_theta };
-                ReleasedSample::new(&design, &reached, &forces, 0.5, &hinge)
+                ReleasedSample::new(&design, &reached, &forces, Some(0.5), &hinge)
             })
             .collect()
     }
@@ -409,7 +422,7 @@ mod tests {
             rest,
             sprung,
             stiffness,
-        } = law.errors;
+        } = law.errors.unwrap();
         assert_eq!(hinges, 40);
         for i in 0..3 {
             assert!(rest[i] < 0.01 * sprung[i], "{rest:?} {sprung:?}");
@@ -445,6 +458,8 @@ mod tests {
         assert!(matches!(fit(&rows[..20]), Err(SpringbackError::TooFew(20))));
         rows[3].k_tt = -1.0;
         assert!(matches!(fit(&rows), Err(SpringbackError::Row(4))));
+        rows[2].fillet_ratio = 0.2;
+        assert!(matches!(fit(&rows), Err(SpringbackError::Constants(3))));
     }
 
     #[test]

@@ -8,9 +8,10 @@
 use crate::balanced_sheet::{BALANCED, Balanced, size};
 use crate::recorded_path::paths_of;
 use crate::releases::solved;
-use crate::replay::ElementWindows;
+use crate::replay::{ElementWindows, UnsolvedHinge};
 use crate::verification_error::VerificationError;
 use design::analysis::springback::{ReleasedSheet, WhatStays, released_hinges};
+use design::geometry::polygon::distance;
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::scene::Scene;
 use design::sheet::kinematics::deployed_corners;
@@ -37,6 +38,8 @@ pub struct ReleasedByElements {
     /// Largest share of the load that hinges carry without loads, of root mean square forces (F_a, F_s, M_theta / w_lig): what the hinges do
     /// to each other.
     pub own_forces: f64,
+    /// Hinges that were not solved in the last round: the law stands for them.
+    pub unsolved: Vec<UnsolvedHinge>,
 }
 
 /// Lets a balanced sheet go, in at most `rounds` rounds.
@@ -55,13 +58,18 @@ pub fn released_by_elements(
     let first = corners(deployed, &released);
     let mut last = first.clone();
     let mut movements = Vec::new();
-    let mut own_forces = 0.0;
+    let (mut own_forces, mut unsolved) = (0.0, Vec::new());
     for _ in 0..rounds {
-        let ends = element_forces(scene, deployed, &released, windows)?;
+        let (ends, failed) = element_forces(scene, deployed, &released, windows)?;
         own_forces = share(deployed, found, &ends);
+        unsolved = failed;
         let states = &released.path[released.path.len() - 1].deformations;
         let hinges = (released.hinges.iter().zip(states).zip(&ends))
             .map(|((hinge, state), forces)| {
+                // A hinge that was not solved stays as it is.
+                let Some(forces) = forces else {
+                    return Ok(*hinge);
+                };
                 let back = solved(hinge.stiffness, *forces).ok_or(VerificationError::NotElastic)?;
                 let state = state.to_array();
                 let rest = from_fn(|i| state[i] - back[i]);
@@ -89,6 +97,7 @@ pub fn released_by_elements(
             .is_some_and(|last| *last <= BALANCED * size(deployed)),
         movements,
         own_forces,
+        unsolved,
     })
 }
 
@@ -98,7 +107,7 @@ fn element_forces(
     deployed: &Deployment,
     released: &ReleasedSheet,
     windows: &ElementWindows,
-) -> Result<Vec<[f64; 3]>, VerificationError> {
+) -> Result<(Vec<Option<[f64; 3]>>, Vec<UnsolvedHinge>), VerificationError> {
     /// States on the way back, each with the part of the path that a load step has.
     const BACK: usize = 5;
     let mut paths = paths_of(deployed);
@@ -111,31 +120,39 @@ fn element_forces(
         }));
     }
     let solved = windows.solve(&paths, &scene.material)?;
-    let forces = solved.iter().map(|window| {
-        let samples = window.complete();
-        let samples =
-            samples.map_err(|unsolved| VerificationError::NoHinge(unsolved.to_string()))?;
-        let last = samples.last().copied().unwrap_or_default();
-        Ok(last.forces().to_array())
-    });
-    forces.collect()
+    let mut unsolved = Vec::new();
+    let forces = solved
+        .iter()
+        .enumerate()
+        .map(|(hinge, window)| match window.complete() {
+            Ok(samples) => samples.last().map(|last| last.forces().to_array()),
+            Err(failed) => {
+                let reason = failed.to_string();
+                unsolved.push(UnsolvedHinge { hinge, reason });
+                None
+            }
+        });
+    let forces: Vec<_> = forces.collect();
+    match &unsolved[..] {
+        [first, ..] if unsolved.len() == solved.len() => {
+            Err(VerificationError::NoHingeReplayed(first.to_string()))
+        }
+        _ => Ok((forces, unsolved)),
+    }
 }
 
 /// Root mean square of forces over that of the forces under load.
-fn share(deployed: &Deployment, found: &Balanced, forces: &[[f64; 3]]) -> f64 {
+fn share(deployed: &Deployment, found: &Balanced, forces: &[Option<[f64; 3]>]) -> f64 {
     let designs = deployed.sheet.designs();
     let square = |[a, s, m]: [f64; 3], w: f64| a * a + s * s + (m / w).powi(2);
-    let of = |forces: &mut dyn Iterator<Item = [f64; 3]>| -> f64 {
-        let hinges = std::iter::zip(&designs, forces);
-        hinges
-            .map(|(design, forces)| square(forces, design.w_lig))
-            .sum()
-    };
-    let loaded = found
-        .hinges
-        .iter()
-        .map(|end| end.unwrap_or_default().forces().to_array());
-    (of(&mut forces.iter().copied()) / of(&mut { loaded }).max(f64::MIN_POSITIVE)).sqrt()
+    let (mut left, mut loaded) = (0.0, 0.0);
+    for ((design, forces), end) in std::iter::zip(&designs, forces).zip(&found.hinges) {
+        if let (Some(forces), Some(end)) = (forces, end) {
+            left += square(*forces, design.w_lig);
+            loaded += square(end.forces().to_array(), design.w_lig);
+        }
+    }
+    (left / f64::max(loaded, f64::MIN_POSITIVE)).sqrt()
 }
 
 fn corners(deployed: &Deployment, released: &ReleasedSheet) -> Vec<[f64; 2]> {
@@ -145,15 +162,12 @@ fn corners(deployed: &Deployment, released: &ReleasedSheet) -> Vec<[f64; 2]> {
 
 fn distances(from: &[[f64; 2]], to: &[[f64; 2]]) -> [f64; 2] {
     let pairs = std::iter::zip(from, to);
-    rms_and_maximum(pairs.map(|([x, y], [x2, y2])| f64::hypot(x2 - x, y2 - y)))
+    rms_and_maximum(pairs.map(|(p, q)| distance(*p, *q)))
 }
 
 impl fmt::Display for ReleasedByElements {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let mean = |stays: &WhatStays, i: usize| {
-            let sum: f64 = stays.rotations.iter().map(|pair| pair[i].abs()).sum();
-            (sum / stays.rotations.len() as f64).to_degrees()
-        };
+        let mean = |stays: &WhatStays, i: usize| stays.mean_rotations()[i].to_degrees();
         let [law, elements] = [&self.by_law, &self.by_elements];
         writeln!(f, "# The sheet let go\n")?;
         writeln!(f, "| | by the law | by finite elements |\n|---|---|---|")?;
@@ -179,13 +193,15 @@ impl fmt::Display for ReleasedByElements {
         {
             writeln!(
                 f,
-                "| displacement along the loads that stays | {by_law:.2} | {by_elements:.2} |"
+                "| displacement along the loads that stays, {} | {by_law:.2} | {by_elements:.2} |",
+                law.displacement_unit
             )?;
         }
         let [rms, most] = self.corners;
         writeln!(
             f,
-            "\nThe law places the corners of the sheet without loads {rms:.2} mm from finite elements (root mean square), at most {most:.2} mm."
+            "\nBoth begin with the sheet under load as finite elements have it, states and forces: what differs is the law of released hinges. It places \
+             the corners of the sheet without loads {rms:.2} mm from finite elements (root mean square), at most {most:.2} mm."
         )?;
         writeln!(
             f,

@@ -94,14 +94,8 @@ pub fn releases(
         }
         open = further;
     }
-    let unknown = |hinge: &Released| {
-        format!(
-            "w_lig {:.2} mm, alpha {:.1} deg, let go at theta {:.1} deg: forces remain after {ROUNDS} windows",
-            hinge.design.w_lig,
-            hinge.design.alpha.to_degrees(),
-            hinge.reached.theta.to_degrees()
-        )
-    };
+    let unknown =
+        |hinge: &Released| format!("{}: forces remain after {ROUNDS} windows", hinge.name());
     found.failed.extend(open.iter().map(unknown));
     found.rows = rows.into_iter().flatten().collect();
     Ok(found)
@@ -163,6 +157,16 @@ impl Released {
         }
     }
 
+    /// For a person.
+    fn name(&self) -> String {
+        format!(
+            "w_lig {:.2} mm, alpha {:.1} deg, let go at theta {:.1} deg",
+            self.design.w_lig,
+            self.design.alpha.to_degrees(),
+            self.reached.theta.to_degrees()
+        )
+    }
+
     /// Units of (a, s, theta).
     fn lengths(&self) -> [f64; 3] {
         [self.design.w_lig, self.design.w_lig, 1.0]
@@ -195,7 +199,10 @@ impl Released {
             self.response(&tour),
             HingeSample::at(samples, out as f64 / all),
         ) else {
-            return Next::Failed("the tour about the guess has no stiffness".into());
+            return Next::Failed(format!(
+                "{}: the tour about the guess has no stiffness",
+                self.name()
+            ));
         };
         let step = solved(stiffness, forces.map(|force| -force));
         let Some(step) = step.filter(|step| self.length(*step) < SHORTENS * self.step) else {
@@ -214,7 +221,7 @@ impl Released {
             &self.design,
             &self.reached,
             &reached.forces(),
-            reached.d_peak.unwrap_or(f64::NAN),
+            reached.d_peak,
             &ReleasedHinge { rest, stiffness },
         ))
     }

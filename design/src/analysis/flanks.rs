@@ -22,7 +22,7 @@ pub fn flank_gap(design: &HingeDesign, state: &HingeDeformation, regime: Regime)
 }
 
 /// Distance of the flanks of rigid panels at the hole (mm).
-pub fn gap_at_hole(design: &HingeDesign, state: &HingeDeformation) -> f64 {
+fn gap_at_hole(design: &HingeDesign, state: &HingeDeformation) -> f64 {
     gap(design, state, design.fillet_radius())
 }
 

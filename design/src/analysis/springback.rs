@@ -12,6 +12,7 @@ use crate::scene::Scene;
 use crate::sheet::kinematics::deployed_corners;
 use hinge::ReleasedHinge;
 use serde::Serialize;
+use std::f64::consts::FRAC_PI_2;
 use support::statistics::rms_and_maximum;
 use surrogate::Springback;
 
@@ -23,13 +24,23 @@ const STEPS: usize = 10;
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum LetGoError {
     #[error(
-        "the law of released hinges is for {law}, and the sheet is of another material, {sheet}"
+        "the law of released hinges is for {law}, and the sheet is of another material law, {sheet}: let hinges of its material go by \
+         `kirigami surrogate release`"
     )]
     Material { law: String, sheet: String },
     #[error(
-        "the law of released hinges is for holes with a radius of {law} w_lig, and those of the sheet have {sheet:.3} w_lig"
+        "the law of released hinges is for holes with a radius of {law} w_lig, and those of the sheet have {sheet:.3} w_lig: set \
+         process.fillet_ratio = {law}, or let hinges with these holes go by `kirigami surrogate release`"
     )]
     Hole { law: f64, sheet: f64 },
+    #[error(
+        "the law of released hinges is for windows with a radius of {law} mm at this thickness, and those of the sheet have {sheet} mm"
+    )]
+    Window { law: f64, sheet: f64 },
+    #[error(
+        "what stays of a hinge follows from the forces of a learned law: set hinge = \"surrogate\""
+    )]
+    NotLearned,
     #[error(transparent)]
     Design(#[from] DesignError),
 }
@@ -49,8 +60,10 @@ pub struct WhatStays {
     pub rotations: Vec<[f64; 2]>,
     /// Rotation at which every hinge by itself would be without forces (rad).
     pub rest_rotations: Vec<f64>,
-    /// Displacement along the loads, under load and without (mm, or rad for couples); `None` if supports moved the sheet.
+    /// Displacement along the loads, under load and without, in `displacement_unit`; `None` if supports moved the sheet.
     pub displacement: Option<[f64; 2]>,
+    /// mm, or rad if couples move the sheet.
+    pub displacement_unit: &'static str,
     /// Movement of the panel corners: root mean square and maximum (mm).
     pub corners: [f64; 2],
     /// Whether the sheet snaps to another state while the loads are taken off.
@@ -60,29 +73,61 @@ pub struct WhatStays {
 }
 
 impl WhatStays {
+    /// Mean rotation of the hinges under load and without (rad).
+    pub fn mean_rotations(&self) -> [f64; 2] {
+        let count = self.rotations.len() as f64;
+        [0, 1].map(|i| self.rotations.iter().map(|pair| pair[i].abs()).sum::<f64>() / count)
+    }
+
     /// Mean rotation without load over that under load; `None` if the hinges have not opened.
     pub fn share(&self) -> Option<f64> {
-        let sum = |i: usize| self.rotations.iter().map(|pair| pair[i].abs()).sum::<f64>();
-        let [loaded, free] = [sum(0), sum(1)];
+        let [loaded, free] = self.mean_rotations();
         (loaded > 0.0).then(|| free / loaded)
     }
 }
 
-/// The hinges of a deployed sheet of a scene and its problem after they were let go, with the forces of the problem's hinge law.
-pub fn released_hinges(
-    scene: &Scene,
-    problem: &DesignProblem,
-    law: &Springback,
-    deployment: &Deployment,
-) -> Result<Vec<ReleasedHinge>, LetGoError> {
+/// An error if a law is not for the hinges of a scene.
+pub fn check_springback(scene: &Scene, law: &Springback) -> Result<(), LetGoError> {
     /// Relative difference of two radii that rounding may cause.
     const ROUNDED: f64 = 1e-6;
+    let differ = |x: f64, y: f64| (x / y - 1.0).abs() > ROUNDED;
+    if scene.surrogate().is_none() {
+        return Err(LetGoError::NotLearned);
+    }
     if law.material_hash != scene.measured.law_hash() {
         return Err(LetGoError::Material {
             law: law.material.clone(),
             sheet: scene.measured.name.clone(),
         });
     }
+    let [narrowest, widest] = scene.config.ligament.range;
+    for w_lig in [narrowest, widest] {
+        let hinge = scene.config.process.hinge(w_lig, FRAC_PI_2);
+        let known = law.hinge.fillet_ratio;
+        if differ(hinge.fillet_ratio, known) {
+            let (law, sheet) = (known, hinge.fillet_ratio);
+            return Err(LetGoError::Hole { law, sheet });
+        }
+    }
+    let (known, window) = (scene.scale() * law.hinge.r_win, scene.config.process.r_win);
+    if differ(window, known) {
+        let (law, sheet) = (known, window);
+        return Err(LetGoError::Window { law, sheet });
+    }
+    Ok(())
+}
+
+/// The hinges of a deployed sheet of a scene and its problem after they were let go, with the forces of the problem's hinge law.
+///
+/// # Errors
+/// As [`check_springback`], or if the sheet has no equilibrium at full load.
+pub fn released_hinges(
+    scene: &Scene,
+    problem: &DesignProblem,
+    law: &Springback,
+    deployment: &Deployment,
+) -> Result<Vec<ReleasedHinge>, LetGoError> {
+    check_springback(scene, law)?;
     let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
     let (designs, states) = (
         deployment.sheet.designs(),
@@ -93,20 +138,16 @@ pub fn released_hinges(
         .prepare(&designs)
         .energies(states, Order::Forces);
     let scale = scene.scale();
-    std::iter::zip(designs, states)
+    Ok(std::iter::zip(designs, states)
         .zip(energies)
         .map(|((design, reached), energy)| {
-            if (design.fillet_ratio / law.fillet_ratio - 1.0).abs() > ROUNDED {
-                let (law, sheet) = (law.fillet_ratio, design.fillet_ratio);
-                return Err(LetGoError::Hole { law, sheet });
-            }
             let (design, reached) = (design.scaled(scale.recip()), reached.scaled(scale.recip()));
             // Forces grow with the square of the thickness, moments with its cube.
             let [f_a, f_s, m_theta] = energy.forces.map(|force| force / (scale * scale));
             let forces = [f_a, f_s, m_theta / scale];
-            Ok(law.released(&design, &reached, &forces).scaled(scale))
+            law.released(&design, &reached, &forces).scaled(scale)
         })
-        .collect()
+        .collect())
 }
 
 impl DesignProblem {
@@ -168,6 +209,10 @@ impl DesignProblem {
                 .iter()
                 .map(|hinge| hinge.rest.theta)
                 .collect(),
+            displacement_unit: match &curve {
+                Some(curve) if !curve.translational => "rad",
+                _ => "mm",
+            },
             displacement: curve.map(|curve| [curve.points[0][0], curve.points[1][0]]),
             snaps: released.path.iter().any(|step| step.jumps > 0),
             corners: rms_and_maximum(moved.map(|(p, q)| distance(*p, *q))),

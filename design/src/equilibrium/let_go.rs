@@ -11,7 +11,8 @@ use crate::equilibrium::supports::Support;
 use crate::sheet::kinematics::Configuration;
 
 impl EquilibriumSolver {
-    /// The load steps from the configuration `start`, of which the last one is without loads.
+    /// The load steps from the configuration `start`, of which the last one is without loads. Their load factor is the part of the holding
+    /// forces that is left.
     pub fn let_go(
         &self,
         sheet: HingedSheet,
@@ -26,12 +27,20 @@ impl EquilibriumSolver {
             grips: self.grips.clone(),
             ..Self::new(self.grid, &resting, &[], steps, self.settings)?
         };
-        free.check_supports(sheet.sheet)?;
+        if free.check_supports(sheet.sheet).is_err() {
+            return Err(EquilibriumError::HeldByMoved);
+        }
         if let Some(holding) = free.holding(sheet, start.clone()) {
             free.loads = holding.iter().map(|force| force.map(|x| -x)).collect();
             free.held = holding.into();
         }
-        Ok(free.path_from(sheet, start))
+        let path = free.path_from(sheet, start).into_iter();
+        Ok(path
+            .map(|step| LoadStep {
+                load_factor: 1.0 - step.load_factor,
+                ..step
+            })
+            .collect())
     }
 
     /// The forces (F_x, F_y, M) on the free panels that balance a configuration without loads; `None` if its energy is not finite.

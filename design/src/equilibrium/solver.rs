@@ -45,6 +45,10 @@ pub enum EquilibriumError {
          weight, without a prescribed stroke, from a point beside its centre of gravity"
     )]
     Unsupported,
+    #[error(
+        "without the supports that moved it the sheet is free to move as a rigid body: nothing says where it goes when they let go"
+    )]
+    HeldByMoved,
     #[error("the weight {0:?} N/mm^2 is not finite")]
     Weight([f64; 2]),
     #[error("the stroke {0} mm is not a finite number")]

@@ -46,7 +46,7 @@ fn write_deck(d: &mut String, model: &WindowModel) -> fmt::Result {
     arc.write_equations(d, &mesh.nodes)?;
     let motion = |lambda| PanelMotion::new(&model.path.at(lambda));
     arc.write_amplitudes(d, &lambdas(model.path), 1.0, motion)?;
-    let turn = model.path.first_turn();
+    let turn = model.path.turn();
     write_step(d, model.step, turn.unwrap_or(1.0))?;
     writeln!(d, "*BOUNDARY\nARCA,1,3,0.\nARCB,3,3,0.\nCONTROL,3,3,0.")?;
     arc.write_boundary(d)?;

@@ -119,26 +119,29 @@ impl DeformationPath {
         self.knots.iter().map(|(lambda, _)| *lambda)
     }
 
-    /// The first corner at which the path turns back, by more than a right angle where each component is relative to its largest value
-    /// on the path: from there on the hinge is unloaded.
-    pub fn first_turn(&self) -> Option<f64> {
-        let state = |i: usize| self.knots[i].1.to_array();
+    /// The corner, of those at which the path turns back, that is furthest from the undeformed state: from there on the hinge is unloaded. A
+    /// path turns back by more than a right angle, where each component is relative to its largest value on the path.
+    pub fn turn(&self) -> Option<f64> {
         let largest: [f64; 3] = std::array::from_fn(|c| {
-            let values = (0..self.knots.len()).map(|i| state(i)[c].abs());
+            let values = self
+                .knots
+                .iter()
+                .map(|(_, state)| state.to_array()[c].abs());
             values.fold(f64::MIN_POSITIVE, f64::max)
         });
+        let state = |i: usize| -> [f64; 3] {
+            let state = self.knots[i].1.to_array();
+            std::array::from_fn(|c| state[c] / largest[c])
+        };
         let leg = |i: usize| -> [f64; 3] {
-            std::array::from_fn(|c| (state(i + 1)[c] - state(i)[c]) / largest[c])
+            let (from, to) = (state(i), state(i + 1));
+            std::array::from_fn(|c| to[c] - from[c])
         };
-        let turns = |i: &usize| {
-            let (before, after) = (leg(i - 1), leg(*i));
-            std::iter::zip(before, after)
-                .map(|(x, y)| x * y)
-                .sum::<f64>()
-                < 0.0
-        };
-        let turn = (1..self.knots.len() - 1).find(turns);
-        turn.map(|i| self.knots[i].0)
+        let product = |x: [f64; 3], y: [f64; 3]| -> f64 { (0..3).map(|c| x[c] * y[c]).sum() };
+        let turns = (1..self.knots.len() - 1).filter(|&i| product(leg(i - 1), leg(i)) < 0.0);
+        let distance = |i: &usize| product(state(*i), state(*i));
+        let furthest = turns.max_by(|i, j| distance(i).total_cmp(&distance(j)));
+        furthest.map(|i| self.knots[i].0)
     }
 
     /// The state at `lambda` in [0, 1].
@@ -190,7 +193,7 @@ mod tests {
     fn a_path_turns_back_where_it_is_unloaded() {
         let through = |states: &[[f64; 3]]| {
             let states: Vec<_> = states.iter().map(|&[a, s, t]| state(a, s, t)).collect();
-            DeformationPath::through(&states).unwrap().first_turn()
+            DeformationPath::through(&states).unwrap().turn()
         };
         assert_eq!(through(&[[-0.1, 0.0, 40.0]]), None);
         assert_eq!(through(&[[-0.1, 0.0, 20.0], [-0.3, 0.1, 40.0]]), None);
@@ -201,6 +204,14 @@ mod tests {
             [0.0, 0.0, 10.0],
         ];
         assert_eq!(through(&released), Some(0.5));
+        // The weight of a sheet turned the hinge the other way before.
+        let weighed = [
+            [0.0, 0.0, -5.0],
+            [-0.1, 0.0, 40.0],
+            [0.0, 0.0, 20.0],
+            [0.0, 0.0, 10.0],
+        ];
+        assert_eq!(through(&weighed), Some(0.5));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use hinge::Regime;
 use serde::{Deserialize, Serialize};
 
-/// Automatic increments of the one static step; lambda runs from 0 to 1.
+/// Automatic increments of a static path; lambda runs from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepControl {
     /// First increment; small, because the sheet buckles immediately.

@@ -63,7 +63,7 @@ impl WindowSolve {
     pub fn new(problem: WindowProblem, tools: &ToolVersions) -> Self {
         Self {
             mesh: problem.tier.recipe(),
-            recipe_version: match problem.hinge.path.first_turn() {
+            recipe_version: match problem.hinge.path.turn() {
                 None => RECIPE_VERSION,
                 Some(_) => TURNING_VERSION,
             },

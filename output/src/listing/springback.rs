@@ -17,8 +17,8 @@ pub struct SpringbackListing {
     pub stays: WhatStays,
     /// Mean rotation of the hinges without load over that under load; `None` if they have not opened.
     pub share: Option<f64>,
-    /// Errors of the law at hinges that it has not seen.
-    pub law: SpringbackErrors,
+    /// Errors of the law at hinges that it has not seen; `None` if they were not measured.
+    pub law: Option<SpringbackErrors>,
     /// Number of hinges in states outside the training domain, about which nothing is known.
     pub outside: usize,
     #[serde(skip)]
@@ -60,17 +60,17 @@ impl SpringbackListing {
 impl fmt::Display for SpringbackListing {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let WhatStays {
-            rotations,
             rest_rotations,
             displacement,
+            displacement_unit,
             corners,
             snaps,
             outline_error,
+            ..
         } = &self.stays;
-        let count = rotations.len() as f64;
-        let mean = |of: &mut dyn Iterator<Item = f64>| (of.sum::<f64>() / count).to_degrees();
-        let [loaded, free] = [0, 1].map(|i| mean(&mut rotations.iter().map(|pair| pair[i].abs())));
-        let alone = mean(&mut rest_rotations.iter().map(|theta| theta.abs()));
+        let [loaded, free] = self.stays.mean_rotations().map(f64::to_degrees);
+        let alone = rest_rotations.iter().map(|theta| theta.abs()).sum::<f64>();
+        let alone = (alone / rest_rotations.len() as f64).to_degrees();
         writeln!(f, "{:<44}{:>12}{:>12}", "", "loaded", "let go")?;
         writeln!(
             f,
@@ -81,7 +81,7 @@ impl fmt::Display for SpringbackListing {
             writeln!(
                 f,
                 "{:<44}{under:>12.2}{without:>12.2}",
-                "displacement along the loads"
+                format!("displacement along the loads, {displacement_unit}")
             )?;
         }
         let [before, after] = outline_error;
@@ -116,14 +116,17 @@ impl fmt::Display for SpringbackListing {
                 self.outside
             )?;
         }
-        let [.., theta] = self.law.rest;
-        writeln!(
-            f,
-            "the law of released hinges is off by {:.2} deg and by {:.0} % of the stiffness (root mean squares at {} hinges that it has not seen)",
-            theta.to_degrees(),
-            100.0 * self.law.stiffness,
-            self.law.hinges
-        )?;
+        match &self.law {
+            Some(law) => writeln!(
+                f,
+                "the law of released hinges is off by {:.2} deg and by {:.0} % of the stiffness (root mean squares at {} hinges that it has not \
+                 seen), besides the errors of the forces",
+                law.rest[2].to_degrees(),
+                100.0 * law.stiffness,
+                law.hinges
+            )?,
+            None => writeln!(f, "the errors of the law of released hinges are not known")?,
+        }
         writeln!(
             f,
             "up to the opening that was reached hinges are elastic: the load that opened the sheet opens it again"

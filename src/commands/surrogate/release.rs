@@ -1,17 +1,16 @@
 //! `kirigami surrogate release`: hinges deformed and let go by finite elements, and their law.
 
-use crate::commands::input_file;
 use crate::commands::solve_args::{SolveArgs, task_error};
+use crate::commands::surrogate::trained_material;
 use crate::ui::count::count;
 use crate::ui::run_folder;
 use anyhow::{Result, ensure};
 use clap::Args;
-use hinge::SheetMaterial;
 use mesher::Tier;
 use std::fmt;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use surrogate::{Springback, Surrogate};
+use surrogate::{FEWEST, Springback, Surrogate};
 use verification::{first_guess, judging_tier, random_paths, releases};
 
 /// Deform hinges by finite elements, let them go, and learn what stays
@@ -52,8 +51,18 @@ pub struct ReleaseCommand {
 impl ReleaseCommand {
     pub fn run(&self) -> Result<()> {
         let surrogate = Surrogate::load(&self.weights)?;
-        input_file::require(&self.material, "--material")?;
-        let material = SheetMaterial::load(&self.material)?;
+        let material = trained_material(&surrogate, &self.weights, &self.material)?;
+        ensure!(
+            surrogate.domain().holes.is_none(),
+            "{} are for holes of several radii, and a law knows one: use weights for holes of one radius",
+            self.weights.display()
+        );
+        ensure!(
+            self.count.get() >= self.unseen + FEWEST,
+            "--count {} leaves {} hinges to fit the law to, and it needs {FEWEST}: increase --count",
+            self.count,
+            self.count.get().saturating_sub(self.unseen)
+        );
         let tier = judging_tier(self.tier, &surrogate)?;
         let _held = run_folder::hold(&self.out)?;
         let windows = self.solve.service(&self.out)?;
@@ -98,9 +107,12 @@ struct SpringbackCard<'a>(&'a Springback);
 impl fmt::Display for SpringbackCard<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Springback { hinges, errors, .. } = self.0;
+        let Some(errors) = errors else {
+            return write!(f, "law of {hinges} hinges, whose errors are not known");
+        };
         writeln!(
             f,
-            "law of {hinges} hinges, at {} others (root mean squares):",
+            "law of {hinges} hinges, at {} others with the forces of their windows (root mean squares):",
             errors.hinges
         )?;
         writeln!(

@@ -1,17 +1,16 @@
 //! `kirigami surrogate spot-check`: errors of weights against finite elements inside their training domain.
 
-use crate::commands::input_file;
 use crate::commands::inspect::judged_design::DESIGN_TO_JUDGE;
 use crate::commands::inspect::scene_args::Inspected;
 use crate::commands::solve_args::{SolveArgs, task_error};
 use crate::commands::surrogate::errors::StateErrors;
+use crate::commands::surrogate::trained_material;
 use crate::ui::count::count;
 use crate::ui::run_folder;
 use crate::ui::with_unit::percent;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use dataset::{Database, Gates, SplitPlan};
-use hinge::SheetMaterial;
 use mesher::Tier;
 use std::path::PathBuf;
 use surrogate::Surrogate;
@@ -82,18 +81,7 @@ impl SpotCheckCommand {
     pub fn run(&self) -> Result<()> {
         ensure!(self.count > 0, "--count must be at least 1");
         let surrogate = Surrogate::load(&self.weights)?;
-        input_file::require(&self.material, "--material")?;
-        let material = SheetMaterial::load(&self.material)?;
-        let card = surrogate.card();
-        ensure!(
-            card.material_hash
-                .as_ref()
-                .is_none_or(|hash| *hash == material.law_hash()),
-            "{} were trained on {}, but {} is another material law: pass the right file with --material",
-            self.weights.display(),
-            card.material,
-            self.material.display()
-        );
+        let material = trained_material(&surrogate, &self.weights, &self.material)?;
         let tier = judging_tier(self.tier, &surrogate)?;
         let paths = match &self.paths.scene {
             Some(_) => self.on_paths()?,

@@ -1,0 +1,86 @@
+//! `inspect springback`: what stays of a sheet of polypropylene, in its thickness and in twice that, and laws that do not fit.
+
+mod common;
+
+use common::Workplace;
+use serde_json::Value;
+
+fn repository(path: &str) -> String {
+    format!("{}/{path}", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The scene of four panels in the workplace, with some of its text replaced.
+fn four_panels(work: &Workplace, name: &str, replacements: &[(&str, &str)]) {
+    let scene = std::fs::read_to_string(repository("docs/results/springback/four-panels.toml"));
+    let mut text = scene.unwrap().replace("../../../", &repository(""));
+    for (from, to) in replacements {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    std::fs::write(work.path(name), text).unwrap();
+}
+
+fn springback(scene: &str, options: &str) -> String {
+    let law = repository("data/polypropylene-3mm/springback.json");
+    format!("inspect springback {scene} --design start --law {law} {options}")
+}
+
+#[test]
+fn a_plate_springs_back_and_one_of_twice_the_thickness_twice_as_far() {
+    let work = Workplace::new();
+    four_panels(&work, "three.toml", &[]);
+    let doubled = [
+        ("thickness = 3.0 ", "thickness = 6.0 "),
+        ("[120.0, 120.0]", "[240.0, 240.0]"),
+        ("[60.0, 60.0]", "[120.0, 120.0]"),
+        ("start = 1.6", "start = 3.2"),
+        ("[1.0, 2.8]", "[2.0, 5.6]"),
+        ("kerf = 0.2", "kerf = 0.4"),
+        ("r_win = 12.0", "r_win = 24.0"),
+        ("stroke = 22.0", "stroke = 44.0"),
+    ];
+    four_panels(&work, "six.toml", &doubled);
+    let [three, six] = ["three.toml", "six.toml"].map(|scene| -> Value {
+        let text = work.output(&springback(scene, "--json --picture released.svg"));
+        serde_json::from_str(&text).unwrap()
+    });
+    let share = three["share"].as_f64().unwrap();
+    assert!((0.5..0.8).contains(&share), "{share}");
+    let number = |found: &Value, place: &str| found.pointer(place).unwrap().as_f64().unwrap();
+    for (place, scale) in [
+        ("/share", 1.0),
+        ("/rotations/0/1", 1.0),
+        ("/rest_rotations/3", 1.0),
+        ("/displacement/0", 2.0),
+        ("/displacement/1", 2.0),
+        ("/corners/0", 2.0),
+    ] {
+        let (found, expected) = (number(&six, place), scale * number(&three, place));
+        assert!((found / expected - 1.0).abs() < 1e-6, "{place}: {found} {expected}");
+    }
+    // Nothing pulls a sheet that was let go.
+    let picture = std::fs::read_to_string(work.path("released.svg")).unwrap();
+    assert!(picture.contains("</svg>") && !picture.contains(" N<"), "{picture}");
+    let text = work.output(&springback("three.toml", ""));
+    assert!(text.contains("of the opening stays") && text.contains("Not in these numbers"));
+}
+
+#[test]
+fn laws_that_are_not_for_the_sheet_are_refused() {
+    let work = Workplace::new();
+    four_panels(&work, "scene.toml", &[("r_win = 12.0", "r_win = 12.0")]);
+    let refused = |law: &str| work.error(&format!("inspect springback scene.toml --design start --law {law}"));
+    let film = repository("data/pet-0.5mm/medium.json");
+    assert!(refused(&film).contains("is not a law of released hinges"));
+    assert!(refused("nowhere.json").contains("cannot read nowhere.json"));
+    let error = work.error(&springback("configs/scenes/linear-7x7.toml", ""));
+    assert!(error.contains("hinge = \"surrogate\""), "{error}");
+    let film = "configs/materials/polypropylene-3mm.toml";
+    let weights = repository("data/pet-0.5mm/medium.safetensors");
+    let error = work.error(&format!("surrogate release {weights} --material {film}"));
+    assert!(error.contains("another material law"), "{error}");
+    let error = work.error(&format!(
+        "surrogate release {weights} --material configs/materials/pet-0.5mm.toml --count 40"
+    ));
+    assert!(error.contains("--count 40 leaves 10 hinges"), "{error}");
+}
