@@ -56,11 +56,17 @@ fn a_plate_springs_back_and_one_of_twice_the_thickness_twice_as_far() {
         ("/corners/0", 2.0),
     ] {
         let (found, expected) = (number(&six, place), scale * number(&three, place));
-        assert!((found / expected - 1.0).abs() < 1e-6, "{place}: {found} {expected}");
+        assert!(
+            (found / expected - 1.0).abs() < 1e-6,
+            "{place}: {found} {expected}"
+        );
     }
     // Nothing pulls a sheet that was let go.
     let picture = std::fs::read_to_string(work.path("released.svg")).unwrap();
-    assert!(picture.contains("</svg>") && !picture.contains(" N<"), "{picture}");
+    assert!(
+        picture.contains("</svg>") && !picture.contains(" N<"),
+        "{picture}"
+    );
     let text = work.output(&springback("three.toml", ""));
     assert!(text.contains("of the opening stays") && text.contains("Not in these numbers"));
 }
@@ -69,7 +75,11 @@ fn a_plate_springs_back_and_one_of_twice_the_thickness_twice_as_far() {
 fn laws_that_are_not_for_the_sheet_are_refused() {
     let work = Workplace::new();
     four_panels(&work, "scene.toml", &[("r_win = 12.0", "r_win = 12.0")]);
-    let refused = |law: &str| work.error(&format!("inspect springback scene.toml --design start --law {law}"));
+    let refused = |law: &str| {
+        work.error(&format!(
+            "inspect springback scene.toml --design start --law {law}"
+        ))
+    };
     let film = repository("data/pet-0.5mm/medium.json");
     assert!(refused(&film).contains("is not a law of released hinges"));
     assert!(refused("nowhere.json").contains("cannot read nowhere.json"));
