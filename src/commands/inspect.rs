@@ -151,7 +151,7 @@ impl SpringbackArgs {
         let problem = scene.problem()?;
         let listing = SpringbackListing::new(&scene, &problem, &design, &law)?;
         if let Some(path) = &self.picture {
-            output_file::write(path, &listing.picture(&scene))?;
+            output_file::write(path, listing.picture(&scene))?;
         }
         self.listed.print(name, listing)
     }

@@ -60,11 +60,11 @@ pub fn released_by_elements(
     let mut movements = Vec::new();
     let (mut own_forces, mut unsolved) = (0.0, Vec::new());
     for _ in 0..rounds {
-        let (ends, failed) = element_forces(scene, deployed, &released, windows)?;
-        own_forces = share(deployed, found, &ends);
-        unsolved = failed;
+        let ends = element_forces(scene, deployed, &released, windows)?;
+        own_forces = share(deployed, found, &ends.forces);
+        unsolved = ends.unsolved;
         let states = &released.path[released.path.len() - 1].deformations;
-        let hinges = (released.hinges.iter().zip(states).zip(&ends))
+        let hinges = (released.hinges.iter().zip(states).zip(&ends.forces))
             .map(|((hinge, state), forces)| {
                 // A hinge that was not solved stays as it is.
                 let Some(forces) = forces else {
@@ -101,13 +101,21 @@ pub fn released_by_elements(
     })
 }
 
+/// The hinges of a sheet that was let go, by finite elements.
+struct ElementForces {
+    /// (F_a, F_s, M_theta) of every hinge; `None` if it was not solved.
+    forces: Vec<Option<[f64; 3]>>,
+    /// The hinges that were not.
+    unsolved: Vec<UnsolvedHinge>,
+}
+
 /// The forces of every hinge by finite elements, along its path in the deployed sheet and back.
 fn element_forces(
     scene: &Scene,
     deployed: &Deployment,
     released: &ReleasedSheet,
     windows: &ElementWindows,
-) -> Result<(Vec<Option<[f64; 3]>>, Vec<UnsolvedHinge>), VerificationError> {
+) -> Result<ElementForces, VerificationError> {
     /// States on the way back, each with the part of the path that a load step has.
     const BACK: usize = 5;
     let mut paths = paths_of(deployed);
@@ -137,7 +145,7 @@ fn element_forces(
         [first, ..] if unsolved.len() == solved.len() => {
             Err(VerificationError::NoHingeReplayed(first.to_string()))
         }
-        _ => Ok((forces, unsolved)),
+        _ => Ok(ElementForces { forces, unsolved }),
     }
 }
 

@@ -119,8 +119,8 @@ impl DeformationPath {
         self.knots.iter().map(|(lambda, _)| *lambda)
     }
 
-    /// The corner, of those at which the path turns back, that is furthest from the undeformed state: from there on the hinge is unloaded. A
-    /// path turns back by more than a right angle, where each component is relative to its largest value on the path.
+    /// The end of the longest part of the path before it turns back: from there on the hinge is unloaded. `None` if it never turns back, by
+    /// more than a right angle where each component is relative to its largest value on the path.
     pub fn turn(&self) -> Option<f64> {
         let largest: [f64; 3] = std::array::from_fn(|c| {
             let values = self
@@ -129,19 +129,23 @@ impl DeformationPath {
                 .map(|(_, state)| state.to_array()[c].abs());
             values.fold(f64::MIN_POSITIVE, f64::max)
         });
-        let state = |i: usize| -> [f64; 3] {
-            let state = self.knots[i].1.to_array();
-            std::array::from_fn(|c| state[c] / largest[c])
-        };
         let leg = |i: usize| -> [f64; 3] {
-            let (from, to) = (state(i), state(i + 1));
-            std::array::from_fn(|c| to[c] - from[c])
+            let [from, to] = [i, i + 1].map(|i| self.knots[i].1.to_array());
+            std::array::from_fn(|c| (to[c] - from[c]) / largest[c])
         };
-        let product = |x: [f64; 3], y: [f64; 3]| -> f64 { (0..3).map(|c| x[c] * y[c]).sum() };
-        let turns = (1..self.knots.len() - 1).filter(|&i| product(leg(i - 1), leg(i)) < 0.0);
-        let distance = |i: &usize| product(state(*i), state(*i));
-        let furthest = turns.max_by(|i, j| distance(i).total_cmp(&distance(j)));
-        furthest.map(|i| self.knots[i].0)
+        let turns_back = |&i: &usize| {
+            let legs = std::iter::zip(leg(i - 1), leg(i));
+            legs.map(|(before, after)| before * after).sum::<f64>() < 0.0
+        };
+        let (mut begin, mut longest) = (0.0, (0.0, None));
+        for i in (1..self.knots.len() - 1).filter(turns_back) {
+            let turn = self.knots[i].0;
+            if turn - begin > longest.0 {
+                longest = (turn - begin, Some(turn));
+            }
+            begin = turn;
+        }
+        longest.1
     }
 
     /// The state at `lambda` in [0, 1].
@@ -207,11 +211,12 @@ mod tests {
         // The weight of a sheet turned the hinge the other way before.
         let weighed = [
             [0.0, 0.0, -5.0],
-            [-0.1, 0.0, 40.0],
+            [-0.1, 0.0, 20.0],
+            [-0.2, 0.0, 40.0],
             [0.0, 0.0, 20.0],
             [0.0, 0.0, 10.0],
         ];
-        assert_eq!(through(&weighed), Some(0.5));
+        assert_eq!(through(&weighed), Some(0.6));
     }
 
     #[test]

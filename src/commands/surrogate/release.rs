@@ -34,6 +34,9 @@ pub struct ReleaseCommand {
     /// Seed of the random states
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     seed: u64,
+    /// Judge this law (JSON) by all of the hinges instead of fitting one; draw them with another seed than its own
+    #[arg(long, value_name = "LAW", conflicts_with = "unseen")]
+    judge: Option<PathBuf>,
     /// Sheet material that the weights were trained on (TOML)
     #[arg(long, value_name = "FILE")]
     material: PathBuf,
@@ -57,8 +60,17 @@ impl ReleaseCommand {
             "{} are for holes of several radii, and a law knows one: use weights for holes of one radius",
             self.weights.display()
         );
+        let judged = self.judge.as_deref().map(Springback::load).transpose()?;
+        if let Some(law) = &judged {
+            ensure!(
+                law.material_hash == material.law_hash() && law.hinge == surrogate.card().hinge,
+                "the law is for {} with other hinges than those of {}: judge it with the weights whose hinges it was fitted to",
+                law.material,
+                self.weights.display()
+            );
+        }
         ensure!(
-            self.count.get() >= self.unseen + FEWEST,
+            judged.is_some() || self.count.get() >= self.unseen + FEWEST,
             "--count {} leaves {} hinges to fit the law to, and it needs {FEWEST}: increase --count",
             self.count,
             self.count.get().saturating_sub(self.unseen)
@@ -90,6 +102,11 @@ impl ReleaseCommand {
             found.windows,
             found.cpu_seconds
         );
+        if let Some(mut law) = judged {
+            law.errors = Some(law.errors_at(&found.rows));
+            println!("{}", SpringbackCard(&law));
+            return Ok(());
+        }
         let fitted = found.rows.len().saturating_sub(self.unseen);
         let (fitted, unseen) = found.rows.split_at(fitted);
         let law = Springback::fit(fitted, unseen, &material, &tier.to_string())?;
