@@ -10,7 +10,7 @@
 //! | `problem` | a prepared design problem |
 //! | `waiting` | Ctrl-C during long calls |
 //!
-//! Every call releases the GIL while it computes.
+//! Calls that evaluate hinges, solve or search release the GIL meanwhile.
 
 #![warn(missing_docs)]
 
