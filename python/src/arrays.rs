@@ -9,7 +9,7 @@ use serde::Serialize;
 /// An array of float64.
 pub(crate) type Doubles<'py> = Bound<'py, PyArrayDyn<f64>>;
 
-/// Finite real numbers in the order of the indices, whatever the order in memory was.
+/// Finite real numbers in the order of the indices, from any order in memory.
 pub(crate) struct Numbers {
     /// The last index runs fastest.
     pub values: Vec<f64>,

@@ -70,13 +70,6 @@ impl Known {
     }
 }
 
-/// What a solve is given besides the design.
-struct Given<'py> {
-    loads: Option<Bound<'py, PyAny>>,
-    thickness: Option<f64>,
-    stress: f64,
-}
-
 #[pymethods]
 impl Problem {
     #[new]
@@ -217,11 +210,7 @@ impl Problem {
         stress: f64,
         warm: bool,
     ) -> PyResult<Deployment> {
-        let problem = self.under(&Given {
-            loads,
-            thickness,
-            stress,
-        })?;
+        let problem = self.under(loads.as_ref(), thickness, stress)?;
         let design = self.design_of(x)?;
         let known = self.known(warm, |warm| &warm.path);
         let deployment = py.detach(|| problem.deploy_near(&design, known.as_deref()));
@@ -258,11 +247,7 @@ impl Problem {
         stress: f64,
         warm: bool,
     ) -> PyResult<State> {
-        let problem = self.under(&Given {
-            loads,
-            thickness,
-            stress,
-        })?;
+        let problem = self.under(loads.as_ref(), thickness, stress)?;
         let design = self.design_of(x)?;
         let known = self.known(warm, |warm| &warm.state);
         let response = py.detach(|| problem.response(&design, known.as_deref()));
@@ -332,11 +317,7 @@ impl Problem {
         thickness: Option<f64>,
         stress: f64,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let problem = self.under(&Given {
-            loads,
-            thickness,
-            stress,
-        })?;
+        let problem = self.under(loads.as_ref(), thickness, stress)?;
         let design = self.design_of(x)?;
         let configuration = self.by_panel(configuration, "configuration")?;
         let load_factor = finite("load_factor", load_factor)?;
@@ -428,7 +409,7 @@ impl Problem {
         )?;
         let steps = steps.unwrap_or(optimiser.steps);
         let (problem, stop) = (&self.problem, AtomicBool::new(false));
-        let told = |search: &SearchState| {
+        let report = |search: &SearchState| {
             Python::attach(|py| {
                 py.check_signals()?;
                 if let Some(callback) = &callback {
@@ -442,9 +423,9 @@ impl Problem {
         let (search, ended) = py.detach(|| {
             let evaluation = problem.evaluate(&start).map_err(errors::design)?;
             let mut search = SearchState::new(problem, start, &evaluation, method, rate);
-            told(&search)?;
+            report(&search)?;
             let ended = optimise(problem, &mut search, steps, &stop, &mut |search| {
-                told(search)
+                report(search)
             })?;
             Ok::<_, PyErr>((search, ended))
         })?;
@@ -516,19 +497,21 @@ impl Problem {
         Ok(given.values.as_chunks::<3>().0.to_vec())
     }
 
-    /// The problem under the given conditions.
-    fn under(&self, given: &Given) -> PyResult<Arc<DesignProblem>> {
-        let loads = given
-            .loads
-            .as_ref()
-            .map(|loads| self.by_panel(loads, "loads"));
+    /// The problem with other loads, another thickness (mm) and other stresses than those of the scene.
+    fn under(
+        &self,
+        loads: Option<&Bound<PyAny>>,
+        thickness: Option<f64>,
+        stress: f64,
+    ) -> PyResult<Arc<DesignProblem>> {
+        let loads = loads.map(|loads| self.by_panel(loads, "loads"));
         let conditions = Conditions {
             loads: loads.transpose()?,
-            thickness: match given.thickness {
+            thickness: match thickness {
                 Some(thickness) => finite("thickness", thickness)? / self.thickness(),
                 None => 1.0,
             },
-            stress: finite("stress", given.stress)?,
+            stress: finite("stress", stress)?,
         };
         if conditions == Conditions::default() {
             return Ok(Arc::clone(&self.problem));

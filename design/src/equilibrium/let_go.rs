@@ -1,13 +1,15 @@
 //! A sheet that is let go: from a configuration to the equilibrium without loads.
 //!
-//! The forces that would hold the panels in the configuration are taken off in proportion. The path begins in balance, whatever
-//! the forces of the hinge law are there. Supports that rest and the weight of the sheet stay; supports that moved it let go, too.
+//! The forces that would hold the panels in the configuration are taken off in proportion. The path begins in balance also
+//! where the hinge law has other forces than those under load. Supports that rest and the weight of the sheet stay; supports that moved it let go, too.
 
+use crate::equilibrium::branch::Branch;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::LoadStep;
-use crate::equilibrium::potential::{Potential, Stage};
+use crate::equilibrium::potential::Stage;
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
 use crate::equilibrium::supports::Support;
+use crate::hinge_law::Order;
 use crate::sheet::kinematics::Configuration;
 
 impl EquilibriumSolver {
@@ -45,16 +47,8 @@ impl EquilibriumSolver {
 
     /// The forces (F_x, F_y, M) on the free panels that balance a configuration without loads; `None` if its energy is not finite.
     fn holding(&self, sheet: HingedSheet, configuration: Configuration) -> Option<Vec<[f64; 3]>> {
-        let potential = Potential {
-            solver: self,
-            sheet,
-            stage: Stage::Actuation,
-            at: 0.0,
-            panel_size: 1.0,
-            friction: None,
-            force: 0.0,
-        };
-        let state = potential.state(configuration)?;
+        let potential = Branch::new(self, sheet, Stage::Actuation).potential(0.0);
+        let state = potential.state_up_to(configuration, Order::Forces)?;
         Some(self.pattern.spread(&state.gradient))
     }
 }
