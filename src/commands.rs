@@ -33,6 +33,8 @@ pub mod solve;
 #[cfg(feature = "pipeline")]
 pub mod solve_args;
 #[cfg(feature = "pipeline")]
+pub mod studio;
+#[cfg(feature = "pipeline")]
 pub mod surrogate;
 #[cfg(feature = "pipeline")]
 pub mod train;

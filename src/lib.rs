@@ -4,4 +4,6 @@
 
 pub mod cli;
 pub mod commands;
+#[cfg(feature = "pipeline")]
+mod studio;
 pub mod ui;

@@ -9,6 +9,7 @@ mod checked_scene;
 mod checks;
 mod cutting;
 pub mod design_run;
+mod drawn_target;
 mod hinge_model;
 mod invalid_scene;
 mod keys;
@@ -31,6 +32,7 @@ pub use actuation::{
 pub use boundary_values::{Actuation, AppliedLoad, Attachment, SupportedPanel, panel_name};
 pub use checked_scene::Scene;
 pub use cutting::CuttingConfig;
+pub use drawn_target::place_drawing;
 pub use hinge_model::{
     CondensedConfig, ContactConfig, HingeModel, LinearConstants, PinConfig, SurrogateFile,
 };

@@ -34,6 +34,6 @@ pub mod measurement;
 pub mod report;
 mod report_pdf;
 pub mod run_files;
-mod run_page;
+pub mod run_page;
 pub mod run_results;
 pub mod vtk_sheet;

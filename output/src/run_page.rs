@@ -1,4 +1,5 @@
-//! `run.html`: a run on one page that needs no other file and no network.
+//! `run.html`: a run on one page that needs no other file and no network. `kirigami studio` shows a scene on the same page, with
+//! controls.
 //!
 //! The page consists of a template, a style, scripts and the data of the run as JSON, in which long lists of numbers
 //! are base64 of little-endian 32-bit floats. The data are inserted as text that contains no `<`, so that no title
@@ -8,11 +9,12 @@ mod hinge_states;
 mod packed;
 mod page_data;
 
+pub use page_data::{History, PageData, SheetData};
+
 use crate::display::text_of_element;
 use crate::report::Report;
 use design::scene::Scene;
 use design::scene::design_run::Designed;
-use page_data::PageData;
 
 const TEMPLATE: &str = include_str!("run_page/page.html");
 const STYLE: &str = include_str!("run_page/page.css");
@@ -23,8 +25,26 @@ const SCRIPTS: [&str; 7] = [
     include_str!("run_page/sheet.js"),
     include_str!("run_page/charts.js"),
     include_str!("run_page/hinge.js"),
-    include_str!("run_page/page.js"),
+    include_str!("run_page/view.js"),
 ];
+const OF_RUN: &str = include_str!("run_page/page.js");
+
+/// What a page adds to the view of a sheet.
+#[derive(Default)]
+pub struct Page<'a> {
+    /// Its title.
+    pub title: &'a str,
+    /// What it may connect to, as a directive of its content security policy.
+    pub connections: &'a str,
+    /// HTML before the cards.
+    pub controls: &'a str,
+    /// Style after that of the view.
+    pub style: &'a str,
+    /// Scripts after those of the view.
+    pub scripts: String,
+    /// Data as JSON.
+    pub data: &'a str,
+}
 
 pub(super) fn run_page(
     scene: &Scene,
@@ -32,19 +52,34 @@ pub(super) fn run_page(
     report: &Report,
 ) -> Result<String, serde_json::Error> {
     let data = serde_json::to_string(&PageData::new(scene, designed, report))?;
-    let filled = |marker: &str| match marker {
-        "title" => text_of_element(&report.title),
-        "style" => STYLE.to_owned(),
-        "scripts" => SCRIPTS.concat(),
-        _ => data.replace('<', "\\u003c"),
+    let page = Page {
+        title: &report.title,
+        scripts: OF_RUN.to_owned(),
+        data: &data,
+        ..Page::default()
     };
-    // Only the template is searched for markers: a title may contain one.
-    let mut pieces = TEMPLATE.split("{{");
-    let mut page = pieces.next().unwrap_or_default().to_owned();
-    for piece in pieces {
-        let (marker, text) = piece.split_once("}}").unwrap_or((piece, ""));
-        page += &filled(marker);
-        page += text;
+    Ok(page.to_html())
+}
+
+impl Page<'_> {
+    /// The text of the page.
+    pub fn to_html(&self) -> String {
+        let filled = |marker: &str| match marker {
+            "title" => text_of_element(self.title),
+            "style" => STYLE.to_owned() + self.style,
+            "scripts" => SCRIPTS.concat() + &self.scripts,
+            "connections" => self.connections.to_owned(),
+            "controls" => self.controls.to_owned(),
+            _ => self.data.replace('<', "\\u003c"),
+        };
+        // Only the template is searched for markers: a title may contain one.
+        let mut pieces = TEMPLATE.split("{{");
+        let mut page = pieces.next().unwrap_or_default().to_owned();
+        for piece in pieces {
+            let (marker, text) = piece.split_once("}}").unwrap_or((piece, ""));
+            page += &filled(marker);
+            page += text;
+        }
+        page
     }
-    Ok(page)
 }

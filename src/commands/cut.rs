@@ -3,7 +3,7 @@
 use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
 use crate::ui::run_folder;
 use crate::ui::width_by_height::width_by_height;
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Error, Result, ensure};
 use clap::Args;
 use design::objective::design_problem::Deployment;
 use design::pattern::design_vector::DesignVector;
@@ -47,7 +47,7 @@ pub struct CutCommand {
     #[arg(long, value_name = "FILE", requires = "machine")]
     machines: Option<PathBuf>,
     /// Width of the adhesive tape on either side of a seam between parts (mm)
-    #[arg(long, value_name = "MM", default_value_t = 20.0, value_parser = lap)]
+    #[arg(long, value_name = "MM", default_value_t = LAP, value_parser = lap)]
     lap: f64,
     /// Write the files even if the design has errors
     #[arg(long)]
@@ -63,6 +63,8 @@ const PAPERS: [(Paper, &str); 3] = [
     (Paper::A3, "a3"),
     (Paper::Letter, "letter"),
 ];
+/// The usual width of the tape (mm).
+const LAP: f64 = 20.0;
 const JOINTS: &str = "joints.csv";
 
 /// What is written of a sheet.
@@ -78,6 +80,29 @@ struct Pieces {
 }
 
 impl CutCommand {
+    /// The files of the run in a folder: tiles for a paper or the file of a machine, besides the usual ones.
+    pub(crate) fn of_run(
+        run: PathBuf,
+        paper: Option<&str>,
+        machine: Option<String>,
+    ) -> Result<Self> {
+        Ok(Self {
+            designed: Inspected {
+                scene: run,
+                design: None,
+                weights: None,
+            },
+            out: None,
+            paper: paper.map(self::paper).transpose().map_err(Error::msg)?,
+            bed: None,
+            machine,
+            machines: None,
+            lap: LAP,
+            force: false,
+            json: false,
+        })
+    }
+
     pub(crate) fn run(&self) -> Result<()> {
         let (scene, design, named) = self.designed.read_run()?;
         if let Some(name) = &self.machine {

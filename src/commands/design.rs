@@ -193,7 +193,8 @@ impl DesignCommand {
         let stop = interrupt::stop_flag()?;
         let bar = Progress::new(scene.config.optimiser.steps, "design steps");
         let learned = scene.surrogate().is_some();
-        let designed = inverse_design(scene, stop, &mut |step: &StepRecord| {
+        let designed = inverse_design(scene, stop, &mut |search| {
+            let step = search.last();
             bar.show(step.step, None, &progress_line(step, learned));
         })?;
         bar.finish();

@@ -67,7 +67,7 @@ pub struct InitCommand {
 const PLATE: &str = "configs/materials/polypropylene-3mm.toml";
 const FILM: &str = "configs/materials/pet-0.5mm.toml";
 /// The shipped weights; those for the material of a sheet are used.
-const WEIGHTS: [&str; 6] = [
+pub(crate) const WEIGHTS: [&str; 6] = [
     "data/polypropylene-3mm/medium.safetensors",
     "data/petg-3mm/medium.safetensors",
     "data/aluminium-2mm/medium.safetensors",
@@ -77,7 +77,31 @@ const WEIGHTS: [&str; 6] = [
 ];
 
 impl InitCommand {
+    /// A new sheet of a material in a thickness (mm) and a size (mm); without them the usual ones.
+    pub(crate) fn new_sheet(
+        folder: PathBuf,
+        material: Option<PathBuf>,
+        thickness: Option<f64>,
+        size: Option<[f64; 2]>,
+    ) -> Self {
+        Self {
+            folder,
+            material,
+            thickness,
+            size,
+            like: None,
+            target: None,
+            weights: None,
+        }
+    }
+
     pub(crate) fn run(&self) -> Result<()> {
+        println!("{}", self.create()?);
+        Ok(())
+    }
+
+    /// Writes the files of the project; returns the text of its README.
+    pub(crate) fn create(&self) -> Result<String> {
         ensure!(
             !self.folder.exists(),
             "{} exists already: name a new folder",
@@ -153,8 +177,7 @@ impl InitCommand {
         if trained {
             self.check_scene()?;
         }
-        println!("{readme}");
-        Ok(())
+        Ok(readme)
     }
 
     /// The file of the material that is named, or else the usual one.

@@ -1,7 +1,7 @@
 //! The subcommands of the pipeline from a material to weights; absent from a build for design alone.
 
 use crate::commands::{
-    campaign, dataset, demo, doctor, init, mesh, solve, surrogate, train, verify,
+    campaign, dataset, demo, doctor, init, mesh, solve, studio, surrogate, train, verify,
 };
 use anyhow::Result;
 use clap::Subcommand;
@@ -18,6 +18,7 @@ pub enum PipelineCommand {
     Train(train::TrainCommand),
     Surrogate(surrogate::SurrogateCommand),
     Verify(verify::VerifyCommand),
+    Studio(studio::StudioCommand),
 }
 
 impl PipelineCommand {
@@ -33,6 +34,7 @@ impl PipelineCommand {
             Self::Train(command) => command.run(),
             Self::Surrogate(command) => command.run(),
             Self::Verify(command) => command.run(),
+            Self::Studio(command) => command.run(),
         }
     }
 }

@@ -113,7 +113,7 @@ impl Termination for Exit {
 }
 
 /// The error and its causes, each printed once.
-fn message(error: &anyhow::Error) -> String {
+pub(crate) fn message(error: &anyhow::Error) -> String {
     error
         .chain()
         .fold(String::new(), |text, cause| match cause.to_string() {

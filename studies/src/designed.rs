@@ -11,11 +11,11 @@ use output::run_results::remove_run;
 /// The finished search of a scene; a search that was stopped or is stuck is an error.
 pub fn designed(scene: &Scene, progress: &mut dyn FnMut(&StepRecord)) -> Result<Designed> {
     let stop = interrupt::stop_flag()?;
-    let designed = match inverse_design(scene, stop, progress) {
+    let designed = match inverse_design(scene, stop, &mut |search| progress(search.last())) {
         // A run of other weights or of a changed scene, left by an earlier study, is discarded.
         Err(error) if error.is_of_another_run() => {
             remove_run(scene)?;
-            inverse_design(scene, stop, progress)?
+            inverse_design(scene, stop, &mut |search| progress(search.last()))?
         }
         designed => designed?,
     };

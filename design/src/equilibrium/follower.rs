@@ -200,7 +200,8 @@ impl<'a> Follower<'a> {
     }
 
     pub fn is_exhausted(&self) -> bool {
-        self.tried > self.branch.solver.settings.max_increments
+        let solver = self.branch.solver;
+        self.tried > solver.settings.max_increments || solver.is_stopped()
     }
 
     /// Goes on from a minimum at a higher load where the path cannot be followed; otherwise why there is none at the

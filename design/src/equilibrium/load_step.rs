@@ -41,6 +41,8 @@ pub enum DescentEnd {
     Stagnated,
     /// The energy or its gradient is not a finite number.
     NotFinite,
+    /// Stopped on request.
+    Stopped,
 }
 
 impl fmt::Display for DescentEnd {
@@ -50,6 +52,7 @@ impl fmt::Display for DescentEnd {
             Self::Increments => "the path is longer than the maximum number of increments",
             Self::Stagnated => "no step lowers the energy further, but the forces are not balanced",
             Self::NotFinite => "the energy is not a finite number",
+            Self::Stopped => "stopped on request",
         })
     }
 }

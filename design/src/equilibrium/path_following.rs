@@ -16,6 +16,7 @@ use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
 use crate::equilibrium::supports::{Load, Support};
 use crate::hinge_law::Order;
 use crate::sheet::kinematics::Configuration;
+use std::sync::Arc;
 
 /// The end of an increment of a path.
 #[derive(Clone, Debug)]
@@ -47,6 +48,7 @@ impl EquilibriumSolver {
         let held = std::iter::zip(&self.held, &self.loads);
         Ok(Self {
             lbfgs: self.lbfgs,
+            stop: Arc::clone(&self.stop),
             weight: self.weight,
             grips: self.grips.clone(),
             held: held
@@ -167,7 +169,11 @@ impl EquilibriumSolver {
         };
         let mut path: Vec<LoadStep> = Vec::with_capacity(self.steps);
         for end in ends {
-            let step = follower.load_step(end);
+            let mut step = follower.load_step(end);
+            if self.is_stopped() {
+                step.status = Status::Diverged;
+                step.descent_end = Some(DescentEnd::Stopped);
+            }
             let diverged = step.status == Status::Diverged;
             path.push(step);
             if diverged {

@@ -16,6 +16,7 @@ use crate::pattern::grid::Grid;
 use crate::sheet::cut_sheet::{Grip, Sheet};
 use crate::sheet::kinematics::Configuration;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Supports, loads or settings that do not define an equilibrium problem.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -85,6 +86,8 @@ pub struct EquilibriumSolver {
     pub(crate) drive: Option<(Box<Stroke>, f64)>,
     /// Shared by the solvers of one sheet with other loads.
     pub(crate) pattern: Arc<TangentPattern>,
+    /// When it becomes true, paths end where they are.
+    pub(crate) stop: Arc<AtomicBool>,
 }
 
 impl EquilibriumSolver {
@@ -140,7 +143,18 @@ impl EquilibriumSolver {
             held: vec![[0.0; 3]; total.len()].into(),
             loads: total.into(),
             drive: None,
+            stop: Arc::default(),
         })
+    }
+
+    /// Ends the paths that are followed with [`DescentEnd::Stopped`](crate::equilibrium::load_step::DescentEnd) at the increment
+    /// during which `stop` becomes true.
+    pub(crate) fn stop_by(&mut self, stop: Arc<AtomicBool>) {
+        self.stop = stop;
+    }
+
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
     }
 
     /// The same problem with other loads (F_x, F_y, M) on the panels at full load (N, N, N mm); those of a stroke give its direction.

@@ -20,6 +20,7 @@ use crate::sheet::topology::PanelCorner;
 use hinge::TrainingDomain;
 use serde::Serialize;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use support::verbose;
 
 /// Why a design has no objective value.
@@ -112,6 +113,7 @@ pub struct DesignProblem {
 }
 
 /// A deployed design.
+#[derive(Clone)]
 pub struct Deployment {
     /// The cut pattern of the design.
     pub pattern: CutPattern,
@@ -135,6 +137,7 @@ pub struct Sensitivities {
 }
 
 /// The objective and the gradient of a design, with its deployment.
+#[derive(Clone)]
 pub struct Evaluation {
     /// L of (16).
     pub loss: f64,
@@ -214,6 +217,13 @@ impl DesignProblem {
         match self.model {
             Model::Ideal { opening } => Some(design.opening.unwrap_or(opening)),
             Model::Equilibrium(_) => None,
+        }
+    }
+
+    /// Ends the paths that are followed at the increment during which `stop` becomes true: they have no equilibrium at full load.
+    pub fn stop_by(&mut self, stop: Arc<AtomicBool>) {
+        if let Model::Equilibrium(mechanics) = &mut self.model {
+            mechanics.solver.stop_by(stop);
         }
     }
 

@@ -37,6 +37,12 @@ pub enum TargetShape {
         /// Vertices in order around the outline (mm), at least three.
         vertices: Vec<[f64; 2]>,
     },
+    /// A smooth closed curve through points, in order around the outline: between two of them the cubic whose tangent at each is half
+    /// the vector from the point before it to that after it (Catmull and Rom 1974).
+    Curve {
+        /// The points (mm), at least three.
+        points: Vec<[f64; 2]>,
+    },
     /// A polygon in a file with one `x,y` (mm) per line, in order around the outline; `#` starts a comment.
     Csv {
         /// Path of the file, relative to the folder of the scene.
@@ -61,7 +67,10 @@ impl TargetShape {
         match self {
             Self::Csv { file } => Some((file, "csv")),
             Self::Svg { file, .. } => Some((file, "svg")),
-            Self::Circle { .. } | Self::Rectangle { .. } | Self::Polygon { .. } => None,
+            Self::Circle { .. }
+            | Self::Rectangle { .. }
+            | Self::Polygon { .. }
+            | Self::Curve { .. } => None,
         }
     }
 }
@@ -128,6 +137,7 @@ impl Target {
                 along_polygon(&corners, count)
             }
             TargetShape::Polygon { vertices } => along_polygon(vertices, count),
+            TargetShape::Curve { points } => along_polygon(&curve(points), count),
             TargetShape::Csv { file } => along_polygon(&read_points(&folder.join(file))?, count),
             TargetShape::Svg {
                 file,
@@ -200,6 +210,29 @@ fn along_polygon(vertices: &[[f64; 2]], count: usize) -> Result<Target, TargetEr
         length,
         crossing: polygon::self_crossing(&distinct),
     })
+}
+
+/// Number of chords of a curve between two of its points.
+const CHORDS: usize = 64;
+
+/// Vertices on the closed curve through points.
+fn curve(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let n = points.len();
+    if n < 3 {
+        return points.to_vec();
+    }
+    let tangent = |i: usize, c: usize| 0.5 * (points[(i + 1) % n][c] - points[(i + n - 1) % n][c]);
+    let at = |i: usize, t: f64| {
+        let next = (i + 1) % n;
+        let from = (1.0 - t) * (1.0 - t);
+        let to = t * t;
+        [0, 1].map(|c| {
+            from * ((1.0 + 2.0 * t) * points[i][c] + t * tangent(i, c))
+                + to * ((3.0 - 2.0 * t) * points[next][c] - (1.0 - t) * tangent(next, c))
+        })
+    };
+    let chords = (0..n).flat_map(|i| (0..CHORDS).map(move |k| (i, k as f64 / CHORDS as f64)));
+    chords.map(|(i, t)| at(i, t)).collect()
 }
 
 /// The vertices, scaled and translated so that their bounding box has the given height and centre (mm).
@@ -295,6 +328,50 @@ mod tests {
         assert!(
             (slope + 15.4).abs() < 1e-9,
             "the long side is rotated clockwise"
+        );
+    }
+
+    #[test]
+    fn a_curve_passes_through_its_points_and_is_nearly_the_circle_of_many() {
+        let circle = |n: usize| -> Vec<[f64; 2]> {
+            let angle = |i: usize| TAU * i as f64 / n as f64;
+            (0..n)
+                .map(|i| [50.0 * angle(i).cos(), 50.0 * angle(i).sin()])
+                .collect()
+        };
+        let error = |n: usize| {
+            let points = circle(n);
+            let vertices = curve(&points);
+            for (i, point) in points.iter().enumerate() {
+                assert!(polygon::distance(vertices[i * CHORDS], *point) < 1e-12);
+            }
+            let radii = vertices
+                .iter()
+                .map(|[x, y]| (x.hypot(*y) / 50.0 - 1.0).abs());
+            radii.fold(0.0, f64::max)
+        };
+        // The tangents are wrong by a factor sin(x)/x, x = TAU/n: half way the radius by the order of x^2 at least.
+        assert!(
+            error(8) < 0.02 && error(16) < error(8) / 8.0,
+            "{} {}",
+            error(8),
+            error(16)
+        );
+        let points = circle(12);
+        let target = sample(TargetShape::Curve { points }, 600).unwrap();
+        assert!(
+            (target.length / (TAU * 50.0) - 1.0).abs() < 1e-2,
+            "{}",
+            target.length
+        );
+        assert!(
+            sample(
+                TargetShape::Curve {
+                    points: vec![[0.0; 2]; 2]
+                },
+                10
+            )
+            .is_err()
         );
     }
 

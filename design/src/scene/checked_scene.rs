@@ -48,6 +48,32 @@ impl Scene {
     /// Reads the material, the target and the weights of a scene whose paths are relative to the
     /// file at `path`, and checks all values.
     pub fn new(config: SceneConfig, path: &Path) -> Result<Self, SceneError> {
+        Self::with_networks(config, path, None)
+    }
+
+    /// The scene with other keys, in the same place. Its weights are read again only if the keys that say how they are read changed.
+    pub fn changed(&self, config: SceneConfig) -> Result<Self, SceneError> {
+        let reads = |config: &SceneConfig| {
+            let process = config.process;
+            (
+                (
+                    config.hinge,
+                    config.surrogate.clone(),
+                    config.material.clone(),
+                ),
+                (config.thickness, config.ligament.range, process),
+            )
+        };
+        let same = reads(&config) == reads(&self.config) && config.condensed.is_none();
+        let known = same.then_some(&*self.hinge.networks);
+        Self::with_networks(config, &self.path, known)
+    }
+
+    fn with_networks(
+        config: SceneConfig,
+        path: &Path,
+        known: Option<&[Surrogate]>,
+    ) -> Result<Self, SceneError> {
         checks::config(&config).map_err(SceneError::at(path))?;
         let material_path = beside(path, &config.material);
         let measured = SheetMaterial::load(&material_path)?;
@@ -60,7 +86,7 @@ impl Scene {
         let target = Target::sample(&config.target, folder(path), points);
         let target = target.map_err(SceneError::at(path))?;
         checks::target(&target, &config).map_err(SceneError::at(path))?;
-        let hinge = LoadedHinge::load(&config, &measured, path)?;
+        let hinge = LoadedHinge::load(&config, &measured, path, known)?;
         Ok(Self {
             config,
             material,
@@ -84,6 +110,22 @@ impl Scene {
     /// Further weights for the hinges of this scene, at the thickness of its sheet.
     pub fn network(&self, weights: &Path) -> Result<Surrogate, SceneError> {
         network(&self.config, &self.measured, &self.path, weights)
+    }
+
+    /// The keys of the scene for a file in another folder: its paths are absolute.
+    pub fn located(&self) -> std::io::Result<SceneConfig> {
+        let mut config = self.config.clone();
+        let file = config.target.file_mut().map(|(file, _)| file);
+        let mut paths: Vec<&mut PathBuf> = file.into_iter().collect();
+        paths.extend([&mut config.material, &mut config.output]);
+        let locate = |path: &mut PathBuf| {
+            *path = std::path::absolute(self.file(path))?;
+            Ok::<_, std::io::Error>(())
+        };
+        paths.into_iter().try_for_each(locate)?;
+        let mut weights = config.weights_files_mut().into_iter();
+        weights.try_for_each(locate)?;
+        Ok(config)
     }
 
     /// A path that the scene names.

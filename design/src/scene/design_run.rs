@@ -4,6 +4,7 @@
 //! from it.
 
 use crate::objective::design_problem::{DesignError, DesignProblem, Evaluation};
+use crate::objective::scores::Scores;
 use crate::objective::terms::panel_width::thinnest_panel;
 use crate::optimise::outer_loop::{Ended, SearchState, StepRecord, optimise};
 use crate::pattern::design_vector::DesignVector;
@@ -15,6 +16,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use support::file_error::FileError;
@@ -157,14 +159,43 @@ pub fn design_of_run(
 /// The keys of a scene by which a design is found. They change neither its sheet nor how it deploys.
 const SEARCH_KEYS: [&str; 2] = ["objective", "optimiser"];
 
+impl Designed {
+    /// The start of a scene before any step of its search, with its path followed from the flat sheet until `stop` becomes true.
+    pub fn at_start(scene: &Scene, stop: Arc<AtomicBool>) -> Result<Self, InverseDesignError> {
+        let mut problem = scene.problem()?;
+        problem.stop_by(stop);
+        let design = scene.start();
+        let start = problem
+            .evaluate(&design)
+            .map_err(InverseDesignError::Start)?;
+        let record = StepRecord {
+            step: 0,
+            scores: Scores::new(&problem.objective, &start),
+            followed: true,
+            halvings: 0,
+            setback: None,
+        };
+        Ok(Self {
+            ended: Ended::Stopped,
+            history: vec![record],
+            contradicted: false,
+            residual: None,
+            design,
+            best: start.clone(),
+            start,
+            problem,
+        })
+    }
+}
+
 /// Runs the search of a scene in its run folder; continues from the state there if there is one.
 ///
-/// `progress` is called after every step; the run stops at the end of the step during which `stop`
+/// `progress` is called with the state of the search after every step; the run stops at the end of the step during which `stop`
 /// becomes true.
 pub fn inverse_design(
     scene: &Scene,
     stop: &AtomicBool,
-    progress: &mut dyn FnMut(&StepRecord),
+    progress: &mut dyn FnMut(&SearchState),
 ) -> Result<Designed, InverseDesignError> {
     let problem = scene.problem()?;
     let folder = scene.output();
@@ -181,7 +212,7 @@ pub fn inverse_design(
         None => {
             let (method, rate) = (optimiser.method, optimiser.learning_rate);
             let search = SearchState::new(&problem, design, &start, method, rate);
-            progress(search.last());
+            progress(&search);
             search
         }
     };
@@ -204,7 +235,7 @@ pub fn inverse_design(
         optimiser.steps,
         stop,
         &mut |search| {
-            progress(search.last());
+            progress(search);
             if saved.elapsed() > SAVE_EVERY {
                 save(search)?;
                 saved = Instant::now();

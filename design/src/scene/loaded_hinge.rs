@@ -59,13 +59,18 @@ impl fmt::Debug for LoadedHinge {
 }
 
 impl LoadedHinge {
-    /// Loads the law of a scene at `path`; `measured` is the material in the thickness of its file.
+    /// Loads the law of a scene at `path`; `measured` is the material in the thickness of its file, `known` the networks if they were
+    /// loaded for it before.
     pub(super) fn load(
         config: &SceneConfig,
         measured: &SheetMaterial,
         path: &Path,
+        known: Option<&[Surrogate]>,
     ) -> Result<Self, SceneError> {
-        let networks = networks(config, measured, path)?;
+        let networks = match known {
+            Some(known) => known.to_vec(),
+            None => networks(config, measured, path)?,
+        };
         let hinge = match config.hinge {
             HingeModel::Pin => pinned(config),
             HingeModel::Linear => linear(config, networks),

@@ -8,8 +8,10 @@ use crate::pattern::design_vector::{DesignVector, WidthChart};
 use crate::pattern::grid::Grid;
 use crate::scene::checked_scene::Scene;
 use crate::scene::invalid_scene::InvalidScene;
+use crate::scene::keys::SceneConfig;
 use crate::scene::loaded_hinge::HingeBehaviour;
 use crate::scene::scene_error::SceneError;
+use crate::scene::sheet_config::StartConfig;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -36,6 +38,19 @@ impl Scene {
         let balanced = problem.balanced(&self.start());
         let balanced = balanced.map_err(InvalidScene::Balance);
         balanced.map_err(SceneError::at(&self.path))
+    }
+
+    /// The keys of the scene whose search starts at a design.
+    pub fn starting_at(&self, design: &DesignVector) -> SceneConfig {
+        let widths = self.width_chart();
+        let w_lig = design.omega.iter().map(|omega| widths.width(*omega));
+        let mut config = self.config.clone();
+        config.start = StartConfig::at(&design.pattern, w_lig.collect());
+        config.optimiser.start_noise = 0.0;
+        if let (Some(opening), Some(pin)) = (design.opening, &mut config.pin) {
+            pin.opening_deg = opening.to_degrees();
+        }
+        config
     }
 
     fn width_chart(&self) -> WidthChart {

@@ -91,7 +91,7 @@ fn scale_target(target: &mut TargetShape, factor: f64) {
             *centre = centre.map(by);
             *size = size.map(by);
         }
-        TargetShape::Polygon { vertices } => {
+        TargetShape::Polygon { vertices } | TargetShape::Curve { points: vertices } => {
             for vertex in vertices {
                 *vertex = vertex.map(by);
             }

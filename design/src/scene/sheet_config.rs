@@ -1,6 +1,6 @@
 //! The flat sheet of a scene: outline, panels, ligaments, and the start pattern of the search.
 
-use crate::pattern::coordinates::PatternCoordinates;
+use crate::pattern::coordinates::{PatternCoordinates, logistic, partial_sums};
 use crate::pattern::cut_pattern::Outline;
 use crate::pattern::grid::Grid;
 use crate::pattern::pattern_error::PatternError;
@@ -67,6 +67,15 @@ impl SheetConfig {
 }
 
 impl StartConfig {
+    /// The start at a pattern with the given ligament widths (mm).
+    pub fn at(pattern: &PatternCoordinates, w_lig: Vec<f64>) -> Self {
+        Self {
+            r: Some(pattern.z.iter().map(|z| logistic(*z)).collect()),
+            tau: Some(pattern.ell.each_ref().map(|ell| partial_sums(ell))),
+            w_lig: Some(w_lig),
+        }
+    }
+
     /// The start pattern of the search.
     pub fn pattern(&self, grid: Grid) -> Result<PatternCoordinates, PatternError> {
         let uniform = PatternCoordinates::uniform(grid);

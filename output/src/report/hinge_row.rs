@@ -46,7 +46,7 @@ pub struct HingeRow {
 }
 
 impl HingeRow {
-    pub(super) fn all(scene: &Scene, deployment: &Deployment) -> Vec<Self> {
+    pub(crate) fn all(scene: &Scene, deployment: &Deployment) -> Vec<Self> {
         let hinges = 0..deployment.sheet.hinges.len();
         let designs = deployment.sheet.designs();
         hinges

@@ -6,15 +6,16 @@ DIRECTIONS.splice(13, 1);
 
 /** The support of the training domain in every direction at the width of a hinge. */
 function supports(hinge) {
-  const domain = run.domain;
-  supports.of ??= [];
-  supports.of[hinge] ??= (() => {
+  supportsOf[hinge] ??= (() => {
+    const domain = run.domain;
     const [row, blend] = place(domain, run.hinges.w_lig[hinge]);
     const next = domain.supports[Math.min(row + 1, domain.supports.length - 1)];
     return domain.supports[row].map((here, m) => here + blend * (next[m] - here));
   })();
-  return supports.of[hinge];
+  return supportsOf[hinge];
 }
+
+let supportsOf = [];
 
 /** eta_a of the mean path of the training domain. */
 function meanPath(theta) {
@@ -61,21 +62,24 @@ function gaugeOf(state, hinge) {
 }
 
 /** Each quantity: name, unit, value of a hinge in a state (NaN: not known). */
-const quantities = {
-  rotation: { short: "rotation \u03b8", name: "Rotation \u03b8 of the hinges", unit: "deg", of: (i, h) => deformation(i, h)[2] * DEG },
-};
-if (states.damage_peak)
-  quantities.d_peak = { short: "D_peak", name: "D_peak, damage of the most strained 1 %: tears at 1", unit: "", of: (i, h) => of(states.damage_peak, i, h) };
-if (states.damage) quantities.d = { short: "D", name: "D, mean damage of the ligament", unit: "", of: (i, h) => of(states.damage, i, h) };
-if (states.energy) quantities.energy = { short: "energy W", name: "Energy W of the hinges", unit: "N mm", of: (i, h) => of(states.energy, i, h) };
-if (states.forces) {
-  quantities.force = { short: "force |F|", name: "Force |F| of the hinges", unit: "N", of: (i, h) => Math.hypot(...forces(i, h).slice(0, 2)) };
-  quantities.moment = { short: "moment M_\u03b8", name: "Moment M_\u03b8 of the hinges", unit: "N mm", of: (i, h) => forces(i, h)[2] };
-}
-if (states.spread)
-  quantities.spread = { short: "ensemble spread", name: "Spread of the ensemble's forces, relative to the path's", unit: "%", of: (i, h) => of(states.spread, i, h) };
-if (run.domain)
-  quantities.gauge = { short: "place in the training domain", name: "Place in the training domain: 0 centre, 1 edge", unit: "", of: gaugeOf };
+let quantities = {};
+
+whenTaken.push(() => {
+  supportsOf = [];
+  quantities = { rotation: { short: "rotation \u03b8", name: "Rotation \u03b8 of the hinges", unit: "deg", of: (i, h) => deformation(i, h)[2] * DEG } };
+  if (states.damage_peak)
+    quantities.d_peak = { short: "D_peak", name: "D_peak, damage of the most strained 1 %: tears at 1", unit: "", of: (i, h) => of(states.damage_peak, i, h) };
+  if (states.damage) quantities.d = { short: "D", name: "D, mean damage of the ligament", unit: "", of: (i, h) => of(states.damage, i, h) };
+  if (states.energy) quantities.energy = { short: "energy W", name: "Energy W of the hinges", unit: "N mm", of: (i, h) => of(states.energy, i, h) };
+  if (states.forces) {
+    quantities.force = { short: "force |F|", name: "Force |F| of the hinges", unit: "N", of: (i, h) => Math.hypot(...forces(i, h).slice(0, 2)) };
+    quantities.moment = { short: "moment M_\u03b8", name: "Moment M_\u03b8 of the hinges", unit: "N mm", of: (i, h) => forces(i, h)[2] };
+  }
+  if (states.spread)
+    quantities.spread = { short: "ensemble spread", name: "Spread of the ensemble's forces, relative to the path's", unit: "%", of: (i, h) => of(states.spread, i, h) };
+  if (run.domain)
+    quantities.gauge = { short: "place in the training domain", name: "Place in the training domain: 0 centre, 1 edge", unit: "", of: gaugeOf };
+});
 
 /** Colours of the page's style, in SVG. */
 const [INK, PAPER, ACCENT, TEAL, ERROR, GRID, TICK, UNKNOWN] =

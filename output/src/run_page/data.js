@@ -1,11 +1,29 @@
 "use strict";
 
-// The data of the run, and numbers as text.
+// The data that the page shows, and numbers as text.
 
 window.addEventListener("error", (event) => { document.documentElement.dataset.error = event.message; });
 
 const byId = (id) => document.getElementById(id);
-const run = JSON.parse(byId("run").textContent);
+
+/** The data that are shown, their states, and the numbers of states, panels and hinges. */
+let run, states, stateCount, panelCount, hingeCount;
+
+/** What other scripts compute from new data, in the order in which it is needed. */
+const whenTaken = [];
+
+/** Shows other data from now on. */
+function take(data) {
+  [run, states] = [data, data.states];
+  unpack(run, ["target"]);
+  unpack(run.panels, ["corners", "references"]);
+  unpack(run.hinges, ["w_lig", "alpha_deg", "fillet_ratio", "gamma", "damage", "damage_peak"]);
+  unpack(states, ["motions", "deformations", "inside", "energy", "forces", "damage", "damage_peak", "spread", "reactions"]);
+  stateCount = states.index.length;
+  panelCount = run.panels.grid[0] * run.panels.grid[1];
+  hingeCount = run.hinges.sites.length;
+  whenTaken.forEach((compute) => compute());
+}
 
 function floats(base64) {
   const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
@@ -16,15 +34,6 @@ function floats(base64) {
 function unpack(object, names) {
   for (const name of names) if (typeof object[name] === "string") object[name] = floats(object[name]);
 }
-unpack(run, ["target"]);
-unpack(run.panels, ["corners", "references"]);
-unpack(run.hinges, ["w_lig", "alpha_deg", "gamma", "damage", "damage_peak"]);
-unpack(run.states, ["motions", "deformations", "inside", "energy", "forces", "damage", "damage_peak", "spread", "reactions"]);
-
-const states = run.states;
-const stateCount = states.index.length;
-const panelCount = run.panels.grid[0] * run.panels.grid[1];
-const hingeCount = run.hinges.sites.length;
 const DEG = 180 / Math.PI;
 
 /** Significant digits, in full between 1e-3 and 1e6. */

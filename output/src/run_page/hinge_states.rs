@@ -6,12 +6,12 @@ use crate::run_page::packed::Packed;
 use design::analysis::actuation_curve::{ActuationCurve, holding_forces};
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::hinge_law::{DamageMeasure, Order};
-use design::objective::design_problem::{Deployment, Mechanics};
+use design::objective::design_problem::{Deployment, DesignProblem, Mechanics};
 use design::scene::Scene;
-use design::scene::design_run::Designed;
 use design::scene::placement::placed;
 use design::sheet::cut_sheet::Sheet;
 use serde::Serialize;
+use surrogate::Surrogate;
 
 /// Maximum number of numbers in the states: 4 bytes each, and a third more in base64, are 4 MB. Of a longer path or
 /// a larger sheet every second, third, ... state is left out, but never the flat and the last one.
@@ -59,8 +59,13 @@ pub(super) struct HingeStates {
 }
 
 impl HingeStates {
-    pub fn new(scene: &Scene, designed: &Designed) -> Self {
-        let (problem, deployment) = (&designed.problem, &designed.best.deployment);
+    /// The states of a deployment; with the spread of several networks.
+    pub fn new(
+        scene: &Scene,
+        problem: &DesignProblem,
+        deployment: &Deployment,
+        networks: &[Surrogate],
+    ) -> Self {
         let sheet = &deployment.sheet;
         let before = states_before(problem, deployment);
         let all: Vec<&LoadStep> = before.iter().chain(&deployment.path).collect();
@@ -106,7 +111,7 @@ impl HingeStates {
             }),
             damage: damage(DamageMeasure::Mean),
             damage_peak: damage(DamageMeasure::Peak),
-            spread: force_spreads(scene.networks(), deployment).map(|spreads| {
+            spread: force_spreads(networks, deployment).map(|spreads| {
                 // The flat sheet has no forces.
                 by_hinge(&|i, h| {
                     i.checked_sub(1)

@@ -1,9 +1,10 @@
 //! The data of the page.
 
 use crate::deployment_states::kept;
-use crate::report::{BUDGET_HEADING, Report, Warning, worst_first};
+use crate::report::{BUDGET_HEADING, HingeRow, Report, Warning, worst_first};
 use crate::run_page::hinge_states::HingeStates;
 use crate::run_page::packed::Packed;
+use design::objective::design_problem::{Deployment, DesignProblem};
 use design::objective::loss::Objective;
 use design::objective::term::in_words;
 use design::optimise::outer_loop::StepRecord;
@@ -12,18 +13,17 @@ use design::scene::{Actuation, Scene};
 use design::sheet::cut_sheet::Sheet;
 use hinge::TrainingDomain;
 use serde::Serialize;
+use surrogate::Surrogate;
 
 /// Maximum number of steps in the history of the objective, and of points on the target.
 const MOST_POINTS: usize = 1500;
 /// Maximum length of the text of the scene: a start with many panels is cut off.
 const MOST_TEXT: usize = 20_000;
 
-/// Everything that the page shows.
+/// Everything that the page of a run shows.
 #[derive(Serialize)]
-pub(super) struct PageData<'a> {
+pub struct PageData<'a> {
     title: &'a str,
-    /// Whether the hinges carry load; otherwise they are pins.
-    carries_load: bool,
     about_cut_files: Option<&'static str>,
     end_of_search: String,
     facts: Vec<(&'static str, String)>,
@@ -31,14 +31,25 @@ pub(super) struct PageData<'a> {
     warnings: &'a [Warning],
     scene: String,
     history: History,
-    panels: Panels,
-    hinges: Hinges,
-    states: HingeStates,
-    actuation: Actuation,
     /// What moves the sheet, and the units of displacement and load.
     stroke: Option<(&'a str, [&'static str; 2])>,
     /// Displacement and load at the maximum of the load, if a displacement is prescribed.
     peak: Option<[f64; 2]>,
+    /// The hinge nearest to failure.
+    worst: usize,
+    #[serde(flatten)]
+    sheet: SheetData<'a>,
+}
+
+/// A sheet with its states: what the page draws.
+#[derive(Serialize)]
+pub struct SheetData<'a> {
+    /// Whether the hinges carry load; otherwise they are pins.
+    carries_load: bool,
+    panels: Panels,
+    hinges: Hinges,
+    states: HingeStates,
+    actuation: Actuation,
     /// Closed outlines: of the flat sheet and of the target (mm).
     outline: [[f64; 2]; 4],
     target: Packed,
@@ -56,7 +67,7 @@ struct BudgetTable {
 
 /// The objective along the search; its terms are weighted, so that their sum is the loss (mm^2).
 #[derive(Serialize)]
-struct History {
+pub struct History {
     step: Vec<usize>,
     loss: Vec<f64>,
     outline_error: Vec<f64>,
@@ -84,21 +95,21 @@ struct Hinges {
     /// Maxima along the path; NaN if not known or not predicted.
     damage: Packed,
     damage_peak: Packed,
-    /// The hinge nearest to failure.
-    worst: usize,
     /// Radius of the windows (mm).
     r_win: f64,
 }
 
 impl<'a> PageData<'a> {
+    /// The data of a run, or of the start of a search.
     pub fn new(scene: &'a Scene, designed: &'a Designed, report: &'a Report) -> Self {
-        let sheet = &designed.best.deployment.sheet;
-        let target = &scene.target.points;
-        let domain = scene.surrogate().map(|surrogate| surrogate.domain());
+        let deployment = &designed.best.deployment;
         let reached = report.facts.reached.as_ref();
+        let worst = report
+            .hinges
+            .iter()
+            .min_by(|one, other| worst_first(one, other));
         Self {
             title: &report.title,
-            carries_load: scene.hinge.carries_load(),
             about_cut_files: report.about_cut_files(),
             end_of_search: report.end_of_search(),
             facts: report.fact_rows(),
@@ -110,19 +121,49 @@ impl<'a> PageData<'a> {
             warnings: &report.warnings,
             scene: scene_text(scene),
             history: History::new(&designed.problem.objective, &designed.history),
-            panels: Panels::new(sheet),
-            hinges: Hinges::new(sheet, report),
-            states: HingeStates::new(scene, designed),
-            actuation: scene.actuation(),
             stroke: reached.map(|reached| (reached.stroke_of.as_str(), reached.units)),
             peak: reached
                 .and_then(|reached| reached.peak)
                 .map(|peak| [peak.displacement, peak.load]),
+            worst: worst.map_or(0, |row| row.hinge),
+            sheet: SheetData::with_hinges(
+                scene,
+                &designed.problem,
+                deployment,
+                scene.networks(),
+                &report.hinges,
+            ),
+        }
+    }
+}
+
+impl<'a> SheetData<'a> {
+    /// A sheet whose states are those of a deployment, without the spread of the scene's networks.
+    pub fn new(scene: &'a Scene, problem: &DesignProblem, deployment: &Deployment) -> Self {
+        let rows = HingeRow::all(scene, deployment);
+        Self::with_hinges(scene, problem, deployment, &[], &rows)
+    }
+
+    fn with_hinges(
+        scene: &'a Scene,
+        problem: &DesignProblem,
+        deployment: &Deployment,
+        networks: &[Surrogate],
+        rows: &[HingeRow],
+    ) -> Self {
+        let sheet = &deployment.sheet;
+        let target = &scene.target.points;
+        Self {
+            carries_load: scene.hinge.carries_load(),
+            panels: Panels::new(sheet),
+            hinges: Hinges::new(sheet, rows),
+            states: HingeStates::new(scene, problem, deployment, networks),
+            actuation: scene.actuation(),
             outline: sheet.outline.corners,
             target: (kept(target.len(), MOST_POINTS).into_iter())
                 .flat_map(|i| target[i])
                 .collect(),
-            domain,
+            domain: scene.surrogate().map(|surrogate| surrogate.domain()),
         }
     }
 }
@@ -141,7 +182,8 @@ fn scene_text(scene: &Scene) -> String {
 }
 
 impl History {
-    fn new(objective: &Objective, records: &[StepRecord]) -> Self {
+    /// The history of a search, its first and last steps and those between them at equal distances.
+    pub fn new(objective: &Objective, records: &[StepRecord]) -> Self {
         let index = kept(records.len(), MOST_POINTS);
         let of = |value: &dyn Fn(&StepRecord) -> f64| -> Vec<f64> {
             index.iter().map(|&i| value(&records[i])).collect()
@@ -172,10 +214,8 @@ impl Panels {
 }
 
 impl Hinges {
-    fn new(sheet: &Sheet, report: &Report) -> Self {
-        let rows = &report.hinges;
+    fn new(sheet: &Sheet, rows: &[HingeRow]) -> Self {
         let known = |damage: Option<f64>| damage.unwrap_or(f64::NAN);
-        let worst = rows.iter().min_by(|one, other| worst_first(one, other));
         Self {
             sites: (sheet.hinges.iter())
                 .map(|hinge| [hinge.site.a, hinge.site.b].map(|(k, corner)| [k, corner]))
@@ -190,7 +230,6 @@ impl Hinges {
                 .collect(),
             damage: rows.iter().map(|row| known(row.damage)).collect(),
             damage_peak: rows.iter().map(|row| known(row.damage_peak)).collect(),
-            worst: worst.map_or(0, |row| row.hinge),
             r_win: sheet.options.process.r_win,
         }
     }

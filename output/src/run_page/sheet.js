@@ -24,7 +24,9 @@ function reference(state, k) {
 }
 
 /** The rectangle that holds the sheet in every state, its outline and the target (mm). */
-const extent = (() => {
+let extent = null;
+
+function measureExtent() {
   const box = { x0: Infinity, y0: Infinity, x1: -Infinity, y1: -Infinity };
   const add = ([x, y]) => {
     box.x0 = Math.min(box.x0, x);
@@ -36,8 +38,8 @@ const extent = (() => {
     for (let k = 0; k < panelCount; k++) for (let c = 0; c < 4; c++) add(corner(i, k, c));
   for (let i = 0; i < run.target.length; i += 2) add([run.target[i], run.target[i + 1]]);
   if (run.carries_load) run.outline.forEach(add);
-  return box;
-})();
+  extent = box;
+}
 
 /** The view: pixels of a point = origin + scale (x - centre), y downwards; `zoom` 1 shows the whole sheet. */
 const view = { width: 0, height: 0, scale: 1, x: 0, y: 0, zoom: 1 };
@@ -157,7 +159,11 @@ function drawMarks(state, selected) {
   }
   obstacles.push(drawScaleBar());
   placeLabels(marks, labels, obstacles, view.width, view.height);
+  overlays.forEach((drawOverlay) => drawOverlay());
 }
+
+/** What other scripts draw above the sheet. */
+const overlays = [];
 
 /** The symbols of the supports, those that roll with their rails. */
 function drawSupports(state, obstacles) {
@@ -193,22 +199,20 @@ function forcesOnSheet(state) {
 }
 
 /** The largest force and couple of the path. */
-const largest = (() => {
+let largest = { force: 0, couple: 0 };
+
+/** The force and the couple that no larger one makes rounding: each of the two acts with the size of the sheet as lever. */
+let noticeable = largest;
+
+whenTaken.push(() => {
   let [force, couple] = [0, 0];
   for (let i = 0; i < stateCount; i++)
     for (const { panels } of forcesOnSheet(i))
       for (const [, [x, y, m]] of panels) [force, couple] = [Math.max(force, Math.hypot(x, y)), Math.max(couple, Math.abs(m))];
-  return { force, couple };
-})();
-
-/** The force and the couple that no larger one makes rounding: each of the two acts with the size of the sheet as lever. */
-const noticeable = (() => {
   const size = Math.hypot(run.outline[2][0] - run.outline[0][0], run.outline[2][1] - run.outline[0][1]);
-  return {
-    force: NEGLIGIBLE * Math.max(largest.force, largest.couple / size),
-    couple: NEGLIGIBLE * Math.max(largest.couple, largest.force * size),
-  };
-})();
+  largest = { force, couple };
+  noticeable = { force: NEGLIGIBLE * Math.max(force, couple / size), couple: NEGLIGIBLE * Math.max(couple, force * size) };
+});
 
 /** Arrows on the panels; of equal loads on several panels the first has a label, unless their total is shown. */
 function drawLoads(state, labels, obstacles) {

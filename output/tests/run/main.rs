@@ -10,7 +10,7 @@ mod results;
 mod run_page;
 mod sections;
 
-use design::optimise::outer_loop::StepRecord;
+use design::optimise::outer_loop::SearchState;
 use design::scene::Scene;
 use design::scene::design_run::{Designed, InverseDesignError, inverse_design};
 use std::path::Path;
@@ -87,7 +87,8 @@ fn read(folder: &Path, text: &str) -> Scene {
 
 fn run(scene: &Scene, stop_after: Option<usize>) -> Result<Designed, InverseDesignError> {
     let stop = AtomicBool::new(false);
-    let mut watch = |record: &StepRecord| {
+    let mut watch = |search: &SearchState| {
+        let record = search.last();
         stop.store(
             stop_after.is_some_and(|step| record.step >= step),
             Ordering::Relaxed,

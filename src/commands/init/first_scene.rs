@@ -13,8 +13,7 @@ use crate::commands::init::edited::{heading, scale, set};
 use crate::commands::init::template::Template;
 use crate::commands::input_file;
 use anyhow::{Context, Result};
-use design::objective::target::{Target, TargetShape};
-use design::scene::rounded;
+use design::scene::{place_drawing, rounded};
 use hinge::Regime;
 use std::path::Path;
 use toml_edit::{Array, DocumentMut, Item, Table, value};
@@ -31,8 +30,6 @@ const OPENING: f64 = 0.436;
 /// Widths of the clips at the top and at the bottom over those of their edges.
 const HELD: f64 = 0.21;
 const PULLED: f64 = 0.14;
-/// Points along a drawn outline from which its area is computed.
-const DRAWING_POINTS: usize = 2000;
 /// Fewest panels along a side: below three, no panel has a neighbour on both sides.
 const FEWEST: usize = 3;
 
@@ -204,20 +201,11 @@ impl FirstScene {
 fn placed(drawing: &Path, centre: [f64; 2], area: f64) -> Result<Item> {
     input_file::require(drawing, "--target")?;
     let file = std::path::absolute(drawing)?;
-    let of_height_1 = TargetShape::Svg {
-        file: file.clone(),
-        centre: [0.0; 2],
-        height: 1.0,
-    };
-    let outline = Target::sample(&of_height_1, Path::new(""), DRAWING_POINTS)?;
-    let height = (area / outline.area()).sqrt();
-    let offset = outline.mean();
+    let (centre, height) = place_drawing(&file, centre, area)?;
     let mut svg = Table::new();
     svg["file"] = value(file.display().to_string());
-    svg["centre"] = value(Array::from_iter(
-        [0, 1].map(|i| rounded(centre[i] - height * offset[i])),
-    ));
-    svg["height"] = value(rounded(height));
+    svg["centre"] = value(Array::from_iter(centre));
+    svg["height"] = value(height);
     svg.decor_mut().set_prefix(
         "\n# A drawing, with the area of the opened sheet: move it by `centre` and scale it by `height` (mm).\n",
     );

@@ -22,14 +22,14 @@ const START: &str = "start";
 pub struct Inspected {
     /// Scene (TOML); see configs/scenes. Or the folder of a run, which holds its scene, material and weights
     #[arg(value_name = "SCENE")]
-    pub(super) scene: PathBuf,
+    pub(crate) scene: PathBuf,
     /// Design (JSON): the state.json of a run, or a design alone; `start` is the start design [default: the start design of the scene, or
     /// the design of the run]
     #[arg(long, value_name = "FILE")]
-    pub(super) design: Option<PathBuf>,
+    pub(crate) design: Option<PathBuf>,
     /// Weights of the hinge energy, instead of the scene's
     #[arg(long, value_name = "FILE")]
-    pub(super) weights: Option<PathBuf>,
+    pub(crate) weights: Option<PathBuf>,
 }
 
 /// A scene and a design whose numbers are printed.

@@ -1,0 +1,64 @@
+//! `kirigami studio`
+
+use crate::studio::engine::Engine;
+use crate::studio::event::Post;
+use crate::studio::project::Project;
+use crate::studio::server::Studio;
+use crate::ui::interrupt;
+use anyhow::Result;
+use clap::Args;
+use rand::random;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Draw a sheet in the browser, watch it open, and design it
+///
+/// Serves one page on 127.0.0.1, to nobody else and without the net, and opens the browser. Ctrl-C ends it. A scene or a run is
+/// copied to a folder below runs/studio; everything that the page does is a scene there, which `kirigami design` repeats.
+/// docs/STUDIO.md is the tutorial. Examples:
+/// kirigami studio;
+/// kirigami studio configs/scenes/a4-plate.toml;
+/// kirigami studio runs/studio/a4-plate
+#[derive(Args)]
+pub struct StudioCommand {
+    /// Scene (TOML), run folder, or folder of a sheet in the studio, whose scene is changed in place [default: a new sheet]
+    #[arg(value_name = "SCENE")]
+    scene: Option<PathBuf>,
+    /// Folder of the folders of new sheets
+    #[arg(long, value_name = "FOLDER", default_value = "runs/studio")]
+    folder: PathBuf,
+    /// Port on 127.0.0.1 [default: a free one]
+    #[arg(long, value_name = "PORT", default_value_t = 0)]
+    port: u16,
+    /// Print the address, and open no browser
+    #[arg(long)]
+    no_browser: bool,
+}
+
+impl StudioCommand {
+    pub(crate) fn run(&self) -> Result<()> {
+        let projects = std::path::absolute(&self.folder)?;
+        let opened = self.scene.as_deref();
+        let opened = opened
+            .map(|path| Project::open(path, &projects))
+            .transpose()?;
+        let stop = interrupt::stop_flag()?;
+        let post = Arc::new(Post::default());
+        let studio = Studio::listen(
+            self.port,
+            format!("{:032x}", random::<u128>()),
+            Arc::clone(&post),
+        )?;
+        let engine = Engine::start(opened, projects, Box::new(move |event| post.deliver(event)))?;
+        let address = studio.address();
+        println!("kirigami studio: {address}\nCtrl-C ends it");
+        if !self.no_browser
+            && let Err(error) = open::that_detached(&address)
+        {
+            eprintln!("cannot open a browser ({error}): open the address above");
+        }
+        let served = studio.serve(&engine, stop);
+        engine.end();
+        served
+    }
+}

@@ -1,0 +1,180 @@
+//! A thread that holds a scene and answers requests one after the other.
+//!
+//! While something is dragged every change is answered by a draft; when no request comes for a moment, by the everyday level: the
+//! path followed from the flat sheet, and the report. A change ends an everyday computation that is under way.
+
+use crate::studio::event::{Event, Kind};
+use crate::studio::project::Project;
+use crate::studio::request::Request;
+use crate::studio::session::{Fetched, Session};
+use crate::studio::shop::Shop;
+use crate::ui::exit::message;
+use anyhow::{Context, Result};
+use design::scene::Scene;
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+use support::caught_panic;
+
+/// Time without a request after which the everyday level is computed.
+const REST: Duration = Duration::from_millis(200);
+
+/// Who hears the events.
+pub(super) type Listener = Box<dyn Fn(Event) + Send>;
+
+/// The engine.
+pub(crate) struct Engine {
+    inbox: Arc<Inbox>,
+    thread: JoinHandle<()>,
+    files: Fetched,
+}
+
+/// Requests that wait.
+#[derive(Default)]
+struct Inbox {
+    waiting: Mutex<Waiting>,
+    news: Condvar,
+    stops: Stops,
+}
+
+#[derive(Default)]
+struct Waiting {
+    requests: VecDeque<Request>,
+    closed: bool,
+}
+
+/// Flags that end what is under way.
+#[derive(Clone, Default)]
+pub(super) struct Stops {
+    /// An everyday computation.
+    pub everyday: Arc<AtomicBool>,
+    /// A search, at the end of its step.
+    pub search: Arc<AtomicBool>,
+}
+
+/// What comes next.
+enum Next {
+    Request(Request),
+    Rest,
+    Closed,
+}
+
+impl Engine {
+    /// Starts with a scene, or without one until a new sheet is asked for; new sheets are in folders below `projects`.
+    pub fn start(
+        opened: Option<(Project, Scene)>,
+        projects: PathBuf,
+        listener: Listener,
+    ) -> Result<Self> {
+        let inbox = Arc::new(Inbox::default());
+        let files = Fetched::default();
+        let shop = Shop::open()?;
+        let thread = std::thread::Builder::new().name("studio".into());
+        let thread = thread.spawn({
+            let (inbox, files) = (Arc::clone(&inbox), Arc::clone(&files));
+            move || {
+                listener(Event::new(Kind::Shop, &shop));
+                let stops = inbox.stops.clone();
+                let mut session = Session::new(projects, stops, files, listener);
+                if let Some((project, scene)) = opened {
+                    session.open(project, scene);
+                }
+                work(&inbox, &mut session);
+            }
+        });
+        let thread = thread.context("cannot start the thread of the studio")?;
+        Ok(Self {
+            inbox,
+            thread,
+            files,
+        })
+    }
+
+    /// The file that the event of the files of a run names so.
+    pub fn file(&self, name: &str) -> Option<PathBuf> {
+        let files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+        files.get(name).cloned()
+    }
+
+    /// Answers a request after those before it. Of changes that follow one another only the last is answered.
+    pub fn ask(&self, request: Request) {
+        if matches!(request, Request::Pause) {
+            self.inbox.stops.search.store(true, Ordering::Relaxed);
+            return;
+        }
+        let mut waiting = self.inbox.lock();
+        self.inbox.stops.everyday.store(true, Ordering::Relaxed);
+        let changes = |request: Option<&Request>| matches!(request, Some(Request::Change(_)));
+        if changes(Some(&request)) && changes(waiting.requests.back()) {
+            waiting.requests.pop_back();
+        }
+        waiting.requests.push_back(request);
+        drop(waiting);
+        self.inbox.news.notify_one();
+    }
+
+    /// Answers no further request, pauses a search, and waits until its state is on disk.
+    pub fn end(self) {
+        let mut waiting = self.inbox.lock();
+        waiting.closed = true;
+        drop(waiting);
+        self.inbox.stops.everyday.store(true, Ordering::Relaxed);
+        self.inbox.stops.search.store(true, Ordering::Relaxed);
+        self.inbox.news.notify_one();
+        let _ = self.thread.join();
+    }
+}
+
+impl Inbox {
+    fn lock(&self) -> MutexGuard<'_, Waiting> {
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The next request, or a rest if there is none for a while and the sheet is not at rest.
+    fn next(&self, at_rest: bool) -> Next {
+        let waiting = self.lock();
+        let idle = |waiting: &mut Waiting| waiting.requests.is_empty() && !waiting.closed;
+        let mut waiting = if at_rest {
+            self.news
+                .wait_while(waiting, idle)
+                .unwrap_or_else(PoisonError::into_inner)
+        } else {
+            let waited = self.news.wait_timeout_while(waiting, REST, idle);
+            waited.unwrap_or_else(PoisonError::into_inner).0
+        };
+        if waiting.closed {
+            return Next::Closed;
+        }
+        match waiting.requests.pop_front() {
+            Some(request) => Next::Request(request),
+            None => {
+                // Under the lock, which a request takes that ends the computation.
+                self.stops.everyday.store(false, Ordering::Relaxed);
+                Next::Rest
+            }
+        }
+    }
+}
+
+/// Answers requests until the engine ends.
+fn work(inbox: &Inbox, session: &mut Session) {
+    loop {
+        let next = inbox.next(session.is_at_rest());
+        let done = caught_panic::catch(|| match next {
+            Next::Request(request) => session.answer(request).map(|()| true),
+            Next::Rest => session.rest().map(|()| true),
+            Next::Closed => Ok(false),
+        });
+        match done {
+            Ok(Ok(true)) => {}
+            Ok(Ok(false)) => return,
+            Ok(Err(error)) => session.give_up(&message(&error)),
+            Err(panic) => {
+                session.give_up(&format!("the studio failed: {panic}; the scene is on disk"))
+            }
+        }
+    }
+}

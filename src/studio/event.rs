@@ -1,0 +1,121 @@
+//! What the engine says to the pages, and the latest of every kind for pages that join late or read slowly.
+//!
+//! An event holds all that a page needs to know of its kind, so that only the latest matters.
+
+use serde::Serialize;
+use std::sync::Arc;
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+use strum::IntoStaticStr;
+
+/// What an event is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, IntoStaticStr)]
+#[strum(serialize_all = "kebab-case")]
+pub(crate) enum Kind {
+    /// The materials with weights, and the machines.
+    Shop,
+    /// The keys of the scene and where it is.
+    Scene,
+    /// The sheet at full load, computed while something is dragged.
+    Draft,
+    /// The whole path, with report and findings.
+    Page,
+    /// A step of the search.
+    Step,
+    /// What the engine is doing.
+    Working,
+    /// Why the last request was refused, or what it did.
+    Says,
+    /// The files that were written.
+    Files,
+}
+
+/// An event, with its data as JSON.
+pub(crate) struct Event {
+    pub kind: Kind,
+    pub data: String,
+}
+
+impl Event {
+    pub fn new(kind: Kind, data: &impl Serialize) -> Self {
+        let data = serde_json::to_string(data).expect("the data of events have text keys");
+        Self { kind, data }
+    }
+}
+
+/// The latest event of every kind.
+#[derive(Default)]
+pub(crate) struct Post {
+    latest: Mutex<Latest>,
+    news: Condvar,
+}
+
+#[derive(Default)]
+struct Latest {
+    /// Number of events so far.
+    count: u64,
+    /// With their numbers, in ascending order.
+    events: Vec<(u64, Arc<Event>)>,
+}
+
+impl Post {
+    pub fn deliver(&self, event: Event) {
+        let mut latest = self.lock();
+        latest.count += 1;
+        let number = latest.count;
+        latest
+            .events
+            .retain(|(_, earlier)| earlier.kind != event.kind);
+        latest.events.push((number, Arc::new(event)));
+        drop(latest);
+        self.news.notify_all();
+    }
+
+    /// The events since that with the number `seen`, as soon as there are any; none if there are none for as long as `patience`.
+    pub fn since(&self, seen: u64, patience: Duration) -> Vec<(u64, Arc<Event>)> {
+        let latest = self.lock();
+        let waited =
+            (self.news).wait_timeout_while(latest, patience, |latest| latest.count == seen);
+        let (latest, _) = waited.unwrap_or_else(PoisonError::into_inner);
+        let unseen = latest.events.iter().filter(|(number, _)| *number > seen);
+        unseen.cloned().collect()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Latest> {
+        self.latest.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texts(post: &Post, seen: u64) -> Vec<String> {
+        let events = post.since(seen, Duration::ZERO);
+        events.iter().map(|(_, event)| event.data.clone()).collect()
+    }
+
+    #[test]
+    fn a_page_gets_the_latest_of_every_kind_in_their_order() {
+        let post = Post::default();
+        assert!(texts(&post, 0).is_empty());
+        for i in 0..10_000 {
+            post.deliver(Event::new(Kind::Draft, &i));
+            if i == 5000 {
+                post.deliver(Event::new(Kind::Page, &"page"));
+            }
+        }
+        assert_eq!(texts(&post, 0), ["\"page\"", "9999"]);
+        assert_eq!(texts(&post, 5002), ["9999"]);
+        assert!(texts(&post, 10_001).is_empty());
+    }
+
+    #[test]
+    fn a_page_that_waits_is_woken() {
+        let post = Arc::new(Post::default());
+        let reader = Arc::clone(&post);
+        let waiting = std::thread::spawn(move || reader.since(0, Duration::from_secs(60)).len());
+        post.deliver(Event::new(Kind::Says, &"now"));
+        assert_eq!(waiting.join().unwrap(), 1);
+    }
+}

@@ -1,0 +1,206 @@
+// The fields of the scene: numbers, choices and lists, each with its key.
+
+/** The keys of the scene that is shown. */
+let scene = null;
+
+const keysOf = (path) => path.split(".").map((part) => (/^\d+$/.test(part) ? Number(part) : part));
+
+function valueAt(path) {
+  return keysOf(path).reduce((value, key) => value?.[key], scene);
+}
+
+/** Gives a key another value, and sends the scene. */
+function set(path, value) {
+  const keys = keysOf(path);
+  const last = keys.pop();
+  const parent = keys.reduce((object, key) => (object[key] ??= {}), scene);
+  parent[last] = value;
+  sendScene();
+}
+
+/** A value as a field shows it: a number to six digits. */
+const inField = (value) => (typeof value === "number" ? String(Number(value.toPrecision(6))) : (value ?? ""));
+
+/** The key of a path as the command line writes it: supports[0].clip. */
+const named = (path) => path.replace(/\.(\d+)/g, "[$1]");
+
+/** A label with an input element for a key. */
+function field(parent, text, path, input) {
+  const label = write(parent, "label", text);
+  input.dataset.key = named(path).replace(/\[\d+\]$/, "");
+  input.dataset.path = path;
+  label.appendChild(input);
+  return input;
+}
+
+function numberField(parent, text, path, changed = (value) => set(path, value)) {
+  const input = document.createElement("input");
+  Object.assign(input, { type: "number", step: "any", value: inField(valueAt(path)) });
+  input.addEventListener("input", () => { if (input.value !== "" && Number.isFinite(input.valueAsNumber)) changed(input.valueAsNumber); });
+  return field(parent, text, path, input);
+}
+
+function textField(parent, text, path) {
+  const input = document.createElement("input");
+  input.value = valueAt(path) ?? "";
+  input.addEventListener("change", () => set(path, input.value));
+  return field(parent, text, path, input);
+}
+
+function choiceField(parent, text, path, choices, changed = (value) => set(path, value)) {
+  const select = document.createElement("select");
+  for (const [value, name] of choices) write(select, "option", name).value = value;
+  select.value = valueAt(path);
+  select.addEventListener("change", () => changed(select.value));
+  return field(parent, text, path, select);
+}
+
+/** A number with a slider below it. */
+function sliderField(parent, text, path, [low, high], changed) {
+  const number = numberField(parent, text, path, changed);
+  const slider = document.createElement("input");
+  Object.assign(slider, { type: "range", min: low, max: high, step: (high - low) / 500, value: valueAt(path) ?? low });
+  slider.setAttribute("aria-label", text);
+  slider.addEventListener("input", () => {
+    number.value = Number(slider.valueAsNumber.toPrecision(5));
+    number.dispatchEvent(new Event("input"));
+  });
+  number.addEventListener("input", () => { slider.value = number.value; });
+  parent.appendChild(slider);
+  return number;
+}
+
+function button(parent, text, pressed, title) {
+  const element = write(parent, "button", text);
+  element.type = "button";
+  if (title) element.title = title;
+  element.addEventListener("click", pressed);
+  return element;
+}
+
+/** The groups of fields: what writes each into its part of the page. */
+const groups = {
+  load(box) {
+    if (scene.drive) sliderField(box, "Stroke (mm)", "drive.stroke", [0, Math.max(1, 2 * Math.abs(scene.drive.stroke))]);
+    const loaded = scene.loads.length + scene.edge_loads.length + scene.opening_couples.length > 0;
+    if (loaded && !scene.drive) loadSlider(box);
+    if (!loaded && scene.hinge !== "pin") write(box, "p", "Nothing pulls: choose \u201cholds and pulls panels\u201d and click one.", "note");
+    if (scene.pin) sliderField(box, "Opening (deg)", "pin.opening_deg", [0, 90]);
+    if (!loaded) return;
+    const label = write(box, "label", "the stroke is prescribed");
+    const check = document.createElement("input");
+    Object.assign(check, { type: "checkbox", checked: Boolean(scene.drive) });
+    check.addEventListener("change", () => {
+      scene.drive = check.checked ? { stroke: Number(strokeNow().toPrecision(4)) } : null;
+      sendScene();
+      writeFields();
+    });
+    label.appendChild(check);
+  },
+
+  ligament(box) {
+    const [low, high] = scene.ligament.range;
+    const inside = [low + 1e-3 * (high - low), high - 1e-3 * (high - low)];
+    sliderField(box, "All ligaments (mm)", "ligament.start", inside, (width) => {
+      scene.start.w_lig = null;
+      set("ligament.start", width);
+    });
+    if (run) {
+      const h = shownNow.hinge;
+      const text = `Hinge ${h} (mm)`;
+      const widths = scene.start.w_lig ?? Array(hingeCount).fill(scene.ligament.start);
+      scene.start.w_lig ??= null;
+      const number = sliderField(box, text, `start.w_lig.${h}`, inside, (width) => {
+        scene.start.w_lig ??= widths;
+        set(`start.w_lig.${h}`, width);
+      });
+      if (number.value === "") number.value = inField(widths[h]);
+      number.parentNode.nextSibling.value = widths[h];
+    }
+    numberField(box, "Narrowest (mm)", "ligament.range.0");
+    numberField(box, "Widest (mm)", "ligament.range.1");
+  },
+
+  sheet(box) {
+    textField(box, "Title", "title");
+    if (scene.sheet.size) {
+      numberField(box, "Width (mm)", "sheet.size.0");
+      numberField(box, "Height (mm)", "sheet.size.1");
+    }
+    numberField(box, "Columns", "sheet.panels.0", (count) => setPanels(0, count));
+    numberField(box, "Rows", "sheet.panels.1", (count) => setPanels(1, count));
+    if (scene.thickness) numberField(box, "Thickness (mm)", "thickness");
+    numberField(box, "Kerf (mm)", "process.kerf");
+    if (scene.process.hole_diameter) numberField(box, "Hole diameter (mm)", "process.hole_diameter");
+    else numberField(box, "Hole over ligament", "process.fillet_ratio");
+    numberField(box, "Window r_win (mm)", "process.r_win");
+    write(box, "p", `Material: ${scene.material.split("/").pop()}. A panel is wider than about 3.5 r_win.`, "note");
+  },
+
+  grips: (box) => writeGrips(box),
+  target: (box) => writeTarget(box),
+
+  search(box) {
+    choiceField(box, "Method", "optimiser.method", [["lbfgs", "L-BFGS"], ["gauss-newton", "Gauss-Newton"], ["adam", "Adam"]]);
+    numberField(box, "Steps", "optimiser.steps", (steps) => set("optimiser.steps", Math.round(steps)));
+    for (const [text, key] of [["Coverage", "coverage"], ["Damage", "damage"], ["Compression", "compression"], ["Panel shape", "panel_shape"], ["Domain", "domain"]])
+      numberField(box, text, `objective.${key}`);
+    write(box, "p", "Weights relative to the outline's distance to the target; docs/KEYS.md describes them.", "note");
+  },
+};
+
+/** Loads in proportion to those at the beginning of a drag. */
+function loadSlider(box) {
+  const label = write(box, "label", "All loads, times");
+  const slider = document.createElement("input");
+  Object.assign(slider, { type: "range", min: 0, max: 2, step: 0.01, value: 1 });
+  let from = null;
+  slider.addEventListener("input", () => {
+    from ??= structuredClone([scene.loads, scene.edge_loads, scene.opening_couples]);
+    const f = slider.valueAsNumber;
+    [scene.loads, scene.edge_loads, scene.opening_couples] = structuredClone(from);
+    scene.loads.forEach((load) => { load.force = load.force.map((x) => f * x); load.couple *= f; if (load.mass_g) load.mass_g *= Math.max(f, 1e-3); });
+    scene.edge_loads.forEach((load) => { load.traction = load.traction.map((x) => f * x); });
+    scene.opening_couples.forEach((load) => { load.couple *= f; });
+    sendScene();
+  });
+  slider.addEventListener("change", () => { from = null; writeFields(); });
+  label.appendChild(slider);
+}
+
+/** The stroke of the state that is shown last, or a tenth of the sheet. */
+function strokeNow() {
+  const reached = states?.curve?.[states.curve.length - 1];
+  return reached ? reached[0] : 0.1 * Math.max(...(scene.sheet.size ?? [100]));
+}
+
+/** Another number of columns or rows: the pattern is uniform again, and what is held and pulled stays where it was. */
+function setPanels(axis, count) {
+  count = Math.round(count);
+  if (count < 2 || count > 200) return;
+  const before = scene.sheet.panels[axis];
+  const moved = (panel) => { panel[axis] = Math.min(count - 1, Math.floor(((panel[axis] + 0.5) * count) / before)); };
+  [...scene.supports, ...scene.loads].forEach(({ panel }) => moved(panel));
+  scene.opening_couples.forEach(({ panels }) => panels?.forEach(moved));
+  scene.start = {};
+  set(`sheet.panels.${axis}`, count);
+}
+
+/** Writes all groups; the field that has the focus keeps it. */
+function writeFields() {
+  if (!scene) return;
+  const focused = document.activeElement?.dataset?.path;
+  for (const box of document.querySelectorAll("#studio [data-fields]")) {
+    while (box.lastChild.tagName !== "SUMMARY") box.lastChild.remove();
+    groups[box.dataset.fields](box);
+  }
+  if (focused) document.querySelector(`#studio [data-path="${focused}"]`)?.focus();
+}
+
+/** Brings the fields up to date without writing them again. */
+function updateFields() {
+  for (const input of document.querySelectorAll("#studio [data-path]")) {
+    const value = valueAt(input.dataset.path);
+    if (input !== document.activeElement && ["number", "string"].includes(typeof value)) input.value = inField(value);
+  }
+}

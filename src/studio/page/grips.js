@@ -1,0 +1,119 @@
+// What holds and pulls the sheet: lists of fields, and a menu on the panel that is clicked.
+
+const POSTURES = [["held-flat", "between plates"], ["lying", "lies on a table"], ["hanging", "hangs"], ["free", "nothing"]];
+const KINDS = [["clamp", "clamp"], ["pin", "pin"], ["roller-x", "roller along x"], ["roller-y", "roller along y"]];
+const EDGES = ["bottom", "right", "top", "left"];
+
+function writeGrips(box) {
+  if (scene.posture)
+    choiceField(box, "In its plane by", "posture.kind", POSTURES, (kind) => {
+      scene.posture = kind === "hanging" ? { kind, down: [0, -1] } : { kind };
+      sendScene();
+    });
+  scene.supports.forEach((support, i) => {
+    const item = listItem(box, "supports", i, "Held");
+    choiceField(item, "by a", `supports.${i}.kind`, KINDS);
+    writePlace(item, `supports.${i}`);
+  });
+  scene.loads.forEach((load, i) => {
+    const item = listItem(box, "loads", i, "Pulled");
+    numberField(item, "Force x (N)", `loads.${i}.force.0`);
+    numberField(item, "Force y (N)", `loads.${i}.force.1`);
+    if (load.mass_g !== null) numberField(item, "Weight (g)", `loads.${i}.mass_g`);
+    writePlace(item, `loads.${i}`);
+  });
+  scene.edge_loads.forEach((load, i) => {
+    const item = listItem(box, "edge_loads", i, "Edge pulled");
+    choiceField(item, "Edge", `edge_loads.${i}.edge`, EDGES.map((edge) => [edge, edge]));
+    numberField(item, "Along x (N/mm)", `edge_loads.${i}.traction.0`);
+    numberField(item, "Along y (N/mm)", `edge_loads.${i}.traction.1`);
+  });
+  const line = write(box, "div", undefined, "actions");
+  const middle = scene.sheet.panels.map((count) => Math.floor(count / 2));
+  button(line, "Hold", () => addGrip("supports", { panel: [middle[0], scene.sheet.panels[1] - 1], kind: "clamp", at: "top" }));
+  button(line, "Pull", () => addGrip("loads", { panel: [middle[0], 0], at: "bottom", force: [0, -1] }));
+  button(line, "Pull an edge", () => addGrip("edge_loads", { edge: "bottom", traction: [0, -0.01] }));
+}
+
+function listItem(box, list, i, text) {
+  const item = write(box, "div", undefined, "item");
+  const { panel } = scene[list][i];
+  write(item, "b", panel ? `${text}: panel [${panel}] ` : `${text} `);
+  button(item, "remove", () => { scene[list].splice(i, 1); sendScene(); writeFields(); });
+  return item;
+}
+
+/** Where a panel is held or pulled. */
+function writePlace(item, path) {
+  numberField(item, "Column", `${path}.panel.0`, (at) => set(`${path}.panel.0`, Math.round(at)));
+  numberField(item, "Row", `${path}.panel.1`, (at) => set(`${path}.panel.1`, Math.round(at)));
+  if (typeof valueAt(`${path}.at`) === "string")
+    choiceField(item, "At", `${path}.at`, [["centroid", "its centroid"], ...EDGES.map((edge) => [edge, `its ${edge} edge`])], (at) => {
+      const grip = valueAt(path);
+      if (at === "centroid") grip.clip = null;
+      set(`${path}.at`, at);
+    });
+  if (valueAt(`${path}.clip`) !== null) numberField(item, "Clip (mm)", `${path}.clip`);
+}
+
+const NOTHING = { hole: null, clip: null };
+const COMPLETE = {
+  supports: { ...NOTHING, displacement: [0, 0], rotation_deg: 0 },
+  loads: { ...NOTHING, mass_g: null, force: [0, 0], couple: 0 },
+  edge_loads: {},
+};
+
+function addGrip(list, grip) {
+  scene[list].push({ ...structuredClone(COMPLETE[list]), ...grip });
+  sendScene();
+  writeFields();
+}
+
+/** The panel at a pixel, and which of its points is nearest: its centroid or the middle of an edge. */
+function panelAt([px, py]) {
+  const inside = (corners) =>
+    corners.every(([x, y], c) => {
+      const [u, v] = corners[(c + 1) % 4];
+      return (u - x) * (py - y) - (v - y) * (px - x) <= 0;
+    });
+  const k = cornersDrawn.findIndex(inside);
+  if (k < 0) return null;
+  const corners = cornersDrawn[k];
+  const points = { centroid: meanOf(corners) };
+  EDGES.forEach((edge, c) => { points[edge] = meanOf([corners[c], corners[(c + 1) % 4]]); });
+  const distance = (name) => Math.hypot(points[name][0] - px, points[name][1] - py);
+  const at = Object.keys(points).reduce((best, name) => (distance(name) < distance(best) ? name : best));
+  const columns = run.panels.grid[0];
+  return { panel: [k % columns, Math.floor(k / columns)], at };
+}
+
+/** The menu of a panel, in the place of the mode's fields. */
+function openGripMenu(place) {
+  const menu = byId("grip-menu");
+  menu.textContent = "";
+  menu.hidden = !place;
+  if (!place) return;
+  const { panel, at } = place;
+  write(menu, "p", `Panel [${panel}], ${at === "centroid" ? "its centroid" : `its ${at} edge`}:`, "note");
+  const line = write(menu, "div", undefined, "actions");
+  const here = (grip) => grip.panel[0] === panel[0] && grip.panel[1] === panel[1];
+  const act = (text, change) => button(line, text, () => { change(); openGripMenu(null); });
+  const held = (kind) => {
+    scene.supports = scene.supports.filter((support) => !here(support));
+    addGrip("supports", { panel, at, kind });
+  };
+  act("Clamp", () => held("clamp"));
+  act("Pin", () => held("pin"));
+  const outward = { bottom: [0, -1], right: [1, 0], top: [0, 1], left: [-1, 0], centroid: [0, -1] };
+  act("Pull", () => addGrip("loads", { panel, at, force: outward[at] }));
+  if (scene.posture?.kind === "hanging" && !scene.drive) act("Hang 100 g", () => addGrip("loads", { panel, at, mass_g: 100 }));
+  if (scene.supports.some(here) || scene.loads.some(here))
+    act("Let go", () => {
+      scene.supports = scene.supports.filter((support) => !here(support));
+      scene.loads = scene.loads.filter((load) => !here(load));
+      sendScene();
+      writeFields();
+    });
+  act("Cancel", () => {});
+  line.firstChild.focus();
+}

@@ -1,0 +1,233 @@
+// The studio: what its events change on the page, and what its buttons ask.
+
+document.body.classList.add("studio", "empty");
+const mode = () => document.querySelector("#modes input:checked").value;
+
+/** The texts of a report while something newer is drawn. */
+const reported = () => ["facts-card", "warnings-card", "budget-card", "curve-card", "hinge-card", "forces-card"].map(byId);
+const setStale = (stale) => reported().forEach((card) => card.classList.toggle("stale", stale));
+
+let shop = { materials: [], machines: [] };
+let times = { draft: null, everyday: null, recent: [] };
+
+/** The designs of this visit: loss, outline error, and the corners of the deployed panels (mm). */
+const designs = [];
+
+connect({
+  shop(offered) {
+    shop = offered;
+    const select = byId("new-material");
+    select.textContent = "";
+    for (const { file, name } of shop.materials) write(select, "option", name).value = file;
+    if (!shop.materials.length) refuse("No material with weights here: start the studio in the folder of kirigami, or with a scene.");
+    sayMaterial();
+    for (const [name] of shop.machines) write(byId("machine"), "option", `for ${name}`).value = name;
+  },
+
+  scene(event) {
+    byId("undo").disabled = event.undo === 0;
+    byId("redo").disabled = event.redo === 0;
+    byId("terminal").textContent = `In the terminal: kirigami design ${event.file}`;
+    openTools(true);
+    // Changes of this page that are on their way are newer.
+    if (event.by[0] === me && event.by[1] < changes) return;
+    const other = JSON.stringify(event.scene) !== JSON.stringify(scene);
+    scene = event.scene;
+    if (other) writeFields();
+  },
+
+  draft(event) {
+    times.draft = event.ms;
+    times.recent = [...times.recent, performance.now()].filter((t) => t > performance.now() - 1000);
+    sayTimes();
+    drawDraft(event.sheet);
+    byId("state").textContent = `At full load (draft) \u00b7 outline ${shown(event.outline_error, 3)} mm from the target, rms`;
+  },
+
+  page(event) {
+    const first = !run;
+    const fraction = first || stateCount < 2 ? 1 : shownNow.state / (stateCount - 1);
+    take(event.page);
+    document.body.classList.remove("empty");
+    setStale(false);
+    const { history } = run;
+    const best = history.loss.reduce((b, loss, i) => (loss < history.loss[b] ? i : b), 0);
+    if (event.ms === null) designs.push({ loss: history.loss[best], error: history.outline_error[best], outline: finalOutline() });
+    else times.everyday = event.ms;
+    writeTexts();
+    byId("summary").textContent = byId("summary").textContent.replace(/ Search: stopped after 0 steps.*/, " Not searched yet.");
+    writeChoices();
+    writeDesigns();
+    sayTimes();
+    if (first || grown()) { measureExtent(); fitView(); }
+    Object.assign(shownNow, {
+      state: Math.round(fraction * (stateCount - 1)),
+      quantity: quantities[shownNow.quantity] ? shownNow.quantity : "rotation",
+      hinge: first || shownNow.hinge >= hingeCount ? run.worst : shownNow.hinge,
+    });
+    layOut(false);
+    if (first) writeFields();
+    document.documentElement.dataset.pages = Number(document.documentElement.dataset.pages ?? 0) + 1;
+  },
+
+  step(event) {
+    byId("progress").textContent = `Step ${event.step} of ${event.of}`;
+    if (!run) return;
+    run.history = event.history;
+    if (event.draft) drawDraft(event.draft.sheet);
+    drawHistory();
+  },
+
+  working(what) {
+    const texts = { everyday: "Following the path \u2026", design: "Searching \u2026", files: "Writing files \u2026" };
+    byId("progress").textContent = texts[what] ?? "";
+    const busy = what === "design" || what === "files";
+    byId("design").textContent = what === "design" ? "Pause" : "Design";
+    document.querySelectorAll("#tools details input, #tools details select, #tools details button, #undo, #redo, #another").forEach((element) => { element.inert = busy; });
+    document.documentElement.dataset.working = what ?? "";
+  },
+
+  says({ refused, message }) {
+    refuse(refused ? message : "");
+    if (!refused && message) byId("progress").textContent = message;
+    if (refused) setStale(true);
+  },
+
+  files({ files }) {
+    const list = byId("files");
+    list.textContent = "";
+    for (const { name, contents } of files) {
+      const link = write(write(list, "li"), "a", name);
+      link.href = withToken(`/files/${name.split("/").map(encodeURIComponent).join("/")}`);
+      link.title = contents;
+      if (/\.(html|pdf|svg|png|txt)$/.test(name)) link.target = "_blank";
+      else link.download = name.split("/").pop();
+    }
+  },
+});
+
+/** Draws a sheet at full load in place of the last path. */
+function drawDraft(sheet) {
+  if (!run) return;
+  const sameSheet = sheet.hinges.sites.length === hingeCount;
+  take({ ...run, ...sheet });
+  shownNow.state = stateCount - 1;
+  if (!sameSheet) { shownNow.hinge = 0; measureExtent(); fitView(); }
+  byId("slider").max = byId("slider").value = stateCount - 1;
+  const quantity = quantities[shownNow.quantity] ?? quantities.rotation;
+  drawSheet(shownNow.state, quantity, shownNow.hinge);
+  drawScale(quantity);
+  setStale(true);
+}
+
+/** Whether the sheet or the target has left the view, or fills little of it. */
+function grown() {
+  const before = extent;
+  measureExtent();
+  const now = extent;
+  extent = before;
+  const size = Math.max(before.x1 - before.x0, before.y1 - before.y0);
+  return ["x0", "x1", "y0", "y1"].some((side) => Math.abs(now[side] - before[side]) > 0.08 * size);
+}
+
+/** The corners of the deployed panels (mm). */
+function finalOutline() {
+  const last = stateCount - 1;
+  return Array.from({ length: panelCount }, (_, k) => [0, 1, 2, 3].map((c) => corner(last, k, c)));
+}
+
+overlays.push(() => {
+  const before = byId("ghost").checked && designs[designs.length - 2];
+  if (before) for (const corners of before.outline) draw(marks, "path", { d: outlinePath(corners), fill: "none", stroke: TEAL, "stroke-width": 1.2 });
+});
+
+function writeDesigns() {
+  byId("designs-box").hidden = designs.length === 0;
+  const table = byId("designs");
+  table.textContent = "";
+  const head = write(table, "tr");
+  ["", "loss (mm\u00b2)", "outline (mm)"].forEach((text) => write(head, "th", text));
+  designs.forEach(({ loss, error }, i) => {
+    const row = write(table, "tr");
+    [`design ${i + 1}`, shown(loss), shown(error, 3)].forEach((text) => write(row, "td", text));
+  });
+}
+
+function sayTimes() {
+  const parts = [];
+  if (times.draft) parts.push(`draft ${shown(times.draft, 2)} ms (${times.recent.length} in the last second)`);
+  if (times.everyday) parts.push(`whole path and report ${shown(times.everyday, 2)} ms`);
+  byId("speed").textContent = parts.join(" \u00b7 ");
+}
+
+function sayMaterial() {
+  const material = shop.materials.find(({ file }) => file === byId("new-material").value);
+  byId("new-says").textContent = material?.says ?? "";
+  byId("new-thickness").placeholder = material ? String(material.thickness) : "";
+}
+
+/** Shows the tools of the sheet, or the form of a new one. */
+function openTools(tools) {
+  byId("tools").hidden = !tools;
+  byId("new-sheet").hidden = tools;
+}
+
+byId("new-material").addEventListener("change", sayMaterial);
+byId("new-sheet").addEventListener("submit", (event) => {
+  event.preventDefault();
+  const [width, height, thickness] = ["new-width", "new-height", "new-thickness"].map((id) => byId(id).valueAsNumber || null);
+  if ((width === null) !== (height === null)) return refuse("Give both width and height of the sheet, or neither.");
+  refuse("");
+  run = null;
+  document.body.classList.add("empty");
+  ask({ do: "new", name: byId("new-name").value, material: byId("new-material").value || null, thickness, size: width && [width, height] });
+});
+byId("another").addEventListener("click", () => openTools(false));
+byId("design").addEventListener("click", () => ask({ do: byId("design").textContent === "Pause" ? "pause" : "design" }));
+byId("undo").addEventListener("click", () => ask({ do: "undo" }));
+byId("redo").addEventListener("click", () => ask({ do: "redo" }));
+byId("write").addEventListener("click", () => ask({ do: "write", paper: byId("paper").value || null, machine: byId("machine").value || null }));
+byId("machine").addEventListener("change", (event) => {
+  byId("machine-says").textContent = shop.machines.find(([name]) => name === event.target.value)?.[1] ?? "";
+});
+byId("ghost").addEventListener("change", () => show({}));
+byId("modes").addEventListener("change", () => { openGripMenu(null); show({}); });
+document.addEventListener("keydown", (event) => {
+  if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || event.target.tagName === "INPUT") return;
+  event.preventDefault();
+  ask({ do: event.shiftKey ? "redo" : "undo" });
+});
+
+// Handles and panels come before hinges.
+let grabbed = -1;
+const pixelOf = (event) => {
+  const box = canvas.getBoundingClientRect();
+  return [((event.clientX - box.left) * view.width) / box.width, ((event.clientY - box.top) * view.height) / box.height];
+};
+stage.addEventListener("pointerdown", (event) => {
+  if (!run) return;
+  const at = pixelOf(event);
+  grabbed = handleAt(at);
+  const place = mode() === "grip" ? panelAt(at) : null;
+  if (place) openGripMenu(place);
+  if (grabbed < 0 && !place) return;
+  event.stopImmediatePropagation();
+  if (grabbed >= 0) stage.setPointerCapture(event.pointerId);
+}, true);
+stage.addEventListener("pointermove", (event) => { if (grabbed >= 0) { event.stopImmediatePropagation(); moveHandle(grabbed, toMm(pixelOf(event))); } }, true);
+window.addEventListener("pointerup", () => { grabbed = -1; });
+// The fields of a hinge are those of the hinge that is selected.
+stage.addEventListener("click", () => { if (mode() === "look") writeFields(); });
+byId("hinge-number").addEventListener("change", writeFields);
+stage.addEventListener("dragover", (event) => { event.preventDefault(); stage.classList.add("dropping"); });
+stage.addEventListener("dragleave", () => stage.classList.remove("dropping"));
+stage.addEventListener("drop", (event) => {
+  event.preventDefault();
+  stage.classList.remove("dropping");
+  takeDrawing(event.dataTransfer.files[0]);
+});
+
+connectControls();
+window.addEventListener("resize", () => layOut(false));
+darkScreen.addEventListener("change", () => layOut(onPaper));
+document.documentElement.dataset.ready = "true";

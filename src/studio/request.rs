@@ -1,0 +1,64 @@
+//! What a page asks of the engine.
+
+use design::scene::SceneConfig;
+use serde::Deserialize;
+use std::path::PathBuf;
+
+/// A request, in JSON: `{"do": "undo"}`.
+#[derive(Debug, Deserialize)]
+#[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
+pub(crate) enum Request {
+    /// Begin a new sheet.
+    New(NewSheet),
+    /// The scene has other keys.
+    Change(Change),
+    /// The target is this drawing, with the place and the area of the present target.
+    Drawing {
+        /// Text of an SVG file.
+        svg: String,
+    },
+    /// Search from the sheet that is shown, or go on with its search.
+    Design,
+    /// Pause the search at the end of its step.
+    Pause,
+    /// Go back to the scene before the last change.
+    Undo,
+    /// Take back an undo.
+    Redo,
+    /// Write the files of the sheet that is shown.
+    Write(Files),
+}
+
+/// A new sheet; what is not given is as usual for its material.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct NewSheet {
+    /// Its name, from which that of its folder is made.
+    pub name: String,
+    /// The material file.
+    pub material: Option<PathBuf>,
+    /// Thickness (mm).
+    pub thickness: Option<f64>,
+    /// Width and height (mm).
+    pub size: Option<[f64; 2]>,
+}
+
+/// Other keys of the scene.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Change {
+    /// All keys.
+    pub scene: Box<SceneConfig>,
+    /// The page that changed them, and how many changes it has made.
+    pub by: (String, u64),
+}
+
+/// Files besides those of every run.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Files {
+    /// Tiles for this paper.
+    pub paper: Option<String>,
+    /// The file of this machine.
+    pub machine: Option<String>,
+}

@@ -1,0 +1,253 @@
+//! The studio over HTTP on this machine: the page, requests from it, and a stream of events to it.
+//!
+//! | request | answer |
+//! |---|---|
+//! | `GET /` | the page |
+//! | `GET /events` | events, as a stream (text/event-stream), beginning with the latest of every kind |
+//! | `POST /request` | 204, or 400 with the reason; the body is a [`Request`] as JSON |
+//! | `GET /files/NAME` | a file of the run |
+//!
+//! Programs on this machine and pages of other servers reach a port of 127.0.0.1, too. So every request needs the token of the
+//! address that is printed, and the header `Host` must name this server: a page of another name that resolves to 127.0.0.1 has
+//! that name there.
+
+use crate::studio::engine::Engine;
+use crate::studio::event::Post;
+use crate::studio::request::Request;
+use anyhow::{Result, anyhow};
+use output::run_page::Page;
+use std::io::{self, Read, Write};
+use std::net::Ipv4Addr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+use support::regular_file;
+use tiny_http::{Header, Method, Request as Http, Response, Server};
+
+/// Maximum size of the body of a request (bytes): a drawing, or a scene with 100 000 panels.
+const MOST_BYTES: usize = 16 << 20;
+/// How often the flag that ends the server is read.
+const POLL: Duration = Duration::from_millis(100);
+/// After this time without an event a line is sent, by which a page that is gone is noticed.
+const ALIVE: Duration = Duration::from_secs(10);
+
+/// A server on a port of 127.0.0.1.
+pub(crate) struct Studio {
+    server: Server,
+    host: String,
+    token: String,
+    post: Arc<Post>,
+}
+
+impl Studio {
+    /// Listens on a port, or on a free one if that is 0.
+    pub fn listen(port: u16, token: String, post: Arc<Post>) -> Result<Self> {
+        let server = Server::http((Ipv4Addr::LOCALHOST, port));
+        let server = server
+            .map_err(|error| anyhow!("cannot listen on port {port} of 127.0.0.1: {error}"))?;
+        let host = server.server_addr().to_string();
+        Ok(Self {
+            server,
+            host,
+            token,
+            post,
+        })
+    }
+
+    /// The address of the page.
+    pub fn address(&self) -> String {
+        format!("http://{}/?token={}", self.host, self.token)
+    }
+
+    /// Answers until `stop` becomes true.
+    pub fn serve(&self, engine: &Engine, stop: &AtomicBool) -> Result<()> {
+        while !stop.load(Ordering::Relaxed) {
+            if let Some(request) = self.server.recv_timeout(POLL)? {
+                self.answer(request, engine);
+            }
+        }
+        Ok(())
+    }
+
+    fn answer(&self, mut request: Http, engine: &Engine) {
+        let (path, query) = split(request.url());
+        let answer = match (request.method(), path.as_str()) {
+            _ if !self.is_ours(&request) => refusal(421, "this server is another host"),
+            _ if query != format!("token={}", self.token) => refusal(
+                403,
+                "the address needs the token that `kirigami studio` has printed",
+            ),
+            (Method::Get, "/") => page(),
+            (Method::Get, "/events") => return self.stream(request),
+            (Method::Post, "/request") => match read(&mut request) {
+                Ok(asked) => {
+                    engine.ask(asked);
+                    Response::from_data("").with_status_code(204)
+                }
+                Err(refusal) => refusal,
+            },
+            (Method::Get, name) => file(engine, name.strip_prefix("/files/").unwrap_or("")),
+            _ => refusal(404, "there is nothing here"),
+        };
+        // A page that is gone needs no answer.
+        let _ = request.respond(answer);
+    }
+
+    fn is_ours(&self, request: &Http) -> bool {
+        let mut hosts = request
+            .headers()
+            .iter()
+            .filter(|header| header.field.equiv("Host"));
+        let port = self.host.rsplit(':').next().unwrap_or_default();
+        let local = format!("localhost:{port}");
+        hosts
+            .next()
+            .is_some_and(|host| host.value == self.host.as_str() || host.value == local.as_str())
+    }
+
+    /// Sends events on a thread of their own until the page is gone.
+    fn stream(&self, request: Http) {
+        let post = Arc::clone(&self.post);
+        // Without a thread the page says that the studio does not answer.
+        let _ = std::thread::Builder::new()
+            .name("events".into())
+            .spawn(move || {
+                let _ = send(&post, &mut *request.into_writer());
+            });
+    }
+}
+
+fn send(post: &Post, page: &mut dyn Write) -> io::Result<()> {
+    let head = "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-store\r\nConnection: close\r\n\r\n";
+    page.write_all(head.as_bytes())?;
+    page.flush()?;
+    let mut seen = 0;
+    loop {
+        let events = post.since(seen, ALIVE);
+        if events.is_empty() {
+            page.write_all(b":\n\n")?;
+        }
+        for (number, event) in events {
+            let kind: &str = event.kind.into();
+            // The JSON of an event has no line break.
+            write!(page, "event: {kind}\ndata: {}\n\n", event.data)?;
+            seen = number;
+        }
+        page.flush()?;
+    }
+}
+
+/// The request in a body.
+fn read(request: &mut Http) -> Result<Request, Answer> {
+    let mut body = Vec::new();
+    let most = MOST_BYTES as u64;
+    let long = request
+        .body_length()
+        .is_some_and(|length| length > MOST_BYTES);
+    let read = request.as_reader().take(most + 1).read_to_end(&mut body);
+    if long || body.len() > MOST_BYTES {
+        let message = format!(
+            "this is larger than {} MB: simplify the drawing",
+            MOST_BYTES >> 20
+        );
+        return Err(refusal(413, &message));
+    }
+    read.map_err(|error| refusal(400, &error.to_string()))?;
+    serde_json::from_slice(&body).map_err(|error| refusal(400, &error.to_string()))
+}
+
+type Answer = Response<io::Cursor<Vec<u8>>>;
+
+fn refusal(status: u16, message: &str) -> Answer {
+    Response::from_string(message).with_status_code(status)
+}
+
+fn page() -> Answer {
+    let page = Page {
+        title: "kirigami studio",
+        connections: "; connect-src 'self'",
+        controls: include_str!("page/controls.html"),
+        style: include_str!("page/studio.css"),
+        scripts: [
+            include_str!("page/connection.js"),
+            include_str!("page/fields.js"),
+            include_str!("page/target.js"),
+            include_str!("page/grips.js"),
+            include_str!("page/studio.js"),
+        ]
+        .concat(),
+        data: "null",
+    };
+    Response::from_string(page.to_html())
+        .with_header(header("Content-Type", "text/html; charset=utf-8"))
+}
+
+fn file(engine: &Engine, name: &str) -> Answer {
+    let Some(path) = engine.file(name) else {
+        return refusal(404, "there is no such file");
+    };
+    let kind = match path.extension().and_then(|kind| kind.to_str()) {
+        Some("html") => "text/html; charset=utf-8",
+        Some("svg") => "image/svg+xml",
+        Some("png") => "image/png",
+        Some("pdf") => "application/pdf",
+        Some("json") => "application/json",
+        Some("csv" | "txt") => "text/plain; charset=utf-8",
+        _ => "application/octet-stream",
+    };
+    match regular_file::read(&path) {
+        Ok(bytes) => Response::from_data(bytes).with_header(header("Content-Type", kind)),
+        Err(error) => refusal(404, &error.to_string()),
+    }
+}
+
+fn header(name: &str, value: &str) -> Header {
+    Header::from_bytes(name, value).expect("the headers of this file are ASCII")
+}
+
+/// Path and query of an address; the path without percent signs.
+fn split(url: &str) -> (String, String) {
+    let (path, query) = url.split_once('?').unwrap_or((url, ""));
+    (unescaped(path), query.to_owned())
+}
+
+/// A path whose `%20` are characters; as it is if it is no text then.
+fn unescaped(path: &str) -> String {
+    let mut bytes = Vec::with_capacity(path.len());
+    let mut rest = path.as_bytes();
+    while let Some((&first, tail)) = rest.split_first() {
+        let code = (first == b'%').then(|| tail.get(..2)).flatten();
+        let code =
+            code.and_then(|code| u8::from_str_radix(std::str::from_utf8(code).ok()?, 16).ok());
+        match code {
+            Some(byte) => {
+                bytes.push(byte);
+                rest = &tail[2..];
+            }
+            None => {
+                bytes.push(first);
+                rest = tail;
+            }
+        }
+    }
+    String::from_utf8(bytes).unwrap_or_else(|_| path.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_address_is_a_path_and_a_query() {
+        let parts = |url| {
+            let (path, query) = split(url);
+            format!("{path} {query}")
+        };
+        assert_eq!(
+            parts("/files/cut/my%20sheet.dxf?token=1"),
+            "/files/cut/my sheet.dxf token=1"
+        );
+        assert_eq!(parts("/%zz%"), "/%zz% ");
+        assert_eq!(parts("/%ff"), "/%ff ");
+    }
+}

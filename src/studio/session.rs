@@ -1,0 +1,510 @@
+//! The scene that is shown, and the answers to requests.
+
+use crate::commands::cut::CutCommand;
+use crate::commands::design::write_run;
+use crate::studio::engine::{Listener, Stops};
+use crate::studio::event::{Event, Kind};
+use crate::studio::project::Project;
+use crate::studio::request::{Change, Files, Request};
+use anyhow::{Context, Result};
+use design::equilibrium::nearby_path::KnownPath;
+use design::objective::scores::outline_error;
+use design::objective::target::TargetShape;
+use design::optimise::outer_loop::{Ended, SearchState};
+use design::scene::design_run::{Designed, inverse_design};
+use design::scene::{Scene, SceneConfig, place_drawing};
+use design::{Deployment, DesignError, DesignProblem, DesignVector};
+use output::cut_file::CutLines;
+use output::report::Report;
+use output::run_files::RUN_FILES;
+use output::run_page::{History, PageData, SheetData};
+use serde::Serialize;
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Time between two steps of a search that are shown.
+const SHOW_EVERY: Duration = Duration::from_millis(80);
+
+/// The files that can be fetched, by the names that pages know.
+pub(super) type Fetched = Arc<Mutex<BTreeMap<String, PathBuf>>>;
+
+pub(super) struct Session {
+    projects: PathBuf,
+    stops: Stops,
+    listener: Listener,
+    files: Fetched,
+    sheet: Option<Opened>,
+    at_rest: bool,
+}
+
+/// An opened sheet.
+struct Opened {
+    project: Project,
+    /// The scene that is shown; its start is the sheet.
+    scene: Scene,
+    /// The keys on disk, those before and after them.
+    on_disk: SceneConfig,
+    before: Vec<SceneConfig>,
+    after: Vec<SceneConfig>,
+    /// The page that made the last change, and the number of its changes.
+    by: (String, u64),
+    /// The equilibrium of the last draft.
+    known: Option<KnownPath>,
+    /// The last run.
+    run: Option<Run>,
+}
+
+/// A run whose best design is shown while the scene has the keys `adopted`.
+struct Run {
+    scene: Scene,
+    adopted: SceneConfig,
+    ended: Ended,
+}
+
+/// What a draft shows.
+#[derive(Serialize)]
+struct Draft<'a> {
+    sheet: SheetData<'a>,
+    /// Root mean square distance of the outline to the target (mm).
+    outline_error: f64,
+    ms: f64,
+}
+
+/// What the everyday level shows.
+#[derive(Serialize)]
+struct Everyday<'a> {
+    page: PageData<'a>,
+    /// None for the page of a run.
+    ms: Option<f64>,
+}
+
+/// A step of a search.
+#[derive(Serialize)]
+struct Step<'a> {
+    step: usize,
+    of: usize,
+    history: History,
+    draft: Option<Draft<'a>>,
+}
+
+impl Session {
+    pub fn new(projects: PathBuf, stops: Stops, files: Fetched, listener: Listener) -> Self {
+        Self {
+            projects,
+            stops,
+            listener,
+            files,
+            sheet: None,
+            at_rest: true,
+        }
+    }
+
+    pub fn is_at_rest(&self) -> bool {
+        self.at_rest
+    }
+
+    /// Shows another sheet.
+    pub fn open(&mut self, project: Project, scene: Scene) {
+        self.sheet = Some(Opened {
+            on_disk: scene.config.clone(),
+            before: Vec::new(),
+            after: Vec::new(),
+            by: Default::default(),
+            known: None,
+            run: None,
+            project,
+            scene,
+        });
+        self.at_rest = false;
+        self.tell_scene();
+    }
+
+    pub fn answer(&mut self, request: Request) -> Result<()> {
+        match request {
+            Request::New(sheet) => {
+                let (project, scene) = Project::begin(&sheet, &self.projects)?;
+                self.open(project, scene);
+            }
+            Request::Change(change) => self.change(change)?,
+            Request::Drawing { svg } => self.drawing(&svg)?,
+            Request::Design => self.design()?,
+            // The engine pauses a search at once.
+            Request::Pause => {}
+            Request::Undo => self.step_back(|sheet| (&mut sheet.before, &mut sheet.after))?,
+            Request::Redo => self.step_back(|sheet| (&mut sheet.after, &mut sheet.before))?,
+            Request::Write(files) => self.write(&files)?,
+        }
+        Ok(())
+    }
+
+    /// The everyday level, unless a request ends it.
+    pub fn rest(&mut self) -> Result<()> {
+        self.at_rest = true;
+        if self.sheet.is_none() {
+            return Ok(());
+        }
+        self.commit()?;
+        self.tell(Kind::Working, &"everyday");
+        let begin = Instant::now();
+        let scene = &self.opened()?.scene;
+        let stop = Arc::clone(&self.stops.everyday);
+        let designed = Designed::at_start(scene, Arc::clone(&stop));
+        if stop.load(Ordering::Relaxed) {
+            self.at_rest = false;
+            return Ok(());
+        }
+        self.tell_page(scene, &designed?, Some(begin));
+        self.tell(Kind::Working, &());
+        Ok(())
+    }
+
+    /// Says why a request was not answered. The last result stays.
+    pub fn give_up(&mut self, why: &str) {
+        // The page shows one scene.
+        let file = self.sheet.as_ref().map(|sheet| sheet.project.scene_file());
+        let named = file.map(|file| format!("{}: ", file.display()));
+        let why = named.and_then(|named| why.strip_prefix(&named)).unwrap_or(why);
+        self.say(true, why);
+        self.tell(Kind::Working, &());
+    }
+
+    fn change(&mut self, Change { scene, by }: Change) -> Result<()> {
+        let sheet = self.opened_mut()?;
+        let changed = sheet.scene.changed(*scene)?;
+        sheet.show(changed);
+        sheet.by = by;
+        self.draft()
+    }
+
+    fn drawing(&mut self, svg: &str) -> Result<()> {
+        let sheet = self.opened_mut()?;
+        let file = sheet.project.keep_drawing(svg)?;
+        let target = &sheet.scene.target;
+        let path = sheet.project.folder.join(&file);
+        let (centre, height) = place_drawing(&path, target.mean(), target.area())?;
+        let target = TargetShape::Svg {
+            file,
+            centre,
+            height,
+        };
+        let config = SceneConfig {
+            target,
+            ..sheet.scene.config.clone()
+        };
+        let changed = sheet.scene.changed(config)?;
+        sheet.show(changed);
+        self.tell_scene();
+        self.draft()
+    }
+
+    /// Shows the sheet at full load.
+    fn draft(&mut self) -> Result<()> {
+        self.at_rest = false;
+        self.say(false, "");
+        let begin = Instant::now();
+        let sheet = self.opened_mut()?;
+        let (scene, problem) = (&sheet.scene, sheet.scene.problem()?);
+        let deployment = at_full_load(&problem, &scene.start(), sheet.known.as_ref())?;
+        sheet.known = Some(deployment.known_path());
+        let draft = Draft::new(&sheet.scene, &problem, &deployment, begin);
+        let event = Event::new(Kind::Draft, &draft);
+        (self.listener)(event);
+        Ok(())
+    }
+
+    /// Writes the scene that is shown, and keeps that before it for an undo.
+    fn commit(&mut self) -> Result<()> {
+        let sheet = self.opened_mut()?;
+        if sheet.scene.config != sheet.on_disk {
+            let before = std::mem::replace(&mut sheet.on_disk, sheet.scene.config.clone());
+            sheet.before.push(before);
+            sheet.after.clear();
+        }
+        sheet.project.save(&sheet.scene)?;
+        self.tell_scene();
+        Ok(())
+    }
+
+    /// Shows the last scene of one list and puts that on disk into the other.
+    fn step_back(
+        &mut self,
+        lists: impl Fn(&mut Opened) -> (&mut Vec<SceneConfig>, &mut Vec<SceneConfig>),
+    ) -> Result<()> {
+        self.commit()?;
+        let sheet = self.opened_mut()?;
+        let Some(config) = lists(sheet).0.pop() else {
+            return Ok(());
+        };
+        let scene = sheet.scene.changed(config.clone())?;
+        sheet.show(scene);
+        let left = std::mem::replace(&mut sheet.on_disk, config);
+        lists(sheet).1.push(left);
+        sheet.project.save(&sheet.scene)?;
+        self.tell_scene();
+        self.draft()
+    }
+
+    fn design(&mut self) -> Result<()> {
+        self.commit()?;
+        let sheet = self.opened()?;
+        let scene = match &sheet.run {
+            Some(run) if run.adopted == sheet.on_disk && run.ended == Ended::Stopped => {
+                run.scene.clone()
+            }
+            _ => sheet.scene_of_run()?,
+        };
+        self.stops.search.store(false, Ordering::Relaxed);
+        self.tell(Kind::Working, &"design");
+        self.search(scene, &self.stops.search.clone())
+    }
+
+    /// Runs the search of a scene, and shows its best design.
+    fn search(&mut self, scene: Scene, stop: &AtomicBool) -> Result<()> {
+        let problem = scene.problem()?;
+        let mut shown = Shown::default();
+        let listener = &self.listener;
+        let designed = inverse_design(&scene, stop, &mut |search| {
+            if let Some(step) = shown.step(&scene, &problem, search) {
+                listener(Event::new(Kind::Step, &step));
+            }
+        })?;
+        self.tell(Kind::Working, &"files");
+        let report = write_run(&scene, &designed, false)?;
+        let page = PageData::new(&scene, &designed, &report);
+        self.tell(Kind::Page, &Everyday { page, ms: None });
+        let sheet = self.opened_mut()?;
+        let adopted = SceneConfig {
+            output: sheet.project.next_run(),
+            ..scene.starting_at(&designed.design)
+        };
+        let shown = sheet.scene.changed(adopted.clone())?;
+        sheet.show(shown);
+        sheet.run = Some(Run {
+            scene,
+            adopted,
+            ended: designed.ended,
+        });
+        self.commit()?;
+        self.at_rest = true;
+        self.list_files()?;
+        self.tell(Kind::Working, &());
+        Ok(())
+    }
+
+    /// Writes cut files, from the run of the sheet that is shown: one without a step if there is none.
+    fn write(&mut self, files: &Files) -> Result<()> {
+        self.commit()?;
+        let sheet = self.opened()?;
+        if !sheet.shows_run() {
+            let scene = sheet.scene_of_run()?;
+            self.search(scene, &AtomicBool::new(true))?;
+        }
+        let folder = self.run_folder()?;
+        self.tell(Kind::Working, &"files");
+        let (paper, machine) = (files.paper.as_deref(), files.machine.clone());
+        if paper.is_some() || machine.is_some() {
+            CutCommand::of_run(folder.clone(), paper, machine)?.run()?;
+        }
+        self.list_files()?;
+        self.say(false, &format!("written to {}", folder.display()));
+        self.tell(Kind::Working, &());
+        Ok(())
+    }
+
+    fn run_folder(&self) -> Result<PathBuf> {
+        let run = self.opened()?.run.as_ref();
+        Ok(run.context("the sheet has no run")?.scene.output())
+    }
+
+    /// Tells the files of the run.
+    fn list_files(&self) -> Result<()> {
+        let folder = self.run_folder()?;
+        let mut listed = Vec::new();
+        let mut fetched = BTreeMap::new();
+        let mut add = |path: PathBuf, contents: &str| {
+            let Ok(name) = path.strip_prefix(&folder) else {
+                return;
+            };
+            let name = name.to_string_lossy().into_owned();
+            listed.push(json!({ "name": name, "contents": contents }));
+            fetched.insert(name, path);
+        };
+        for path in files_below(&folder.join("cut"))? {
+            add(path, "written for cutting");
+        }
+        for file in &RUN_FILES {
+            let path = folder.join(file.name);
+            if path.is_file() {
+                add(path, file.contents);
+            }
+        }
+        *self.files.lock().unwrap_or_else(PoisonError::into_inner) = fetched;
+        self.tell(
+            Kind::Files,
+            &json!({ "folder": folder.display().to_string(), "files": listed }),
+        );
+        Ok(())
+    }
+
+    fn opened(&self) -> Result<&Opened> {
+        self.sheet.as_ref().context(NO_SHEET)
+    }
+
+    fn opened_mut(&mut self) -> Result<&mut Opened> {
+        self.sheet.as_mut().context(NO_SHEET)
+    }
+
+    fn tell(&self, kind: Kind, data: &impl Serialize) {
+        (self.listener)(Event::new(kind, data));
+    }
+
+    fn say(&self, refused: bool, message: &str) {
+        self.tell(
+            Kind::Says,
+            &json!({ "refused": refused, "message": message }),
+        );
+    }
+
+    fn tell_scene(&self) {
+        if let Some(sheet) = &self.sheet {
+            self.tell(
+                Kind::Scene,
+                &json!({
+                    "scene": sheet.scene.config,
+                    "file": sheet.project.scene_file(),
+                    "by": sheet.by,
+                    "undo": sheet.before.len(),
+                    "redo": sheet.after.len(),
+                }),
+            );
+        }
+    }
+
+    /// Tells the report of a design; `begin` is when its computation began.
+    fn tell_page(&self, scene: &Scene, designed: &Designed, begin: Option<Instant>) {
+        let best = &designed.best.deployment;
+        let attachments = scene.actuation().attachments;
+        let cuts = CutLines::new(
+            &best.pattern,
+            &best.sheet,
+            scene.config.cutting,
+            &attachments,
+        );
+        let report = Report::new(scene, designed, &cuts, false);
+        let page = PageData::new(scene, designed, &report);
+        let ms = begin.map(milliseconds);
+        self.tell(Kind::Page, &Everyday { page, ms });
+    }
+}
+
+const NO_SHEET: &str = "there is no sheet yet: begin one";
+
+impl Opened {
+    /// Shows a scene; another sheet is not near the last draft.
+    fn show(&mut self, scene: Scene) {
+        let held = |scene: &Scene| (scene.config.sheet, scene.config.supports.clone());
+        if held(&scene) != held(&self.scene) {
+            self.known = None;
+        }
+        self.scene = scene;
+    }
+
+    /// The scene with a run folder of its own.
+    fn scene_of_run(&self) -> Result<Scene> {
+        let config = SceneConfig {
+            output: self.project.next_run(),
+            ..self.scene.config.clone()
+        };
+        Ok(self.scene.changed(config)?)
+    }
+
+    fn shows_run(&self) -> bool {
+        let run = self.run.as_ref();
+        run.is_some_and(|run| run.adopted == self.scene.config)
+    }
+}
+
+impl<'a> Draft<'a> {
+    fn new(
+        scene: &'a Scene,
+        problem: &DesignProblem,
+        deployment: &Deployment,
+        begin: Instant,
+    ) -> Self {
+        Self {
+            sheet: SheetData::new(scene, problem, deployment),
+            outline_error: outline_error(&problem.objective, deployment),
+            ms: milliseconds(begin),
+        }
+    }
+}
+
+/// The steps of a search that are shown: not more than the page can draw.
+#[derive(Default)]
+struct Shown {
+    last: Option<Instant>,
+    known: Option<KnownPath>,
+}
+
+impl Shown {
+    fn step<'a>(
+        &mut self,
+        scene: &'a Scene,
+        problem: &DesignProblem,
+        search: &SearchState,
+    ) -> Option<Step<'a>> {
+        if self.last.is_some_and(|last| last.elapsed() < SHOW_EVERY) {
+            return None;
+        }
+        let begin = Instant::now();
+        let deployment = at_full_load(problem, search.last_design(), self.known.as_ref()).ok();
+        self.known = deployment.as_ref().map(Deployment::known_path);
+        self.last = Some(Instant::now());
+        Some(Step {
+            step: search.last().step,
+            of: scene.config.optimiser.steps,
+            history: History::new(&problem.objective, &search.history),
+            draft: deployment.map(|deployment| Draft::new(scene, problem, &deployment, begin)),
+        })
+    }
+}
+
+/// The sheet at full load, corrected from a known equilibrium if that is near.
+fn at_full_load(
+    problem: &DesignProblem,
+    design: &DesignVector,
+    known: Option<&KnownPath>,
+) -> Result<Deployment, DesignError> {
+    let deployment = match problem.model.mechanics() {
+        Some(_) => problem.response(design, known)?.deployment,
+        None => problem.deploy(design)?,
+    };
+    deployment.at_full_load()?;
+    Ok(deployment)
+}
+
+fn milliseconds(begin: Instant) -> f64 {
+    1e3 * begin.elapsed().as_secs_f64()
+}
+
+/// All files in a folder and the folders in it; none if it does not exist.
+fn files_below(folder: &Path) -> Result<Vec<PathBuf>> {
+    if !folder.is_dir() {
+        return Ok(Vec::new());
+    }
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            files.extend(files_below(&path)?);
+        } else if path.extension().is_some() {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
