@@ -52,7 +52,7 @@ struct Opened {
     after: Vec<SceneConfig>,
     /// The page that made the last change, and the number of its changes.
     by: (String, u64),
-    /// The equilibrium of the last draft.
+    /// The last equilibrium, from which a draft starts.
     known: Option<KnownPath>,
     /// The last run.
     run: Option<Run>,
@@ -157,7 +157,9 @@ impl Session {
             self.at_rest = false;
             return Ok(());
         }
-        self.tell_page(scene, &designed?, Some(begin));
+        let designed = designed?;
+        self.tell_page(scene, &designed, Some(begin));
+        self.opened_mut()?.known = Some(designed.best.deployment.known_path());
         self.tell(Kind::Working, &());
         Ok(())
     }
@@ -167,7 +169,9 @@ impl Session {
         // The page shows one scene.
         let file = self.sheet.as_ref().map(|sheet| sheet.project.scene_file());
         let named = file.map(|file| format!("{}: ", file.display()));
-        let why = named.and_then(|named| why.strip_prefix(&named)).unwrap_or(why);
+        let why = named
+            .and_then(|named| why.strip_prefix(&named))
+            .unwrap_or(why);
         self.say(true, why);
         self.tell(Kind::Working, &());
     }
@@ -207,8 +211,8 @@ impl Session {
         self.say(false, "");
         let begin = Instant::now();
         let sheet = self.opened_mut()?;
-        let (scene, problem) = (&sheet.scene, sheet.scene.problem()?);
-        let deployment = at_full_load(&problem, &scene.start(), sheet.known.as_ref())?;
+        let (scene, problem) = (&sheet.scene, sheet.scene.unbalanced_problem()?);
+        let deployment = draft(&problem, &scene.start(), sheet.known.as_ref())?;
         sheet.known = Some(deployment.known_path());
         let draft = Draft::new(&sheet.scene, &problem, &deployment, begin);
         let event = Event::new(Kind::Draft, &draft);
@@ -461,7 +465,7 @@ impl Shown {
             return None;
         }
         let begin = Instant::now();
-        let deployment = at_full_load(problem, search.last_design(), self.known.as_ref()).ok();
+        let deployment = draft(problem, search.last_design(), self.known.as_ref()).ok();
         self.known = deployment.as_ref().map(Deployment::known_path);
         self.last = Some(Instant::now());
         Some(Step {
@@ -473,14 +477,14 @@ impl Shown {
     }
 }
 
-/// The sheet at full load, corrected from a known equilibrium if that is near.
-fn at_full_load(
+/// A draft of the sheet at full load.
+fn draft(
     problem: &DesignProblem,
     design: &DesignVector,
     known: Option<&KnownPath>,
 ) -> Result<Deployment, DesignError> {
     let deployment = match problem.model.mechanics() {
-        Some(_) => problem.response(design, known)?.deployment,
+        Some(_) => problem.draft(design, known)?.deployment,
         None => problem.deploy(design)?,
     };
     deployment.at_full_load()?;

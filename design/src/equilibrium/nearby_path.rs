@@ -15,6 +15,7 @@ use crate::equilibrium::branch::Branch;
 use crate::equilibrium::displacement_control::dot;
 use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{LoadStep, Status};
+use crate::equilibrium::newton::Minimum;
 use crate::equilibrium::place::Place;
 use crate::equilibrium::potential::{Stage, moved};
 use crate::equilibrium::solver::EquilibriumSolver;
@@ -102,6 +103,23 @@ impl EquilibriumSolver {
         )
     }
 
+    /// A stable equilibrium at full load next to the last state of a known path: where Newton's method leads from it, or else a descent
+    /// in energy. It need not be on the path from the flat sheet. `None` if there is none.
+    pub(crate) fn full_load_near(&self, sheet: HingedSheet, known: &KnownPath) -> Option<LoadStep> {
+        let last = known.steps.last()?;
+        let changes = changes(sheet, &known.designs);
+        let mut branch = Branch::new(self, sheet, Stage::Actuation);
+        let start = branch.carried_over(1.0, last, &changes)?;
+        let stable = |found: &Minimum| {
+            let factor = found.factor.as_ref();
+            factor.is_some_and(|held| held.unstable_directions() == 0)
+        };
+        let found = branch.balanced(start.clone()).filter(stable);
+        let found = found.or_else(|| branch.minimum(&start).ok())?;
+        let step = branch.load_step(found, 0);
+        (step.status != Status::Almost).then_some(step)
+    }
+
     /// The load steps that end at load parameters, each from the known one there.
     fn steps_near(
         &self,
@@ -117,20 +135,25 @@ impl EquilibriumSolver {
         if !known.iter().all(smooth) || self.lbfgs.is_some() {
             return None;
         }
-        let changes: Vec<[f64; 3]> = std::iter::zip(sheet.sheet.designs(), designs)
-            .map(|(to, from)| {
-                [
-                    to.w_lig - from.w_lig,
-                    to.alpha - from.alpha,
-                    to.fillet_ratio - from.fillet_ratio,
-                ]
-            })
-            .collect();
+        let changes = changes(sheet, designs);
         let mut branch = Branch::new(self, sheet, stage);
         std::iter::zip(ends, known)
             .map(|(at, known)| branch.load_step_near(*at, known, &changes))
             .collect()
     }
+}
+
+/// Changes of w_lig (mm), alpha (rad) and rho_f of all hinges since the given designs.
+fn changes(sheet: HingedSheet, since: &[HingeDesign]) -> Vec<[f64; 3]> {
+    let designs = std::iter::zip(sheet.sheet.designs(), since);
+    let changes = designs.map(|(to, from)| {
+        [
+            to.w_lig - from.w_lig,
+            to.alpha - from.alpha,
+            to.fillet_ratio - from.fillet_ratio,
+        ]
+    });
+    changes.collect()
 }
 
 impl Branch<'_> {

@@ -128,6 +128,21 @@ impl DesignProblem {
         })
     }
 
+    /// A draft of the equilibrium of a design at full load, next to the last state of a `known` path; without one, or if there is none next
+    /// to it, at the end of the path from the flat sheet. The path may end on another branch than a draft next to another.
+    pub fn draft(
+        &self,
+        design: &DesignVector,
+        known: Option<&KnownPath>,
+    ) -> Result<Response, DesignError> {
+        self.responded(design, |solver, hinged| {
+            match known.and_then(|known| solver.full_load_near(hinged, known)) {
+                Some(step) => (vec![step], false),
+                None => (solver.readings(hinged, &FULL_LOAD), true),
+            }
+        })
+    }
+
     /// The response of a design whose configuration at full load is known.
     pub fn response_at(
         &self,

@@ -146,7 +146,10 @@ fn networks(
         }
         network(config, measured, path, &file)
     };
-    config.weights_files().into_iter().map(load).collect()
+    let networks: Vec<Surrogate> =
+        (config.weights_files().into_iter().map(load)).collect::<Result<_, _>>()?;
+    same_training(config, &networks).map_err(SceneError::at(path))?;
+    Ok(networks)
 }
 
 /// Weights at the thickness of the sheet of the scene at `path`, or an error if they are not for its hinges. `measured`
@@ -187,7 +190,6 @@ fn condensed(
 
 /// The learned law; the contact stiffness is relative to the secant stiffness of a hinge of the start.
 fn learned(config: &SceneConfig, networks: Vec<Surrogate>) -> Result<LoadedHinge, InvalidScene> {
-    same_training(config, &networks)?;
     let surrogate = networks.first();
     let surrogate = surrogate.ok_or(InvalidScene::NoSection("surrogate"))?;
     let [_, _, [closed, _]] = surrogate.domain().bounds();

@@ -23,21 +23,26 @@ impl Scene {
 
     /// The design problem: everything that is constant during the design.
     pub fn problem(&self) -> Result<DesignProblem, SceneError> {
-        let model = self.model()?;
-        let problem = DesignProblem {
-            grid: self.grid(),
-            outline: self.config.sheet.outline(),
-            widths: self.width_chart(),
-            options: self.sheet_options(),
-            objective: self.objective(&model),
-            model,
-        };
+        let problem = self.unbalanced_problem()?;
         if !self.config.objective.balance {
             return Ok(problem);
         }
         let balanced = problem.balanced(&self.start());
         let balanced = balanced.map_err(InvalidScene::Balance);
         balanced.map_err(SceneError::at(&self.path))
+    }
+
+    /// The design problem before `objective.balance` weighs its terms by their gradients at the start: the same sheets and equilibria.
+    pub fn unbalanced_problem(&self) -> Result<DesignProblem, SceneError> {
+        let model = self.model()?;
+        Ok(DesignProblem {
+            grid: self.grid(),
+            outline: self.config.sheet.outline(),
+            widths: self.width_chart(),
+            options: self.sheet_options(),
+            objective: self.objective(&model),
+            model,
+        })
     }
 
     /// The keys of the scene whose search starts at a design.
