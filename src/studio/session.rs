@@ -50,8 +50,8 @@ struct Opened {
     on_disk: SceneConfig,
     before: Vec<SceneConfig>,
     after: Vec<SceneConfig>,
-    /// The page that made the last change, and the number of its changes.
-    by: (String, u64),
+    /// The page that made the last change, and the number of its changes; `None` if no page did, as after an undo.
+    by: Option<(String, u64)>,
     /// The last equilibrium, from which a draft starts.
     known: Option<KnownPath>,
     /// The last run.
@@ -113,7 +113,7 @@ impl Session {
             on_disk: scene.config.clone(),
             before: Vec::new(),
             after: Vec::new(),
-            by: Default::default(),
+            by: None,
             known: None,
             run: None,
             project,
@@ -180,7 +180,7 @@ impl Session {
         let sheet = self.opened_mut()?;
         let changed = sheet.scene.changed(*scene)?;
         sheet.show(changed);
-        sheet.by = by;
+        sheet.by = Some(by);
         self.draft()
     }
 
@@ -410,6 +410,7 @@ const NO_SHEET: &str = "there is no sheet yet: begin one";
 impl Opened {
     /// Shows a scene; another sheet is not near the last draft.
     fn show(&mut self, scene: Scene) {
+        self.by = None;
         let held = |scene: &Scene| (scene.config.sheet, scene.config.supports.clone());
         if held(&scene) != held(&self.scene) {
             self.known = None;

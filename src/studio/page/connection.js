@@ -24,6 +24,7 @@ let unsent = false;
 async function sendScene() {
   changes += 1;
   unsent = true;
+  document.documentElement.dataset.saved = false;
   if (sending) return;
   sending = true;
   while (unsent) {

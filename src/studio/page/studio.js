@@ -30,7 +30,8 @@ connect({
     byId("terminal").textContent = `In the terminal: kirigami design ${event.file}`;
     openTools(true);
     // Changes of this page that are on their way are newer.
-    if (event.by[0] === me && event.by[1] < changes) return;
+    if (event.by?.[0] === me && event.by[1] < changes) return;
+    document.documentElement.dataset.saved = true;
     const other = JSON.stringify(event.scene) !== JSON.stringify(scene);
     scene = event.scene;
     if (other) writeFields();
