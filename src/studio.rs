@@ -6,6 +6,7 @@
 
 pub(crate) mod engine;
 pub(crate) mod event;
+mod everyday;
 pub(crate) mod project;
 pub(crate) mod request;
 pub(crate) mod server;

@@ -49,7 +49,7 @@ impl StudioCommand {
             format!("{:032x}", random::<u128>()),
             Arc::clone(&post),
         )?;
-        let engine = Engine::start(opened, projects, Box::new(move |event| post.deliver(event)))?;
+        let engine = Engine::start(opened, projects, Arc::new(move |event| post.deliver(event)))?;
         let address = studio.address();
         println!("kirigami studio: {address}\nCtrl-C ends it");
         if !self.no_browser

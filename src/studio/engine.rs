@@ -1,9 +1,10 @@
 //! A thread that holds a scene and answers requests one after the other.
 //!
 //! While something is dragged every change is answered by a draft; when no request comes for a moment, by the everyday level: the
-//! path followed from the flat sheet, and the report. A change ends an everyday computation that is under way.
+//! path followed from the flat sheet, and the report.
 
 use crate::studio::event::{Event, Kind};
+use crate::studio::everyday::{Everyday, Listener};
 use crate::studio::project::Project;
 use crate::studio::request::Request;
 use crate::studio::session::{Fetched, Session};
@@ -22,12 +23,10 @@ use support::caught_panic;
 /// Time without a request after which the everyday level is computed.
 const REST: Duration = Duration::from_millis(200);
 
-/// Who hears the events.
-pub(super) type Listener = Box<dyn Fn(Event) + Send>;
-
 /// The engine.
 pub(crate) struct Engine {
     inbox: Arc<Inbox>,
+    stop_search: Arc<AtomicBool>,
     thread: JoinHandle<()>,
     files: Fetched,
 }
@@ -37,22 +36,12 @@ pub(crate) struct Engine {
 struct Inbox {
     waiting: Mutex<Waiting>,
     news: Condvar,
-    stops: Stops,
 }
 
 #[derive(Default)]
 struct Waiting {
     requests: VecDeque<Request>,
     closed: bool,
-}
-
-/// Flags that end what is under way.
-#[derive(Clone, Default)]
-pub(super) struct Stops {
-    /// An everyday computation.
-    pub everyday: Arc<AtomicBool>,
-    /// A search, at the end of its step.
-    pub search: Arc<AtomicBool>,
 }
 
 /// What comes next.
@@ -72,13 +61,15 @@ impl Engine {
         let inbox = Arc::new(Inbox::default());
         let files = Fetched::default();
         let shop = Shop::open()?;
+        let stop_search = Arc::<AtomicBool>::default();
+        let everyday = Everyday::start(Arc::clone(&listener)).context("cannot start a thread")?;
         let thread = std::thread::Builder::new().name("studio".into());
         let thread = thread.spawn({
             let (inbox, files) = (Arc::clone(&inbox), Arc::clone(&files));
+            let stop = Arc::clone(&stop_search);
             move || {
                 listener(Event::new(Kind::Shop, &shop));
-                let stops = inbox.stops.clone();
-                let mut session = Session::new(projects, stops, files, listener);
+                let mut session = Session::new(projects, everyday, stop, files, listener);
                 if let Some((project, scene)) = opened {
                     session.open(project, scene);
                 }
@@ -88,6 +79,7 @@ impl Engine {
         let thread = thread.context("cannot start the thread of the studio")?;
         Ok(Self {
             inbox,
+            stop_search,
             thread,
             files,
         })
@@ -102,11 +94,10 @@ impl Engine {
     /// Answers a request after those before it. Of changes that follow one another only the last is answered.
     pub fn ask(&self, request: Request) {
         if matches!(request, Request::Pause) {
-            self.inbox.stops.search.store(true, Ordering::Relaxed);
+            self.stop_search.store(true, Ordering::Relaxed);
             return;
         }
         let mut waiting = self.inbox.lock();
-        self.inbox.stops.everyday.store(true, Ordering::Relaxed);
         let changes = |request: Option<&Request>| matches!(request, Some(Request::Change(_)));
         if changes(Some(&request)) && changes(waiting.requests.back()) {
             waiting.requests.pop_back();
@@ -121,8 +112,7 @@ impl Engine {
         let mut waiting = self.inbox.lock();
         waiting.closed = true;
         drop(waiting);
-        self.inbox.stops.everyday.store(true, Ordering::Relaxed);
-        self.inbox.stops.search.store(true, Ordering::Relaxed);
+        self.stop_search.store(true, Ordering::Relaxed);
         self.inbox.news.notify_one();
         let _ = self.thread.join();
     }
@@ -150,11 +140,7 @@ impl Inbox {
         }
         match waiting.requests.pop_front() {
             Some(request) => Next::Request(request),
-            None => {
-                // Under the lock, which a request takes that ends the computation.
-                self.stops.everyday.store(false, Ordering::Relaxed);
-                Next::Rest
-            }
+            None => Next::Rest,
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::commands::cut::CutCommand;
 use crate::commands::design::write_run;
-use crate::studio::engine::{Listener, Stops};
 use crate::studio::event::{Event, Kind};
+use crate::studio::everyday::{Everyday, Listener, Shown, refusal};
 use crate::studio::project::Project;
 use crate::studio::request::{Change, Files, Request};
 use anyhow::{Context, Result};
@@ -11,11 +11,9 @@ use design::equilibrium::nearby_path::KnownPath;
 use design::objective::scores::outline_error;
 use design::objective::target::TargetShape;
 use design::optimise::outer_loop::{Ended, SearchState};
-use design::scene::design_run::{Designed, inverse_design};
+use design::scene::design_run::inverse_design;
 use design::scene::{Scene, SceneConfig, place_drawing};
 use design::{Deployment, DesignError, DesignProblem, DesignVector};
-use output::cut_file::CutLines;
-use output::report::Report;
 use output::run_files::RUN_FILES;
 use output::run_page::{History, PageData, SheetData};
 use serde::Serialize;
@@ -34,7 +32,8 @@ pub(super) type Fetched = Arc<Mutex<BTreeMap<String, PathBuf>>>;
 
 pub(super) struct Session {
     projects: PathBuf,
-    stops: Stops,
+    everyday: Arc<Everyday>,
+    stop_search: Arc<AtomicBool>,
     listener: Listener,
     files: Fetched,
     sheet: Option<Opened>,
@@ -74,14 +73,6 @@ struct Draft<'a> {
     ms: f64,
 }
 
-/// What the everyday level shows.
-#[derive(Serialize)]
-struct Everyday<'a> {
-    page: PageData<'a>,
-    /// None for the page of a run.
-    ms: Option<f64>,
-}
-
 /// A step of a search.
 #[derive(Serialize)]
 struct Step<'a> {
@@ -92,10 +83,17 @@ struct Step<'a> {
 }
 
 impl Session {
-    pub fn new(projects: PathBuf, stops: Stops, files: Fetched, listener: Listener) -> Self {
+    pub fn new(
+        projects: PathBuf,
+        everyday: Arc<Everyday>,
+        stop_search: Arc<AtomicBool>,
+        files: Fetched,
+        listener: Listener,
+    ) -> Self {
         Self {
             projects,
-            stops,
+            everyday,
+            stop_search,
             listener,
             files,
             sheet: None,
@@ -141,7 +139,7 @@ impl Session {
         Ok(())
     }
 
-    /// The everyday level, unless a request ends it.
+    /// Writes the scene, and lets the everyday level be computed.
     pub fn rest(&mut self) -> Result<()> {
         self.at_rest = true;
         if self.sheet.is_none() {
@@ -149,18 +147,7 @@ impl Session {
         }
         self.commit()?;
         self.tell(Kind::Working, &"everyday");
-        let begin = Instant::now();
-        let scene = &self.opened()?.scene;
-        let stop = Arc::clone(&self.stops.everyday);
-        let designed = Designed::at_start(scene, Arc::clone(&stop));
-        if stop.load(Ordering::Relaxed) {
-            self.at_rest = false;
-            return Ok(());
-        }
-        let designed = designed?;
-        self.tell_page(scene, &designed, Some(begin));
-        self.opened_mut()?.known = Some(designed.best.deployment.known_path());
-        self.tell(Kind::Working, &());
+        self.everyday.compute(self.opened()?.scene.clone());
         Ok(())
     }
 
@@ -172,7 +159,7 @@ impl Session {
         let why = named
             .and_then(|named| why.strip_prefix(&named))
             .unwrap_or(why);
-        self.say(true, why);
+        (self.listener)(refusal(why));
         self.tell(Kind::Working, &());
     }
 
@@ -208,9 +195,12 @@ impl Session {
     /// Shows the sheet at full load.
     fn draft(&mut self) -> Result<()> {
         self.at_rest = false;
-        self.say(false, "");
+        self.everyday.stop();
+        self.say("");
         let begin = Instant::now();
+        let everyday = self.everyday.equilibrium();
         let sheet = self.opened_mut()?;
+        sheet.known = everyday.or(sheet.known.take());
         let (scene, problem) = (&sheet.scene, sheet.scene.unbalanced_problem()?);
         let deployment = draft(&problem, &scene.start(), sheet.known.as_ref())?;
         sheet.known = Some(deployment.known_path());
@@ -261,25 +251,26 @@ impl Session {
             }
             _ => sheet.scene_of_run()?,
         };
-        self.stops.search.store(false, Ordering::Relaxed);
+        self.stop_search.store(false, Ordering::Relaxed);
         self.tell(Kind::Working, &"design");
-        self.search(scene, &self.stops.search.clone())
+        self.search(scene, &self.stop_search.clone())
     }
 
     /// Runs the search of a scene, and shows its best design.
     fn search(&mut self, scene: Scene, stop: &AtomicBool) -> Result<()> {
+        self.everyday.stop();
         let problem = scene.problem()?;
-        let mut shown = Shown::default();
+        let mut steps = Steps::default();
         let listener = &self.listener;
         let designed = inverse_design(&scene, stop, &mut |search| {
-            if let Some(step) = shown.step(&scene, &problem, search) {
+            if let Some(step) = steps.step(&scene, &problem, search) {
                 listener(Event::new(Kind::Step, &step));
             }
         })?;
         self.tell(Kind::Working, &"files");
         let report = write_run(&scene, &designed, false)?;
         let page = PageData::new(&scene, &designed, &report);
-        self.tell(Kind::Page, &Everyday { page, ms: None });
+        self.tell(Kind::Page, &Shown { page, ms: None });
         let sheet = self.opened_mut()?;
         let adopted = SceneConfig {
             output: sheet.project.next_run(),
@@ -314,7 +305,7 @@ impl Session {
             CutCommand::of_run(folder.clone(), paper, machine)?.run()?;
         }
         self.list_files()?;
-        self.say(false, &format!("written to {}", folder.display()));
+        self.say(&format!("written to {}", folder.display()));
         self.tell(Kind::Working, &());
         Ok(())
     }
@@ -366,11 +357,9 @@ impl Session {
         (self.listener)(Event::new(kind, data));
     }
 
-    fn say(&self, refused: bool, message: &str) {
-        self.tell(
-            Kind::Says,
-            &json!({ "refused": refused, "message": message }),
-        );
+    fn say(&self, message: &str) {
+        let says = json!({ "refused": false, "message": message });
+        self.tell(Kind::Says, &says);
     }
 
     fn tell_scene(&self) {
@@ -386,22 +375,6 @@ impl Session {
                 }),
             );
         }
-    }
-
-    /// Tells the report of a design; `begin` is when its computation began.
-    fn tell_page(&self, scene: &Scene, designed: &Designed, begin: Option<Instant>) {
-        let best = &designed.best.deployment;
-        let attachments = scene.actuation().attachments;
-        let cuts = CutLines::new(
-            &best.pattern,
-            &best.sheet,
-            scene.config.cutting,
-            &attachments,
-        );
-        let report = Report::new(scene, designed, &cuts, false);
-        let page = PageData::new(scene, designed, &report);
-        let ms = begin.map(milliseconds);
-        self.tell(Kind::Page, &Everyday { page, ms });
     }
 }
 
@@ -450,12 +423,12 @@ impl<'a> Draft<'a> {
 
 /// The steps of a search that are shown: not more than the page can draw.
 #[derive(Default)]
-struct Shown {
+struct Steps {
     last: Option<Instant>,
     known: Option<KnownPath>,
 }
 
-impl Shown {
+impl Steps {
     fn step<'a>(
         &mut self,
         scene: &'a Scene,

@@ -162,8 +162,9 @@ const SEARCH_KEYS: [&str; 2] = ["objective", "optimiser"];
 impl Designed {
     /// The start of a scene before any step of its search, with its path followed from the flat sheet until `stop` becomes true.
     pub fn at_start(scene: &Scene, stop: Arc<AtomicBool>) -> Result<Self, InverseDesignError> {
-        let mut problem = scene.problem()?;
+        let mut problem = scene.unbalanced_problem()?;
         problem.stop_by(stop);
+        let problem = scene.balanced(problem)?;
         let design = scene.start();
         let start = problem
             .evaluate(&design)

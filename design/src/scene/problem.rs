@@ -23,7 +23,11 @@ impl Scene {
 
     /// The design problem: everything that is constant during the design.
     pub fn problem(&self) -> Result<DesignProblem, SceneError> {
-        let problem = self.unbalanced_problem()?;
+        self.balanced(self.unbalanced_problem()?)
+    }
+
+    /// The same problem with its terms weighed by their gradients at the start, if the scene asks for it.
+    pub(super) fn balanced(&self, problem: DesignProblem) -> Result<DesignProblem, SceneError> {
         if !self.config.objective.balance {
             return Ok(problem);
         }

@@ -157,7 +157,7 @@ function writeDesigns() {
 function sayTimes() {
   const parts = [];
   if (times.draft) parts.push(`draft ${shown(times.draft, 2)} ms (${times.recent.length} in the last second)`);
-  if (times.everyday) parts.push(`whole path and report ${shown(times.everyday, 2)} ms`);
+  if (times.everyday) parts.push(`whole path and report ${shown(times.everyday / 1000, 2)} s`);
   byId("speed").textContent = parts.join(" \u00b7 ");
 }
 

@@ -1,0 +1,138 @@
+//! The everyday level on a thread of its own: the path followed from the flat sheet, and the report. Drafts go on meanwhile.
+
+use crate::studio::event::{Event, Kind};
+use crate::ui::exit::message;
+use anyhow::Result;
+use design::equilibrium::nearby_path::KnownPath;
+use design::scene::Scene;
+use design::scene::design_run::Designed;
+use output::cut_file::CutLines;
+use output::report::Report;
+use output::run_page::PageData;
+use serde::Serialize;
+use serde_json::json;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+use support::caught_panic;
+
+/// Who hears the events.
+pub(super) type Listener = Arc<dyn Fn(Event) + Send + Sync>;
+
+/// A page as everyday computations and runs show it.
+#[derive(Serialize)]
+pub(super) struct Shown<'a> {
+    pub page: PageData<'a>,
+    /// How long it took; `None` for the page of a run.
+    pub ms: Option<f64>,
+}
+
+/// The thread, and what it is to compute.
+pub(super) struct Everyday {
+    wanted: Mutex<Wanted>,
+    news: Condvar,
+    listener: Listener,
+}
+
+#[derive(Default)]
+struct Wanted {
+    scene: Option<Scene>,
+    /// Ends the computation that is under way, of which nothing is shown then.
+    stop: Arc<AtomicBool>,
+    /// The equilibrium at full load of the last one.
+    equilibrium: Option<KnownPath>,
+}
+
+impl Everyday {
+    /// Starts the thread, which ends with the program.
+    pub fn start(listener: Listener) -> std::io::Result<Arc<Self>> {
+        let everyday = Arc::new(Self {
+            wanted: Mutex::default(),
+            news: Condvar::new(),
+            listener,
+        });
+        let thread = std::thread::Builder::new().name("everyday".into());
+        thread.spawn({
+            let everyday = Arc::clone(&everyday);
+            move || everyday.work()
+        })?;
+        Ok(everyday)
+    }
+
+    /// Computes a scene next, and nothing else.
+    pub fn compute(&self, scene: Scene) {
+        self.stop();
+        self.lock().scene = Some(scene);
+        self.news.notify_one();
+    }
+
+    /// Shows nothing of what is under way.
+    pub fn stop(&self) {
+        let mut wanted = self.lock();
+        wanted.scene = None;
+        wanted.stop.store(true, Ordering::Relaxed);
+    }
+
+    /// The equilibrium at full load of a computation since the last call.
+    pub fn equilibrium(&self) -> Option<KnownPath> {
+        self.lock().equilibrium.take()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Wanted> {
+        self.wanted.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn work(&self) {
+        loop {
+            let nothing = |wanted: &mut Wanted| wanted.scene.is_none();
+            let mut wanted = (self.news.wait_while(self.lock(), nothing))
+                .unwrap_or_else(PoisonError::into_inner);
+            let Some(scene) = wanted.scene.take() else {
+                continue;
+            };
+            let stop = Arc::new(AtomicBool::new(false));
+            wanted.stop = Arc::clone(&stop);
+            drop(wanted);
+            let begin = Instant::now();
+            let computed = caught_panic::catch(|| page_of(&scene, &stop, begin));
+            // Under the lock: nothing is shown after a stop.
+            let mut wanted = self.lock();
+            if stop.load(Ordering::Relaxed) {
+                continue;
+            }
+            let event = match computed {
+                Ok(Ok((page, equilibrium))) => {
+                    wanted.equilibrium = Some(equilibrium);
+                    page
+                }
+                Ok(Err(error)) => refusal(&message(&error)),
+                Err(panic) => refusal(&format!("the report failed: {panic}")),
+            };
+            (self.listener)(event);
+            (self.listener)(Event::new(Kind::Working, &()));
+        }
+    }
+}
+
+/// What is said of a request that is refused.
+pub(super) fn refusal(why: &str) -> Event {
+    Event::new(Kind::Says, &json!({ "refused": true, "message": why }))
+}
+
+/// The page of the start of a scene, and its equilibrium at full load.
+fn page_of(scene: &Scene, stop: &Arc<AtomicBool>, begin: Instant) -> Result<(Event, KnownPath)> {
+    let designed = Designed::at_start(scene, Arc::clone(stop))?;
+    let best = &designed.best.deployment;
+    let attachments = scene.actuation().attachments;
+    let cuts = CutLines::new(
+        &best.pattern,
+        &best.sheet,
+        scene.config.cutting,
+        &attachments,
+    );
+    let report = Report::new(scene, &designed, &cuts, false);
+    let page = PageData::new(scene, &designed, &report);
+    let ms = Some(1e3 * begin.elapsed().as_secs_f64());
+    let event = Event::new(Kind::Page, &Shown { page, ms });
+    Ok((event, best.known_path()))
+}
