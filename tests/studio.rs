@@ -255,19 +255,54 @@ fn a_sheet_is_drawn_designed_and_cut_in_the_browser() {
     assert_eq!(scene_on_disk(&project), left);
 }
 
+/// The tutorial docs/STUDIO.md, whose pictures are written to the folder that STUDIO_PICTURES names.
 #[test]
-fn a_new_sheet_begins_with_a_material_and_a_size() {
+fn the_tutorial_leads_from_an_empty_page_to_a_cut_sheet() {
+    let folder = std::env::var_os("STUDIO_PICTURES").map(PathBuf::from);
+    let picture = |tab: &mut Tab, name: &str| {
+        if let Some(folder) = &folder {
+            tab.value("scrollTo(0, 0)");
+            std::fs::write(folder.join(format!("studio-{name}.png")), tab.picture()).unwrap();
+        }
+    };
     let work = Workplace::new();
     let studio = Studio::start(&work, "");
     let mut tab = Tab::open(&studio.address);
-    tab.wait("document.getElementById('new-material').options.length > 0");
     tab.wait("document.getElementById('new-says').textContent.includes('W within')");
+    tab.value("document.getElementById('new-name').value = 'Leaf'");
+    picture(&mut tab, "begin");
+    after(&mut tab, |tab| tab.click("#new-sheet button"));
+    let project = work.path("studio/leaf");
+    assert!(scene_on_disk(&project).contains("title = \"Leaf\""));
+    let leaf = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/targets/leaf.svg");
     after(&mut tab, |tab| {
-        tab.value("document.getElementById('new-name').value = 'Blatt 1'");
-        tab.click("#new-sheet button");
+        tab.drop_file(leaf.to_str().unwrap(), "#stage")
     });
-    let project = work.path("studio/blatt-1");
-    assert!(scene_on_disk(&project).contains("title = \"Blatt 1\""));
+    tab.click("input[value=target]");
+    picture(&mut tab, "target");
+    tab.click("input[value=look]");
+    after(&mut tab, |tab| tab.click("#design"));
+    picture(&mut tab, "design");
+    tab.value("document.getElementById('paper').value = 'a4'");
+    tab.click("#write");
+    tab.wait("[...document.querySelectorAll('#files a')].some((link) => link.textContent === 'cut/tiles-a4.pdf')");
+    tab.value("document.querySelectorAll('#tools details').forEach((box) => { box.open = box.id === 'out' || box.id === 'designs-box'; })");
+    tab.value("document.getElementById('studio').scrollTop = 0");
+    picture(&mut tab, "cut");
+    assert!(project.join("design-1/cut/tiles-a4.pdf").is_file());
+    assert_eq!(
+        tab.value("document.documentElement.dataset.error ?? null"),
+        Value::Null
+    );
+}
+
+#[test]
+fn panels_are_held_and_pulled_by_clicks() {
+    let work = Workplace::new();
+    let studio = Studio::start(&work, A4);
+    let mut tab = Tab::open(&studio.address);
+    after(&mut tab, |_| {});
+    let project = work.path("studio/a4-plate");
     // A panel is clicked and let go, and clamped.
     tab.click("input[value=grip]");
     let held: [f64; 2] = serde_json::from_value(tab.value(
@@ -292,6 +327,11 @@ fn a_new_sheet_begins_with_a_material_and_a_size() {
     }
     tab.click("#new-sheet button");
     tab.wait("document.getElementById('refusal').textContent.includes('use a larger sheet')");
+    tab.click("#back");
+    assert_eq!(
+        tab.value("document.getElementById('tools').hidden"),
+        json!(false)
+    );
 }
 
 #[test]

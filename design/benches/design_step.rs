@@ -262,3 +262,13 @@ fn equilibria_and_gradient_learned(bencher: Bencher, size: (usize, usize)) {
     let (problem, design) = learned(size);
     bencher.bench(|| problem.evaluate(black_box(&design)).unwrap());
 }
+
+/// The equilibrium at full load of a sheet whose ligaments are wider than those of a known path, as in the studio.
+#[divan::bench(args = LEARNED_SIZES, sample_count = 10, max_time = 10)]
+fn draft_learned(bencher: Bencher, size: (usize, usize)) {
+    let (problem, design) = learned(size);
+    let known = problem.deploy(&design).unwrap().known_path();
+    let mut wider = design;
+    wider.omega.iter_mut().for_each(|omega| *omega += 0.02);
+    bencher.bench(|| problem.draft(black_box(&wider), Some(&known)).unwrap());
+}

@@ -1,6 +1,6 @@
 //! Shipped scenes are read; invalid scenes give a message with the key and the reason.
 
-use design::scene::Scene;
+use design::scene::{Scene, SceneConfig};
 use std::path::{Path, PathBuf};
 
 fn shipped(name: &str) -> PathBuf {
@@ -327,4 +327,58 @@ fn an_objective_of_areas_needs_pins_and_a_target_with_area() {
     let held = "held = true";
     let message = refusal("compact-11x11.toml", held, "hold = true");
     assert!(message.contains("did you mean `held`?"), "{message}");
+}
+
+#[test]
+fn a_changed_scene_is_the_one_that_would_be_read() {
+    let path = shipped("a4-plate.toml");
+    let scene = Scene::read(&path).unwrap();
+    let thinner = |config: &mut SceneConfig| {
+        config.thickness = Some(2.4);
+        config.process.r_win = 9.6;
+        config.ligament.range = [0.8, 2.2];
+    };
+    let changes: [&dyn Fn(&mut SceneConfig); 5] = [
+        &|config| config.drive.as_mut().unwrap().stroke = 30.0,
+        &|config| config.ligament.range = [1.1, 2.7],
+        &thinner,
+        &|config| config.process.r_win = 11.0,
+        &|config| config.surrogate.as_mut().unwrap().weights = "nothing.safetensors".into(),
+    ];
+    let mut refused = 0;
+    for change in changes {
+        let mut config = scene.config.clone();
+        change(&mut config);
+        let scenes = [scene.changed(config.clone()), Scene::new(config, &path)];
+        let [changed, read] = scenes.map(|scene| {
+            let scene = scene.map_err(|error| error.to_string())?;
+            let loss = scene.problem().unwrap().loss(&scene.start()).unwrap();
+            Ok::<_, String>((scene.hash(), scene.model_hash(), loss))
+        });
+        assert_eq!(changed, read);
+        refused += usize::from(read.is_err());
+    }
+    assert_eq!(refused, 2);
+}
+
+#[test]
+fn a_scene_starts_at_a_design_from_any_folder() {
+    let path = shipped("a4-polyester.toml");
+    let scene = Scene::read(&path).unwrap();
+    let mut design = scene.start();
+    let wave = |(i, x): (usize, &mut f64)| *x += 0.2 * (i as f64).sin();
+    design.omega.iter_mut().enumerate().for_each(wave);
+    design.pattern.z.iter_mut().enumerate().for_each(wave);
+    let folder = tempfile::tempdir().unwrap();
+    let moved = SceneConfig {
+        start: scene.starting_at(&design).start,
+        ..scene.located().unwrap()
+    };
+    let moved = Scene::new(moved, &folder.path().join("scene.toml")).unwrap();
+    assert_eq!(moved.model_hash(), scene.model_hash());
+    let [loss, expected] = [
+        moved.problem().unwrap().loss(&moved.start()).unwrap(),
+        scene.problem().unwrap().loss(&design).unwrap(),
+    ];
+    assert!((loss / expected - 1.0).abs() < 1e-9, "{loss} {expected}");
 }

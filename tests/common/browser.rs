@@ -1,5 +1,6 @@
 //! A tab of Chromium that a test uses as a person does, by the DevTools protocol over two pipes.
 
+use base64::Engine;
 use serde_json::{Value, json};
 use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};
@@ -157,6 +158,15 @@ impl Tab {
         let buttons = u8::from(kind != "mouseReleased");
         let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": buttons, "clickCount": 1 });
         self.call("Input.dispatchMouseEvent", event);
+    }
+
+    /// What the window shows, as a PNG.
+    pub fn picture(&mut self) -> Vec<u8> {
+        let mut picture = self.call("Page.captureScreenshot", json!({}));
+        let text: String = serde_json::from_value(picture["data"].take()).unwrap();
+        base64::engine::general_purpose::STANDARD
+            .decode(text)
+            .unwrap()
     }
 
     /// Drops a file onto an element.

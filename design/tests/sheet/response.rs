@@ -2,11 +2,13 @@
 //! weight, and inputs that are refused.
 
 use design::analysis::taylor::TaylorRemainders;
-use design::equilibrium::load_step::Status;
+use design::equilibrium::load_step::{DescentEnd, Status};
 use design::equilibrium::solver::EquilibriumError;
 use design::objective::response::{Conditions, Response, ResponseCotangent};
 use design::{DesignError, DesignProblem, DesignVector, Scene};
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Dead loads on a clamped film; a hanging plate, heavy and with a prescribed stroke; springs.
 const SCENES: [&str; 3] = ["pet-3x3", "a4-plate", "linear-7x7"];
@@ -197,6 +199,40 @@ fn a_known_configuration_gives_the_same_response() {
             "{error}"
         );
     }
+}
+
+#[test]
+fn a_draft_is_the_equilibrium_that_a_path_leads_to_where_there_is_one() {
+    for scene in SCENES {
+        let (problem, design) = problem(scene);
+        let known = problem.deploy(&design).unwrap().known_path();
+        // Beyond the distance at which a path is corrected from a known one, but without a jump.
+        let mut wider = design.clone();
+        wider.omega.iter_mut().for_each(|omega| *omega += 0.3);
+        let draft = problem.draft(&wider, Some(&known)).unwrap();
+        let followed = problem.draft(&wider, None).unwrap();
+        assert!(!draft.deployment.followed && followed.deployment.followed);
+        let size = problem.outline.corners[2][0];
+        let corners = [draft.corners(), followed.corners()];
+        let corners = std::iter::zip(corners[0].as_flattened(), corners[1].as_flattened());
+        for (draft, followed) in corners {
+            let apart = (draft[0] - followed[0]).hypot(draft[1] - followed[1]);
+            assert!(apart < 1e-6 * size, "{scene}: {apart} mm");
+        }
+    }
+}
+
+#[test]
+fn a_stopped_path_has_no_equilibrium_at_full_load() {
+    let (mut problem, design) = problem("pet-3x3");
+    let stop = Arc::new(AtomicBool::new(true));
+    problem.stop_by(Arc::clone(&stop));
+    let stopped = problem.deploy(&design).unwrap();
+    assert_eq!(stopped.final_step().descent_end, Some(DescentEnd::Stopped));
+    let error = problem.evaluate(&design).err().unwrap().to_string();
+    assert!(error.contains("stopped on request"), "{error}");
+    stop.store(false, Ordering::Relaxed);
+    assert!(problem.evaluate(&design).is_ok());
 }
 
 #[test]

@@ -11,7 +11,10 @@ let shop = { materials: [], machines: [] };
 let times = { draft: null, everyday: null, recent: [] };
 
 /** The designs of this visit: loss, outline error, and the corners of the deployed panels (mm). */
-const designs = [];
+let designs = [];
+
+/** The scene file of the sheet that is open. */
+let file = null;
 
 connect({
   shop(offered) {
@@ -28,7 +31,7 @@ connect({
     byId("undo").disabled = event.undo === 0;
     byId("redo").disabled = event.redo === 0;
     byId("terminal").textContent = `In the terminal: kirigami design ${event.file}`;
-    openTools(true);
+    if (event.file !== file) openSheet(event.file);
     // Changes of this page that are on their way are newer.
     if (event.by?.[0] === me && event.by[1] < changes) return;
     document.documentElement.dataset.saved = true;
@@ -171,6 +174,15 @@ function sayMaterial() {
 function openTools(tools) {
   byId("tools").hidden = !tools;
   byId("new-sheet").hidden = tools;
+  byId("back").hidden = file === null;
+}
+
+/** Waits for the first page of another sheet. */
+function openSheet(other) {
+  [file, run, designs] = [other, null, []];
+  document.body.classList.add("empty");
+  byId("files").textContent = "";
+  openTools(true);
 }
 
 byId("new-material").addEventListener("change", sayMaterial);
@@ -179,11 +191,10 @@ byId("new-sheet").addEventListener("submit", (event) => {
   const [width, height, thickness] = ["new-width", "new-height", "new-thickness"].map((id) => byId(id).valueAsNumber || null);
   if ((width === null) !== (height === null)) return refuse("Give both width and height of the sheet, or neither.");
   refuse("");
-  run = null;
-  document.body.classList.add("empty");
   ask({ do: "new", name: byId("new-name").value, material: byId("new-material").value || null, thickness, size: width && [width, height] });
 });
 byId("another").addEventListener("click", () => openTools(false));
+byId("back").addEventListener("click", () => { refuse(""); openTools(true); });
 byId("design").addEventListener("click", () => ask({ do: byId("design").textContent === "Pause" ? "pause" : "design" }));
 byId("undo").addEventListener("click", () => ask({ do: "undo" }));
 byId("redo").addEventListener("click", () => ask({ do: "redo" }));
