@@ -20,6 +20,7 @@ mod ratios;
 pub mod run_inputs;
 mod scene_error;
 mod sheet_config;
+mod springback_file;
 mod tolerances;
 mod weights_files;
 
@@ -41,4 +42,5 @@ pub use posture::{Posture, PostureConfig};
 pub use ratios::{Ratios, rounded};
 pub use scene_error::SceneError;
 pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
+pub use springback_file::{SpringbackFileError, SpringbackMismatch};
 pub use tolerances::ToleranceConfig;

@@ -51,7 +51,7 @@ enum Stage {
     ///
     /// Every hinge springs back elastically towards the deformation that stays by the law of `kirigami surrogate release`, and the sheet
     /// finds its equilibrium without loads, under its weight if it has one. Example: kirigami inspect springback runs/a4-plate
-    /// --law data/polypropylene-3mm/springback.json --picture runs/a4-plate/released.svg
+    /// --picture runs/a4-plate/released.svg
     Springback(SpringbackArgs),
 }
 
@@ -59,9 +59,9 @@ enum Stage {
 struct SpringbackArgs {
     #[command(flatten)]
     listed: Listed,
-    /// Law of released hinges (JSON)
+    /// Law of released hinges (JSON) [default: that of the scene, surrogate.springback]
     #[arg(long, value_name = "FILE")]
-    law: PathBuf,
+    law: Option<PathBuf>,
     /// Draw the sheet without loads to this file (SVG)
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
@@ -147,7 +147,10 @@ impl InspectCommand {
 impl SpringbackArgs {
     fn run(&self) -> Result<()> {
         let (scene, design, name) = self.listed.read()?;
-        let law = Springback::load(&self.law)?;
+        let named = self.law.as_deref().map(Springback::load).transpose()?;
+        let law = named.or_else(|| scene.springback.clone()).context(
+            "the scene names no law of released hinges: name one (--law), or set surrogate.springback",
+        )?;
         let problem = scene.problem()?;
         let listing = SpringbackListing::new(&scene, &problem, &design, &law)?;
         if let Some(path) = &self.picture {

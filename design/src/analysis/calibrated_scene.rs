@@ -59,6 +59,10 @@ pub fn write_calibrated(
         own.save(&folder.join(&name))?;
         *weights = name.into();
     }
+    if let Some(learned) = &mut config.surrogate {
+        // That law is for the stresses of the scene's material.
+        learned.springback = None;
+    }
     let mut text = comment.as_bytes().to_vec();
     text.extend(toml(&config, folder)?);
     write_to(folder, SCENE_FILE, &text)?;

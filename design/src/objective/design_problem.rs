@@ -206,6 +206,12 @@ impl Deployment {
         let inside = || self.path.iter().flat_map(|step| &step.inside);
         inside().filter(|inside| **inside).count() as f64 / inside().count() as f64
     }
+
+    /// Number of hinges that are outside the training domain of the hinge law in the last state.
+    pub fn hinges_outside(&self) -> usize {
+        let inside = &self.final_step().inside;
+        inside.iter().filter(|inside| !**inside).count()
+    }
 }
 
 impl DesignProblem {

@@ -6,10 +6,11 @@ use crate::scene::keys::{SceneConfig, beside, folder};
 use crate::scene::loaded_hinge::{LoadedHinge, network};
 use crate::scene::posture::PostureConfig;
 use crate::scene::scene_error::SceneError;
+use crate::scene::springback_file::{self, SpringbackMismatch};
 use crate::sheet::cut_sheet::SheetOptions;
 use hinge::SheetMaterial;
 use std::path::{Path, PathBuf};
-use surrogate::Surrogate;
+use surrogate::{Springback, Surrogate};
 
 /// Version of geometry, mechanics and objective: raised when a change of the code changes the loss of a design, so that
 /// a run of an earlier version is not continued.
@@ -36,6 +37,8 @@ pub struct Scene {
     pub target: Target,
     /// The hinge law, with the files that it reads.
     pub hinge: LoadedHinge,
+    /// The law of released hinges, for the report.
+    pub springback: Option<Springback>,
     pub(super) path: PathBuf,
 }
 
@@ -61,12 +64,15 @@ impl Scene {
         let target = target.map_err(SceneError::at(path))?;
         checks::target(&target, &config).map_err(SceneError::at(path))?;
         let hinge = LoadedHinge::load(&config, &measured, path)?;
+        let springback = springback_file::load(&config, &measured, path);
+        let springback = springback.map_err(SceneError::at(path))?;
         Ok(Self {
             config,
             material,
             measured,
             target,
             hinge,
+            springback,
             path: path.to_owned(),
         })
     }
@@ -84,6 +90,11 @@ impl Scene {
     /// Further weights for the hinges of this scene, at the thickness of its sheet.
     pub fn network(&self, weights: &Path) -> Result<Surrogate, SceneError> {
         network(&self.config, &self.measured, &self.path, weights)
+    }
+
+    /// An error if a law of released hinges is not for the hinges of this scene.
+    pub fn check_springback(&self, law: &Springback) -> Result<(), SpringbackMismatch> {
+        springback_file::check(&self.config, &self.measured, law)
     }
 
     /// A path that the scene names.

@@ -7,6 +7,7 @@ use crate::objective::design_problem::DesignError;
 use crate::objective::target::TargetError;
 use crate::pattern::pattern_error::PatternError;
 use crate::scene::posture::Posture;
+use crate::scene::springback_file::SpringbackFileError;
 use hinge::{InvalidDesign, InvalidMaterial};
 use std::path::PathBuf;
 use support::key_limits::OutOfRange;
@@ -161,6 +162,8 @@ pub enum InvalidScene {
         files[0].display(), files[1].display()
     )]
     SameNetwork { files: [PathBuf; 2] },
+    #[error(transparent)]
+    Springback(#[from] SpringbackFileError),
     #[error(
         "condensed: at w_lig = {w_lig} mm the weights have k_a = {} N/mm, k_s = {} N/mm, k_theta = {} N mm, which must \
          all be positive: use hinge = \"surrogate\" or other weights",
