@@ -328,3 +328,24 @@ fn an_objective_of_areas_needs_pins_and_a_target_with_area() {
     let message = refusal("compact-11x11.toml", held, "hold = true");
     assert!(message.contains("did you mean `held`?"), "{message}");
 }
+
+#[test]
+fn an_expected_loss_needs_errors_that_change_an_equilibrium() {
+    for (scene, tolerances, key) in [
+        ("linear-7x7.toml", "", "give [tolerances]"),
+        ("linear-7x7.toml", "kerf = 0.0", "give [tolerances]"),
+        (
+            "linear-7x7.toml",
+            "thickness = 0.02",
+            "tolerances.thickness",
+        ),
+        ("pin-7x7.toml", "kerf = 0.1", "hinge = \"pin\""),
+    ] {
+        let robust = format!("[tolerances]\n{tolerances}\n\n[objective]\nrobust = 1.0");
+        let message = refusal(scene, "[objective]", &robust);
+        assert!(
+            message.contains("objective.robust") && message.contains(key),
+            "{message}"
+        );
+    }
+}

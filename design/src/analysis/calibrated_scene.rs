@@ -8,9 +8,9 @@
 //! | `sheet/target.csv`, `.svg` | the target, if the scene names a file |
 //! | `sheet/weights-N.safetensors`, `.json` | the weights and their ensemble, from 0, with energies in proportion to the stresses |
 
-use crate::analysis::real_sheet::Deviation;
 use crate::scene::Scene;
 use crate::scene::run_inputs::{SCENE_FILE, read, toml, write_to};
+use crate::sheet::deviation::Deviation;
 use std::path::{Path, PathBuf};
 use support::file_error::FileError;
 use support::whole_file;

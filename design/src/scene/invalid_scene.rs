@@ -191,6 +191,18 @@ pub enum InvalidScene {
     )]
     HeldCentre,
     #[error(
+        "objective.robust: hinge = \"pin\" has no equilibrium that errors of cutting change: remove it, or use another hinge law"
+    )]
+    RobustPins,
+    #[error(
+        "objective.robust needs errors to be robust against: give [tolerances] ligament, kerf or thickness (mm) above 0"
+    )]
+    RobustWithoutTolerances,
+    #[error(
+        "objective.robust with tolerances.thickness needs hinge = \"surrogate\": the constants of other laws hold for one thickness"
+    )]
+    RobustThickness,
+    #[error(
         "objective.target_points = {points}: the polygon through them encloses no area, which objective.symmetric_difference \
          and objective.centre = \"area\" need: increase it"
     )]

@@ -2,7 +2,7 @@
 
 use crate::report::columns::rounded;
 use design::analysis::cutting_errors::{
-    CuttingError, CuttingErrors, CuttingErrorsError, FirstOrder, SampledSheets,
+    CuttingError, CuttingErrors, CuttingErrorsError, FirstOrder, SampledSheets, Spread,
 };
 use design::analysis::error_budget::{Cause, ErrorBudget};
 use design::objective::design_problem::DesignProblem;
@@ -245,6 +245,23 @@ impl ToleranceListing {
                 "the largest D_peak changes by {mean:+.4} +- {deviation:.4}"
             )?;
         }
+        writeln!(
+            f,
+            "\n{:<26}{:>14}{:>14}{:>14}",
+            "", "drawn", "mean", "95 % below"
+        )?;
+        for (name, Spread { drawn, mean, most }) in [
+            ("outline error (mm)", samples.outline_error),
+            ("loss (mm^2)", samples.loss),
+        ] {
+            writeln!(f, "{name:<26}{drawn:>14.3}{mean:>14.3}{most:>14.3}")?;
+        }
+        writeln!(
+            f,
+            "{:<26}{:>28}",
+            "hinges leave the domain",
+            format!("in {} of {} sheets", samples.outside, samples.deployed)
+        )?;
         if samples.failed > 0 {
             writeln!(
                 f,

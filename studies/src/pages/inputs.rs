@@ -107,17 +107,12 @@ fn named_by(input: &str, root: &Path) -> Vec<String> {
     files.collect()
 }
 
-/// Of weights what they compute, of configurations their keys without those that only the report of a design states, of other files
-/// their bytes.
+/// Of weights what they compute, of configurations their keys, of other files their bytes.
 fn hash(file: &Path) -> Result<String> {
     let bytes = match file.extension().and_then(|it| it.to_str()) {
         Some("safetensors") => Surrogate::load(file)?.hash().into_bytes(),
         Some("toml") => {
-            let mut keys: toml::Table = support::toml_file::read(file)?;
-            keys.remove("creep");
-            if let Some(toml::Value::Table(learned)) = keys.get_mut("surrogate") {
-                learned.remove("springback");
-            }
+            let keys: toml::Table = support::toml_file::read(file)?;
             toml::to_string(&keys)?.into_bytes()
         }
         _ => std::fs::read(file).with_context(|| file.display().to_string())?,
