@@ -46,6 +46,7 @@ enum Stage {
     /// Each ligament, the kerf and the thickness are changed by one standard deviation, half of their tolerance, and the
     /// sheet is deployed again; then sheets with all errors at random. Tolerances are those of the scene ([tolerances]) unless
     /// they are named. Example: kirigami inspect tolerances runs/a4-plate --ligament 0.05 --kerf 0.05 --samples 200
+    /// --picture runs/a4-plate/tolerances.svg
     Tolerances(ToleranceArgs),
     /// Print what stays of the opening when the loads are taken off
     ///
@@ -90,6 +91,10 @@ struct ToleranceArgs {
     /// the model]
     #[arg(long, value_name = "MM", value_parser = length)]
     within: Option<f64>,
+    /// Draw the deployed sheet to this file, its hinges coloured by the share of their ligament in the variance of the corners
+    /// (SVG); needs a tolerance of the ligaments
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
 }
 
 fn length(text: &str) -> Result<f64, String> {
@@ -185,6 +190,12 @@ impl ToleranceArgs {
         let problem = scene.problem()?;
         let listing = ToleranceListing::new(&scene, &problem, &design, question, &mut progress)?;
         bar.finish();
+        if let Some(path) = &self.picture {
+            let picture = listing.picture(&scene).context(
+                "--picture colours hinges by the errors of their ligaments: give their tolerance, --ligament or [tolerances] ligament (mm)",
+            )?;
+            output_file::write(path, picture)?;
+        }
         self.listed.print(name, listing)
     }
 }
