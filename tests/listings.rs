@@ -282,6 +282,20 @@ fn tolerances() {
     let allowed = |of: &Value| number(of, "/allowed/ligament");
     assert!((allowed(&two) / allowed(&one) - 1.0).abs() < 0.01);
     assert_eq!(number(&one, "/samples/deployed"), 4.0);
+    // The sheet as drawn has the loss of the design; small errors hardly change its outline.
+    let gradient = work.output(&format!(
+        "{} --json",
+        scene.replace("tolerances", "gradient")
+    ));
+    let gradient: Value = serde_json::from_str(&gradient).unwrap();
+    let ratio = number(&one, "/samples/loss/drawn") / number(&gradient, "/loss");
+    assert!((ratio - 1.0).abs() < 1e-9, "{ratio}");
+    let [drawn, mean, most] =
+        ["drawn", "mean", "most"].map(|of| number(&one, &format!("/samples/outline_error/{of}")));
+    assert!(
+        (mean / drawn - 1.0).abs() < 0.01 && most >= mean,
+        "{drawn} {mean} {most}"
+    );
     let text = work.output(&format!("{scene} --ligament 0.02 --samples 4"));
     assert!(
         text.contains("ligament of hinge") && text.contains("all, 4 sheets"),
