@@ -216,6 +216,50 @@ fn equilibria_objective_and_gradient() {
 }
 
 /// Twice as wide a tolerance has twice the effect, and the same tolerance stays allowed.
+/// Every hinge is coloured by its share of the variance, in both halves of its window, and the eight that matter most are numbered.
+#[test]
+fn hinges_are_coloured_by_their_share_of_the_variance() {
+    let work = Workplace::new();
+    let root = env!("CARGO_MANIFEST_DIR");
+    let text = work.output(&format!(
+        "inspect tolerances {root}/configs/scenes/a4-polyester.toml --design start --ligament 0.1 --samples 0 --json --picture \
+         hinges.svg"
+    ));
+    let listed: Value = serde_json::from_str(&text).unwrap();
+    let picture = std::fs::read_to_string(work.path("hinges.svg")).unwrap();
+    let marks: Vec<&str> = (picture.lines())
+        .filter(|line| line.contains("fill-opacity=\"0.85\""))
+        .collect();
+    let errors = listed["first_order"]["errors"].as_array().unwrap();
+    assert_eq!((marks.len(), errors.len()), (34, 17));
+    let fill = |hinge: usize| {
+        let [one, other] = [0, 1].map(|half| {
+            let mark = marks[2 * hinge + half];
+            mark.split("fill=\"")
+                .nth(1)
+                .unwrap()
+                .split('"')
+                .next()
+                .unwrap()
+        });
+        assert_eq!(one, other);
+        one
+    };
+    // The errors are in descending order of their shares; the brightest colour is that of the largest one.
+    let hinge = |place: usize| errors[place]["error"]["ligament"].as_u64().unwrap() as usize;
+    let brightness = |place: usize| {
+        let colour = u32::from_str_radix(&fill(hinge(place))[1..], 16).unwrap();
+        (colour >> 8) & 0xff
+    };
+    for place in 1..17 {
+        assert!(brightness(place) <= brightness(place - 1), "{place}");
+    }
+    assert!(brightness(16) < brightness(0));
+    for place in 0..8 {
+        assert!(picture.contains(&format!(">{}<", hinge(place))), "{place}");
+    }
+}
+
 #[test]
 fn tolerances() {
     let work = Workplace::new();
@@ -238,9 +282,26 @@ fn tolerances() {
     let allowed = |of: &Value| number(of, "/allowed/ligament");
     assert!((allowed(&two) / allowed(&one) - 1.0).abs() < 0.01);
     assert_eq!(number(&one, "/samples/deployed"), 4.0);
+    // The sheet as drawn has the loss of the design; small errors hardly change its outline.
+    let gradient = work.output(&format!(
+        "{} --json",
+        scene.replace("tolerances", "gradient")
+    ));
+    let gradient: Value = serde_json::from_str(&gradient).unwrap();
+    let ratio = number(&one, "/samples/loss/drawn") / number(&gradient, "/loss");
+    assert!((ratio - 1.0).abs() < 1e-9, "{ratio}");
+    let [drawn, mean, most] =
+        ["drawn", "mean", "most"].map(|of| number(&one, &format!("/samples/outline_error/{of}")));
+    assert!(
+        (mean / drawn - 1.0).abs() < 0.01 && most >= mean,
+        "{drawn} {mean} {most}"
+    );
     let text = work.output(&format!("{scene} --ligament 0.02 --samples 4"));
     assert!(
         text.contains("ligament of hinge") && text.contains("all, 4 sheets"),
         "{text}"
     );
+    let refused = work.error(&format!("{scene} --kerf 0.1 --picture kerf.svg"));
+    assert!(refused.contains("give their tolerance"), "{refused}");
+    assert!(!work.path("kerf.svg").exists());
 }

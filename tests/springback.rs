@@ -4,6 +4,8 @@ mod common;
 
 use common::Workplace;
 use serde_json::Value;
+use std::path::Path;
+use surrogate::Springback;
 
 fn repository(path: &str) -> String {
     format!("{}/{path}", env!("CARGO_MANIFEST_DIR"))
@@ -69,6 +71,81 @@ fn a_plate_springs_back_and_one_of_twice_the_thickness_twice_as_far() {
     );
     let text = work.output(&springback("three.toml", ""));
     assert!(text.contains("of the opening stays") && text.contains("Not in these numbers"));
+}
+
+/// The report of the design of a scene.
+fn report(work: &Workplace, scene: &str) -> Value {
+    serde_json::from_str(&work.output(&format!("design {scene} --json"))).unwrap()
+}
+
+fn weights_with(law: &str) -> (&'static str, String) {
+    let weights = "data/polypropylene-3mm/medium.safetensors\"\n";
+    (weights, format!("{weights}springback = \"{law}\"\n"))
+}
+
+#[test]
+fn the_report_says_what_stays_by_the_law_that_the_scene_names() {
+    let work = Workplace::new();
+    let output = ("../../../runs/springback/four-panels", "run");
+    let output = (&*output.0.replace("../../../", &repository("")), output.1);
+    let (weights, named) = weights_with(&repository("data/polypropylene-3mm/springback.json"));
+    four_panels(&work, "with.toml", &[output, (weights, &named)]);
+    four_panels(&work, "without.toml", &[output]);
+    let found = report(&work, "with.toml");
+    let found = found.pointer("/facts/lasting_shape").unwrap();
+    // The run has a copy of the law.
+    let listed = work.output("inspect springback run --json");
+    let listed: Value = serde_json::from_str(&listed).unwrap();
+    for key in ["rotations", "corners", "outline_error", "law"] {
+        assert_eq!(found["released"][key], listed[key], "{key}");
+    }
+    assert!(listed["share"].as_f64().unwrap() < 0.9);
+    assert_eq!(found["creep"]["ratio"], 3.0);
+    let text = || std::fs::read_to_string(work.path("run/report.txt")).unwrap();
+    let share = 100.0 * listed["share"].as_f64().unwrap();
+    let stays = format!("stay when the load is taken off, {share:.0} %");
+    assert!(text().contains(&stays), "{}", text());
+    assert!(
+        text().contains("falls to about 1/3 in 2 years"),
+        "{}",
+        text()
+    );
+    // The same run goes on without it.
+    let without = report(&work, "without.toml");
+    assert!(
+        without
+            .pointer("/facts/lasting_shape/released")
+            .unwrap()
+            .is_null()
+    );
+    let unknown = "not known: the sheet springs back when the load is taken off";
+    assert!(text().contains(unknown), "{}", text());
+    assert!(
+        work.error("inspect springback run")
+            .contains("name one (--law)")
+    );
+}
+
+#[test]
+fn a_scene_with_a_law_for_another_sheet_is_refused() {
+    let work = Workplace::new();
+    let law = repository("data/polypropylene-3mm/springback.json");
+    let mut other = Springback::load(Path::new(&law)).unwrap();
+    other.material_hash = "0123456789abcdef".into();
+    other.save(&work.path("other.json")).unwrap();
+    let film = repository("data/pet-0.5mm/medium.json");
+    for (law, expected) in [
+        (&*film, "is not a law of released hinges"),
+        ("nowhere.json", "cannot read nowhere.json"),
+        ("other.json", "the sheet is of another material law"),
+    ] {
+        let (weights, named) = weights_with(law);
+        four_panels(&work, "scene.toml", &[(weights, &named)]);
+        let error = work.error("design scene.toml");
+        let error = error.split_whitespace().collect::<Vec<_>>().join(" ");
+        let named = error.contains("surrogate.springback: ");
+        assert!(named && error.contains(expected), "{error}");
+    }
 }
 
 #[test]

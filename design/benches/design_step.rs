@@ -123,6 +123,7 @@ fn problem(
                 Weighted::new(0.1, Shear { temperature: 0.02 }),
             ],
             penalties: Vec::new(),
+            cut_sheets: None,
         },
     };
     (problem, perturbed(grid))

@@ -2,8 +2,10 @@
 
 mod balance;
 pub mod centre;
+pub mod cut_sheets;
 mod design_gradient;
 pub mod design_problem;
+mod expected_loss;
 pub mod hinge_measures;
 pub mod loss;
 pub mod response;

@@ -21,6 +21,7 @@ mod ratios;
 pub mod run_inputs;
 mod scene_error;
 mod sheet_config;
+mod springback_file;
 mod tolerances;
 mod weights_files;
 
@@ -43,4 +44,5 @@ pub use posture::{Posture, PostureConfig};
 pub use ratios::{Ratios, rounded};
 pub use scene_error::SceneError;
 pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
+pub use springback_file::{SpringbackFileError, SpringbackMismatch};
 pub use tolerances::ToleranceConfig;

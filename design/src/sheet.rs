@@ -2,6 +2,7 @@
 
 pub mod cut_sheet;
 pub mod cutting_process;
+pub mod deviation;
 pub mod hinge_window;
 pub mod ideal_deployment;
 pub mod kinematics;

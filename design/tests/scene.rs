@@ -382,3 +382,24 @@ fn a_scene_starts_at_a_design_from_any_folder() {
     ];
     assert!((loss / expected - 1.0).abs() < 1e-9, "{loss} {expected}");
 }
+
+#[test]
+fn an_expected_loss_needs_errors_that_change_an_equilibrium() {
+    for (scene, tolerances, key) in [
+        ("linear-7x7.toml", "", "give [tolerances]"),
+        ("linear-7x7.toml", "kerf = 0.0", "give [tolerances]"),
+        (
+            "linear-7x7.toml",
+            "thickness = 0.02",
+            "tolerances.thickness",
+        ),
+        ("pin-7x7.toml", "kerf = 0.1", "hinge = \"pin\""),
+    ] {
+        let robust = format!("[tolerances]\n{tolerances}\n\n[objective]\nrobust = 1.0");
+        let message = refusal(scene, "[objective]", &robust);
+        assert!(
+            message.contains("objective.robust") && message.contains(key),
+            "{message}"
+        );
+    }
+}

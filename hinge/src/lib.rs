@@ -35,6 +35,7 @@
 
 #![warn(missing_docs)]
 
+mod creep;
 mod deformation;
 mod design;
 mod domain;
@@ -47,6 +48,7 @@ mod sample;
 mod strain_volumes;
 pub mod tensile;
 
+pub use creep::Creep;
 pub use deformation::{HingeDeformation, HingeForces};
 pub use design::{HingeConstants, HingeDesign, InvalidDesign};
 pub use domain::{InvalidDomain, TrainingDomain};

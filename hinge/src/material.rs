@@ -1,7 +1,7 @@
 //! The sheet material, as measured on tensile specimens; section 4.1.
 
-use crate::Regime;
 use crate::tensile::{TensileError, read_tensile};
+use crate::{Creep, Regime};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -32,6 +32,9 @@ pub struct SheetMaterial {
     /// Relative standard deviation of the stress at equal strain, if known; no window solve uses it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stress_deviation: Option<f64>,
+    /// Creep, if known; no solve uses it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub creep: Option<Creep>,
 }
 
 /// The TOML file; see `configs/materials/`.
@@ -64,6 +67,8 @@ struct MaterialFile {
     /// a design; `kirigami material fit` writes that of its specimens. No window solve uses it.
     #[schemars(range(min = 0.0, max = 1.0))]
     stress_deviation: Option<f64>,
+    /// Creep under a load that stays, by order of magnitude; without it the report says that it is not known.
+    creep: Option<Creep>,
 }
 
 /// Maximum of Young's modulus over density (MPa m^3/kg): laminates of carbon fibre have up to 190, beryllium 155, metals 20
@@ -131,6 +136,7 @@ impl SheetMaterial {
             fracture_strain: file.fracture_strain,
             plastic,
             stress_deviation: file.stress_deviation,
+            creep: file.creep,
         };
         match material.validate() {
             Ok(()) => Ok(material),
@@ -141,11 +147,12 @@ impl SheetMaterial {
         }
     }
 
-    /// The material as solves record it: without its deviation, which they do not depend on.
+    /// The material as solves record it: without deviation and creep, which they do not depend on.
     #[must_use]
     pub fn as_solved(&self) -> Self {
         Self {
             stress_deviation: None,
+            creep: None,
             ..self.clone()
         }
     }
@@ -199,6 +206,9 @@ impl SheetMaterial {
         if let Err(error) = key_limits::check::<MaterialFile>(self) {
             return refuse(error.to_string());
         }
+        if (self.creep.as_ref()).is_some_and(|creep| creep.source.trim().is_empty()) {
+            return refuse("creep.source is empty: say where the ratio is from".into());
+        }
         let stiffness = self.young / self.density_kg_m3;
         if stiffness > STIFFEST {
             return refuse(format!(
@@ -249,6 +259,7 @@ mod tests {
             fracture_strain: 1.784,
             plastic: vec![[44.0, 0.0], [33.6, 0.05], [200.0, 1.784]],
             stress_deviation: None,
+            creep: None,
         }
     }
 
@@ -264,6 +275,30 @@ mod tests {
         harder.plastic[2][0] += 1e-9;
         assert_ne!(harder.law_hash(), film().law_hash());
         assert_eq!(film().law_hash().len(), 16);
+    }
+
+    #[test]
+    fn creep_is_a_fact_of_the_report_alone() {
+        let creeping = |ratio: f64, years: f64, source: &str| SheetMaterial {
+            creep: Some(Creep {
+                ratio,
+                years,
+                source: source.into(),
+            }),
+            ..film()
+        };
+        let known = creeping(3.0, 2.0, "a table");
+        known.validate().unwrap();
+        assert_eq!(known.law_hash(), film().law_hash());
+        assert_eq!(known.as_solved(), film());
+        for (material, expected) in [
+            (creeping(0.33, 2.0, "a table"), "creep.ratio = 0.33"),
+            (creeping(3.0, 0.0, "a table"), "creep.years = 0"),
+            (creeping(3.0, 2.0, " "), "creep.source is empty"),
+        ] {
+            let message = material.validate().unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        }
     }
 
     #[test]

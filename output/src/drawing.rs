@@ -10,7 +10,7 @@ pub mod page;
 mod surface;
 
 pub(crate) use deployed::deployed_on_paper;
-pub use deployed::{deployed, deployment_frames};
+pub use deployed::{deployed, deployed_by_share, deployment_frames};
 pub use flat::flat;
 pub(crate) use flat::flat_on_paper;
 pub use measured::measured;

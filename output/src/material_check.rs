@@ -291,6 +291,7 @@ mod tests {
             fracture_strain: 1.784,
             plastic: vec![[44.0, 0.0], [33.6, 0.05], [200.0, 1.784]],
             stress_deviation: None,
+            creep: None,
         }
     }
 

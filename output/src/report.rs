@@ -5,6 +5,7 @@ pub(crate) mod columns;
 mod estimate;
 mod fact_sheet;
 mod hinge_row;
+mod lasting_shape;
 mod rules;
 mod self_weight;
 mod text;
@@ -19,6 +20,7 @@ pub use budget::Budget;
 pub use estimate::Estimate;
 pub use fact_sheet::{FactSheet, Reached, SpotCheck, WeightFacts};
 pub use hinge_row::HingeRow;
+pub use lasting_shape::{LastingShape, Released};
 pub use self_weight::{Lying, SelfWeight};
 pub use warning::{Concern, Severity, Warning};
 

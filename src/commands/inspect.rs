@@ -46,12 +46,13 @@ enum Stage {
     /// Each ligament, the kerf and the thickness are changed by one standard deviation, half of their tolerance, and the
     /// sheet is deployed again; then sheets with all errors at random. Tolerances are those of the scene ([tolerances]) unless
     /// they are named. Example: kirigami inspect tolerances runs/a4-plate --ligament 0.05 --kerf 0.05 --samples 200
+    /// --picture runs/a4-plate/tolerances.svg
     Tolerances(ToleranceArgs),
     /// Print what stays of the opening when the loads are taken off
     ///
     /// Every hinge springs back elastically towards the deformation that stays by the law of `kirigami surrogate release`, and the sheet
     /// finds its equilibrium without loads, under its weight if it has one. Example: kirigami inspect springback runs/a4-plate
-    /// --law data/polypropylene-3mm/springback.json --picture runs/a4-plate/released.svg
+    /// --picture runs/a4-plate/released.svg
     Springback(SpringbackArgs),
 }
 
@@ -59,9 +60,9 @@ enum Stage {
 struct SpringbackArgs {
     #[command(flatten)]
     listed: Listed,
-    /// Law of released hinges (JSON)
+    /// Law of released hinges (JSON) [default: that of the scene, surrogate.springback]
     #[arg(long, value_name = "FILE")]
-    law: PathBuf,
+    law: Option<PathBuf>,
     /// Draw the sheet without loads to this file (SVG)
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
@@ -90,6 +91,10 @@ struct ToleranceArgs {
     /// the model]
     #[arg(long, value_name = "MM", value_parser = length)]
     within: Option<f64>,
+    /// Draw the deployed sheet to this file, its hinges coloured by the share of their ligament in the variance of the corners
+    /// (SVG); needs a tolerance of the ligaments
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
 }
 
 fn length(text: &str) -> Result<f64, String> {
@@ -147,7 +152,10 @@ impl InspectCommand {
 impl SpringbackArgs {
     fn run(&self) -> Result<()> {
         let (scene, design, name) = self.listed.read()?;
-        let law = Springback::load(&self.law)?;
+        let named = self.law.as_deref().map(Springback::load).transpose()?;
+        let law = named.or_else(|| scene.springback.clone()).context(
+            "the scene names no law of released hinges: name one (--law), or set surrogate.springback",
+        )?;
         let problem = scene.problem()?;
         let listing = SpringbackListing::new(&scene, &problem, &design, &law)?;
         if let Some(path) = &self.picture {
@@ -182,6 +190,12 @@ impl ToleranceArgs {
         let problem = scene.problem()?;
         let listing = ToleranceListing::new(&scene, &problem, &design, question, &mut progress)?;
         bar.finish();
+        if let Some(path) = &self.picture {
+            let picture = listing.picture(&scene).context(
+                "--picture colours hinges by the errors of their ligaments: give their tolerance, --ligament or [tolerances] ligament (mm)",
+            )?;
+            output_file::write(path, picture)?;
+        }
         self.listed.print(name, listing)
     }
 }

@@ -11,7 +11,6 @@ use crate::ui::count::count;
 use crate::ui::run_folder;
 use anyhow::{Context, Result};
 use clap::Args;
-use design::analysis::springback::check_springback;
 use design::pattern::design_vector::DesignVector;
 use design::scene::{Posture, Scene};
 use mesher::Tier;
@@ -146,7 +145,7 @@ impl VerifyCommand {
             None => {
                 let law = self.released.as_deref().map(Springback::load).transpose()?;
                 if let Some(law) = &law {
-                    check_springback(&scene, law)?;
+                    scene.check_springback(law)?;
                 }
                 let found = balanced(&scene, design, &windows, self.rounds);
                 let (found, problem) = found.map_err(task_error)?;

@@ -123,6 +123,7 @@ fn base(path: &Path, weights: &Path) -> Result<SceneConfig> {
         config.surrogate = Some(SurrogateFile {
             weights: weights.to_owned(),
             ensemble: Vec::new(),
+            springback: None,
         });
     }
     Ok(config)

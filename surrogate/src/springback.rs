@@ -375,6 +375,7 @@ mod tests {
             fracture_strain: 1.0,
             plastic: vec![[30.0, 0.0]],
             stress_deviation: None,
+            creep: None,
         }
     }
 

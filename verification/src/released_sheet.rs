@@ -10,7 +10,7 @@ use crate::recorded_path::paths_of;
 use crate::releases::solved;
 use crate::replay::{ElementWindows, UnsolvedHinge};
 use crate::verification_error::VerificationError;
-use design::analysis::springback::{ReleasedSheet, WhatStays, released_hinges};
+use design::analysis::springback::{ReleasedSheet, WhatStays, let_go};
 use design::geometry::polygon::distance;
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::scene::Scene;
@@ -52,9 +52,7 @@ pub fn released_by_elements(
     rounds: usize,
 ) -> Result<ReleasedByElements, VerificationError> {
     let deployed = found.by_elements();
-    let hinges = released_hinges(scene, problem, law, deployed)?;
-    let mut released = problem.let_go(deployed, hinges)?;
-    let by_law = problem.what_stays(deployed, &released)?;
+    let (mut released, by_law) = let_go(scene, problem, law, deployed)?;
     let first = corners(deployed, &released);
     let mut last = first.clone();
     let mut movements = Vec::new();

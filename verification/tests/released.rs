@@ -255,6 +255,7 @@ fn ligaments_at_the_limits_of_plasticity() {
         fracture_strain: 1.0,
         plastic: vec![[stress, 0.0]],
         stress_deviation: None,
+        creep: None,
     };
     let constants = HingeConstants {
         r_win: 12.0,

@@ -8,9 +8,9 @@
 //! | `sheet/target.csv`, `.svg` | the target, if the scene names a file |
 //! | `sheet/weights-N.safetensors`, `.json` | the weights and their ensemble, from 0, with energies in proportion to the stresses |
 
-use crate::analysis::real_sheet::Deviation;
 use crate::scene::Scene;
 use crate::scene::run_inputs::{SCENE_FILE, read, toml, write_to};
+use crate::sheet::deviation::Deviation;
 use std::path::{Path, PathBuf};
 use support::file_error::FileError;
 use support::whole_file;
@@ -58,6 +58,10 @@ pub fn write_calibrated(
         let own = trained.stressed(1.0 + sheet.stress, Some(&material));
         own.save(&folder.join(&name))?;
         *weights = name.into();
+    }
+    if let Some(learned) = &mut config.surrogate {
+        // That law is for the stresses of the scene's material.
+        learned.springback = None;
     }
     let mut text = comment.as_bytes().to_vec();
     text.extend(toml(&config, folder)?);

@@ -19,11 +19,12 @@
 use crate::analysis::actuation_curve::ActuationCurve;
 use crate::analysis::marks::MeasuredPoint;
 use crate::analysis::measured_sheet::{MeasuredSheet, MeasurementError};
-use crate::analysis::real_sheet::{Deviation, ReadingPlan, RealSheet};
+use crate::analysis::real_sheet::{ReadingPlan, RealSheet};
 use crate::analysis::shape_path::ShapePath;
 use crate::geometry::plane::{complex, point};
 use crate::geometry::similarity::{Pair, Scale, Similarity};
 use crate::objective::design_problem::{DesignError, DesignProblem};
+use crate::sheet::deviation::Deviation;
 use faer::Mat;
 use faer::linalg::solvers::{DenseSolveCore, Solve};
 use serde::Serialize;

@@ -12,12 +12,14 @@
 //! (Haldar and Mahadevan, "Probability, Reliability and Statistical Methods in Engineering Design", 2000.)
 
 use crate::analysis::actuation_curve::ActuationCurve;
-use crate::analysis::error_budget::TOLERANCE;
-use crate::analysis::real_sheet::{Deviation, RealSheet};
+use crate::analysis::real_sheet::RealSheet;
 use crate::hinge_law::DamageMeasure;
+use crate::objective::cut_sheets::ErrorDeviations;
 use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, Mechanics};
+use crate::objective::scores::outline_error;
 use crate::pattern::design_vector::DesignVector;
 use crate::scene::{Scene, ToleranceConfig};
+use crate::sheet::deviation::Deviation;
 use crate::sheet::kinematics::deployed_corners;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -94,6 +96,8 @@ pub struct SampledSheets {
     pub deployed: usize,
     /// Number of sheets without an equilibrium at full load.
     pub failed: usize,
+    /// Number of deployed sheets of which a hinge leaves the training domain of its law on the way.
+    pub outside: usize,
     /// Standard deviation of the panel corners from the designed sheet's: root mean square and maximum (mm).
     pub corners: [f64; 2],
     /// Largest movement of a corner: median and 95 % quantile over the sheets (mm).
@@ -102,6 +106,21 @@ pub struct SampledSheets {
     pub load: Option<[f64; 2]>,
     /// Change of the largest D_peak: mean and standard deviation.
     pub d_peak: Option<[f64; 2]>,
+    /// L of (16) (mm^2).
+    pub loss: Spread,
+    /// Root mean square distance of the outline from the target (mm).
+    pub outline_error: Spread,
+}
+
+/// A quantity of the sheet as drawn and of sheets with errors at random.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    /// Of the sheet as drawn.
+    pub drawn: f64,
+    /// Mean over the sheets.
+    pub mean: f64,
+    /// Not exceeded by 95 % of the sheets.
+    pub most: f64,
 }
 
 /// What is compared of a deployed sheet.
@@ -109,14 +128,18 @@ struct Outcome {
     corners: Vec<[f64; 2]>,
     load: Option<f64>,
     d_peak: Option<f64>,
+    loss: f64,
+    outline_error: f64,
+    /// Whether all hinges stay inside the training domain.
+    inside: bool,
 }
 
 /// A designed sheet and the standard deviations of its errors.
 pub struct CuttingErrors<'a> {
+    problem: &'a DesignProblem,
     sheet: RealSheet<'a>,
     outcome: Outcome,
-    /// Of every ligament, the kerf and the thickness (mm).
-    deviations: [f64; 3],
+    deviations: ErrorDeviations,
 }
 
 impl<'a> CuttingErrors<'a> {
@@ -127,19 +150,14 @@ impl<'a> CuttingErrors<'a> {
         design: &DesignVector,
         tolerances: ToleranceConfig,
     ) -> Result<Self, CuttingErrorsError> {
-        let ToleranceConfig {
-            ligament,
-            kerf,
-            thickness,
-        } = tolerances;
-        let deviations = [ligament, kerf, thickness].map(|t| t.unwrap_or(0.0) / TOLERANCE);
-        if deviations == [0.0; 3] {
+        let deviations = tolerances.deviations();
+        if deviations == ErrorDeviations::default() {
             return Err(CuttingErrorsError::NoTolerance);
         }
         let mechanics = problem.model.mechanics();
         let mechanics = mechanics.ok_or(CuttingErrorsError::NoEquilibrium)?;
         let sheet = RealSheet::new(scene, problem, design)?;
-        if deviations[2] > 0.0 && !sheet.has_similar_laws() {
+        if deviations.thickness > 0.0 && !sheet.has_similar_laws() {
             return Err(CuttingErrorsError::NoThickness);
         }
         let hinges = sheet.designed().sheet.hinges.len();
@@ -147,7 +165,8 @@ impl<'a> CuttingErrors<'a> {
             return Err(CuttingErrorsError::TooManyHinges(hinges));
         }
         Ok(Self {
-            outcome: Outcome::new(mechanics, sheet.designed()),
+            outcome: Outcome::new(problem, mechanics, sheet.designed())?,
+            problem,
             sheet,
             deviations,
         })
@@ -160,20 +179,10 @@ impl<'a> CuttingErrors<'a> {
 
     /// All errors that have a tolerance.
     pub fn errors(&self) -> Vec<CuttingError> {
-        let [ligament, kerf, thickness] = self.deviations.map(|deviation| deviation > 0.0);
         let ligaments = (0..self.designed().sheet.hinges.len()).map(CuttingError::Ligament);
-        let common = [
-            (kerf, CuttingError::Kerf),
-            (thickness, CuttingError::Thickness),
-        ];
-        (ligaments.filter(|_| ligament))
-            .chain(
-                common
-                    .into_iter()
-                    .filter(|(is_given, _)| *is_given)
-                    .map(|(_, error)| error),
-            )
-            .collect()
+        let common = [CuttingError::Kerf, CuttingError::Thickness];
+        let all = ligaments.chain(common);
+        all.filter(|error| self.deviation(*error) > 0.0).collect()
     }
 
     /// The first-order estimate; `deployed` is called after every error.
@@ -246,20 +255,19 @@ impl<'a> CuttingErrors<'a> {
             |of: &dyn Fn(&Outcome) -> f64| found.iter().map(of).sum::<f64>() / found.len() as f64;
         let deviation =
             |corner: usize| over(&|of| of.corners[corner].iter().map(|x| x * x).sum()).sqrt();
-        let mut largest: Vec<f64> = (found.iter())
-            .map(|of| {
-                of.corners
-                    .iter()
-                    .fold(0.0, |most: f64, [x, y]| most.max(x.hypot(*y)))
-            })
-            .collect();
-        largest.sort_by(f64::total_cmp);
-        let quantile = |share: f64| {
-            let last = largest.len().saturating_sub(1) as f64;
-            largest
-                .get((share * last).round() as usize)
-                .copied()
-                .unwrap_or(f64::NAN)
+        let largest = found.iter().map(|of| {
+            of.corners
+                .iter()
+                .fold(0.0, |most: f64, [x, y]| most.max(x.hypot(*y)))
+        });
+        let largest = ascending(largest);
+        let spread = |of: fn(&Outcome) -> f64| {
+            let (drawn, changes) = (of(&self.outcome), ascending(found.iter().map(of)));
+            Spread {
+                drawn,
+                mean: drawn + changes.iter().sum::<f64>() / changes.len() as f64,
+                most: drawn + quantile(&changes, 0.95),
+            }
         };
         let moments = |of: fn(&Outcome) -> Option<f64>| {
             let values: Option<Vec<f64>> = found.iter().map(of).collect();
@@ -270,19 +278,21 @@ impl<'a> CuttingErrors<'a> {
         Ok(SampledSheets {
             deployed: found.len(),
             failed,
+            outside: found.iter().filter(|of| !of.inside).count(),
             corners: rms_and_maximum((0..corners).map(deviation)),
-            largest: [quantile(0.5), quantile(0.95)],
+            largest: [0.5, 0.95].map(|share| quantile(&largest, share)),
             load: moments(|of| of.load),
             d_peak: moments(|of| of.d_peak),
+            loss: spread(|of| of.loss),
+            outline_error: spread(|of| of.outline_error),
         })
     }
 
     fn deviation(&self, error: CuttingError) -> f64 {
-        let [ligament, kerf, thickness] = self.deviations;
         match error {
-            CuttingError::Ligament(_) => ligament,
-            CuttingError::Kerf => kerf,
-            CuttingError::Thickness => thickness,
+            CuttingError::Ligament(_) => self.deviations.ligament,
+            CuttingError::Kerf => self.deviations.kerf,
+            CuttingError::Thickness => self.deviations.thickness,
         }
     }
 
@@ -309,6 +319,9 @@ impl<'a> CuttingErrors<'a> {
                 .zip(load)
                 .map(|(change, load)| change / load.abs()),
             d_peak: half(ahead.d_peak, behind.d_peak),
+            loss: 0.5 * (ahead.loss - behind.loss),
+            outline_error: 0.5 * (ahead.outline_error - behind.outline_error),
+            inside: ahead.inside && behind.inside,
         })
     }
 
@@ -321,7 +334,11 @@ impl<'a> CuttingErrors<'a> {
 
     /// Independent normal errors.
     fn drawn(&self, random: &mut ChaCha8Rng) -> Deviation {
-        let [ligament, kerf, thickness] = self.deviations;
+        let ErrorDeviations {
+            ligament,
+            kerf,
+            thickness,
+        } = self.deviations;
         let mut normal = || normal([random.random(), random.random()]);
         let mut errors = self.none();
         errors
@@ -335,12 +352,29 @@ impl<'a> CuttingErrors<'a> {
 
     fn outcome_of(&self, errors: &Deviation) -> Result<Outcome, DesignError> {
         let (deployment, mechanics) = self.sheet.deployed(errors)?;
-        Ok(Outcome::new(&mechanics, &deployment))
+        Outcome::new(self.problem, &mechanics, &deployment)
     }
 }
 
+fn ascending(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+/// A quantile of values in ascending order; NaN of none.
+fn quantile(values: &[f64], share: f64) -> f64 {
+    let last = values.len().saturating_sub(1) as f64;
+    let value = values.get((share * last).round() as usize);
+    value.copied().unwrap_or(f64::NAN)
+}
+
 impl Outcome {
-    fn new(mechanics: &Mechanics, deployment: &Deployment) -> Self {
+    fn new(
+        problem: &DesignProblem,
+        mechanics: &Mechanics,
+        deployment: &Deployment,
+    ) -> Result<Self, DesignError> {
         let last = deployment.final_step();
         let hinges = 0..deployment.sheet.hinges.len();
         let peaks: Option<Vec<f64>> = hinges
@@ -348,11 +382,14 @@ impl Outcome {
             .collect();
         let load = ActuationCurve::new(mechanics, deployment)
             .and_then(|curve| curve.points.last().map(|[_, load]| *load));
-        Self {
+        Ok(Self {
             corners: deployed_corners(&deployment.sheet, &last.configuration).concat(),
             load,
             d_peak: peaks.map(|peaks| peaks.into_iter().fold(0.0, f64::max)),
-        }
+            loss: problem.loss_of(deployment)?,
+            outline_error: outline_error(&problem.objective, deployment),
+            inside: deployment.share_inside() == 1.0,
+        })
     }
 
     /// The change from the designed sheet, that of the load relative.
@@ -366,6 +403,9 @@ impl Outcome {
                 .zip(designed.load)
                 .map(|(to, from)| to / from - 1.0),
             d_peak: self.d_peak.zip(designed.d_peak).map(|(to, from)| to - from),
+            loss: self.loss - designed.loss,
+            outline_error: self.outline_error - designed.outline_error,
+            inside: self.inside,
         }
     }
 }

@@ -39,8 +39,6 @@ const PLATE_IMPERFECTION: [[f64; 2]; 3] = [[1.0 / 3.0, 0.0127], [2.0 / 3.0, 0.00
 /// The separation of a path from its ray, in ligament widths, at which the forces differ by the fraction; they do in proportion to it:
 /// the law through all detours (docs/results/detours/detours.md, polyester film of 0.5 mm).
 const DETOUR: [f64; 2] = [0.17, 0.05];
-/// Standard deviations in the tolerance of a cut sheet.
-pub(crate) const TOLERANCE: f64 = 2.0;
 /// Number of hinges above which no budget is made: it takes three solves a hinge and more.
 const MOST_HINGES: usize = 2000;
 
@@ -412,7 +410,7 @@ impl Deployed<'_> {
     fn kerf(&self) -> Known {
         let tolerance = self.scene.config.tolerances.kerf;
         let tolerance = tolerance.ok_or("no tolerances.kerf in the scene")?;
-        let narrower = -0.5 * tolerance / TOLERANCE;
+        let narrower = -0.5 * self.scene.config.tolerances.deviations().kerf;
         let errors: Vec<[f64; 3]> = (self.energies.iter())
             .zip(&self.designs)
             .map(|(energy, design)| {
@@ -430,7 +428,8 @@ impl Deployed<'_> {
     fn thickness(&self) -> Known {
         let tolerance = self.scene.config.tolerances.thickness;
         let tolerance = tolerance.ok_or("no tolerances.thickness in the scene")?;
-        let relative = tolerance / TOLERANCE / self.scene.material.thickness;
+        let deviation = self.scene.config.tolerances.deviations().thickness;
+        let relative = deviation / self.scene.material.thickness;
         let states = &self.deployment.final_step().deformations;
         let hinges = self.energies.iter().zip(&self.designs).zip(states);
         let errors: Vec<[f64; 3]> = hinges

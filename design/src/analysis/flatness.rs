@@ -70,6 +70,7 @@ mod tests {
             fracture_strain: 1.784,
             plastic: vec![[44.0, 0.0]],
             stress_deviation: None,
+            creep: None,
         }
     }
 

@@ -48,6 +48,7 @@ mod tests {
             fracture_strain: 1.0,
             plastic: vec![[1.0, 0.0]],
             stress_deviation: None,
+            creep: None,
         }
     }
 

@@ -1,8 +1,4 @@
-//! A sheet as it was cut, which differs from that of its drawing.
-//!
-//! A ligament is wider or narrower because the tip of its main cut is elsewhere. A wider kerf makes all ligaments narrower by half
-//! of its error on either side, at their secondary cuts and at their holes, and leaves their tips. A sheet of another thickness or
-//! of a stronger material has the same cuts; its hinges follow from similarity and in proportion, and its weight from its thickness.
+//! Sheets cut from one drawing: deployed, and read at parts of their actuation.
 
 use crate::analysis::actuation_curve::ActuationCurve;
 use crate::equilibrium::displacement_control::magnitude;
@@ -12,20 +8,7 @@ use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, M
 use crate::pattern::design_vector::DesignVector;
 use crate::scene::Scene;
 use crate::sheet::cut_sheet::Sheet;
-use hinge::HingeDesign;
-
-/// The differences of a cut sheet from its drawing.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Deviation {
-    /// Of the ligament width of every hinge (mm); empty for none.
-    pub widths: Vec<f64>,
-    /// Of the width that the cutter removes (mm).
-    pub kerf: f64,
-    /// Of the thickness (mm).
-    pub thickness: f64,
-    /// Of all stresses at equal strain, relative.
-    pub stress: f64,
-}
+use crate::sheet::deviation::Deviation;
 
 /// Parts of an actuation, with the states of the drawing's sheet there.
 pub struct ReadingPlan {
@@ -48,7 +31,6 @@ pub struct Read {
 /// A designed sheet of which there are cut ones.
 pub struct RealSheet<'a> {
     scene: &'a Scene,
-    problem: &'a DesignProblem,
     mechanics: &'a Mechanics,
     designed: Deployment,
     known: KnownPath,
@@ -66,7 +48,6 @@ impl<'a> RealSheet<'a> {
         designed.at_full_load()?;
         Ok(Self {
             scene,
-            problem,
             mechanics,
             known: designed.known_path(),
             designed,
@@ -97,18 +78,9 @@ impl<'a> RealSheet<'a> {
 
     /// A cut sheet at full load, with the mechanics that it has.
     pub fn deployed(&self, deviation: &Deviation) -> Result<(Deployment, Mechanics), DesignError> {
-        let (sheet, designs, mechanics) = self.cut(deviation)?;
-        let prepared = mechanics.law.prepare(&designs);
-        let hinged = mechanics.hinged(&sheet, &*prepared, false);
-        let (path, followed) = mechanics.path(hinged, Some(&self.known));
-        drop(prepared);
-        let deployment = Deployment {
-            pattern: self.designed.pattern.clone(),
-            sheet,
-            path,
-            followed,
-        };
-        deployment.at_full_load()?;
+        let mechanics = self.mechanics.as_cut(deviation, self.thickness())?;
+        let cut = mechanics.deploy_cut(&self.designed, deviation, &self.known, false);
+        let (deployment, _) = cut?;
         Ok((deployment, mechanics))
     }
 
@@ -129,8 +101,10 @@ impl<'a> RealSheet<'a> {
 
     /// A cut sheet at the parts of a plan.
     pub fn read(&self, plan: &ReadingPlan, deviation: &Deviation) -> Result<Read, DesignError> {
-        let (sheet, designs, mechanics) = self.cut(deviation)?;
-        let prepared = mechanics.law.prepare(&designs);
+        let sheet = self.designed.sheet.clone().with_deviation(deviation);
+        let sheet = sheet.ok_or(DesignError::ImpossibleSheet)?;
+        let mechanics = self.mechanics.as_cut(deviation, self.thickness())?;
+        let prepared = mechanics.law.prepare(&sheet.designs());
         let hinged = mechanics.hinged(&sheet, &*prepared, false);
         let solver = &mechanics.solver;
         let steps = solver.readings_near(hinged, &plan.parts, &plan.known);
@@ -145,33 +119,5 @@ impl<'a> RealSheet<'a> {
             steps,
             curve,
         })
-    }
-
-    /// The flat sheet, its hinges and its mechanics.
-    fn cut(
-        &self,
-        deviation: &Deviation,
-    ) -> Result<(Sheet, Vec<HingeDesign>, Mechanics), DesignError> {
-        let hinges = &self.designed.sheet.hinges;
-        let wider = deviation.widths.iter().chain(std::iter::repeat(&0.0));
-        let widths: Vec<f64> = std::iter::zip(hinges, wider)
-            .map(|(hinge, wider)| hinge.w_lig + wider)
-            .collect();
-        let sheet = self.problem.sheet(&self.designed.pattern, &widths)?;
-        let mut designs = sheet.designs();
-        for (design, hinge) in designs.iter_mut().zip(hinges) {
-            let radius = self.problem.options.process.hole_radius(hinge.w_lig);
-            design.w_lig -= 0.5 * deviation.kerf;
-            design.fillet_ratio = (radius + 0.5 * deviation.kerf) / design.w_lig;
-        }
-        let impossible = designs
-            .iter()
-            .any(|design| !(design.w_lig > 0.0 && design.fillet_ratio < 1.0));
-        if impossible {
-            return Err(DesignError::ImpossibleSheet);
-        }
-        let thicker = 1.0 + deviation.thickness / self.thickness();
-        let mechanics = self.mechanics.similar(thicker, 1.0 + deviation.stress)?;
-        Ok((sheet, designs, mechanics))
     }
 }

@@ -2,9 +2,10 @@
 
 use crate::analysis::calibration::{LoadData, Measurements, PointData};
 use crate::analysis::marks::{Mark, MeasuredPoint};
-use crate::analysis::real_sheet::{Deviation, RealSheet};
+use crate::analysis::real_sheet::RealSheet;
 use crate::geometry::similarity::Scale;
 use crate::objective::design_problem::DesignError;
+use crate::sheet::deviation::Deviation;
 use rand::{Rng, RngExt};
 use support::statistics::normal;
 

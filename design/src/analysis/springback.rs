@@ -8,11 +8,10 @@ use crate::geometry::polygon::distance;
 use crate::hinge_law::{HingeLaw, Order, ReleasedLaw};
 use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, found};
 use crate::objective::scores::outline_error;
-use crate::scene::Scene;
+use crate::scene::{Scene, SpringbackMismatch};
 use crate::sheet::kinematics::deployed_corners;
 use hinge::ReleasedHinge;
 use serde::Serialize;
-use std::f64::consts::FRAC_PI_2;
 use support::statistics::rms_and_maximum;
 use surrogate::Springback;
 
@@ -23,24 +22,8 @@ const STEPS: usize = 10;
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the message of a variant is its documentation")]
 pub enum LetGoError {
-    #[error(
-        "the law of released hinges is for {law}, and the sheet is of another material law, {sheet}: let hinges of its material go by \
-         `kirigami surrogate release`"
-    )]
-    Material { law: String, sheet: String },
-    #[error(
-        "the law of released hinges is for holes with a radius of {law} w_lig, and those of the sheet have {sheet:.3} w_lig: set \
-         process.fillet_ratio = {law}, or let hinges with these holes go by `kirigami surrogate release`"
-    )]
-    Hole { law: f64, sheet: f64 },
-    #[error(
-        "the law of released hinges is for windows with a radius of {law} mm at this thickness, and those of the sheet have {sheet} mm"
-    )]
-    Window { law: f64, sheet: f64 },
-    #[error(
-        "what stays of a hinge follows from the forces of a learned law: set hinge = \"surrogate\""
-    )]
-    NotLearned,
+    #[error(transparent)]
+    Law(#[from] SpringbackMismatch),
     #[error(transparent)]
     Design(#[from] DesignError),
 }
@@ -86,48 +69,17 @@ impl WhatStays {
     }
 }
 
-/// An error if a law is not for the hinges of a scene.
-pub fn check_springback(scene: &Scene, law: &Springback) -> Result<(), LetGoError> {
-    /// Relative difference of two radii that rounding may cause.
-    const ROUNDED: f64 = 1e-6;
-    let differ = |x: f64, y: f64| (x / y - 1.0).abs() > ROUNDED;
-    if scene.surrogate().is_none() {
-        return Err(LetGoError::NotLearned);
-    }
-    if law.material_hash != scene.measured.law_hash() {
-        return Err(LetGoError::Material {
-            law: law.material.clone(),
-            sheet: scene.measured.name.clone(),
-        });
-    }
-    let [narrowest, widest] = scene.config.ligament.range;
-    for w_lig in [narrowest, widest] {
-        let hinge = scene.config.process.hinge(w_lig, FRAC_PI_2);
-        let known = law.hinge.fillet_ratio;
-        if differ(hinge.fillet_ratio, known) {
-            let (law, sheet) = (known, hinge.fillet_ratio);
-            return Err(LetGoError::Hole { law, sheet });
-        }
-    }
-    let (known, window) = (scene.scale() * law.hinge.r_win, scene.config.process.r_win);
-    if differ(window, known) {
-        let (law, sheet) = (known, window);
-        return Err(LetGoError::Window { law, sheet });
-    }
-    Ok(())
-}
-
 /// The hinges of a deployed sheet of a scene and its problem after they were let go, with the forces of the problem's hinge law.
 ///
 /// # Errors
-/// As [`check_springback`], or if the sheet has no equilibrium at full load.
+/// As [`Scene::check_springback`], or if the sheet has no equilibrium at full load.
 pub fn released_hinges(
     scene: &Scene,
     problem: &DesignProblem,
     law: &Springback,
     deployment: &Deployment,
 ) -> Result<Vec<ReleasedHinge>, LetGoError> {
-    check_springback(scene, law)?;
+    scene.check_springback(law)?;
     let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
     let (designs, states) = (
         deployment.sheet.designs(),
@@ -148,6 +100,22 @@ pub fn released_hinges(
             law.released(&design, &reached, &forces).scaled(scale)
         })
         .collect())
+}
+
+/// A deployed sheet of a scene and its problem after it was let go, and what stays of its opening.
+///
+/// # Errors
+/// As [`released_hinges`], or if the sheet has no equilibrium without loads.
+pub fn let_go(
+    scene: &Scene,
+    problem: &DesignProblem,
+    law: &Springback,
+    deployment: &Deployment,
+) -> Result<(ReleasedSheet, WhatStays), LetGoError> {
+    let hinges = released_hinges(scene, problem, law, deployment)?;
+    let released = problem.let_go(deployment, hinges)?;
+    let stays = problem.what_stays(deployment, &released)?;
+    Ok((released, stays))
 }
 
 impl DesignProblem {

@@ -6,7 +6,7 @@ use crate::equilibrium::nearby_path::KnownPath;
 use crate::geometry::plane::add;
 use crate::hinge_law::{HingeGradient, Order, PreparedLaw};
 use crate::objective::design_problem::{
-    Deployment, DesignError, DesignProblem, Evaluation, Model, Sensitivities,
+    Deployment, DesignError, DesignProblem, Evaluation, Mechanics, Model, Sensitivities,
 };
 use crate::pattern::design_vector::DesignVector;
 use crate::sheet::cut_sheet::{Sheet, SheetGradient};
@@ -59,6 +59,19 @@ impl DesignProblem {
     ) -> Result<Evaluation, DesignError> {
         let by_damage = self.objective.needs_damage_gradient();
         let (deployment, law) = self.deploy_prepared(design, by_damage, known)?;
+        let law = self.model.mechanics().zip(law.as_deref());
+        let mut evaluation = self.evaluated(design, deployment, law)?;
+        self.add_excess(design, &mut evaluation)?;
+        Ok(evaluation)
+    }
+
+    /// The objective of a deployment and its gradient, without the excess of cut sheets.
+    pub(super) fn evaluated(
+        &self,
+        design: &DesignVector,
+        deployment: Deployment,
+        law: Option<(&Mechanics, &dyn PreparedLaw)>,
+    ) -> Result<Evaluation, DesignError> {
         let outline = self.objective.shape.outline.corners(&deployment.sheet);
         let judgement = self.judge(&deployment, &outline)?;
         let partials = Partials {
@@ -70,7 +83,7 @@ impl DesignProblem {
             by_corners: Some(&judgement.gradient.by_corners),
             by_reactions: None,
         };
-        let gradient = self.design_gradient(design, &deployment, law.as_deref(), partials)?;
+        let gradient = self.design_gradient(design, &deployment, law, partials)?;
         Ok(Evaluation {
             loss: judgement.loss,
             terms: judgement.terms,
@@ -101,8 +114,9 @@ impl DesignProblem {
                 last.hinges = hinged.energies(&last.deformations, Order::Design);
                 last.order = Order::Design;
             }
-            law = Some(prepared);
+            law = Some((&**mechanics, prepared));
         }
+        let law = law.as_ref().map(|(mechanics, law)| (*mechanics, &**law));
         let by_states = vec![vec![[0.0; 6]]; sheet.hinges.len()];
         let vectors = shape.curvature(&deployment.outline(&outline));
         let gradients = vectors.iter().map(|by_outline| {
@@ -115,7 +129,7 @@ impl DesignProblem {
                 by_corners: None,
                 by_reactions: None,
             };
-            let gradient = self.design_gradient(design, deployment, law.as_deref(), partials)?;
+            let gradient = self.design_gradient(design, deployment, law, partials)?;
             Ok(gradient.design.to_flat())
         });
         gradients.collect()
@@ -126,7 +140,7 @@ impl DesignProblem {
         &self,
         design: &DesignVector,
         deployment: &Deployment,
-        law: Option<&dyn PreparedLaw>,
+        law: Option<(&Mechanics, &dyn PreparedLaw)>,
         partials: Partials,
     ) -> Result<Gradient, DesignError> {
         let (sheet, last) = (&deployment.sheet, deployment.final_step());
@@ -138,14 +152,13 @@ impl DesignProblem {
         let (mut by_opening, mut adjoint_residual) = (None, 0.0);
         let mut virtual_motion = Vec::new();
         let mut sensitivities = Sensitivities::default();
-        match &self.model {
-            Model::Ideal { opening } => {
-                let theta = design.opening.unwrap_or(*opening);
+        match (self.opening(design), law) {
+            (Some(theta), _) => {
                 let slope = ideal_deployment_pullback(sheet, theta, &by_last, &mut by_sheet);
                 by_opening = design.opening.map(|_| slope);
             }
-            Model::Equilibrium(mechanics) => {
-                let law = law.ok_or(DesignError::NoMechanics)?;
+            (None, None) => return Err(DesignError::NoMechanics),
+            (None, Some((mechanics, law))) => {
                 let sums = adjoint(
                     &mechanics.solver,
                     mechanics.hinged(sheet, law, true),

@@ -14,6 +14,7 @@ use crate::pattern::design_vector::{DesignVector, WidthChart};
 use crate::pattern::grid::Grid;
 use crate::pattern::pattern_error::PatternError;
 use crate::sheet::cut_sheet::{Sheet, SheetError, SheetOptions};
+use crate::sheet::deviation::Deviation;
 use crate::sheet::ideal_deployment::ideal_deployment;
 use crate::sheet::kinematics::deployed;
 use crate::sheet::topology::PanelCorner;
@@ -39,6 +40,8 @@ pub enum DesignError {
         "a sheet with these errors cannot exist: a ligament, the thickness or the stresses are not positive"
     )]
     ImpossibleSheet,
+    #[error("objective.robust: a sheet with the errors of [tolerances] has no loss: {0}")]
+    CutSheet(Box<DesignError>),
     #[error("the target has no points")]
     EmptyTarget,
     #[error(
@@ -209,6 +212,12 @@ impl Deployment {
         let inside = || self.path.iter().flat_map(|step| &step.inside);
         inside().filter(|inside| **inside).count() as f64 / inside().count() as f64
     }
+
+    /// Number of hinges that are outside the training domain of the hinge law in the last state.
+    pub fn hinges_outside(&self) -> usize {
+        let inside = &self.final_step().inside;
+        inside.iter().filter(|inside| !**inside).count()
+    }
 }
 
 impl DesignProblem {
@@ -298,8 +307,14 @@ impl DesignProblem {
     /// L(theta) without its gradient.
     pub fn loss(&self, design: &DesignVector) -> Result<f64, DesignError> {
         let deployment = self.deploy(design)?;
+        let drawn = self.loss_of(&deployment)?;
+        Ok(drawn + self.weighted_excess(&deployment, drawn)?)
+    }
+
+    /// L of a deployed sheet at full load, without the excess of cut sheets.
+    pub fn loss_of(&self, deployment: &Deployment) -> Result<f64, DesignError> {
         let outline = self.objective.shape.outline.corners(&deployment.sheet);
-        Ok(self.judge(&deployment, &outline)?.loss)
+        Ok(self.judge(deployment, &outline)?.loss)
     }
 
     pub(super) fn judge(
@@ -349,6 +364,39 @@ impl Mechanics {
             similar.solver.weight = self.solver.weight.map(|weight| thicker * weight);
         }
         Ok(similar)
+    }
+
+    /// The mechanics of a cut sheet; the sheet of the drawing has a thickness (mm).
+    pub(crate) fn as_cut(
+        &self,
+        deviation: &Deviation,
+        thickness: f64,
+    ) -> Result<Self, DesignError> {
+        let thicker = 1.0 + deviation.thickness / thickness;
+        self.similar(thicker, 1.0 + deviation.stress)
+    }
+
+    /// A cut sheet at full load with its hinge law, from the path of the sheet as `drawn`; the mechanics are those of the cut one.
+    pub(crate) fn deploy_cut(
+        &self,
+        drawn: &Deployment,
+        deviation: &Deviation,
+        known: &KnownPath,
+        by_damage: bool,
+    ) -> Result<(Deployment, Box<dyn PreparedLaw + '_>), DesignError> {
+        let sheet = drawn.sheet.clone().with_deviation(deviation);
+        let sheet = sheet.ok_or(DesignError::ImpossibleSheet)?;
+        let law = self.law.prepare(&sheet.designs());
+        let hinged = self.hinged(&sheet, &*law, by_damage);
+        let (path, followed) = self.path(hinged, Some(known));
+        let deployment = Deployment {
+            pattern: drawn.pattern.clone(),
+            sheet,
+            path,
+            followed,
+        };
+        deployment.at_full_load()?;
+        Ok((deployment, law))
     }
 
     /// The path of a sheet, corrected from a `known` one that is near enough, or else followed from the flat sheet, and whether it

@@ -1,6 +1,7 @@
 //! The design objective: the Chamfer distance of the deployed outline to the target, functionals of the deformation paths
 //! of the hinges (16), and penalties.
 
+use crate::objective::cut_sheets::{CutSheets, EXCESS};
 use crate::objective::hinge_measures::add_by_states;
 use crate::objective::shape::Shape;
 use crate::objective::term::{Deployed, Term, TermGradient, Weighted, in_words};
@@ -18,6 +19,8 @@ pub struct Objective {
     pub functionals: Vec<Weighted>,
     /// The penalties; zero without weight.
     pub penalties: Vec<Weighted>,
+    /// The sheets with errors of cutting whose loss counts too, if any does.
+    pub cut_sheets: Option<CutSheets>,
 }
 
 /// The objective and its partial derivatives at a deployment.
@@ -37,29 +40,39 @@ impl Objective {
             shape,
             functionals: Vec::new(),
             penalties: Vec::new(),
+            cut_sheets: None,
         }
     }
 
-    /// All terms with their weights, in the order of [`TermValues`].
-    pub fn terms(&self) -> impl Iterator<Item = (&dyn Term, f64)> {
+    /// The terms of one sheet with their weights, in the order of [`TermValues`].
+    pub(crate) fn terms(&self) -> impl Iterator<Item = (&dyn Term, f64)> {
         let others = self.functionals.iter().chain(&self.penalties);
         let others = others.map(|Weighted { weight, term }| (&**term, *weight));
         std::iter::once((&self.shape as &dyn Term, 1.0)).chain(others)
     }
 
+    /// The names of all terms with their units and weights, in the order of the [`TermValues`] of an evaluation.
+    pub fn weights(&self) -> impl Iterator<Item = (&'static str, Option<&'static str>, f64)> {
+        let excess = self.cut_sheets.as_ref();
+        self.terms()
+            .map(|(term, weight)| (term.name(), term.unit(), weight))
+            .chain(excess.map(|sheets| (EXCESS, Some("mm^2"), sheets.weight)))
+    }
+
     /// The weight of a term; 0 if the objective has none of this name.
     pub fn weight(&self, name: &str) -> f64 {
-        let named = |(term, _): &(&dyn Term, f64)| term.name() == name;
-        self.terms().find(named).map_or(0.0, |(_, weight)| weight)
+        let mut weights = self.weights();
+        let named = weights.find(|(other, ..)| *other == name);
+        named.map_or(0.0, |(.., weight)| weight)
     }
 
     /// The names of all terms in words, with their units.
     pub fn labels(&self) -> Vec<String> {
-        let label = |(term, _): (&dyn Term, f64)| {
-            let unit = term.unit().map(|unit| format!(" ({unit})"));
-            in_words(term.name()) + &unit.unwrap_or_default()
+        let label = |(name, unit, _): (&str, Option<&str>, f64)| {
+            let unit = unit.map(|unit| format!(" ({unit})"));
+            in_words(name) + &unit.unwrap_or_default()
         };
-        self.terms().map(label).collect()
+        self.weights().map(label).collect()
     }
 
     /// Whether the gradient of the objective needs that of the damage of the hinges.

@@ -211,7 +211,12 @@ impl DesignProblem {
             by_corners: None,
             by_reactions: of_supports.then_some(reactions),
         };
-        let gradient = self.design_gradient(design, &response.deployment, Some(&*law), partials)?;
+        let gradient = self.design_gradient(
+            design,
+            &response.deployment,
+            Some((mechanics, &*law)),
+            partials,
+        )?;
         let virtual_motion = &gradient.virtual_motion;
         let motions = HingeMotion::all(sheet, &state.configuration);
         let energies = law.energies(&state.deformations, Order::Design);

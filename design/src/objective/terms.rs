@@ -21,6 +21,7 @@ pub use symmetric_difference::SymmetricDifference;
 use crate::geometry::chamfer::{Chamfer, Precision};
 use crate::hinge_law::{DamageMeasure, HingeLaw};
 use crate::objective::centre::Centre;
+use crate::objective::cut_sheets::CutSheets;
 use crate::objective::loss::Objective;
 use crate::objective::shape::{OutlinePoints, Shape};
 use crate::objective::target::Target;
@@ -103,6 +104,12 @@ pub struct ObjectiveConfig {
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 1e9))]
     pub peak_load: f64,
+    /// Weight of the expected loss under the errors of `[tolerances]`, less the loss of the drawing: at 1 the search minimises the
+    /// expected loss. Needs `[tolerances]` and an equilibrium. A step then costs three times as much for the kerf or the thickness,
+    /// five times for both, and nine times with `ligament`. Never relative to a gradient.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 1e3))]
+    pub robust: f64,
 }
 
 /// The sheet that an objective is for.
@@ -117,6 +124,8 @@ pub struct Setting<'a> {
     pub r_win: f64,
     /// The prescribed stroke of the loads, if there is one.
     pub stroke: Option<f64>,
+    /// The sheets with errors of cutting whose loss counts too.
+    pub cut_sheets: Option<CutSheets>,
 }
 
 impl ObjectiveConfig {
@@ -162,6 +171,7 @@ impl ObjectiveConfig {
                 Weighted::new(self.shear * unit, Shear { temperature }),
             ],
             penalties,
+            cut_sheets: setting.cut_sheets.clone(),
         }
     }
 
@@ -241,6 +251,7 @@ mod tests {
             min_panel_width: 6.0,
             domain: 0.6,
             peak_load: 0.0,
+            robust: 0.0,
         };
         let circle = TargetShape::Circle {
             centre: [90.0, 10.0],
@@ -257,6 +268,7 @@ mod tests {
             mean_panel_area: 10.0,
             r_win: 10.0,
             stroke: None,
+            cut_sheets: None,
         })
     }
 

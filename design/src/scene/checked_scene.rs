@@ -6,10 +6,11 @@ use crate::scene::keys::{SceneConfig, beside, folder};
 use crate::scene::loaded_hinge::{LoadedHinge, network};
 use crate::scene::posture::PostureConfig;
 use crate::scene::scene_error::SceneError;
+use crate::scene::springback_file::{self, SpringbackMismatch};
 use crate::sheet::cut_sheet::SheetOptions;
 use hinge::SheetMaterial;
 use std::path::{Path, PathBuf};
-use surrogate::Surrogate;
+use surrogate::{Springback, Surrogate};
 
 /// Version of geometry, mechanics and objective: raised when a change of the code changes the loss of a design, so that
 /// a run of an earlier version is not continued.
@@ -36,6 +37,8 @@ pub struct Scene {
     pub target: Target,
     /// The hinge law, with the files that it reads.
     pub hinge: LoadedHinge,
+    /// The law of released hinges, for the report.
+    pub springback: Option<Springback>,
     pub(super) path: PathBuf,
 }
 
@@ -87,12 +90,15 @@ impl Scene {
         let target = target.map_err(SceneError::at(path))?;
         checks::target(&target, &config).map_err(SceneError::at(path))?;
         let hinge = LoadedHinge::load(&config, &measured, path, known)?;
+        let springback = springback_file::load(&config, &measured, path);
+        let springback = springback.map_err(SceneError::at(path))?;
         Ok(Self {
             config,
             material,
             measured,
             target,
             hinge,
+            springback,
             path: path.to_owned(),
         })
     }
@@ -115,17 +121,26 @@ impl Scene {
     /// The keys of the scene for a file in another folder: its paths are absolute.
     pub fn located(&self) -> std::io::Result<SceneConfig> {
         let mut config = self.config.clone();
-        let file = config.target.file_mut().map(|(file, _)| file);
-        let mut paths: Vec<&mut PathBuf> = file.into_iter().collect();
-        paths.extend([&mut config.material, &mut config.output]);
         let locate = |path: &mut PathBuf| {
             *path = std::path::absolute(self.file(path))?;
             Ok::<_, std::io::Error>(())
         };
-        paths.into_iter().try_for_each(locate)?;
-        let mut weights = config.weights_files_mut().into_iter();
-        weights.try_for_each(locate)?;
+        let law = config.surrogate.as_mut();
+        let law = law.and_then(|learned| learned.springback.as_mut());
+        let target = config.target.file_mut().map(|(file, _)| file);
+        let named = law.into_iter().chain(target);
+        for path in named.chain([&mut config.material, &mut config.output]) {
+            locate(path)?;
+        }
+        for weights in config.weights_files_mut() {
+            locate(weights)?;
+        }
         Ok(config)
+    }
+
+    /// An error if a law of released hinges is not for the hinges of this scene.
+    pub fn check_springback(&self, law: &Springback) -> Result<(), SpringbackMismatch> {
+        springback_file::check(&self.config, &self.measured, law)
     }
 
     /// A path that the scene names.

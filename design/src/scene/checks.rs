@@ -13,6 +13,7 @@ use crate::scene::invalid_scene::InvalidScene;
 use crate::scene::keys::SceneConfig;
 use crate::scene::posture::Posture;
 use crate::scene::sheet_config::SheetConfig;
+use crate::scene::tolerances::ToleranceConfig;
 use crate::sheet::topology::panel_endpoints;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
@@ -339,6 +340,23 @@ fn objective(scene: &SceneConfig) -> Result<(), InvalidScene> {
     }
     if scene.objective.centre == Centre::Area && scene.hinge != HingeModel::Pin {
         return Err(InvalidScene::HeldCentre);
+    }
+    if scene.objective.robust > 0.0 {
+        let ToleranceConfig {
+            ligament,
+            kerf,
+            thickness,
+        } = scene.tolerances;
+        let given = |tolerance: Option<f64>| tolerance.is_some_and(|tolerance| tolerance > 0.0);
+        if scene.hinge == HingeModel::Pin {
+            return Err(InvalidScene::RobustPins);
+        }
+        if ![ligament, kerf, thickness].into_iter().any(given) {
+            return Err(InvalidScene::RobustWithoutTolerances);
+        }
+        if given(thickness) && scene.hinge != HingeModel::Surrogate {
+            return Err(InvalidScene::RobustThickness);
+        }
     }
     Ok(())
 }

@@ -157,7 +157,7 @@ pub fn design_of_run(
 }
 
 /// The keys of a scene by which a design is found. They change neither its sheet nor how it deploys.
-const SEARCH_KEYS: [&str; 2] = ["objective", "optimiser"];
+const SEARCH_KEYS: [&str; 3] = ["objective", "optimiser", "tolerances"];
 
 impl Designed {
     /// The start of a scene before any step of its search, with its path followed from the flat sheet until `stop` becomes true.
@@ -298,14 +298,17 @@ impl State {
         (!changed.is_empty()).then(|| changed.join(", "))
     }
 
-    /// The keys of the scene that changed since the run, without those that may: the number of steps, the title, the
-    /// cutting and the tolerances, which change no design, and paths, since [`Scene::model_hash`] identifies what they name.
+    /// The keys of the scene that changed since the run, without those that may: the number of steps, the title, the cutting and,
+    /// unless the search is for them, the tolerances, which change no design, and paths, since [`Scene::model_hash`] identifies what
+    /// they name.
     fn changed_keys(&self, scene: &Scene) -> BTreeSet<String> {
         let mut before = self.scene.without_paths();
         before.optimiser.steps = scene.config.optimiser.steps;
         before.title.clone_from(&scene.config.title);
         before.cutting = scene.config.cutting;
-        before.tolerances = scene.config.tolerances;
+        if before.objective.robust == 0.0 {
+            before.tolerances = scene.config.tolerances;
+        }
         let keys = |config: &SceneConfig| match serde_json::to_value(config) {
             Ok(Value::Object(keys)) => keys,
             _ => unreachable!("a run writes the same keys to its state"),

@@ -65,6 +65,10 @@ pub struct SurrogateFile {
     /// Further networks trained on the same data (`train --seeds`); the report states their spread.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ensemble: Vec<PathBuf>,
+    /// The law of released hinges (`kirigami surrogate release`), from which the report states what stays of the opening when the
+    /// loads are taken off. A run continues under another one, which changes its report only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub springback: Option<PathBuf>,
 }
 
 /// The constants of (11), derived from a learned energy for each hinge.

@@ -7,6 +7,7 @@ use crate::objective::design_problem::DesignError;
 use crate::objective::target::TargetError;
 use crate::pattern::pattern_error::PatternError;
 use crate::scene::posture::Posture;
+use crate::scene::springback_file::SpringbackFileError;
 use hinge::{InvalidDesign, InvalidMaterial};
 use std::path::PathBuf;
 use support::key_limits::OutOfRange;
@@ -161,6 +162,8 @@ pub enum InvalidScene {
         files[0].display(), files[1].display()
     )]
     SameNetwork { files: [PathBuf; 2] },
+    #[error(transparent)]
+    Springback(#[from] SpringbackFileError),
     #[error(
         "condensed: at w_lig = {w_lig} mm the weights have k_a = {} N/mm, k_s = {} N/mm, k_theta = {} N mm, which must \
          all be positive: use hinge = \"surrogate\" or other weights",
@@ -187,6 +190,18 @@ pub enum InvalidScene {
         "objective.centre = \"area\" needs hinge = \"pin\": supports hold other sheets where they are"
     )]
     HeldCentre,
+    #[error(
+        "objective.robust: hinge = \"pin\" has no equilibrium that errors of cutting change: remove it, or use another hinge law"
+    )]
+    RobustPins,
+    #[error(
+        "objective.robust needs errors to be robust against: give [tolerances] ligament, kerf or thickness (mm) above 0"
+    )]
+    RobustWithoutTolerances,
+    #[error(
+        "objective.robust with tolerances.thickness needs hinge = \"surrogate\": the constants of other laws hold for one thickness"
+    )]
+    RobustThickness,
     #[error(
         "objective.target_points = {points}: the polygon through them encloses no area, which objective.symmetric_difference \
          and objective.centre = \"area\" need: increase it"

@@ -1,6 +1,7 @@
 //! From a scene to its design problem and its start design.
 
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
+use crate::objective::cut_sheets::CutSheets;
 use crate::objective::design_problem::{DesignProblem, Mechanics, Model};
 use crate::objective::loss::Objective;
 use crate::objective::terms::Setting;
@@ -96,7 +97,16 @@ impl Scene {
             mean_panel_area: self.config.sheet.mean_panel_area(),
             r_win: self.config.process.r_win,
             stroke: self.config.drive.map(|drive| drive.stroke),
+            cut_sheets: self.cut_sheets(),
         })
+    }
+
+    fn cut_sheets(&self) -> Option<CutSheets> {
+        let weight = self.config.objective.robust;
+        let errors = self.config.tolerances.deviations();
+        let hinges = self.grid().hinge_count();
+        let thickness = self.material.thickness;
+        (weight > 0.0).then(|| CutSheets::new(weight, hinges, thickness, errors))
     }
 
     fn model(&self) -> Result<Model, SceneError> {

@@ -7,6 +7,7 @@
 //! | `inputs/target.csv`, `.svg` | the target, if the scene names a file |
 //! | `inputs/weights.safetensors`, `.json` | weights and card, if the hinge law reads them |
 //! | `inputs/ensemble-N.safetensors`, `.json` | the further networks, from 1 |
+//! | `inputs/springback.json` | the law of released hinges, if the scene names one |
 //!
 //! The state of the run holds the BLAKE3 hash of each of them.
 
@@ -119,6 +120,11 @@ pub(super) fn keep(scene: &Scene) -> Result<InputHashes, FileError> {
         kept.copy(&original.with_extension("json"), &format!("{stem}.json"))?;
         *weights = kept.copy(&original, &format!("{stem}.safetensors"))?;
     }
+    let learned = config.surrogate.as_mut();
+    if let Some(law) = learned.and_then(|learned| learned.springback.as_mut()) {
+        let name = format!("{FOLDER}/springback.json");
+        *law = kept.copy(&beside(&scene.path, law), &name)?;
+    }
     kept.write(SCENE_FILE, &toml(&config, &folder)?)?;
     Ok(kept.hashes)
 }
@@ -159,6 +165,7 @@ impl SceneConfig {
         let mut config = self.without_unread_weights();
         if let Some(learned) = &mut config.surrogate {
             learned.ensemble.clear();
+            learned.springback = None;
         }
         for path in config.weights_files_mut() {
             *path = PathBuf::new();

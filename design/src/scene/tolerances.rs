@@ -1,10 +1,14 @@
-//! Tolerances of the cut sheet, which the error budget of a design contains.
+//! Tolerances of the cut sheet: the error budget of a design contains them, and `objective.robust` designs for them.
 
+use crate::objective::cut_sheets::ErrorDeviations;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Tolerances of the cut sheet for the error budget of the report, which takes them as two standard deviations. A run continues
-/// under other values, which change its report only.
+/// A tolerance is so many standard deviations.
+const TOLERANCE: f64 = 2.0;
+
+/// Tolerances of the cut sheet for the error budget of the report and for `objective.robust`, as two standard deviations. Without
+/// `objective.robust` a run continues under other values, which change its report only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ToleranceConfig {
@@ -18,4 +22,17 @@ pub struct ToleranceConfig {
     /// Tolerance +- of the thickness of the sheet (mm).
     #[schemars(range(min = 0.0, max = 1.0))]
     pub thickness: Option<f64>,
+}
+
+impl ToleranceConfig {
+    /// The standard deviations; 0 without tolerance.
+    pub(crate) fn deviations(self) -> ErrorDeviations {
+        let [ligament, kerf, thickness] = [self.ligament, self.kerf, self.thickness]
+            .map(|tolerance| tolerance.unwrap_or(0.0) / TOLERANCE);
+        ErrorDeviations {
+            ligament,
+            kerf,
+            thickness,
+        }
+    }
 }

@@ -11,9 +11,11 @@ impl SceneConfig {
         let weights = std::path::absolute(weights)?;
         match (self.hinge, &mut self.condensed) {
             (HingeModel::Surrogate, _) => {
+                let replaced = self.surrogate.take();
                 self.surrogate = Some(SurrogateFile {
                     weights,
                     ensemble: Vec::new(),
+                    springback: replaced.and_then(|learned| learned.springback),
                 });
             }
             (HingeModel::Linear, Some(condensed)) => condensed.weights = weights,

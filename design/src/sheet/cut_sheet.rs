@@ -115,6 +115,8 @@ pub struct Hinge {
     pub set_back: f64,
     /// Angle between the cuts, measured into the material (rad).
     pub alpha: f64,
+    /// Radius of the hole about O over w_lig.
+    pub fillet_ratio: f64,
 }
 
 /// The flat sheet: rigid panels joined by hinges.
@@ -207,7 +209,7 @@ impl Sheet {
                     0.0
                 };
                 let widths = [w_lig, w_lig + half_kerf];
-                Hinge::new(h, site, &pattern.points, widths, options.hinge_point)
+                Hinge::new(h, site, &pattern.points, widths, options)
             })
             .collect::<Result<_, _>>()?;
         Ok(Self {
@@ -236,7 +238,14 @@ impl Sheet {
 
     /// The design vectors g of the hinges; (7).
     pub fn designs(&self) -> Vec<HingeDesign> {
-        let design = |hinge: &Hinge| self.options.process.hinge(hinge.w_lig, hinge.alpha);
+        let CuttingProcess { kerf, r_win, .. } = self.options.process;
+        let design = |hinge: &Hinge| HingeDesign {
+            w_lig: hinge.w_lig,
+            alpha: hinge.alpha,
+            fillet_ratio: hinge.fillet_ratio,
+            kerf,
+            r_win,
+        };
         self.hinges.iter().map(design).collect()
     }
 
@@ -285,7 +294,8 @@ impl Sheet {
         }
         let mut widths = gradient.widths.clone();
         for (h, hinge) in self.hinges.iter().enumerate() {
-            widths[h] += gradient.holes[h] * self.options.process.ratio_by_width(hinge.w_lig);
+            let radius_by_width = self.options.process.radius_by_width();
+            widths[h] += gradient.holes[h] * (radius_by_width - hinge.fillet_ratio) / hinge.w_lig;
             let attachment = complex(gradient.attachments[h]);
             add(&mut points[hinge.site.corner], attachment);
             let (mut by_alpha, mut by_main_angle) = (gradient.alphas[h], 0.0);
@@ -406,7 +416,7 @@ impl Hinge {
         site: HingeSite,
         points: &[[f64; 2]],
         [w_lig, set_back]: [f64; 2],
-        hinge_point: HingePoint,
+        options: SheetOptions,
     ) -> Result<Self, SheetError> {
         if !(w_lig > 0.0 && w_lig.is_finite()) {
             return Err(SheetError::Width {
@@ -427,21 +437,34 @@ impl Hinge {
             return Err(SheetError::CutAngle { hinge, alpha_deg });
         }
         let corner = points[site.corner];
-        let tip = point(complex(corner) + main * (set_back / alpha.sin()));
-        Ok(Self {
+        let hinge = Self {
             site,
             corner,
-            tip,
-            attachment: match hinge_point {
-                HingePoint::Corner => corner,
-                HingePoint::CutTip => tip,
-            },
+            tip: corner,
+            attachment: corner,
             e_sec: point(e_sec),
             main: point(main),
             w_lig,
             set_back,
             alpha,
-        })
+            fillet_ratio: options.process.hinge(w_lig, alpha).fillet_ratio,
+        };
+        Ok(hinge.with_tip(set_back, options.hinge_point))
+    }
+
+    /// The hinge with its tip at another distance from the line of the secondary cut (mm).
+    pub(super) fn with_tip(self, set_back: f64, hinge_point: HingePoint) -> Self {
+        let along = complex(self.main) * (set_back / self.alpha.sin());
+        let tip = point(complex(self.corner) + along);
+        Self {
+            tip,
+            attachment: match hinge_point {
+                HingePoint::Corner => self.corner,
+                HingePoint::CutTip => tip,
+            },
+            set_back,
+            ..self
+        }
     }
 
     /// Index of panel A.

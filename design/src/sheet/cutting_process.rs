@@ -115,11 +115,11 @@ impl CuttingProcess {
         }
     }
 
-    /// Derivative of the hinge's `fillet_ratio` in w_lig (1/mm).
-    pub(crate) fn ratio_by_width(&self, w_lig: f64) -> f64 {
+    /// Derivative of the radius of a hinge's hole in w_lig.
+    pub(crate) fn radius_by_width(&self) -> f64 {
         match self.hole {
-            Hole::Ratio(_) => 0.0,
-            Hole::Diameter(diameter) => -0.5 * diameter / (w_lig * w_lig),
+            Hole::Ratio(ratio) => ratio,
+            Hole::Diameter(_) => 0.0,
         }
     }
 }
@@ -149,9 +149,8 @@ mod tests {
         for process in [drilled, papers] {
             let text = toml::to_string(&process).unwrap();
             assert_eq!(toml::from_str::<CuttingProcess>(&text).unwrap(), process);
-            let ratio = |w_lig: f64| process.hinge(w_lig, 1.5).fillet_ratio;
-            let slope = (ratio(10.001) - ratio(9.999)) / 0.002;
-            assert!((process.ratio_by_width(10.0) - slope).abs() < 1e-9);
+            let slope = (process.hole_radius(10.001) - process.hole_radius(9.999)) / 0.002;
+            assert!((process.radius_by_width() - slope).abs() < 1e-9);
         }
     }
 }

@@ -4,9 +4,10 @@ use crate::error_budget::film;
 use design::analysis::calibration::{
     Calibration, CalibrationError, Measurements, Quantity, ReadingFault, calibrate,
 };
-use design::analysis::real_sheet::{Deviation, RealSheet};
+use design::analysis::real_sheet::RealSheet;
 use design::analysis::simulated_measurements::StandardErrors;
 use design::scene::Scene;
+use design::sheet::deviation::Deviation;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use support::statistics::normal;

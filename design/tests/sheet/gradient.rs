@@ -79,6 +79,7 @@ fn a_pulled_sheet_with_path_functionals() {
             },
             functionals: functionals(&case),
             penalties: Vec::new(),
+            cut_sheets: None,
         },
     };
     let evaluation = problem.evaluate(&design).unwrap();

@@ -10,6 +10,7 @@ use design::equilibrium::supports::{Dof, Load, Support};
 use design::geometry::chamfer::{Chamfer, Precision};
 use design::hinge_law::{CondensedLaw, Contact, DamageMeasure, HingeLaw, LinearLaw, SurrogateLaw};
 use design::objective::centre::Centre;
+use design::objective::cut_sheets::{CutSheets, ErrorDeviations};
 use design::objective::design_problem::{Deployment, DesignProblem, Mechanics, Model};
 use design::objective::loss::Objective;
 use design::objective::shape::{OutlinePoints, Shape};
@@ -139,6 +140,7 @@ pub fn problem(model: Model, hinge_point: HingePoint) -> DesignProblem {
                 ),
                 Weighted::new(1.0, domain),
             ],
+            cut_sheets: None,
         },
     }
 }
@@ -334,6 +336,31 @@ fn surrogate_law_with_drilled_holes() {
     let mut problem = problem(model, HingePoint::CutTip);
     problem.options.process.hole = Hole::Diameter(4.0);
     assert_order_two(&problem, &start());
+}
+
+/// The loss of sheets with errors of cutting, whose holes have one ratio or one diameter.
+#[test]
+fn the_expected_loss_of_cut_sheets() {
+    let errors = ErrorDeviations {
+        ligament: 0.5,
+        kerf: 0.2,
+        thickness: 0.01,
+    };
+    for (east, hole) in [
+        (East::Pulled(2.0), PROCESS.hole),
+        (East::Driven(2.0, 18.0), Hole::Diameter(4.0)),
+    ] {
+        let mut problem = problem(mechanics(tiny(), 40.0, east), HingePoint::CutTip);
+        problem.options.process.hole = hole;
+        let alone = problem.evaluate(&start()).unwrap();
+        problem.objective.cut_sheets = Some(CutSheets::new(0.7, GRID.hinge_count(), 0.5, errors));
+        let evaluation = problem.evaluate(&start()).unwrap();
+        let excess = evaluation.terms["expected_excess"];
+        assert!(excess.abs() > 1e-4 * alone.loss, "{excess}");
+        let sum = alone.loss + 0.7 * excess;
+        assert!((evaluation.loss / sum - 1.0).abs() < 1e-12);
+        assert_order_two(&problem, &start());
+    }
 }
 
 /// The same problem for a sheet with a weight, held and pulled at other points than centroids.

@@ -37,6 +37,7 @@ impl MaterialFit {
                 .map(|row| [row.stress, row.strain])
                 .collect(),
             stress_deviation: self.stress_deviation(),
+            creep: None,
         };
         material.validate()?;
         Ok(material)

@@ -56,8 +56,8 @@ impl GradientListing {
         Ok(Self {
             loss,
             terms,
-            weights: (problem.objective.terms())
-                .map(|(term, weight)| (term.name().to_owned(), weight))
+            weights: (problem.objective.weights())
+                .map(|(name, _, weight)| (name.to_owned(), weight))
                 .collect(),
             labels: problem.objective.labels(),
             grad: gradient,

@@ -1,7 +1,7 @@
 //! What stays of the opening of a sheet when its loads are taken off, in numbers.
 
 use crate::drawing;
-use design::analysis::springback::{LetGoError, ReleasedSheet, WhatStays, released_hinges};
+use design::analysis::springback::{LetGoError, ReleasedSheet, WhatStays, let_go};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
@@ -36,15 +36,12 @@ impl SpringbackListing {
         law: &Springback,
     ) -> Result<Self, LetGoError> {
         let deployment = problem.deploy(design)?;
-        let hinges = released_hinges(scene, problem, law, &deployment)?;
-        let released = problem.let_go(&deployment, hinges)?;
-        let stays = problem.what_stays(&deployment, &released)?;
-        let inside = &deployment.final_step().inside;
+        let (released, stays) = let_go(scene, problem, law, &deployment)?;
         Ok(Self {
             share: stays.share(),
             stays,
             law: law.errors,
-            outside: inside.iter().filter(|inside| !**inside).count(),
+            outside: deployment.hinges_outside(),
             deployment,
             released,
         })

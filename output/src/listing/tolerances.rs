@@ -1,13 +1,16 @@
 //! What the tolerances of cutting do to a deployed sheet, in numbers.
 
+use crate::drawing;
 use crate::report::columns::rounded;
 use design::analysis::cutting_errors::{
-    CuttingError, CuttingErrors, CuttingErrorsError, FirstOrder, SampledSheets,
+    CuttingError, CuttingErrors, CuttingErrorsError, FirstOrder, SampledSheets, Spread,
 };
 use design::analysis::error_budget::{Cause, ErrorBudget};
+use design::equilibrium::load_step::LoadStep;
 use design::objective::design_problem::DesignProblem;
 use design::pattern::design_vector::DesignVector;
 use design::scene::{Scene, ToleranceConfig};
+use design::sheet::cut_sheet::Sheet;
 use serde::Serialize;
 use std::fmt;
 use support::table::number_or_dash;
@@ -30,6 +33,9 @@ pub struct ToleranceListing {
     within_model: bool,
     /// The tolerance of the ligaments, the kerf and the thickness, each alone, that moves the corners by that (mm).
     pub allowed: Option<ToleranceConfig>,
+    /// The designed sheet, and its state at full load.
+    #[serde(skip)]
+    designed: (Sheet, LoadStep),
 }
 
 /// What is asked.
@@ -82,12 +88,36 @@ impl ToleranceListing {
         let within = within.or_else(model);
         Ok(Self {
             tolerances,
+            designed: (
+                errors.designed().sheet.clone(),
+                errors.designed().final_step().clone(),
+            ),
             allowed: within.map(|within| allowed(&first_order, tolerances, within)),
             first_order,
             samples,
             within,
             within_model,
         })
+    }
+
+    /// The deployed sheet, its hinges coloured by the share of their ligament in the variance of the panel corners (SVG); `None` without a tolerance of the ligaments.
+    pub fn picture(&self, scene: &Scene) -> Option<String> {
+        self.tolerances
+            .ligament
+            .filter(|ligament| *ligament > 0.0)?;
+        let (sheet, last) = &self.designed;
+        let mut shares = vec![0.0; sheet.hinges.len()];
+        for effect in &self.first_order.errors {
+            if let CuttingError::Ligament(hinge) = effect.error {
+                shares[hinge] = 100.0 * effect.share;
+            }
+        }
+        let of = format!(
+            "the share of their ligament in the variance of the corners, {:.0} % in all",
+            shares.iter().sum::<f64>()
+        );
+        let picture = drawing::deployed_by_share(scene, sheet, last, &shares, SHOWN, &of);
+        Some(picture)
     }
 }
 
@@ -245,6 +275,23 @@ impl ToleranceListing {
                 "the largest D_peak changes by {mean:+.4} +- {deviation:.4}"
             )?;
         }
+        writeln!(
+            f,
+            "\n{:<26}{:>14}{:>14}{:>14}",
+            "", "drawn", "mean", "95 % below"
+        )?;
+        for (name, Spread { drawn, mean, most }) in [
+            ("outline error (mm)", samples.outline_error),
+            ("loss (mm^2)", samples.loss),
+        ] {
+            writeln!(f, "{name:<26}{drawn:>14.3}{mean:>14.3}{most:>14.3}")?;
+        }
+        writeln!(
+            f,
+            "{:<26}{:>28}",
+            "hinges leave the domain",
+            format!("in {} of {} sheets", samples.outside, samples.deployed)
+        )?;
         if samples.failed > 0 {
             writeln!(
                 f,

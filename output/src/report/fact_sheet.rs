@@ -2,6 +2,7 @@
 
 use crate::report::columns::rounded;
 use crate::report::hinge_row::HingeRow;
+use crate::report::lasting_shape::LastingShape;
 use crate::report::self_weight::SelfWeight;
 use design::analysis::actuation_curve::{ActuationCurve, LimitPoint, LoadPeak, Mover};
 use design::equilibrium::load_step::Status;
@@ -37,6 +38,8 @@ pub struct FactSheet {
     pub mass_kg: f64,
     /// The weight of the uncut sheet and how it acts.
     pub self_weight: SelfWeight,
+    /// Creep and springback; `None` if the hinges carry no load.
+    pub lasting_shape: Option<LastingShape>,
     /// [columns, rows]
     pub panels: [usize; 2],
     /// Extent of the flat sheet along x and y (mm).
@@ -142,6 +145,7 @@ impl FactSheet {
                 mass_kg,
                 reached.as_ref().and_then(Reached::force),
             ),
+            lasting_shape: LastingShape::new(scene, problem, deployment),
             panels: scene.config.sheet.panels,
             flat_size: extent(flat.iter().copied()),
             deployed_size: extent(corners.into_iter().flatten()),
@@ -188,6 +192,7 @@ impl FactSheet {
             let units = self.reached.as_ref().map(|reached| reached.units);
             facts.extend(self.self_weight.rows(units));
         }
+        facts.extend(self.lasting_shape.iter().flat_map(LastingShape::rows));
         if let Some(gamma) = self.gamma_min {
             let gamma = rounded(gamma, 4);
             facts.push((

@@ -188,10 +188,10 @@ impl History {
         let of = |value: &dyn Fn(&StepRecord) -> f64| -> Vec<f64> {
             index.iter().map(|&i| value(&records[i])).collect()
         };
-        let terms = objective.terms().filter(|(_, weight)| *weight != 0.0);
-        let terms = terms.map(|(term, weight)| {
-            let value = |record: &StepRecord| weight * record.scores.terms[term.name()];
-            (in_words(term.name()), of(&value))
+        let terms = objective.weights().filter(|(.., weight)| *weight != 0.0);
+        let terms = terms.map(|(name, _, weight)| {
+            let value = |record: &StepRecord| weight * record.scores.terms[name];
+            (in_words(name), of(&value))
         });
         Self {
             step: index.iter().map(|&i| records[i].step).collect(),

@@ -38,6 +38,7 @@ fn material() -> SheetMaterial {
         fracture_strain: 1.784,
         plastic: vec![[44.0, 0.0]],
         stress_deviation: None,
+        creep: None,
     }
 }
 

@@ -291,6 +291,9 @@ fn the_report_states_how_far_the_networks_of_an_ensemble_disagree() {
         assert!(cells.iter().all(|cell| text.contains(cell)), "{cells:?}");
     }
     assert!(text.contains("not in the budget: ") && text.contains("creep"));
+    // Neither creep nor springback of the film is known.
+    assert!(text.contains("the material file has no figure ([creep])"));
+    assert!(text.contains("names no law of released hinges (surrogate.springback)"));
 
     save(1.1, "other data");
     std::fs::write(folder.path().join("scene.toml"), &scene).unwrap();

@@ -120,6 +120,30 @@ fn a_run_continues_with_more_steps_but_not_with_another_scene() {
     assert!(error.contains("restart the run"), "{error}");
 }
 
+/// Tolerances are part of an expected loss alone.
+#[test]
+fn a_search_for_sheets_with_errors_continues_with_the_same_tolerances() {
+    for robust in [0.0, 1.0] {
+        let folder = tempfile::tempdir().unwrap();
+        let run_with = |kerf: f64, steps: usize| {
+            let sections = format!("[tolerances]\nkerf = {kerf}\n\n[objective]\nrobust = {robust}");
+            let steps = format!("steps = {steps}");
+            let text = with(&[("[objective]", &*sections), ("steps = 25", &*steps)]);
+            run(&read(folder.path(), &text), None)
+        };
+        let short = run_with(0.5, 1).unwrap();
+        let other = run_with(1.0, 2).map(|designed| designed.history.len());
+        if robust == 0.0 {
+            assert_eq!(other.unwrap(), 3);
+        } else {
+            let error = other.unwrap_err().to_string();
+            assert!(error.contains("the key `tolerances` changed"), "{error}");
+            assert_eq!(run_with(0.5, 2).unwrap().history.len(), 3);
+            assert!(short.best.terms["expected_excess"] != 0.0);
+        }
+    }
+}
+
 #[test]
 fn the_design_of_a_run_is_that_of_the_same_scene_and_model() {
     let folder = tempfile::tempdir().unwrap();

@@ -30,6 +30,8 @@ const OPENING: f64 = 0.436;
 /// Widths of the clips at the top and at the bottom over those of their edges.
 const HELD: f64 = 0.21;
 const PULLED: f64 = 0.14;
+/// Name of the law of released hinges in the folder of weights.
+const SPRINGBACK: &str = "springback.json";
 /// Fewest panels along a side: below three, no panel has a neighbour on both sides.
 const FEWEST: usize = 3;
 
@@ -113,6 +115,13 @@ impl FirstScene {
         set(&mut surrogate["weights"], weights.display().to_string());
         if let Some(surrogate) = surrogate.as_table_mut() {
             surrogate.remove("ensemble");
+            // The law of released hinges stands beside the weights of its material.
+            match weights.with_file_name(SPRINGBACK) {
+                law if law.is_file() => {
+                    set(&mut surrogate["springback"], law.display().to_string())
+                }
+                _ => _ = surrogate.remove("springback"),
+            }
         }
         // Clips as wide, relative to the edge that they hold, as those of the template.
         let edge = self.size[0] / self.panels[0] as f64;

@@ -85,12 +85,10 @@ impl SimilarScene {
         config.title = format!("Like: {}", config.title);
         config.thickness = Some(material.thickness);
         config.output = "design".into();
-        for network in config
-            .surrogate
-            .iter_mut()
-            .flat_map(|learned| &mut learned.ensemble)
-        {
-            *network = absolute(like.beside(network))?;
+        if let Some(learned) = &mut config.surrogate {
+            for file in learned.ensemble.iter_mut().chain(&mut learned.springback) {
+                *file = absolute(like.beside(file))?;
+            }
         }
         Ok(Self {
             same_sheet: ratios.size == 1.0 && *material == original.material,
@@ -109,6 +107,7 @@ impl SimilarScene {
             learned.weights = weights.to_owned();
             if !same_law {
                 learned.ensemble.clear();
+                learned.springback = None;
             }
         }
         if let Some(material) = material {
