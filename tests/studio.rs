@@ -320,6 +320,18 @@ fn panels_are_held_and_pulled_by_clicks() {
         tab.click("#grip-menu button");
     });
     assert!(scene_on_disk(&project).contains("at = \"centroid\""));
+    // Another number of columns: nothing of the sheet before is used.
+    after(&mut tab, |tab| {
+        tab.value("document.querySelector('[data-fields=sheet]').open = true");
+        type_into(tab, "sheet.panels.0", "4");
+        tab.value("document.activeElement.blur()");
+    });
+    assert!(scene_on_disk(&project).contains("panels = [4, 4]"));
+    assert_eq!(tab.value("hingeCount"), json!(24));
+    assert_eq!(
+        tab.value("document.getElementById('refusal').hidden"),
+        json!(true)
+    );
     // A size that is too small for the material is refused with what to do.
     tab.click("#another");
     for (id, value) in [("new-width", "60"), ("new-height", "60")] {
@@ -394,6 +406,24 @@ fn nobody_else_is_let_in_and_floods_lose_nothing() {
 }
 
 #[test]
+fn what_was_changed_last_is_on_disk_when_the_studio_ends() {
+    let work = Workplace::new();
+    let mut studio = Studio::start(&work, A4);
+    let mut scene = next(&mut studio.events(), "scene");
+    scene["scene"]["drive"]["stroke"] = json!(41.5);
+    let change = json!({ "do": "change", "scene": scene["scene"], "by": ["test", 1] });
+    assert_eq!(studio.ask(&change), 204);
+    // A search that is asked for twice and paused at once makes no step.
+    for request in ["design", "design", "pause"] {
+        assert_eq!(studio.ask(&json!({ "do": request })), 204);
+    }
+    studio.interrupt();
+    let project = work.path("studio/a4-plate");
+    assert!(scene_on_disk(&project).contains("stroke = 41.5"));
+    assert!(!project.join("design-2").exists());
+}
+
+#[test]
 fn the_scene_of_a_user_is_not_changed() {
     let work = Workplace::new();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join(A4);
@@ -403,7 +433,12 @@ fn the_scene_of_a_user_is_not_changed() {
         let mut scene = next(&mut studio.events(), "scene");
         PathBuf::from(scene["file"].take().as_str().unwrap())
     });
-    // Each studio has a copy of its own.
+    // Each studio has a copy of its own, with runs of its own.
+    let copy = std::fs::read_to_string(&files[0]).unwrap();
+    assert!(
+        copy.contains("output = \"design-1\"") && !copy.contains(".."),
+        "{copy}"
+    );
     assert_eq!(
         files,
         ["a4-plate", "a4-plate-2"].map(|name| work.path("studio").join(name).join("scene.toml"))

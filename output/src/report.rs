@@ -102,6 +102,7 @@ impl Report {
         let steps = self.steps;
         match &self.ended {
             Ended::Completed => format!("{steps} steps"),
+            Ended::Stopped if steps == 0 => "not begun".to_owned(),
             Ended::Stopped => format!("stopped after {steps} steps; run again to continue"),
             Ended::Settled => {
                 format!("settled after {steps} steps: no further step lowers the loss")

@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 /// Draw a sheet in the browser, watch it open, and design it
 ///
-/// Serves one page on 127.0.0.1, to nobody else and without the net, and opens the browser. Ctrl-C ends it. A scene or a run is
+/// Serves one page on 127.0.0.1, to nobody else and without a network, and opens the browser. Ctrl-C ends it. A scene or a run is
 /// copied to a folder below runs/studio; everything that the page does is a scene there, which `kirigami design` repeats.
 /// docs/STUDIO.md is the tutorial. Examples:
 /// kirigami studio;
@@ -44,12 +44,16 @@ impl StudioCommand {
             .transpose()?;
         let stop = interrupt::stop_flag()?;
         let post = Arc::new(Post::default());
-        let studio = Studio::listen(
+        let studio = Arc::new(Studio::listen(
             self.port,
             format!("{:032x}", random::<u128>()),
             Arc::clone(&post),
-        )?;
-        let engine = Engine::start(opened, projects, Arc::new(move |event| post.deliver(event)))?;
+        )?);
+        let engine = Arc::new(Engine::start(
+            opened,
+            projects,
+            Arc::new(move |event| post.deliver(event)),
+        )?);
         let address = studio.address();
         println!("kirigami studio: {address}\nCtrl-C ends it");
         if !self.no_browser

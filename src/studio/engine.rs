@@ -27,7 +27,7 @@ const REST: Duration = Duration::from_millis(200);
 pub(crate) struct Engine {
     inbox: Arc<Inbox>,
     stop_search: Arc<AtomicBool>,
-    thread: JoinHandle<()>,
+    thread: Mutex<Option<JoinHandle<()>>>,
     files: Fetched,
 }
 
@@ -41,6 +41,8 @@ struct Inbox {
 #[derive(Default)]
 struct Waiting {
     requests: VecDeque<Request>,
+    /// Whether a search is under way.
+    searching: bool,
     closed: bool,
 }
 
@@ -80,7 +82,7 @@ impl Engine {
         Ok(Self {
             inbox,
             stop_search,
-            thread,
+            thread: Mutex::new(Some(thread)),
             files,
         })
     }
@@ -91,30 +93,38 @@ impl Engine {
         files.get(name).cloned()
     }
 
-    /// Answers a request after those before it. Of changes that follow one another only the last is answered.
+    /// Answers a request after those before it. Of changes that follow one another only the last is answered; of searches one is
+    /// under way, or waits.
     pub fn ask(&self, request: Request) {
-        if matches!(request, Request::Pause) {
-            self.stop_search.store(true, Ordering::Relaxed);
-            return;
-        }
         let mut waiting = self.inbox.lock();
-        let changes = |request: Option<&Request>| matches!(request, Some(Request::Change(_)));
-        if changes(Some(&request)) && changes(waiting.requests.back()) {
-            waiting.requests.pop_back();
+        match &request {
+            Request::Pause => return self.stop_search.store(true, Ordering::Relaxed),
+            Request::Design => {
+                let is_search = |request: &Request| matches!(request, Request::Design);
+                if waiting.closed || waiting.searching || waiting.requests.iter().any(is_search) {
+                    return;
+                }
+                self.stop_search.store(false, Ordering::Relaxed);
+            }
+            Request::Change(_) if matches!(waiting.requests.back(), Some(Request::Change(_))) => {
+                waiting.requests.pop_back();
+            }
+            _ => {}
         }
         waiting.requests.push_back(request);
         drop(waiting);
         self.inbox.news.notify_one();
     }
 
-    /// Answers no further request, pauses a search, and waits until its state is on disk.
-    pub fn end(self) {
-        let mut waiting = self.inbox.lock();
-        waiting.closed = true;
-        drop(waiting);
+    /// Answers no further request, pauses a search, and waits until its state and the scene are on disk.
+    pub fn end(&self) {
+        self.inbox.lock().closed = true;
         self.stop_search.store(true, Ordering::Relaxed);
         self.inbox.news.notify_one();
-        let _ = self.thread.join();
+        let mut thread = self.thread.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(thread) = thread.take() {
+            let _ = thread.join();
+        }
     }
 }
 
@@ -125,12 +135,11 @@ impl Inbox {
 
     /// The next request, or a rest if there is none for a while and the sheet is not at rest.
     fn next(&self, at_rest: bool) -> Next {
-        let waiting = self.lock();
+        let mut waiting = self.lock();
+        waiting.searching = false;
         let idle = |waiting: &mut Waiting| waiting.requests.is_empty() && !waiting.closed;
         let mut waiting = if at_rest {
-            self.news
-                .wait_while(waiting, idle)
-                .unwrap_or_else(PoisonError::into_inner)
+            (self.news.wait_while(waiting, idle)).unwrap_or_else(PoisonError::into_inner)
         } else {
             let waited = self.news.wait_timeout_while(waiting, REST, idle);
             waited.unwrap_or_else(PoisonError::into_inner).0
@@ -138,10 +147,9 @@ impl Inbox {
         if waiting.closed {
             return Next::Closed;
         }
-        match waiting.requests.pop_front() {
-            Some(request) => Next::Request(request),
-            None => Next::Rest,
-        }
+        let request = waiting.requests.pop_front();
+        waiting.searching = matches!(request, Some(Request::Design));
+        request.map_or(Next::Rest, Next::Request)
     }
 }
 
@@ -149,18 +157,21 @@ impl Inbox {
 fn work(inbox: &Inbox, session: &mut Session) {
     loop {
         let next = inbox.next(session.is_at_rest());
+        let last = matches!(next, Next::Closed);
         let done = caught_panic::catch(|| match next {
-            Next::Request(request) => session.answer(request).map(|()| true),
-            Next::Rest => session.rest().map(|()| true),
-            Next::Closed => Ok(false),
+            Next::Request(request) => session.answer(request),
+            Next::Rest => session.rest(),
+            Next::Closed => session.close(),
         });
         match done {
-            Ok(Ok(true)) => {}
-            Ok(Ok(false)) => return,
+            Ok(Ok(())) => {}
             Ok(Err(error)) => session.give_up(&message(&error)),
-            Err(panic) => {
-                session.give_up(&format!("the studio failed: {panic}; the scene is on disk"))
-            }
+            Err(panic) => session.give_up(&format!(
+                "the studio failed: {panic}; the scene of the last rest is on disk"
+            )),
+        }
+        if last {
+            return;
         }
     }
 }

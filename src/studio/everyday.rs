@@ -39,8 +39,8 @@ struct Wanted {
     scene: Option<Scene>,
     /// Ends the computation that is under way, of which nothing is shown then.
     stop: Arc<AtomicBool>,
-    /// The equilibrium at full load of the last one.
-    equilibrium: Option<KnownPath>,
+    /// The path of the last one that was shown.
+    path: Option<KnownPath>,
 }
 
 impl Everyday {
@@ -66,16 +66,12 @@ impl Everyday {
         self.news.notify_one();
     }
 
-    /// Shows nothing of what is under way.
-    pub fn stop(&self) {
+    /// Shows nothing of what is under way. Returns the path of the last computation that was shown, once.
+    pub fn stop(&self) -> Option<KnownPath> {
         let mut wanted = self.lock();
         wanted.scene = None;
         wanted.stop.store(true, Ordering::Relaxed);
-    }
-
-    /// The equilibrium at full load of a computation since the last call.
-    pub fn equilibrium(&self) -> Option<KnownPath> {
-        self.lock().equilibrium.take()
+        wanted.path.take()
     }
 
     fn lock(&self) -> MutexGuard<'_, Wanted> {
@@ -101,8 +97,8 @@ impl Everyday {
                 continue;
             }
             let event = match computed {
-                Ok(Ok((page, equilibrium))) => {
-                    wanted.equilibrium = Some(equilibrium);
+                Ok(Ok((page, path))) => {
+                    wanted.path = Some(path);
                     page
                 }
                 Ok(Err(error)) => refusal(&message(&error)),
@@ -114,12 +110,16 @@ impl Everyday {
     }
 }
 
+pub(super) fn milliseconds(begin: Instant) -> f64 {
+    1e3 * begin.elapsed().as_secs_f64()
+}
+
 /// What is said of a request that is refused.
 pub(super) fn refusal(why: &str) -> Event {
     Event::new(Kind::Says, &json!({ "refused": true, "message": why }))
 }
 
-/// The page of the start of a scene, and its equilibrium at full load.
+/// The page of the start of a scene, and its path.
 fn page_of(scene: &Scene, stop: &Arc<AtomicBool>, begin: Instant) -> Result<(Event, KnownPath)> {
     let designed = Designed::at_start(scene, Arc::clone(stop))?;
     let best = &designed.best.deployment;
@@ -132,7 +132,7 @@ fn page_of(scene: &Scene, stop: &Arc<AtomicBool>, begin: Instant) -> Result<(Eve
     );
     let report = Report::new(scene, &designed, &cuts, false);
     let page = PageData::new(scene, &designed, &report);
-    let ms = Some(1e3 * begin.elapsed().as_secs_f64());
+    let ms = Some(milliseconds(begin));
     let event = Event::new(Kind::Page, &Shown { page, ms });
     Ok((event, best.known_path()))
 }

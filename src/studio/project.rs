@@ -38,11 +38,12 @@ impl Project {
             let folder = file.parent().unwrap_or(Path::new("")).to_owned();
             return Ok((Self { folder }, original));
         }
-        let mut config = original.located()?;
-        if path.is_dir() {
+        let shown = if path.is_dir() {
             let best = stored_design(&path.join(STATE_FILE), &original)?;
-            config.start = original.starting_at(&best).start;
-        }
+            original.changed(original.starting_at(&best))?
+        } else {
+            original
+        };
         let named = if path.is_dir() {
             path
         } else {
@@ -50,7 +51,7 @@ impl Project {
         };
         let name = named.file_name().unwrap_or_default().to_string_lossy();
         let project = Self::create(projects, &name)?;
-        let scene = project.write(config)?;
+        let scene = project.write(shown.located()?)?;
         Ok((project, scene))
     }
 
@@ -77,8 +78,9 @@ impl Project {
         self.folder.join(SCENE)
     }
 
-    /// Checks and writes other keys.
-    fn write(&self, config: SceneConfig) -> Result<Scene> {
+    /// Checks and writes the first scene.
+    fn write(&self, mut config: SceneConfig) -> Result<Scene> {
+        config.output = self.next_run();
         let scene = Scene::new(config, &self.scene_file())?;
         self.save(&scene)?;
         Ok(scene)

@@ -4,8 +4,10 @@
 //! |---|---|
 //! | `GET /` | the page |
 //! | `GET /events` | events, as a stream (text/event-stream), beginning with the latest of every kind |
-//! | `POST /request` | 204, or 400 with the reason; the body is a [`Request`] as JSON |
+//! | `POST /request` | 204: it is answered by events; or 400 with the reason; the body is a [`Request`] as JSON |
 //! | `GET /files/NAME` | a file of the run |
+//!
+//! Others: 403 without the token, 404 for what is not there, 413 for a body that is too long, 421 for another host.
 //!
 //! Programs on this machine and pages of other servers reach a port of 127.0.0.1, too. So every request needs the token of the
 //! address that is printed, and the header `Host` must name this server: a page of another name that resolves to 127.0.0.1 has
@@ -26,6 +28,8 @@ use tiny_http::{Header, Method, Request as Http, Response, Server};
 
 /// Maximum size of the body of a request (bytes): a drawing, or a scene with 100 000 panels.
 const MOST_BYTES: usize = 16 << 20;
+/// Announced length of a body (bytes) beyond which its connection is left alone.
+const MOST_LENGTH: usize = 1 << 30;
 /// How often the flag that ends the server is read.
 const POLL: Duration = Duration::from_millis(100);
 /// After this time without an event a line is sent, by which a page that is gone is noticed.
@@ -59,17 +63,25 @@ impl Studio {
         format!("http://{}/?token={}", self.host, self.token)
     }
 
-    /// Answers until `stop` becomes true.
-    pub fn serve(&self, engine: &Engine, stop: &AtomicBool) -> Result<()> {
+    /// Answers until `stop` becomes true, every request on a thread of its own: one that is slow to arrive delays no other.
+    pub fn serve(self: &Arc<Self>, engine: &Arc<Engine>, stop: &AtomicBool) -> Result<()> {
         while !stop.load(Ordering::Relaxed) {
-            if let Some(request) = self.server.recv_timeout(POLL)? {
-                self.answer(request, engine);
-            }
+            let Some(request) = self.server.recv_timeout(POLL)? else {
+                continue;
+            };
+            let (studio, engine) = (Arc::clone(self), Arc::clone(engine));
+            let thread = std::thread::Builder::new().name("request".into());
+            // A page whose request has no thread says that the studio does not answer.
+            let _ = thread.spawn(move || studio.answer(request, &engine));
         }
         Ok(())
     }
 
     fn answer(&self, mut request: Http, engine: &Engine) {
+        if request.body_length() > Some(MOST_LENGTH) {
+            // The library reads a body to its end before it goes, into a buffer of this length.
+            return std::mem::forget(request);
+        }
         let (path, query) = split(request.url());
         let answer = match (request.method(), path.as_str()) {
             _ if !self.is_ours(&request) => refusal(421, "this server is another host"),
@@ -78,7 +90,11 @@ impl Studio {
                 "the address needs the token that `kirigami studio` has printed",
             ),
             (Method::Get, "/") => page(),
-            (Method::Get, "/events") => return self.stream(request),
+            (Method::Get, "/events") => {
+                // The page is gone when it cannot be written to.
+                let _ = send(&self.post, &mut *request.into_writer());
+                return;
+            }
             (Method::Post, "/request") => match read(&mut request) {
                 Ok(asked) => {
                     engine.ask(asked);
@@ -104,19 +120,9 @@ impl Studio {
             .next()
             .is_some_and(|host| host.value == self.host.as_str() || host.value == local.as_str())
     }
-
-    /// Sends events on a thread of their own until the page is gone.
-    fn stream(&self, request: Http) {
-        let post = Arc::clone(&self.post);
-        // Without a thread the page says that the studio does not answer.
-        let _ = std::thread::Builder::new()
-            .name("events".into())
-            .spawn(move || {
-                let _ = send(&post, &mut *request.into_writer());
-            });
-    }
 }
 
+/// Sends events until the page is gone.
 fn send(post: &Post, page: &mut dyn Write) -> io::Result<()> {
     let head = "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-store\r\nConnection: close\r\n\r\n";
     page.write_all(head.as_bytes())?;
@@ -205,13 +211,13 @@ fn header(name: &str, value: &str) -> Header {
     Header::from_bytes(name, value).expect("the headers of this file are ASCII")
 }
 
-/// Path and query of an address; the path without percent signs.
+/// Path and query of an address; the path with its escapes decoded.
 fn split(url: &str) -> (String, String) {
     let (path, query) = url.split_once('?').unwrap_or((url, ""));
     (unescaped(path), query.to_owned())
 }
 
-/// A path whose `%20` are characters; as it is if it is no text then.
+/// A path with `%20` and the like decoded; unchanged if the result is not UTF-8.
 fn unescaped(path: &str) -> String {
     let mut bytes = Vec::with_capacity(path.len());
     let mut rest = path.as_bytes();

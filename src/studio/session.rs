@@ -3,9 +3,11 @@
 use crate::commands::cut::CutCommand;
 use crate::commands::design::write_run;
 use crate::studio::event::{Event, Kind};
-use crate::studio::everyday::{Everyday, Listener, Shown, refusal};
+use crate::studio::everyday::{Everyday, Listener, Shown, milliseconds, refusal};
 use crate::studio::project::Project;
 use crate::studio::request::{Change, Files, Request};
+use crate::ui::run_folder;
+use crate::ui::shell_word::shell_word;
 use anyhow::{Context, Result};
 use design::equilibrium::nearby_path::KnownPath;
 use design::objective::scores::outline_error;
@@ -20,7 +22,7 @@ use serde::Serialize;
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -107,6 +109,7 @@ impl Session {
 
     /// Shows another sheet.
     pub fn open(&mut self, project: Project, scene: Scene) {
+        self.everyday.stop();
         self.sheet = Some(Opened {
             on_disk: scene.config.clone(),
             before: Vec::new(),
@@ -151,6 +154,14 @@ impl Session {
         Ok(())
     }
 
+    /// Writes the scene before the end.
+    pub fn close(&mut self) -> Result<()> {
+        if self.sheet.is_some() {
+            self.commit()?;
+        }
+        Ok(())
+    }
+
     /// Says why a request was not answered. The last result stays.
     pub fn give_up(&mut self, why: &str) {
         // The page shows one scene.
@@ -164,15 +175,13 @@ impl Session {
     }
 
     fn change(&mut self, Change { scene, by }: Change) -> Result<()> {
-        let sheet = self.opened_mut()?;
-        let changed = sheet.scene.changed(*scene)?;
-        sheet.show(changed);
-        sheet.by = Some(by);
+        let changed = self.opened()?.scene.changed(*scene)?;
+        self.show(changed)?.by = Some(by);
         self.draft()
     }
 
     fn drawing(&mut self, svg: &str) -> Result<()> {
-        let sheet = self.opened_mut()?;
+        let sheet = self.opened()?;
         let file = sheet.project.keep_drawing(svg)?;
         let target = &sheet.scene.target;
         let path = sheet.project.folder.join(&file);
@@ -187,20 +196,16 @@ impl Session {
             ..sheet.scene.config.clone()
         };
         let changed = sheet.scene.changed(config)?;
-        sheet.show(changed);
+        self.show(changed)?;
         self.tell_scene();
         self.draft()
     }
 
     /// Shows the sheet at full load.
     fn draft(&mut self) -> Result<()> {
-        self.at_rest = false;
-        self.everyday.stop();
         self.say("");
         let begin = Instant::now();
-        let everyday = self.everyday.equilibrium();
         let sheet = self.opened_mut()?;
-        sheet.known = everyday.or(sheet.known.take());
         let (scene, problem) = (&sheet.scene, sheet.scene.unbalanced_problem()?);
         let deployment = draft(&problem, &scene.start(), sheet.known.as_ref())?;
         sheet.known = Some(deployment.known_path());
@@ -230,11 +235,12 @@ impl Session {
     ) -> Result<()> {
         self.commit()?;
         let sheet = self.opened_mut()?;
-        let Some(config) = lists(sheet).0.pop() else {
+        let Some(config) = lists(sheet).0.last().cloned() else {
             return Ok(());
         };
         let scene = sheet.scene.changed(config.clone())?;
-        sheet.show(scene);
+        let sheet = self.show(scene)?;
+        lists(sheet).0.pop();
         let left = std::mem::replace(&mut sheet.on_disk, config);
         lists(sheet).1.push(left);
         sheet.project.save(&sheet.scene)?;
@@ -251,14 +257,14 @@ impl Session {
             }
             _ => sheet.scene_of_run()?,
         };
-        self.stop_search.store(false, Ordering::Relaxed);
+        self.stop_everyday();
         self.tell(Kind::Working, &"design");
         self.search(scene, &self.stop_search.clone())
     }
 
     /// Runs the search of a scene, and shows its best design.
     fn search(&mut self, scene: Scene, stop: &AtomicBool) -> Result<()> {
-        self.everyday.stop();
+        let _held = run_folder::hold(&scene.output())?;
         let problem = scene.problem()?;
         let mut steps = Steps::default();
         let listener = &self.listener;
@@ -271,13 +277,13 @@ impl Session {
         let report = write_run(&scene, &designed, false)?;
         let page = PageData::new(&scene, &designed, &report);
         self.tell(Kind::Page, &Shown { page, ms: None });
-        let sheet = self.opened_mut()?;
         let adopted = SceneConfig {
-            output: sheet.project.next_run(),
+            output: self.opened()?.project.next_run(),
             ..scene.starting_at(&designed.design)
         };
-        let shown = sheet.scene.changed(adopted.clone())?;
-        sheet.show(shown);
+        let shown = self.opened()?.scene.changed(adopted.clone())?;
+        let sheet = self.show(shown)?;
+        sheet.known = Some(designed.best.deployment.known_path());
         sheet.run = Some(Run {
             scene,
             adopted,
@@ -293,20 +299,20 @@ impl Session {
     /// Writes cut files, from the run of the sheet that is shown: one without a step if there is none.
     fn write(&mut self, files: &Files) -> Result<()> {
         self.commit()?;
-        let sheet = self.opened()?;
-        if !sheet.shows_run() {
-            let scene = sheet.scene_of_run()?;
+        self.tell(Kind::Working, &"files");
+        if !self.opened()?.shows_run() {
+            self.stop_everyday();
+            let scene = self.opened()?.scene_of_run()?;
             self.search(scene, &AtomicBool::new(true))?;
         }
         let folder = self.run_folder()?;
-        self.tell(Kind::Working, &"files");
         let (paper, machine) = (files.paper.as_deref(), files.machine.clone());
         if paper.is_some() || machine.is_some() {
             CutCommand::of_run(folder.clone(), paper, machine)?.run()?;
         }
         self.list_files()?;
-        self.say(&format!("written to {}", folder.display()));
         self.tell(Kind::Working, &());
+        self.say(&format!("written to {}", folder.display()));
         Ok(())
     }
 
@@ -353,6 +359,28 @@ impl Session {
         self.sheet.as_mut().context(NO_SHEET)
     }
 
+    /// Shows a scene; its equilibrium is not near the last one if the sheet or its supports are others.
+    fn show(&mut self, scene: Scene) -> Result<&mut Opened> {
+        self.stop_everyday();
+        let sheet = self.opened_mut()?;
+        let held = |scene: &Scene| (scene.config.sheet, scene.config.supports.clone());
+        if held(&scene) != held(&sheet.scene) {
+            sheet.known = None;
+        }
+        sheet.scene = scene;
+        sheet.by = None;
+        Ok(sheet)
+    }
+
+    /// Ends the everyday level, which a rest computes again.
+    fn stop_everyday(&mut self) {
+        self.at_rest = false;
+        let path = self.everyday.stop();
+        if let (Some(sheet), Some(path)) = (&mut self.sheet, path) {
+            sheet.known = Some(path);
+        }
+    }
+
     fn tell(&self, kind: Kind, data: &impl Serialize) {
         (self.listener)(Event::new(kind, data));
     }
@@ -369,7 +397,9 @@ impl Session {
                 &json!({
                     "scene": sheet.scene.config,
                     "file": sheet.project.scene_file(),
+                    "command": format!("kirigami design {}", shell_word(&sheet.project.scene_file())),
                     "by": sheet.by,
+                    "run": sheet.shows_run(),
                     "undo": sheet.before.len(),
                     "redo": sheet.after.len(),
                 }),
@@ -381,16 +411,6 @@ impl Session {
 const NO_SHEET: &str = "there is no sheet yet: begin one";
 
 impl Opened {
-    /// Shows a scene; another sheet is not near the last draft.
-    fn show(&mut self, scene: Scene) {
-        self.by = None;
-        let held = |scene: &Scene| (scene.config.sheet, scene.config.supports.clone());
-        if held(&scene) != held(&self.scene) {
-            self.known = None;
-        }
-        self.scene = scene;
-    }
-
     /// The scene with a run folder of its own.
     fn scene_of_run(&self) -> Result<Scene> {
         let config = SceneConfig {
@@ -463,10 +483,6 @@ fn draft(
     };
     deployment.at_full_load()?;
     Ok(deployment)
-}
-
-fn milliseconds(begin: Instant) -> f64 {
-    1e3 * begin.elapsed().as_secs_f64()
 }
 
 /// All files in a folder and the folders in it; none if it does not exist.

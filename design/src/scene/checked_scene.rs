@@ -122,7 +122,8 @@ impl Scene {
     pub fn located(&self) -> std::io::Result<SceneConfig> {
         let mut config = self.config.clone();
         let locate = |path: &mut PathBuf| {
-            *path = std::path::absolute(self.file(path))?;
+            let file = self.file(path);
+            *path = (file.canonicalize()).or_else(|_| std::path::absolute(&file))?;
             Ok::<_, std::io::Error>(())
         };
         let law = config.surrogate.as_mut();

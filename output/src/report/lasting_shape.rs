@@ -82,28 +82,28 @@ impl Released {
 
     fn text(&self) -> String {
         let [loaded, free] = self.stays.mean_rotations().map(f64::to_degrees);
-        let share = self.stays.share().unwrap_or(1.0);
+        let share = self.stays.share();
+        let share = share.map_or(String::new(), |share| format!(", {:.0} %", 100.0 * share));
         let [rms, most] = self.stays.corners.map(|length| rounded(length, 3));
         let mut text = format!(
-            "of a mean opening of {} deg {} stay when the load is taken off, {:.0} %; corners move by {rms} mm (root mean square), \
+            "of a mean opening of {} deg {} stay when the load is taken off{share}; corners move by {rms} mm (root mean square), \
              {most} mm at most",
             rounded(loaded, 3),
             rounded(free, 3),
-            100.0 * share
         );
         if self.stays.snaps {
             text += "; the sheet snaps to another state on the way";
         }
         if self.outside > 0 {
             text += &format!(
-                "; {} hinges left the training domain: what stays of them is not known",
+                "; {} hinges are outside the training domain at full load: what stays of them, and so of the sheet, is not known",
                 self.outside
             );
         }
         text += &match &self.law {
             Some(law) => format!(
-                "; the law of released hinges is off by {} deg (root mean square at {} hinges that it has not seen), the errors of the forces \
-                 come on top",
+                "; the law of released hinges is off by {} deg (root mean square at {} hinges that it has not seen); the errors of the forces \
+                 are added",
                 rounded(law.rest[2].to_degrees(), 2),
                 law.hinges
             ),

@@ -37,7 +37,7 @@ async function sendScene() {
 function goOffline() {
   byId("offline").hidden = false;
   byId("offline").textContent =
-    "The studio does not answer: it was ended. Start `kirigami studio` again with the folder of the sheet; the scene is on disk.";
+    "The studio does not answer: it was ended. Start `kirigami studio` again with the folder of the sheet.";
 }
 
 /** Calls the listeners of every kind with the data of their events. */
@@ -50,7 +50,12 @@ function connect(listeners) {
 
 /** Shows why a request was refused, at the field that it names or else above; nothing without a reason. */
 function refuse(why) {
-  const named = why ? [...document.querySelectorAll("#studio [data-key]")].filter((field) => why.includes(field.dataset.key)) : [];
+  const fields = byId("tools").hidden || !why ? [] : [...document.querySelectorAll("#studio [data-key]")];
+  const named = fields.filter(({ dataset: { key } }) => {
+    const at = why.indexOf(key);
+    const beside = [why[at - 1], why[at + key.length]];
+    return at >= 0 && !beside.some((character) => /[\w.[]/.test(character ?? ""));
+  });
   document.querySelectorAll("#studio [aria-invalid]").forEach((field) => field.removeAttribute("aria-invalid"));
   document.querySelectorAll("#studio .at-field").forEach((text) => text.remove());
   for (const field of named) field.setAttribute("aria-invalid", "true");

@@ -33,10 +33,10 @@ function field(parent, text, path, input) {
   return input;
 }
 
-function numberField(parent, text, path, changed = (value) => set(path, value)) {
+function numberField(parent, text, path, changed = (value) => set(path, value), when = "input") {
   const input = document.createElement("input");
   Object.assign(input, { type: "number", step: "any", value: inField(valueAt(path)) });
-  input.addEventListener("input", () => { if (input.value !== "" && Number.isFinite(input.valueAsNumber)) changed(input.valueAsNumber); });
+  input.addEventListener(when, () => { if (input.value !== "" && Number.isFinite(input.valueAsNumber)) changed(input.valueAsNumber); });
   return field(parent, text, path, input);
 }
 
@@ -104,18 +104,18 @@ const groups = {
     sliderField(box, "All ligaments (mm)", "ligament.start", inside, (width) => {
       scene.start.w_lig = null;
       set("ligament.start", width);
+      const ofHinge = box.querySelector("[data-path^='start.']");
+      if (ofHinge) ofHinge.parentNode.nextSibling.value = ofHinge.value = inField(width);
     });
     if (run) {
       const h = shownNow.hinge;
       const text = `Hinge ${h} (mm)`;
-      const widths = scene.start.w_lig ?? Array(hingeCount).fill(scene.ligament.start);
-      scene.start.w_lig ??= null;
+      const widths = () => scene.start.w_lig ?? Array(hingeCount).fill(scene.ligament.start);
       const number = sliderField(box, text, `start.w_lig.${h}`, inside, (width) => {
-        scene.start.w_lig ??= widths;
+        scene.start.w_lig = widths();
         set(`start.w_lig.${h}`, width);
       });
-      if (number.value === "") number.value = inField(widths[h]);
-      number.parentNode.nextSibling.value = widths[h];
+      number.parentNode.nextSibling.value = number.value = inField(widths()[h]);
     }
     numberField(box, "Narrowest (mm)", "ligament.range.0");
     numberField(box, "Widest (mm)", "ligament.range.1");
@@ -127,14 +127,15 @@ const groups = {
       numberField(box, "Width (mm)", "sheet.size.0");
       numberField(box, "Height (mm)", "sheet.size.1");
     }
-    numberField(box, "Columns", "sheet.panels.0", (count) => setPanels(0, count));
-    numberField(box, "Rows", "sheet.panels.1", (count) => setPanels(1, count));
-    if (scene.thickness) numberField(box, "Thickness (mm)", "thickness");
+    numberField(box, "Columns", "sheet.panels.0", (count) => setPanels(0, count), "change");
+    numberField(box, "Rows", "sheet.panels.1", (count) => setPanels(1, count), "change");
+    if (scene.thickness) numberField(box, "Thickness (mm)", "thickness", setThickness, "change");
     numberField(box, "Kerf (mm)", "process.kerf");
     if (scene.process.hole_diameter) numberField(box, "Hole diameter (mm)", "process.hole_diameter");
     else numberField(box, "Hole over ligament", "process.fillet_ratio");
-    numberField(box, "Window r_win (mm)", "process.r_win");
-    write(box, "p", `Material: ${scene.material.split("/").pop()}. A panel is wider than about 3.5 r_win.`, "note");
+    if (scene.hinge !== "surrogate") numberField(box, "Window r_win (mm)", "process.r_win");
+    const window = inField(scene.process.r_win);
+    write(box, "p", `Material: ${scene.material.split("/").pop()}. Windows of the hinges: r_win = ${window} mm; panels are at least 3.5 r_win wide.`, "note");
   },
 
   grips: (box) => writeGrips(box),
@@ -142,7 +143,7 @@ const groups = {
 
   search(box) {
     choiceField(box, "Method", "optimiser.method", [["lbfgs", "L-BFGS"], ["gauss-newton", "Gauss-Newton"], ["adam", "Adam"]]);
-    numberField(box, "Steps", "optimiser.steps", (steps) => set("optimiser.steps", Math.round(steps)));
+    numberField(box, "Steps", "optimiser.steps", (steps) => set("optimiser.steps", Math.max(1, Math.round(steps))));
     for (const [text, key] of [["Coverage", "coverage"], ["Damage", "damage"], ["Compression", "compression"], ["Panel shape", "panel_shape"], ["Domain", "domain"]])
       numberField(box, text, `objective.${key}`);
     write(box, "p", "Weights relative to the outline's distance to the target; docs/KEYS.md describes them.", "note");
@@ -153,18 +154,18 @@ const groups = {
 function loadSlider(box) {
   const label = write(box, "label", "All loads, times");
   const slider = document.createElement("input");
-  Object.assign(slider, { type: "range", min: 0, max: 2, step: 0.01, value: 1 });
+  Object.assign(slider, { type: "range", min: 0.05, max: 2, step: 0.05, value: 1 });
   let from = null;
   slider.addEventListener("input", () => {
     from ??= structuredClone([scene.loads, scene.edge_loads, scene.opening_couples]);
     const f = slider.valueAsNumber;
     [scene.loads, scene.edge_loads, scene.opening_couples] = structuredClone(from);
-    scene.loads.forEach((load) => { load.force = load.force.map((x) => f * x); load.couple *= f; if (load.mass_g) load.mass_g *= Math.max(f, 1e-3); });
+    scene.loads.forEach((load) => { load.force = load.force.map((x) => f * x); load.couple *= f; if (load.mass_g) load.mass_g *= f; });
     scene.edge_loads.forEach((load) => { load.traction = load.traction.map((x) => f * x); });
     scene.opening_couples.forEach((load) => { load.couple *= f; });
     sendScene();
   });
-  slider.addEventListener("change", () => { from = null; writeFields(); });
+  slider.addEventListener("change", () => { [from, slider.value] = [null, 1]; updateFields(); });
   label.appendChild(slider);
 }
 
@@ -174,6 +175,21 @@ function strokeNow() {
   return reached ? reached[0] : 0.1 * Math.max(...(scene.sheet.size ?? [100]));
 }
 
+/** Another thickness: ligaments, holes and windows in proportion, as the weights require; the kerf is that of the tool. */
+function setThickness(thickness) {
+  if (!(thickness > 0)) return;
+  const factor = thickness / scene.thickness;
+  const scaled = (x) => Number((factor * x).toPrecision(6));
+  const { ligament, process, start } = scene;
+  ligament.start = scaled(ligament.start);
+  ligament.range = ligament.range.map(scaled);
+  start.w_lig = start.w_lig?.map((width) => factor * width) ?? null;
+  process.r_win = scaled(process.r_win);
+  if (process.hole_diameter) process.hole_diameter = scaled(process.hole_diameter);
+  set("thickness", thickness);
+  updateFields();
+}
+
 /** Another number of columns or rows: the pattern is uniform again, and what is held and pulled stays where it was. */
 function setPanels(axis, count) {
   count = Math.round(count);
@@ -181,7 +197,6 @@ function setPanels(axis, count) {
   const before = scene.sheet.panels[axis];
   const moved = (panel) => { panel[axis] = Math.min(count - 1, Math.floor(((panel[axis] + 0.5) * count) / before)); };
   [...scene.supports, ...scene.loads].forEach(({ panel }) => moved(panel));
-  scene.opening_couples.forEach(({ panels }) => panels?.forEach(moved));
   scene.start = {};
   set(`sheet.panels.${axis}`, count);
 }

@@ -12,7 +12,12 @@ function writeGrips(box) {
     });
   scene.supports.forEach((support, i) => {
     const item = listItem(box, "supports", i, "Held");
-    choiceField(item, "by a", `supports.${i}.kind`, KINDS);
+    choiceField(item, "by a", `supports.${i}.kind`, KINDS, (kind) => {
+      // Only a clamp holds the rotation, and an edge by a clip.
+      if (kind !== "clamp") Object.assign(support, { clip: null, rotation_deg: 0 });
+      set(`supports.${i}.kind`, kind);
+      writeFields();
+    });
     writePlace(item, `supports.${i}`);
   });
   scene.loads.forEach((load, i) => {
@@ -39,14 +44,21 @@ function listItem(box, list, i, text) {
   const item = write(box, "div", undefined, "item");
   const { panel } = scene[list][i];
   write(item, "b", panel ? `${text}: panel [${panel}] ` : `${text} `);
-  button(item, "remove", () => { scene[list].splice(i, 1); sendScene(); writeFields(); });
+  button(item, "remove", () => { scene[list].splice(i, 1); letGo(); });
   return item;
+}
+
+/** Sends the scene after something was removed: without loads there is no stroke. */
+function letGo() {
+  if (scene.loads.length + scene.edge_loads.length + scene.opening_couples.length === 0) scene.drive = null;
+  sendScene();
+  writeFields();
 }
 
 /** Where a panel is held or pulled. */
 function writePlace(item, path) {
-  numberField(item, "Column", `${path}.panel.0`, (at) => set(`${path}.panel.0`, Math.round(at)));
-  numberField(item, "Row", `${path}.panel.1`, (at) => set(`${path}.panel.1`, Math.round(at)));
+  numberField(item, "Column", `${path}.panel.0`, (at) => set(`${path}.panel.0`, Math.max(0, Math.round(at))));
+  numberField(item, "Row", `${path}.panel.1`, (at) => set(`${path}.panel.1`, Math.max(0, Math.round(at))));
   if (typeof valueAt(`${path}.at`) === "string")
     choiceField(item, "At", `${path}.at`, [["centroid", "its centroid"], ...EDGES.map((edge) => [edge, `its ${edge} edge`])], (at) => {
       const grip = valueAt(path);
@@ -111,8 +123,7 @@ function openGripMenu(place) {
     act("Let go", () => {
       scene.supports = scene.supports.filter((support) => !here(support));
       scene.loads = scene.loads.filter((load) => !here(load));
-      sendScene();
-      writeFields();
+      letGo();
     });
   act("Cancel", () => {});
   line.firstChild.focus();

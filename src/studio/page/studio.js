@@ -8,6 +8,10 @@ const reported = () => ["facts-card", "warnings-card", "budget-card", "curve-car
 const setStale = (stale) => reported().forEach((card) => card.classList.toggle("stale", stale));
 
 let shop = { materials: [], machines: [] };
+
+/** Whether a search or the writing of files is under way: the sheet is not changed meanwhile. */
+let busy = false;
+
 let times = { draft: null, everyday: null, recent: [] };
 
 /** The designs of this visit: loss, outline error, and the corners of the deployed panels (mm). */
@@ -24,13 +28,16 @@ connect({
     for (const { file, name } of shop.materials) write(select, "option", name).value = file;
     if (!shop.materials.length) refuse("No material with weights here: start the studio in the folder of kirigami, or with a scene.");
     sayMaterial();
+    byId("machine").length = 1;
     for (const [name] of shop.machines) write(byId("machine"), "option", `for ${name}`).value = name;
   },
 
   scene(event) {
     byId("undo").disabled = event.undo === 0;
     byId("redo").disabled = event.redo === 0;
-    byId("terminal").textContent = `In the terminal: kirigami design ${event.file}`;
+    byId("files").classList.toggle("stale", !event.run);
+    byId("files-of").hidden = event.run || !byId("files").hasChildNodes();
+    byId("terminal").textContent = `In the terminal: ${event.command}`;
     if (event.file !== file) openSheet(event.file);
     // Changes of this page that are on their way are newer.
     if (event.by?.[0] === me && event.by[1] < changes) return;
@@ -44,11 +51,12 @@ connect({
     times.draft = event.ms;
     times.recent = [...times.recent, performance.now()].filter((t) => t > performance.now() - 1000);
     sayTimes();
-    drawDraft(event.sheet);
-    byId("state").textContent = `At full load (draft) \u00b7 outline ${shown(event.outline_error, 3)} mm from the target, rms`;
+    showDraft(event);
   },
 
   page(event) {
+    // What was refused at a field is still there; what a draft lacked is found.
+    if (!document.querySelector("#studio [aria-invalid]")) refuse("");
     const first = !run;
     const fraction = first || stateCount < 2 ? 1 : shownNow.state / (stateCount - 1);
     take(event.page);
@@ -56,10 +64,9 @@ connect({
     setStale(false);
     const { history } = run;
     const best = history.loss.reduce((b, loss, i) => (loss < history.loss[b] ? i : b), 0);
-    if (event.ms === null) designs.push({ loss: history.loss[best], error: history.outline_error[best], outline: finalOutline() });
+    if (event.ms === null && history.step.length > 1) designs.push({ loss: history.loss[best], error: history.outline_error[best], outline: finalOutline() });
     else times.everyday = event.ms;
     writeTexts();
-    byId("summary").textContent = byId("summary").textContent.replace(/ Search: stopped after 0 steps.*/, " Not searched yet.");
     writeChoices();
     writeDesigns();
     sayTimes();
@@ -78,23 +85,22 @@ connect({
     byId("progress").textContent = `Step ${event.step} of ${event.of}`;
     if (!run) return;
     run.history = event.history;
-    if (event.draft) drawDraft(event.draft.sheet);
+    if (event.draft) showDraft(event.draft);
     drawHistory();
   },
 
   working(what) {
     const texts = { everyday: "Following the path \u2026", design: "Searching \u2026", files: "Writing files \u2026" };
     byId("progress").textContent = texts[what] ?? "";
-    const busy = what === "design" || what === "files";
+    busy = what === "design" || what === "files";
     byId("design").textContent = what === "design" ? "Pause" : "Design";
-    document.querySelectorAll("#tools details input, #tools details select, #tools details button, #undo, #redo, #another").forEach((element) => { element.inert = busy; });
+    document.querySelectorAll("#tools details input, #tools details select, #tools details button, #grip-menu, #undo, #redo, #another").forEach((element) => { element.inert = busy; });
     document.documentElement.dataset.working = what ?? "";
   },
 
   says({ refused, message }) {
     refuse(refused ? message : "");
     if (!refused && message) byId("progress").textContent = message;
-    if (refused) setStale(true);
   },
 
   files({ files }) {
@@ -111,16 +117,19 @@ connect({
 });
 
 /** Draws a sheet at full load in place of the last path. */
-function drawDraft(sheet) {
+function showDraft({ sheet, outline_error }) {
   if (!run) return;
   const sameSheet = sheet.hinges.sites.length === hingeCount;
   take({ ...run, ...sheet });
   shownNow.state = stateCount - 1;
+  // Drafts have no ensemble.
+  if (!quantities[shownNow.quantity]) shownNow.quantity = byId("quantity").value = "rotation";
   if (!sameSheet) { shownNow.hinge = 0; measureExtent(); fitView(); }
   byId("slider").max = byId("slider").value = stateCount - 1;
-  const quantity = quantities[shownNow.quantity] ?? quantities.rotation;
+  const quantity = quantities[shownNow.quantity];
   drawSheet(shownNow.state, quantity, shownNow.hinge);
   drawScale(quantity);
+  byId("state").textContent = `At full load (draft) \u00b7 outline ${shown(outline_error, 3)} mm from the target, rms`;
   setStale(true);
 }
 
@@ -205,8 +214,9 @@ byId("machine").addEventListener("change", (event) => {
 byId("ghost").addEventListener("change", () => show({}));
 byId("modes").addEventListener("change", () => { openGripMenu(null); show({}); });
 document.addEventListener("keydown", (event) => {
-  if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || event.target.tagName === "INPUT") return;
+  if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || ["text", "number"].includes(event.target.type)) return;
   event.preventDefault();
+  if (busy) return;
   ask({ do: event.shiftKey ? "redo" : "undo" });
 });
 
@@ -220,7 +230,7 @@ stage.addEventListener("pointerdown", (event) => {
   if (!run) return;
   const at = pixelOf(event);
   grabbed = handleAt(at);
-  const place = mode() === "grip" ? panelAt(at) : null;
+  const place = mode() === "grip" && !busy ? panelAt(at) : null;
   if (place) openGripMenu(place);
   if (grabbed < 0 && !place) return;
   event.stopImmediatePropagation();

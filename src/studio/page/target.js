@@ -34,6 +34,7 @@ function writeTarget(box) {
     writeFields();
   });
   select.value = kind;
+  select.disabled = !run;
   const target = scene.target[kind];
   if (target.centre) {
     numberField(box, "Centre x (mm)", `target.${kind}.centre.0`);
@@ -62,7 +63,7 @@ function writeTarget(box) {
 
 function morePoints(factor) {
   const count = Math.round(scene.target.curve.points.length * factor);
-  if (count < 3 || count > 96) return;
+  if (!run || count < 3 || count > 96) return;
   scene.target.curve.points = alongTarget(count);
   sendScene();
   writeFields();
@@ -71,7 +72,7 @@ function morePoints(factor) {
 const MOST_BYTES = 8e6;
 
 async function takeDrawing(file) {
-  if (!file) return;
+  if (!file || busy) return;
   if (file.size > MOST_BYTES) return refuse(`${file.name} has ${Math.round(file.size / 1e6)} MB: simplify the drawing to 8 MB at most`);
   ask({ do: "drawing", svg: await file.text() });
 }
@@ -144,7 +145,7 @@ overlays.push(drawHandles);
 
 /** The handle at a pixel of the stage; -1 if there is none. */
 function handleAt([px, py]) {
-  if (mode() !== "target") return -1;
+  if (mode() !== "target" || busy) return -1;
   let [nearest, least] = [-1, 16];
   handles().forEach(({ at }, i) => {
     const [x, y] = toPixels(at);
@@ -157,7 +158,7 @@ function handleAt([px, py]) {
 marks.addEventListener("keydown", (event) => {
   const i = event.target.dataset?.handle;
   const ways = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-  if (i === undefined || !(event.key in ways)) return;
+  if (i === undefined || !(event.key in ways) || busy) return;
   event.preventDefault();
   event.stopPropagation();
   const step = event.shiftKey ? 10 : 1;
