@@ -4,11 +4,13 @@
 //! [`server`] carries both between the engine and the pages. Everything that a page shows is a scene on disk ([`project`]) that
 //! `kirigami design` repeats.
 
+mod draft;
 pub(crate) mod engine;
 pub(crate) mod event;
 mod everyday;
 pub(crate) mod project;
 pub(crate) mod request;
+mod run_listing;
 pub(crate) mod server;
 mod session;
 mod shop;

@@ -28,7 +28,12 @@ pub struct StudioCommand {
     #[arg(long, value_name = "FOLDER", default_value = "runs/studio")]
     folder: PathBuf,
     /// Port on 127.0.0.1 [default: a free one]
-    #[arg(long, value_name = "PORT", default_value_t = 0)]
+    #[arg(
+        long,
+        value_name = "PORT",
+        default_value_t = 0,
+        hide_default_value = true
+    )]
     port: u16,
     /// Print the address, and open no browser
     #[arg(long)]

@@ -2,32 +2,28 @@
 
 use crate::commands::cut::CutCommand;
 use crate::commands::design::write_run;
+use crate::studio::draft::{Draft, Steps, draft};
 use crate::studio::event::{Event, Kind};
-use crate::studio::everyday::{Everyday, Listener, Shown, milliseconds, refusal};
+use crate::studio::everyday::{Everyday, Listener, Shown, refusal};
 use crate::studio::project::Project;
 use crate::studio::request::{Change, Files, Request};
+use crate::studio::run_listing::files_of_run;
 use crate::ui::run_folder;
 use crate::ui::shell_word::shell_word;
 use anyhow::{Context, Result};
 use design::equilibrium::nearby_path::KnownPath;
-use design::objective::scores::outline_error;
 use design::objective::target::TargetShape;
-use design::optimise::outer_loop::{Ended, SearchState};
+use design::optimise::outer_loop::Ended;
 use design::scene::design_run::inverse_design;
 use design::scene::{Scene, SceneConfig, place_drawing};
-use design::{Deployment, DesignError, DesignProblem, DesignVector};
-use output::run_files::RUN_FILES;
-use output::run_page::{History, PageData, SheetData};
+use output::run_page::PageData;
 use serde::Serialize;
 use serde_json::json;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
-
-/// Time between two steps of a search that are shown.
-const SHOW_EVERY: Duration = Duration::from_millis(80);
+use std::time::Instant;
 
 /// The files that can be fetched, by the names that pages know.
 pub(super) type Fetched = Arc<Mutex<BTreeMap<String, PathBuf>>>;
@@ -64,24 +60,6 @@ struct Run {
     scene: Scene,
     adopted: SceneConfig,
     ended: Ended,
-}
-
-/// What a draft shows.
-#[derive(Serialize)]
-struct Draft<'a> {
-    sheet: SheetData<'a>,
-    /// Root mean square distance of the outline to the target (mm).
-    outline_error: f64,
-    ms: f64,
-}
-
-/// A step of a search.
-#[derive(Serialize)]
-struct Step<'a> {
-    step: usize,
-    of: usize,
-    history: History,
-    draft: Option<Draft<'a>>,
 }
 
 impl Session {
@@ -324,30 +302,11 @@ impl Session {
     /// Tells the files of the run.
     fn list_files(&self) -> Result<()> {
         let folder = self.run_folder()?;
-        let mut listed = Vec::new();
-        let mut fetched = BTreeMap::new();
-        let mut add = |path: PathBuf, contents: &str| {
-            let Ok(name) = path.strip_prefix(&folder) else {
-                return;
-            };
-            let name = name.to_string_lossy().into_owned();
-            listed.push(json!({ "name": name, "contents": contents }));
-            fetched.insert(name, path);
-        };
-        for path in files_below(&folder.join("cut"))? {
-            add(path, "written for cutting");
-        }
-        for file in &RUN_FILES {
-            let path = folder.join(file.name);
-            if path.is_file() {
-                add(path, file.contents);
-            }
-        }
-        *self.files.lock().unwrap_or_else(PoisonError::into_inner) = fetched;
-        self.tell(
-            Kind::Files,
-            &json!({ "folder": folder.display().to_string(), "files": listed }),
-        );
+        let listed = files_of_run(&folder)?;
+        self.tell(Kind::Files, &listed);
+        let names = listed.into_iter().map(|file| file.name);
+        let fetched = names.map(|name| (name.clone(), folder.join(name)));
+        *self.files.lock().unwrap_or_else(PoisonError::into_inner) = fetched.collect();
         Ok(())
     }
 
@@ -424,81 +383,4 @@ impl Opened {
         let run = self.run.as_ref();
         run.is_some_and(|run| run.adopted == self.scene.config)
     }
-}
-
-impl<'a> Draft<'a> {
-    fn new(
-        scene: &'a Scene,
-        problem: &DesignProblem,
-        deployment: &Deployment,
-        begin: Instant,
-    ) -> Self {
-        Self {
-            sheet: SheetData::new(scene, problem, deployment),
-            outline_error: outline_error(&problem.objective, deployment),
-            ms: milliseconds(begin),
-        }
-    }
-}
-
-/// The steps of a search that are shown: not more than the page can draw.
-#[derive(Default)]
-struct Steps {
-    last: Option<Instant>,
-    known: Option<KnownPath>,
-}
-
-impl Steps {
-    fn step<'a>(
-        &mut self,
-        scene: &'a Scene,
-        problem: &DesignProblem,
-        search: &SearchState,
-    ) -> Option<Step<'a>> {
-        if self.last.is_some_and(|last| last.elapsed() < SHOW_EVERY) {
-            return None;
-        }
-        let begin = Instant::now();
-        let deployment = draft(problem, search.last_design(), self.known.as_ref()).ok();
-        self.known = deployment.as_ref().map(Deployment::known_path);
-        self.last = Some(Instant::now());
-        Some(Step {
-            step: search.last().step,
-            of: scene.config.optimiser.steps,
-            history: History::new(&problem.objective, &search.history),
-            draft: deployment.map(|deployment| Draft::new(scene, problem, &deployment, begin)),
-        })
-    }
-}
-
-/// A draft of the sheet at full load.
-fn draft(
-    problem: &DesignProblem,
-    design: &DesignVector,
-    known: Option<&KnownPath>,
-) -> Result<Deployment, DesignError> {
-    let deployment = match problem.model.mechanics() {
-        Some(_) => problem.draft(design, known)?.deployment,
-        None => problem.deploy(design)?,
-    };
-    deployment.at_full_load()?;
-    Ok(deployment)
-}
-
-/// All files in a folder and the folders in it; none if it does not exist.
-fn files_below(folder: &Path) -> Result<Vec<PathBuf>> {
-    if !folder.is_dir() {
-        return Ok(Vec::new());
-    }
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(folder)? {
-        let path = entry?.path();
-        if path.is_dir() {
-            files.extend(files_below(&path)?);
-        } else if path.extension().is_some() {
-            files.push(path);
-        }
-    }
-    files.sort();
-    Ok(files)
 }

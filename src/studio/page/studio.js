@@ -103,7 +103,7 @@ connect({
     if (!refused && message) byId("progress").textContent = message;
   },
 
-  files({ files }) {
+  files(files) {
     const list = byId("files");
     list.textContent = "";
     for (const { name, contents } of files) {

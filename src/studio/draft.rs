@@ -1,0 +1,91 @@
+//! Drafts: the sheet at full load, next to the last one, as it is shown while something is dragged and in every step of a search.
+
+use crate::studio::everyday::milliseconds;
+use design::equilibrium::nearby_path::KnownPath;
+use design::objective::scores::outline_error;
+use design::optimise::outer_loop::SearchState;
+use design::scene::Scene;
+use design::{Deployment, DesignError, DesignProblem, DesignVector};
+use output::run_page::{History, SheetData};
+use serde::Serialize;
+use std::time::{Duration, Instant};
+
+/// Time between two steps of a search that are shown.
+const SHOW_EVERY: Duration = Duration::from_millis(80);
+
+/// What a draft shows.
+#[derive(Serialize)]
+pub(super) struct Draft<'a> {
+    sheet: SheetData<'a>,
+    /// Root mean square distance of the outline to the target (mm).
+    outline_error: f64,
+    ms: f64,
+}
+
+/// A step of a search.
+#[derive(Serialize)]
+pub(super) struct Step<'a> {
+    step: usize,
+    of: usize,
+    history: History,
+    draft: Option<Draft<'a>>,
+}
+
+impl<'a> Draft<'a> {
+    pub fn new(
+        scene: &'a Scene,
+        problem: &DesignProblem,
+        deployment: &Deployment,
+        begin: Instant,
+    ) -> Self {
+        Self {
+            sheet: SheetData::new(scene, problem, deployment),
+            outline_error: outline_error(&problem.objective, deployment),
+            ms: milliseconds(begin),
+        }
+    }
+}
+
+/// The steps of a search that are shown: not more than the page can draw.
+#[derive(Default)]
+pub(super) struct Steps {
+    last: Option<Instant>,
+    known: Option<KnownPath>,
+}
+
+impl Steps {
+    pub fn step<'a>(
+        &mut self,
+        scene: &'a Scene,
+        problem: &DesignProblem,
+        search: &SearchState,
+    ) -> Option<Step<'a>> {
+        if self.last.is_some_and(|last| last.elapsed() < SHOW_EVERY) {
+            return None;
+        }
+        let begin = Instant::now();
+        let deployment = draft(problem, search.last_design(), self.known.as_ref()).ok();
+        self.known = deployment.as_ref().map(Deployment::known_path);
+        self.last = Some(Instant::now());
+        Some(Step {
+            step: search.last().step,
+            of: scene.config.optimiser.steps,
+            history: History::new(&problem.objective, &search.history),
+            draft: deployment.map(|deployment| Draft::new(scene, problem, &deployment, begin)),
+        })
+    }
+}
+
+/// A draft of the sheet at full load.
+pub(super) fn draft(
+    problem: &DesignProblem,
+    design: &DesignVector,
+    known: Option<&KnownPath>,
+) -> Result<Deployment, DesignError> {
+    let deployment = match problem.model.mechanics() {
+        Some(_) => problem.draft(design, known)?.deployment,
+        None => problem.deploy(design)?,
+    };
+    deployment.at_full_load()?;
+    Ok(deployment)
+}
