@@ -1,4 +1,5 @@
 //! A tab of Chromium that a test uses as a person does, by the DevTools protocol over two pipes.
+#![allow(dead_code)] // every test program uses only a part
 
 use base64::Engine;
 use serde_json::{Value, json};
@@ -162,11 +163,25 @@ impl Tab {
 
     /// What the window shows, as a PNG.
     pub fn picture(&mut self) -> Vec<u8> {
-        let mut picture = self.call("Page.captureScreenshot", json!({}));
-        let text: String = serde_json::from_value(picture["data"].take()).unwrap();
+        self.bytes("Page.captureScreenshot", json!({}))
+    }
+
+    /// The bytes that a command returns as base64.
+    pub fn bytes(&mut self, method: &str, parameters: Value) -> Vec<u8> {
+        let mut result = self.call(method, parameters);
+        let text: String = serde_json::from_value(result["data"].take()).unwrap();
         base64::engine::general_purpose::STANDARD
             .decode(text)
             .unwrap()
+    }
+
+    /// Makes the screen `dark` or `light`.
+    pub fn prefer(&mut self, scheme: &str) {
+        let feature = json!({ "name": "prefers-color-scheme", "value": scheme });
+        self.call(
+            "Emulation.setEmulatedMedia",
+            json!({ "features": [feature] }),
+        );
     }
 
     /// Drops a file onto an element.
