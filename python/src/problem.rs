@@ -36,6 +36,8 @@ pub(crate) struct Problem {
     problem: Arc<DesignProblem>,
     start: DesignVector,
     warm: Mutex<Warm>,
+    /// Ends the paths that are followed, at Ctrl-C.
+    stop: Arc<AtomicBool>,
 }
 
 /// What the next solves start from.
@@ -88,12 +90,15 @@ impl Problem {
                 Scene::read(&path).map_err(errors::scene)
             })?
         };
-        let problem = py.detach(|| scene.problem()).map_err(errors::scene)?;
+        let mut problem = py.detach(|| scene.problem()).map_err(errors::scene)?;
+        let stop = Arc::<AtomicBool>::default();
+        problem.stop_by(Arc::clone(&stop));
         Ok(Self {
             start: scene.start(),
             problem: Arc::new(problem),
             scene,
             warm: Mutex::default(),
+            stop,
         })
     }
 
@@ -213,7 +218,7 @@ impl Problem {
         let problem = self.under(loads.as_ref(), thickness, stress)?;
         let design = self.design_of(x)?;
         let known = self.known(warm, |warm| &warm.path);
-        let deployment = py.detach(|| problem.deploy_near(&design, known.as_deref()));
+        let deployment = self.solved(py, || problem.deploy_near(&design, known.as_deref()))?;
         let deployment = deployment.map_err(errors::design)?;
         self.warm().path.keep(&deployment);
         Ok(Deployment::new(problem, deployment))
@@ -250,7 +255,7 @@ impl Problem {
         let problem = self.under(loads.as_ref(), thickness, stress)?;
         let design = self.design_of(x)?;
         let known = self.known(warm, |warm| &warm.state);
-        let response = py.detach(|| problem.response(&design, known.as_deref()));
+        let response = self.solved(py, || problem.response(&design, known.as_deref()))?;
         let response = response.map_err(errors::design)?;
         self.warm().state.keep(&response.deployment);
         Ok(State(response))
@@ -466,6 +471,12 @@ impl Problem {
 }
 
 impl Problem {
+    /// The result of `solve`, without the GIL; Ctrl-C ends the path that it follows, and is raised.
+    fn solved<T: Send>(&self, py: Python, solve: impl FnOnce() -> T + Send) -> PyResult<T> {
+        self.stop.store(false, Ordering::Relaxed);
+        while_polling(py, &self.stop, solve)
+    }
+
     fn mechanics(&self) -> PyResult<&design::Mechanics> {
         let mechanics = self.problem.model.mechanics();
         mechanics.ok_or_else(|| errors::design(DesignError::NoMechanics))
@@ -524,7 +535,8 @@ impl Problem {
     fn evaluated(&self, py: Python, x: &Bound<PyAny>, warm: bool) -> PyResult<Evaluation> {
         let design = self.design_of(x)?;
         let known = self.known(warm, |warm| &warm.path);
-        let evaluation = py.detach(|| self.problem.evaluate_near(&design, known.as_deref()));
+        let evaluation =
+            self.solved(py, || self.problem.evaluate_near(&design, known.as_deref()))?;
         let evaluation = evaluation.map_err(errors::design)?;
         self.warm().path.keep(&evaluation.deployment);
         Ok(evaluation)

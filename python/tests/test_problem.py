@@ -219,6 +219,18 @@ def test_control_c_ends_long_calls(film_problem, call):
     assert time.monotonic() - began < 20
 
 
+def test_control_c_ends_a_single_path():
+    bell = kg.Problem(SCENES / "pet-bell-16x22.toml")
+    began = time.monotonic()
+    bell.deploy(bell.start, warm=False)
+    whole = time.monotonic() - began
+    interrupted_after(0.1 * whole)
+    with pytest.raises(KeyboardInterrupt):
+        bell.deploy(bell.start, warm=False)
+    # The next path is followed to its end.
+    bell.equilibrium(bell.start, warm=False)
+
+
 def test_other_threads_run_while_a_path_is_followed(film_problem):
     ticks, done = [], threading.Event()
 

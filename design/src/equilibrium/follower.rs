@@ -221,6 +221,9 @@ impl<'a> Follower<'a> {
                 Err(failure) => _ = first.get_or_insert(failure),
             }
         }
+        if self.branch.solver.is_stopped() {
+            return Err(Failure::STOPPED);
+        }
         Err(first.unwrap_or(Failure::EXHAUSTED))
     }
 

@@ -51,6 +51,10 @@ impl Failure {
         residual: f64::INFINITY,
         end: DescentEnd::Increments,
     };
+    pub const STOPPED: Self = Self {
+        residual: f64::INFINITY,
+        end: DescentEnd::Stopped,
+    };
     pub const NOT_FINITE: Self = Self {
         residual: f64::INFINITY,
         end: DescentEnd::NotFinite,
