@@ -1,7 +1,7 @@
 //! `kirigami init`: a folder with the files of a new project, scaled to the thickness of its sheet.
 
 mod edited;
-mod first_scene;
+pub(crate) mod first_scene;
 mod similar_scene;
 mod template;
 

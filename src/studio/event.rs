@@ -18,6 +18,8 @@ pub(crate) enum Kind {
     Scene,
     /// The sheet at full load, computed while something is dragged.
     Draft,
+    /// The whole path, before the report is ready.
+    Path,
     /// The whole path, with report and findings.
     Page,
     /// A step of the search.

@@ -2,13 +2,12 @@
 
 use crate::studio::event::{Event, Kind};
 use crate::ui::exit::message;
-use anyhow::Result;
 use design::equilibrium::nearby_path::KnownPath;
 use design::scene::Scene;
 use design::scene::design_run::Designed;
 use output::cut_file::CutLines;
 use output::report::Report;
-use output::run_page::PageData;
+use output::run_page::{PageData, SheetData};
 use serde::Serialize;
 use serde_json::json;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -78,6 +77,17 @@ impl Everyday {
         self.wanted.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Shows the path of a sheet while its report is written.
+    fn show_path(&self, scene: &Scene, designed: &Designed, stop: &AtomicBool) {
+        let sheet = SheetData::new(scene, &designed.problem, &designed.best.deployment);
+        let event = Event::new(Kind::Path, &sheet);
+        // Under the lock: nothing is shown after a stop.
+        let _wanted = self.lock();
+        if !stop.load(Ordering::Relaxed) {
+            (self.listener)(event);
+        }
+    }
+
     fn work(&self) {
         loop {
             let nothing = |wanted: &mut Wanted| wanted.scene.is_none();
@@ -90,7 +100,11 @@ impl Everyday {
             wanted.stop = Arc::clone(&stop);
             drop(wanted);
             let begin = Instant::now();
-            let computed = caught_panic::catch(|| page_of(&scene, &stop, begin));
+            let computed = caught_panic::catch(|| {
+                let designed = Designed::at_start(&scene, Arc::clone(&stop))?;
+                self.show_path(&scene, &designed, &stop);
+                Ok::<_, anyhow::Error>(page_of(&scene, &designed, begin))
+            });
             // Under the lock: nothing is shown after a stop.
             let mut wanted = self.lock();
             if stop.load(Ordering::Relaxed) {
@@ -120,8 +134,7 @@ pub(super) fn refusal(why: &str) -> Event {
 }
 
 /// The page of the start of a scene, and its path.
-fn page_of(scene: &Scene, stop: &Arc<AtomicBool>, begin: Instant) -> Result<(Event, KnownPath)> {
-    let designed = Designed::at_start(scene, Arc::clone(stop))?;
+fn page_of(scene: &Scene, designed: &Designed, begin: Instant) -> (Event, KnownPath) {
     let best = &designed.best.deployment;
     let attachments = scene.actuation().attachments;
     let cuts = CutLines::new(
@@ -130,9 +143,9 @@ fn page_of(scene: &Scene, stop: &Arc<AtomicBool>, begin: Instant) -> Result<(Eve
         scene.config.cutting,
         &attachments,
     );
-    let report = Report::new(scene, &designed, &cuts, false);
-    let page = PageData::new(scene, &designed, &report);
+    let report = Report::new(scene, designed, &cuts, false);
+    let page = PageData::new(scene, designed, &report);
     let ms = Some(milliseconds(begin));
     let event = Event::new(Kind::Page, &Shown { page, ms });
-    Ok((event, best.known_path()))
+    (event, best.known_path())
 }

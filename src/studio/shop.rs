@@ -1,6 +1,7 @@
 //! What a new sheet can be made of: the materials with weights, and the machines that cut.
 
 use crate::commands::init::WEIGHTS;
+use crate::commands::init::first_scene::PANEL;
 use anyhow::Result;
 use hinge::SheetMaterial;
 use output::cut_file::Machines;
@@ -71,9 +72,10 @@ fn offered(surrogate: &Surrogate) -> Result<Option<Offered>> {
         let [low, high] = card.domain.w_lig;
         return Ok(Some(Offered {
             says: format!(
-                "{}: ligaments of {low:.2} to {high:.2} mm at {} mm; W within {:.1} %, F_a {:.1} %, M {:.1} % (root mean squares at {} {on} states)",
+                "{}: at {} mm ligaments of {low:.2} to {high:.2} mm, panels of {:.0} mm at least; W within {:.1} %, F_a {:.1} %, M {:.1} % (root mean squares at {} {on} states)",
                 material.regime(high),
                 material.thickness,
+                PANEL * card.hinge.r_win,
                 100.0 * errors.energy.relative_rmse,
                 100.0 * errors.f_a.relative_rmse,
                 100.0 * errors.m_theta.relative_rmse,

@@ -21,7 +21,7 @@ use toml_edit::{Array, DocumentMut, Item, Table, value};
 /// Width and height of the shipped scenes' sheets (mm).
 const A4: [f64; 2] = [210.0, 297.0];
 /// Minimum side of a panel over the radius of a window: windows of neighbouring hinges do not overlap.
-const PANEL: f64 = 3.5;
+pub(crate) const PANEL: f64 = 3.5;
 /// Thickness (mm) from which a sheet is a plate: the narrowest ligaments of a thinner one, a third of its thickness, would be
 /// too narrow for a hole wider than the kerf.
 pub(super) const THINNEST_PLATE: f64 = 2.0;

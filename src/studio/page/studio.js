@@ -54,11 +54,21 @@ connect({
     showDraft(event);
   },
 
+  path(sheet) {
+    if (!run || sheet.hinges.sites.length !== hingeCount) return;
+    const fraction = fractionShown();
+    take({ ...run, ...sheet });
+    choosePath(fraction);
+    show({ quantity: shownNow.quantity });
+    setStale(true);
+    byId("progress").textContent = "Writing the report \u2026";
+  },
+
   page(event) {
     // What was refused at a field is still there; what a draft lacked is found.
     if (!document.querySelector("#studio [aria-invalid]")) refuse("");
     const first = !run;
-    const fraction = first || stateCount < 2 ? 1 : shownNow.state / (stateCount - 1);
+    const fraction = first ? 1 : fractionShown();
     take(event.page);
     document.body.classList.remove("empty");
     setStale(false);
@@ -67,15 +77,11 @@ connect({
     if (event.ms === null && history.step.length > 1) designs.push({ loss: history.loss[best], error: history.outline_error[best], outline: finalOutline() });
     else times.everyday = event.ms;
     writeTexts();
-    writeChoices();
     writeDesigns();
     sayTimes();
     if (first || grown()) { measureExtent(); fitView(); }
-    Object.assign(shownNow, {
-      state: Math.round(fraction * (stateCount - 1)),
-      quantity: quantities[shownNow.quantity] ? shownNow.quantity : "rotation",
-      hinge: first || shownNow.hinge >= hingeCount ? run.worst : shownNow.hinge,
-    });
+    if (first || shownNow.hinge >= hingeCount) shownNow.hinge = run.worst;
+    choosePath(fraction);
     layOut(false);
     if (first) writeFields();
     document.documentElement.dataset.pages = Number(document.documentElement.dataset.pages ?? 0) + 1;
@@ -115,6 +121,16 @@ connect({
     }
   },
 });
+
+/** How far along the path the state is that is shown. */
+const fractionShown = () => (stateCount < 2 ? 1 : shownNow.state / (stateCount - 1));
+
+/** Chooses the state at a fraction of a new path, to be shown. */
+function choosePath(fraction) {
+  writeChoices();
+  const quantity = quantities[shownNow.quantity] ? shownNow.quantity : "rotation";
+  Object.assign(shownNow, { state: Math.round(fraction * (stateCount - 1)), quantity });
+}
 
 /** Draws a sheet at full load in place of the last path. */
 function showDraft({ sheet, outline_error }) {
