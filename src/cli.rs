@@ -13,7 +13,7 @@ use support::verbose;
 /// Design kirigami sheets whose hinges are measured by finite elements
 ///
 /// Material: material. Hinge data: mesh, solve, campaign, dataset. Hinge model: train, surrogate.
-/// Sheets: design, cut, inspect, verify, compare, calibrate, export. Start with: doctor, demo, init.
+/// Sheets: studio, design, cut, inspect, verify, compare, calibrate, export. Start with: doctor, demo, init.
 #[derive(Parser)]
 #[command(name = "kirigami", version, propagate_version = true)]
 #[command(
