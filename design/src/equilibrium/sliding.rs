@@ -58,7 +58,8 @@ impl EquilibriumSolver {
             .collect();
         let mut before = self.flat();
         for (at, free) in std::iter::zip(&ends, self.readings(sheet, &ends)) {
-            if let Some(end) = free.descent_end {
+            let stopped = self.is_stopped().then_some(DescentEnd::Stopped);
+            if let Some(end) = free.descent_end.or(stopped) {
                 return Err((last.at, end));
             }
             // The sheet without friction shows where to begin.
