@@ -24,7 +24,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use support::regular_file;
-use tiny_http::{Header, Method, Request as Http, Response, Server};
+use tiny_http::{Method, Request as Http, Server};
 
 /// Maximum size of the body of a request (bytes): a drawing, or a scene with 100 000 panels.
 const MOST_BYTES: usize = 16 << 20;
@@ -98,7 +98,11 @@ impl Studio {
             (Method::Post, "/request") => match read(&mut request) {
                 Ok(asked) => {
                     engine.ask(asked);
-                    Response::from_data("").with_status_code(204)
+                    Answer {
+                        status: 204,
+                        kind: TEXT,
+                        body: Vec::new(),
+                    }
                 }
                 Err(refusal) => refusal,
             },
@@ -106,7 +110,7 @@ impl Studio {
             _ => refusal(404, "there is nothing here"),
         };
         // A page that is gone needs no answer.
-        let _ = request.respond(answer);
+        let _ = answer.send(request);
     }
 
     fn is_ours(&self, request: &Http) -> bool {
@@ -162,10 +166,37 @@ fn read(request: &mut Http) -> Result<Request, Answer> {
     serde_json::from_slice(&body).map_err(|error| refusal(400, &error.to_string()))
 }
 
-type Answer = Response<io::Cursor<Vec<u8>>>;
+/// The answer to a request.
+struct Answer {
+    status: u16,
+    /// Its media type.
+    kind: &'static str,
+    body: Vec<u8>,
+}
+
+const TEXT: &str = "text/plain; charset=utf-8";
+
+impl Answer {
+    /// Answers, and closes the connection: the library may let a new connection wait for a thread that an open one keeps.
+    fn send(self, request: Http) -> io::Result<()> {
+        let Self { status, kind, body } = self;
+        let length = body.len();
+        let head = format!(
+            "HTTP/1.1 {status} \r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n"
+        );
+        let mut page = request.into_writer();
+        page.write_all(head.as_bytes())?;
+        page.write_all(&body)?;
+        page.flush()
+    }
+}
 
 fn refusal(status: u16, message: &str) -> Answer {
-    Response::from_string(message).with_status_code(status)
+    Answer {
+        status,
+        kind: TEXT,
+        body: message.into(),
+    }
 }
 
 fn page() -> Answer {
@@ -184,8 +215,11 @@ fn page() -> Answer {
         .concat(),
         data: "null",
     };
-    Response::from_string(page.to_html())
-        .with_header(header("Content-Type", "text/html; charset=utf-8"))
+    Answer {
+        status: 200,
+        kind: "text/html; charset=utf-8",
+        body: page.to_html().into(),
+    }
 }
 
 fn file(engine: &Engine, name: &str) -> Answer {
@@ -198,17 +232,17 @@ fn file(engine: &Engine, name: &str) -> Answer {
         Some("png") => "image/png",
         Some("pdf") => "application/pdf",
         Some("json") => "application/json",
-        Some("csv" | "txt") => "text/plain; charset=utf-8",
+        Some("csv" | "txt") => TEXT,
         _ => "application/octet-stream",
     };
     match regular_file::read(&path) {
-        Ok(bytes) => Response::from_data(bytes).with_header(header("Content-Type", kind)),
+        Ok(body) => Answer {
+            status: 200,
+            kind,
+            body,
+        },
         Err(error) => refusal(404, &error.to_string()),
     }
-}
-
-fn header(name: &str, value: &str) -> Header {
-    Header::from_bytes(name, value).expect("the headers of this file are ASCII")
 }
 
 /// Path and query of an address; the path with its escapes decoded.
