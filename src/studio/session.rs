@@ -299,7 +299,7 @@ impl Session {
         Ok(run.context("the sheet has no run")?.scene.output())
     }
 
-    /// Tells the files of the run.
+    /// Lists the files of the run for the pages.
     fn list_files(&self) -> Result<()> {
         let folder = self.run_folder()?;
         let listed = files_of_run(&folder)?;

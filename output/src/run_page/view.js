@@ -173,15 +173,17 @@ function connectControls() {
   connectStage();
 }
 
+/** The pixel of the drawing at which an event of the pointer is. */
+function pixelOf(event) {
+  const box = canvas.getBoundingClientRect();
+  return [((event.clientX - box.left) * view.width) / box.width, ((event.clientY - box.top) * view.height) / box.height];
+}
+
 function connectStage() {
-  const pixel = (event) => {
-    const box = canvas.getBoundingClientRect();
-    return [((event.clientX - box.left) * view.width) / box.width, ((event.clientY - box.top) * view.height) / box.height];
-  };
   let dragged = null;
-  stage.addEventListener("pointerdown", (event) => { dragged = { from: pixel(event), x: view.x, y: view.y, far: false }; });
+  stage.addEventListener("pointerdown", (event) => { dragged = { from: pixelOf(event), x: view.x, y: view.y, far: false }; });
   stage.addEventListener("pointermove", (event) => {
-    const [x, y] = pixel(event);
+    const [x, y] = pixelOf(event);
     if (dragged && (dragged.far || Math.hypot(x - dragged.from[0], y - dragged.from[1]) > 5)) {
       dragged.far = true;
       view.x = dragged.x - (x - dragged.from[0]) / view.scale;
@@ -192,7 +194,7 @@ function connectStage() {
   });
   window.addEventListener("pointerup", (event) => {
     if (dragged && !dragged.far) {
-      const h = hingeAt(...pixel(event));
+      const h = hingeAt(...pixelOf(event));
       if (h >= 0) show({ hinge: h });
     }
     dragged = null;

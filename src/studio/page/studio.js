@@ -238,10 +238,6 @@ document.addEventListener("keydown", (event) => {
 
 // Handles and panels come before hinges.
 let grabbed = -1;
-const pixelOf = (event) => {
-  const box = canvas.getBoundingClientRect();
-  return [((event.clientX - box.left) * view.width) / box.width, ((event.clientY - box.top) * view.height) / box.height];
-};
 stage.addEventListener("pointerdown", (event) => {
   if (!run) return;
   const at = pixelOf(event);
