@@ -171,3 +171,65 @@ fn laws_that_are_not_for_the_sheet_are_refused() {
     ));
     assert!(error.contains("--count 40 leaves 10 hinges"), "{error}");
 }
+
+/// The search moves the sheet without loads to its target, and everything that it writes is of that state.
+#[test]
+fn a_design_for_the_shape_that_stays() {
+    let work = Workplace::new();
+    let law = repository("data/polypropylene-3mm/springback.json");
+    let output = repository("runs/springback/four-panels");
+    let (weights, named) = weights_with(&law);
+    let released = [
+        (&*output, "run"),
+        (weights, &named),
+        (
+            "size = [120.0, 120.0]\nrotation",
+            "size = [140.0, 135.0]\nrotation",
+        ),
+        (
+            "coverage = 0.5",
+            "coverage = 0.5\ntarget_state = \"released\"",
+        ),
+        ("steps = 1\n", "steps = 6\n"),
+    ];
+    four_panels(&work, "scene.toml", &released);
+    let found = report(&work, "scene.toml");
+    let number = |place: &str| found.pointer(place).unwrap().as_f64().unwrap();
+    assert_eq!(found["facts"]["target_state"], "released");
+    let (before, after) = (
+        number("/before/outline_error"),
+        number("/after/outline_error"),
+    );
+    assert!(after < 0.9 * before, "{before} {after}");
+    let [loaded, free] =
+        [0, 1].map(|i| number(&format!("/facts/lasting_shape/released/outline_error/{i}")));
+    assert!((free / after - 1.0).abs() < 1e-9, "{free} {after}");
+    assert!((loaded / free - 1.0).abs() > 0.1, "{loaded} {free}");
+    for (file, text) in [
+        ("deployed.svg", "Loads taken off"),
+        (
+            "report.txt",
+            "after the loads were taken off; the target is for that state",
+        ),
+        ("run.html", "\"let_go\":true"),
+    ] {
+        let written = std::fs::read_to_string(work.path("run").join(file)).unwrap();
+        assert!(written.contains(text), "{file}");
+    }
+    // Another law has other sheets: the run does not continue with it.
+    let mut other = Springback::load(Path::new(&law)).unwrap();
+    other.tier = "plate-tiny".into();
+    other.save(&work.path("other.json")).unwrap();
+    let (_, named) = weights_with("other.json");
+    let changed = released.map(|(from, to)| (from, if from == weights { &*named } else { to }));
+    four_panels(&work, "scene.toml", &changed);
+    let error = work.error("design scene.toml");
+    assert!(error.contains("the law of released hinges"), "{error}");
+    let unnamed = released.map(|(from, to)| (from, if from == weights { weights } else { to }));
+    four_panels(&work, "scene.toml", &unnamed);
+    let error = work.error("design scene.toml");
+    assert!(
+        error.contains("objective.target_state") && error.contains("surrogate.springback"),
+        "{error}"
+    );
+}

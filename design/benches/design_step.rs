@@ -96,6 +96,7 @@ fn problem(
         },
         model: Model::Equilibrium(Box::new(Mechanics {
             law: Arc::new(law),
+            release: None,
             contact: None,
             solver: EquilibriumSolver::new(grid, &supports, &[load], STEPS, settings).unwrap(),
         })),

@@ -27,5 +27,5 @@ pub use law::{
     DamageMeasure, HingeDamage, HingeEnergy, HingeGradient, HingeLaw, Order, PreparedLaw,
 };
 pub use linear::LinearLaw;
-pub use released::ReleasedLaw;
+pub use released::{Release, ReleasedLaw};
 pub use surrogate::{PreparedSurrogate, SurrogateLaw};

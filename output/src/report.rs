@@ -125,7 +125,8 @@ impl Report {
         let residual = designed.residual.as_deref();
         let errors = ErrorBudget::new(scene, &designed.problem, deployment, residual);
         let dead_loads = scene.config.has_loads() && scene.config.drive.is_none();
-        let budget = errors.map(|errors| Budget::new(errors, &facts.self_weight, dead_loads));
+        let budget = errors
+            .map(|errors| Budget::new(errors, &facts.self_weight, dead_loads, facts.target_state));
         let after = Scores::new(&designed.problem.objective, &designed.best);
         let warnings = rules::warnings(&Judged {
             scene,

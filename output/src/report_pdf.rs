@@ -111,10 +111,10 @@ fn drawings(
     cuts: Option<&CutLines>,
 ) -> f64 {
     let deployment = &designed.best.deployment;
-    let (sheet, last) = (&deployment.sheet, deployment.final_step());
+    let (sheet, compared) = (&deployment.sheet, deployment.compared());
     let sketches = |scale: f64| -> Vec<Sketch> {
         let unit = UNIT / scale;
-        let deployed = deployed_on_paper(scene, sheet, last, unit);
+        let deployed = deployed_on_paper(scene, sheet, compared, unit);
         let flat = cuts.map(|cuts| flat_on_paper(sheet, cuts, unit));
         [deployed].into_iter().chain(flat).collect()
     };
@@ -135,8 +135,10 @@ fn drawings(
     let scale = layout.scale;
     let sketches = sketches(scale);
     let carries_load = scene.hinge.carries_load();
-    let deployed = if carries_load {
-        let factor = last.load_factor;
+    let deployed = if deployment.released.is_some() {
+        "Loads taken off, panels in the plane".to_owned()
+    } else if carries_load {
+        let factor = compared.load_factor;
         format!("Deployed, panels in the plane, load factor {factor:.4}")
     } else {
         "Deployed".to_owned()

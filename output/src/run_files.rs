@@ -103,13 +103,17 @@ pub const RUN_FILES: [RunFile; 18] = [
                 .map(|(cuts, sheet)| cut_summary(cuts, &sheet.totals).into()))
         },
     ),
-    result("deployed.dxf", "the panels at full load", |run| {
-        Ok(run.cut().map(|_| {
-            let Deployment { sheet, .. } = run.best();
-            let configuration = placed(run.scene, sheet, &run.best().final_step().configuration);
-            dxf(&deployed_panels(&deployed_corners(sheet, &configuration))).into()
-        }))
-    }),
+    result(
+        "deployed.dxf",
+        "the panels in the state that is compared with the target",
+        |run| {
+            Ok(run.cut().map(|_| {
+                let Deployment { sheet, .. } = run.best();
+                let configuration = placed(run.scene, sheet, &run.best().compared().configuration);
+                dxf(&deployed_panels(&deployed_corners(sheet, &configuration))).into()
+            }))
+        },
+    ),
     result("flat.svg", FLAT, |run| {
         let title = &run.scene.config.title;
         let picture = |cuts| drawing::flat(title, &run.best().sheet, cuts).into();
@@ -133,8 +137,8 @@ pub const ANIMATION: &str = "deployment.png";
 const CUTS: &str =
     "cuts in cutting order, 1:1 in mm; layers HOLES, CUT, OUTLINE, REGISTRATION, ANNOTATION";
 const FLAT: &str = "the flat sheet with its cuts";
-const BEFORE: &str = "the deployed sheet before the search";
-const AFTER: &str = "the deployed sheet after the search";
+const BEFORE: &str = "the sheet in the state that is compared with the target, before the search";
+const AFTER: &str = "the same after the search";
 
 const fn result(
     name: &'static str,
@@ -175,6 +179,6 @@ impl Results<'_> {
     }
 
     fn picture(&self, deployment: &Deployment) -> Vec<u8> {
-        drawing::deployed(self.scene, &deployment.sheet, deployment.final_step()).into()
+        drawing::deployed(self.scene, deployment).into()
     }
 }

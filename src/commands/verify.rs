@@ -150,7 +150,7 @@ impl VerifyCommand {
                 let found = balanced(&scene, design, &windows, self.rounds);
                 let (found, problem) = found.map_err(task_error)?;
                 let end = found.by_elements();
-                let picture = drawing::deployed(&scene, &end.sheet, end.final_step());
+                let picture = drawing::deployed(&scene, end);
                 run_folder::write(&self.out, "deployed.svg", &picture)?;
                 let budget = found.budget(&scene)?;
                 let errors = SheetErrors::new(&found, name, budget.as_ref());

@@ -148,7 +148,7 @@ impl CapacityStudy {
             let carried = self.carried(&config, &design, &points)?;
             if let Some((_, above)) = &carried.to {
                 let (scene, deployment) = self.deploy(&config, &design, above.rho)?;
-                let svg = drawing::deployed(&scene, &deployment.sheet, deployment.final_step());
+                let svg = drawing::deployed(&scene, &deployment);
                 picture::save(&svg, &self.out.join(format!("above-{}", i + 1)), 1600)?;
             }
             capacities.push(Capacity {

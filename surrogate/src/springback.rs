@@ -25,8 +25,37 @@ use support::sealed_json::{self, SealError};
 use support::statistics::root_mean_square;
 use support::{regular_file, whole_file};
 
-/// Numbers of even and of odd terms.
+/// The even and the odd terms: products of two of the factors (1, ln w_lig, eta_a, theta, alpha - 90 deg, eta_s), of which the last two
+/// change sign in the mirrored hinge.
+const EVEN: [[usize; 2]; TERMS[0]] = [
+    [0, 0],
+    [0, 1],
+    [0, 2],
+    [0, 3],
+    [1, 1],
+    [1, 2],
+    [1, 3],
+    [2, 2],
+    [2, 3],
+    [3, 3],
+    [4, 4],
+    [4, 5],
+    [5, 5],
+];
+const ODD: [[usize; 2]; TERMS[1]] = [
+    [0, 4],
+    [0, 5],
+    [4, 1],
+    [4, 2],
+    [4, 3],
+    [5, 1],
+    [5, 2],
+    [5, 3],
+];
+/// Their numbers.
 const TERMS: [usize; 2] = [13, 8];
+/// The input that each factor after the first is in proportion to; see [`inputs`].
+const INPUT_OF: [usize; 5] = [0, 2, 4, 1, 3];
 /// Ridge of the fit, relative to the number of hinges: terms that hardly vary get small coefficients.
 const RIDGE: f64 = 1e-4;
 /// Smallest deviation that a quantity is divided by: one that does not vary has no effect.
@@ -155,7 +184,10 @@ impl Springback {
                 factors.filter(|_| known).ok_or(SpringbackError::Row(i + 1))
             })
             .collect::<Result<_, _>>()?;
-        let (even, odd): (Vec<_>, Vec<_>) = inputs.iter().map(|x| law.terms(x)).unzip();
+        let factors_of = inputs.iter().map(|x| law.factors(x));
+        let (even, odd): (Vec<_>, Vec<_>) = factors_of
+            .map(|x| (products(&x, &EVEN), products(&x, &ODD)))
+            .unzip();
         let (of_even, of_odd): (Vec<_>, Vec<_>) = factors.into_iter().unzip();
         law.stiffness_even = ridge(&even, &of_even);
         law.stiffness_odd = ridge(&odd, &of_odd);
@@ -182,30 +214,102 @@ impl Springback {
         reached: &HingeDeformation,
         forces: &[f64; 3],
     ) -> ReleasedHinge {
-        let (even, odd) = self.terms(&inputs(design, reached));
+        self.local(design, reached, forces).released(reached)
+    }
+
+    /// The gradient, in what the hinge of [`released`](Self::released) follows from, of a function with the gradient `by` in it.
+    pub fn released_pullback(
+        &self,
+        design: &HingeDesign,
+        reached: &HingeDeformation,
+        forces: &[f64; 3],
+        by: &ByReleased,
+    ) -> ReleasedGradient {
+        let local = self.local(design, reached, forces);
+        let stiffness = local.released(reached).stiffness;
+        let Local {
+            factors,
+            lengths,
+            unit,
+            pivots,
+            sprung,
+            left,
+        } = local;
+        // K enters r by K^-1 f: dr = -K^-1 dK K^-1 f.
+        let by_sprung: [f64; 3] = from_fn(|p| -by.rest[PLACES[p]] * lengths[PLACES[p]]);
+        let by_forces = back(&unit, &pivots, by_sprung);
+        let by_k: [[f64; 3]; 3] = from_fn(|p| {
+            from_fn(|q| {
+                let [i, j] = [PLACES[p], PLACES[q]];
+                by.stiffness[i][j] / (lengths[i] * lengths[j]) - by_forces[p] * sprung[q]
+            })
+        });
+        let by_pivot = |k: usize| -> f64 {
+            let sum = (0..9).map(|n| by_k[n / 3][n % 3] * unit[n / 3][k] * unit[n % 3][k]);
+            pivots[k] * sum.sum::<f64>()
+        };
+        let by_unit = |p: usize, k: usize| -> f64 {
+            let sum = (0..3).map(|q| (by_k[p][q] + by_k[q][p]) * unit[q][k]);
+            pivots[k] * sum.sum::<f64>()
+        };
+        let of_even = [by_pivot(0), by_pivot(1), by_pivot(2), by_unit(1, 0)];
+        let of_odd = [by_unit(2, 0), by_unit(2, 1)];
+        let [of_a, of_s, of_theta] = from_fn(|i| by.rest[i] * lengths[i]);
+        let mut by_factors = [0.0; 6];
+        let mut add = |[i, j]: [usize; 2], by_term: f64| {
+            by_factors[i] += by_term * factors[j];
+            by_factors[j] += by_term * factors[i];
+        };
+        for (t, &term) in EVEN.iter().enumerate() {
+            let by_rest = dot(&self.rest_even[t], &[of_a, of_theta]);
+            add(term, dot(&self.stiffness_even[t], &of_even) + by_rest);
+        }
+        for (t, &term) in ODD.iter().enumerate() {
+            let by_rest = dot(&self.rest_odd[t], &[of_s]);
+            add(term, dot(&self.stiffness_odd[t], &of_odd) + by_rest);
+        }
+        let (mut by_inputs, units) = ([0.0; 5], self.units());
+        (0..5).for_each(|k| by_inputs[INPUT_OF[k]] = by_factors[k + 1] / units[k]);
+        let [by_width, by_angle, by_eta_a, by_eta_s, by_theta] = by_inputs;
+        // The lengths of a and s are w_lig.
+        let by_length = |i: usize| {
+            let p = PLACES[i];
+            let of_stiffness =
+                (0..3).map(|j| (by.stiffness[i][j] + by.stiffness[j][i]) * stiffness[i][j]);
+            by.rest[i] * (left[i] - sprung[p]) + by_forces[p] * forces[i]
+                - of_stiffness.sum::<f64>() / lengths[i]
+        };
+        let (w, [eta_a, eta_s]) = (design.w_lig, reached.eta(design.w_lig));
+        let of_inputs = (by_width - by_eta_a * eta_a - by_eta_s * eta_s) / w;
+        ReleasedGradient {
+            reached: [
+                by.rest[0] + by_eta_a / w,
+                by.rest[1] + by_eta_s / w,
+                by.rest[2] + by_theta,
+            ],
+            forces: from_fn(|i| by_forces[PLACES[i]] * lengths[i]),
+            w_lig: of_inputs + by_length(0) + by_length(1),
+            alpha: by_angle,
+        }
+    }
+
+    fn local(&self, design: &HingeDesign, reached: &HingeDeformation, forces: &[f64; 3]) -> Local {
+        let factors = self.factors(&inputs(design, reached));
+        let (even, odd) = (products(&factors, &EVEN), products(&factors, &ODD));
         let [d_a, d_theta, d_s, u_theta] = product(&even, &self.stiffness_even);
         let [u_s, u_s_theta] = product(&odd, &self.stiffness_odd);
+        let [e_a, e_theta] = product(&even, &self.rest_even);
+        let [e_s] = product(&odd, &self.rest_odd);
         let unit = [[1.0, 0.0, 0.0], [u_theta, 1.0, 0.0], [u_s, u_s_theta, 1.0]];
         let pivots = [d_a, d_theta, d_s].map(f64::exp);
-        let w = design.w_lig;
-        let lengths = [w, w, 1.0];
-        let sprung = back(&unit, &pivots, PLACES.map(|i| forces[i] * lengths[i]));
-        let ([e_a, e_theta], [e_s]) = (
-            product(&even, &self.rest_even),
-            product(&odd, &self.rest_odd),
-        );
-        let left = [e_a, e_s, e_theta];
-        let reached = reached.to_array();
-        let rest: [f64; 3] = from_fn(|i| reached[i] + lengths[i] * (left[i] - sprung[PLACES[i]]));
-        ReleasedHinge {
-            rest: rest.into(),
-            stiffness: from_fn(|i| {
-                from_fn(|j| {
-                    let [p, q] = [PLACES[i], PLACES[j]];
-                    let sum: f64 = (0..3).map(|k| unit[p][k] * pivots[k] * unit[q][k]).sum();
-                    sum / (lengths[i] * lengths[j])
-                })
-            }),
+        let lengths = [design.w_lig, design.w_lig, 1.0];
+        Local {
+            sprung: back(&unit, &pivots, PLACES.map(|i| forces[i] * lengths[i])),
+            left: [e_a, e_s, e_theta],
+            factors,
+            lengths,
+            unit,
+            pivots,
         }
     }
 
@@ -241,6 +345,12 @@ impl Springback {
         }
     }
 
+    /// BLAKE3 hash of the law.
+    pub fn hash(&self) -> String {
+        let law = serde_json::to_vec(self).expect("a law has finite numbers and plain keys");
+        blake3::hash(&law).to_hex().to_string()
+    }
+
     /// Reads a law from its file.
     pub fn load(path: &Path) -> Result<Self, SpringbackError> {
         let bytes = regular_file::read(path).map_err(|source| SpringbackError::Read {
@@ -265,34 +375,77 @@ impl Springback {
         })
     }
 
-    /// The even and the odd terms of the polynomials.
-    fn terms(&self, x: &[f64; 5]) -> ([f64; TERMS[0]], [f64; TERMS[1]]) {
-        let of = |i: usize, [mean, deviation]: [f64; 2]| (x[i] - mean) / deviation;
-        let [w, a, t] = [
-            of(0, self.means[0]),
-            of(2, self.means[1]),
-            of(4, self.means[2]),
-        ];
-        let [c, s] = [x[1] / self.spans[0], x[3] / self.spans[1]];
-        (
-            [
-                1.0,
-                w,
-                a,
-                t,
-                w * w,
-                w * a,
-                w * t,
-                a * a,
-                a * t,
-                t * t,
-                c * c,
-                c * s,
-                s * s,
-            ],
-            [c, s, c * w, c * a, c * t, s * w, s * a, s * t],
-        )
+    /// The factors of the terms.
+    fn factors(&self, x: &[f64; 5]) -> [f64; 6] {
+        let [[w, _], [a, _], [t, _]] = self.means;
+        let (means, units) = ([w, a, t, 0.0, 0.0], self.units());
+        from_fn(|i| match i {
+            0 => 1.0,
+            _ => (x[INPUT_OF[i - 1]] - means[i - 1]) / units[i - 1],
+        })
     }
+
+    /// What the inputs of the factors after the first are divided by.
+    fn units(&self) -> [f64; 5] {
+        let [[_, w], [_, a], [_, t]] = self.means;
+        [w, a, t, self.spans[0], self.spans[1]]
+    }
+}
+
+/// K, what a hinge springs back, and what that leaves, in units of (w_lig, 1, w_lig). K and what springs back are in the order (a,
+/// theta, s).
+struct Local {
+    factors: [f64; 6],
+    /// The units of (a, s, theta) (mm, mm, rad).
+    lengths: [f64; 3],
+    /// U
+    unit: [[f64; 3]; 3],
+    /// exp d
+    pivots: [f64; 3],
+    /// K^-1 f
+    sprung: [f64; 3],
+    /// e, in the order (a, s, theta).
+    left: [f64; 3],
+}
+
+impl Local {
+    fn released(&self, reached: &HingeDeformation) -> ReleasedHinge {
+        let (reached, lengths) = (reached.to_array(), self.lengths);
+        let rest: [f64; 3] =
+            from_fn(|i| reached[i] + lengths[i] * (self.left[i] - self.sprung[PLACES[i]]));
+        ReleasedHinge {
+            rest: rest.into(),
+            stiffness: from_fn(|i| {
+                from_fn(|j| {
+                    let [p, q] = [PLACES[i], PLACES[j]];
+                    let term = |k: usize| self.unit[p][k] * self.pivots[k] * self.unit[q][k];
+                    (0..3).map(term).sum::<f64>() / (lengths[i] * lengths[j])
+                })
+            }),
+        }
+    }
+}
+
+/// The gradient of a function of a released hinge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ByReleased {
+    /// In r = (a, s, theta).
+    pub rest: [f64; 3],
+    /// In the entries of K.
+    pub stiffness: [[f64; 3]; 3],
+}
+
+/// The gradient of a function of a released hinge in what it follows from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReleasedGradient {
+    /// In the deformation (a, s, theta) that was reached.
+    pub reached: [f64; 3],
+    /// In the forces (F_a, F_s, M_theta) there.
+    pub forces: [f64; 3],
+    /// In the ligament width.
+    pub w_lig: f64,
+    /// In the angle of the cuts.
+    pub alpha: f64,
 }
 
 /// (ln w_lig, alpha - 90 deg, eta_a, eta_s, theta)
@@ -335,6 +488,14 @@ fn back(unit: &[[f64; 3]; 3], pivots: &[f64; 3], right: [f64; 3]) -> [f64; 3] {
         x[i] = x[i] / pivots[i] - (i + 1..3).map(|k| unit[k][i] * x[k]).sum::<f64>();
     }
     x
+}
+
+fn products<const T: usize>(factors: &[f64; 6], terms: &[[usize; 2]; T]) -> [f64; T] {
+    terms.map(|[i, j]| factors[i] * factors[j])
+}
+
+fn dot<const N: usize>(x: &[f64; N], y: &[f64; N]) -> f64 {
+    std::iter::zip(x, y).map(|(x, y)| x * y).sum()
 }
 
 fn product<const T: usize, const N: usize>(terms: &[f64; T], rows: &[[f64; N]; T]) -> [f64; N] {
@@ -449,6 +610,61 @@ mod tests {
             let stiffness = std::iter::zip(mirrored.stiffness, expected.stiffness);
             let stiffness = stiffness.flat_map(|(x, y)| std::iter::zip(x, y));
             assert!(pairs.chain(stiffness).all(|(x, y)| close(x, y)));
+        }
+    }
+
+    /// The gradient of a linear function of r and K in all eight numbers that they follow from, by central differences.
+    #[test]
+    fn the_pullback_is_the_gradient() {
+        let rows = rows(60);
+        let law = Springback::fit(&rows, &[], &material(), "plate").unwrap();
+        let by = ByReleased {
+            rest: [0.7, -1.1, 0.4],
+            stiffness: [[2e-3, -1e-3, 3e-3], [4e-3, 1e-3, -2e-3], [1e-2, 5e-3, 2e-2]],
+        };
+        for row in &rows[..10] {
+            let (design, reached, forces) = (row.design(), row.reached(), row.forces());
+            let [a, s, theta] = reached.to_array();
+            let [f_a, f_s, m_theta] = forces;
+            let at = [a, s, theta, f_a, f_s, m_theta, design.w_lig, design.alpha];
+            let value = |x: [f64; 8]| -> f64 {
+                let design = HingeDesign {
+                    w_lig: x[6],
+                    alpha: x[7],
+                    ..design
+                };
+                let reached = [x[0], x[1], x[2]].into();
+                let hinge = law.released(&design, &reached, &[x[3], x[4], x[5]]);
+                let stiffness = hinge.stiffness.as_flattened();
+                let of_stiffness = std::iter::zip(stiffness, by.stiffness.as_flattened());
+                dot(&hinge.rest.to_array(), &by.rest)
+                    + of_stiffness.map(|(k, by)| k * by).sum::<f64>()
+            };
+            let found = law.released_pullback(&design, &reached, &forces, &by);
+            let ReleasedGradient {
+                reached,
+                forces,
+                w_lig,
+                alpha,
+            } = found;
+            let found = [&reached[..], &forces, &[w_lig, alpha]].concat();
+            for i in 0..8 {
+                let step = 1e-5 * at[i].abs().max(0.1);
+                let moved = |side: f64| {
+                    let mut x = at;
+                    x[i] += side * step;
+                    value(x)
+                };
+                let slope = (moved(1.0) - moved(-1.0)) / (2.0 * step);
+                let scale = slope
+                    .abs()
+                    .max(1e-3 * value(at).abs() / at[i].abs().max(0.1));
+                assert!(
+                    (found[i] - slope).abs() < 1e-6 * scale,
+                    "{i}: {} {slope}",
+                    found[i]
+                );
+            }
         }
     }
 

@@ -10,9 +10,10 @@ use crate::recorded_path::paths_of;
 use crate::releases::solved;
 use crate::replay::{ElementWindows, UnsolvedHinge};
 use crate::verification_error::VerificationError;
-use design::analysis::springback::{ReleasedSheet, WhatStays, let_go};
+use design::analysis::springback::{WhatStays, let_go};
 use design::geometry::polygon::distance;
 use design::objective::design_problem::{Deployment, DesignProblem};
+use design::objective::released_sheet::ReleasedSheet;
 use design::scene::Scene;
 use design::sheet::kinematics::deployed_corners;
 use hinge::{HingeDeformation, ReleasedHinge};
@@ -61,7 +62,7 @@ pub fn released_by_elements(
         let ends = element_forces(scene, deployed, &released, windows)?;
         own_forces = share(deployed, found, &ends.forces);
         unsolved = ends.unsolved;
-        let states = &released.path[released.path.len() - 1].deformations;
+        let states = &released.last().deformations;
         let hinges = (released.hinges.iter().zip(states).zip(&ends.forces))
             .map(|((hinge, state), forces)| {
                 // A hinge that was not solved stays as it is.
@@ -118,7 +119,7 @@ fn element_forces(
     const BACK: usize = 5;
     let mut paths = paths_of(deployed);
     for path in &mut paths {
-        let last = &released.path[released.path.len() - 1];
+        let last = released.last();
         let [from, to] = [path.end(), last.deformations[path.hinge]].map(|state| state.to_array());
         path.states.extend((1..=BACK).map(|k| {
             let share = k as f64 / BACK as f64;
@@ -162,7 +163,7 @@ fn share(deployed: &Deployment, found: &Balanced, forces: &[Option<[f64; 3]>]) -
 }
 
 fn corners(deployed: &Deployment, released: &ReleasedSheet) -> Vec<[f64; 2]> {
-    let last = &released.path[released.path.len() - 1];
+    let last = released.last();
     deployed_corners(&deployed.sheet, &last.configuration).concat()
 }
 

@@ -13,6 +13,7 @@
 //! opens the sheet only as far as the first state that carries it.
 
 use crate::equilibrium::displacement_control::{magnitude, work};
+use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::LoadStep;
 use crate::equilibrium::path_following::Increment;
 use crate::equilibrium::potential::Stage;
@@ -104,10 +105,12 @@ impl ActuationCurve {
             None => (Mover::Supports, prescribed(&mechanics.solver)),
         };
         let (size, translational) = magnitude(&direction)?;
+        let law = mechanics.law.prepare(&sheet.designs());
+        let hinged = mechanics.hinged(sheet, &*law, false);
         let point = |(zeta, configuration): (f64, &[[f64; 3]])| match mover {
             Mover::Loads => [work(&direction, configuration) / size, zeta * size],
             Mover::Supports => {
-                let forces = holding_forces(mechanics, sheet, 1.0, configuration);
+                let forces = holding_forces(mechanics, hinged, 1.0, configuration);
                 [zeta * size, work(&direction, &forces) / size]
             }
         };
@@ -263,12 +266,11 @@ fn load_and_state(step: &LoadStep) -> (f64, &[[f64; 3]]) {
 /// the loads on free degrees of freedom, the reactions at supported ones (N, N mm).
 pub fn holding_forces(
     mechanics: &Mechanics,
-    sheet: &Sheet,
+    hinged: HingedSheet,
     weight: f64,
     configuration: &[[f64; 3]],
 ) -> Vec<[f64; 3]> {
-    let law = mechanics.law.prepare(&sheet.designs());
-    let hinged = mechanics.hinged(sheet, &*law, false);
+    let sheet = hinged.sheet;
     let motions = HingeMotion::all(sheet, configuration);
     let deformations: Vec<HingeDeformation> =
         motions.iter().map(HingeMotion::deformation).collect();

@@ -2,11 +2,10 @@
 //! deformations.
 
 use crate::analysis::actuation_curve::{ActuationCurve, Mover};
-use crate::equilibrium::hinged_sheet::HingedSheet;
-use crate::equilibrium::load_step::LoadStep;
 use crate::geometry::polygon::distance;
-use crate::hinge_law::{HingeLaw, Order, ReleasedLaw};
+use crate::hinge_law::Release;
 use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, found};
+use crate::objective::released_sheet::ReleasedSheet;
 use crate::objective::scores::outline_error;
 use crate::scene::{Scene, SpringbackMismatch};
 use crate::sheet::kinematics::deployed_corners;
@@ -14,9 +13,6 @@ use hinge::ReleasedHinge;
 use serde::Serialize;
 use support::statistics::rms_and_maximum;
 use surrogate::Springback;
-
-/// Number of steps in which the loads are taken off.
-const STEPS: usize = 10;
 
 /// Why nothing can be said of a sheet that is let go.
 #[derive(Debug, thiserror::Error)]
@@ -26,14 +22,6 @@ pub enum LetGoError {
     Law(#[from] SpringbackMismatch),
     #[error(transparent)]
     Design(#[from] DesignError),
-}
-
-/// A sheet without loads, after they have opened it.
-pub struct ReleasedSheet {
-    /// The hinges.
-    pub hinges: Vec<ReleasedHinge>,
-    /// The load steps from the deployed sheet to that without loads.
-    pub path: Vec<LoadStep>,
 }
 
 /// What stays of the opening of a sheet.
@@ -81,25 +69,8 @@ pub fn released_hinges(
 ) -> Result<Vec<ReleasedHinge>, LetGoError> {
     scene.check_springback(law)?;
     let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
-    let (designs, states) = (
-        deployment.sheet.designs(),
-        &deployment.at_full_load()?.deformations,
-    );
-    let energies = mechanics
-        .law
-        .prepare(&designs)
-        .energies(states, Order::Forces);
-    let scale = scene.scale();
-    Ok(std::iter::zip(designs, states)
-        .zip(energies)
-        .map(|((design, reached), energy)| {
-            let (design, reached) = (design.scaled(scale.recip()), reached.scaled(scale.recip()));
-            // Forces grow with the square of the thickness, moments with its cube.
-            let [f_a, f_s, m_theta] = energy.forces.map(|force| force / (scale * scale));
-            let forces = [f_a, f_s, m_theta / scale];
-            law.released(&design, &reached, &forces).scaled(scale)
-        })
-        .collect())
+    let release = Release::new(law.clone(), scene.scale());
+    Ok(mechanics.released_hinges(&release, &deployment.sheet, deployment.at_full_load()?))
 }
 
 /// A deployed sheet of a scene and its problem after it was let go, and what stays of its opening.
@@ -126,22 +97,7 @@ impl DesignProblem {
         hinges: Vec<ReleasedHinge>,
     ) -> Result<ReleasedSheet, DesignError> {
         let mechanics = self.model.mechanics().ok_or(DesignError::NoMechanics)?;
-        let sheet = &deployment.sheet;
-        let start = deployment.at_full_load()?.configuration.clone();
-        let law = ReleasedLaw(hinges);
-        let prepared = law.prepare(&sheet.designs());
-        let hinged = HingedSheet {
-            sheet,
-            law: &*prepared,
-            contact: mechanics.contact.as_ref(),
-            damage_gradient: false,
-        };
-        let path = mechanics.solver.let_go(hinged, start, STEPS)?;
-        drop(prepared);
-        Ok(ReleasedSheet {
-            hinges: law.0,
-            path,
-        })
+        Ok(mechanics.let_go(&deployment.sheet, deployment.at_full_load()?, hinges)?)
     }
 
     /// What stays of the opening of a sheet that was let go.
@@ -151,8 +107,7 @@ impl DesignProblem {
         released: &ReleasedSheet,
     ) -> Result<WhatStays, DesignError> {
         let loaded = deployment.at_full_load()?;
-        let last = released.path.last().expect("a path has at least one step");
-        let free = found(last)?;
+        let free = found(released.last())?;
         let sheet = &deployment.sheet;
         let [before, after] =
             [loaded, free].map(|step| deployed_corners(sheet, &step.configuration));
@@ -163,11 +118,13 @@ impl DesignProblem {
             ActuationCurve::through(mechanics, sheet, &start, end)
         });
         let curve = curve.filter(|curve| curve.mover == Mover::Loads);
+        let under_load = Deployment {
+            released: None,
+            ..deployment.clone()
+        };
         let let_go = Deployment {
-            pattern: deployment.pattern.clone(),
-            sheet: sheet.clone(),
-            path: vec![free.clone()],
-            followed: true,
+            released: Some(released.clone()),
+            ..deployment.clone()
         };
         let rotations = std::iter::zip(&loaded.deformations, &free.deformations);
         Ok(WhatStays {
@@ -184,7 +141,7 @@ impl DesignProblem {
             displacement: curve.map(|curve| [curve.points[0][0], curve.points[1][0]]),
             snaps: released.path.iter().any(|step| step.jumps > 0),
             corners: rms_and_maximum(moved.map(|(p, q)| distance(*p, *q))),
-            outline_error: [deployment, &let_go].map(|of| outline_error(&self.objective, of)),
+            outline_error: [under_load, let_go].map(|of| outline_error(&self.objective, &of)),
         })
     }
 }

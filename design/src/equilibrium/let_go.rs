@@ -10,7 +10,11 @@ use crate::equilibrium::potential::Stage;
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
 use crate::equilibrium::supports::Support;
 use crate::hinge_law::Order;
+use crate::sheet::cut_sheet::Sheet;
 use crate::sheet::kinematics::Configuration;
+
+/// Number of steps in which the loads are taken off.
+const STEPS: usize = 10;
 
 impl EquilibriumSolver {
     /// The load steps from the configuration `start`, of which the last one is without loads. Their load factor is the part of the holding
@@ -19,19 +23,8 @@ impl EquilibriumSolver {
         &self,
         sheet: HingedSheet,
         start: Configuration,
-        steps: usize,
     ) -> Result<Vec<LoadStep>, EquilibriumError> {
-        let resting = self.supports.iter().filter(|support| support.value == 0.0);
-        let resting: Vec<Support> = resting.copied().collect();
-        let mut free = Self {
-            lbfgs: self.lbfgs,
-            weight: self.weight,
-            grips: self.grips.clone(),
-            ..Self::new(self.grid, &resting, &[], steps, self.settings)?
-        };
-        if free.check_supports(sheet.sheet).is_err() {
-            return Err(EquilibriumError::HeldByMoved);
-        }
+        let mut free = self.unloaded(sheet.sheet)?;
         if let Some(holding) = free.holding(sheet, start.clone()) {
             free.loads = holding.iter().map(|force| force.map(|x| -x)).collect();
             free.held = holding.into();
@@ -43,6 +36,22 @@ impl EquilibriumSolver {
                 ..step
             })
             .collect())
+    }
+
+    /// The same problem without loads, and without the supports that moved the sheet.
+    pub(crate) fn unloaded(&self, sheet: &Sheet) -> Result<Self, EquilibriumError> {
+        let resting = self.supports.iter().filter(|support| support.value == 0.0);
+        let resting: Vec<Support> = resting.copied().collect();
+        let free = Self {
+            lbfgs: self.lbfgs,
+            weight: self.weight,
+            grips: self.grips.clone(),
+            ..Self::new(self.grid, &resting, &[], STEPS, self.settings)?
+        };
+        match free.check_supports(sheet) {
+            Ok(()) => Ok(free),
+            Err(_) => Err(EquilibriumError::HeldByMoved),
+        }
     }
 
     /// The forces (F_x, F_y, M) on the free panels that balance a configuration without loads; `None` if its energy is not finite.

@@ -13,6 +13,7 @@ use crate::sheet::cut_sheet::{Sheet, SheetGradient};
 use crate::sheet::ideal_deployment::ideal_deployment_pullback;
 use crate::sheet::kinematics::deployed_pullback;
 use crate::sheet::topology::PanelCorner;
+use std::borrow::Cow;
 
 /// The partial derivatives of a function of a deployment.
 pub(super) struct Partials<'a> {
@@ -143,35 +144,53 @@ impl DesignProblem {
         law: Option<(&Mechanics, &dyn PreparedLaw)>,
         partials: Partials,
     ) -> Result<Gradient, DesignError> {
-        let (sheet, last) = (&deployment.sheet, deployment.final_step());
+        let sheet = &deployment.sheet;
         let mut by_sheet = SheetGradient::zeros(self.grid);
         if let Some(by_corners) = partials.by_corners {
             by_sheet.corners.copy_from_slice(by_corners);
         }
-        let by_last = outline_pullback(sheet, last, &partials, &mut by_sheet);
+        let by_compared = outline_pullback(sheet, deployment.compared(), &partials, &mut by_sheet);
         let (mut by_opening, mut adjoint_residual) = (None, 0.0);
         let mut virtual_motion = Vec::new();
         let mut sensitivities = Sensitivities::default();
         match (self.opening(design), law) {
             (Some(theta), _) => {
-                let slope = ideal_deployment_pullback(sheet, theta, &by_last, &mut by_sheet);
+                let slope = ideal_deployment_pullback(sheet, theta, &by_compared, &mut by_sheet);
                 by_opening = design.opening.map(|_| slope);
             }
             (None, None) => return Err(DesignError::NoMechanics),
             (None, Some((mechanics, law))) => {
+                let mut by_states = Cow::Borrowed(partials.by_states);
+                let mut by_last = by_compared;
+                if let Some(released) = &deployment.released {
+                    let by_free =
+                        std::mem::replace(&mut by_last, vec![[0.0; 3]; sheet.panels.len()]);
+                    let (by_loaded, residual) = mechanics.released_pullback(
+                        law,
+                        deployment,
+                        released,
+                        by_free,
+                        &mut by_sheet,
+                    )?;
+                    adjoint_residual = residual;
+                    for (by_path, by_loaded) in std::iter::zip(by_states.to_mut(), by_loaded) {
+                        let by_last = by_path.last_mut().expect("a path has at least one step");
+                        (0..6).for_each(|c| by_last[c] += by_loaded[c]);
+                    }
+                }
                 let sums = adjoint(
                     &mechanics.solver,
                     mechanics.hinged(sheet, law, true),
                     partials.path,
                     PathGradient {
-                        by_states: partials.by_states,
+                        by_states: &by_states,
                         by_load_factors: partials.by_load_factors,
                         by_last,
                         by_reactions: partials.by_reactions,
                     },
                     &mut by_sheet,
                 )?;
-                adjoint_residual = sums.residual;
+                adjoint_residual = f64::max(adjoint_residual, sums.residual);
                 sensitivities.loads = sums.loads;
                 sensitivities.constants = sums.constants;
                 virtual_motion = sums.virtual_motion;
@@ -196,26 +215,26 @@ impl DesignProblem {
     }
 }
 
-/// The gradient, in the last configuration, of a function of the deployed outline points; its gradient
+/// The gradient, in the configuration that is compared with the target, of a function of the outline points there; its gradient
 /// with respect to the flat sheet is added to `by_sheet`.
 fn outline_pullback(
     sheet: &Sheet,
-    last: &LoadStep,
+    compared: &LoadStep,
     partials: &Partials,
     by_sheet: &mut SheetGradient,
 ) -> Vec<[f64; 3]> {
-    let mut by_last = vec![[0.0; 3]; sheet.panels.len()];
+    let mut by_compared = vec![[0.0; 3]; sheet.panels.len()];
     for (&(panel, corner), &gradient) in std::iter::zip(partials.outline, partials.by_outline) {
         let flat = sheet.panels[panel].corners[corner];
         let (by_motion, by_flat, by_reference) = deployed_pullback(
             &sheet.panels[panel],
-            last.configuration[panel],
+            compared.configuration[panel],
             flat,
             gradient,
         );
-        (0..3).for_each(|c| by_last[panel][c] += by_motion[c]);
+        (0..3).for_each(|c| by_compared[panel][c] += by_motion[c]);
         add(&mut by_sheet.corners[panel][corner], by_flat);
         add(&mut by_sheet.references[panel], by_reference);
     }
-    by_last
+    by_compared
 }

@@ -6,8 +6,9 @@ use crate::equilibrium::hinged_sheet::HingedSheet;
 use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status};
 use crate::equilibrium::nearby_path::KnownPath;
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
-use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, PreparedLaw};
+use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, PreparedLaw, Release};
 use crate::objective::loss::{Judgement, Objective, TermValues};
+use crate::objective::released_sheet::ReleasedSheet;
 use crate::objective::term::Deployed;
 use crate::pattern::cut_pattern::{CutPattern, Outline};
 use crate::pattern::design_vector::{DesignVector, WidthChart};
@@ -59,6 +60,8 @@ pub enum DesignError {
         residual: f64,
         end: Option<DescentEnd>,
     },
+    #[error("no equilibrium was found when the loads are taken off")]
+    NotLetGo,
     #[error(transparent)]
     SingularTangent(#[from] SingularTangent),
 }
@@ -71,6 +74,8 @@ pub struct Mechanics {
     pub contact: Option<Contact>,
     /// Supports, loads and load steps, with the settings of the equilibrium solver.
     pub solver: EquilibriumSolver,
+    /// What becomes of the hinges when the loads are taken off, if the target is the shape that stays; `None` if it is that under load.
+    pub release: Option<Release>,
 }
 
 /// How the deployed state of a sheet is computed.
@@ -126,6 +131,8 @@ pub struct Deployment {
     pub path: Vec<LoadStep>,
     /// Whether the path was followed from the flat sheet; `false` if it was corrected from that of a design near it.
     pub followed: bool,
+    /// The sheet after its loads were taken off at the end of the path, if the target is the shape that stays.
+    pub released: Option<ReleasedSheet>,
 }
 
 /// The gradient of L with respect to quantities that are constant during the design.
@@ -188,9 +195,19 @@ impl Deployment {
         found(self.final_step())
     }
 
-    /// Deployed positions of panel corners at the last step (mm).
+    /// The state that is compared with the target: at full load, or after the loads were taken off.
+    pub fn compared(&self) -> &LoadStep {
+        self.let_go().unwrap_or_else(|| self.final_step())
+    }
+
+    /// The state after the loads were taken off, if the target is for that.
+    pub fn let_go(&self) -> Option<&LoadStep> {
+        self.released.as_ref().map(ReleasedSheet::last)
+    }
+
+    /// Positions of panel corners in the state that is compared with the target (mm).
     pub fn outline(&self, corners: &[PanelCorner]) -> Vec<[f64; 2]> {
-        let configuration = &self.final_step().configuration;
+        let configuration = &self.compared().configuration;
         let deployed = |&(panel, corner): &PanelCorner| {
             let flat = self.sheet.panels[panel].corners[corner];
             deployed(&self.sheet.panels[panel], configuration[panel], flat)
@@ -276,14 +293,14 @@ impl DesignProblem {
         known: Option<&KnownPath>,
     ) -> Result<(Deployment, Option<Box<dyn PreparedLaw + '_>>), DesignError> {
         let (pattern, sheet) = self.cut(design)?;
-        let (path, followed, law) = match &self.model {
+        let (path, followed, law, released) = match &self.model {
             Model::Ideal { opening } => {
                 let theta = design.opening.unwrap_or(*opening);
                 if !theta.is_finite() {
                     return Err(DesignError::Opening(theta));
                 }
                 let ideal = LoadStep::ideal(&sheet, ideal_deployment(&sheet, theta));
-                (vec![ideal], true, None)
+                (vec![ideal], true, None, None)
             }
             Model::Equilibrium(mechanics) => {
                 mechanics.solver.check_supports(&sheet)?;
@@ -292,7 +309,8 @@ impl DesignProblem {
                 let (path, followed) = mechanics.path(hinged, known);
                 path.iter()
                     .for_each(|step| verbose::note(|| step.to_string()));
-                (path, followed, Some(law))
+                let released = mechanics.released(&sheet, &path)?;
+                (path, followed, Some(law), released)
             }
         };
         let deployment = Deployment {
@@ -300,6 +318,7 @@ impl DesignProblem {
             sheet,
             path,
             followed,
+            released,
         };
         Ok((deployment, law))
     }
@@ -326,6 +345,9 @@ impl DesignProblem {
             return Err(DesignError::EmptyTarget);
         }
         deployment.at_full_load()?;
+        if deployment.compared().status == Status::Diverged {
+            return Err(DesignError::NotLetGo);
+        }
         Ok(self.objective.judge(&Deployed {
             sheet: &deployment.sheet,
             path: &deployment.path,
@@ -357,10 +379,13 @@ impl Mechanics {
             law: Arc::clone(&self.law),
             contact: self.contact,
             solver: self.solver.clone(),
+            release: self.release.clone(),
         };
         if (thicker, stronger) != (1.0, 1.0) {
             let law = self.law.similar(thicker, stronger);
             similar.law = law.ok_or(DesignError::NoSimilarLaw)?;
+            let release = self.release.as_ref();
+            similar.release = release.map(|release| release.similar(thicker, stronger));
             similar.solver.weight = self.solver.weight.map(|weight| thicker * weight);
         }
         Ok(similar)
@@ -391,6 +416,7 @@ impl Mechanics {
         let (path, followed) = self.path(hinged, Some(known));
         let deployment = Deployment {
             pattern: drawn.pattern.clone(),
+            released: self.released(&sheet, &path)?,
             sheet,
             path,
             followed,

@@ -128,19 +128,23 @@ impl DesignProblem {
         })
     }
 
-    /// A draft of the equilibrium of a design at full load, next to the last state of a `known` path; without one, or if there is none next
+    /// A draft of the equilibrium of a design at full load, let go if the target is the shape that stays, next to the last state of a `known` path; without one, or if there is none next
     /// to it, at the end of the path from the flat sheet. The path may end on another branch than a draft next to another.
     pub fn draft(
         &self,
         design: &DesignVector,
         known: Option<&KnownPath>,
     ) -> Result<Response, DesignError> {
-        self.responded(design, |solver, hinged| {
+        let mut response = self.responded(design, |solver, hinged| {
             match known.and_then(|known| solver.full_load_near(hinged, known)) {
                 Some(step) => (vec![step], false),
                 None => (solver.readings(hinged, &FULL_LOAD), true),
             }
-        })
+        })?;
+        let mechanics = self.model.mechanics().ok_or(DesignError::NoMechanics)?;
+        let Deployment { sheet, path, .. } = &response.deployment;
+        response.deployment.released = mechanics.released(sheet, path)?;
+        Ok(response)
     }
 
     /// The response of a design whose configuration at full load is known.
@@ -181,6 +185,7 @@ impl DesignProblem {
                 sheet,
                 path,
                 followed,
+                released: None,
             },
             reactions,
         })

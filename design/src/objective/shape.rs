@@ -29,6 +29,17 @@ impl OutlinePoints {
     }
 }
 
+/// The state of the sheet that its target is for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TargetState {
+    /// At full load.
+    #[default]
+    Loaded,
+    /// After the loads were taken off: the shape that stays.
+    Released,
+}
+
 /// The distance of the deployed outline to a target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {

@@ -23,7 +23,7 @@ use crate::hinge_law::{DamageMeasure, HingeLaw};
 use crate::objective::centre::Centre;
 use crate::objective::cut_sheets::CutSheets;
 use crate::objective::loss::Objective;
-use crate::objective::shape::{OutlinePoints, Shape};
+use crate::objective::shape::{OutlinePoints, Shape, TargetState};
 use crate::objective::target::Target;
 use crate::objective::term::Weighted;
 use schemars::JsonSchema;
@@ -53,6 +53,10 @@ pub struct ObjectiveConfig {
     /// the paper, or the centroid of the `area` inside the outline.
     #[serde(default)]
     pub centre: Centre,
+    /// The state of the sheet that the target is for: `loaded`, at full load, or `released`, after the loads were taken off, which needs
+    /// `surrogate.springback`.
+    #[serde(default)]
+    pub target_state: TargetState,
     /// Number of points on the target outline.
     #[schemars(range(min = 1, max = 1_000_000))]
     pub target_points: usize,
@@ -240,6 +244,7 @@ mod tests {
             precision: Precision::Samples,
             outline: OutlinePoints::All,
             centre: Centre::Points,
+            target_state: TargetState::Loaded,
             target_points: 20,
             symmetric_difference: 0.9,
             damage: 0.7,

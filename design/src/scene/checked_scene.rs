@@ -1,5 +1,6 @@
 //! A scene that was read and checked, together with the files that it names.
 
+use crate::objective::shape::TargetState;
 use crate::objective::target::Target;
 use crate::scene::checks;
 use crate::scene::keys::{SceneConfig, beside, folder};
@@ -21,7 +22,13 @@ use surrogate::{Springback, Surrogate};
 const MODEL_VERSION: u32 = 4;
 
 /// What the parts of [`Scene::model_hash`] identify, in their order.
-pub(super) const MODEL_PARTS: [&str; 4] = ["version of kirigami", "material", "target", WEIGHTS];
+pub(super) const MODEL_PARTS: [&str; 5] = [
+    "version of kirigami",
+    "material",
+    "target",
+    WEIGHTS,
+    "law of released hinges",
+];
 pub(super) const WEIGHTS: &str = "weights";
 
 /// A scene with checked values, its material and its sampled target.
@@ -37,7 +44,7 @@ pub struct Scene {
     pub target: Target,
     /// The hinge law, with the files that it reads.
     pub hinge: LoadedHinge,
-    /// The law of released hinges, for the report.
+    /// The law of released hinges.
     pub springback: Option<Springback>,
     pub(super) path: PathBuf,
 }
@@ -171,7 +178,7 @@ impl Scene {
     }
 
     /// Identifies what a run depends on besides the keys of the scene: the version of the model, the material law, the
-    /// target's points and the weights. It is the same on every machine, whereas the loss differs in its last digits.
+    /// target's points, the weights and, if the target is for the released sheet, the law of released hinges. It is the same on every machine, whereas the loss differs in its last digits.
     pub fn model_hash(&self) -> String {
         let weights = self.weights().map_or(String::new(), Surrogate::hash);
         let target = self.target.hash();
@@ -184,7 +191,17 @@ impl Scene {
                 self.material.density_kg_m3
             )
         };
-        format!("{MODEL_VERSION}-{material}-{target}-{weights}")
+        let model = format!("{MODEL_VERSION}-{material}-{target}-{weights}");
+        match self.designed_for_release() {
+            Some(law) => format!("{model}-{}", law.hash()),
+            None => model,
+        }
+    }
+
+    /// The law of released hinges, if the target is for the released sheet.
+    pub(super) fn designed_for_release(&self) -> Option<&Springback> {
+        let released = self.config.objective.target_state == TargetState::Released;
+        self.springback.as_ref().filter(|_| released)
     }
 
     /// The weight of a unit of area in the plane of the sheet (N/mm^2); zero unless it hangs and its weight is modelled.

@@ -4,6 +4,7 @@
 
 use crate::geometry::polygon::{contains, distance, edges, mean};
 use crate::objective::centre::Centre;
+use crate::objective::shape::TargetState;
 use crate::objective::target::Target;
 use crate::pattern::cut_pattern::CutPattern;
 use crate::pattern::pattern_error::PatternError;
@@ -340,6 +341,9 @@ fn objective(scene: &SceneConfig) -> Result<(), InvalidScene> {
     }
     if scene.objective.centre == Centre::Area && scene.hinge != HingeModel::Pin {
         return Err(InvalidScene::HeldCentre);
+    }
+    if scene.objective.target_state == TargetState::Released && scene.springback().is_none() {
+        return Err(InvalidScene::ReleasedWithoutLaw);
     }
     if scene.objective.robust > 0.0 {
         let ToleranceConfig {

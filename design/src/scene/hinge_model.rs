@@ -66,7 +66,7 @@ pub struct SurrogateFile {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ensemble: Vec<PathBuf>,
     /// The law of released hinges (`kirigami surrogate release`), from which the report states what stays of the opening when the
-    /// loads are taken off. A run continues under another one, which changes its report only.
+    /// loads are taken off. Unless `objective.target_state` is `released`, a run continues under another one, which changes its report only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub springback: Option<PathBuf>,
 }

@@ -207,6 +207,11 @@ pub enum InvalidScene {
          and objective.centre = \"area\" need: increase it"
     )]
     TargetWithoutArea { points: usize },
+    #[error(
+        "objective.target_state = \"released\" needs the law of released hinges: hinge = \"surrogate\" and surrogate.springback, a file \
+         that `kirigami surrogate release` writes"
+    )]
+    ReleasedWithoutLaw,
     #[error("objective.domain needs hinge = \"surrogate\": no other law has a domain")]
     NoDomain,
     #[error(

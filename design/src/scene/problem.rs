@@ -1,6 +1,7 @@
 //! From a scene to its design problem and its start design.
 
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
+use crate::hinge_law::Release;
 use crate::objective::cut_sheets::CutSheets;
 use crate::objective::design_problem::{DesignProblem, Mechanics, Model};
 use crate::objective::loss::Objective;
@@ -121,6 +122,8 @@ impl Scene {
             law,
             contact: Some(contact),
             solver,
+            release: (self.designed_for_release())
+                .map(|law| Release::new(law.clone(), self.scale())),
         })))
     }
 

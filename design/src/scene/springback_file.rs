@@ -51,8 +51,7 @@ pub(super) fn load(
     measured: &SheetMaterial,
     path: &Path,
 ) -> Result<Option<Springback>, SpringbackFileError> {
-    let learned = (config.surrogate.iter()).filter(|_| config.hinge == HingeModel::Surrogate);
-    let Some(file) = learned.flat_map(|learned| &learned.springback).next() else {
+    let Some(file) = config.springback() else {
         return Ok(None);
     };
     let law = Springback::load(&beside(path, file))?;
@@ -61,6 +60,14 @@ pub(super) fn load(
         source,
     })?;
     Ok(Some(law))
+}
+
+impl SceneConfig {
+    /// The law that the scene names, if its hinges are learned.
+    pub(super) fn springback(&self) -> Option<&PathBuf> {
+        let learned = (self.surrogate.as_ref()).filter(|_| self.hinge == HingeModel::Surrogate)?;
+        learned.springback.as_ref()
+    }
 }
 
 /// An error if a law is not for the hinges of a scene.

@@ -258,6 +258,7 @@ impl Drawn {
             options: self.options(),
             model: Model::Equilibrium(Box::new(Mechanics {
                 law: self.law(),
+                release: None,
                 contact: self.contact(),
                 solver,
             })),

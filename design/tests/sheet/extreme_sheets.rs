@@ -210,6 +210,7 @@ fn the_gradient_is_exact_where_the_tangent_is_indefinite() {
             law: Arc::new(Rotational(|theta| {
                 snapping(theta).map(|part| 1500.0 * part)
             })),
+            release: None,
             contact: None,
             solver: solver.driven(stroke).unwrap(),
         }));

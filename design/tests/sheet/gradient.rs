@@ -56,6 +56,7 @@ fn a_pulled_sheet_with_path_functionals() {
         options: AT_CORNER,
         model: Model::Equilibrium(Box::new(Mechanics {
             law: Arc::new(law),
+            release: None,
             contact: None,
             solver: EquilibriumSolver::new(
                 grid,

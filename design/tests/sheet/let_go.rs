@@ -49,13 +49,10 @@ fn let_go(
         rest: rest(h),
         stiffness: from_fn(|i| from_fn(|j| if i == j { STIFFNESS[i] } else { 0.0 })),
     });
-    let law = ReleasedLaw(hinges.collect());
-    let law = law.prepare(&sheet.designs());
-    last(
-        solver
-            .let_go(hinged(sheet, &*law), from.configuration.clone(), 10)
-            .unwrap(),
-    )
+    let hinges: Vec<ReleasedHinge> = hinges.collect();
+    let law = ReleasedLaw(&hinges);
+    let hinged = hinged(sheet, &law);
+    last(solver.let_go(hinged, from.configuration.clone()).unwrap())
 }
 
 const PULL: [Load; 1] = [Load {

@@ -21,6 +21,7 @@ mod nearby_paths;
 mod pattern;
 mod pullbacks;
 mod random;
+mod released;
 mod response;
 mod sensitivities;
 mod taylor;

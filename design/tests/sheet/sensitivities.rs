@@ -28,6 +28,7 @@ fn loaded(x: &[f64], stroke: Option<f64>) -> DesignProblem {
     let stiffness = x[3..].chunks(3).map(|k| [k[0], k[1], k[2]]).collect();
     let model = Model::Equilibrium(Box::new(Mechanics {
         law: Arc::new(LinearLaw { stiffness }),
+        release: None,
         contact: None,
         solver: match stroke {
             Some(stroke) => solver.driven(stroke).unwrap(),

@@ -58,6 +58,7 @@ pub fn mechanics(law: impl HingeLaw + 'static, moment: f64, east: East) -> Model
     let solver = EquilibriumSolver::new(GRID, &supports, &loads, 4, settings).unwrap();
     Model::Equilibrium(Box::new(Mechanics {
         law: Arc::new(law),
+        release: None,
         contact: Some(Contact::new(10.0, -0.2, 0.0).unwrap()),
         solver: match east {
             East::Driven(_, stroke) => solver.driven(stroke).unwrap(),
@@ -158,7 +159,7 @@ pub fn start() -> DesignVector {
 }
 
 /// Asserts order 2 along a random direction in each block (z, ell, omega, opening).
-fn assert_order_two(problem: &DesignProblem, design: &DesignVector) {
+pub fn assert_order_two(problem: &DesignProblem, design: &DesignVector) {
     let evaluation = problem.evaluate(design).unwrap();
     for step in &evaluation.deployment.path {
         assert!(
@@ -242,42 +243,9 @@ fn the_curvature_of_the_shape_is_that_of_its_points() {
             Centre::Points,
         ),
     ] {
-        let (mut problem, design) = (problem(model, HingePoint::Corner), start());
+        let mut problem = problem(model, HingePoint::Corner);
         problem.objective.shape.centre = Some(centre);
-        let deployment = problem.evaluate(&design).unwrap().deployment;
-        let x = design.to_flat();
-        let direction = Random::new(17).numbers(x.len(), 1.0);
-        let placed = |deployment: &Deployment| {
-            let corners = problem.objective.shape.outline.corners(&deployment.sheet);
-            problem
-                .objective
-                .shape
-                .placed(&deployment.outline(&corners))
-        };
-        let moved = |step: f64| {
-            let x = std::iter::zip(&x, &direction).map(|(x, d)| x + step * d);
-            placed(
-                &problem
-                    .deploy(&design.with_flat(&x.collect::<Vec<f64>>()))
-                    .unwrap(),
-            )
-        };
-        let (ahead, behind) = (moved(1e-4), moved(-1e-4));
-        let shape = &problem.objective.shape;
-        let factors = (shape.chamfer).curvature_factors(&placed(&deployment), &shape.target);
-        let by_points: f64 = (0..factors.len())
-            .flat_map(|k| {
-                let motion = [0, 1].map(|axis| (ahead[k][axis] - behind[k][axis]) / 2e-4);
-                factors[k].map(|[x, y]| (x * motion[0] + y * motion[1]).powi(2))
-            })
-            .sum();
-        let rows = problem.shape_curvature(&design, &deployment).unwrap();
-        let along = |row: &Vec<f64>| -> f64 {
-            std::iter::zip(row, &direction)
-                .map(|(row, d)| row * d)
-                .sum()
-        };
-        let by_rows: f64 = rows.iter().map(|row| along(row).powi(2)).sum();
+        let [by_rows, by_points] = curvatures(&problem, &start());
         assert!(
             (by_rows / by_points - 1.0).abs() < 1e-5,
             "{by_rows} {by_points}"
@@ -285,7 +253,45 @@ fn the_curvature_of_the_shape_is_that_of_its_points() {
     }
 }
 
-fn springs() -> LinearLaw {
+/// The curvature of the shape along a direction, by its rows and by the motions of its points.
+pub fn curvatures(problem: &DesignProblem, design: &DesignVector) -> [f64; 2] {
+    let deployment = problem.evaluate(design).unwrap().deployment;
+    let x = design.to_flat();
+    let direction = Random::new(17).numbers(x.len(), 1.0);
+    let placed = |deployment: &Deployment| {
+        let corners = problem.objective.shape.outline.corners(&deployment.sheet);
+        problem
+            .objective
+            .shape
+            .placed(&deployment.outline(&corners))
+    };
+    let moved = |step: f64| {
+        let x = std::iter::zip(&x, &direction).map(|(x, d)| x + step * d);
+        placed(
+            &problem
+                .deploy(&design.with_flat(&x.collect::<Vec<f64>>()))
+                .unwrap(),
+        )
+    };
+    let (ahead, behind) = (moved(1e-4), moved(-1e-4));
+    let shape = &problem.objective.shape;
+    let factors = (shape.chamfer).curvature_factors(&placed(&deployment), &shape.target);
+    let by_points: f64 = (0..factors.len())
+        .flat_map(|k| {
+            let motion = [0, 1].map(|axis| (ahead[k][axis] - behind[k][axis]) / 2e-4);
+            factors[k].map(|[x, y]| (x * motion[0] + y * motion[1]).powi(2))
+        })
+        .sum();
+    let rows = problem.shape_curvature(design, &deployment).unwrap();
+    let along = |row: &Vec<f64>| -> f64 {
+        std::iter::zip(row, &direction)
+            .map(|(row, d)| row * d)
+            .sum()
+    };
+    [rows.iter().map(|row| along(row).powi(2)).sum(), by_points]
+}
+
+pub fn springs() -> LinearLaw {
     LinearLaw::uniform([20.0, 12.0, 1500.0], GRID.hinge_count())
 }
 
@@ -364,7 +370,7 @@ fn the_expected_loss_of_cut_sheets() {
 }
 
 /// The same problem for a sheet with a weight, held and pulled at other points than centroids.
-fn hung(model: Model, by_area: [f64; 2]) -> Model {
+pub fn hung(model: Model, by_area: [f64; 2]) -> Model {
     let Model::Equilibrium(mechanics) = model else {
         panic!("pins have no weight");
     };
@@ -374,16 +380,10 @@ fn hung(model: Model, by_area: [f64; 2]) -> Model {
         grip(5, PanelPoint::Fixed([0.95 * SIDE, 0.45 * SIDE])),
         grip(8, PanelPoint::Middle([2, 3])),
     ];
-    let Mechanics {
-        law,
-        contact,
-        solver,
-    } = *mechanics;
-    let solver = solver.gripping(grips).with_weight(by_area).unwrap();
+    let solver = mechanics.solver.clone().gripping(grips);
     Model::Equilibrium(Box::new(Mechanics {
-        law,
-        contact,
-        solver,
+        solver: solver.with_weight(by_area).unwrap(),
+        ..*mechanics
     }))
 }
 
@@ -419,6 +419,7 @@ fn a_sheet_on_a_nail() {
     let solver = EquilibriumSolver::new(GRID, &pin, &[load], 4, settings).unwrap();
     let model = Model::Equilibrium(Box::new(Mechanics {
         law: Arc::new(springs()),
+        release: None,
         contact: None,
         solver,
     }));

@@ -5,6 +5,7 @@ use crate::display::{Anchor, Style};
 use crate::drawing::load_marks::{self, Mark, marks};
 use crate::drawing::page::{ACCENT, ColourScale, INK, MUTED, PANELS, Page, Sketch};
 use design::equilibrium::load_step::LoadStep;
+use design::objective::design_problem::Deployment;
 use design::scene::Scene;
 use design::scene::design_run::Designed;
 use design::scene::placement::placed;
@@ -16,9 +17,12 @@ use design::sheet::kinematics::{
 use design::sheet::topology::is_even;
 use std::collections::BTreeSet;
 
-/// The sheet of a scene in a state of its path, with the loads there.
-pub fn deployed(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> String {
-    let state = State::new(scene, sheet, step);
+/// What a state without loads is called.
+const LET_GO: &str = "Loads taken off";
+
+/// The sheet of a scene in the state that is compared with the target, with the loads there.
+pub fn deployed(scene: &Scene, deployment: &Deployment) -> String {
+    let state = State::new(scene, &deployment.sheet, deployment.compared());
     let openings_deg = &state.openings_deg;
     let mean = openings_deg.iter().sum::<f64>() / openings_deg.len() as f64;
     let max = openings_deg
@@ -31,7 +35,11 @@ pub fn deployed(scene: &Scene, sheet: &Sheet, step: &LoadStep) -> String {
         ""
     };
     let subtitle = format!(
-        "Deployed: mean hinge opening {mean:.1}\u{b0}, maximum {max:.1}\u{b0}{actuation}. Target dashed"
+        "{}: mean hinge opening {mean:.1}\u{b0}, maximum {max:.1}\u{b0}{actuation}. Target dashed",
+        match deployment.released {
+            Some(_) => LET_GO,
+            None => "Deployed",
+        }
     );
     let scale = ColourScale::covering(openings_deg.iter().copied());
     state.drawn(state.extent(), &subtitle, &Coloured::by_opening(&scale))
@@ -62,12 +70,14 @@ pub fn deployed_by_share(
     state.drawn(state.extent(), &subtitle, &coloured)
 }
 
-/// The frames of the deployment of a run: at most `most` states from the flat sheet to the last one, on the same page
+/// The frames of the deployment of a run: at most `most` states from the flat sheet to the last one, and without its loads if the target is for that, on the same page
 /// and in the same colours.
 pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec<String> {
     let deployment = &designed.best.deployment;
     let before = states_before(&designed.problem, deployment);
-    let all: Vec<&LoadStep> = before.iter().chain(&deployment.path).collect();
+    let loaded = before.iter().chain(&deployment.path);
+    let all: Vec<&LoadStep> = loaded.chain(deployment.let_go()).collect();
+    let steps = before.len() + deployment.path.len();
     let index = kept(all.len(), most);
     let states: Vec<State> = (index.iter())
         .map(|&i| State::new(scene, &deployment.sheet, all[i]))
@@ -78,10 +88,12 @@ pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec
         .flat_map(|state| state.openings_deg.iter().copied());
     let scale = ColourScale::covering(openings);
     let frame = |(&i, state): (&usize, &State)| {
-        let place = if scene.hinge.carries_load() {
+        let place = if i == steps {
+            LET_GO.to_lowercase()
+        } else if scene.hinge.carries_load() {
             format!(
                 "load step {i} of {}, load factor {:.2}",
-                all.len() - 1,
+                steps - 1,
                 all[i].load_factor
             )
         } else {

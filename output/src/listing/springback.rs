@@ -1,7 +1,7 @@
 //! What stays of the opening of a sheet when its loads are taken off, in numbers.
 
 use crate::drawing;
-use design::analysis::springback::{LetGoError, ReleasedSheet, WhatStays, let_go};
+use design::analysis::springback::{LetGoError, WhatStays, let_go};
 use design::objective::design_problem::{Deployment, DesignProblem};
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
@@ -22,9 +22,7 @@ pub struct SpringbackListing {
     /// Number of hinges in states outside the training domain, about which nothing is known.
     pub outside: usize,
     #[serde(skip)]
-    deployment: Deployment,
-    #[serde(skip)]
-    released: ReleasedSheet,
+    let_go: Deployment,
 }
 
 impl SpringbackListing {
@@ -42,15 +40,16 @@ impl SpringbackListing {
             stays,
             law: law.errors,
             outside: deployment.hinges_outside(),
-            deployment,
-            released,
+            let_go: Deployment {
+                released: Some(released),
+                ..deployment
+            },
         })
     }
 
     /// The sheet without loads (SVG).
     pub fn picture(&self, scene: &Scene) -> String {
-        let last = self.released.path.last().expect("it was found");
-        drawing::deployed(scene, &self.deployment.sheet, last)
+        drawing::deployed(scene, &self.let_go)
     }
 }
 

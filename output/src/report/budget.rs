@@ -3,6 +3,7 @@
 use crate::report::columns::{columns, fixed};
 use crate::report::self_weight::SelfWeight;
 use design::analysis::error_budget::{Effect, ErrorBudget};
+use design::objective::shape::TargetState;
 use serde::Serialize;
 
 /// The error budget of the best design.
@@ -25,16 +26,26 @@ const NEVER_MODELLED: [&str; 3] = [
     "the error of the finest mesh",
 ];
 
+/// What it leaves out of a sheet that is let go.
+const UNDER_LOAD: &str = "the law of released hinges: the errors are those of the sheet under load, before it was let go";
+
 /// What the page and the report say above the table.
 pub(crate) const BUDGET_HEADING: &str =
     "error budget of the deployed sheet, panels in the plane: standard deviations";
 
 impl Budget {
-    pub(super) fn new(errors: ErrorBudget, weight: &SelfWeight, dead_loads: bool) -> Self {
+    pub(super) fn new(
+        errors: ErrorBudget,
+        weight: &SelfWeight,
+        dead_loads: bool,
+        target_state: TargetState,
+    ) -> Self {
         let by_posture = weight.left_out();
+        let released = (target_state == TargetState::Released).then_some(UNDER_LOAD);
+        let left_out = by_posture.into_iter().chain(released);
         Self {
             errors,
-            not_modelled: by_posture.into_iter().chain(NEVER_MODELLED).collect(),
+            not_modelled: left_out.chain(NEVER_MODELLED).collect(),
             dead_loads,
         }
     }

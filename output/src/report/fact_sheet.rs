@@ -8,6 +8,7 @@ use design::analysis::actuation_curve::{ActuationCurve, LimitPoint, LoadPeak, Mo
 use design::equilibrium::load_step::Status;
 use design::geometry::polygon::{area, bounds};
 use design::objective::design_problem::{Deployment, DesignProblem};
+use design::objective::shape::TargetState;
 use design::scene::{Attachment, HingeModel, Scene, panel_name};
 use design::sheet::kinematics::deployed_corners;
 use serde::Serialize;
@@ -44,7 +45,9 @@ pub struct FactSheet {
     pub panels: [usize; 2],
     /// Extent of the flat sheet along x and y (mm).
     pub flat_size: [f64; 2],
-    /// Extent of the deployed sheet along x and y with all panels in the plane (mm).
+    /// The state of the sheet that the target is for.
+    pub target_state: TargetState,
+    /// Extent of the sheet in that state along x and y with all panels in the plane (mm).
     pub deployed_size: [f64; 2],
     /// Load and stroke at the end of the path; `None` without equilibrium, or if nothing moves the sheet.
     pub reached: Option<Reached>,
@@ -125,7 +128,7 @@ impl FactSheet {
     ) -> Self {
         let material = &scene.material;
         let flat = &deployment.sheet.outline.corners;
-        let corners = deployed_corners(&deployment.sheet, &deployment.final_step().configuration);
+        let corners = deployed_corners(&deployment.sheet, &deployment.compared().configuration);
         let mass_kg = material.mass_by_area() * area(flat).abs();
         let reached = Reached::new(scene, problem, deployment);
         Self {
@@ -148,6 +151,7 @@ impl FactSheet {
             lasting_shape: LastingShape::new(scene, problem, deployment),
             panels: scene.config.sheet.panels,
             flat_size: extent(flat.iter().copied()),
+            target_state: scene.config.objective.target_state,
             deployed_size: extent(corners.into_iter().flatten()),
             reached,
             gamma_min: (hinges.iter())
@@ -176,7 +180,13 @@ impl FactSheet {
             ("flat size", size(self.flat_size)),
             (
                 "deployed size",
-                format!("{}, panels in the plane", size(self.deployed_size)),
+                size(self.deployed_size)
+                    + match self.target_state {
+                        TargetState::Loaded => ", panels in the plane",
+                        TargetState::Released => {
+                            ", panels in the plane, after the loads were taken off; the target is for that state"
+                        }
+                    },
             ),
             ("hinge law", self.hinge_label.to_owned()),
         ];

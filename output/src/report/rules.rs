@@ -14,6 +14,7 @@ use design::geometry::polygon::contains;
 use design::hinge_law::{DamageMeasure, HingeDamage};
 use design::objective::design_problem::Deployment;
 use design::objective::scores::Scores;
+use design::objective::shape::TargetState;
 use design::scene::design_run::Designed;
 use design::scene::{Posture, Scene};
 use design::sheet::cut_sheet::PanelPoint;
@@ -528,6 +529,8 @@ fn missed(judged: &Judged) -> Option<Warning> {
     let [width, height] = facts.flat_size;
     let error = after.outline_error;
     let ratio = error / width.max(height);
+    // The budget is of the sheet under load.
+    let budget = budget.filter(|_| facts.target_state == TargetState::Loaded);
     let [uncertain, _] = budget.map_or([f64::INFINITY; 2], |budget| budget.total.corners);
     if ratio <= MISSED && error <= 2.0 * uncertain {
         return None;

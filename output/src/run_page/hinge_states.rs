@@ -4,12 +4,12 @@ use crate::deployment_states::{kept, states_before};
 use crate::report::force_spreads;
 use crate::run_page::packed::Packed;
 use design::analysis::actuation_curve::{ActuationCurve, holding_forces};
+use design::equilibrium::hinged_sheet::HingedSheet;
 use design::equilibrium::load_step::{LoadStep, Status};
-use design::hinge_law::{DamageMeasure, Order};
+use design::hinge_law::{DamageMeasure, Order, PreparedLaw, ReleasedLaw};
 use design::objective::design_problem::{Deployment, DesignProblem, Mechanics};
 use design::scene::Scene;
 use design::scene::placement::placed;
-use design::sheet::cut_sheet::Sheet;
 use serde::Serialize;
 use surrogate::Surrogate;
 
@@ -23,10 +23,12 @@ const OF_HINGE: usize = 11;
 /// The states, each list with one entry, or one row, for each state; NaN is not known.
 #[derive(Serialize)]
 pub(super) struct HingeStates {
-    /// Number of states of the path, those that are left out included, and the index of each state shown.
+    /// Number of states, those that are left out included, and the index of each state shown.
     of: usize,
     index: Vec<usize>,
     load_factor: Vec<f64>,
+    /// Whether the last state is that after the loads were taken off.
+    let_go: bool,
     /// Number of load steps in which the weight comes on, before those of the loads.
     weight_steps: usize,
     status: Vec<Status>,
@@ -39,7 +41,7 @@ pub(super) struct HingeStates {
     deformations: Packed,
     /// Whether the hinges are inside the training domain.
     inside: Packed,
-    /// Energies of the hinges (N mm).
+    /// Energies of the hinges under load (N mm).
     #[serde(skip_serializing_if = "Option::is_none")]
     energy: Option<Packed>,
     /// (F_a, F_s, M_theta) of the hinges (N, N, N mm).
@@ -68,7 +70,9 @@ impl HingeStates {
     ) -> Self {
         let sheet = &deployment.sheet;
         let before = states_before(problem, deployment);
-        let all: Vec<&LoadStep> = before.iter().chain(&deployment.path).collect();
+        let loaded = before.iter().chain(&deployment.path);
+        let all: Vec<&LoadStep> = loaded.chain(deployment.let_go()).collect();
+        let steps = before.len() + deployment.path.len();
         let size = OF_PANEL * sheet.panels.len() + OF_HINGE * sheet.hinges.len();
         let index = kept(all.len(), MOST_NUMBERS / size);
         let shown: Vec<&LoadStep> = index.iter().map(|&i| all[i]).collect();
@@ -81,12 +85,32 @@ impl HingeStates {
             let known = known_damage(deployment, before.len(), measure)?;
             Some(by_hinge(&|i, h| known[i][h]))
         };
+        let (forces, reactions) = mechanics.map_or_else(Default::default, |mechanics| {
+            let designs = sheet.designs();
+            let law = mechanics.law.prepare(&designs);
+            let released = deployment.released.as_ref();
+            let released = ReleasedLaw(released.map_or(&[], |released| &released.hinges));
+            let states = index.iter().map(|&i| {
+                let law: &dyn PreparedLaw = if i < steps { &*law } else { &released };
+                let hinged = mechanics.hinged(sheet, law, false);
+                (
+                    forces(hinged, all[i]),
+                    reactions(scene, mechanics, hinged, all[i]),
+                )
+            });
+            let (forces, reactions): (Vec<_>, Vec<_>) = states.unzip();
+            (
+                Some(forces.into_iter().flatten().collect()),
+                reactions.concat(),
+            )
+        });
         let weight_steps = deployment.weight_steps().len();
         let curve = mechanics.and_then(|mechanics| ActuationCurve::new(mechanics, deployment));
         Self {
             of: all.len(),
             load_factor: shown.iter().map(|state| state.load_factor).collect(),
             status: shown.iter().map(|state| state.status).collect(),
+            let_go: deployment.released.is_some(),
             weight_steps,
             curve: curve.map(|curve| {
                 let before = std::iter::repeat_n(None, weight_steps);
@@ -100,49 +124,55 @@ impl HingeStates {
                 .flat_map(|state| state.deformations.iter().flat_map(|eps| eps.to_array()))
                 .collect(),
             inside: by_hinge(&|i, h| f64::from(u8::from(all[i].inside[h]))),
-            energy: mechanics.map(|_| by_hinge(&|i, h| all[i].energies[h])),
-            forces: mechanics.map(|mechanics| {
-                let law = mechanics.law.prepare(&sheet.designs());
-                let hinged = mechanics.hinged(sheet, &*law, false);
-                let energies =
-                    |state: &&LoadStep| hinged.energies(&state.deformations, Order::Forces);
-                let energies = shown.iter().flat_map(energies);
-                energies.flat_map(|energy| energy.forces).collect()
+            energy: mechanics.map(|_| {
+                by_hinge(&|i, h| {
+                    if i < steps {
+                        all[i].energies[h]
+                    } else {
+                        f64::NAN
+                    }
+                })
             }),
+            forces,
             damage: damage(DamageMeasure::Mean),
             damage_peak: damage(DamageMeasure::Peak),
             spread: force_spreads(networks, deployment).map(|spreads| {
                 // The flat sheet has no forces.
-                by_hinge(&|i, h| {
-                    i.checked_sub(1)
-                        .map_or(0.0, |step| 100.0 * spreads[step][h])
+                by_hinge(&|i, h| match i.checked_sub(1) {
+                    None => 0.0,
+                    Some(step) => spreads.get(step).map_or(f64::NAN, |of| 100.0 * of[h]),
                 })
             }),
-            reactions: mechanics.map_or_else(
-                || Packed::from_iter([]),
-                |mechanics| reactions(scene, mechanics, sheet, &shown),
-            ),
+            reactions: reactions.into_iter().collect(),
             index,
         }
     }
 }
 
-/// The forces of every support of the scene in every state.
-fn reactions(scene: &Scene, mechanics: &Mechanics, sheet: &Sheet, states: &[&LoadStep]) -> Packed {
-    let supports = &scene.actuation().supports;
-    let of_state = |state: &&LoadStep| {
-        let forces = holding_forces(mechanics, sheet, state.weight, &state.configuration);
-        let supports = supports.iter();
-        supports.flat_map(move |support| {
-            let held = std::iter::zip(support.motion, forces[support.panel]);
-            held.map(|(motion, force)| motion.map_or(0.0, |_| force))
-        })
-    };
-    states.iter().flat_map(of_state).collect()
+/// (F_a, F_s, M_theta) of every hinge in a state.
+fn forces(hinged: HingedSheet, state: &LoadStep) -> Vec<f64> {
+    let energies = hinged.energies(&state.deformations, Order::Forces);
+    energies.iter().flat_map(|energy| energy.forces).collect()
+}
+
+/// The forces of every support of the scene in a state.
+fn reactions(
+    scene: &Scene,
+    mechanics: &Mechanics,
+    hinged: HingedSheet,
+    state: &LoadStep,
+) -> Vec<f64> {
+    let forces = holding_forces(mechanics, hinged, state.weight, &state.configuration);
+    let supports = scene.actuation().supports;
+    let held = supports.iter().flat_map(|support| {
+        let held = std::iter::zip(support.motion, forces[support.panel]);
+        held.map(|(motion, force)| motion.map_or(0.0, |_| force))
+    });
+    held.collect()
 }
 
 /// The damage of every hinge in every state: zero in the states before the path, NaN from the state in which the hinge
-/// is first outside the training domain; `None` if the law predicts none.
+/// is first outside the training domain, and without loads that at their end; `None` if the law predicts none.
 fn known_damage(
     deployment: &Deployment,
     before: usize,
@@ -161,6 +191,9 @@ fn known_damage(
             }
         };
         states.push((0..earlier.len()).map(of_hinge).collect());
+    }
+    if deployment.released.is_some() {
+        states.push(states[states.len() - 1].clone());
     }
     Some(states)
 }

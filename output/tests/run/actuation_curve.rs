@@ -83,7 +83,9 @@ fn loads_and_reactions_balance() {
         deployed("[[loads]]\npanel = [2, 1]\nforce = [1.2, 0.5]\ncouple = 80.0");
     let (mechanics, sheet) = (mechanics(&problem), &deployment.sheet);
     let step = &deployment.path[100];
-    let forces = holding_forces(mechanics, sheet, step.weight, &step.configuration);
+    let law = mechanics.law.prepare(&sheet.designs());
+    let hinged = mechanics.hinged(sheet, &*law, false);
+    let forces = holding_forces(mechanics, hinged, step.weight, &step.configuration);
     let (mut sum, mut moment) = ([0.0; 2], 0.0);
     for (k, ([x, y, m], [u_x, u_y, _])) in std::iter::zip(&forces, &step.configuration).enumerate()
     {

@@ -78,6 +78,18 @@ function button(parent, text, pressed, title) {
   return element;
 }
 
+/** A choice of the scene between yes and no. */
+function checkField(parent, text, checked, changed) {
+  const check = document.createElement("input");
+  Object.assign(check, { type: "checkbox", checked });
+  check.addEventListener("change", () => {
+    changed(check.checked);
+    sendScene();
+    writeFields();
+  });
+  write(parent, "label", text).appendChild(check);
+}
+
 /** The groups of fields: what writes each into its part of the page. */
 const groups = {
   load(box) {
@@ -87,15 +99,13 @@ const groups = {
     if (!loaded && scene.hinge !== "pin") write(box, "p", "Nothing pulls: choose \u201cholds and pulls panels\u201d and click one.", "note");
     if (scene.pin) sliderField(box, "Opening (deg)", "pin.opening_deg", [0, 90]);
     if (!loaded) return;
-    const label = write(box, "label", "the stroke is prescribed");
-    const check = document.createElement("input");
-    Object.assign(check, { type: "checkbox", checked: Boolean(scene.drive) });
-    check.addEventListener("change", () => {
-      scene.drive = check.checked ? { stroke: Number(strokeNow().toPrecision(4)) } : null;
-      sendScene();
-      writeFields();
+    checkField(box, "the stroke is prescribed", Boolean(scene.drive), (checked) => {
+      scene.drive = checked ? { stroke: Number(strokeNow().toPrecision(4)) } : null;
     });
-    label.appendChild(check);
+    if (scene.surrogate?.springback)
+      checkField(box, "the target is for the sheet after its loads were taken off", scene.objective.target_state === "released", (checked) => {
+        scene.objective.target_state = checked ? "released" : "loaded";
+      });
   },
 
   ligament(box) {

@@ -145,7 +145,7 @@ function showDraft({ sheet, outline_error }) {
   const quantity = quantities[shownNow.quantity];
   drawSheet(shownNow.state, quantity, shownNow.hinge);
   drawScale(quantity);
-  byId("state").textContent = `At full load (draft) \u00b7 outline ${shown(outline_error, 3)} mm from the target, rms`;
+  byId("state").textContent = `${states.let_go ? "Loads taken off" : "At full load"} (draft) \u00b7 outline ${shown(outline_error, 3)} mm from the target, rms`;
   setStale(true);
 }
 

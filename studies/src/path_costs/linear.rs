@@ -87,6 +87,7 @@ fn problem(grid: Grid, load: f64) -> Result<(DesignProblem, usize)> {
         },
         model: Model::Equilibrium(Box::new(Mechanics {
             law: Arc::new(LinearLaw::uniform(SPRINGS, grid.hinge_count())),
+            release: None,
             contact: None,
             solver,
         })),

@@ -1,0 +1,137 @@
+//! A deployed sheet that is let go, and the gradient of a function of the shape that stays.
+//!
+//! With g the gradient of the function in the configuration v without loads, H the tangent there, f = K (x - r) the forces of a
+//! released hinge and B its rates,
+//!
+//! ```text
+//! H lambda = g,    y = B lambda,    dL = -sum_h y . df,    df = dK (x - r) - K dr
+//! ```
+//!
+//! r and K follow from the state under load and its forces: what their derivatives lead to is a gradient in the state of
+//! each hinge at full load, with which the adjoint (20) of the path under load begins.
+
+use crate::equilibrium::adjoint::{PathGradient, adjoint};
+use crate::equilibrium::load_step::{LoadStep, Status};
+use crate::equilibrium::solver::EquilibriumError;
+use crate::hinge_law::{HingeGradient, Order, PreparedLaw, Release, ReleasedLaw};
+use crate::objective::design_problem::{Deployment, DesignError, Mechanics};
+use crate::sheet::cut_sheet::{Sheet, SheetGradient};
+use crate::sheet::kinematics::HingeMotion;
+use crate::sheet::panel_vectors::at_hinge;
+use hinge::ReleasedHinge;
+use std::array::from_fn;
+use surrogate::ByReleased;
+
+/// A sheet without loads, after they have opened it.
+#[derive(Clone)]
+pub struct ReleasedSheet {
+    /// The hinges.
+    pub hinges: Vec<ReleasedHinge>,
+    /// The load steps from the deployed sheet to that without loads. Their load factor is the part of the holding forces that is left.
+    pub path: Vec<LoadStep>,
+}
+
+impl ReleasedSheet {
+    /// The state without loads, or that at which the path ended before.
+    pub fn last(&self) -> &LoadStep {
+        self.path.last().expect("a path has at least one step")
+    }
+}
+
+impl Mechanics {
+    /// The hinges of a sheet after they were let go at a load step.
+    pub(crate) fn released_hinges(
+        &self,
+        release: &Release,
+        sheet: &Sheet,
+        step: &LoadStep,
+    ) -> Vec<ReleasedHinge> {
+        let designs = sheet.designs();
+        let energies = (self.law.prepare(&designs)).energies(&step.deformations, Order::Forces);
+        std::iter::zip(&designs, &step.deformations)
+            .zip(energies)
+            .map(|((design, reached), energy)| release.hinge(design, reached, &energy.forces))
+            .collect()
+    }
+
+    /// Takes the loads off a sheet in the configuration of a load step, with these hinges.
+    pub(crate) fn let_go(
+        &self,
+        sheet: &Sheet,
+        step: &LoadStep,
+        hinges: Vec<ReleasedHinge>,
+    ) -> Result<ReleasedSheet, EquilibriumError> {
+        let law = ReleasedLaw(&hinges);
+        let hinged = self.hinged(sheet, &law, false);
+        let path = self.solver.let_go(hinged, step.configuration.clone())?;
+        Ok(ReleasedSheet { hinges, path })
+    }
+
+    /// The sheet at the end of a path after it was let go, if the target is for that; `None` too if the path has not reached full load.
+    pub(super) fn released(
+        &self,
+        sheet: &Sheet,
+        path: &[LoadStep],
+    ) -> Result<Option<ReleasedSheet>, DesignError> {
+        let loaded = path.last().filter(|step| step.status != Status::Diverged);
+        let Some((release, step)) = self.release.as_ref().zip(loaded) else {
+            return Ok(None);
+        };
+        let hinges = self.released_hinges(release, sheet, step);
+        Ok(Some(self.let_go(sheet, step, hinges)?))
+    }
+
+    /// The gradient, in the state and the design of every hinge at full load, of a function with the gradient `by_free` in the
+    /// configuration of the released sheet; that in the flat sheet is added to `by_sheet`. With the backward error of the adjoint solve.
+    pub(super) fn released_pullback(
+        &self,
+        law: &dyn PreparedLaw,
+        deployment: &Deployment,
+        released: &ReleasedSheet,
+        by_free: Vec<[f64; 3]>,
+        by_sheet: &mut SheetGradient,
+    ) -> Result<(Vec<HingeGradient>, f64), DesignError> {
+        let release = self.release.as_ref().expect("by it the sheet was let go");
+        let (sheet, loaded, free) = (&deployment.sheet, deployment.final_step(), released.last());
+        let released_law = ReleasedLaw(&released.hinges);
+        let sums = adjoint(
+            &self.solver.unloaded(sheet)?,
+            self.hinged(sheet, &released_law, false),
+            std::slice::from_ref(free),
+            PathGradient {
+                by_states: &vec![vec![[0.0; 6]]; sheet.hinges.len()],
+                by_load_factors: &[0.0],
+                by_last: by_free,
+                by_reactions: None,
+            },
+            by_sheet,
+        )?;
+        let motions = HingeMotion::all(sheet, &free.configuration);
+        let designs = sheet.designs();
+        let energies = law.energies(&loaded.deformations, Order::Design);
+        let by_hinge = |h: usize| -> HingeGradient {
+            let hinge = &released.hinges[h];
+            let y = motions[h].rates(at_hinge(&sheet.hinges[h], &sums.virtual_motion));
+            let [at, rest] = [free.deformations[h], hinge.rest].map(|state| state.to_array());
+            let by = ByReleased {
+                rest: from_fn(|j| (0..3).map(|i| y[i] * hinge.stiffness[i][j]).sum()),
+                stiffness: from_fn(|i| from_fn(|j| -y[i] * (at[j] - rest[j]))),
+            };
+            let energy = &energies[h];
+            let found = release.pullback(&designs[h], &loaded.deformations[h], &energy.forces, &by);
+            let by_force = |rates: &dyn Fn(usize) -> f64| -> f64 {
+                (0..3).map(|i| found.forces[i] * rates(i)).sum()
+            };
+            let direct = [&found.reached[..], &[found.w_lig, found.alpha, 0.0]].concat();
+            from_fn(|c| {
+                let rates = |i: usize| match c {
+                    0..3 => energy.tangent[i][c],
+                    _ => energy.mixed[i][c - 3],
+                };
+                direct[c] + by_force(&rates)
+            })
+        };
+        let by_states = (0..sheet.hinges.len()).map(by_hinge).collect();
+        Ok((by_states, sums.residual))
+    }
+}

@@ -1,0 +1,134 @@
+//! The gradient of objectives whose target is the sheet after its loads were taken off.
+
+use crate::cases::PROCESS;
+use crate::random::Random;
+use crate::taylor::{
+    East, GRID, assert_order_two, curvatures, hung, mechanics, problem, springs, start, tiny,
+};
+use design::hinge_law::Release;
+use design::objective::cut_sheets::{CutSheets, ErrorDeviations};
+use design::objective::design_problem::Model;
+use design::sheet::cut_sheet::HingePoint;
+use hinge::{HingeDeformation, HingeForces, ReleasedHinge, ReleasedSample, SheetMaterial};
+use std::array::from_fn;
+use std::f64::consts::FRAC_PI_2;
+use surrogate::Springback;
+
+/// A law of hinges with about this stiffness in units of (w_lig, w_lig, 1), of which a part of the opening stays, in windows of a
+/// thickness of which the sheet has `scale` times.
+fn release(stiffness: [f64; 3], scale: f64) -> Release {
+    let mut random = Random::new(5);
+    let rows: Vec<ReleasedSample> = (0..80)
+        .map(|_| {
+            let [w, alpha, a, s, theta] = from_fn(|_| random.numbers(1, 1.0)[0]);
+            let design = PROCESS.hinge((16.0 + 8.0 * w) / scale, FRAC_PI_2 + 0.5 * alpha);
+            let w = design.w_lig;
+            let theta = 0.4 + 0.5 * theta;
+            let reached = HingeDeformation::from_eta(0.2 * a, 0.2 * s, theta, w);
+            let [eta_a, eta_s] = reached.eta(w);
+            let rest = HingeDeformation::from_eta(
+                0.7 * eta_a + 0.02 * theta * theta,
+                0.6 * eta_s,
+                0.7 * theta,
+                w,
+            );
+            let lengths = [w, w, 1.0];
+            let stiffer = 1.0 + 0.3 * theta + 0.2 * eta_a;
+            let stiffness = from_fn(|i| {
+                from_fn(|j| {
+                    let coupled = if i == j { 1.0 } else { 0.1 * eta_s };
+                    let mean = (stiffness[i] * stiffness[j]).sqrt();
+                    stiffer * coupled * mean / (lengths[i] * lengths[j])
+                })
+            });
+            let hinge = ReleasedHinge { rest, stiffness };
+            let [f_a, f_s, m_theta] = hinge.forces(&reached).map(|force| 0.9 * force);
+            let forces = HingeForces { f_a, f_s, m_theta };
+            ReleasedSample::new(&design, &reached, &forces, None, &hinge)
+        })
+        .collect();
+    let material = SheetMaterial {
+        name: "springs".into(),
+        thickness: 1.0,
+        young: 1300.0,
+        poisson: 0.4,
+        density_kg_m3: 900.0,
+        fracture_strain: 1.0,
+        plastic: vec![[30.0, 0.0]],
+        stress_deviation: None,
+        creep: None,
+    };
+    Release::new(
+        Springback::fit(&rows, &[], &material, "tiny").unwrap(),
+        scale,
+    )
+}
+
+/// A model whose sheet is compared with its target after it was let go.
+fn let_go(model: Model, release: Release) -> Model {
+    let Model::Equilibrium(mut mechanics) = model else {
+        panic!("pins have no loads");
+    };
+    mechanics.release = Some(release);
+    Model::Equilibrium(mechanics)
+}
+
+/// Sheets that are pulled, moved by a support that lets go, and that hang by their weight.
+#[test]
+fn springs_that_are_let_go() {
+    let stiffness = [5000.0, 3000.0, 1500.0];
+    for scale in [1.0_f64, 1.4] {
+        for east in [
+            East::Pulled(12.0),
+            East::Driven(12.0, 60.0),
+            East::Moved(40.0),
+        ] {
+            let units = scale.powi(-3);
+            let release = release(stiffness.map(|k| units * k), scale);
+            let model = let_go(mechanics(springs(), 240.0, east), release);
+            assert_order_two(&problem(model, HingePoint::Corner), &start());
+        }
+    }
+    let model = hung(
+        mechanics(springs(), 240.0, East::Pulled(12.0)),
+        [1e-5, -5e-5],
+    );
+    let model = let_go(model, release(stiffness, 1.0));
+    assert_order_two(&problem(model, HingePoint::Corner), &start());
+}
+
+/// Learned hinges under load, alone and with sheets with errors of cutting, of other thicknesses too.
+#[test]
+fn learned_hinges_that_are_let_go() {
+    let model = let_go(
+        mechanics(tiny(), 40.0, East::Driven(2.0, 18.0)),
+        release([300.0, 200.0, 100.0], 1.0),
+    );
+    let mut problem = problem(model, HingePoint::CutTip);
+    let alone = problem.evaluate(&start()).unwrap();
+    let released = alone.deployment.released.as_ref().unwrap();
+    let [loaded, free] = [alone.deployment.final_step(), released.last()].map(|at| at.opening());
+    assert!(
+        free > 0.2 * loaded && free < 0.95 * loaded,
+        "{free} {loaded}"
+    );
+    assert_order_two(&problem, &start());
+    let errors = ErrorDeviations {
+        ligament: 0.5,
+        kerf: 0.2,
+        thickness: 0.01,
+    };
+    problem.objective.cut_sheets = Some(CutSheets::new(0.7, GRID.hinge_count(), 0.5, errors));
+    assert_order_two(&problem, &start());
+}
+
+#[test]
+fn the_curvature_of_the_shape_that_stays() {
+    let model = mechanics(springs(), 40.0, East::Pulled(15.0));
+    let model = let_go(model, release([5000.0, 3000.0, 1500.0], 1.0));
+    let [by_rows, by_points] = curvatures(&problem(model, HingePoint::Corner), &start());
+    assert!(
+        (by_rows / by_points - 1.0).abs() < 1e-5,
+        "{by_rows} {by_points}"
+    );
+}
