@@ -167,13 +167,22 @@ impl Service {
 impl Machine {
     /// The drawing of a sheet for this machine, in cutting order; an error if the paths do not exist.
     pub fn drawing(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
+        let mut drawing = self.paths(cuts)?.in_cutting_order(cuts.outline[0]);
+        if self.marks {
+            registration_marks(&mut drawing, self.over_run(cuts));
+        }
+        Ok(drawing)
+    }
+
+    /// The paths in a sheet and the marks on it, in the order of the pattern; an error if they do not exist.
+    pub fn paths(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
         key_limits::check::<Self>(self)?;
         let kerf = self.tool_kerf.unwrap_or(match self.cuts {
             Cuts::Lines => cuts.kerf,
             Cuts::Slots => 0.0,
         });
         let mut cuts = cuts.clone();
-        cuts.cutting.over_run = self.over_run.unwrap_or(cuts.cutting.over_run);
+        cuts.cutting.over_run = self.over_run(&cuts);
         let mut drawing = match self.cuts {
             Cuts::Lines => self.lines(&cuts, kerf)?,
             Cuts::Slots => slots(&cuts, kerf)?,
@@ -188,11 +197,16 @@ impl Machine {
                 None => {}
             }
         }
-        let mut drawing = drawing.in_cutting_order(cuts.outline[0]);
-        if self.marks {
-            registration_marks(&mut drawing, cuts.cutting.over_run);
-        }
         Ok(drawing)
+    }
+
+    /// Whether a slit is one pass of the tool, which is then as wide as the slits.
+    pub fn cuts_lines(&self) -> bool {
+        self.cuts == Cuts::Lines
+    }
+
+    fn over_run(&self, cuts: &CutLines) -> f64 {
+        self.over_run.unwrap_or(cuts.cutting.over_run)
     }
 
     fn lines(&self, cuts: &CutLines, kerf: f64) -> Result<CutDrawing, FabricationError> {
