@@ -143,7 +143,7 @@ fn a_stock_is_a_paper_or_two_sides() {
     work.edit(SCENE, &[("420.0", "[300.0, 0.2]")]);
     let message = work.error(&format!("design {SCENE} --steps 1"));
     assert!(
-        message.contains("cutting.stock = 0.2 mm violates 1 to 1e5"),
+        message.contains("cutting.stock = 0.2 mm violates 1 <= cutting.stock"),
         "{message}"
     );
 }
@@ -159,7 +159,7 @@ fn designs_are_nested_on_sheets_of_one_stock() {
     let cut = format!("{nest} --for laser-service --stock 660x450 --margin 5 --gap 3");
     let said = work.output(&format!("{cut} --copies 3,2"));
     assert!(
-        said.contains("sheet 2 of 2: 1 pieces on 660 x 450 mm"),
+        said.contains("sheet 2 of 2, 660 x 450 mm: 1 of 5 pieces"),
         "{said}"
     );
     assert!(

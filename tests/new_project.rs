@@ -302,7 +302,7 @@ fn a_project_fits_the_stock_that_it_is_cut_from() {
     let nest = "cut plate/design --force --for lightburn";
     let said = work.output(&format!("{nest} --stock a4"));
     assert!(
-        said.contains("sheet 1 of 1: 1 pieces on 210 x 297 mm"),
+        said.contains("sheet 1 of 1, 210 x 297 mm: 1 of 1 pieces"),
         "{said}"
     );
     assert!(work.path("plate/nest/lightburn/stock-1.dxf").exists());

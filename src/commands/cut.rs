@@ -21,7 +21,7 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 use support::nearest::nearest;
 
-/// Write the cut files of a designed sheet, PDF tiles for hand cutting, and parts for a bed or a roll
+/// Write the cut files of a designed sheet, tiles for hand cutting, parts for a bed, or several designs on one stock
 ///
 /// Writes DXF, SVG and cut list of the design in the run folder of a scene, with the cutting settings of the scene.
 /// With --paper also a PDF at 1:1 on pages that overlap, with --bed also one DXF and SVG a part. docs/CUTTING.md
@@ -352,7 +352,9 @@ fn is_written(name: &str) -> bool {
         !number.is_empty() && !number.starts_with('0') && number.bytes().all(|c| c.is_ascii_digit())
     });
     let paper = (name.strip_prefix("tiles-")).and_then(|rest| rest.strip_suffix(".pdf"));
-    let is_tiles = paper.is_some_and(|paper| self::paper(paper).is_ok());
+    let is_tiles = paper
+        .and_then(|paper| self::paper(paper).ok())
+        .is_some_and(|paper| name == tiles_name(paper));
     is_numbered || is_tiles || [JOINTS, PLACES, PLAN].contains(&name)
 }
 

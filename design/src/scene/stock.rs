@@ -1,8 +1,8 @@
 //! The material that a sheet is cut from: papers by their names, other stock by its sides.
 
 use schemars::JsonSchema;
+use serde::de::IntoDeserializer;
 use serde::de::value::Error;
-use serde::de::{Deserialize as _, IntoDeserializer};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;

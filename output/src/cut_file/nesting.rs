@@ -3,7 +3,7 @@
 //! A design takes the rectangle around its paths. The crate `crunch` packs rectangles onto a sheet, the largest first, each into the
 //! free rectangle that it fills best. Which way a piece is turned is decided before it is known what lies beside it, so a sheet is
 //! packed again with prescribed orientations, all of them for up to [`PERIOD`] pieces. Of these packings that with the largest area
-//! is kept, and of equal ones that inside the smallest rectangle. The sheets are filled one after the other: that no other packing
+//! is kept, of equal ones that inside the smallest rectangle, and of these that with the fewest pieces turned. The sheets are filled one after the other: that no other packing
 //! needs fewer is not proved.
 
 use crate::cut_file::cut_drawing::CutDrawing;
@@ -91,9 +91,9 @@ pub fn nest(
         let packed = packing.fullest(&left);
         let mut drawing = CutDrawing::default();
         let mut places = Vec::with_capacity(packed.len());
-        for PackedItem { data: piece, rect } in packed {
+        for item in packed {
+            let (turned, PackedItem { data: piece, rect }) = (is_turned(&item), item);
             left.retain(|other| other.number != piece.number);
-            let turned = rect.w != piece.sides[0];
             let mut paths = designs[piece.design].paths.clone();
             if turned {
                 paths.turn();
@@ -127,6 +127,10 @@ struct Piece {
     design: usize,
     /// Width and height of its paths with the distance to the next piece (um).
     sides: [usize; 2],
+}
+
+fn is_turned(item: &PackedItem<Piece>) -> bool {
+    item.rect.w != item.data.sides[0]
 }
 
 /// The rectangle inside the margin of a sheet of stock, and those of the designs, each with the distance to the next piece (um).
@@ -194,7 +198,8 @@ impl Packing {
             let area: usize = rects().map(|rect| rect.area()).sum();
             let right = rects().map(|rect| rect.right()).max().unwrap_or(0);
             let top = rects().map(|rect| rect.bottom()).max().unwrap_or(0);
-            (area, Reverse(right * top))
+            let turned = packing.iter().filter(|item| is_turned(item)).count();
+            (area, Reverse((right * top, turned)))
         });
         best.unwrap_or_default()
     }

@@ -50,8 +50,8 @@ pub(super) struct Nesting {
 
 /// The usual gap (mm).
 const GAP: f64 = 3.0;
-/// Maximum number of pieces: the packing takes seconds then.
-const MOST: usize = 500;
+/// Maximum number of pieces: the order of their cuts takes seconds then, and minutes for more.
+const MOST: usize = 200;
 pub(super) const PLACES: &str = "places.csv";
 pub(super) const PLAN: &str = "plan.svg";
 
@@ -70,6 +70,7 @@ impl CutCommand {
         let read = self.read_all()?;
         alike(&read, machine)?;
         let copies = self.nesting.copies_of(read.len())?;
+        let pieces = copies.iter().sum();
         let designs = std::iter::zip(&read, copies)
             .map(|(read, copies)| {
                 Ok(NestedDesign {
@@ -88,7 +89,11 @@ impl CutCommand {
             gap: self.nesting.gap,
             turns: !self.nesting.no_turn,
         };
-        let mut sheets = nest(&designs, &stock)?;
+        let progress = Progress::new(pieces, "pieces");
+        progress.show(0, None, "are laid, and their cuts ordered");
+        let sheets = nest(&designs, &stock);
+        progress.finish();
+        let mut sheets = sheets?;
         for sheet in &mut sheets {
             let here: BTreeSet<usize> = sheet.places.iter().map(|place| place.design).collect();
             let errors = here.into_iter().flat_map(|design| {
@@ -312,9 +317,10 @@ impl Nested<'_> {
         }
         println!("{}: {}\n\n{rows}\n", self.machine.name, self.machine.says);
         let [width, height] = self.stock.size;
+        let pieces: usize = self.designs.iter().map(|design| design.copies).sum();
         for (i, sheet) in self.sheets.iter().enumerate() {
             println!(
-                "sheet {} of {}: {} pieces on {width} x {height} mm, {:.0} % of the stock used",
+                "sheet {} of {}, {width} x {height} mm: {} of {pieces} pieces, {:.0} % of its area used",
                 i + 1,
                 self.sheets.len(),
                 sheet.places.len(),
