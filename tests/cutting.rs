@@ -195,7 +195,7 @@ fn designs_are_nested_on_sheets_of_one_stock() {
     assert!(message.contains("one tool cuts all slits"), "{message}");
     let message = refused("--for laser-service --stock a4");
     assert!(
-        message.contains("a4-plate.toml takes 210.0 x 297.0 mm"),
+        message.contains("a4-plate.toml takes 210.2 x 297.2 mm"),
         "{message}"
     );
     let message = refused("--for laser-service --stock a3 --copies 1,2,3");

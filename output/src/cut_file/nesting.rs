@@ -1,6 +1,6 @@
 //! Several designs on sheets of one stock: what lies where, and the paths of every sheet in cutting order.
 //!
-//! A design takes the rectangle around its paths. The crate `crunch` packs rectangles onto a sheet, the largest first, each into the
+//! A design takes the rectangle that the centre of the tool reaches. The crate `crunch` packs rectangles onto a sheet, the largest first, each into the
 //! free rectangle that it fills best. Which way a piece is turned is decided before it is known what lies beside it, so a sheet is
 //! packed again with prescribed orientations, all of them for up to [`PERIOD`] pieces. Of these packings that with the largest area
 //! is kept, of equal ones that inside the smallest rectangle, and of these that with the fewest pieces turned. The sheets are filled one after the other: that no other packing
@@ -27,6 +27,10 @@ pub struct NestedDesign {
     pub copies: usize,
     /// The paths of the tool, in the frame of the design.
     pub paths: CutDrawing,
+    /// Distance of the centre of the tool from these paths, on their outer side (mm): [`Machine::reach`].
+    ///
+    /// [`Machine::reach`]: crate::cut_file::Machine::reach
+    pub reach: f64,
     /// Width of the kerf (mm).
     pub kerf: f64,
     /// Area of a piece (mm^2).
@@ -34,10 +38,10 @@ pub struct NestedDesign {
 }
 
 impl NestedDesign {
-    /// Width and height of its paths (mm).
+    /// Width and height of what the centre of the tool reaches (mm).
     fn size(&self) -> [f64; 2] {
         let [low, high] = self.paths.bounds();
-        [0, 1].map(|axis| high[axis] - low[axis])
+        [0, 1].map(|axis| high[axis] - low[axis] + 2.0 * self.reach)
     }
 }
 
@@ -94,12 +98,13 @@ pub fn nest(
         for item in packed {
             let (turned, PackedItem { data: piece, rect }) = (is_turned(&item), item);
             left.retain(|other| other.number != piece.number);
-            let mut paths = designs[piece.design].paths.clone();
+            let NestedDesign { paths, reach, .. } = &designs[piece.design];
+            let mut paths = paths.clone();
             if turned {
                 paths.turn();
             }
             let [low, high] = paths.bounds();
-            let corner = [rect.x, rect.y].map(|x| stock.margin + x as f64 / MICROMETRES);
+            let corner = [rect.x, rect.y].map(|x| stock.margin + reach + x as f64 / MICROMETRES);
             paths.shift([0, 1].map(|axis| corner[axis] - low[axis]));
             drawing.shapes.append(&mut paths.shapes);
             copies[piece.design] += 1;
@@ -125,7 +130,7 @@ pub fn nest(
 struct Piece {
     number: usize,
     design: usize,
-    /// Width and height of its paths with the distance to the next piece (um).
+    /// Width and height of what the tool reaches, with the distance to the next piece (um).
     sides: [usize; 2],
 }
 

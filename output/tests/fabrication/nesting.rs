@@ -22,6 +22,7 @@ fn rectangle(number: usize, [width, height]: [f64; 2], copies: usize, kerf: f64)
         name: format!("design {number}"),
         copies,
         paths,
+        reach: 0.0,
         kerf,
         area: width * height,
     }
@@ -34,10 +35,14 @@ proptest! {
         margin in 0.0..20.0,
         gap in 0.0..10.0,
         kerf in 0.05..1.0,
+        reach in 0.0..0.5,
         turns: bool,
     ) {
         let designs: Vec<NestedDesign> = (sizes.iter().enumerate())
-            .map(|(i, (size, copies))| rectangle(i, *size, *copies, kerf))
+            .map(|(i, (size, copies))| NestedDesign {
+                reach,
+                ..rectangle(i, *size, *copies, kerf)
+            })
             .collect();
         let stock = NestingStock { size: [350.0, 330.0], margin, gap, turns };
         let sheets = nest(&designs, &stock).unwrap();
@@ -55,15 +60,16 @@ proptest! {
                 prop_assert!(length([place.size, size]) < 1e-9);
                 for axis in 0..2 {
                     let [low, high] = [place.corner[axis], place.corner[axis] + size[axis]];
-                    prop_assert!(low >= margin - ROUNDING);
-                    prop_assert!(high <= stock.size[axis] - margin + ROUNDING);
+                    prop_assert!(low >= margin + reach - ROUNDING);
+                    prop_assert!(high <= stock.size[axis] - margin - reach + ROUNDING);
                 }
                 for other in &sheet.places[..i] {
                     let apart = [0, 1].map(|axis| f64::max(
                         place.corner[axis] - other.corner[axis] - other.size[axis],
                         other.corner[axis] - place.corner[axis] - place.size[axis],
                     ));
-                    prop_assert!(apart[0].max(apart[1]) >= gap + kerf - ROUNDING, "{apart:?}");
+                    let least = gap + kerf + 2.0 * reach;
+                    prop_assert!(apart[0].max(apart[1]) >= least - ROUNDING, "{apart:?}");
                 }
             }
         }
@@ -165,6 +171,7 @@ fn every_piece_of_a_nested_file_is_its_design() {
                 name: i.to_string(),
                 copies: 2,
                 paths: machine.paths(cuts).unwrap(),
+                reach: machine.reach(cuts),
                 kerf: cuts.kerf,
                 area: 0.0,
             })
@@ -179,7 +186,19 @@ fn every_piece_of_a_nested_file_is_its_design() {
             let layers: Vec<Layer> = nested.drawing.shapes.iter().map(|it| it.0).collect();
             assert!(layers.is_sorted(), "{}: {layers:?}", machine.name);
             let mut count = 0;
-            for place in &nested.places {
+            for (i, place) in nested.places.iter().enumerate() {
+                // What is left of the stock between two pieces, whichever edge the paths are.
+                let half = 0.5 * super::KERF + machine.reach(&sheets[place.design].1);
+                for other in &nested.places[..i] {
+                    let apart = [0, 1].map(|axis| {
+                        f64::max(
+                            place.corner[axis] - other.corner[axis] - other.size[axis],
+                            other.corner[axis] - place.corner[axis] - place.size[axis],
+                        )
+                    });
+                    let left = apart[0].max(apart[1]) - 2.0 * half;
+                    assert!(left >= stock.gap - ROUNDING, "{}: {left}", machine.name);
+                }
                 turned += usize::from(place.turned);
                 let paths = &designs[place.design].paths;
                 let found = own(&nested.drawing, place, paths);
@@ -225,7 +244,7 @@ fn every_piece_of_a_nested_file_is_its_design() {
 fn a_design_that_does_not_fit_is_named() {
     let designs = [
         rectangle(0, [50.0, 40.0], 1, 0.2),
-        rectangle(1, [80.0, 95.0], 1, 0.2),
+        rectangle(1, [80.0, 90.0], 1, 0.2),
     ];
     let with = |size, margin, turns| {
         let stock = NestingStock {

@@ -77,6 +77,7 @@ impl CutCommand {
                     name: read.name.clone(),
                     copies,
                     paths: machine.paths(&read.cuts)?,
+                    reach: machine.reach(&read.cuts),
                     kerf: read.cuts.kerf,
                     area: area(&read.cuts.outline),
                 })
