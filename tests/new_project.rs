@@ -307,10 +307,13 @@ fn a_project_fits_the_stock_that_it_is_cut_from() {
     );
     assert!(work.path("plate/nest/lightburn/stock-1.dxf").exists());
     // The margin is that of the scene.
-    let message = work.error(&format!("{nest} --stock 210x296"));
-    assert!(message.contains("plate/design takes 19"), "{message}");
+    let message = work.error(&format!("{nest} --stock 210x295"));
     assert!(
-        message.contains("200.0 x 286.0 mm inside its margin"),
+        message.contains("plate/design takes 199.0 x 286.0 mm"),
+        "{message}"
+    );
+    assert!(
+        message.contains("200.0 x 285.0 mm inside its margin"),
         "{message}"
     );
 
