@@ -224,7 +224,7 @@ fn designs_are_nested_on_sheets_of_one_stock() {
         ("--stock 600x400", "--for"),
         ("--for lightburn --stock a9", "letter or tabloid"),
         ("--for lightburn --stock 600xinf", "WIDTHxHEIGHT"),
-        ("--for lightburn --stock a3 --gap -1", "0 to 1000 mm"),
+        ("--for lightburn --stock a3 --gap 2000", "0 to 1000 mm"),
     ] {
         let output = work.program(&format!("{nest} {wrong}")).output().unwrap();
         let message = String::from_utf8(output.stderr).unwrap();
