@@ -121,3 +121,114 @@ fn a_sheet_larger_than_its_stock_is_a_warning() {
     let said = work.output(&design);
     assert!(said.contains("the stock has 2801.0 x 2880.0 mm"), "{said}");
 }
+
+/// The stock of a scene is also the name of a paper.
+#[test]
+fn a_stock_is_a_paper_or_two_sides() {
+    let work = Workplace::new();
+    let stock = |text: &str| format!("[cutting]\nstock = {text}\n\n[process]");
+    work.edit(SCENE, &[("[process]", &stock("\"a0\""))]);
+    let said = work.output(&format!("design {SCENE} --steps 1"));
+    assert!(said.contains("the stock has 841.0 x 1189.0 mm"), "{said}");
+    for (before, wrong) in [
+        ("\"a0\"", "\"a7\""),
+        ("\"a7\"", "[300.0]"),
+        ("[300.0]", "420.0"),
+    ] {
+        work.edit(SCENE, &[(before, wrong)]);
+        let message = work.error(&format!("design {SCENE} --steps 1"));
+        assert!(message.contains("pin-7x7.toml:"), "{message}");
+        assert!(message.contains("\"letter\""), "{message}");
+    }
+    work.edit(SCENE, &[("420.0", "[300.0, 0.2]")]);
+    let message = work.error(&format!("design {SCENE} --steps 1"));
+    assert!(
+        message.contains("cutting.stock = 0.2 mm violates 1 <= cutting.stock"),
+        "{message}"
+    );
+}
+
+/// Two designs of one material, of which only their own files hold the numbers of the hinges.
+#[test]
+fn designs_are_nested_on_sheets_of_one_stock() {
+    let work = Workplace::new();
+    let root = env!("CARGO_MANIFEST_DIR");
+    let scene = |name: &str| format!("{root}/configs/scenes/{name}.toml");
+    let [plate, service] = ["a4-plate", "a4-plate-service"].map(scene);
+    let nest = format!("cut {plate} {service} --design start --out nest");
+    let cut = format!("{nest} --for laser-service --stock 660x450 --margin 5 --gap 3");
+    let said = work.output(&format!("{cut} --copies 3,2"));
+    assert!(
+        said.contains("sheet 2 of 2, 660 x 450 mm: 1 of 5 pieces"),
+        "{said}"
+    );
+    assert!(
+        said.contains("SendCutSend: refuses") && said.contains("a4-plate.toml: holes of"),
+        "{said}"
+    );
+    let text = |name: &str| std::fs::read_to_string(work.path("nest").join(name)).unwrap();
+    let svg = text("stock-1.svg");
+    assert!(svg.contains("width=\"660mm\" height=\"450mm\" viewBox=\"0 -450 660 450\""));
+    assert_eq!(text("places.csv").lines().count(), 1 + 5);
+    // The hinges of each design once, with its name.
+    let list = text("cut-list.csv");
+    let rows = |name: &str| list.lines().filter(|row| row.contains(name)).count();
+    assert!(list.starts_with("design,hinge,hole_diameter_mm"), "{list}");
+    assert_eq!([rows(&plate), rows(&service)], [17, 17]);
+    for name in ["stock-1.dxf", "stock-2.dxf", "stock-2.svg", "plan.svg"] {
+        assert!(work.path("nest").join(name).exists(), "{name}");
+    }
+    // Sheets of an earlier call do not remain.
+    let json = work.output(&format!("{cut} --json"));
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["sheets"][0]["pieces"].as_array().unwrap().len(), 2);
+    let used = json["sheets"][0]["used"].as_f64().unwrap();
+    assert!(
+        (used - 2.0 * 210.0 * 297.0 / (660.0 * 450.0)).abs() < 1e-9,
+        "{used}"
+    );
+    assert!(!work.path("nest/stock-2.dxf").exists());
+
+    let refused = |arguments: &str| work.error(&format!("{nest} {arguments}"));
+    let lines = "--for lightburn --stock 660x450";
+    let message = refused(lines);
+    assert!(message.contains("one tool cuts all slits"), "{message}");
+    let message = refused("--for laser-service --stock a4");
+    assert!(
+        message.contains("a4-plate.toml takes 210.2 x 297.2 mm"),
+        "{message}"
+    );
+    let message = refused("--for laser-service --stock a3 --copies 1,2,3");
+    assert!(message.contains("3 numbers for 2 designs"), "{message}");
+    for none in ["0", "300"] {
+        let message = refused(&format!("--for laser-service --stock a3 --copies {none}"));
+        assert!(
+            message.contains("at least one piece, and all have at most"),
+            "{message}"
+        );
+    }
+    let film = scene("a4-polyester");
+    let message = work.error(&format!("cut {plate} {film} --design start {lines}"));
+    for part in [
+        "a4-plate.toml is of",
+        "a4-polyester.toml is of",
+        "3 mm thick",
+        "0.1 mm thick",
+    ] {
+        assert!(message.contains(part), "{message}");
+    }
+    let message = work.error(&format!("cut {plate} {plate} --design start {lines}"));
+    assert!(message.contains("named twice"), "{message}");
+    for (wrong, said) in [
+        ("--for lightburn", "--stock"),
+        ("--stock 600x400", "--for"),
+        ("--for lightburn --stock a9", "letter or tabloid"),
+        ("--for lightburn --stock 600xinf", "WIDTHxHEIGHT"),
+        ("--for lightburn --stock a3 --gap 2000", "0 to 1000 mm"),
+    ] {
+        let output = work.program(&format!("{nest} {wrong}")).output().unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(said), "{message}");
+    }
+}

@@ -282,3 +282,62 @@ fn a_project_that_needs_a_change_says_so() {
     assert!(message.contains("violates 0.5 <= w_lig"), "{message}");
     assert!(work.path("thin/scene.toml").is_file());
 }
+
+/// The sheet of a stock is smaller than the stock by its margins and by what is cut beyond its edge.
+#[test]
+fn a_project_fits_the_stock_that_it_is_cut_from() {
+    let work = Workplace::new();
+    let plate = weights().replace("pet-0.5mm", "polypropylene-3mm");
+    work.output(&format!(
+        "init plate --stock a4 --margin 5 --weights {plate}"
+    ));
+    let scene = keys(&work, "plate/scene.toml");
+    assert_eq!(
+        scene["sheet"]["size"].to_string().trim(),
+        "[197.0, 284.0]      # mm; width and height"
+    );
+    assert_eq!(scene["cutting"]["stock"].as_str(), Some("a4"));
+    let said = work.output("design plate/scene.toml --steps 1 --force");
+    assert!(!said.contains("the stock has"), "{said}");
+    let nest = "cut plate/design --force --for lightburn";
+    let said = work.output(&format!("{nest} --stock a4"));
+    assert!(
+        said.contains("sheet 1 of 1, 210 x 297 mm: 1 of 1 pieces"),
+        "{said}"
+    );
+    assert!(work.path("plate/nest/lightburn/stock-1.dxf").exists());
+    // The margin is that of the scene.
+    let message = work.error(&format!("{nest} --stock 210x295"));
+    assert!(
+        message.contains("plate/design takes 199.0 x 286.0 mm"),
+        "{message}"
+    );
+    assert!(
+        message.contains("200.0 x 285.0 mm inside its margin"),
+        "{message}"
+    );
+
+    let like = "configs/scenes/pet-3x3.toml";
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    work.edit(like, &[("../../data", &data.display().to_string())]);
+    let like = format!(
+        "init like --like {like} --thickness 0.1 --weights {}",
+        weights()
+    );
+    work.output(&format!("{like} --stock a3 --margin 5"));
+    let scene = keys(&work, "like/scene.toml");
+    let size = scene["sheet"]["size"].as_array().unwrap();
+    let side = |i: usize| size.get(i).and_then(toml_edit::Value::as_float).unwrap();
+    // 407 x 284 mm remain of A3 on its side; the sheet is twice as wide as high.
+    assert!(side(0) <= 407.0 && side(0) > 406.0, "{size}");
+    assert!((side(0) / side(1) - 2.0).abs() < 1e-4, "{size}");
+
+    let message = work.error("init none --stock a4 --margin 105");
+    assert!(
+        message.contains("leaves nothing of a stock of 210 x 297 mm"),
+        "{message}"
+    );
+    let output = work.program("init none --size a4").output().unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("use --stock a4"), "{message}");
+}

@@ -22,6 +22,7 @@ pub mod run_inputs;
 mod scene_error;
 mod sheet_config;
 mod springback_file;
+mod stock;
 mod tolerances;
 mod weights_files;
 
@@ -45,4 +46,5 @@ pub use ratios::{Ratios, rounded};
 pub use scene_error::SceneError;
 pub use sheet_config::{LigamentConfig, SheetConfig, StartConfig};
 pub use springback_file::{SpringbackFileError, SpringbackMismatch};
+pub use stock::{Paper, Stock};
 pub use tolerances::ToleranceConfig;

@@ -1,14 +1,14 @@
 //! `report.pdf`: the deployed sheet, the flat sheet with its cuts, and the lines of `report.txt`, on A4 in portrait.
 
-use crate::cut_file::{CutLines, Paper};
+use crate::cut_file::CutLines;
 use crate::display::pdf::{self, Font, draw, page, place};
 use crate::display::{Canvas, Style, Text};
 use crate::drawing::page::{INK, MUTED, Sketch, round_below};
 use crate::drawing::{deployed_on_paper, flat_on_paper};
 use crate::report::Report;
 use design::geometry::polygon::bounds;
-use design::scene::Scene;
 use design::scene::design_run::Designed;
+use design::scene::{Paper, Scene};
 use pdf_writer::Content;
 
 /// White border of a page (mm).

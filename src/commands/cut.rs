@@ -1,5 +1,8 @@
-//! `kirigami cut`: the cut files of a designed sheet, tiles of paper, and parts for a bed.
+//! `kirigami cut`: the cut files of a designed sheet, tiles of paper, parts for a bed, and several designs on one stock.
 
+mod nest;
+
+use crate::commands::cut::nest::{Nesting, PLACES, PLAN};
 use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
 use crate::ui::run_folder;
 use crate::ui::width_by_height::width_by_height;
@@ -7,10 +10,10 @@ use anyhow::{Context, Error, Result, ensure};
 use clap::Args;
 use design::objective::design_problem::Deployment;
 use design::pattern::design_vector::DesignVector;
-use design::scene::Scene;
+use design::scene::{Paper, Scene};
 use output::cut_file::{
-    CutDrawing, CutLines, Machines, OVERLAP, Paper, SheetDrawing, Split, Tiling, attachment_list,
-    cut_list, cut_summary, dxf, mark_errors, split, svg, tiles_pdf,
+    CutDrawing, CutLines, Machine, Machines, OVERLAP, Service, SheetDrawing, Split, Tiling,
+    attachment_list, cut_list, cut_summary, dxf, mark_errors, split, svg, tiles_pdf,
 };
 use output::display::Shape;
 use output::report::{Severity, Warning, warnings};
@@ -18,24 +21,29 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 use support::nearest::nearest;
 
-/// Write the cut files of a designed sheet, PDF tiles for hand cutting, and parts for a bed or a roll
+/// Write the cut files of a designed sheet, tiles for hand cutting, parts for a bed, or several designs on one stock
 ///
 /// Writes DXF, SVG and cut list of the design in the run folder of a scene, with the cutting settings of the scene.
 /// With --paper also a PDF at 1:1 on pages that overlap, with --bed also one DXF and SVG a part. docs/CUTTING.md
-/// describes the files. With --for the file holds what one kind of machine or service accepts. Examples:
+/// describes the files. With --for the file holds what one kind of machine or service accepts, with --stock also
+/// that of several designs and pieces on as few sheets of a stock as are found. Examples:
 /// kirigami cut configs/scenes/demo.toml --paper a4 --bed 900x600;
-/// kirigami cut configs/scenes/a4-plate.toml --for laser-service
+/// kirigami cut configs/scenes/a4-plate.toml --for laser-service;
+/// kirigami cut runs/a4-plate runs/leaf --for lightburn --stock 600x400 --margin 5 --gap 3 --copies 2,1
 #[derive(Args)]
 #[command(mut_arg("design", |arg| arg.help(DESIGN_OF_RUN)))]
 pub struct CutCommand {
     #[command(flatten)]
     designed: Inspected,
-    /// Folder of the files [default: `cut` in the run folder of the scene; with --for `cut/MACHINE`]
+    #[command(flatten)]
+    nesting: Nesting,
+    /// Folder of the files [default: `cut` in the run folder of the scene; with --for `cut/MACHINE`; with --stock `nest/MACHINE` beside
+    /// the run folder of the first scene]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Write tiles for this paper: a4, a3 or letter
+    /// Write tiles for this paper: a5 to a0, letter or tabloid
     #[arg(long, value_name = "PAPER", value_parser = paper)]
-    paper: Option<(Paper, &'static str)>,
+    paper: Option<Paper>,
     /// Write parts that fit on a bed of this width and height (mm); the height of a roll is inf
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = bed)]
     bed: Option<[f64; 2]>,
@@ -57,12 +65,6 @@ pub struct CutCommand {
     json: bool,
 }
 
-/// The papers, and their names in the name of a file.
-const PAPERS: [(Paper, &str); 3] = [
-    (Paper::A4, "a4"),
-    (Paper::A3, "a3"),
-    (Paper::Letter, "letter"),
-];
 /// The usual width of the tape (mm).
 const LAP: f64 = 20.0;
 const JOINTS: &str = "joints.csv";
@@ -92,6 +94,7 @@ impl CutCommand {
                 design: None,
                 weights: None,
             },
+            nesting: Nesting::default(),
             out: None,
             paper: paper.map(self::paper).transpose().map_err(Error::msg)?,
             bed: None,
@@ -104,10 +107,10 @@ impl CutCommand {
     }
 
     pub(crate) fn run(&self) -> Result<()> {
-        let (scene, design, named) = self.designed.read_run()?;
         if let Some(name) = &self.machine {
-            return self.cut_for(name, &scene, &design, &named);
+            return self.cut_for(name);
         }
+        let (scene, design, _) = self.designed.read_run()?;
         let pieces = self.pieces(&scene, &design)?;
         let out = match &self.out {
             Some(out) => out.clone(),
@@ -119,8 +122,8 @@ impl CutCommand {
         self.print(&pieces, &out)
     }
 
-    /// Writes the file of a machine, and prints what services refuse.
-    fn cut_for(&self, name: &str, scene: &Scene, design: &DesignVector, named: &str) -> Result<()> {
+    /// Writes the files of a machine, and prints what services refuse.
+    fn cut_for(&self, name: &str) -> Result<()> {
         let machines = Machines::read(self.machines.as_deref())?;
         let machine = machines.machine.iter().find(|machine| machine.name == name);
         let machine = machine.with_context(|| {
@@ -134,19 +137,30 @@ impl CutCommand {
             Path::new(name).file_name().is_some_and(|file| file == name),
             "the machine {name} cannot name a folder: give it a name without slashes"
         );
-        let (_, cuts, errors) = self.checked(scene, design)?;
+        let services = match machine.services {
+            true => &machines.service[..],
+            false => &[],
+        };
+        match self.nesting.stock {
+            Some(stock) => self.nest(stock, machine, services),
+            None => self.cut_one_for(machine, services),
+        }
+    }
+
+    fn cut_one_for(&self, machine: &Machine, services: &[Service]) -> Result<()> {
+        let (scene, design, named) = self.designed.read_run()?;
+        let (_, cuts, errors) = self.checked(&scene, &design)?;
         let mut drawing = machine.drawing(&cuts)?;
         mark_errors(&mut drawing, &errors);
         let out = match &self.out {
             Some(out) => out.clone(),
-            None => scene.output().join("cut").join(name),
+            None => scene.output().join("cut").join(&machine.name),
         };
         let _held = run_folder::hold(&out)?;
         write_drawing(&out, "cut", &drawing)?;
         let features = cuts.features();
         let thickness = scene.material.thickness;
-        let services = machines.service.iter().filter(|_| machine.services);
-        let refusals = services.map(|service| (service, service.refusals(&features, thickness)));
+        let refusals = (services.iter()).map(|it| (it, it.refusals(&features, thickness)));
         let out = out.canonicalize()?;
         if self.json {
             let services: Vec<_> = refusals
@@ -155,18 +169,14 @@ impl CutCommand {
                 })
                 .collect();
             let value = json!({
-                "machine": name, "features": features, "services": services, "folder": out,
+                "machine": machine.name, "features": features, "services": services, "folder": out,
             });
             println!("{value:#}");
             return Ok(());
         }
-        println!("{name}: {}; {named}\n{features}", machine.says);
+        println!("{}: {}; {named}\n{features}", machine.name, machine.says);
         for (service, refuses) in refusals {
-            let refuses = match refuses.is_empty() {
-                true => "no published limit is broken".to_owned(),
-                false => format!("refuses {}", refuses.join("; ")),
-            };
-            println!("{}: {refuses}", service.name);
+            println!("{}: {}", service.name, verdict(&refuses));
         }
         println!("written to {}", out.display());
         Ok(())
@@ -206,7 +216,7 @@ impl CutCommand {
         mark_errors(&mut annotated, &errors);
         mark_errors(&mut whole.numbered, &errors);
         let tiling = (self.paper)
-            .map(|(paper, _)| Tiling::new(paper, whole.numbered.bounds()))
+            .map(|paper| Tiling::new(paper, whole.numbered.bounds()))
             .transpose()?;
         let mut split = (self.bed)
             .map(|bed| split(&cuts, sheet, bed, self.lap))
@@ -230,7 +240,7 @@ impl CutCommand {
         run_folder::write(out, "cut-list.csv", &pieces.list)?;
         run_folder::write(out, "attachments.csv", &pieces.attachments)?;
         run_folder::write(out, "cut-summary.csv", &pieces.summary)?;
-        if let (Some((_, paper)), Some(tiling)) = (self.paper, &pieces.tiling) {
+        if let (Some(paper), Some(tiling)) = (self.paper, &pieces.tiling) {
             let whole = &pieces.whole;
             let tiles = tiles_pdf(&whole.numbered, tiling, title, &whole.notes);
             run_folder::write(out, &tiles_name(paper), &tiles)?;
@@ -283,6 +293,14 @@ fn write_drawing(out: &Path, name: &str, drawing: &CutDrawing) -> Result<()> {
     run_folder::write(out, &format!("{name}.svg"), &svg(drawing))
 }
 
+/// What a service says of a sheet.
+fn verdict(refuses: &[String]) -> String {
+    match refuses.is_empty() {
+        true => "no published limit is broken".to_owned(),
+        false => format!("refuses {}", refuses.join("; ")),
+    }
+}
+
 fn print_parts(split: &Split, [low, high]: [[f64; 2]; 2]) {
     if split.parts.len() > 1 {
         println!(
@@ -311,7 +329,7 @@ fn print_parts(split: &Split, [low, high]: [[f64; 2]; 2]) {
     }
 }
 
-/// Removes the tiles and parts of an earlier call, which may be of another design.
+/// Removes tiles, parts and sheets of stock of an earlier call, which may be of another design.
 fn remove_earlier(folder: &Path) -> Result<()> {
     for entry in std::fs::read_dir(folder)? {
         let entry = entry?;
@@ -324,26 +342,29 @@ fn remove_earlier(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Whether a file with this name is written with --paper or --bed.
+/// Whether a file with this name is written with --paper, --bed or --stock.
 fn is_written(name: &str) -> bool {
-    let number = name.strip_prefix("part-").and_then(|rest| {
-        rest.strip_suffix(".dxf")
-            .or_else(|| rest.strip_suffix(".svg"))
+    let number = name.split_once('-').and_then(|(kind, rest)| {
+        let number = (rest.strip_suffix(".dxf")).or_else(|| rest.strip_suffix(".svg"));
+        number.filter(|_| ["part", "stock"].contains(&kind))
     });
-    let is_part = number.is_some_and(|number| {
+    let is_numbered = number.is_some_and(|number| {
         !number.is_empty() && !number.starts_with('0') && number.bytes().all(|c| c.is_ascii_digit())
     });
-    is_part || name == JOINTS || PAPERS.iter().any(|(_, paper)| name == tiles_name(paper))
+    let paper = (name.strip_prefix("tiles-")).and_then(|rest| rest.strip_suffix(".pdf"));
+    let is_tiles = paper
+        .and_then(|paper| self::paper(paper).ok())
+        .is_some_and(|paper| name == tiles_name(paper));
+    is_numbered || is_tiles || [JOINTS, PLACES, PLAN].contains(&name)
 }
 
-fn tiles_name(paper: &str) -> String {
+fn tiles_name(paper: Paper) -> String {
     format!("tiles-{paper}.pdf")
 }
 
-fn paper(name: &str) -> Result<(Paper, &'static str), String> {
-    let name = name.to_lowercase();
-    let paper = PAPERS.into_iter().find(|(_, paper)| *paper == name);
-    paper.ok_or_else(|| "must be a4, a3 or letter".into())
+fn paper(name: &str) -> Result<Paper, String> {
+    let refused = |_| "must be a5, a4, a3, a2, a1, a0, letter or tabloid".into();
+    name.parse().map_err(refused)
 }
 
 fn bed(text: &str) -> Result<[f64; 2], String> {
@@ -371,7 +392,15 @@ mod tests {
             "tiles-of-mine.pdf",
             "cut.dxf",
         ];
-        let ours = ["part-1.dxf", "part-12.svg", "tiles-letter.pdf", JOINTS];
+        let ours = [
+            "part-1.dxf",
+            "part-12.svg",
+            "stock-3.dxf",
+            "tiles-letter.pdf",
+            JOINTS,
+            PLACES,
+            PLAN,
+        ];
         for name in own.iter().chain(&ours) {
             std::fs::write(folder.path().join(name), "").unwrap();
         }

@@ -1,10 +1,12 @@
 //! `kirigami init`: a folder with the files of a new project, scaled to the thickness of its sheet.
 
+mod cut_from;
 mod edited;
 pub(crate) mod first_scene;
 mod similar_scene;
 mod template;
 
+use crate::commands::init::cut_from::CutFrom;
 use crate::commands::init::edited::{heading, scale, set};
 use crate::commands::init::first_scene::{FirstScene, THINNEST_PLATE};
 use crate::commands::init::similar_scene::{Like, SimilarScene};
@@ -12,10 +14,10 @@ use crate::commands::init::template::Template;
 use crate::commands::input_file;
 use crate::ui::output_file;
 use crate::ui::shell_word::shell_word;
-use crate::ui::width_by_height::width_by_height;
+use crate::ui::width_by_height::{length, stock, width_by_height};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
-use design::scene::Scene;
+use design::scene::{Paper, Scene, Stock};
 use hinge::{Regime, SheetMaterial};
 use mesher::Tier;
 use std::path::{Path, PathBuf};
@@ -29,7 +31,9 @@ use toml_edit::DocumentMut;
 /// sheet. A sheet that is large for its thickness has wide ligaments that fold, and is held flat; from 2 mm on, others have
 /// ligaments narrower than the thickness, and stay flat by themselves. The files run as they are: with a material that has weights, `design` at once; with another, after its
 /// campaign and training. README.md in the folder lists the commands.
+/// With --stock the sheet is as large as its cuts fit on a sheet of that stock.
 /// Examples: kirigami init my-sheet --thickness 3 --size 210x297;
+/// kirigami init first --stock a4 --margin 5;
 /// kirigami init film --thickness 0.1;
 /// kirigami init leaf --thickness 0.1 --target configs/targets/leaf.svg;
 /// kirigami init thin --like configs/scenes/pet-3x3.toml --thickness 0.1;
@@ -50,6 +54,13 @@ pub struct InitCommand {
     /// proportion to the thickness; with --like those of its sheet, in proportion to the thickness]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
     size: Option<[f64; 2]>,
+    /// The stock that the sheet is cut from: a5 to a0, letter, tabloid, or width and height (mm). The sheet is smaller by twice the
+    /// margin, the over-run and half a kerf, so that its cuts fit; with --like it keeps the shape of that sheet
+    #[arg(long, value_name = "STOCK", value_parser = stock, conflicts_with = "size")]
+    stock: Option<Stock>,
+    /// Border of the stock that the machine cannot cut (mm)
+    #[arg(long, value_name = "MM", value_parser = length, default_value_t = 0.0, requires = "stock")]
+    margin: f64,
     /// Scene whose pattern, panels, supports, loads and target are taken, scaled to thickness and size. With weights the
     /// loads open the new sheet as far as that of the scene
     #[arg(long, value_name = "SCENE")]
@@ -89,6 +100,8 @@ impl InitCommand {
             material,
             thickness,
             size,
+            stock: None,
+            margin: 0.0,
             like: None,
             target: None,
             weights: None,
@@ -123,6 +136,8 @@ impl InitCommand {
             Some(weights) => weights.file.clone(),
             None => "weights.safetensors".into(),
         };
+        let margin = self.margin;
+        let cut_from = self.stock.map(|stock| CutFrom { stock, margin });
         let (scene, regime, trained) = match like {
             Some(like) => {
                 let of_scene = &like.scene;
@@ -130,7 +145,7 @@ impl InitCommand {
                 let regime = of_scene.material.regime(widest);
                 let weights = of(regime);
                 let material = weights.map(|_| &*material);
-                let scene = SimilarScene::new(like, &sheet, self.size)?;
+                let scene = SimilarScene::new(like, &sheet, self.size, cut_from)?;
                 (
                     scene.text(&path(weights), material)?,
                     regime,
@@ -140,7 +155,7 @@ impl InitCommand {
             None => {
                 let named = self.weights.as_ref().and(fitting.first());
                 let named = named.map(|weights| weights.regime);
-                let first = FirstScene::new(self.size, sheet.thickness, named)?;
+                let first = FirstScene::new(self.size, cut_from, sheet.thickness, named)?;
                 let weights = of(first.regime);
                 (
                     first.text(&path(weights), self.target.as_deref())?,
@@ -359,7 +374,12 @@ pub(crate) fn material_text(path: &Path, thickness: f64) -> Result<String> {
 
 fn size(text: &str) -> Result<[f64; 2], String> {
     let size = width_by_height(text).filter(|size| size.iter().all(|side| side.is_finite()));
-    size.ok_or_else(|| "expected two lengths in mm, for example 210x297".into())
+    size.ok_or_else(|| match text.parse::<Paper>() {
+        Ok(paper) => format!(
+            "the size of a sheet is two lengths in mm; for the largest sheet that is cut from {text} use --stock {paper}"
+        ),
+        Err(_) => "expected two lengths in mm, for example 210x297".into(),
+    })
 }
 
 #[cfg(test)]

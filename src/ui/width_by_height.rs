@@ -1,10 +1,32 @@
-//! Width and height as one argument.
+//! Lengths, width and height, and stock as one argument.
+
+use design::scene::Stock;
 
 /// Two positive lengths (mm), possibly infinite, from a text such as `210x297` or `1200 x 600mm`.
 pub fn width_by_height(text: &str) -> Option<[f64; 2]> {
     let (width, height) = text.trim_end_matches("mm").split_once(['x', 'X'])?;
     let side = |text: &str| text.trim().parse().ok().filter(|side: &f64| *side > 0.0);
     Some([side(width)?, side(height)?])
+}
+
+/// A stock: the name of a paper, or width and height (mm).
+pub fn stock(text: &str) -> Result<Stock, String> {
+    let sides = width_by_height(text).filter(|sides| sides.iter().all(|side| RANGE.contains(side)));
+    let paper = text.parse().map(Stock::Paper);
+    (sides.map(Stock::Sides)).or(paper.ok()).ok_or_else(|| {
+        "must be a paper, a5 to a0, letter or tabloid, or WIDTHxHEIGHT of 1 to 1e5 mm, like 600x400"
+            .into()
+    })
+}
+
+/// The sides of a stock (mm), as of the key `cutting.stock`.
+const RANGE: std::ops::RangeInclusive<f64> = 1.0..=1e5;
+
+/// A length of 0 to 1000 mm.
+pub fn length(text: &str) -> Result<f64, String> {
+    let length = text.trim_end_matches("mm").trim().parse().ok();
+    let length = length.filter(|length| (0.0..=1e3).contains(length));
+    length.ok_or_else(|| "must be 0 to 1000 mm".into())
 }
 
 #[cfg(test)]
@@ -18,6 +40,20 @@ mod tests {
         assert_eq!(width_by_height("1300Xinf"), Some([1300.0, f64::INFINITY]));
         for wrong in ["210", "x", "axb", "0x5", "-1x5", "nanx5", "1x2x3"] {
             assert_eq!(width_by_height(wrong), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_stock_is_a_paper_or_two_finite_sides() {
+        assert_eq!(stock("A4").unwrap().size(), [210.0, 297.0]);
+        assert_eq!(stock("tabloid").unwrap().size(), [279.4, 431.8]);
+        assert_eq!(stock("600x400").unwrap().size(), [600.0, 400.0]);
+        for wrong in ["a7", "", "600", "600xinf", "0.5x600", "2e5x400"] {
+            assert!(stock(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(length("5mm"), Ok(5.0));
+        for wrong in ["-1", "nan", "inf", "2000", "5 %"] {
+            assert!(length(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -156,13 +156,19 @@ fn table<'a>(
     Ok(())
 }
 
-/// The range of a number, or of the numbers of a list.
+/// The range of a number, or of the numbers of a list, also as one of several types.
 fn range(property: &Value) -> String {
     let range = Range::of_schema(property).to_string();
     if range.is_empty() && property.get("items").is_some() {
         return self::range(&property["items"]);
     }
-    range
+    let mut alternatives = property["anyOf"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .map(self::range);
+    let stated = alternatives.find(|range| !range.is_empty());
+    stated.unwrap_or(range)
 }
 
 /// The alternatives of an enumeration.

@@ -1,5 +1,6 @@
 //! How the sheet is cut: settings of the cut files that no equilibrium depends on.
 
+use crate::scene::stock::Stock;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -12,10 +13,9 @@ pub struct CuttingConfig {
     pub over_run: f64,
     /// Whether registration marks are drawn outside of the outline, on a layer of their own.
     pub registration_marks: bool,
-    /// Width and height of the material that the sheet is cut from (mm), in either orientation. The report warns of a sheet that
-    /// does not fit on it.
-    #[schemars(inner(range(min = 1.0, max = 1e5)))]
-    pub stock: Option<[f64; 2]>,
+    /// The material that the sheet is cut from, in either orientation: `"a5"` to `"a0"`, `"letter"`, `"tabloid"`, or width and
+    /// height (mm). The report warns of a sheet that does not fit on it.
+    pub stock: Option<Stock>,
     /// Border of the stock that the machine cannot cut (mm).
     #[schemars(range(min = 0.0, max = 1e3))]
     pub margin: f64,

@@ -167,13 +167,19 @@ impl Service {
 impl Machine {
     /// The drawing of a sheet for this machine, in cutting order; an error if the paths do not exist.
     pub fn drawing(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
+        let mut drawing = self.paths(cuts)?.in_cutting_order(cuts.outline[0]);
+        if self.marks {
+            registration_marks(&mut drawing, self.over_run(cuts));
+        }
+        Ok(drawing)
+    }
+
+    /// The paths in a sheet and the marks on it, in the order of the pattern; an error if they do not exist.
+    pub fn paths(&self, cuts: &CutLines) -> Result<CutDrawing, FabricationError> {
         key_limits::check::<Self>(self)?;
-        let kerf = self.tool_kerf.unwrap_or(match self.cuts {
-            Cuts::Lines => cuts.kerf,
-            Cuts::Slots => 0.0,
-        });
+        let kerf = self.kerf_of_paths(cuts);
         let mut cuts = cuts.clone();
-        cuts.cutting.over_run = self.over_run.unwrap_or(cuts.cutting.over_run);
+        cuts.cutting.over_run = self.over_run(&cuts);
         let mut drawing = match self.cuts {
             Cuts::Lines => self.lines(&cuts, kerf)?,
             Cuts::Slots => slots(&cuts, kerf)?,
@@ -188,11 +194,30 @@ impl Machine {
                 None => {}
             }
         }
-        let mut drawing = drawing.in_cutting_order(cuts.outline[0]);
-        if self.marks {
-            registration_marks(&mut drawing, cuts.cutting.over_run);
-        }
         Ok(drawing)
+    }
+
+    /// Whether a slit is one pass of the tool, which is then as wide as the slits.
+    pub fn cuts_lines(&self) -> bool {
+        self.cuts == Cuts::Lines
+    }
+
+    /// Distance of the centre of the tool from the paths, on their outer side (mm): half of the part of the kerf that the paths do
+    /// not allow for. A service compensates its own kerf, which is at most that of the slits.
+    pub fn reach(&self, cuts: &CutLines) -> f64 {
+        0.5 * (cuts.kerf - self.kerf_of_paths(cuts)).max(0.0)
+    }
+
+    /// Width that the tool removes and the paths allow for (mm).
+    fn kerf_of_paths(&self, cuts: &CutLines) -> f64 {
+        self.tool_kerf.unwrap_or(match self.cuts {
+            Cuts::Lines => cuts.kerf,
+            Cuts::Slots => 0.0,
+        })
+    }
+
+    fn over_run(&self, cuts: &CutLines) -> f64 {
+        self.over_run.unwrap_or(cuts.cutting.over_run)
     }
 
     fn lines(&self, cuts: &CutLines, kerf: f64) -> Result<CutDrawing, FabricationError> {

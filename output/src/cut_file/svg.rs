@@ -8,15 +8,19 @@ const MARGIN: f64 = 5.0;
 /// Width of the lines (mm).
 const LINE: f64 = 0.1;
 
-/// The file of a drawing.
+/// The file of a drawing, on a page around it.
 pub fn svg(drawing: &CutDrawing) -> String {
     let [low, high] = drawing.bounds();
-    let corners = [low.map(|x| x - MARGIN), high.map(|x| x + MARGIN)];
+    svg_on_page(drawing, [low.map(|x| x - MARGIN), high.map(|x| x + MARGIN)])
+}
+
+/// The file of a drawing, on a page with the given lower left and upper right corner (mm).
+pub fn svg_on_page(drawing: &CutDrawing, page: [[f64; 2]; 2]) -> String {
     let used = Layer::all().filter(|layer| drawing.on(*layer).next().is_some());
     let groups = used.map(|layer| group(layer.name(), layer.rgb(), LINE, drawing.on(layer)));
     document(
-        corners,
-        corners[1][0] - corners[0][0],
+        page,
+        page[1][0] - page[0][0],
         "mm",
         &groups.collect::<String>(),
     )

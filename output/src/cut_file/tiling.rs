@@ -1,28 +1,7 @@
 //! A drawing on pages of paper, which overlap.
 
 use crate::cut_file::fabrication_error::FabricationError;
-
-/// The paper of a printer or a desktop cutter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Paper {
-    /// 210 x 297 mm.
-    A4,
-    /// 297 x 420 mm.
-    A3,
-    /// 8.5 x 11 inches.
-    Letter,
-}
-
-impl Paper {
-    /// Width and height in portrait (mm).
-    pub fn size(self) -> [f64; 2] {
-        match self {
-            Self::A4 => [210.0, 297.0],
-            Self::A3 => [297.0, 420.0],
-            Self::Letter => [215.9, 279.4],
-        }
-    }
-}
+use design::scene::Paper;
 
 /// Border that printers leave white (mm).
 pub(super) const BORDER: f64 = 10.0;

@@ -168,7 +168,7 @@ fn cutting(judged: &Judged) -> Option<Warning> {
 /// The cuts of a sheet are within the stock that it is cut from.
 fn stock(judged: &Judged) -> Option<Warning> {
     let cuts = judged.cuts.as_ref().ok()?;
-    let stock = cuts.cutting.stock?;
+    let stock = cuts.cutting.stock?.size();
     let [low, high] = Shape::extent(cuts.drawing().cuts());
     let taken = [0, 1].map(|axis| high[axis] - low[axis]);
     let room = stock.map(|side| (side - 2.0 * cuts.cutting.margin).max(0.0));

@@ -2,10 +2,9 @@
 
 use super::{FILLET_RATIO, KERF, distance, irregular_sheets, length, uniform_cuts};
 use design::geometry::polygon::{distance_to_segment, edges};
+use design::scene::Paper;
 use design::sheet::cut_sheet::Sheet;
-use output::cut_file::{
-    CutLines, Layer, Machines, Paper, SheetDrawing, Tiling, dxf, svg, tiles_pdf,
-};
+use output::cut_file::{CutLines, Layer, Machines, SheetDrawing, Tiling, dxf, svg, tiles_pdf};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -13,15 +12,15 @@ use std::process::Command;
 
 /// What a file says: ends of the lines, centre and radius of the circles, corners of the outline (mm).
 #[derive(Default)]
-struct Read {
-    slits: Vec<[[f64; 2]; 2]>,
-    holes: Vec<([f64; 2], f64)>,
-    outline: Vec<[f64; 2]>,
+pub(super) struct Read {
+    pub(super) slits: Vec<[[f64; 2]; 2]>,
+    pub(super) holes: Vec<([f64; 2], f64)>,
+    pub(super) outline: Vec<[f64; 2]>,
 }
 
 impl Read {
     /// Compares holes, ligament widths, lengths and panel areas with the simulated sheet.
-    fn is_sheet(&self, sheet: &Sheet, error: f64) {
+    pub(super) fn is_sheet(&self, sheet: &Sheet, error: f64) {
         assert_eq!(self.holes.len(), sheet.hinges.len());
         let at = |p: [f64; 2], q: [f64; 2]| length([p, q]) < error;
         for hinge in &sheet.hinges {
@@ -68,18 +67,18 @@ impl Read {
 
 /// The entities of a DXF with their layers, and the defects that ezdxf finds in it.
 #[derive(Deserialize)]
-struct DxfContents {
+pub(super) struct DxfContents {
     version: String,
     millimetres: bool,
-    defects: Vec<String>,
-    lines: Vec<(String, [[f64; 2]; 2])>,
-    circles: Vec<(String, [f64; 2], f64)>,
-    polylines: Vec<(String, bool, Vec<[f64; 2]>)>,
+    pub(super) defects: Vec<String>,
+    pub(super) lines: Vec<(String, [[f64; 2]; 2])>,
+    pub(super) circles: Vec<(String, [f64; 2], f64)>,
+    pub(super) polylines: Vec<(String, bool, Vec<[f64; 2]>)>,
     texts: Vec<String>,
 }
 
 /// Reads a DXF by ezdxf. Debian's package serves Debian's Python, whichever other is first on PATH.
-fn read_dxf(path: &Path) -> DxfContents {
+pub(super) fn read_dxf(path: &Path) -> DxfContents {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fabrication/read_dxf.py");
     let output = Command::new("/usr/bin/python3")
         .args([Path::new(script), path])

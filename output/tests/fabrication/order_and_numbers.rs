@@ -18,7 +18,7 @@ fn slit() -> impl Strategy<Value = Shape> {
 }
 
 /// The shape as text, the same for both directions of cutting.
-fn undirected(shape: &Shape) -> String {
+pub(super) fn undirected(shape: &Shape) -> String {
     match shape {
         Shape::Line([a, b]) if a > b => format!("{:?}", Shape::Line([*b, *a])),
         Shape::Polygon(corners) => {

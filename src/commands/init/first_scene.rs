@@ -9,17 +9,16 @@
 //!
 //! It is rotated about the held panel by the rotation that the panel would have in the symmetric deployment.
 
+use crate::commands::init::cut_from::CutFrom;
 use crate::commands::init::edited::{heading, scale, set};
 use crate::commands::init::template::Template;
 use crate::commands::input_file;
 use anyhow::{Context, Result};
-use design::scene::{place_drawing, rounded};
+use design::scene::{CuttingConfig, Paper, place_drawing, rounded};
 use hinge::Regime;
 use std::path::Path;
 use toml_edit::{Array, DocumentMut, Item, Table, value};
 
-/// Width and height of the shipped scenes' sheets (mm).
-const A4: [f64; 2] = [210.0, 297.0];
 /// Minimum side of a panel over the radius of a window: windows of neighbouring hinges do not overlap.
 pub(crate) const PANEL: f64 = 3.5;
 /// Thickness (mm) from which a sheet is a plate: the narrowest ligaments of a thinner one, a third of its thickness, would be
@@ -32,6 +31,8 @@ const HELD: f64 = 0.21;
 const PULLED: f64 = 0.14;
 /// Name of the law of released hinges in the folder of weights.
 const SPRINGBACK: &str = "springback.json";
+/// Kerf of the shipped plate, which is that of the shipped film or wider (mm).
+const WIDEST_KERF: f64 = 0.2;
 /// Fewest panels along a side: below three, no panel has a neighbour on both sides.
 const FEWEST: usize = 3;
 
@@ -40,17 +41,23 @@ pub(super) struct FirstScene {
     size: [f64; 2],
     panels: [usize; 2],
     thickness: f64,
+    cut_from: Option<CutFrom>,
 }
 
 impl FirstScene {
-    /// The scene of a sheet of the given thickness and size (mm). Without a size it is of A4, or as much larger as it is
-    /// thicker than the shipped sheet. A sheet is a film if it is large enough for its thickness, and else a plate;
-    /// an error if it is too thin for that. `trained` is the regime of the weights that are named, if there are any.
+    /// The scene of a sheet of the given thickness and size (mm), or of the largest one that is cut from a stock. Without either it
+    /// has the size of A4, or is as much larger as it is thicker than the shipped sheet. A sheet is a film if it is large enough for
+    /// its thickness, and else a plate; an error if it is too thin for that. `trained` is the regime of the weights that are named,
+    /// if there are any.
     pub(super) fn new(
         size: Option<[f64; 2]>,
+        cut_from: Option<CutFrom>,
         thickness: f64,
         trained: Option<Regime>,
     ) -> Result<Self> {
+        let CuttingConfig { over_run, .. } = CuttingConfig::default();
+        let largest = cut_from.map(|stock| stock.largest_sheet(over_run, WIDEST_KERF));
+        let size = size.or(largest.transpose()?);
         let plate = thickness >= THINNEST_PLATE;
         let regime = match (trained, size) {
             (Some(trained), _) => trained,
@@ -62,7 +69,7 @@ impl FirstScene {
         };
         let template = Template::of(regime);
         let larger = f64::max(thickness / template.thickness, 1.0);
-        let size = size.unwrap_or(A4.map(|side| rounded(larger * side)));
+        let size = size.unwrap_or(Paper::A4.size().map(|side| rounded(larger * side)));
         let panels = panels(size, thickness, regime).with_context(|| {
             let per_thickness = PANEL * template.r_win / template.thickness;
             let thickest = size[0].min(size[1]) / FEWEST as f64 / per_thickness;
@@ -73,7 +80,7 @@ impl FirstScene {
             };
             format!(
                 "a sheet of {thickness} mm with {regime} ligaments has panels of at least {:.0} mm, and needs {FEWEST} of them along each \
-                 side: use a larger sheet (--size) or a thinner one (--thickness, at most {thickest:.2} mm for this \
+                 side: use a larger sheet (--size, --stock) or a thinner one (--thickness, at most {thickest:.2} mm for this \
                  size){or_thicker}",
                 per_thickness * thickness
             )
@@ -83,6 +90,7 @@ impl FirstScene {
             size,
             panels,
             thickness,
+            cut_from,
         })
     }
 
@@ -107,6 +115,9 @@ impl FirstScene {
         set(&mut scene["output"], "design");
         set(&mut scene["sheet"]["size"], Array::from_iter(self.size));
         set(&mut scene["sheet"]["panels"], whole(self.panels));
+        if let Some(cut_from) = self.cut_from {
+            scene["cutting"] = cut_from.table();
+        }
         for key in ["start", "range"] {
             scale(&mut scene["ligament"][key], factor);
         }
@@ -261,6 +272,7 @@ mod tests {
             size: [2438.4, 1219.2],
             panels: [3, 3],
             thickness: 0.5,
+            cut_from: None,
             regime: Regime::Film,
         };
         let target = scene.target([1, 1]);
@@ -274,7 +286,7 @@ mod tests {
     #[test]
     fn the_stroke_is_along_the_pull() {
         let strokes = [(0.1, 30.4), (3.0, 45.4)].map(|(thickness, shipped)| {
-            let scene = FirstScene::new(Some(A4), thickness, None).unwrap();
+            let scene = FirstScene::new(Some(Paper::A4.size()), None, thickness, None).unwrap();
             let text = scene.text(Path::new("weights.safetensors"), None).unwrap();
             let text: DocumentMut = text.parse().unwrap();
             let stroke = text["drive"]["stroke"].as_float().unwrap();
@@ -290,32 +302,34 @@ mod tests {
 
     #[test]
     fn a_sheet_too_thick_for_a_film_and_too_thin_for_a_plate_is_refused() {
-        let first = |size, thickness| FirstScene::new(size, thickness, None);
-        let message = first(Some(A4), 0.5).err().unwrap().to_string();
+        let a4 = Some(Paper::A4.size());
+        let first = |size, thickness| FirstScene::new(size, None, thickness, None);
+        let message = first(a4, 0.5).err().unwrap().to_string();
         assert!(message.contains("at most 0.10 mm"), "{message}");
-        let film = first(Some(A4), 0.1).unwrap();
+        let film = first(a4, 0.1).unwrap();
         assert_eq!((film.panels, film.regime), ([3, 4], Regime::Film));
-        let plate = first(Some(A4), 3.0).unwrap();
+        let plate = first(a4, 3.0).unwrap();
         assert_eq!((plate.panels, plate.regime), ([3, 4], Regime::Plate));
-        let message = first(Some(A4), 8.0).err().unwrap().to_string();
+        let message = first(a4, 8.0).err().unwrap().to_string();
         assert!(message.contains("at most 5.00 mm"), "{message}");
         // Large enough for the ligaments of a film, and with weights of one regime.
         let large = first(Some([4400.0, 6300.0]), 2.0).unwrap();
         assert_eq!(large.regime, Regime::Film);
-        let trained = FirstScene::new(None, 1.5, Some(Regime::Film)).unwrap();
+        let trained = FirstScene::new(None, None, 1.5, Some(Regime::Film)).unwrap();
         assert_eq!(trained.size, [3150.0, 4455.0]);
     }
 
     #[test]
     fn without_a_size_the_sheet_is_large_enough_for_its_thickness() {
+        let a4 = Paper::A4.size();
         for (thickness, size) in [
-            (0.05, A4),
-            (0.1, A4),
+            (0.05, a4),
+            (0.1, a4),
             (0.5, [1050.0, 1485.0]),
-            (2.0, A4),
+            (2.0, a4),
             (6.0, [420.0, 594.0]),
         ] {
-            let scene = FirstScene::new(None, thickness, None).unwrap();
+            let scene = FirstScene::new(None, None, thickness, None).unwrap();
             assert_eq!(scene.size, size);
             assert!(scene.panels.iter().all(|&count| count >= FEWEST));
         }

@@ -1,5 +1,6 @@
 //! A scene like another one, for a sheet of another thickness, size or material.
 
+use crate::commands::init::cut_from::CutFrom;
 use crate::ui::progress::Progress;
 use anyhow::{Context, Result, bail, ensure};
 use design::equilibrium::load_step::LoadStep;
@@ -53,20 +54,25 @@ pub(super) struct SimilarScene {
 
 impl SimilarScene {
     /// The scene `like` for a sheet of `material`, in its thickness. The width and height (mm) are by default those of
-    /// the original in proportion to the thickness.
+    /// the original in proportion to the thickness, or those of the largest sheet of its shape that is cut from a stock.
     pub(super) fn new(
         like: Like,
         material: &SheetMaterial,
         size: Option<[f64; 2]>,
+        cut_from: Option<CutFrom>,
     ) -> Result<Self> {
         let original = &like.scene;
         let mut config = original.config.clone();
+        if let Some(cut_from) = cut_from {
+            config.cutting = cut_from.set(config.cutting);
+        }
         let thickness = material.thickness / original.material.thickness;
         let ratios = Ratios {
             thickness,
-            size: match size {
-                Some(size) => proportion(&config, size)?,
-                None => thickness,
+            size: match (size, cut_from) {
+                (Some(size), _) => proportion(&config, size)?,
+                (None, Some(cut_from)) => largest(&config, cut_from)?,
+                (None, None) => thickness,
             },
             young: material.young / original.material.young,
         };
@@ -177,11 +183,24 @@ fn rotation(scene: &Scene) -> Result<Option<f64>> {
     Ok(deployment.at_full_load().ok().map(LoadStep::opening))
 }
 
+/// Width and height of the sheet of a scene (mm); an error if it is no rectangle.
+fn sides(config: &SceneConfig) -> Result<[f64; 2]> {
+    config.sheet.size.context(
+        "the sheet of --like is no rectangle: leave out --size and --stock, and it is in proportion to the thickness",
+    )
+}
+
+/// Ratio of the largest sheet of the same shape that is cut from a stock, in either orientation, to the sheet of a scene.
+fn largest(config: &SceneConfig, cut_from: CutFrom) -> Result<f64> {
+    let [width, height] = sides(config)?;
+    let [across, along] = cut_from.largest_sheet(config.cutting.over_run, config.process.kerf)?;
+    let upright = f64::min(across / width, along / height);
+    Ok(upright.max(f64::min(along / width, across / height)))
+}
+
 /// Ratio of the sizes of two rectangles of one shape.
 fn proportion(config: &SceneConfig, size: [f64; 2]) -> Result<f64> {
-    let sides = config.sheet.size.context(
-        "the sheet of --like is no rectangle: leave out --size, and it is in proportion to the thickness",
-    )?;
+    let sides = sides(config)?;
     let [across, along] = [size[0] / sides[0], size[1] / sides[1]];
     ensure!(
         (across / along - 1.0).abs() <= SAME_SHAPE,
