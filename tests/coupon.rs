@@ -16,16 +16,16 @@ fn coupon(work: &Workplace) -> Value {
     serde_json::from_str(&written).unwrap()
 }
 
-/// Readings of specimens that are as drawn, each with the specimen's name as `rename` says.
-fn drawn(coupon: &Value, rename: impl Fn(&str) -> String) -> String {
+/// Readings of specimens that open further than drawn by a factor.
+fn readings(coupon: &Value, factor: impl Fn(&str) -> f64) -> String {
     let mut text = "specimen,mass_g,distance_mm\n".to_owned();
     for of in coupon.as_array().unwrap() {
-        let name = rename(of["name"].as_str().unwrap());
+        let name = of["name"].as_str().unwrap();
         let numbers = |key: &str| -> Vec<f64> { serde_json::from_value(of[key].clone()).unwrap() };
         let distance = of["distance_mm"].as_f64().unwrap();
         writeln!(text, "{name},0,{distance}").unwrap();
         for (mass, moved) in std::iter::zip(numbers("masses_g"), numbers("displacements_mm")) {
-            writeln!(text, "{name},{mass},{}", distance + moved).unwrap();
+            writeln!(text, "{name},{mass},{}", distance + factor(name) * moved).unwrap();
         }
     }
     text
@@ -51,16 +51,26 @@ fn a_coupon_is_cut_read_and_calibrated() {
         let masses: Vec<f64> = serde_json::from_value(of["masses_g"].clone()).unwrap();
         assert!(masses.len() >= 3 && masses.is_sorted(), "{masses:?}");
     }
-    let readings = drawn(&coupon, str::to_owned);
+    let readings = readings(&coupon, |_| 1.0);
     let found = calibrated(&work, &readings, "--known thickness=3.0 --out found");
     let [kerf, stress] = ["kerf", "stress"].map(|key| found[key].as_f64().unwrap());
-    assert!((kerf - 0.2).abs() < 1e-3 && (stress - 1.0).abs() < 1e-3, "{kerf} {stress}");
+    assert!(
+        (kerf - 0.2).abs() < 1e-3 && (stress - 1.0).abs() < 1e-3,
+        "{kerf} {stress}"
+    );
     // A thinner plate that opens as far is stronger.
-    let thin = calibrated(&work, &readings, "--known thickness=2.9,kerf=0.2 --out thin");
+    let thin = calibrated(
+        &work,
+        &readings,
+        "--known thickness=2.9,kerf=0.2 --out thin",
+    );
     let stress = thin["stress"].as_f64().unwrap();
     assert!((stress - 3.0 / 2.9).abs() < 0.02, "{stress}");
     let scene = std::fs::read_to_string(work.path("thin/scene.toml")).unwrap();
-    assert!(scene.contains("thickness = 2.9\n") && scene.contains("2.9000, known"), "{scene}");
+    assert!(
+        scene.contains("thickness = 2.9\n") && scene.contains("2.9000, known"),
+        "{scene}"
+    );
     let material = std::fs::read_to_string(work.path("thin/sheet/material.toml")).unwrap();
     assert!(material.contains("coupon"), "{material}");
     work.output("inspect equilibrium thin/scene.toml --design start");
@@ -87,16 +97,22 @@ fn wrong_readings_of_a_coupon_are_refused() {
     let empty = std::fs::read_to_string(work.path("coupon/readings.csv")).unwrap();
     refused(&empty, &["readings.csv has no readings"]);
     refused("specimen,mass_g,distance_mm\n", &["has no readings"]);
-    refused("mass_g,distance_mm\n0,80\n", &["no column `specimen`", "A1"]);
+    refused(
+        "mass_g,distance_mm\n0,80\n",
+        &["no column `specimen`", "A1"],
+    );
     refused(
         "specimen,mass_g,distance_mm\nA4,0,80\n",
-        &["readings.csv:2", "no specimen `A4`", "did you mean A"],
+        &["readings.csv:2", "no specimen `A4`", "use A1, A2"],
     );
     refused(
         "specimen,mass_g,distance_mm\nA1,80,0\nA1,83,300\n",
         &["readings.csv:2", "seem to be swapped"],
     );
-    refused("specimen,mass_g,distance_mm\nA1,0,80\n", &["readings.csv:2", "alone"]);
+    refused(
+        "specimen,mass_g,distance_mm\nA1,0,80\n",
+        &["readings.csv:2", "alone"],
+    );
     let first = &coupon[0]["masses_g"][0];
     refused(
         &format!("specimen,mass_g,distance_mm\nA1,0,80\nA1,{first},180\n"),
@@ -108,33 +124,39 @@ fn wrong_readings_of_a_coupon_are_refused() {
     );
     let error = work.error("calibrate coupon/ --points points.csv");
     assert!(error.contains("leave out --points"), "{error}");
-    let error = work.error("calibrate configs/scenes/a4-plate.toml --design start --readings coupon/readings.csv");
+    let error = work.error(
+        "calibrate configs/scenes/a4-plate.toml --design start --readings coupon/readings.csv",
+    );
     assert!(error.contains("folder of the coupon"), "{error}");
-    work.edit("configs/scenes/a4-plate.toml", &[("kerf = 0.2", "kerf = 0.25")]);
-    std::fs::write(work.path("coupon/readings.csv"), drawn(&coupon, str::to_owned)).unwrap();
+    work.edit(
+        "configs/scenes/a4-plate.toml",
+        &[("kerf = 0.2", "kerf = 0.25")],
+    );
+    std::fs::write(work.path("coupon/readings.csv"), readings(&coupon, |_| 1.0)).unwrap();
     let error = work.error("calibrate coupon/");
     assert!(error.contains("have changed"), "{error}");
 }
 
-/// Two specimens whose names were exchanged: the fit says that they contradict the others, and widens the errors.
+/// One specimen was opened before: the fit says that it contradicts the others, and widens the errors.
 #[test]
 fn readings_that_contradict_each_other_are_named() {
     let work = Workplace::new();
     let coupon = coupon(&work);
-    let right = drawn(&coupon, str::to_owned);
-    let exchanged = drawn(&coupon, |name| match name {
-        "A1" => "B1".to_owned(),
-        "B1" => "A1".to_owned(),
-        other => other.to_owned(),
-    });
+    let right = readings(&coupon, |_| 1.0);
+    let wrong = readings(&coupon, |name| if name == "A1" { 1.6 } else { 1.0 });
     let error = |readings: &str| {
         let found = calibrated(&work, readings, "--fit stress");
-        found["calibration"]["estimates"][0]["standard_error"].as_f64().unwrap()
+        found["calibration"]["estimates"][0]["standard_error"]
+            .as_f64()
+            .unwrap()
     };
-    let [right, wrong] = [right, exchanged].map(|readings| error(&readings));
+    let [right, wrong] = [right, wrong].map(|readings| error(&readings));
     assert!(wrong > 2.0 * right, "{right} {wrong}");
     let page = std::fs::read_to_string(work.path("runs/calibrate/calibration.txt")).unwrap();
-    assert!(page.contains("contradict") && page.contains("specimen A1"), "{page}");
+    assert!(
+        page.contains("contradict") && page.contains("specimen A1"),
+        "{page}"
+    );
 }
 
 #[test]

@@ -11,7 +11,7 @@ use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
 use crate::commands::points_file::PointArgs;
 use crate::ui::progress::Progress;
 use crate::ui::run_folder;
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use clap::{Args, Subcommand, ValueEnum};
 use design::analysis::calibrated_scene::write_calibrated;
 use design::analysis::calibration::{Quantity, calibrate};
@@ -42,7 +42,7 @@ pub struct CalibrateCommand {
     #[command(subcommand)]
     before: Option<Before>,
     #[command(flatten)]
-    fit: Option<FitArgs>,
+    fit: FitArgs,
 }
 
 #[derive(Subcommand)]
@@ -52,8 +52,9 @@ enum Before {
 
 #[derive(Args)]
 struct FitArgs {
+    /// There unless there is a subcommand.
     #[command(flatten)]
-    designed: Inspected,
+    designed: Option<Inspected>,
     /// Points measured at full load (CSV)
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
@@ -117,17 +118,17 @@ fn above_zero(text: &str) -> Result<f64, String> {
 
 impl CalibrateCommand {
     pub(crate) fn run(&self) -> Result<()> {
-        match (&self.before, &self.fit) {
+        match (&self.before, &self.fit.designed) {
             (Some(Before::Coupon(coupon)), _) => coupon.run(),
-            (None, Some(fit)) => fit.run(),
-            (None, None) => unreachable!("clap requires a scene without a subcommand"),
+            (None, Some(designed)) => self.fit.run(designed),
+            (None, None) => bail!("name a scene, a run or the folder of a coupon"),
         }
     }
 }
 
 impl FitArgs {
-    fn run(&self) -> Result<()> {
-        let measured = Measured::read(self)?;
+    fn run(&self, designed: &Inspected) -> Result<()> {
+        let measured = Measured::read(self, designed)?;
         let quantities = self.quantities();
         ensure!(
             self.out.join(REPORT).exists()
@@ -147,14 +148,11 @@ impl FitArgs {
         let found = measured.with_sheets(|sheets| {
             let found = calibrate(sheets, &quantities, &known, &mut progress);
             found.map_err(|error| measured.located(error))
-        })?;
+        });
         bar.finish();
-        let report = CalibrationReport::new(
-            scene,
-            measured.name.clone(),
-            measured.specimens(),
-            found,
-        );
+        let found = found?;
+        let report =
+            CalibrationReport::new(scene, measured.name.clone(), measured.specimens(), found);
         ensure!(
             report.kerf > 0.0,
             "the fit has a kerf of {:.3} mm: no cutter removes less than nothing. Measure the \
@@ -186,7 +184,8 @@ impl FitArgs {
             let mut fitted = self.fit.iter().map(|arg| Quantity::from(*arg));
             fitted.any(|own| own == *quantity)
         };
-        let known = |quantity: &Quantity| self.known.iter().any(|known| known.quantity == *quantity);
+        let known =
+            |quantity: &Quantity| self.known.iter().any(|known| known.quantity == *quantity);
         let all = Quantity::ALL.into_iter();
         all.filter(|quantity| asked(quantity) && !known(quantity))
             .collect()

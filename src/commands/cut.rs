@@ -9,8 +9,8 @@ use design::objective::design_problem::Deployment;
 use design::pattern::design_vector::DesignVector;
 use design::scene::Scene;
 use output::cut_file::{
-    CutDrawing, CutLines, Machine, Machines, OVERLAP, Paper, SheetDrawing, Split, Tiling, attachment_list,
-    cut_list, cut_summary, dxf, mark_errors, split, svg, tiles_pdf,
+    CutDrawing, CutLines, Machine, Machines, OVERLAP, Paper, SheetDrawing, Split, Tiling,
+    attachment_list, cut_list, cut_summary, dxf, mark_errors, split, svg, tiles_pdf,
 };
 use output::display::Shape;
 use output::report::{Severity, Warning, warnings};

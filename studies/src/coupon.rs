@@ -50,10 +50,13 @@ impl CouponStudy {
     pub fn run(&self) -> Result<()> {
         let _held = run_folder::hold(&self.out)?;
         let scene = Scene::read(&self.scene)?;
-        let specimens = specimens(&scene, &self.out)?;
+        let specimens = specimens(&scene, &self.out, &mut |_| ())?;
         let thickness = scene.material.thickness;
         let cases = [
-            ("thickness measured by itself", &[Quantity::Kerf, Quantity::Stress][..]),
+            (
+                "thickness measured by itself",
+                &[Quantity::Kerf, Quantity::Stress][..],
+            ),
             ("thickness fitted", &Quantity::ALL),
         ];
         let mut rows = Vec::new();

@@ -46,7 +46,10 @@ impl Answers {
                 "couples or rotations: write displacement_deg and load_Nmm"
             }));
         }
-        let full = curve.from_before_loads().last().ok_or(DataError::NothingMoves)?;
+        let full = curve
+            .from_before_loads()
+            .last()
+            .ok_or(DataError::NothingMoves)?;
         let units = curve.units();
         let answer = sheet.answer();
         let given = 1 - answer;

@@ -46,11 +46,7 @@ pub fn write_calibrated(
     let material = scene.measured.stressed(1.0 + sheet.stress);
     let material_file = format!("{FOLDER}/material.toml");
     let commented = |toml: Vec<u8>| [comment.as_bytes(), &toml].concat();
-    write_to(
-        folder,
-        &material_file,
-        &commented(toml(&material, folder)?),
-    )?;
+    write_to(folder, &material_file, &commented(toml(&material, folder)?))?;
     config.material = material_file.into();
     if let Some((file, kind)) = config.target.file_mut() {
         let name = format!("{FOLDER}/target.{kind}");

@@ -23,6 +23,10 @@ use std::path::Path;
 const WEIGHTS: usize = 5;
 /// Angles of the corner of a specimen (deg), a letter each.
 const CORNERS: [(char, f64); 2] = [('A', 90.0), ('B', 60.0)];
+/// Number of ligament widths.
+const WIDTHS: usize = 3;
+/// Number of specimens.
+pub const SPECIMENS: usize = WIDTHS * CORNERS.len();
 /// The largest opening of a hinge that is planned (rad): 25 degrees.
 const OPENING: f64 = 0.436;
 /// The largest D_peak of a softer specimen: at 1 a ligament tears.
@@ -88,8 +92,12 @@ pub struct Loaded {
     pub opening: f64,
 }
 
-/// The specimens of the coupon of a sheet, the paths of their scenes relative to `folder`.
-pub fn specimens(scene: &Scene, folder: &Path) -> Result<Vec<Specimen>, CouponError> {
+/// The specimens of the coupon of a sheet, with scenes in `folder`; `progress` is called with the number of those that are planned.
+pub fn specimens(
+    scene: &Scene,
+    folder: &Path,
+    progress: &mut dyn FnMut(usize),
+) -> Result<Vec<Specimen>, CouponError> {
     if scene.surrogate().is_none() {
         return Err(CouponError::NoLearnedLaw);
     }
@@ -103,7 +111,7 @@ pub fn specimens(scene: &Scene, folder: &Path) -> Result<Vec<Specimen>, CouponEr
     }
     let off = OFF_ENDS * (widest - narrowest);
     let (narrow, wide) = (narrowest + off, widest - off);
-    let widths = [narrow, (narrow * wide).sqrt(), wide];
+    let widths: [f64; WIDTHS] = [narrow, (narrow * wide).sqrt(), wide];
     let mut found = Vec::new();
     for (letter, corner_deg) in CORNERS {
         for (width, number) in widths.iter().zip(1..) {
@@ -118,6 +126,7 @@ pub fn specimens(scene: &Scene, folder: &Path) -> Result<Vec<Specimen>, CouponEr
                 corner_deg,
                 loaded,
             });
+            progress(found.len());
         }
     }
     Ok(found)
@@ -191,7 +200,7 @@ fn evenly_opening(curve: &[[f64; 2]], heaviest: f64) -> Vec<f64> {
             let before = next.checked_sub(1).map_or([0.0; 2], |before| curve[before]);
             let [moved, load] = curve[next];
             let part = (displacement - before[0]) / (moved - before[0]);
-            two_digits(heaviest * (before[1] + part * (load - before[1])) / full)
+            handy(heaviest * (before[1] + part * (load - before[1])) / full)
         })
         .filter(|mass| *mass < heaviest)
         .collect();
@@ -208,7 +217,7 @@ fn heaviest(blank: &Scene) -> Result<Option<f64>, CouponError> {
             STEPS => mass *= 2.0,
             // Too coarse to say.
             steps if steps < STEPS / 4 => mass *= 0.25,
-            steps => return Ok(Some(two_digits(mass * f64::from(steps) / f64::from(STEPS)))),
+            steps => return Ok(Some(handy(mass * f64::from(steps) / f64::from(STEPS)))),
         }
     }
     Ok(None)
@@ -242,7 +251,13 @@ fn usable(scene: &Scene, problem: &DesignProblem) -> Result<u32, DesignError> {
         let hinged = mechanics.hinged(&sheet, &*prepared, false);
         let steps = mechanics.solver.readings(hinged, &parts);
         let good = |step: &&LoadStep| is_safe(step) && step.opening() <= opening;
-        Ok(steps.iter().take_while(good).zip(1..).map(|(_, step)| step).last().unwrap_or(0))
+        Ok(steps
+            .iter()
+            .take_while(good)
+            .zip(1..)
+            .map(|(_, step)| step)
+            .last()
+            .unwrap_or(0))
     };
     let [own, soft] = [
         usable(&Deviation::default(), OPENING)?,
@@ -260,10 +275,10 @@ fn is_safe(step: &LoadStep) -> bool {
         && step.damage.iter().all(|damage| peak(damage) <= SAFE)
 }
 
-/// Rounded down to two significant digits.
-fn two_digits(mass: f64) -> f64 {
-    let unit = 10f64.powf(mass.log10().floor() - 1.0);
-    ((mass / unit).floor() * unit * 1e6).round() / 1e6
+/// A mass (g) rounded down to a twentieth of its power of ten: 430 and 435 g, 1250 and 1300 g.
+fn handy(mass: f64) -> f64 {
+    let unit = 0.05 * 10f64.powf(mass.log10().floor());
+    ((mass / unit + 1e-9).floor() * unit * 1e6).round() / 1e6
 }
 
 #[cfg(test)]
@@ -278,13 +293,13 @@ mod tests {
             .collect();
         let masses = evenly_opening(&curve, 1000.0);
         // sqrt(0.2), sqrt(0.4), sqrt(0.6), sqrt(0.8)
-        assert_eq!(masses, [440.0, 630.0, 770.0, 890.0]);
+        assert_eq!(masses, [445.0, 630.0, 770.0, 890.0]);
     }
 
     #[test]
-    fn two_digits_are_rounded_down() {
-        for (mass, rounded) in [(1276.0, 1200.0), (999.0, 990.0), (12.0, 12.0), (4.57, 4.5)] {
-            assert_eq!(two_digits(mass), rounded);
+    fn masses_are_rounded_down() {
+        for (mass, rounded) in [(1276.0, 1250.0), (999.0, 995.0), (12.0, 12.0), (4.57, 4.55)] {
+            assert_eq!(handy(mass), rounded);
         }
     }
 }

@@ -41,7 +41,8 @@ impl Shape {
         let process = located.process;
         let side = (2.0 * PANEL * process.r_win / STEP).ceil() * STEP;
         let (sin, cos) = self.corner_deg.to_radians().sin_cos();
-        let along = |x: f64, y: f64| [x + cos * y, sin * y];
+        // To a nanometre: the cosine of 90 degrees is not quite 0.
+        let along = |x: f64, y: f64| [x + cos * y, sin * y].map(|x| (1e6 * x).round() / 1e6);
         let corners = [
             along(0.0, 0.0),
             along(side, 0.0),

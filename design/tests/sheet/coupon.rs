@@ -12,7 +12,7 @@ use std::path::Path;
 fn coupon() -> Vec<Specimen> {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs/scenes");
     let scene = Scene::read(&scenes.join("a4-plate.toml")).unwrap();
-    specimens(&scene, &scenes).unwrap()
+    specimens(&scene, &scenes, &mut |_| ()).unwrap()
 }
 
 fn cut() -> Deviation {
@@ -31,7 +31,11 @@ fn masses_open_what_they_hang_from() {
     for of in &coupon {
         let loaded = &of.loaded;
         assert!(loaded.masses_g.is_sorted() && loaded.displacements.is_sorted());
-        assert!(loaded.opening < 25.1f64.to_radians() && loaded.opening > 0.1, "{}", of.name);
+        assert!(
+            loaded.opening < 25.1f64.to_radians() && loaded.opening > 0.1,
+            "{}",
+            of.name
+        );
         assert!(loaded.displacements[0] > 0.5, "{:?}", loaded.displacements);
     }
     let heaviest = |of: &Specimen| *of.loaded.masses_g.last().unwrap();
@@ -53,7 +57,9 @@ fn exact_readings_give_the_plate() {
         cut: &cut,
         error: 1e-5,
     };
-    let found = coupon.calibrate(&[Quantity::Kerf, Quantity::Stress], &known, |exact, _| exact);
+    let found = coupon.calibrate(&[Quantity::Kerf, Quantity::Stress], &known, |exact, _| {
+        exact
+    });
     let found = found.unwrap().deviation();
     assert!((found.kerf - cut.kerf).abs() < 1e-4, "{found:?}");
     assert!((found.stress - cut.stress).abs() < 1e-4, "{found:?}");
@@ -79,9 +85,11 @@ fn a_plate_is_within_two_standard_errors() {
     for seed in 0..20 {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let found = coupon
-            .calibrate(&[Quantity::Kerf, Quantity::Stress], &known, |exact, sheet| {
-                exact.with_errors(sheet, &mut random)
-            })
+            .calibrate(
+                &[Quantity::Kerf, Quantity::Stress],
+                &known,
+                |exact, sheet| exact.with_errors(sheet, &mut random),
+            )
             .unwrap();
         for (estimate, within) in std::iter::zip(&found.estimates, &mut within) {
             let error = estimate.deviation - *estimate.quantity.of(&mut cut.clone());

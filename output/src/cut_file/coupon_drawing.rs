@@ -47,7 +47,9 @@ pub fn coupon_drawing(
             bottom -= high[1] - low[1] + GAP;
         }
         own.shift([right - low[0], bottom - low[1]]);
-        right += high[0] - low[0] + GAP;
+        // Copies of one parallelogram with a level lower edge.
+        let [left_corner, right_corner, ..] = piece.cuts.outline;
+        right += right_corner[0] - left_corner[0] + GAP;
         all.shapes.extend(own.shapes);
     }
     if let (None, Some(first)) = (machine, pieces.first()) {
@@ -74,7 +76,8 @@ impl CouponPiece {
         let [[x, y], named] = self.panels;
         let hook = cuts.attachments.iter().find_map(|hook| hook.hole);
         for i in 0..self.number {
-            let off = hook.map_or(0.0, |hook| APART * hook) * (i as f64 - 0.5 * (self.number as f64 - 1.0));
+            let off = hook.map_or(0.0, |hook| APART * hook)
+                * (i as f64 - 0.5 * (self.number as f64 - 1.0));
             cuts.attachments.push(PlacedAttachment {
                 name: format!("number of {}", self.name),
                 panel: 0,

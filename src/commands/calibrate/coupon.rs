@@ -3,10 +3,11 @@
 use crate::commands::calibrate::coupon_folder::{self, READINGS};
 use crate::commands::calibrate::instructions::{Expected, instructions};
 use crate::commands::cut::{machine as machine_of, write_drawing};
+use crate::ui::progress::Progress;
 use crate::ui::run_folder;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use design::analysis::coupon::{Specimen, specimens};
+use design::analysis::coupon::{SPECIMENS, Specimen, specimens};
 use design::scene::Scene;
 use design::scene::run_inputs::scene_file;
 use output::cut_file::{CouponPiece, CutDrawing, CutLines, Machine, Machines, coupon_drawing};
@@ -49,15 +50,19 @@ impl CouponCommand {
         let scene = Scene::read(&path)?;
         let machines = Machines::read(self.machines.as_deref())?;
         let machine = self.machine.as_deref();
-        let machine = machine.map(|name| machine_of(&machines, name)).transpose()?;
-        let specimens = specimens(&scene, &self.out)?;
+        let machine = machine
+            .map(|name| machine_of(&machines, name))
+            .transpose()?;
+        let bar = Progress::new(SPECIMENS, "specimens");
+        let specimens = specimens(&scene, &self.out, &mut |done| bar.show(done, None, ""));
+        bar.finish();
+        let specimens = specimens?;
         let drawing = drawing(&scene, &specimens, machine)?;
         let expected = Expected::of(&specimens)?;
         let empty = empty_table(&specimens);
         let table = self.out.join(READINGS);
         ensure!(
-            self.force
-                || std::fs::read_to_string(&table).map_or(true, |text| text == empty),
+            self.force || std::fs::read_to_string(&table).map_or(true, |text| text == empty),
             "{} holds readings: choose another folder with --out, or replace them with --force",
             table.display()
         );
@@ -88,19 +93,22 @@ impl CouponCommand {
                 of.loaded.masses_g[of.loaded.masses_g.len() - 1]
             );
         }
-        println!("{expected}\nwritten to {}: begin with coupon.md", self.out.display());
+        println!(
+            "{expected}\nwritten to {}: begin with coupon.md",
+            self.out.display()
+        );
         Ok(())
     }
 }
 
 /// The cut file of all specimens.
-fn drawing(
-    scene: &Scene,
-    specimens: &[Specimen],
-    machine: Option<&Machine>,
-) -> Result<CutDrawing> {
+fn drawing(scene: &Scene, specimens: &[Specimen], machine: Option<&Machine>) -> Result<CutDrawing> {
     let pieces = specimens.iter().map(|of| {
-        let deployment = of.loaded.scene.problem()?.deploy(&of.loaded.scene.start())?;
+        let deployment = of
+            .loaded
+            .scene
+            .problem()?
+            .deploy(&of.loaded.scene.start())?;
         let cuts = CutLines::new(
             &deployment.pattern,
             &deployment.sheet,

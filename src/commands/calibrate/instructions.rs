@@ -51,7 +51,7 @@ impl fmt::Display for Expected {
         let found: Vec<String> = found.collect();
         write!(
             f,
-            "to expect from readings to {READING_ERROR} % of the largest, with the thickness measured by itself: {} (two standard errors)",
+            "Expected from readings to {READING_ERROR} % of the largest, with the thickness measured by itself: {} (two standard errors)",
             if found.is_empty() {
                 "nothing that is not known already".to_owned()
             } else {
@@ -89,7 +89,7 @@ pub(super) fn instructions(
     format!(
         "# Coupon of {name}, {thickness} mm
 
-For {title}. {expected}.
+For the scene \"{title}\". {expected}. The errors of the hinge model itself are not in it.
 
 ## Cut
 

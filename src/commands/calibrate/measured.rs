@@ -3,6 +3,7 @@
 use crate::commands::calibrate::FitArgs;
 use crate::commands::calibrate::coupon_folder::{CouponFolder, is_coupon};
 use crate::commands::calibrate::readings_file::ReadingsFile;
+use crate::commands::inspect::scene_args::Inspected;
 use crate::commands::points_file::PointsFile;
 use anyhow::{Context, Error, Result, ensure};
 use design::analysis::calibration::CalibrationError;
@@ -35,11 +36,11 @@ struct MeasuredSheet {
 }
 
 impl Measured {
-    pub fn read(args: &FitArgs) -> Result<Self> {
-        if is_coupon(&args.designed.scene) {
-            return Self::coupon(args);
+    pub fn read(args: &FitArgs, designed: &Inspected) -> Result<Self> {
+        if is_coupon(&designed.scene) {
+            return Self::coupon(args, designed);
         }
-        let (scene, design, name) = args.designed.read_run()?;
+        let (scene, design, name) = designed.read_run()?;
         let points = args.points.as_ref().map(|file| args.read.read(file));
         let (points, scale) = points.transpose()?.unzip();
         let readings = args.readings.as_ref().map(|file| ReadingsFile::read(file));
@@ -68,10 +69,10 @@ impl Measured {
         })
     }
 
-    fn coupon(args: &FitArgs) -> Result<Self> {
-        let folder = &args.designed.scene;
+    fn coupon(args: &FitArgs, designed: &Inspected) -> Result<Self> {
+        let folder = &designed.scene;
         ensure!(
-            args.points.is_none() && args.designed.design.is_none() && args.designed.weights.is_none(),
+            args.points.is_none() && designed.design.is_none() && designed.weights.is_none(),
             "a coupon is fitted to its readings, with the weights of its scene: leave out --points, --design and --weights"
         );
         let coupon = CouponFolder::read(folder)?;
@@ -97,7 +98,11 @@ impl Measured {
         let names: Vec<&str> = (sheets.iter())
             .filter_map(|sheet| sheet.specimen.as_deref())
             .collect();
-        let name = format!("coupon {}, specimens {}", folder.display(), names.join(", "));
+        let name = format!(
+            "coupon {}, specimens {}",
+            folder.display(),
+            names.join(", ")
+        );
         Ok(Self {
             name,
             sheets,
@@ -136,11 +141,9 @@ impl Measured {
         let sheet = &self.sheets[sheet];
         let error = match (error, &sheet.points, &sheet.readings) {
             (DataError::Points(error), Some(file), _) => file.located(error),
-            (
-                error @ (DataError::Reading { .. } | DataError::OtherUnits(_)),
-                _,
-                Some(file),
-            ) => file.located(&error),
+            (error @ (DataError::Reading { .. } | DataError::OtherUnits(_)), _, Some(file)) => {
+                file.located(&error)
+            }
             (error, ..) => error.into(),
         };
         match &sheet.specimen {
