@@ -2,25 +2,24 @@
 
 mod coupon;
 mod coupon_folder;
+mod fit_args;
 mod instructions;
-mod known;
 mod measured;
+mod quantities;
 mod readings_file;
 
 use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
-use crate::commands::points_file::PointArgs;
 use crate::ui::progress::Progress;
 use crate::ui::run_folder;
 use anyhow::{Context, Result, bail, ensure};
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, Subcommand};
 use design::analysis::calibrated_scene::write_calibrated;
-use design::analysis::calibration::{Quantity, calibrate};
+use design::analysis::calibration::calibrate;
 use design::scene::Scene;
 use design::scene::run_inputs::{SCENE_FILE, STATE_FILE};
-use known::Known;
+use fit_args::FitArgs;
 use measured::Measured;
 use output::calibration::CalibrationReport;
-use std::path::PathBuf;
 
 /// Find kerf, thickness and stresses of a cut sheet from measurements on it, and write its scene
 ///
@@ -50,71 +49,8 @@ enum Before {
     Coupon(coupon::CouponCommand),
 }
 
-#[derive(Args)]
-struct FitArgs {
-    /// There unless there is a subcommand.
-    #[command(flatten)]
-    designed: Option<Inspected>,
-    /// Points measured at full load (CSV)
-    #[arg(long, value_name = "FILE")]
-    points: Option<PathBuf>,
-    #[command(flatten)]
-    read: PointArgs,
-    /// Readings of displacement and load on the way (CSV) [default for a coupon: readings.csv in its folder]
-    #[arg(long, value_name = "FILE")]
-    readings: Option<PathBuf>,
-    /// Quantities to find; the others are right
-    #[arg(long, value_name = "QUANTITY", value_delimiter = ',', default_values = ["kerf", "thickness", "stress"])]
-    fit: Vec<QuantityArg>,
-    /// Quantities that were measured by themselves, and are not fitted: kerf and thickness in mm, stress over the material's. Example:
-    /// thickness=2.93,kerf=0.25
-    #[arg(long, value_name = "QUANTITY=VALUE", value_delimiter = ',')]
-    known: Vec<Known>,
-    /// Standard error of x and of y of a point (mm)
-    #[arg(long, value_name = "MM", default_value_t = 0.2, value_parser = above_zero)]
-    point_error: f64,
-    /// Standard error of a reading, of the load if the motion is prescribed, of the displacement under dead loads (% of the largest)
-    #[arg(long, value_name = "PERCENT", default_value_t = READING_ERROR, value_parser = above_zero)]
-    reading_error: f64,
-    /// Folder for the report and the calibrated scene
-    #[arg(long, value_name = "FOLDER", default_value = "runs/calibrate")]
-    out: PathBuf,
-    /// Print the report as JSON
-    #[arg(long)]
-    json: bool,
-}
-
-/// Usual standard error of a reading (% of the largest).
-const READING_ERROR: f64 = 2.0;
 /// The report as JSON, in the folder of a calibration.
 const REPORT: &str = "calibration.json";
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum QuantityArg {
-    /// Width that the cutter removes.
-    Kerf,
-    /// Thickness of the sheet.
-    Thickness,
-    /// All stresses at equal strain, modulus and yield together.
-    Stress,
-}
-
-impl From<QuantityArg> for Quantity {
-    fn from(arg: QuantityArg) -> Self {
-        match arg {
-            QuantityArg::Kerf => Self::Kerf,
-            QuantityArg::Thickness => Self::Thickness,
-            QuantityArg::Stress => Self::Stress,
-        }
-    }
-}
-
-fn above_zero(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok();
-    number
-        .filter(|number| *number > 0.0 && *number < 1e3)
-        .ok_or_else(|| "must be a number above 0 and below 1000".into())
-}
 
 impl CalibrateCommand {
     pub(crate) fn run(&self) -> Result<()> {
@@ -131,6 +67,10 @@ impl FitArgs {
         let measured = Measured::read(self, designed)?;
         let quantities = self.quantities();
         ensure!(
+            !quantities.is_empty(),
+            "every quantity of --fit is --known: nothing is left to find"
+        );
+        ensure!(
             self.out.join(REPORT).exists()
                 || (!self.out.join(SCENE_FILE).exists() && !self.out.join(STATE_FILE).exists()),
             "{} holds a scene or a run that no calibration has written: choose another folder with --out",
@@ -144,7 +84,7 @@ impl FitArgs {
             bar.show(steps, None, "");
         };
         let scene = &measured.scene;
-        let known = known::deviation(&self.known, scene);
+        let known = quantities::deviation(&self.known, scene);
         let found = measured.with_sheets(|sheets| {
             let found = calibrate(sheets, &quantities, &known, &mut progress);
             found.map_err(|error| measured.located(error))
@@ -176,18 +116,5 @@ impl FitArgs {
             Ok(_) => {}
         }
         Ok(())
-    }
-
-    /// The quantities to fit, each once.
-    fn quantities(&self) -> Vec<Quantity> {
-        let asked = |quantity: &Quantity| {
-            let mut fitted = self.fit.iter().map(|arg| Quantity::from(*arg));
-            fitted.any(|own| own == *quantity)
-        };
-        let known =
-            |quantity: &Quantity| self.known.iter().any(|known| known.quantity == *quantity);
-        let all = Quantity::ALL.into_iter();
-        all.filter(|quantity| asked(quantity) && !known(quantity))
-            .collect()
     }
 }

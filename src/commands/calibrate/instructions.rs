@@ -1,7 +1,7 @@
 //! How a coupon is cut, hung and measured, and what its readings will say.
 
-use crate::commands::calibrate::READING_ERROR;
 use crate::commands::calibrate::coupon_folder::READINGS;
+use crate::commands::calibrate::fit_args::READING_ERROR;
 use crate::ui::shell_word::shell_word;
 use anyhow::Result;
 use design::analysis::calibration::{CalibrationError, Estimate, Quantity};

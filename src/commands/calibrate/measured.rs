@@ -1,7 +1,7 @@
 //! The sheets that were cut and measured: one, or the specimens of a coupon.
 
-use crate::commands::calibrate::FitArgs;
 use crate::commands::calibrate::coupon_folder::{CouponFolder, is_coupon};
+use crate::commands::calibrate::fit_args::FitArgs;
 use crate::commands::calibrate::readings_file::ReadingsFile;
 use crate::commands::inspect::scene_args::Inspected;
 use crate::commands::points_file::PointsFile;

@@ -1,11 +1,31 @@
-//! Quantities of a cut sheet that were measured by themselves.
+//! The quantities of a cut sheet: those that are fitted, and those that were measured by themselves.
 
-use crate::commands::calibrate::QuantityArg;
 use clap::ValueEnum;
 use design::analysis::calibration::Quantity;
 use design::scene::Scene;
 use design::sheet::deviation::Deviation;
 use std::str::FromStr;
+
+/// What is fitted.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum QuantityArg {
+    /// Width that the cutter removes.
+    Kerf,
+    /// Thickness of the sheet.
+    Thickness,
+    /// All stresses at equal strain, modulus and yield together.
+    Stress,
+}
+
+impl From<QuantityArg> for Quantity {
+    fn from(arg: QuantityArg) -> Self {
+        match arg {
+            QuantityArg::Kerf => Self::Kerf,
+            QuantityArg::Thickness => Self::Thickness,
+            QuantityArg::Stress => Self::Stress,
+        }
+    }
+}
 
 /// A quantity and its value: mm, or relative to the material's.
 #[derive(Clone, Copy, Debug)]
