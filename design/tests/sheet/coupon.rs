@@ -66,8 +66,8 @@ fn exact_readings_give_the_plate() {
     assert_eq!(found.thickness, cut.thickness);
 }
 
-/// Of readings with random errors, each quantity is within two standard errors in 95 of 100; fewer than 16 of 20 are left to chance
-/// once in four hundred.
+/// Of readings with random errors, each quantity is within two standard errors in 95 of 100; fewer than 4 of 6 are left to chance
+/// once in five hundred. `kirigami-studies coupon` counts more of them.
 #[test]
 fn a_plate_is_within_two_standard_errors() {
     let coupon = coupon();
@@ -82,7 +82,7 @@ fn a_plate_is_within_two_standard_errors() {
         error: 0.02,
     };
     let mut within = [0; 2];
-    for seed in 0..20 {
+    for seed in 0..6 {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let found = coupon
             .calibrate(
@@ -96,7 +96,7 @@ fn a_plate_is_within_two_standard_errors() {
             *within += i32::from(error.abs() <= 2.0 * estimate.standard_error);
         }
     }
-    assert!(within.iter().all(|count| *count >= 16), "{within:?}");
+    assert!(within.iter().all(|count| *count >= 4), "{within:?}");
 }
 
 /// Thinner and softer open alike: the thickness is named, and stays near what was known.
