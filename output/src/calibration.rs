@@ -1,4 +1,4 @@
-//! The report of a calibrated sheet.
+//! The report of a calibrated sheet, or of a calibrated coupon.
 
 use design::analysis::calibration::{Calibration, GroupFit, Quantity};
 use design::scene::Scene;
@@ -7,6 +7,8 @@ use std::fmt;
 
 /// Standard deviations of the reduced chi^2, above 1, beyond which a group of measurements fits worse than its stated errors.
 const MISFIT: f64 = 3.5;
+/// Root mean square of the residuals of a specimen, over their stated errors, beyond which it is named.
+const FAR: f64 = 2.5;
 /// Deviation in standard deviations of what was known before, beyond which a quantity is hardly what it seems.
 const UNLIKELY: f64 = 3.0;
 /// Absolute correlation above which two estimates are hard to tell apart.
@@ -19,6 +21,8 @@ pub struct CalibrationReport {
     pub title: String,
     /// Which design was measured.
     pub design: String,
+    /// The names of the specimens of a coupon, as in the misfits of the calibration; empty for a sheet.
+    pub specimens: Vec<String>,
     /// The width that the cutter removes (mm).
     pub kerf: f64,
     /// The thickness of the sheet (mm).
@@ -32,13 +36,19 @@ pub struct CalibrationReport {
 }
 
 impl CalibrationReport {
-    /// The report of a calibration of the design with the name `design`.
-    pub fn new(scene: &Scene, design: String, calibration: Calibration) -> Self {
+    /// The report of a calibration of the design with the name `design`, or of the `specimens` of a coupon.
+    pub fn new(
+        scene: &Scene,
+        design: String,
+        specimens: Vec<String>,
+        calibration: Calibration,
+    ) -> Self {
         let deviation = calibration.deviation();
         let nominal = [scene.config.process.kerf, scene.material.thickness];
         Self {
             title: scene.config.title.clone(),
             design,
+            specimens,
             kerf: nominal[0] + deviation.kerf,
             thickness: nominal[1] + deviation.thickness,
             stress: 1.0 + deviation.stress,
@@ -47,10 +57,10 @@ impl CalibrationReport {
         }
     }
 
-    /// The head of the calibrated scene: where its numbers are from.
+    /// The head of the calibrated scene and of its material: where their numbers are from.
     pub fn comment(&self) -> String {
         let mut text = format!(
-            "# The scene of a calibrated sheet, by `kirigami calibrate`.\n# {}: {}\n",
+            "# Calibrated by `kirigami calibrate`.\n# {}: {}\n",
             self.title, self.design
         );
         for line in self.quantities() {
@@ -75,6 +85,9 @@ impl CalibrationReport {
                     "{value:.digits$} +- {:.digits$}",
                     2.0 * estimate.standard_error
                 ),
+                None if *quantity.of(&mut self.calibration.known.clone()) != 0.0 => {
+                    format!("{value:.digits$}, known")
+                }
                 None => "not asked for".into(),
             };
             [
@@ -132,6 +145,14 @@ impl fmt::Display for CalibrationReport {
         }
         if let Some(fit) = loads {
             Self::write_fit(f, "readings", fit, (100.0, "% of the largest"))?;
+        }
+        for (name, misfit) in std::iter::zip(&self.specimens, &self.calibration.misfits) {
+            if *misfit > FAR {
+                writeln!(
+                    f,
+                    "  specimen {name}: {misfit:.1} times the stated error. A wrong name or mass, or a specimen that was opened before"
+                )?;
+            }
         }
         writeln!(
             f,

@@ -125,14 +125,7 @@ impl CutCommand {
     /// Writes the files of a machine, and prints what services refuse.
     fn cut_for(&self, name: &str) -> Result<()> {
         let machines = Machines::read(self.machines.as_deref())?;
-        let machine = machines.machine.iter().find(|machine| machine.name == name);
-        let machine = machine.with_context(|| {
-            let known = machines.machine.iter().map(|machine| &*machine.name);
-            let known: Vec<&str> = known.collect();
-            let near = nearest(name, known.iter().copied());
-            let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
-            format!("unknown machine {name}: use {}{near}", known.join(", "))
-        })?;
+        let machine = machine(&machines, name)?;
         ensure!(
             Path::new(name).file_name().is_some_and(|file| file == name),
             "the machine {name} cannot name a folder: give it a name without slashes"
@@ -287,8 +280,20 @@ impl CutCommand {
     }
 }
 
+/// The machine with a name.
+pub(crate) fn machine<'a>(machines: &'a Machines, name: &str) -> Result<&'a Machine> {
+    let machine = machines.machine.iter().find(|machine| machine.name == name);
+    machine.with_context(|| {
+        let known = machines.machine.iter().map(|machine| &*machine.name);
+        let known: Vec<&str> = known.collect();
+        let near = nearest(name, known.iter().copied());
+        let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
+        format!("unknown machine {name}: use {}{near}", known.join(", "))
+    })
+}
+
 /// Writes the DXF and the SVG of a drawing.
-fn write_drawing(out: &Path, name: &str, drawing: &CutDrawing) -> Result<()> {
+pub(crate) fn write_drawing(out: &Path, name: &str, drawing: &CutDrawing) -> Result<()> {
     run_folder::write(out, &format!("{name}.dxf"), &dxf(drawing))?;
     run_folder::write(out, &format!("{name}.svg"), &svg(drawing))
 }

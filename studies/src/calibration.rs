@@ -6,10 +6,12 @@ use anyhow::Result;
 use clap::Args;
 use design::analysis::actuation_curve::ActuationCurve;
 use design::analysis::calibrated_scene::write_calibrated;
-use design::analysis::calibration::{Measurements, Quantity, calibrate};
+use design::analysis::calibration::{Quantity, calibrate};
 use design::analysis::marks::MeasuredPoint;
+use design::analysis::measurements::Measurements;
 use design::analysis::real_sheet::RealSheet;
-use design::analysis::simulated_measurements::StandardErrors;
+use design::analysis::sheet_residuals::CutAndMeasured;
+use design::analysis::simulated_measurements::{StandardErrors, equal_parts};
 use design::objective::scores::outline_error;
 use design::pattern::design_vector::DesignVector;
 use design::scene::{Scene, SceneConfig};
@@ -101,11 +103,18 @@ impl CalibrationStudy {
             point: self.point_error,
             reading: 0.01 * self.reading_error,
         };
+        let parts = equal_parts(READINGS);
         let data =
-            Measurements::exact(&sheet, &cut, READINGS, errors)?.with_errors(&sheet, &mut random);
+            Measurements::exact(&sheet, &cut, &parts, errors)?.with_errors(&sheet, &mut random);
         self.write(&data, "first")?;
-        let found = calibrate(&before.problem, &sheet, &data, &Quantity::ALL, &mut || ())?;
-        let report = CalibrationReport::new(&scene, "the first design".into(), found);
+        let measured = CutAndMeasured {
+            problem: &before.problem,
+            sheet: &sheet,
+            data: &data,
+        };
+        let known = Deviation::default();
+        let found = calibrate(&[measured], &Quantity::ALL, &known, &mut || ())?;
+        let report = CalibrationReport::new(&scene, "the first design".into(), Vec::new(), found);
         let deviation = report.calibration.deviation();
         let folder = self.out.join("calibrated");
         let file = write_calibrated(&scene, &deviation, &folder, &report.comment())?;
@@ -114,7 +123,7 @@ impl CalibrationStudy {
         let cut = self.cut(&scene, real, cut.widths.len(), &mut random);
         let second = row("designed again", &scene, &after.design, &cut)?;
         let sheet = RealSheet::new(&scene, &after.problem, &after.design)?;
-        let again = Measurements::exact(&sheet, &cut, READINGS, errors)?;
+        let again = Measurements::exact(&sheet, &cut, &parts, errors)?;
         self.write(&again.with_errors(&sheet, &mut random), "second")?;
         let page = self.page(real, &[first, second], &report);
         run_folder::write(&self.out, "calibration.md", &page)?;

@@ -9,6 +9,7 @@ mod chain;
 mod charts;
 mod choices;
 mod compact;
+mod coupon;
 mod cpu_seconds;
 mod designed;
 mod drawing;
@@ -64,6 +65,7 @@ enum Study {
     Compact(compact::CompactStudy),
     Actuations(actuations::ActuationStudy),
     Calibration(calibration::CalibrationStudy),
+    Coupon(coupon::CouponStudy),
     Capacity(capacity::CapacityStudy),
     Localisation(localisation::LocalisationStudy),
     Extremes(extremes::ExtremesStudy),
@@ -91,6 +93,7 @@ impl Study {
             Self::Compact(study) => study.run(),
             Self::Actuations(study) => study.run(),
             Self::Calibration(study) => study.run(),
+            Self::Coupon(study) => study.run(),
             Self::Capacity(study) => study.run(),
             Self::Localisation(study) => study.run(),
             Self::Extremes(study) => study.run(),

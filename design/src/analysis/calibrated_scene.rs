@@ -28,7 +28,7 @@ pub enum CalibratedSceneError {
     Weights(#[from] WeightsError),
 }
 
-/// Writes the scene of a calibrated sheet to a folder: `comment` is its head. Returns its path.
+/// Writes the scene of a calibrated sheet to a folder: `comment` is its head, and that of its material. Returns its path.
 pub fn write_calibrated(
     scene: &Scene,
     sheet: &Deviation,
@@ -45,7 +45,8 @@ pub fn write_calibrated(
     config.output = "run".into();
     let material = scene.measured.stressed(1.0 + sheet.stress);
     let material_file = format!("{FOLDER}/material.toml");
-    write_to(folder, &material_file, &toml(&material, folder)?)?;
+    let commented = |toml: Vec<u8>| [comment.as_bytes(), &toml].concat();
+    write_to(folder, &material_file, &commented(toml(&material, folder)?))?;
     config.material = material_file.into();
     if let Some((file, kind)) = config.target.file_mut() {
         let name = format!("{FOLDER}/target.{kind}");
@@ -63,8 +64,6 @@ pub fn write_calibrated(
         // That law is for the stresses of the scene's material.
         learned.springback = None;
     }
-    let mut text = comment.as_bytes().to_vec();
-    text.extend(toml(&config, folder)?);
-    write_to(folder, SCENE_FILE, &text)?;
+    write_to(folder, SCENE_FILE, &commented(toml(&config, folder)?))?;
     Ok(folder.join(SCENE_FILE))
 }

@@ -24,7 +24,7 @@ pub struct Read {
     pub sheet: Sheet,
     /// Its equilibria.
     pub steps: Vec<LoadStep>,
-    /// From the flat sheet on; `None` if nothing moves the sheet.
+    /// From the sheet before its loads on; `None` if nothing moves the sheet.
     pub curve: Option<ActuationCurve>,
 }
 
@@ -110,9 +110,9 @@ impl<'a> RealSheet<'a> {
         let steps = solver.readings_near(hinged, &plan.parts, &plan.known);
         let steps = steps.unwrap_or_else(|| solver.readings(hinged, &plan.parts));
         steps.iter().try_for_each(|step| found(step).map(|_| ()))?;
-        let flat = (0.0, solver.flat());
+        let before = solver.before_loads(hinged);
         let states = (steps.iter()).map(|step| (step.load_factor, &step.configuration[..]));
-        let curve = ActuationCurve::through(&mechanics, &sheet, &flat, states);
+        let curve = ActuationCurve::through(&mechanics, &sheet, &before, states);
         drop(prepared);
         Ok(Read {
             sheet,

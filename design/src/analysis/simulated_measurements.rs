@@ -1,7 +1,7 @@
 //! Measurements on a cut sheet that is computed, for tests and to plan real ones.
 
-use crate::analysis::calibration::{LoadData, Measurements, PointData};
 use crate::analysis::marks::{Mark, MeasuredPoint};
+use crate::analysis::measurements::{LoadData, Measurements, PointData};
 use crate::analysis::real_sheet::RealSheet;
 use crate::geometry::similarity::Scale;
 use crate::objective::design_problem::DesignError;
@@ -18,19 +18,23 @@ pub struct StandardErrors {
     pub reading: f64,
 }
 
+/// `count` equal parts of an actuation, to 1.
+pub fn equal_parts(count: u32) -> Vec<f64> {
+    (1..=count)
+        .map(|i| f64::from(i) / f64::from(count))
+        .collect()
+}
+
 impl Measurements {
-    /// All corners of a cut sheet at full load and, if something moves it, `readings` displacements and loads at equal parts of its
-    /// actuation, exact.
+    /// All corners of a cut sheet at full load and, if something moves it, displacements and loads at parts of its actuation, which
+    /// ascend to 1, exact.
     pub fn exact(
         sheet: &RealSheet,
         cut: &Deviation,
-        readings: u32,
+        parts: &[f64],
         errors: StandardErrors,
     ) -> Result<Self, DesignError> {
-        let parts: Vec<f64> = (1..=readings)
-            .map(|i| f64::from(i) / f64::from(readings))
-            .collect();
-        let read = sheet.read(&sheet.reading_plan(&parts)?, cut)?;
+        let read = sheet.read(&sheet.reading_plan(parts)?, cut)?;
         let configuration = read.steps.last().map(|full| &full.configuration);
         let corners = Mark::all(&read.sheet).filter(|mark| mark.corner.is_some());
         let points = configuration.map(|configuration| PointData {
@@ -46,14 +50,16 @@ impl Measurements {
         Ok(Self {
             points,
             loads: read.curve.map(|curve| LoadData {
-                readings: curve.points[1..].to_vec(),
+                readings: curve.from_before_loads().collect(),
                 translational: curve.translational,
                 error: errors.reading,
+                from_reading: false,
             }),
         })
     }
 
-    /// The same with independent normal errors of the stated size: of the points, and of what the sheet answers with.
+    /// The same with independent normal errors of the stated size: of the points, of what the sheet answers with, and of the reading
+    /// that the displacements count from.
     #[must_use]
     pub fn with_errors(mut self, sheet: &RealSheet, random: &mut impl Rng) -> Self {
         let mut error = || normal([random.random(), random.random()]);
@@ -66,8 +72,9 @@ impl Measurements {
             let answer = sheet.answer();
             let sizes = data.readings.iter().map(|reading| reading[answer].abs());
             let size = data.error * sizes.fold(0.0, f64::max);
+            let shared = if data.from_reading { error() } else { 0.0 };
             for reading in &mut data.readings {
-                reading[answer] += size * error();
+                reading[answer] += size * (error() - shared);
             }
         }
         self

@@ -11,9 +11,10 @@
 //! the same cuts.
 
 use crate::sheet::cut_sheet::Sheet;
+use serde::Serialize;
 
 /// The differences of a cut sheet from its drawing.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Deviation {
     /// Of the ligament width of every hinge (mm); empty for none.
     pub widths: Vec<f64>,

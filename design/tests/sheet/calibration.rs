@@ -1,11 +1,12 @@
 //! Kerf, thickness and stresses of sheets that are known, from measurements with errors.
 
 use crate::error_budget::film;
-use design::analysis::calibration::{
-    Calibration, CalibrationError, Measurements, Quantity, ReadingFault, calibrate,
-};
+use design::analysis::calibration::{Calibration, CalibrationError, Quantity, calibrate};
+use design::analysis::data_error::{DataError, ReadingFault};
+use design::analysis::measurements::Measurements;
 use design::analysis::real_sheet::RealSheet;
-use design::analysis::simulated_measurements::StandardErrors;
+use design::analysis::sheet_residuals::CutAndMeasured;
+use design::analysis::simulated_measurements::{StandardErrors, equal_parts};
 use design::scene::Scene;
 use design::sheet::deviation::Deviation;
 use rand::{RngExt, SeedableRng};
@@ -28,7 +29,7 @@ fn cut() -> Deviation {
 
 /// The corners of a cut sheet at full load, turned and moved, and its loads at ten displacements.
 fn exact(sheet: &RealSheet, cut: &Deviation) -> Measurements {
-    let mut data = Measurements::exact(sheet, cut, 10, ERRORS).unwrap();
+    let mut data = Measurements::exact(sheet, cut, &equal_parts(10), ERRORS).unwrap();
     let (sin, cos) = 0.3f64.sin_cos();
     for point in &mut data.points.as_mut().unwrap().points {
         let [x, y] = point.position;
@@ -45,7 +46,13 @@ fn with<T>(scene: &Scene, of: impl FnOnce(&RealSheet, &Fitted) -> T) -> T {
     let problem = scene.problem().unwrap();
     let sheet = RealSheet::new(scene, &problem, &scene.start()).unwrap();
     let fit = |data: &Measurements, quantities: &[Quantity]| {
-        calibrate(&problem, &sheet, data, quantities, &mut || ())
+        let measured = CutAndMeasured {
+            problem: &problem,
+            sheet: &sheet,
+            data,
+        };
+        let known = Deviation::default();
+        calibrate(&[measured], quantities, &known, &mut || ())
     };
     of(&sheet, &fit)
 }
@@ -93,7 +100,7 @@ fn a_sheet_is_within_two_standard_errors() {
                     stress: guess(Quantity::Stress),
                     ..Deviation::default()
                 };
-                let data = Measurements::exact(sheet, &cut, 3, ERRORS).unwrap();
+                let data = Measurements::exact(sheet, &cut, &equal_parts(3), ERRORS).unwrap();
                 let found = fit(&data.with_errors(sheet, &mut random), &Quantity::ALL).unwrap();
                 let pairs = std::iter::zip(&found.estimates, values(&cut));
                 for (k, (estimate, cut)) in pairs.enumerate() {
@@ -171,7 +178,10 @@ fn wrong_readings_are_refused() {
             };
             change(&mut data.loads.as_mut().unwrap().readings);
             match fit(&data, &[Quantity::Stress]).unwrap_err() {
-                CalibrationError::Reading { index, fault } => (index, fault),
+                CalibrationError::Data {
+                    error: DataError::Reading { index, fault },
+                    ..
+                } => (index, fault),
                 other => panic!("{other}"),
             }
         };
@@ -182,7 +192,14 @@ fn wrong_readings_are_refused() {
         let (index, _) = with_readings(&|rows| rows[9][0] *= 1.5);
         assert_eq!(index, 9);
         let none = fit(&Measurements::default(), &[Quantity::Kerf]).unwrap_err();
-        assert!(matches!(none, CalibrationError::NoData));
+        let none = matches!(
+            none,
+            CalibrationError::Data {
+                error: DataError::NoData,
+                ..
+            }
+        );
+        assert!(none);
     });
 }
 
@@ -190,7 +207,7 @@ fn wrong_readings_are_refused() {
 #[test]
 fn few_correct_readings_are_no_misfit() {
     with(&film(|_| ()), |sheet, fit| {
-        let mut data = Measurements::exact(sheet, &cut(), 4, ERRORS).unwrap();
+        let mut data = Measurements::exact(sheet, &cut(), &equal_parts(4), ERRORS).unwrap();
         data.points = None;
         let chi_squared = |seed: u64| {
             let found = fit(&with_errors(sheet, &data, seed), &Quantity::ALL).unwrap();

@@ -4,6 +4,7 @@
 mod calibration;
 mod cases;
 mod closed_forms;
+mod coupon;
 mod cutting_errors;
 mod driven;
 mod equilibrium;
