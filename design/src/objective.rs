@@ -8,7 +8,7 @@ pub mod design_problem;
 mod expected_loss;
 pub mod hinge_measures;
 pub mod loss;
-pub mod released_sheet;
+mod released_sheet;
 pub mod response;
 pub mod scores;
 pub mod shape;

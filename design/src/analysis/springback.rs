@@ -2,10 +2,10 @@
 //! deformations.
 
 use crate::analysis::actuation_curve::{ActuationCurve, Mover};
+use crate::equilibrium::let_go::ReleasedSheet;
 use crate::geometry::polygon::distance;
 use crate::hinge_law::Release;
 use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, found};
-use crate::objective::released_sheet::ReleasedSheet;
 use crate::objective::scores::outline_error;
 use crate::scene::{Scene, SpringbackMismatch};
 use crate::sheet::kinematics::deployed_corners;

@@ -3,12 +3,12 @@
 
 use crate::equilibrium::adjoint::SingularTangent;
 use crate::equilibrium::hinged_sheet::HingedSheet;
+use crate::equilibrium::let_go::ReleasedSheet;
 use crate::equilibrium::load_step::{DescentEnd, LoadStep, Status};
 use crate::equilibrium::nearby_path::KnownPath;
 use crate::equilibrium::solver::{EquilibriumError, EquilibriumSolver};
 use crate::hinge_law::{Contact, DamageMeasure, HingeLaw, PreparedLaw, Release};
 use crate::objective::loss::{Judgement, Objective, TermValues};
-use crate::objective::released_sheet::ReleasedSheet;
 use crate::objective::term::Deployed;
 use crate::pattern::cut_pattern::{CutPattern, Outline};
 use crate::pattern::design_vector::{DesignVector, WidthChart};

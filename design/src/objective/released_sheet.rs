@@ -11,6 +11,7 @@
 //! each hinge at full load, with which the adjoint (20) of the path under load begins.
 
 use crate::equilibrium::adjoint::{PathGradient, adjoint};
+use crate::equilibrium::let_go::ReleasedSheet;
 use crate::equilibrium::load_step::{LoadStep, Status};
 use crate::equilibrium::solver::EquilibriumError;
 use crate::hinge_law::{HingeGradient, Order, PreparedLaw, Release, ReleasedLaw};
@@ -21,22 +22,6 @@ use crate::sheet::panel_vectors::at_hinge;
 use hinge::ReleasedHinge;
 use std::array::from_fn;
 use surrogate::ByReleased;
-
-/// A sheet without loads, after they have opened it.
-#[derive(Clone)]
-pub struct ReleasedSheet {
-    /// The hinges.
-    pub hinges: Vec<ReleasedHinge>,
-    /// The load steps from the deployed sheet to that without loads. Their load factor is the part of the holding forces that is left.
-    pub path: Vec<LoadStep>,
-}
-
-impl ReleasedSheet {
-    /// The state without loads, or that at which the path ended before.
-    pub fn last(&self) -> &LoadStep {
-        self.path.last().expect("a path has at least one step")
-    }
-}
 
 impl Mechanics {
     /// The hinges of a sheet after they were let go at a load step.
