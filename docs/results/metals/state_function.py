@@ -26,7 +26,10 @@ PAGE = Path(__file__).parent
 STEEL, POLYPROPYLENE = ("s235-1.5mm", 1.5), ("polypropylene-0.8mm", 0.8)
 STEP = 0.03
 # w_lig over the thickness, alpha_deg, eta_a, eta_s, theta_deg; both are near states of data/s235-1.5mm/spot-check.parquet.
-STATES = {"compressed and sheared": (26.9 / 1.5, 53, -0.342, -0.312, 14.6), "pulled and sheared": (48.3 / 1.5, 51, 0.122, 0.245, 12.1)}
+STATES = {
+    "compressed and sheared": (26.9 / 1.5, 53, -0.342, -0.312, 14.6),
+    "pulled and sheared": (48.3 / 1.5, 51, 0.122, 0.245, 12.1),
+}
 
 
 def solve(material, w_lig, alpha_deg, eta_a, eta_s, theta):
@@ -97,22 +100,24 @@ def between(some, others):
 def main():
     page = ["# The state function", "", "`python docs/results/metals/state_function.py`, windows of tier small.", ""]
     page += ["Forces (N, N mm) at the end of a ray, and as differences of W between rays:", "", *gradients(), ""]
-    page += ["Ends of paths in the sheet and of straight rays to them: F_a, F_s, M / w_lig (N), and the length of their difference over that of the path's.", ""]
-    page += ["| hinge | separation | path | ray | law | W, ray | ray from path | law from ray | law from path |", "|---|---|---|---|---|---|---|---|---|"]
+    page += ["Ends of paths in the sheet and of straight rays to them: F_a, F_s, M / w_lig (N), and the norm of their difference over"]
+    page += ["that of the forces of the path, those of the ray for *law from ray*.", ""]
+    page += ["| hinge | separation | path | ray | law | W, ray | ray from path | law from ray | law from path |"]
+    page += ["|---|---|---|---|---|---|---|---|---|"]
     found = list(pairs())
     for hinge, separation, path, ray, law, w in found:
         states = [", ".join(f"{force:.0f}" for force in forces) for forces in (path, ray, law)]
-        errors = [f"{100 * between(*two) / length(path):.1f} %" for two in ((ray, path), (law, ray), (law, path))]
+        errors = [f"{100 * between(*two) / length(two[1]):.1f} %" for two in ((ray, path), (law, ray), (law, path))]
         page.append(f"| {hinge} | {separation:.4f} | " + " | ".join([*states, f"{100 * w:+.2f} %", *errors]) + " |")
-    total = length(length(path) for _, _, path, *_ in found)
-    sums = [length(between(x[a], x[b]) for x in found) / total for a, b in ((3, 2), (4, 3), (4, 2))]
+    sums = [length(between(x[a], x[b]) for x in found) / length(length(x[b]) for x in found) for a, b in ((3, 2), (4, 3), (4, 2))]
     page.append("| all | | | | | | " + " | ".join(f"{100 * x:.1f} %" for x in sums) + " |")
     (PAGE / "state-function.md").write_text("\n".join(page) + "\n")
     print("\n".join(page))
 
     film = list(csv.DictReader(open("docs/results/detours/detours.csv")))
     figure, axes = plt.subplots(figsize=(7, 4.5))
-    axes.loglog([float(x["separation"]) for x in film], [100 * float(x["forces"]) for x in film], "o", color="0.6", label="polyester film, detours (detours.csv)")
+    pairs_of_film = [(float(x["separation"]), 100 * float(x["forces"])) for x in film]
+    axes.loglog(*zip(*pairs_of_film), "o", color="0.6", label="polyester film, detours (detours.csv)")
     steel = [(separation, 100 * between(ray, path) / length(path)) for _, separation, path, ray, *_ in found]
     axes.loglog(*zip(*steel), "s", color="C3", label="steel, paths in the sheet")
     axes.axhline(6, color="k", linewidth=0.8, linestyle="--")
