@@ -1,8 +1,9 @@
 //! `kirigami cut`: the cut files of a designed sheet, tiles of paper, parts for a bed, and several designs on one stock.
 
 mod nest;
+mod nest_args;
 
-use crate::commands::cut::nest::{Nesting, PLACES, PLAN};
+use crate::commands::cut::nest_args::{Nesting, PLACES, PLAN};
 use crate::commands::inspect::scene_args::{DESIGN_OF_RUN, Inspected};
 use crate::ui::run_folder;
 use crate::ui::width_by_height::width_by_height;

@@ -8,7 +8,7 @@ mod template;
 
 use crate::commands::init::cut_from::CutFrom;
 use crate::commands::init::edited::{heading, scale, set};
-use crate::commands::init::first_scene::{FirstScene, THINNEST_PLATE};
+use crate::commands::init::first_scene::{FirstScene, OPENING, THINNEST_PLATE, safe_opening};
 use crate::commands::init::similar_scene::{Like, SimilarScene};
 use crate::commands::init::template::Template;
 use crate::commands::input_file;
@@ -58,9 +58,9 @@ pub struct InitCommand {
     /// margin, the over-run and half a kerf, so that its cuts fit; with --like it keeps the shape of that sheet
     #[arg(long, value_name = "STOCK", value_parser = stock, conflicts_with = "size")]
     stock: Option<Stock>,
-    /// Border of the stock that the machine cannot cut (mm)
-    #[arg(long, value_name = "MM", value_parser = length, default_value_t = 0.0, requires = "stock")]
-    margin: f64,
+    /// Border of the stock that the machine cannot cut (mm) [default: 0, with --like the cutting.margin of that scene]
+    #[arg(long, value_name = "MM", value_parser = length, requires = "stock")]
+    margin: Option<f64>,
     /// Scene whose pattern, panels, supports, loads and target are taken, scaled to thickness and size. With weights the
     /// loads open the new sheet as far as that of the scene
     #[arg(long, value_name = "SCENE")]
@@ -101,7 +101,7 @@ impl InitCommand {
             thickness,
             size,
             stock: None,
-            margin: 0.0,
+            margin: None,
             like: None,
             target: None,
             weights: None,
@@ -136,7 +136,10 @@ impl InitCommand {
             Some(weights) => weights.file.clone(),
             None => "weights.safetensors".into(),
         };
-        let margin = self.margin;
+        let margin = self
+            .margin
+            .or(like.as_ref().map(|like| like.scene.config.cutting.margin));
+        let margin = margin.unwrap_or(0.0);
         let cut_from = self.stock.map(|stock| CutFrom { stock, margin });
         let (scene, regime, trained) = match like {
             Some(like) => {
@@ -155,8 +158,9 @@ impl InitCommand {
             None => {
                 let named = self.weights.as_ref().and(fitting.first());
                 let named = named.map(|weights| weights.regime);
-                let first = FirstScene::new(self.size, cut_from, sheet.thickness, named)?;
+                let mut first = FirstScene::new(self.size, cut_from, sheet.thickness, named)?;
                 let weights = of(first.regime);
+                first.opening = weights.map_or(OPENING, |weights| weights.opening);
                 (
                     first.text(&path(weights), self.target.as_deref())?,
                     first.regime,
@@ -239,9 +243,11 @@ impl InitCommand {
             let surrogate = Surrogate::load(&file)?;
             let card = surrogate.card();
             if card.material_hash == Some(material.law_hash()) {
+                let regime = material.regime(card.domain.w_lig[1]);
                 fitting.push(Weights {
                     file: std::path::absolute(file)?,
-                    regime: material.regime(card.domain.w_lig[1]),
+                    regime,
+                    opening: safe_opening(&surrogate, regime),
                 });
             } else if self.weights.is_some() {
                 bail!(
@@ -260,6 +266,8 @@ impl InitCommand {
 struct Weights {
     file: PathBuf,
     regime: Regime,
+    /// The opening at which its ligaments are safe (rad).
+    opening: f64,
 }
 
 /// The tier of a campaign of a material, unless a sheet says otherwise.

@@ -86,6 +86,6 @@ pub(super) fn draft(
         Some(_) => problem.draft(design, known)?.deployment,
         None => problem.deploy(design)?,
     };
-    deployment.at_full_load()?;
+    deployment.at_target_state()?;
     Ok(deployment)
 }

@@ -204,11 +204,6 @@ impl fmt::Display for ReleasedByElements {
                 law.displacement_unit
             )?;
         }
-        writeln!(
-            f,
-            "| outline to target without loads, root mean square, mm | {:.2} | {:.2} |",
-            law.outline_error[1], elements.outline_error[1]
-        )?;
         let [rms, most] = self.corners;
         writeln!(
             f,

@@ -158,7 +158,7 @@ impl Loaded {
         }))
     }
 
-    /// The largest displacement up to which weights are added, whatever the plate is (mm).
+    /// The largest displacement up to which weights are added, for any plate (mm).
     pub fn stop(&self) -> f64 {
         STOP * self.displacements.last().copied().unwrap_or(0.0)
     }

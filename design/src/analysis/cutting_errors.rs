@@ -243,6 +243,7 @@ impl<'a> CuttingErrors<'a> {
                 Ok(outcome) => found.push(outcome.minus(&self.outcome)),
                 Err(
                     DesignError::NoEquilibrium { .. }
+                    | DesignError::NotLetGo
                     | DesignError::Sheet(_)
                     | DesignError::ImpossibleSheet,
                 ) => failed += 1,
@@ -375,7 +376,7 @@ impl Outcome {
         mechanics: &Mechanics,
         deployment: &Deployment,
     ) -> Result<Self, DesignError> {
-        let last = deployment.final_step();
+        let compared = deployment.compared();
         let hinges = 0..deployment.sheet.hinges.len();
         let peaks: Option<Vec<f64>> = hinges
             .map(|hinge| deployment.damage_max(DamageMeasure::Peak, hinge))
@@ -383,7 +384,7 @@ impl Outcome {
         let load = ActuationCurve::new(mechanics, deployment)
             .and_then(|curve| curve.points.last().map(|[_, load]| *load));
         Ok(Self {
-            corners: deployed_corners(&deployment.sheet, &last.configuration).concat(),
+            corners: deployed_corners(&deployment.sheet, &compared.configuration).concat(),
             load,
             d_peak: peaks.map(|peaks| peaks.into_iter().fold(0.0, f64::max)),
             loss: problem.loss_of(deployment)?,

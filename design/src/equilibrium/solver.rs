@@ -47,7 +47,8 @@ pub enum EquilibriumError {
     )]
     Unsupported,
     #[error(
-        "without the supports that moved it the sheet is free to move as a rigid body: nothing says where it goes when they let go"
+        "without the supports that moved it the sheet is free to move as a rigid body: nothing says where it goes when they let go. \
+         Hold it by supports that do not move"
     )]
     HeldByMoved,
     #[error("the weight {0:?} N/mm^2 is not finite")]

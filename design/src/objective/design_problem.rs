@@ -60,7 +60,9 @@ pub enum DesignError {
         residual: f64,
         end: Option<DescentEnd>,
     },
-    #[error("no equilibrium was found when the loads are taken off")]
+    #[error(
+        "no equilibrium was found when the loads are taken off, and objective.target_state = \"released\" is for that: open the sheet less"
+    )]
     NotLetGo,
     #[error(transparent)]
     SingularTangent(#[from] SingularTangent),
@@ -198,6 +200,15 @@ impl Deployment {
     /// The state that is compared with the target: at full load, or after the loads were taken off.
     pub fn compared(&self) -> &LoadStep {
         self.let_go().unwrap_or_else(|| self.final_step())
+    }
+
+    /// The same, or an error if there is no equilibrium in that state.
+    pub fn at_target_state(&self) -> Result<&LoadStep, DesignError> {
+        self.at_full_load()?;
+        let compared = self.compared();
+        (compared.status != Status::Diverged)
+            .then_some(compared)
+            .ok_or(DesignError::NotLetGo)
     }
 
     /// The state after the loads were taken off, if the target is for that.
@@ -344,10 +355,7 @@ impl DesignProblem {
         if self.objective.shape.target.is_empty() {
             return Err(DesignError::EmptyTarget);
         }
-        deployment.at_full_load()?;
-        if deployment.compared().status == Status::Diverged {
-            return Err(DesignError::NotLetGo);
-        }
+        deployment.at_target_state()?;
         Ok(self.objective.judge(&Deployed {
             sheet: &deployment.sheet,
             path: &deployment.path,

@@ -128,8 +128,8 @@ impl DesignProblem {
         })
     }
 
-    /// A draft of the equilibrium of a design at full load, let go if the target is the shape that stays, next to the last state of a `known` path; without one, or if there is none next
-    /// to it, at the end of the path from the flat sheet. The path may end on another branch than a draft next to another.
+    /// A draft of the equilibrium of a design at full load, let go if the target is the shape that stays, next to the last state of a
+    /// `known` path; without one, or if there is none next to it, at the end of the path from the flat sheet. The path may end on another branch than a draft next to another.
     pub fn draft(
         &self,
         design: &DesignVector,

@@ -178,7 +178,8 @@ impl Scene {
     }
 
     /// Identifies what a run depends on besides the keys of the scene: the version of the model, the material law, the
-    /// target's points, the weights and, if the target is for the released sheet, the law of released hinges. It is the same on every machine, whereas the loss differs in its last digits.
+    /// target's points, the weights and, if the target is for the released sheet, the law of released hinges. It is the same
+    /// on every machine, whereas the loss differs in its last digits.
     pub fn model_hash(&self) -> String {
         let weights = self.weights().map_or(String::new(), Surrogate::hash);
         let target = self.target.hash();

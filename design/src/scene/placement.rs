@@ -30,7 +30,7 @@ pub fn deployed_outline(
     points: OutlinePoints,
 ) -> Vec<[f64; 2]> {
     let sheet = &deployment.sheet;
-    let configuration = placed(scene, sheet, &deployment.final_step().configuration);
+    let configuration = placed(scene, sheet, &deployment.compared().configuration);
     corners(sheet, points.corners(sheet), &configuration)
 }
 

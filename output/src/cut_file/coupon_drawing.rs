@@ -10,11 +10,14 @@ use crate::cut_file::fabrication_error::FabricationError;
 use crate::cut_file::machine::Machine;
 use crate::cut_file::sheet_drawing::note;
 use crate::display::{Shape, Text};
+use design::geometry::polygon::distance;
 use hinge::SheetMaterial;
 
 /// Distance between specimens (mm).
 const GAP: f64 = 10.0;
-/// Distance of the centres of the holes that number a specimen, in diameters.
+/// Diameter of the holes that number a specimen, over the side of a panel.
+const NUMBER_HOLE: f64 = 1.0 / 15.0;
+/// Distance of their centres, in diameters.
 const APART: f64 = 2.0;
 /// Height of the names (mm).
 const NAME: f64 = 8.0;
@@ -74,15 +77,16 @@ impl CouponPiece {
     fn drawing(&self, machine: Option<&Machine>) -> Result<CutDrawing, FabricationError> {
         let mut cuts = self.cuts.clone();
         let [[x, y], named] = self.panels;
-        let hook = cuts.attachments.iter().find_map(|hook| hook.hole);
+        // In proportion to the panels, so that three holes stay clear of the cuts around them.
+        let [corner, next, ..] = cuts.outline;
+        let hole = NUMBER_HOLE * 0.5 * distance(corner, next);
         for i in 0..self.number {
-            let off = hook.map_or(0.0, |hook| APART * hook)
-                * (i as f64 - 0.5 * (self.number as f64 - 1.0));
+            let off = APART * hole * (i as f64 - 0.5 * (self.number as f64 - 1.0));
             cuts.attachments.push(PlacedAttachment {
                 name: format!("number of {}", self.name),
                 panel: 0,
                 at: [x + off, y],
-                hole: hook,
+                hole: Some(hole),
                 clip: None,
             });
         }

@@ -1,10 +1,10 @@
 //! Several designs on sheets of one stock: what lies where, and the paths of every sheet in cutting order.
 //!
-//! A design takes the rectangle that the centre of the tool reaches. The crate `crunch` packs rectangles onto a sheet, the largest first, each into the
-//! free rectangle that it fills best. Which way a piece is turned is decided before it is known what lies beside it, so a sheet is
+//! A design takes the rectangle that the centre of the tool reaches. The crate `crunch` packs rectangles onto a
+//! sheet, the largest first, each into the free rectangle that it fills best. Which way a piece is turned is decided before it is known what lies beside it, so a sheet is
 //! packed again with prescribed orientations, all of them for up to [`PERIOD`] pieces. Of these packings that with the largest area
-//! is kept, of equal ones that inside the smallest rectangle, and of these that with the fewest pieces turned. The sheets are filled one after the other: that no other packing
-//! needs fewer is not proved.
+//! is kept, of equal ones that inside the smallest rectangle, and of these that with the fewest pieces turned. The sheets are
+//! filled one after the other: that no other packing needs fewer is not proved.
 
 use crate::cut_file::cut_drawing::CutDrawing;
 use crate::cut_file::fabrication_error::FabricationError;

@@ -70,8 +70,8 @@ pub fn deployed_by_share(
     state.drawn(state.extent(), &subtitle, &coloured)
 }
 
-/// The frames of the deployment of a run: at most `most` states from the flat sheet to the last one, and without its loads if the target is for that, on the same page
-/// and in the same colours.
+/// The frames of the deployment of a run: at most `most` states from the flat sheet to the last one, and without its loads if the
+/// target is for that, on the same page and in the same colours.
 pub fn deployment_frames(scene: &Scene, designed: &Designed, most: usize) -> Vec<String> {
     let deployment = &designed.best.deployment;
     let before = states_before(&designed.problem, deployment);

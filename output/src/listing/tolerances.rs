@@ -90,7 +90,7 @@ impl ToleranceListing {
             tolerances,
             designed: (
                 errors.designed().sheet.clone(),
-                errors.designed().final_step().clone(),
+                errors.designed().compared().clone(),
             ),
             allowed: within.map(|within| allowed(&first_order, tolerances, within)),
             first_order,

@@ -53,6 +53,12 @@ impl CouponCommand {
         let machine = machine
             .map(|name| machine_of(&machines, name))
             .transpose()?;
+        let table = self.out.join(READINGS);
+        ensure!(
+            self.force || !std::fs::read_to_string(&table).is_ok_and(|text| is_filled(&text)),
+            "{} holds readings: choose another folder with --out, or replace them with --force",
+            table.display()
+        );
         let bar = Progress::new(SPECIMENS, "specimens");
         let specimens = specimens(&scene, &self.out, &mut |done| bar.show(done, None, ""));
         bar.finish();
@@ -60,12 +66,6 @@ impl CouponCommand {
         let drawing = drawing(&scene, &specimens, machine)?;
         let expected = Expected::of(&specimens)?;
         let empty = empty_table(&specimens);
-        let table = self.out.join(READINGS);
-        ensure!(
-            self.force || std::fs::read_to_string(&table).map_or(true, |text| text == empty),
-            "{} holds readings: choose another folder with --out, or replace them with --force",
-            table.display()
-        );
         let _held = run_folder::hold(&self.out)?;
         for specimen in &specimens {
             let text = specimen.loaded.scene.config.to_toml()?;
@@ -139,6 +139,15 @@ fn empty_table(specimens: &[Specimen]) -> String {
         }
     }
     text
+}
+
+/// Whether a row of the table after its header is more than a specimen and a mass.
+fn is_filled(table: &str) -> bool {
+    let rows = table
+        .lines()
+        .filter(|line| !line.trim_start().starts_with('#'));
+    let mut rows = rows.skip(1).map(str::trim).filter(|row| !row.is_empty());
+    rows.any(|row| !row.ends_with([',', ';']))
 }
 
 fn json(of: &Specimen) -> serde_json::Value {

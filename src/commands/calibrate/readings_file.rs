@@ -186,7 +186,7 @@ impl Header {
         Ok((header, records))
     }
 
-    /// A row of the table; `None` if its displacement is empty: it was not read.
+    /// A row of the table; `None` if it is that of a specimen and its displacement is empty: it was not read.
     fn row(&self, record: &StringRecord) -> Result<Option<Row>> {
         let line = line_of(record);
         let number = |(place, column): (usize, &Column)| -> Result<f64> {
@@ -207,7 +207,8 @@ impl Header {
             Ok(number * column.unit)
         };
         let [displacement, load] = self.columns;
-        if record.get(displacement.0).unwrap_or_default().is_empty() {
+        let is_empty = record.get(displacement.0).unwrap_or_default().is_empty();
+        if is_empty && self.specimen.is_some() {
             return Ok(None);
         }
         Ok(Some((line, [number(displacement)?, number(load)?])))

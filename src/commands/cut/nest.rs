@@ -1,13 +1,12 @@
 //! `kirigami cut --stock`: several designs, each one or several times, on sheets of one stock.
 
+use crate::commands::cut::nest_args::{PLACES, PLAN};
 use crate::commands::cut::{CutCommand, remove_earlier, verdict};
 use crate::commands::inspect::scene_args::Inspected;
 use crate::ui::progress::Progress;
 use crate::ui::run_folder;
 use crate::ui::table::table;
-use crate::ui::width_by_height::{length, stock};
 use anyhow::{Context, Result, ensure};
-use clap::Args;
 use design::geometry::polygon::area;
 use design::scene::{Scene, Stock};
 use output::cut_file::{
@@ -17,43 +16,6 @@ use output::cut_file::{
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-
-/// What is laid on which stock.
-#[derive(Args, Default)]
-pub(super) struct Nesting {
-    /// Further scenes or runs: with --stock they are laid on its sheets together with the first
-    #[arg(value_name = "SCENE", requires = "stock")]
-    others: Vec<PathBuf>,
-    /// Lay the designs on sheets of this stock, as few as are found: a5 to a0, letter, tabloid, or width and height (mm). Takes --for,
-    /// and writes one file a sheet, a picture of what lies where, and the cut lists
-    #[arg(long, value_name = "STOCK", value_parser = stock, requires = "machine")]
-    pub(super) stock: Option<Stock>,
-    /// Border of the stock that the machine cannot cut (mm) [default: the largest cutting.margin of the scenes]
-    #[arg(long, value_name = "MM", value_parser = length, requires = "stock")]
-    margin: Option<f64>,
-    /// Width of the material that remains between two pieces (mm)
-    #[arg(long, value_name = "MM", value_parser = length, default_value_t = GAP, requires = "stock")]
-    gap: f64,
-    /// Number of pieces of every design, or one number a design: 2,1,3
-    #[arg(
-        long,
-        value_name = "NUMBER",
-        value_delimiter = ',',
-        default_value = "1",
-        requires = "stock"
-    )]
-    copies: Vec<usize>,
-    /// Turn no piece by 90 degrees: for stock with a direction, such as a grain
-    #[arg(long, requires = "stock")]
-    no_turn: bool,
-}
-
-/// The usual gap (mm).
-const GAP: f64 = 3.0;
-/// Maximum number of pieces: the order of their cuts takes seconds then, and minutes for more.
-const MOST: usize = 200;
-pub(super) const PLACES: &str = "places.csv";
-pub(super) const PLAN: &str = "plan.svg";
 
 /// A design that is read, and the errors with which its files are forced.
 struct Read {
@@ -176,29 +138,6 @@ impl CutCommand {
         }
         progress.finish();
         Ok(read)
-    }
-}
-
-impl Nesting {
-    /// The number of pieces of each of the designs.
-    fn copies_of(&self, designs: usize) -> Result<Vec<usize>> {
-        let copies = match &self.copies[..] {
-            [all] => vec![*all; designs],
-            each => each.to_vec(),
-        };
-        ensure!(
-            copies.len() == designs,
-            "--copies has {} numbers for {designs} designs: give one number for all, or one a design in their order",
-            copies.len()
-        );
-        let total = copies
-            .iter()
-            .fold(0, |sum: usize, n| sum.saturating_add(*n));
-        ensure!(
-            copies.iter().all(|copies| *copies > 0) && total <= MOST,
-            "--copies {copies:?}: every design has at least one piece, and all have at most {MOST}"
-        );
-        Ok(copies)
     }
 }
 

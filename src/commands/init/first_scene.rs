@@ -15,8 +15,10 @@ use crate::commands::init::template::Template;
 use crate::commands::input_file;
 use anyhow::{Context, Result};
 use design::scene::{CuttingConfig, Paper, place_drawing, rounded};
-use hinge::Regime;
+use hinge::{HingeDeformation, Regime};
+use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
+use surrogate::Surrogate;
 use toml_edit::{Array, DocumentMut, Item, Table, value};
 
 /// Minimum side of a panel over the radius of a window: windows of neighbouring hinges do not overlap.
@@ -25,7 +27,12 @@ pub(crate) const PANEL: f64 = 3.5;
 /// too narrow for a hole wider than the kerf.
 pub(super) const THINNEST_PLATE: f64 = 2.0;
 /// theta (rad): 25 degrees.
-const OPENING: f64 = 0.436;
+pub(super) const OPENING: f64 = 0.436;
+/// The largest D_peak that a first plate is designed for, and by how much less it opens until it is not above it (rad): 5 degrees.
+const SAFE_PEAK: f64 = 0.7;
+const LESS: f64 = 0.0873;
+/// eta_a of a ligament of a plate that turns freely: c_1 theta + c_2 theta^2, as in the campaigns of plates.
+const FREE_OPENING: [f64; 2] = [0.5, 0.16];
 /// Widths of the clips at the top and at the bottom over those of their edges.
 const HELD: f64 = 0.21;
 const PULLED: f64 = 0.14;
@@ -42,6 +49,29 @@ pub(super) struct FirstScene {
     panels: [usize; 2],
     thickness: f64,
     cut_from: Option<CutFrom>,
+    /// theta of the target (rad).
+    pub(super) opening: f64,
+}
+
+/// The opening (rad) at which a ligament of the mean width that turns freely is safe by the weights of a plate, [`OPENING`] at most. A
+/// film tears at far larger ones.
+pub(super) fn safe_opening(surrogate: &Surrogate, regime: Regime) -> f64 {
+    let [narrowest, widest] = surrogate.domain().w_lig;
+    let w_lig = 0.5 * (narrowest + widest);
+    let design = surrogate.card().hinge.hinge(w_lig, FRAC_PI_2);
+    let tears = |theta: f64| {
+        let eta_a = FREE_OPENING[0] * theta + FREE_OPENING[1] * theta * theta;
+        let state = HingeDeformation::from_eta(eta_a, 0.0, theta, w_lig);
+        let damage = surrogate.damage_values(&[design], &[state]);
+        damage
+            .iter()
+            .any(|damage| damage.d_peak.is_some_and(|peak| peak > SAFE_PEAK))
+    };
+    let mut opening = OPENING;
+    while regime == Regime::Plate && opening > 2.0 * LESS && tears(opening) {
+        opening -= LESS;
+    }
+    opening
 }
 
 impl FirstScene {
@@ -91,6 +121,7 @@ impl FirstScene {
             panels,
             thickness,
             cut_from,
+            opening: OPENING,
         })
     }
 
@@ -173,11 +204,11 @@ impl FirstScene {
         Ok(scene.to_string())
     }
 
-    /// The rectangle of the sheet opened by [`OPENING`] with the panel `held` fixed, and the motion of the
+    /// The rectangle of the sheet opened by its opening with the panel `held` fixed, and the motion of the
     /// middle of the lower edge of its column.
     fn target(&self, held: [usize; 2]) -> OpenedSheet {
         let panel: [f64; 2] = std::array::from_fn(|i| self.size[i] / self.panels[i] as f64);
-        let (sin, cos) = (0.5 * OPENING).sin_cos();
+        let (sin, cos) = (0.5 * self.opening).sin_cos();
         let [a, b] = panel;
         let pitch = [a * cos + b * sin, b * cos + a * sin];
         // Even panels rotate by -theta/2, odd ones by theta/2; the held panel stays.
@@ -186,7 +217,7 @@ impl FirstScene {
         } else {
             -1.0
         };
-        let rotation = sign * 0.5 * OPENING;
+        let rotation = sign * 0.5 * self.opening;
         let fixed: [f64; 2] = std::array::from_fn(|i| (held[i] as f64 + 0.5) * panel[i]);
         // From the held panel to the middle of the sheet, before the rotation.
         let arm: [f64; 2] = std::array::from_fn(|i| {
@@ -195,7 +226,11 @@ impl FirstScene {
         let (sin, cos) = rotation.sin_cos();
         let steps = self.panels[1] - 1;
         // An odd number of panels away, the pulled panel turns by the opening, and the middle of its lower edge with it.
-        let turned = if steps % 2 == 1 { sign * OPENING } else { 0.0 };
+        let turned = if steps % 2 == 1 {
+            sign * self.opening
+        } else {
+            0.0
+        };
         let (turned_sin, turned_cos) = turned.sin_cos();
         let (down, half) = (steps as f64 * pitch[1], 0.5 * panel[1]);
         // From the middle of the held panel to the pulled point, in the opened and in the flat sheet.
@@ -246,7 +281,7 @@ fn panels(size: [f64; 2], thickness: f64, regime: Regime) -> Option<[usize; 2]> 
     std::iter::zip(size, panels).all(fits).then_some(panels)
 }
 
-/// The sheet that [`OPENING`] opens.
+/// The opened sheet.
 struct OpenedSheet {
     centre: [f64; 2],
     size: [f64; 2],
@@ -274,12 +309,31 @@ mod tests {
             thickness: 0.5,
             cut_from: None,
             regime: Regime::Film,
+            opening: OPENING,
         };
         let target = scene.target([1, 1]);
         assert!((target.size[0] - 2644.5).abs() < 0.5, "{:?}", target.size);
         assert!((target.size[1] - 1718.1).abs() < 0.5, "{:?}", target.size);
         let middle = [1219.2, 609.6];
         assert!(std::iter::zip(target.centre, middle).all(|(x, y)| (x - y).abs() < 1e-9));
+    }
+
+    /// Polypropylene and PETG bear the usual opening; aluminium tears at 24 to 28 degrees.
+    #[test]
+    fn a_material_that_tears_early_opens_less() {
+        for (material, degrees) in [
+            ("polypropylene-3mm", 25.0),
+            ("petg-3mm", 25.0),
+            ("aluminium-2mm", 15.0),
+        ] {
+            let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+            let weights = root.join("data").join(material).join("medium.safetensors");
+            let opening = safe_opening(&Surrogate::load(&weights).unwrap(), Regime::Plate);
+            assert!(
+                (opening.to_degrees() - degrees).abs() < 0.1,
+                "{material}: {opening}"
+            );
+        }
     }
 
     /// The shipped A4 plate and film are their own projects.
