@@ -58,8 +58,8 @@ proptest! {
                     size.reverse();
                 }
                 prop_assert!(length([place.size, size]) < 1e-9);
-                for axis in 0..2 {
-                    let [low, high] = [place.corner[axis], place.corner[axis] + size[axis]];
+                for (axis, side) in size.into_iter().enumerate() {
+                    let [low, high] = [place.corner[axis], place.corner[axis] + side];
                     prop_assert!(low >= margin + reach - ROUNDING);
                     prop_assert!(high <= stock.size[axis] - margin - reach + ROUNDING);
                 }

@@ -219,7 +219,7 @@ impl Header {
         let [(_, displacement), _] = self.columns;
         let from_reading = displacement.name == DISTANCE;
         let rows = if from_reading {
-            self.from_first(rows)?
+            self.since_first(rows)?
         } else {
             rows.to_vec()
         };
@@ -240,7 +240,7 @@ impl Header {
     }
 
     /// Distances less the first, which is before the loads.
-    fn from_first(&self, rows: &[Row]) -> Result<Vec<Row>> {
+    fn since_first(&self, rows: &[Row]) -> Result<Vec<Row>> {
         let Some((&(line, [first, load]), loaded)) = rows.split_first() else {
             return Ok(Vec::new());
         };

@@ -324,7 +324,7 @@ mod tests {
         for (material, degrees) in [
             ("polypropylene-3mm", 25.0),
             ("petg-3mm", 25.0),
-            ("aluminium-2mm", 15.0),
+            ("aluminium-2mm", 20.0),
         ] {
             let root = Path::new(env!("CARGO_MANIFEST_DIR"));
             let weights = root.join("data").join(material).join("medium.safetensors");
