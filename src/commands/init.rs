@@ -136,11 +136,7 @@ impl InitCommand {
             Some(weights) => weights.file.clone(),
             None => "weights.safetensors".into(),
         };
-        let margin = self
-            .margin
-            .or(like.as_ref().map(|like| like.scene.config.cutting.margin));
-        let margin = margin.unwrap_or(0.0);
-        let cut_from = self.stock.map(|stock| CutFrom { stock, margin });
+        let cut_from = self.cut_from(like.as_ref());
         let (scene, regime, trained) = match like {
             Some(like) => {
                 let of_scene = &like.scene;
@@ -197,6 +193,13 @@ impl InitCommand {
             self.check_scene()?;
         }
         Ok(readme)
+    }
+
+    /// The stock that is named; without a margin with that of the scene that is like it.
+    fn cut_from(&self, like: Option<&Like>) -> Option<CutFrom> {
+        let of_scene = like.map(|like| like.scene.config.cutting.margin);
+        let margin = self.margin.or(of_scene).unwrap_or(0.0);
+        self.stock.map(|stock| CutFrom { stock, margin })
     }
 
     /// The file of the material that is named, or else the usual one.

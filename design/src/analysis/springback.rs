@@ -6,7 +6,7 @@ use crate::equilibrium::let_go::ReleasedSheet;
 use crate::geometry::polygon::distance;
 use crate::hinge_law::Release;
 use crate::objective::design_problem::{Deployment, DesignError, DesignProblem, found};
-use crate::objective::scores::outline_error;
+use crate::objective::scores::outline_error_at;
 use crate::scene::{Scene, SpringbackMismatch};
 use crate::sheet::kinematics::deployed_corners;
 use hinge::ReleasedHinge;
@@ -70,7 +70,10 @@ pub fn released_hinges(
     scene.check_springback(law)?;
     let mechanics = problem.model.mechanics().ok_or(DesignError::NoMechanics)?;
     let release = Release::new(law.clone(), scene.scale());
-    Ok(mechanics.released_hinges(&release, &deployment.sheet, deployment.at_full_load()?))
+    let designs = deployment.sheet.designs();
+    let prepared = mechanics.law.prepare(&designs);
+    let states = &deployment.at_full_load()?.deformations;
+    Ok(release.hinges(&*prepared, &designs, states))
 }
 
 /// A deployed sheet of a scene and its problem after it was let go, and what stays of its opening.
@@ -118,14 +121,6 @@ impl DesignProblem {
             ActuationCurve::through(mechanics, sheet, &start, end)
         });
         let curve = curve.filter(|curve| curve.mover == Mover::Loads);
-        let under_load = Deployment {
-            released: None,
-            ..deployment.clone()
-        };
-        let let_go = Deployment {
-            released: Some(released.clone()),
-            ..deployment.clone()
-        };
         let rotations = std::iter::zip(&loaded.deformations, &free.deformations);
         Ok(WhatStays {
             rotations: rotations.map(|(on, off)| [on.theta, off.theta]).collect(),
@@ -141,7 +136,8 @@ impl DesignProblem {
             displacement: curve.map(|curve| [curve.points[0][0], curve.points[1][0]]),
             snaps: released.path.iter().any(|step| step.jumps > 0),
             corners: rms_and_maximum(moved.map(|(p, q)| distance(*p, *q))),
-            outline_error: [under_load, let_go].map(|of| outline_error(&self.objective, &of)),
+            outline_error: [loaded, free]
+                .map(|step| outline_error_at(&self.objective, deployment, step)),
         })
     }
 }

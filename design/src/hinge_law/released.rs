@@ -53,8 +53,22 @@ impl Release {
         }
     }
 
+    /// The hinges of a sheet that were let go in these states, with the forces of its prepared law.
+    pub fn hinges(
+        &self,
+        law: &dyn PreparedLaw,
+        designs: &[HingeDesign],
+        states: &[HingeDeformation],
+    ) -> Vec<ReleasedHinge> {
+        let energies = law.energies(states, Order::Forces);
+        std::iter::zip(designs, states)
+            .zip(energies)
+            .map(|((design, reached), energy)| self.hinge(design, reached, &energy.forces))
+            .collect()
+    }
+
     /// A hinge that was let go at a state with these forces (F_a, F_s, M_theta) (N, N, N mm).
-    pub fn hinge(
+    fn hinge(
         &self,
         design: &HingeDesign,
         reached: &HingeDeformation,

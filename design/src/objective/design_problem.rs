@@ -218,7 +218,12 @@ impl Deployment {
 
     /// Positions of panel corners in the state that is compared with the target (mm).
     pub fn outline(&self, corners: &[PanelCorner]) -> Vec<[f64; 2]> {
-        let configuration = &self.compared().configuration;
+        self.outline_at(self.compared(), corners)
+    }
+
+    /// Positions of panel corners in a state of the sheet (mm).
+    pub(crate) fn outline_at(&self, step: &LoadStep, corners: &[PanelCorner]) -> Vec<[f64; 2]> {
+        let configuration = &step.configuration;
         let deployed = |&(panel, corner): &PanelCorner| {
             let flat = self.sheet.panels[panel].corners[corner];
             deployed(&self.sheet.panels[panel], configuration[panel], flat)
@@ -320,7 +325,7 @@ impl DesignProblem {
                 let (path, followed) = mechanics.path(hinged, known);
                 path.iter()
                     .for_each(|step| verbose::note(|| step.to_string()));
-                let released = mechanics.released(&sheet, &path)?;
+                let released = mechanics.released(&*law, &sheet, &path)?;
                 (path, followed, Some(law), released)
             }
         };
@@ -424,7 +429,7 @@ impl Mechanics {
         let (path, followed) = self.path(hinged, Some(known));
         let deployment = Deployment {
             pattern: drawn.pattern.clone(),
-            released: self.released(&sheet, &path)?,
+            released: self.released(&*law, &sheet, &path)?,
             sheet,
             path,
             followed,

@@ -14,7 +14,7 @@ use crate::equilibrium::adjoint::{PathGradient, adjoint};
 use crate::equilibrium::let_go::ReleasedSheet;
 use crate::equilibrium::load_step::{LoadStep, Status};
 use crate::equilibrium::solver::EquilibriumError;
-use crate::hinge_law::{HingeGradient, Order, PreparedLaw, Release, ReleasedLaw};
+use crate::hinge_law::{HingeGradient, Order, PreparedLaw, ReleasedLaw};
 use crate::objective::design_problem::{Deployment, DesignError, Mechanics};
 use crate::sheet::cut_sheet::{Sheet, SheetGradient};
 use crate::sheet::kinematics::HingeMotion;
@@ -24,21 +24,6 @@ use std::array::from_fn;
 use surrogate::ByReleased;
 
 impl Mechanics {
-    /// The hinges of a sheet after they were let go at a load step.
-    pub(crate) fn released_hinges(
-        &self,
-        release: &Release,
-        sheet: &Sheet,
-        step: &LoadStep,
-    ) -> Vec<ReleasedHinge> {
-        let designs = sheet.designs();
-        let energies = (self.law.prepare(&designs)).energies(&step.deformations, Order::Forces);
-        std::iter::zip(&designs, &step.deformations)
-            .zip(energies)
-            .map(|((design, reached), energy)| release.hinge(design, reached, &energy.forces))
-            .collect()
-    }
-
     /// Takes the loads off a sheet in the configuration of a load step, with these hinges.
     pub(crate) fn let_go(
         &self,
@@ -52,9 +37,10 @@ impl Mechanics {
         Ok(ReleasedSheet { hinges, path })
     }
 
-    /// The sheet at the end of a path after it was let go, if the target is for that; `None` too if the path has not reached full load.
+    /// The sheet at the end of a path by its prepared law after it was let go, if the target is for that; `None` too if the path has not reached full load.
     pub(super) fn released(
         &self,
+        law: &dyn PreparedLaw,
         sheet: &Sheet,
         path: &[LoadStep],
     ) -> Result<Option<ReleasedSheet>, DesignError> {
@@ -62,7 +48,7 @@ impl Mechanics {
         let Some((release, step)) = self.release.as_ref().zip(loaded) else {
             return Ok(None);
         };
-        let hinges = self.released_hinges(release, sheet, step);
+        let hinges = release.hinges(law, &sheet.designs(), &step.deformations);
         Ok(Some(self.let_go(sheet, step, hinges)?))
     }
 

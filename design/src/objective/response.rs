@@ -143,7 +143,8 @@ impl DesignProblem {
         })?;
         let mechanics = self.model.mechanics().ok_or(DesignError::NoMechanics)?;
         let Deployment { sheet, path, .. } = &response.deployment;
-        response.deployment.released = mechanics.released(sheet, path)?;
+        let law = mechanics.law.prepare(&sheet.designs());
+        response.deployment.released = mechanics.released(&*law, sheet, path)?;
         Ok(response)
     }
 

@@ -1,5 +1,6 @@
 //! The objective of one design and its terms, as stored for each step and reported.
 
+use crate::equilibrium::load_step::LoadStep;
 use crate::geometry::chamfer::{Chamfer, Precision};
 use crate::objective::design_problem::{Deployment, Evaluation};
 use crate::objective::loss::{Objective, TermValues};
@@ -37,9 +38,18 @@ impl Scores {
 /// It is the square root of the first sum of the Chamfer distance to the curve. The second sum, coverage, also
 /// depends on the spacing of the points P, and stays large for a coarse sheet that matches its target.
 pub fn outline_error(objective: &Objective, deployment: &Deployment) -> f64 {
+    outline_error_at(objective, deployment, deployment.compared())
+}
+
+/// The same for a state of the sheet.
+pub(crate) fn outline_error_at(
+    objective: &Objective,
+    deployment: &Deployment,
+    step: &LoadStep,
+) -> f64 {
     let shape = &objective.shape;
     let points = shape.outline.corners(&deployment.sheet);
-    let outline = shape.placed(&deployment.outline(&points));
+    let outline = shape.placed(&deployment.outline_at(step, &points));
     let precision = Chamfer {
         coverage_weight: 0.0,
         smoothing: 0.0,

@@ -24,7 +24,15 @@ fn cut() -> Deviation {
     }
 }
 
-/// Every mass opens a specimen further, no hinge beyond 25 degrees, and the widths are told apart by their masses.
+/// What a micrometer says of it.
+fn known() -> Deviation {
+    Deviation {
+        thickness: cut().thickness,
+        ..Deviation::default()
+    }
+}
+
+/// Every mass opens a specimen further, no hinge beyond 25 degrees, and wider ligaments bear heavier masses.
 #[test]
 fn masses_open_what_they_hang_from() {
     let coupon = coupon();
@@ -47,11 +55,7 @@ fn masses_open_what_they_hang_from() {
 #[test]
 fn exact_readings_give_the_plate() {
     let coupon = coupon();
-    let cut = cut();
-    let known = Deviation {
-        thickness: cut.thickness,
-        ..Deviation::default()
-    };
+    let (cut, known) = (cut(), known());
     let coupon = SimulatedCoupon {
         specimens: &coupon,
         cut: &cut,
@@ -71,11 +75,7 @@ fn exact_readings_give_the_plate() {
 #[test]
 fn a_plate_is_within_two_standard_errors() {
     let coupon = coupon();
-    let cut = cut();
-    let known = Deviation {
-        thickness: cut.thickness,
-        ..Deviation::default()
-    };
+    let (cut, known) = (cut(), known());
     let coupon = SimulatedCoupon {
         specimens: &coupon,
         cut: &cut,

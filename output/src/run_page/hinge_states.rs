@@ -4,7 +4,6 @@ use crate::deployment_states::{kept, states_before};
 use crate::report::force_spreads;
 use crate::run_page::packed::Packed;
 use design::analysis::actuation_curve::{ActuationCurve, holding_forces};
-use design::equilibrium::hinged_sheet::HingedSheet;
 use design::equilibrium::load_step::{LoadStep, Status};
 use design::hinge_law::{DamageMeasure, Order, PreparedLaw, ReleasedLaw};
 use design::objective::design_problem::{Deployment, DesignProblem, Mechanics};
@@ -85,25 +84,11 @@ impl HingeStates {
             let known = known_damage(deployment, before.len(), measure)?;
             Some(by_hinge(&|i, h| known[i][h]))
         };
-        let (forces, reactions) = mechanics.map_or_else(Default::default, |mechanics| {
-            let designs = sheet.designs();
-            let law = mechanics.law.prepare(&designs);
-            let released = deployment.released.as_ref();
-            let released = ReleasedLaw(released.map_or(&[], |released| &released.hinges));
-            let states = index.iter().map(|&i| {
-                let law: &dyn PreparedLaw = if i < steps { &*law } else { &released };
-                let hinged = mechanics.hinged(sheet, law, false);
-                (
-                    forces(hinged, all[i]),
-                    reactions(scene, mechanics, hinged, all[i]),
-                )
-            });
-            let (forces, reactions): (Vec<_>, Vec<_>) = states.unzip();
-            (
-                Some(forces.into_iter().flatten().collect()),
-                reactions.concat(),
-            )
+        let of_mechanics = mechanics.map(|mechanics| {
+            let states = index.iter().map(|&i| (all[i], i >= steps));
+            forces_and_reactions(scene, mechanics, deployment, states)
         });
+        let (forces, reactions) = of_mechanics.unzip();
         let weight_steps = deployment.weight_steps().len();
         let curve = mechanics.and_then(|mechanics| ActuationCurve::new(mechanics, deployment));
         Self {
@@ -143,32 +128,39 @@ impl HingeStates {
                     Some(step) => spreads.get(step).map_or(f64::NAN, |of| 100.0 * of[h]),
                 })
             }),
-            reactions: reactions.into_iter().collect(),
+            reactions: reactions.unwrap_or_else(|| Packed::from_iter([])),
             index,
         }
     }
 }
 
-/// (F_a, F_s, M_theta) of every hinge in a state.
-fn forces(hinged: HingedSheet, state: &LoadStep) -> Vec<f64> {
-    let energies = hinged.energies(&state.deformations, Order::Forces);
-    energies.iter().flat_map(|energy| energy.forces).collect()
-}
-
-/// The forces of every support of the scene in a state.
-fn reactions(
+/// (F_a, F_s, M_theta) of every hinge and (F_x, F_y, M) of every support of the scene in states, of which some are `let_go`.
+fn forces_and_reactions<'a>(
     scene: &Scene,
     mechanics: &Mechanics,
-    hinged: HingedSheet,
-    state: &LoadStep,
-) -> Vec<f64> {
-    let forces = holding_forces(mechanics, hinged, state.weight, &state.configuration);
+    deployment: &Deployment,
+    states: impl Iterator<Item = (&'a LoadStep, bool)>,
+) -> (Packed, Packed) {
     let supports = scene.actuation().supports;
-    let held = supports.iter().flat_map(|support| {
-        let held = std::iter::zip(support.motion, forces[support.panel]);
-        held.map(|(motion, force)| motion.map_or(0.0, |_| force))
-    });
-    held.collect()
+    let law = mechanics.law.prepare(&deployment.sheet.designs());
+    let released = deployment.released.as_ref();
+    let released = ReleasedLaw(released.map_or(&[], |released| &released.hinges));
+    let (mut forces, mut reactions) = (Vec::new(), Vec::new());
+    for (state, let_go) in states {
+        let law: &dyn PreparedLaw = if let_go { &released } else { &*law };
+        let hinged = mechanics.hinged(&deployment.sheet, law, false);
+        let energies = hinged.energies(&state.deformations, Order::Forces);
+        forces.extend(energies.iter().flat_map(|energy| energy.forces));
+        let on_panels = holding_forces(mechanics, hinged, state.weight, &state.configuration);
+        reactions.extend(supports.iter().flat_map(|support| {
+            let held = std::iter::zip(support.motion, on_panels[support.panel]);
+            held.map(|(motion, force)| motion.map_or(0.0, |_| force))
+        }));
+    }
+    (
+        forces.into_iter().collect(),
+        reactions.into_iter().collect(),
+    )
 }
 
 /// The damage of every hinge in every state: zero in the states before the path, NaN from the state in which the hinge
