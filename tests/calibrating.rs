@@ -59,7 +59,7 @@ fn a_thinner_sheet_is_found_and_its_scene_predicts_it() {
     );
     let page = std::fs::read_to_string(work.path("found/calibration.txt")).unwrap();
     assert!(
-        page.contains("not asked for") && page.contains("0.4900 +-"),
+        page.contains("as in the scene") && page.contains("0.4900 +-"),
         "{page}"
     );
     // The scene that was written is that of the thin sheet.

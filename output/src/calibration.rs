@@ -88,7 +88,7 @@ impl CalibrationReport {
                 None if *quantity.of(&mut self.calibration.known.clone()) != 0.0 => {
                     format!("{value:.digits$}, known")
                 }
-                None => "not asked for".into(),
+                None => "as in the scene".into(),
             };
             [
                 quantity.name().into(),

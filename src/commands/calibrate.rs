@@ -84,7 +84,7 @@ impl FitArgs {
             bar.show(steps, None, "");
         };
         let scene = &measured.scene;
-        let known = quantities::deviation(&self.known, scene);
+        let known = quantities::deviation(&self.known, scene)?;
         let found = measured.with_sheets(|sheets| {
             let found = calibrate(sheets, &quantities, &known, &mut progress);
             found.map_err(|error| measured.located(error))

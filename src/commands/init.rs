@@ -8,7 +8,7 @@ mod template;
 
 use crate::commands::init::cut_from::CutFrom;
 use crate::commands::init::edited::{heading, scale, set};
-use crate::commands::init::first_scene::{FirstScene, OPENING, THINNEST_PLATE, safe_opening};
+use crate::commands::init::first_scene::{FirstScene, THINNEST_PLATE, safe_opening};
 use crate::commands::init::similar_scene::{Like, SimilarScene};
 use crate::commands::init::template::Template;
 use crate::commands::input_file;
@@ -17,6 +17,7 @@ use crate::ui::shell_word::shell_word;
 use crate::ui::width_by_height::{length, stock, width_by_height};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
+use design::analysis::coupon::OPENING;
 use design::scene::{Paper, Scene, Stock};
 use hinge::{Regime, SheetMaterial};
 use mesher::Tier;

@@ -11,16 +11,14 @@ pub fn width_by_height(text: &str) -> Option<[f64; 2]> {
 
 /// A stock: the name of a paper, or width and height (mm).
 pub fn stock(text: &str) -> Result<Stock, String> {
-    let sides = width_by_height(text).filter(|sides| sides.iter().all(|side| RANGE.contains(side)));
+    let sides =
+        width_by_height(text).filter(|sides| sides.iter().all(|side| Stock::SIDES.contains(side)));
     let paper = text.parse().map(Stock::Paper);
     (sides.map(Stock::Sides)).or(paper.ok()).ok_or_else(|| {
         "must be a paper, a5 to a0, letter or tabloid, or WIDTHxHEIGHT of 1 to 1e5 mm, like 600x400"
             .into()
     })
 }
-
-/// The sides of a stock (mm), as of the key `cutting.stock`.
-const RANGE: std::ops::RangeInclusive<f64> = 1.0..=1e5;
 
 /// A length of 0 to 1000 mm.
 pub fn length(text: &str) -> Result<f64, String> {

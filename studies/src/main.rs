@@ -1,39 +1,29 @@
 //! `kirigami-studies`: cost and error of the choices at each stage, and the paper's experiments.
 
 mod actuations;
-mod approaches;
 mod attempt;
 mod calibration;
 mod capacity;
 mod chain;
 mod charts;
 mod choices;
-mod compact;
 mod coupon;
 mod cpu_seconds;
 mod designed;
 mod drawing;
 mod extremes;
-mod flatness;
-mod free_panels;
 mod gradient;
 mod keys;
 mod levels;
-mod localisation;
-mod outline_match;
 mod pages;
-mod panel_penalties;
-mod path_costs;
 mod polyester;
 mod printed;
 mod shape_alone;
 mod sheet;
-mod silhouettes;
 mod solutions;
 mod spread;
 mod stop;
 mod surrogate;
-mod tessellation;
 mod tradeoff;
 mod window;
 
@@ -56,20 +46,14 @@ enum Study {
     Chain(chain::ChainStudy),
     Sheet(sheet::SheetStudy),
     Window(window::WindowStudy),
-    PathCosts(path_costs::PathCostStudy),
     Polyester(polyester::PolyesterStudy),
     Gradient(gradient::GradientStudy),
     Solutions(solutions::SolutionStudy),
-    Approaches(approaches::ApproachStudy),
-    Silhouettes(silhouettes::SilhouetteStudy),
-    Compact(compact::CompactStudy),
     Actuations(actuations::ActuationStudy),
     Calibration(calibration::CalibrationStudy),
     Coupon(coupon::CouponStudy),
     Capacity(capacity::CapacityStudy),
-    Localisation(localisation::LocalisationStudy),
     Extremes(extremes::ExtremesStudy),
-    Flatness(flatness::FlatnessStudy),
     Surrogate(surrogate::SurrogateStudy),
     Tradeoff(tradeoff::TradeoffCommand),
     Printed(printed::PrintedStudy),
@@ -84,20 +68,14 @@ impl Study {
             Self::Chain(study) => study.run(),
             Self::Sheet(study) => study.run(),
             Self::Window(study) => study.run(),
-            Self::PathCosts(study) => study.run(),
             Self::Polyester(study) => study.run(),
             Self::Gradient(study) => study.run(),
             Self::Solutions(study) => study.run(),
-            Self::Approaches(study) => study.run(),
-            Self::Silhouettes(study) => study.run(),
-            Self::Compact(study) => study.run(),
             Self::Actuations(study) => study.run(),
             Self::Calibration(study) => study.run(),
             Self::Coupon(study) => study.run(),
             Self::Capacity(study) => study.run(),
-            Self::Localisation(study) => study.run(),
             Self::Extremes(study) => study.run(),
-            Self::Flatness(study) => study.run(),
             Self::Surrogate(study) => study.run(),
             Self::Tradeoff(command) => command.run(),
             Self::Printed(study) => study.run(),

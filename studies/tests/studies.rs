@@ -9,8 +9,6 @@ use common::{Workplace, failure};
 use failing_ccx::failing_ccx;
 use std::path::{Path, PathBuf};
 
-const PIN: &str = "configs/scenes/pin-7x7.toml";
-
 /// The page that a study writes when run with the given arguments.
 fn page(work: &Workplace, arguments: &str, file: &str) -> String {
     work.output(&format!("{arguments} --out out"));
@@ -43,79 +41,6 @@ fn shipped_weights(work: &Workplace) {
             std::fs::copy(data.join(&file), there).unwrap();
         }
     }
-}
-
-#[test]
-fn silhouettes_and_their_stored_runs() {
-    let work = Workplace::new();
-    let scene = "configs/scenes/shield-16x22.toml";
-    work.edit(scene, &[("panels = [16, 22]", "panels = [4, 6]")]);
-    set_steps(&work, scene, 40);
-    let study = format!("silhouettes {scene} configs/targets/leaf.svg configs/targets/bell.svg");
-    let first = page(&work, &study, "silhouettes.md");
-    // Twenty-four panels match a leaf to a few per cent.
-    for corners in ["free", "all"] {
-        let row = numbers(&first, &format!("leaf, {corners}, 10"));
-        let [free, all, union_free, union_all, _, _, thinnest] = row[..7] else {
-            panic!("{first}");
-        };
-        let (distance, union) = match corners {
-            "free" => (free, union_free),
-            _ => (all, union_all),
-        };
-        assert!(distance < 5.0 && (0.8..1.0).contains(&union), "{first}");
-        assert!(thinnest > 10.0, "{first}");
-    }
-    assert!(work.path("out/silhouettes.png").exists());
-    // Finished runs are stored; a repeated study makes no further steps.
-    let kept = work.path("out/runs/leaf-free-10/state.json");
-    let before = std::fs::read(&kept).unwrap();
-    page(&work, &study, "silhouettes.md");
-    assert!(std::fs::read(&kept).unwrap() == before);
-    let twice = format!("silhouettes {scene} a/leaf.svg b/leaf.svg --out out");
-    assert!(work.error(&twice).contains("b/leaf.svg: another"));
-}
-
-#[test]
-fn compact_sheets_match_their_outlines_and_are_kept() {
-    let work = Workplace::new();
-    set_steps(&work, "configs/scenes/compact-11x11.toml", 60);
-    let study = "compact configs/targets/compact.json --every 249 --starts 1";
-    let first = page(&work, study, "compact.md");
-    for width in ["none", "25"] {
-        let row = numbers(&first, width);
-        // The width itself may be a number.
-        let [targets, mean, worst, .., thinnest, overlap, _] = row[row.len() - 9..] else {
-            panic!("{first}");
-        };
-        assert!(targets == 2.0 && mean > 97.0 && worst > 95.0, "{first}");
-        assert!(overlap < 1e-9, "{first}");
-        assert!(width == "none" || thinnest > 25.0, "{first}");
-    }
-    assert!(work.path("out/compact.png").exists());
-    // A stored design is not made again: its match is that of the file.
-    let stored = std::fs::read_to_string(work.path("out/compact.csv")).unwrap();
-    let row: Vec<&str> = stored.lines().nth(1).unwrap().split(',').collect();
-    work.edit("out/compact.csv", &[(row[5], "0.5")]);
-    let again = page(&work, study, "compact.md");
-    assert_eq!(numbers(&again, "none")[2], 50.0, "{again}");
-    let message = work.error("compact no-targets.json --out out");
-    assert!(message.contains("no-targets.json"), "{message}");
-}
-
-#[test]
-fn approaches_on_pins() {
-    let work = Workplace::new();
-    work.edit(PIN, &[("panels = [7, 7]", "panels = [4, 4]")]);
-    set_steps(&work, PIN, 20);
-    let approaches = format!("approaches {PIN} --steps 20");
-    let approaches = page(&work, &approaches, "approaches.md");
-    // Free corners have gaps at their hinges, the charts cannot have any.
-    let gap = |name: &str| numbers(&approaches, name)[4];
-    assert!(
-        gap("**free corners**") > 0.1 && gap("**charts**") < 1e-9,
-        "{approaches}"
-    );
 }
 
 #[test]
@@ -152,23 +77,6 @@ fn the_load_capacity_of_an_opened_sheet() {
     assert!(ways.lines().count() > 8 * 100, "{ways}");
     work.edit(scene, &[("panel = [7, 9] ", "panel = [7, 10] ")]);
     assert!(work.error("capacity --out out").contains("[7, 10]"));
-}
-
-#[test]
-fn sheets_whose_panels_stay_flat() {
-    let work = Workplace::new();
-    let text = page(&work, "localisation", "localisation.md");
-    // L* of (22) in cm, and Table 2.
-    for material in ["pet-0.5mm", "s235-1.5mm"] {
-        let [.., found, _, printed] = numbers(&text, material)[..] else {
-            panic!("{text}");
-        };
-        assert!((found - printed).abs() < 0.051, "{text}");
-    }
-    assert!(
-        work.error("localisation --edge=-1 --out out")
-            .contains("--edge")
-    );
 }
 
 #[test]

@@ -27,8 +27,8 @@ const CORNERS: [(char, f64); 2] = [('A', 90.0), ('B', 60.0)];
 const WIDTHS: usize = 3;
 /// Number of specimens.
 pub const SPECIMENS: usize = WIDTHS * CORNERS.len();
-/// The largest opening of a hinge that is planned (rad): 25 degrees.
-const OPENING: f64 = 0.436;
+/// The largest opening of a hinge that is planned, for a specimen or a first sheet (rad): 25 degrees.
+pub const OPENING: f64 = 0.436;
 /// The largest D_peak of a softer specimen: at 1 a ligament tears.
 const SAFE: f64 = 0.8;
 /// Largest displacement of a cut specimen over the largest that is planned: beyond it no weight is added.

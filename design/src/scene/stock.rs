@@ -5,6 +5,7 @@ use serde::de::IntoDeserializer;
 use serde::de::value::Error;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 /// A paper: ISO 216 A, or of North America (ANSI A and B).
@@ -75,6 +76,9 @@ pub enum Stock {
 }
 
 impl Stock {
+    /// Sides of a stock (mm); the range of the key has the same numbers.
+    pub const SIDES: RangeInclusive<f64> = 1.0..=1e5;
+
     /// Width and height (mm).
     pub fn size(self) -> [f64; 2] {
         match self {

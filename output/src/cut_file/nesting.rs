@@ -159,10 +159,14 @@ impl Packing {
             turns: stock.turns,
         };
         for (design, [width, height]) in designs.iter().zip(packing.designs.iter().copied()) {
-            let turned = packing.turns && packing.holds([height, width]);
-            if !turned && !packing.holds([width, height]) {
-                let (name, size) = (design.name.clone(), design.size());
-                return Err(FabricationError::LargerThanStock { name, size, room });
+            let fits_turned = packing.holds([height, width]);
+            if !packing.holds([width, height]) && !(packing.turns && fits_turned) {
+                return Err(FabricationError::LargerThanStock {
+                    name: design.name.clone(),
+                    size: design.size(),
+                    room,
+                    fits_turned,
+                });
             }
         }
         Ok(packing)

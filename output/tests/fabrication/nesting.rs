@@ -273,5 +273,7 @@ fn a_design_that_does_not_fit_is_named() {
             "design 0"
         };
         assert!(error.to_string().starts_with(largest), "{error}");
+        let turns_it = error.to_string().contains("--no-turn");
+        assert_eq!(turns_it, !turns && margin < 50.0, "{error}");
     }
 }

@@ -1,5 +1,6 @@
 //! The quantities of a cut sheet: those that are fitted, and those that were measured by themselves.
 
+use anyhow::{Result, ensure};
 use clap::ValueEnum;
 use design::analysis::calibration::Quantity;
 use design::scene::Scene;
@@ -52,15 +53,28 @@ impl FromStr for Known {
     }
 }
 
-/// The sheet of a scene with known quantities.
-pub(super) fn deviation(known: &[Known], scene: &Scene) -> Deviation {
+/// A known value is within this factor of that of the scene: a unit or a decimal point is wrong in others.
+const FACTOR: f64 = 4.0;
+
+/// The sheet of a scene with known quantities; an error if one is named twice or out of proportion to the scene.
+pub(super) fn deviation(known: &[Known], scene: &Scene) -> Result<Deviation> {
     let mut deviation = Deviation::default();
-    for Known { quantity, value } in known {
-        match quantity {
-            Quantity::Kerf => deviation.kerf = value - scene.config.process.kerf,
-            Quantity::Thickness => deviation.thickness = value - scene.material.thickness,
-            Quantity::Stress => deviation.stress = value - 1.0,
-        }
+    for (i, Known { quantity, value }) in known.iter().enumerate() {
+        let name = quantity.name();
+        ensure!(
+            known[..i].iter().all(|other| other.quantity != *quantity),
+            "--known names {name} twice: give one value"
+        );
+        let nominal = match quantity {
+            Quantity::Kerf => scene.config.process.kerf,
+            Quantity::Thickness => scene.material.thickness,
+            Quantity::Stress => 1.0,
+        };
+        ensure!(
+            nominal == 0.0 || (nominal / FACTOR..=FACTOR * nominal).contains(value),
+            "--known {name}={value}, but the scene has {nominal}: check the unit and the decimal point, or change the scene"
+        );
+        *quantity.of(&mut deviation) = value - nominal;
     }
-    deviation
+    Ok(deviation)
 }

@@ -14,6 +14,7 @@ use crate::commands::init::edited::{heading, scale, set};
 use crate::commands::init::template::Template;
 use crate::commands::input_file;
 use anyhow::{Context, Result};
+use design::analysis::coupon::OPENING;
 use design::scene::{CuttingConfig, Paper, place_drawing, rounded};
 use hinge::{HingeDeformation, Regime};
 use std::f64::consts::FRAC_PI_2;
@@ -26,8 +27,6 @@ pub(crate) const PANEL: f64 = 3.5;
 /// Thickness (mm) from which a sheet is a plate: the narrowest ligaments of a thinner one, a third of its thickness, would be
 /// too narrow for a hole wider than the kerf.
 pub(super) const THINNEST_PLATE: f64 = 2.0;
-/// theta (rad): 25 degrees.
-pub(super) const OPENING: f64 = 0.436;
 /// The largest D_peak that a first plate is designed for, and by how much less it opens until it is not above it (rad): 5 degrees.
 const SAFE_PEAK: f64 = 0.7;
 const LESS: f64 = 0.0873;
